@@ -1,0 +1,1 @@
+"""The measuring bench: drivers, simulated twins, recording and vision."""

@@ -1,0 +1,1 @@
+"""Finite-element solver of layered soft tissue."""

@@ -1,0 +1,1 @@
+"""Wave models of layered soft tissue."""
