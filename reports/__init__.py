@@ -1,1 +1,58 @@
-"""Tables, figures and pages from plain results."""
+"""Tables, figures, HTML and CSV from plain results.
+
+Knows nothing of solvers, wave models, devices or the harness: plain arrays, dicts and the small frozen
+dataclasses of `reports.blocks` come in, strings and files go out. Figures live in `reports.figures`.
+"""
+
+from reports.atomic import whole_folder, write_bytes, write_json, write_text
+from reports.blocks import (
+    Block,
+    Bullets,
+    Column,
+    Download,
+    Downloads,
+    Fact,
+    Facts,
+    Figure,
+    KeyFigure,
+    KeyFigures,
+    Listing,
+    Notice,
+    Panel,
+    Paragraph,
+    Section,
+    Subsection,
+    Table,
+    Verdict,
+)
+from reports.page import Page, render_page, write_page
+from reports.tables import write_csv
+
+__all__ = [
+    "Block",
+    "Bullets",
+    "Column",
+    "Download",
+    "Downloads",
+    "Fact",
+    "Facts",
+    "Figure",
+    "KeyFigure",
+    "KeyFigures",
+    "Listing",
+    "Notice",
+    "Page",
+    "Panel",
+    "Paragraph",
+    "Section",
+    "Subsection",
+    "Table",
+    "Verdict",
+    "render_page",
+    "whole_folder",
+    "write_bytes",
+    "write_csv",
+    "write_json",
+    "write_page",
+    "write_text",
+]

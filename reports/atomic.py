@@ -1,0 +1,184 @@
+"""Files and folders written whole or not at all.
+
+What is written goes to a temporary name beside its target and is renamed at the end, so that a reader never
+sees half a file and a failure leaves what was there before. What a file contains is not decided here.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import secrets
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+StrPath = str | os.PathLike[str]
+
+
+def write_bytes(path: StrPath, data: bytes) -> Path:
+    """Write `data` to `path`, whole or not at all.
+
+    Parameters
+    ----------
+    path
+        File to write; missing parent folders are made, an existing file is replaced.
+    data
+        Its content.
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    OSError
+        Where the file system refuses; the target is then as it was.
+    """
+    target = Path(path)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    temporary = _sibling(target)
+    try:
+        with temporary.open("xb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        temporary.replace(target)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+    _sync_folder(target.parent)
+    return target
+
+
+def write_text(path: StrPath, text: str) -> Path:
+    """Write `text` as UTF-8 with its line ends as they are; see `write_bytes`."""
+    return write_bytes(path, text.encode("utf-8"))
+
+
+def write_json(path: StrPath, value: Any) -> Path:
+    """Write `value` as indented JSON; see `write_bytes`.
+
+    NumPy scalars and arrays become numbers and lists; NaN and infinities, which JSON lacks, become null.
+
+    Raises
+    ------
+    TypeError
+        For a value JSON has no form for, naming the place inside `value`.
+    """
+    return write_text(path, json.dumps(plain(value), indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def plain(value: Any, where: str = "value") -> Any:
+    """Return `value` in the types JSON knows: dict, list, str, int, float, bool and None.
+
+    Parameters
+    ----------
+    value
+        Mappings with text keys, sequences, NumPy arrays and scalars, paths, text, numbers and None, nested.
+    where
+        Name of `value` in the message of an error.
+
+    Raises
+    ------
+    TypeError
+        For anything else, naming the place.
+    """
+    if value is None or isinstance(value, str | bool | int):
+        return value
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {_text_key(key, where): plain(item, f"{where}.{key}") for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item, f"{where}[{index}]") for index, item in enumerate(value)]
+    if hasattr(value, "tolist"):
+        return plain(value.tolist(), where)
+    if isinstance(value, os.PathLike):
+        return str(value)
+    raise TypeError(f"{where} is a {type(value).__name__}, which has no JSON form")
+
+
+@contextmanager
+def whole_folder(path: StrPath) -> Iterator[Path]:
+    """Build a folder under a temporary name beside `path` and rename it at the end.
+
+    The context manager yields the folder to fill. A folder already at `path` is replaced only when the new
+    one is complete. On any exception the temporary folder is removed and `path` stays untouched.
+
+    Parameters
+    ----------
+    path
+        The folder to make; missing parent folders are made (and removed again on an exception).
+
+    Raises
+    ------
+    FileExistsError
+        If `path` is a file.
+    OSError
+        Where the file system refuses.
+    """
+    target = Path(path).resolve()
+    if target.exists() and not target.is_dir():
+        raise FileExistsError(f"{target} is a file; a result folder needs a name that is free or a folder's")
+    made = [folder for folder in target.parents if not folder.exists()]
+    temporary = _sibling(target)
+    try:
+        temporary.mkdir(parents=True)
+        yield temporary
+        _put_in_place(temporary, target)
+    except BaseException:
+        shutil.rmtree(temporary, ignore_errors=True)
+        _remove_empty(made)
+        raise
+    _sync_folder(target.parent)
+
+
+def _put_in_place(temporary: Path, target: Path) -> None:
+    """Rename `temporary` to `target`; an old `target` steps aside first and comes back if that fails."""
+    if not target.exists():
+        temporary.rename(target)
+        return
+    retired = _sibling(target)
+    target.rename(retired)
+    try:
+        temporary.rename(target)
+    except BaseException:
+        retired.rename(target)
+        raise
+    shutil.rmtree(retired)
+
+
+def _sibling(target: Path) -> Path:
+    """Return a free hidden name in the folder of `target`."""
+    return target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+
+
+def _remove_empty(folders: list[Path]) -> None:
+    """Remove the folders that are empty, innermost first."""
+    for folder in folders:
+        if not folder.is_dir() or any(folder.iterdir()):
+            return
+        folder.rmdir()
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make a rename durable where the system lets a folder be synchronised."""
+    if os.name != "posix":
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def _text_key(key: Any, where: str) -> str:
+    """Return `key` where it is text; JSON objects have no other keys."""
+    if not isinstance(key, str):
+        raise TypeError(f"{where} has the key {key!r}, a {type(key).__name__}; JSON keys are text")
+    return key

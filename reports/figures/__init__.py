@@ -1,0 +1,32 @@
+"""Figures of a report, a subject a file: plain arrays in the units of the border (mm, N, s) to inline SVG.
+
+Every function returns a `reports.blocks.Figure` with caption and a description in words.
+"""
+
+from reports.figures.fitted_parameters import FittedParameter, fitted_parameters
+from reports.figures.force_depth import force_depth
+from reports.figures.layer_stack import layer_stack
+from reports.figures.load_history import load_history
+from reports.figures.max_deformation import max_deformation
+from reports.figures.measured import measured
+from reports.figures.normal_fit import Normal, normal_fit
+from reports.figures.profile import profile
+from reports.figures.section import StackLayer
+from reports.figures.timing import timing
+from reports.figures.trials import TrialCurve
+
+__all__ = [
+    "FittedParameter",
+    "Normal",
+    "StackLayer",
+    "TrialCurve",
+    "fitted_parameters",
+    "force_depth",
+    "layer_stack",
+    "load_history",
+    "max_deformation",
+    "measured",
+    "normal_fit",
+    "profile",
+    "timing",
+]

@@ -1,0 +1,141 @@
+"""Maximum deformation of each layer over the load history, FEM against wave, error below (Fig. 12)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from reports.blocks import Figure, Panel
+from reports.figures.arrays import (
+    Floats,
+    column,
+    layer_of,
+    matrix,
+    optional_matrix,
+    peak,
+    shared_limits,
+    stopped_at,
+)
+from reports.figures.marks import model_line
+from reports.figures.style import FEM, INK, SMALL, WAVE, draw, heading, legend_above, zero_line
+from reports.formatting import format_number
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+
+Limits = tuple[float, float] | None
+
+
+def max_deformation(
+    layer_names: Sequence[str],
+    x: Any,
+    fem_mm: Any,
+    wave_mm: Any = None,
+    percent_error: Any = None,
+    x_label: str = "load step",
+) -> Figure:
+    """Draw the deflection of each layer's top face on the tool axis, a panel a layer.
+
+    Parameters
+    ----------
+    layer_names
+        Names from the surface down, L of them.
+    x
+        Abscissa, shape (n,): the load step, or the force in N.
+    fem_mm, wave_mm
+        Deflection in mm, press positive, shape (n, L), NaN where a model has no value (it stopped there);
+        `wave_mm` is None where the wave model does not cover the case.
+    percent_error
+        Error of wave against FEM in percent, shape (n, L), NaN where it has no meaning; None leaves it out.
+    x_label
+        What `x` is, with its unit.
+
+    Raises
+    ------
+    ValueError
+        For arrays of other shapes, or infinite values.
+    """
+    x = column("x", x)
+    shape = (len(x), len(layer_names))
+    fem = matrix("fem_mm", fem_mm, shape)
+    wave = optional_matrix("wave_mm", wave_mm, shape)
+    error = None if wave is None else optional_matrix("percent_error", percent_error, shape)
+    scale = shared_limits([*fem.T, *([] if wave is None else wave.T)])
+    error_scale = None if error is None else shared_limits(list(error.T))
+    layers = [
+        _Layer(
+            name,
+            place,
+            x,
+            x_label,
+            fem[:, place],
+            layer_of(wave, place),
+            layer_of(error, place),
+            scale,
+            error_scale,
+        )
+        for place, name in enumerate(layer_names)
+    ]
+    height = 290 if error is None else 380
+    panels = [Panel(draw(layer.paint, SMALL, height), layer.words(), layer.name) for layer in layers]
+    return Figure(panels, _caption(wave is not None, error is not None, scale is not None), "Maximum deformation")
+
+
+@dataclass(frozen=True)
+class _Layer:
+    """One panel."""
+
+    name: str
+    place: int
+    x: Floats
+    x_label: str
+    fem: Floats
+    wave: Floats | None
+    error: Floats | None
+    scale: Limits
+    error_scale: Limits
+
+    def paint(self, drawing: Drawing) -> None:
+        """Draw the deflections and, under them, the error."""
+        if self.error is None:
+            top = bottom = drawing.subplots()
+        else:
+            top, bottom = drawing.subplots(2, 1, sharex=True, height_ratios=(2.3, 1))
+            self._paint_error(bottom, self.error)
+        model_line(top, self.x, self.fem, FEM)
+        if self.wave is not None:
+            model_line(top, self.x, self.wave, WAVE)
+        top.set_ylim(*(self.scale or (None, None)))
+        top.set_ylabel("deflection (mm)")
+        bottom.set_xlabel(self.x_label)
+        heading(top, self.name, self.place, room=24)
+        legend_above(top)
+
+    def _paint_error(self, axes: Axes, error: Floats) -> None:
+        zero_line(axes)
+        axes.plot(self.x, error, color=INK, linewidth=1.2)
+        axes.set_ylim(*(self.error_scale or (None, None)))
+        axes.set_ylabel("error (%)")
+
+    def words(self) -> str:
+        """Say what the panel shows."""
+        text = f"{self.name}: FEM reaches {format_number(peak(self.fem))} mm"
+        text += "" if self.wave is None else f", wave {format_number(peak(self.wave))} mm"
+        if self.error is not None:
+            low, high = (format_number(float(end(self.error)), 3) for end in (np.nanmin, np.nanmax))
+            text += f"; the error of wave against FEM lies between {low} and {high} percent"
+        if stopped_at(self.fem) is not None:
+            text += "; the FEM run stopped before the end"
+        return text + "."
+
+
+def _caption(wave: bool, error: bool, shared: bool) -> str:
+    """Say what is compared with what."""
+    text = "Deflection of each layer's top face on the tool axis, press positive"
+    text += ": FEM (solid) and wave model (dashed)." if wave else ": FEM alone; the wave model has no values here."
+    text += " Below, the error of the wave model against the FEM." if error else ""
+    return text + ("" if shared else " Each panel has its own vertical scale.")

@@ -1,0 +1,84 @@
+"""The template environment of pages: everything escaped, nothing undefined, and the filters templates use.
+
+What a page holds is in `reports.blocks`, its numbering in `reports.page`.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from reports import formatting, palette, svg
+from reports.blocks import Column, Download, Figure, Table
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+    from markupsafe import Markup
+
+_FOLD_FROM = 17
+
+
+def environment() -> Environment:
+    """Return the template environment: everything escaped, nothing undefined."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    templates = Environment(
+        loader=PackageLoader("reports", "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    templates.filters |= {
+        "number": formatting.format_cell,
+        "panels": _embedded_panels,
+        "grid": _table_grid,
+        "data_link": _data_link,
+    }
+    templates.globals["palette_css"] = palette.stylesheet()
+    return templates
+
+
+def _embedded_panels(figure: Figure, number: int) -> Iterator[Markup]:
+    """Yield the pictures of a figure as inline SVG."""
+    from markupsafe import Markup
+
+    for position, panel in enumerate(figure.panels):
+        title = panel.title or figure.title or f"Figure {number}"
+        # embed() has parsed the SVG, refused anything active and escaped every text in it.
+        yield Markup(svg.embed(panel.svg, f"f{number}-{position}-", title, panel.alt))
+
+
+def _table_grid(table: Table) -> dict[str, Any]:
+    """Return what the table template shows: columns, and rows of (text, padding, is number)."""
+    columns = [column if isinstance(column, Column) else Column(column) for column in table.columns]
+    shown = table.rows[: table.limit]
+    by_column = [_column_cells([row[index] for row in shown], column) for index, column in enumerate(columns)]
+    return {
+        "columns": columns,
+        "numeric": [any(number for _, _, number in cells) for cells in by_column],
+        "rows": list(zip(*by_column, strict=True)),
+        "hidden": len(table.rows) - len(shown),
+        "folded": len(table.rows) >= _FOLD_FROM if table.folded is None else table.folded,
+    }
+
+
+def _column_cells(values: Sequence[Any], column: Column) -> list[tuple[str, str, bool]]:
+    """Return text, padding and whether it is a number for each cell of a column.
+
+    A column whose numbers are all exact within its digits (settings, counts) shows no zeros after the last one.
+    """
+    numbers = [formatting.is_number(value) for value in values]
+    pairs = list(zip(values, numbers, strict=True))
+    exact = all(formatting.is_exact(value, column.digits) for value, number in pairs if number)
+    texts = [formatting.format_cell(value, column.digits, trim=exact) for value in values]
+    padding = formatting.decimal_padding([text if number else "" for text, number in zip(texts, numbers, strict=True)])
+    return list(zip(texts, padding, numbers, strict=True))
+
+
+def _data_link(download: Download) -> str:
+    """Return an embedded file as a `data:` link."""
+    content = download.content or b""
+    data = content.encode("utf-8") if isinstance(content, str) else content
+    return f"data:{download.media_type};base64,{base64.b64encode(data).decode('ascii')}"

@@ -1,0 +1,97 @@
+"""Result tables as CSV: UTF-8, comma, one header row, units in the column names.
+
+Formatting numbers for people to read is in `reports.formatting`.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
+
+from reports.atomic import StrPath, write_text
+
+
+def write_csv(path: StrPath, columns: Mapping[str, Sequence[Any] | Any]) -> Path:
+    """Write columns of equal length to a CSV file, whole or not at all.
+
+    Numbers are written with the shortest text that reads back to the same double, up to 17 digits.
+    None and NaN become empty cells, booleans `true` and `false`.
+
+    Parameters
+    ----------
+    path
+        File to write.
+    columns
+        Column name (with its unit, e.g. `force_N`) to values: a sequence or an array of shape (n,).
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    ValueError
+        For no column, an empty name, a column that is not one-dimensional, or columns of different lengths.
+    TypeError
+        For a cell that is no number, text, boolean or None.
+    """
+    return write_text(path, csv_text(columns, where=str(path)))
+
+
+def csv_text(columns: Mapping[str, Sequence[Any] | Any], where: str = "table") -> str:
+    """Return the text `write_csv` writes, e.g. to embed it in a page.
+
+    Parameters
+    ----------
+    columns
+        As in `write_csv`.
+    where
+        Name of the table in the message of an error.
+    """
+    if not columns or not all(columns):
+        raise ValueError(f"{where}: a table needs at least one column, each with a name; got {list(columns)}")
+    values = {name: _values(column, f"{where}: column {name!r}") for name, column in columns.items()}
+    if len({len(column) for column in values.values()}) > 1:
+        lengths = ", ".join(f"{name} {len(column)}" for name, column in values.items())
+        raise ValueError(f"{where}: all columns must have as many rows as the first; got {lengths}")
+    cells = {
+        name: [_cell(value, f"{where}: column {name!r}, row {row}") for row, value in enumerate(column, 1)]
+        for name, column in values.items()
+    }
+    lines: list[str] = []
+    # The writer quotes a lone carriage return only if its own line ends hold one.
+    writer = csv.writer(cast(Any, SimpleNamespace(write=lines.append)), lineterminator="\r\n")
+    writer.writerow(cells)
+    writer.writerows(zip(*cells.values(), strict=True))
+    return "".join(line.removesuffix("\r\n") + "\n" for line in lines)
+
+
+def _values(column: Any, where: str) -> list[Any]:
+    """Return a column as a list of plain values."""
+    if getattr(column, "ndim", 1) != 1:
+        raise ValueError(f"{where} has {column.ndim} dimensions, a column has one")
+    if isinstance(column, str | bytes):
+        raise ValueError(f"{where} is one text, a column is a sequence of values")
+    return list(column.tolist()) if hasattr(column, "tolist") else list(column)
+
+
+def _cell(value: Any, where: str) -> str:
+    """Return one cell's text."""
+    if value is None:
+        return ""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        return str(int(value))
+    if isinstance(value, float):
+        return "" if math.isnan(value) else float.__repr__(value)
+    if hasattr(value, "item"):
+        return _cell(value.item(), where)
+    raise TypeError(f"{where} is a {type(value).__name__}; a cell is a number, text, boolean or None")

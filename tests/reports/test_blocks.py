@@ -1,0 +1,50 @@
+import dataclasses
+
+import pytest
+
+from reports import Column, Download, Figure, Notice, Panel, Table, Verdict
+from reports.blocks import NOTICES, VERDICTS
+
+
+@pytest.mark.parametrize("status", VERDICTS)
+def test_a_verdict_has_a_word_for_its_status(status):
+    assert Verdict(status, "All is known.").label.lower() == status
+
+
+@pytest.mark.parametrize("kind", ["warning", "finding", "synthetic", "circular", "assumption"])
+def test_a_notice_has_words_for_its_kind(kind):
+    assert Notice(kind, "text").label == NOTICES[kind]
+
+
+def test_an_unknown_status_is_refused_with_those_allowed():
+    with pytest.raises(ValueError, match="'great'; allowed: good, finding, failed, incomplete"):
+        Verdict("great", "")
+
+
+def test_an_unknown_notice_is_refused():
+    with pytest.raises(ValueError, match="Notice kind is 'info'"):
+        Notice("info", "")
+
+
+def test_a_row_of_another_length_is_refused():
+    with pytest.raises(ValueError, match="'Times', row 2 has 1 cells, allowed: 2"):
+        Table("Times", ["model", Column("wall", "s")], [["fem", 1.0], ["wave"]])
+
+
+@pytest.mark.parametrize("href", ["https://example.org/a.csv", "javascript:alert(1)", "/etc/passwd", "//host/a", ""])
+def test_a_download_is_a_file_beside_the_page(href):
+    with pytest.raises(ValueError, match="relative to the page"):
+        Download(href)
+
+
+def test_a_download_has_the_name_of_its_file():
+    assert Download("tables/a.csv").name == "a.csv"
+
+
+def test_a_figure_of_one_picture():
+    assert Figure.of("<svg/>", "caption", "alt") == Figure((Panel("<svg/>", "alt"),), "caption")
+
+
+def test_blocks_cannot_be_changed():
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        Notice("warning", "a").text = "b"

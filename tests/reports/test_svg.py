@@ -1,0 +1,80 @@
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+
+from reports.svg import SVG_NAMESPACE, embed, parse, renumber_ids, serialise
+
+SVG = (
+    f'<svg xmlns="{SVG_NAMESPACE}" xmlns:xlink="http://www.w3.org/1999/xlink" viewBox="0 0 1 1">'
+    '<defs><clipPath id="p1"><rect/></clipPath><path id="m1"/></defs><g id="unused">'
+    '<use xlink:href="#m1" clip-path="url(#p1)"/></g><text>&lt;b&gt;</text></svg>'
+)
+
+
+def test_an_embedded_picture_has_words_and_ids_of_its_own():
+    root = ElementTree.fromstring(embed(SVG, "f1-", "Dermis & fat", "<script>"))
+    assert root.get("role") == "img"
+    assert root.get("aria-labelledby") == "f1-title f1-desc"
+    assert (root[0].tag, root[0].get("id"), root[0].text) == ("title", "f1-title", "Dermis & fat")
+    assert (root[1].tag, root[1].get("id"), root[1].text) == ("desc", "f1-desc", "<script>")
+    use = root.find(".//use")
+    assert use.attrib == {"href": "#f1-m1", "clip-path": "url(#f1-p1)"}
+    assert {item.get("id") for item in root.iter() if item.get("id")} >= {"f1-m1", "f1-p1"}
+
+
+def test_an_embedded_picture_names_no_address():
+    assert "http" not in embed(SVG, "f1-", "", "")
+
+
+def test_embedding_twice_keeps_one_pair_of_words():
+    again = embed(embed(SVG, "a-", "one", "two"), "b-", "three", "four")
+    assert again.count("<title") == again.count("<desc") == 1
+    assert "three" in again
+
+
+def test_ids_are_numbered_by_appearance_and_dropped_where_nothing_refers_to_them():
+    root = parse(SVG)
+    renumber_ids(root)
+    text = serialise(root)
+    assert 'clipPath id="i0"' in text
+    assert 'href="#i1"' in text
+    assert "url(#i0)" in text
+    assert "unused" not in text
+
+
+def test_a_standalone_picture_declares_its_namespace_once():
+    assert serialise(parse(SVG), standalone=True).count(f'xmlns="{SVG_NAMESPACE}"') == 1
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "<script>alert(1)</script>",
+        '<g onclick="alert(1)"/>',
+        '<g ONLOAD="alert(1)"/>',
+        '<a href="https://example.org/"><text>x</text></a>',
+        '<image href="#a"/>',
+        "<style>*{fill:red}</style>",
+        "<foreignObject><p>x</p></foreignObject>",
+        '<rect style="fill: url(https://example.org/a.svg#b)"/>',
+        "<rect style=\"fill: url('data:x')\"/>",
+        '<use href="other.svg#a"/>',
+        '<animate attributeName="href" to="javascript:alert(1)"/>',
+    ],
+)
+def test_what_could_run_or_fetch_is_refused(content):
+    with pytest.raises(ValueError, match="which a page does not take in"):
+        embed(f"<svg>{content}</svg>", "f1-", "", "")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("<svg>", "no well-formed XML"),
+        ("<html/>", "starts with <html>"),
+        ('<!DOCTYPE svg [<!ENTITY a "b">]><svg>&a;</svg>', "EntitiesForbidden"),
+    ],
+)
+def test_what_is_no_svg_is_refused(text, message):
+    with pytest.raises(ValueError, match=message):
+        parse(text)
