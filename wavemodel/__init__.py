@@ -1,1 +1,44 @@
-"""Wave models of layered soft tissue."""
+"""Wave models of layered soft tissue: real-time answers to a disc pressed on a stack of layers.
+
+`LayeredWave` predicts from thickness, density, E and nu alone; `PublishedWave` is the membrane of the paper. Names are
+loaded when first used, so that importing the package costs nothing.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from wavemodel.errors import NotCoveredError, WaveError
+    from wavemodel.integrators.damping import Damping
+    from wavemodel.layered import LayeredWave
+    from wavemodel.published.membrane import PublishedWave
+    from wavemodel.solution import WaveSolution
+    from wavemodel.specimen import DiscTool, WaveLayer
+
+__all__ = [
+    "Damping",
+    "DiscTool",
+    "LayeredWave",
+    "NotCoveredError",
+    "PublishedWave",
+    "WaveError",
+    "WaveLayer",
+    "WaveSolution",
+]
+
+_HOMES = {
+    "Damping": "wavemodel.integrators.damping",
+    "DiscTool": "wavemodel.specimen",
+    "LayeredWave": "wavemodel.layered",
+    "NotCoveredError": "wavemodel.errors",
+    "PublishedWave": "wavemodel.published.membrane",
+    "WaveError": "wavemodel.errors",
+    "WaveLayer": "wavemodel.specimen",
+    "WaveSolution": "wavemodel.solution",
+}
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'wavemodel' has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)

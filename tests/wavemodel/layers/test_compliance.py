@@ -1,0 +1,53 @@
+import numpy as np
+import pytest
+
+from wavemodel.layers.compliance import compliance, exact_faces, quadratic_faces
+from wavemodel.layers.laminate import laminate
+
+K = np.geomspace(20.0, 30e3, 25)
+
+
+def halves(layers, count, base="bonded"):
+    return laminate(layers, [(1.0 / count,) * count] * len(layers), base)
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.48, 0.499])
+def test_exact_faces_give_layered_elasticity(skin, oracle, nu):
+    ours = compliance(K, halves(skin(poisson_ratio=nu), 1), exact_faces).faces
+    reference = np.stack([oracle(skin(poisson_ratio=nu)).compliance(k) for k in K])
+    scale = np.abs(reference[:, :1]).max(axis=(2, 3), keepdims=True)
+    np.testing.assert_allclose(ours / scale, reference / scale, atol=2e-9)
+
+
+def test_exact_faces_do_not_care_how_a_layer_is_cut(skin):
+    one, many = (compliance(K, halves(skin(), n), exact_faces).faces for n in (1, 5))
+    np.testing.assert_allclose(one, many, rtol=1e-9, atol=1e-12 * np.abs(one).max())
+
+
+@pytest.mark.parametrize("base", ["bonded", "free"])
+def test_quadratic_sublayers_converge_with_the_fourth_power(skin, base):
+    k = np.array([200.0, 400.0, 800.0])
+    exact = compliance(k, halves(skin(), 1, base), exact_faces).faces[..., 1, 1]
+    errors = [np.abs(compliance(k, halves(skin(), n, base)).faces[..., 1, 1] / exact - 1).max() for n in (4, 8)]
+    assert errors[0] / errors[1] > 12.0
+    assert errors[1] < 1e-3
+
+
+def test_a_homogeneous_stack_is_a_half_space_at_large_wavenumbers(skin):
+    layer = skin()[0]
+    faces = compliance(np.array([2e6]), halves([layer], 1), exact_faces).faces[0, 0] * 2e6
+    shear, nu = layer.shear_modulus, layer.poisson_ratio
+    expected = np.array([[1 - nu, 0.5 - nu], [0.5 - nu, 1 - nu]]) / shear
+    np.testing.assert_allclose(faces, expected, rtol=1e-9)
+
+
+def test_condensation_leaves_the_energy_of_the_middle_node_out(skin):
+    from wavemodel.layers import quadratic
+
+    stack = halves(skin(), 1)
+    full = quadratic.stiffness(np.array([300.0]), stack)[0, 2]
+    condensed = quadratic_faces(np.array([300.0]), stack)[0, 2]
+    outer = np.array([1.0, -0.3, 0.2, 0.7])
+    middle = -np.linalg.solve(full[4:, 4:], full[4:, :4] @ outer)
+    whole = np.concatenate([outer, middle])
+    assert outer @ condensed @ outer == pytest.approx(whole @ full @ whole)

@@ -1,0 +1,37 @@
+import pytest
+
+from wavemodel import DiscTool, WaveError, WaveLayer
+
+
+def test_moduli_follow_from_youngs_modulus_and_poissons_ratio():
+    layer = WaveLayer("gel", 1e-3, 1000.0, 3e4, 0.25)
+    assert layer.shear_modulus == pytest.approx(1.2e4)
+    assert layer.lame_modulus == pytest.approx(1.2e4)
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ((0.0, 1000.0, 1e4, 0.4), "'gel': thickness = 0 m"),
+        ((-1e-3, 1000.0, 1e4, 0.4), "thickness"),
+        ((1e-3, 0.0, 1e4, 0.4), "density = 0 kg/m3"),
+        ((1e-3, 1000.0, float("nan"), 0.4), "youngs_modulus = nan Pa"),
+        ((1e-3, 1000.0, 1e4, 0.5), "poisson_ratio = 0.5"),
+        ((1e-3, 1000.0, 1e4, -1.0), "poisson_ratio = -1"),
+    ],
+)
+def test_refuses_layers_that_cannot_be(values, message):
+    with pytest.raises(WaveError, match=message):
+        WaveLayer("gel", *values)
+
+
+def test_refuses_tools_that_cannot_be():
+    with pytest.raises(WaveError, match="tool radius = 0 m"):
+        DiscTool(0.0)
+    with pytest.raises(WaveError, match=r"'glued'.*rigid_bonded"):
+        DiscTool(1e-3, "glued")
+
+
+def test_rigid_contacts_are_told_from_pressure():
+    assert not DiscTool(1e-3).rigid
+    assert DiscTool(1e-3, "rigid_bonded").rigid

@@ -1,0 +1,107 @@
+"""The rectangle with sines, eq. (2) of the paper: S = sin(m pi x / a) sin(n pi y / b), zero on the border.
+
+Here are the eigenfunctions, their wavenumbers, the projection of a load and the synthesis of a field. The origin of
+positions handed in is the centre of the rectangle.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from wavemodel.arrays import FloatArray, IntArray
+from wavemodel.errors import WaveError, require_positive
+
+
+@dataclass(frozen=True)
+class Rectangle:
+    """Window with N x N sine modes, of which those below a wavenumber are carried.
+
+    Attributes
+    ----------
+    width, height
+        a and b, m.
+    modes
+        N: m, n = 1..N.
+    symmetric
+        Whether only what is symmetric about both centre lines is wanted; then only odd m and n take part.
+    cutoff
+        Modes with a larger wavenumber (rad/m) are left out.
+
+    Raises
+    ------
+    WaveError
+        If a side is not positive or there is no mode.
+    """
+
+    width: float
+    height: float
+    modes: int
+    symmetric: bool = True
+    cutoff: float = np.inf
+
+    def __post_init__(self) -> None:
+        require_positive("window", self.width, "m")
+        require_positive("window", self.height, "m")
+        if self.modes < 1:
+            raise WaveError(f"modes = {self.modes} is not allowed: at least 1")
+
+    @cached_property
+    def order(self) -> IntArray:
+        """(M,) the m (and n) that take part."""
+        return np.arange(1, self.modes + 1, 2 if self.symmetric else 1, dtype=np.intp)
+
+    @cached_property
+    def _distinct(self) -> tuple[FloatArray, IntArray]:
+        kx, ky = self.order * np.pi / self.width, self.order * np.pi / self.height
+        square = kx[:, None] ** 2 + ky**2
+        unit = (np.pi / max(self.width, self.height)) ** 2
+        _, first, index = np.unique(np.round(square / unit, 6), return_index=True, return_inverse=True)
+        wavenumber = np.sqrt(square.ravel()[first])
+        kept = int(np.searchsorted(wavenumber, self.cutoff, side="right"))
+        return wavenumber[:kept], np.minimum(index, kept).reshape(square.shape)
+
+    @property
+    def wavenumber(self) -> FloatArray:
+        """(K,) the distinct k = pi sqrt(m^2/a^2 + n^2/b^2) that are carried, rising, rad/m."""
+        return self._distinct[0]
+
+    @property
+    def lowest(self) -> float:
+        """Wavenumber of the first mode, m = n = 1, rad/m."""
+        return float(np.hypot(np.pi / self.width, np.pi / self.height))
+
+    @property
+    def pair_index(self) -> IntArray:
+        """(M, M) which wavenumber a pair (m, n) has; K where it is not carried."""
+        return self._distinct[1]
+
+    @property
+    def pairs(self) -> int:
+        """How many pairs (m, n) are carried."""
+        return int(np.count_nonzero(self._distinct[1] < self.wavenumber.size))
+
+    def sines(self, position: FloatArray, axis: int = 0) -> FloatArray:
+        """(P, M) table of sin(m pi x / a) at positions (P,) from the centre, m."""
+        side = (self.width, self.height)[axis]
+        table: FloatArray = np.sin(np.outer(position / side + 0.5, self.order * np.pi))
+        return table
+
+    def spread(self, amplitude: FloatArray) -> FloatArray:
+        """Give every pair (m, n) the amplitude of its wavenumber: (..., K) to (..., M, M)."""
+        padded = np.concatenate([amplitude, np.zeros((*amplitude.shape[:-1], 1))], axis=-1)
+        spread: FloatArray = padded[..., self._distinct[1]]
+        return spread
+
+    def participation(self, x: float = 0.0, y: float = 0.0) -> FloatArray:
+        """(M, M) of S(x, y) / int S^2 dA in 1/m2: the share of each mode in a unit load centred at (x, y)."""
+        share: FloatArray = np.outer(self.sines(np.array([x]))[0], self.sines(np.array([y]), axis=1)[0])
+        return share * (4.0 / (self.width * self.height))
+
+    @cached_property
+    def axis_weight(self) -> FloatArray:
+        """(K,) in 1/m2: a field with amplitudes A(k) under a centred unit load has the value A . weight there."""
+        table, index = self.participation(), self._distinct[1]
+        weight = table * np.outer(self.sines(np.zeros(1))[0], self.sines(np.zeros(1), axis=1)[0])
+        kept = self.wavenumber.size
+        return np.asarray(np.bincount(index.ravel(), weight.ravel(), kept + 1)[:kept], dtype=np.float64)

@@ -1,0 +1,1 @@
+"""Integrators in time: exact for piecewise-linear loads, and the quasi-static reduction."""

@@ -1,0 +1,74 @@
+"""What drives a run: a history of force or depth, linear between its instants."""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias, cast
+
+import numpy as np
+
+from wavemodel.arrays import FloatArray
+from wavemodel.errors import WaveError
+
+ControlKind: TypeAlias = Literal["force", "depth"]
+
+
+@dataclass(frozen=True)
+class Load:
+    """A checked load history.
+
+    Attributes
+    ----------
+    control
+        "force" (N) or "depth" (m), press positive.
+    time, value
+        (n,); time rises strictly. Before its first instant the specimen is unloaded and at rest, from time zero
+        on; a history that starts at or before zero starts from the static state of its first value.
+    """
+
+    control: ControlKind
+    time: FloatArray
+    value: FloatArray
+
+    @property
+    def durations(self) -> FloatArray:
+        """(n,) of the steps, s; the first is zero where the history starts at or before zero."""
+        return np.diff(self.time, prepend=min(0.0, float(self.time[0])))
+
+    @property
+    def line(self) -> tuple[FloatArray, FloatArray]:
+        """Corners of the whole broken line: time and value, from rest on."""
+        if self.time[0] <= 0.0:
+            return self.time, self.value
+        return np.concatenate([[0.0], self.time]), np.concatenate([[0.0], self.value])
+
+    @property
+    def rates(self) -> FloatArray:
+        """(n,) slope of the value within each step; zero where a step has no duration."""
+        change = np.diff(self.value, prepend=0.0)
+        return np.divide(change, self.durations, out=np.zeros_like(change), where=self.durations > 0.0)
+
+
+def checked_load(control: str, time: FloatArray, value: FloatArray) -> Load:
+    """Check a load history.
+
+    Raises
+    ------
+    WaveError
+        If the control is neither "force" nor "depth", the arrays differ in length or are empty, a number is not
+        finite, or time does not rise strictly.
+    """
+    if control not in ("force", "depth"):
+        raise WaveError(f"control = {control!r} is not allowed: 'force' or 'depth'")
+    instants, values = np.asarray(time, dtype=np.float64), np.asarray(value, dtype=np.float64)
+    if instants.ndim != 1 or instants.shape != values.shape or instants.size == 0:
+        raise WaveError(
+            f"load: time has shape {instants.shape} and value {values.shape}; both must be one-dimensional, "
+            "of one length of at least 1"
+        )
+    for name, array in (("time", instants), ("value", values)):
+        if not np.all(np.isfinite(array)):
+            at = int(np.flatnonzero(~np.isfinite(array))[0])
+            raise WaveError(f"load: {name}[{at}] = {array[at]} is not allowed: only finite numbers are")
+    if np.any(np.diff(instants) <= 0.0):
+        at = int(np.flatnonzero(np.diff(instants) <= 0.0)[0]) + 1
+        raise WaveError(f"load: time[{at}] = {instants[at]:g} s is not above the one before it; time must rise")
+    return Load(cast(ControlKind, control), instants, values)

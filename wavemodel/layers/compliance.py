@@ -1,0 +1,115 @@
+"""Static answer of the stack to tractions on its surface, one wavenumber at a time.
+
+The stiffness of each sub-layer between its faces (the quadratic one with its middle node condensed, or the exact
+one) is block tridiagonal when stacked; it is eliminated from the base up and solved back down, for all wavenumbers
+at once.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from wavemodel.arrays import FloatArray
+from wavemodel.layers import exact, quadratic
+from wavemodel.layers.laminate import Laminate
+
+FaceStiffness: TypeAlias = Callable[[FloatArray, Laminate], FloatArray]
+"""(n,) wavenumbers and a laminate to (n, S, 4, 4)."""
+
+BLOCK = 512
+"""Wavenumbers taken at once: their matrices stay in the cache."""
+
+
+@dataclass(frozen=True)
+class Compliance:
+    """Displacement of faces per unit traction on the surface, for n wavenumbers.
+
+    Attributes
+    ----------
+    wavenumber
+        (n,) in rad/m.
+    faces
+        (n, L, 2, 2) in m/Pa: [.., l, i, j] is U (i = 0) or W (i = 1) of the top face of layer l under a unit
+        traction on the surface along U (j = 0) or W (j = 1).
+    """
+
+    wavenumber: FloatArray
+    faces: FloatArray
+
+    def respond(self, load: FloatArray) -> FloatArray:
+        """(n, L, 2) amplitudes (U, W) under surface loads (n, 2)."""
+        answer: FloatArray = np.einsum("nlij,nj->nli", self.faces, load)
+        return answer
+
+
+def quadratic_faces(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
+    """Quadratic sub-layers, their middle nodes condensed: (n, S, 4, 4) in Pa/m."""
+    full = quadratic.stiffness(wavenumber, laminate)
+    outer, to_mid, mid = full[..., :4, :4], full[..., :4, 4:], full[..., 4:, 4:]
+    return outer - to_mid @ _inverse(mid) @ np.swapaxes(to_mid, -1, -2)
+
+
+def exact_faces(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
+    """Exact static sub-layers: (n, S, 4, 4) in Pa/m."""
+    return exact.stiffness(wavenumber, laminate)
+
+
+def compliance(wavenumber: FloatArray, laminate: Laminate, stiffness: FaceStiffness = quadratic_faces) -> Compliance:
+    """Solve the stack for unit tractions on its surface.
+
+    Parameters
+    ----------
+    wavenumber
+        (n,) in rad/m, above zero.
+    laminate
+        The stack.
+    stiffness
+        `quadratic_faces` or `exact_faces`.
+    """
+    blocks = np.array_split(wavenumber, max(1, wavenumber.size // BLOCK))
+    faces = [every_face(laminate, stiffness(k, laminate))[:, laminate.top_of_layer] for k in blocks]
+    return Compliance(wavenumber, np.concatenate(faces))
+
+
+def every_face(laminate: Laminate, blocks: FloatArray) -> FloatArray:
+    """Compliance of all S + 1 faces from the surface down, the lowest included.
+
+    Parameters
+    ----------
+    laminate
+        The stack.
+    blocks
+        (n, S, 4, 4) stiffness of its sub-layers between their faces.
+
+    Returns
+    -------
+    ndarray (n, S + 1, 2, 2)
+        In m/Pa.
+    """
+    top, across, bottom = blocks[..., :2, :2], blocks[..., 2:, :2], blocks[..., 2:, 2:]
+    count = laminate.sublayers
+    carry = np.zeros((count, blocks.shape[0], 2, 2))
+    schur = top[:, -1]
+    if laminate.base == "free":
+        carry[-1] = -_inverse(bottom[:, -1]) @ across[:, -1]
+        schur = schur + np.swapaxes(across[:, -1], -1, -2) @ carry[-1]
+    for s in range(count - 2, -1, -1):
+        carry[s] = -_inverse(bottom[:, s] + schur) @ across[:, s]
+        schur = top[:, s] + np.swapaxes(across[:, s], -1, -2) @ carry[s]
+    faces = np.empty((blocks.shape[0], count + 1, 2, 2))
+    faces[:, 0] = _inverse(schur)
+    for s in range(count):
+        faces[:, s + 1] = carry[s] @ faces[:, s]
+    return faces
+
+
+def _inverse(matrix: FloatArray) -> FloatArray:
+    """Inverse of symmetric 2 x 2 matrices (..., 2, 2)."""
+    a, b, d = matrix[..., 0, 0], matrix[..., 0, 1], matrix[..., 1, 1]
+    out = np.empty_like(matrix)
+    out[..., 0, 0] = d
+    out[..., 1, 1] = a
+    out[..., 0, 1] = out[..., 1, 0] = -b
+    return out / (a * d - b * b)[..., None, None]

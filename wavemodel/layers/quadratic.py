@@ -1,0 +1,69 @@
+"""Stiffness and mass of a sub-layer, quadratic through the thickness.
+
+For an in-plane eigenfunction S with lap S = -k^2 S the displacement is u_h = U(z) grad S / k, w = W(z) S, both
+z and w downwards. The strain energy per unit of int S^2 dA is
+
+    1/2 int [ lam (W' - k U)^2 + 2 G (k^2 U^2 + W'^2) + G (U' + k W)^2 ] dz ,
+
+and three nodes (top, bottom, middle) carry U and W. The terms in lam take two Gauss points, which leaves no
+volumetric locking as Poisson's ratio nears one half. Unknowns of a sub-layer: U_top, W_top, U_bottom, W_bottom,
+U_mid, W_mid.
+"""
+
+import numpy as np
+
+from wavemodel.arrays import FloatArray
+from wavemodel.layers.laminate import Laminate
+
+SLOPE_SLOPE = np.array([[7.0, 1.0, -8.0], [1.0, 7.0, -8.0], [-8.0, -8.0, 16.0]]) / 3.0
+"""h int N'_i N'_j dz, exact."""
+SHAPE_SHAPE = np.array([[4.0, -1.0, 2.0], [-1.0, 4.0, 2.0], [2.0, 2.0, 16.0]]) / 30.0
+"""int N_i N_j dz / h, exact."""
+SHAPE_SHAPE_REDUCED = np.array([[2.0, -1.0, 2.0], [-1.0, 2.0, 2.0], [2.0, 2.0, 8.0]]) / 18.0
+"""int N_i N_j dz / h by two Gauss points."""
+SHAPE_SLOPE = np.array([[-3.0, -1.0, 4.0], [1.0, 3.0, -4.0], [-4.0, 4.0, 0.0]]) / 6.0
+"""int N_i N'_j dz; of third degree, so two Gauss points are exact."""
+
+
+def stiffness(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
+    """K(k) of every sub-layer.
+
+    Parameters
+    ----------
+    wavenumber
+        (n,) k in rad/m.
+    laminate
+        S sub-layers.
+
+    Returns
+    -------
+    ndarray (n, S, 6, 6)
+        In Pa/m: force per area of the eigenfunction and per metre.
+    """
+    k = wavenumber[:, None, None, None]
+    h, shear, lame = (
+        values[:, None, None] for values in (laminate.thickness, laminate.shear_modulus, laminate.lame_modulus)
+    )
+    slope = SLOPE_SLOPE / h
+    out = np.empty((wavenumber.size, laminate.sublayers, 6, 6))
+    out[..., 0::2, 0::2] = k**2 * (h * (lame * SHAPE_SHAPE_REDUCED + 2.0 * shear * SHAPE_SHAPE)) + shear * slope
+    out[..., 1::2, 1::2] = (lame + 2.0 * shear) * slope + k**2 * (shear * h * SHAPE_SHAPE)
+    coupling = k * (shear * SHAPE_SLOPE.T - lame * SHAPE_SLOPE)
+    out[..., 0::2, 1::2] = coupling
+    out[..., 1::2, 0::2] = np.swapaxes(coupling, -1, -2)
+    return out
+
+
+def mass(laminate: Laminate) -> FloatArray:
+    """Consistent mass of every sub-layer, the same for every k.
+
+    Returns
+    -------
+    ndarray (S, 6, 6)
+        In kg/m2.
+    """
+    out = np.zeros((laminate.sublayers, 6, 6))
+    block = (laminate.density * laminate.thickness)[:, None, None] * SHAPE_SHAPE
+    out[:, 0::2, 0::2] = block
+    out[:, 1::2, 1::2] = block
+    return out

@@ -1,0 +1,144 @@
+"""The set-up of one tool on one stack: window, modes, sub-layers, contact traction and static answer."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from wavemodel import automatic, subdivision
+from wavemodel.arrays import FloatArray
+from wavemodel.domains.rectangle import Rectangle
+from wavemodel.errors import WaveError
+from wavemodel.field import Field
+from wavemodel.layers.laminate import Laminate, laminate
+from wavemodel.loads.rigid import enough_functions, punch_tractions
+from wavemodel.loads.traction import Traction, TractionBasis
+from wavemodel.loads.uniform import UniformPressure
+from wavemodel.parts import Parts, parts
+from wavemodel.remainder import remainder
+from wavemodel.settings import Settings
+from wavemodel.specimen import DiscTool, WaveLayer
+from wavemodel.taper import Taper
+
+
+@dataclass(frozen=True)
+class Press:
+    """A tool in the middle of a window over a stack, ready to run.
+
+    Attributes
+    ----------
+    stack
+        The sub-layers.
+    sublayer_error, border_cost
+        Largest errors of a layer's deflection, over its peak, against the exact statics of the endless specimen:
+        by the sub-layers, and by the border of a window that the user chose (zero for an automatic one).
+    field
+        Window, contact traction and remainder.
+    share
+        (K,) share of the load that the modes carry.
+    load
+        (K, 2) of the modes per unit force, along U and W.
+    unit
+        (L, K) static amplitudes per unit force, m3/N.
+    unit_axis
+        (L,) static deflection of each layer's top face on the axis per unit force, m/N.
+    compliance
+        Depth per force in statics, m/N: of the top face on the axis, or of the tool if it is rigid.
+    remainder_axis, remainder_depth
+        The remainder's part of the last two: (L,) and a number.
+    """
+
+    stack: Laminate
+    sublayer_error: float
+    border_cost: float
+    field: Field
+    share: FloatArray
+    load: FloatArray
+    unit: FloatArray
+    unit_axis: FloatArray
+    compliance: float
+    remainder_axis: FloatArray
+    remainder_depth: float
+
+
+def prepare(layers: Sequence[WaveLayer], tool: DiscTool, base: str, settings: Settings) -> Press:
+    """Set up a press; see `Settings` for what may be left to it.
+
+    Raises
+    ------
+    WaveError
+        If the tool does not fit the window, the number of sub-layers is not given for each layer, a window is
+        missing with a free lower face, or a rigid tool is to do without the static correction.
+    NotCoveredError
+        If the tool's contact is not covered.
+    """
+    whole = laminate(layers, subdivision.uniform([1] * len(layers)), base)
+    domain, taper = _window(whole, tool, settings)
+    chosen = settings.window is not None and base == "bonded"
+    border = automatic.border_cost(whole, tool.radius, domain.width) if chosen else 0.0
+    stack, mistake = _sublayers(layers, whole, settings, _yardstick(whole, tool, taper, domain))
+    basis = _basis(whole, tool, settings)
+    rest = remainder(whole, basis, taper, domain) if taper.active else None
+    return _assemble(stack, (mistake, border), parts(stack, domain, basis, taper, rest), tool.rigid)
+
+
+def _window(whole: Laminate, tool: DiscTool, settings: Settings) -> tuple[Rectangle, Taper]:
+    if settings.window is None and whole.base == "free":
+        raise WaveError("window: needed with a free lower face, where an endless specimen has nothing to rest on")
+    side = automatic.window(whole, tool.radius) if settings.window is None else settings.window
+    if tool.radius >= 0.5 * side:
+        raise WaveError(
+            f"window = {side * 1e3:g} mm is not allowed with a tool of {tool.radius * 1e3:g} mm radius: "
+            "it must be wider than the tool"
+        )
+    count = automatic.modes(side, tool.radius) if settings.modes is None else settings.modes
+    taper = Taper(count * np.pi / side, settings.corrected)
+    return Rectangle(side, side, count, cutoff=taper.limit if taper.active else np.inf), taper
+
+
+def _yardstick(whole: Laminate, tool: DiscTool, taper: Taper, domain: Rectangle) -> subdivision.Yardstick:
+    """Sub-layers under a rigid tool are chosen by the traction of a flat punch on a half-space."""
+    basis = punch_tractions(tool.radius, tool.contact, 1) if tool.rigid else UniformPressure(tool.radius)
+    return subdivision.yardstick(whole, Traction(basis, basis.net_force), taper, domain.lowest)
+
+
+def _basis(whole: Laminate, tool: DiscTool, settings: Settings) -> TractionBasis:
+    if not tool.rigid:
+        return UniformPressure(tool.radius)
+    if not settings.corrected:
+        raise WaveError(
+            "static_correction: needed under a rigid tool (and with it at least 8 modes), for no number of modes "
+            "resolves the traction at the tool's edge"
+        )
+    return punch_tractions(tool.radius, tool.contact, enough_functions(float(whole.thickness[0]) / tool.radius))
+
+
+def _sublayers(
+    layers: Sequence[WaveLayer], whole: Laminate, settings: Settings, measure: subdivision.Yardstick
+) -> tuple[Laminate, float]:
+    if settings.sublayers is None:
+        fractions = subdivision.automatic(layers, whole.base, measure)
+    elif len(settings.sublayers) == len(layers):
+        fractions = subdivision.uniform(settings.sublayers)
+    else:
+        raise WaveError(
+            f"sublayers = {settings.sublayers} is not allowed: one number for each of the {len(layers)} layers"
+        )
+    stack = laminate(layers, fractions, whole.base)
+    return stack, subdivision.error(stack, measure)
+
+
+def _assemble(stack: Laminate, costs: tuple[float, float], made: Parts, rigid: bool) -> Press:
+    traction = made.contact(rigid)
+    coefficients = traction.coefficients
+    load = np.einsum("kji,j->ki", made.load, coefficients)
+    unit = np.ascontiguousarray(made.modal.respond(load)[..., 1].T) * made.share
+    field = Field(made.domain, traction, made.rest)
+    rest_axis = field.remainder(np.zeros(1), layers=unit.shape[0])[:, 0]
+    unit_axis = unit @ made.domain.axis_weight + rest_axis
+    depth, rest_depth = float(unit_axis[0]), float(rest_axis[0])
+    if rigid:
+        depth, rest_depth = (
+            float(coefficients @ work @ coefficients) for work in (made.flexibility, made.remainder_flexibility)
+        )
+    return Press(stack, *costs, field, made.share, load, unit, unit_axis, depth, rest_axis, rest_depth)

@@ -1,0 +1,66 @@
+"""What a run of the layered wave gives back."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from wavemodel.arrays import FloatArray
+from wavemodel.field import Field, Snapshot
+from wavemodel.integrators.history import History
+
+
+@dataclass(frozen=True)
+class WaveSolution:
+    """History of a press (n steps, L layers; deflections downwards, SI).
+
+    Attributes
+    ----------
+    time, force
+        (n,) in s and N.
+    depth
+        (n,) in m: the top face on the axis, or the tool if it is rigid.
+    layer_names
+        L names from the surface down.
+    top_deflection
+        (n, L) in m: each layer's top face on the tool axis.
+    integrator
+        "quasi_static" or "exact": how time was gone through.
+    warnings
+        What a reader of the results must know.
+    """
+
+    time: FloatArray
+    force: FloatArray
+    depth: FloatArray
+    layer_names: tuple[str, ...]
+    top_deflection: FloatArray
+    integrator: str
+    warnings: tuple[str, ...]
+    _field: Field = field(repr=False)
+    _history: History = field(repr=False)
+
+    def snapshot(self, step: int) -> Snapshot:
+        """State of the modes after a step (0..n-1), for `Field` and `Surface`."""
+        return Snapshot(self._history.amplitude(step), float(self._history.static_force[step]))
+
+    def profile(self, step: int, radii: FloatArray) -> FloatArray:
+        """Deflection of each layer's top face along +x after a step.
+
+        Parameters
+        ----------
+        step
+            0..n-1; negative counts from the end.
+        radii
+            (m,) distances from the tool axis, m.
+
+        Returns
+        -------
+        ndarray (L, m)
+            In m; NaN outside the window.
+
+        Raises
+        ------
+        WaveError
+            If a radius is negative or not a number.
+        """
+        return self._field.along_x(self.snapshot(step), np.asarray(radii, dtype=np.float64))
