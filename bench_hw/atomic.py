@@ -1,0 +1,83 @@
+"""Writing files whole or not at all: a temporary name beside the target, then a rename.
+
+The trial file being recorded is no such file (it must survive a kill in the middle): see `trial_file`.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Give a temporary path in the target's folder and rename it to the target when the block succeeds.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file to make or replace. Its folder is made where it is missing.
+
+    Yields
+    ------
+    pathlib.Path
+        Where to write. It is removed, and the target left as it was, if the block raises.
+
+    Raises
+    ------
+    OSError
+        The folder cannot be made or written.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        _sync(temporary)
+        temporary.chmod(0o666 & ~_umask())
+        temporary.replace(path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+def write_bytes(path: Path, data: bytes) -> Path:
+    """Write bytes whole or not at all; return the path.
+
+    Raises
+    ------
+    OSError
+        The folder cannot be made or written, or the disk is full.
+    """
+    with replacing(path) as temporary:
+        temporary.write_bytes(data)
+    return path
+
+
+def write_text(path: Path, text: str) -> Path:
+    """Write text as UTF-8 with the line ends as given, whole or not at all; return the path.
+
+    Raises
+    ------
+    OSError
+        The folder cannot be made or written, or the disk is full.
+    """
+    return write_bytes(path, text.encode("utf-8"))
+
+
+def _sync(path: Path) -> None:
+    handle = os.open(path, os.O_RDWR)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def _umask() -> int:
+    mask = os.umask(0o077)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,92 @@
+"""The errors of the bench: each knows the exit code of the command line it ends.
+
+What is wrong with a file or an argument is an `InputError` (exit 2); what a device did wrong is a
+`DeviceError` (exit 5). The text is one paragraph: what, where, which value, what is allowed.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class BenchError(Exception):
+    """Anything the bench refuses or cannot do; `exit_code` is what the command line ends with."""
+
+    exit_code = 2
+
+
+class InputError(BenchError, ValueError):
+    """An argument, a configuration or a file that cannot be used (exit code 2)."""
+
+    exit_code = 2
+
+
+class DeviceError(BenchError):
+    """A device that is missing, wrong, silent or broken (exit code 5)."""
+
+    exit_code = 5
+
+
+class TrialFileError(InputError):
+    """A native trial file that cannot be written, read or recovered.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    problem : str
+        What is wrong, and what is allowed.
+    """
+
+    def __init__(self, path: Path, problem: str) -> None:
+        super().__init__(f"{path}: {problem}")
+        self.path = path
+        self.problem = problem
+
+
+class TableError(InputError):
+    """A CSV table that is refused, with the place of the first thing that is wrong.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    problem : str
+        What is wrong.
+    allowed : str
+        What would have been accepted.
+    row : int, optional
+        Line of the file, counted from 1 (the header is line 1).
+    column : str, optional
+        Name of the column.
+    value : str, optional
+        The cell as it stands in the file.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        problem: str,
+        allowed: str,
+        *,
+        row: int | None = None,
+        column: str | None = None,
+        value: str | None = None,
+    ) -> None:
+        self.path = path
+        self.problem = problem
+        self.allowed = allowed
+        self.row = row
+        self.column = column
+        self.value = value
+        super().__init__(f"{path}{self._place()}: {problem}; allowed: {allowed}")
+
+    def _place(self) -> str:
+        parts = [] if self.row is None else [f"row {self.row}"]
+        parts += [] if self.column is None else [f"column {self.column!r}"]
+        parts += [] if self.value is None else [f"value {_shortened(self.value)!r}"]
+        return f" ({', '.join(parts)})" if parts else ""
+
+
+def _shortened(value: str, length: int = 40) -> str:
+    return value if len(value) <= length else value[: length - 3] + "..."

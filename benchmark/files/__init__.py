@@ -1,0 +1,43 @@
+"""Input files: tissues, scenarios and trial sessions, read with units and checked; all values SI floats.
+
+It imports pydantic and NumPy, so a command line imports it inside the verbs that need it.
+"""
+
+from benchmark.files.load import Load
+from benchmark.files.load_history import LoadHistory
+from benchmark.files.loading import load_scenario, load_tissue, scenario_from_table, tissue_from_table
+from benchmark.files.notes import scenario_notes
+from benchmark.files.registry import Entry, shipped_scenarios, shipped_tissues
+from benchmark.files.scaling import scaled_tissue
+from benchmark.files.scenario import Scenario
+from benchmark.files.session import Session
+from benchmark.files.session_file import Camera
+from benchmark.files.session_loading import load_session
+from benchmark.files.sources import Source
+from benchmark.files.tissue import Layer, Tissue
+from benchmark.files.tool import Support, Tool
+from benchmark.files.trials import Trial
+
+__all__ = [
+    "Camera",
+    "Entry",
+    "Layer",
+    "Load",
+    "LoadHistory",
+    "Scenario",
+    "Session",
+    "Source",
+    "Support",
+    "Tissue",
+    "Tool",
+    "Trial",
+    "load_scenario",
+    "load_session",
+    "load_tissue",
+    "scaled_tissue",
+    "scenario_from_table",
+    "scenario_notes",
+    "shipped_scenarios",
+    "shipped_tissues",
+    "tissue_from_table",
+]

@@ -1,0 +1,174 @@
+"""What pydantic finds wrong with a file, as one paragraph for a person."""
+
+from __future__ import annotations
+
+import difflib
+import typing
+from collections.abc import Iterable, Mapping
+from typing import Any, Final, TypeVar
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from benchmark.errors import InputError
+from benchmark.files.base import SCHEMA
+from benchmark.files.sources import KeyPath, Source
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def validated(model: type[Model], table: Mapping[str, Any], source: Source) -> Model:
+    """Make a model of a table read from a file.
+
+    Parameters
+    ----------
+    model : type of FileModel
+        What the table should be.
+    table : mapping
+        As TOML gives it; quantities are text with units.
+    source : Source
+        Where it came from.
+
+    Returns
+    -------
+    Model
+        With SI floats inside.
+
+    Raises
+    ------
+    InputError
+        One paragraph: the first problem with its place and what is allowed, and the keys of the others.
+    """
+    check_schema(table, source)
+    try:
+        return model.model_validate(table, context=source.context())
+    except ValidationError as error:
+        details = sorted(error.errors(include_url=False), key=lambda each: each["type"] != "extra_forbidden")
+        first = _sentence(details[0], model, table, source)
+        others = [source.key(shown_path(_path(each, table), table)) for each in details[1:]]
+        more = f" Also wrong: {', '.join(dict.fromkeys(others))}." if others else ""
+        raise InputError(f"{first}{more}") from None
+
+
+def check_schema(table: Mapping[str, Any], source: Source) -> None:
+    """Refuse a file of another schema number before its keys are looked at."""
+    number = table.get("schema", SCHEMA)
+    if number != SCHEMA or isinstance(number, bool):
+        place = source.place(("schema",), "schema")
+        raise InputError(f"{place}: {number!r} is not a schema that this version reads; allowed: {SCHEMA}.")
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """The words nearest to one that is not known, as the end of a sentence; all of them where none is near."""
+    words = list(known)
+    near = difflib.get_close_matches(word, words, n=3, cutoff=0.6)
+    if near:
+        return f"did you mean {' or '.join(near)}?"
+    return f"known: {', '.join(words)}."
+
+
+def shown_path(path: KeyPath, table: Any) -> str:
+    """A key path for a person: `layers[dermis].thickness`, or `trials[#2].file` for a list without names."""
+    text, node = "", table
+    for part in path:
+        node = _child(node, part)
+        if isinstance(part, int):
+            name = node.get("name") if isinstance(node, Mapping) else None
+            text += f"[{_word(name)}]" if isinstance(name, str) else f"[#{part + 1}]"
+        else:
+            text += f".{_word(part)}" if text else _word(part)
+    return text
+
+
+def _word(name: str) -> str:
+    """A key or a name as it is, where it is one short word or line; quoted and shortened otherwise."""
+    return name if name.isprintable() and 0 < len(name) <= 60 else _shortened(repr(name))
+
+
+def _sentence(error: ErrorDetails, model: type[BaseModel], table: Mapping[str, Any], source: Source) -> str:
+    path = _path(error, table)
+    place = source.place(path, shown_path(path, table))
+    kind = error["type"]
+    if kind == "missing":
+        what = "this key" if isinstance(path[-1], str) else f"entry {path[-1] + 1}"
+        return f"{place}: {what} is missing; it is needed."
+    if kind == "extra_forbidden":
+        return f"{place}: this key is not known; {nearest(str(path[-1]), _known_keys(model, path[:-1], table))}"
+    words = {**error.get("ctx", {}), "input": _shortened(repr(error["input"])), "msg": error["msg"]}
+    return f"{place}: {_SENTENCES.get(kind, '{msg}').format(**words).rstrip('.')}."
+
+
+_SENTENCES: Final[Mapping[str, str]] = {
+    "literal_error": "{input} is not allowed; allowed: {expected}",
+    "union_tag_invalid": "the law is not known; allowed: {expected_tags}",
+    "union_tag_not_found": 'it must name its law, such as law = "yeoh"',
+    "string_type": "{input} is not text; write it in quotes",
+    "bool_type": "{input} is not allowed; allowed: true, false",
+    "model_type": "{input} is no table of keys and values",
+    "model_attributes_type": "{input} is no table of keys and values",
+    "dict_type": "{input} is no table of keys and values",
+    "mapping_type": "{input} is no table of keys and values",
+    "tuple_type": "{input} is no list",
+    "too_short": "it has {actual_length} entries; allowed: at least {min_length}",
+    "too_long": "it has too many entries; allowed: at most {max_length}",
+}
+"""What is wrong, by pydantic's kind of error; its own message stands where the kind is not here."""
+
+
+def _path(error: ErrorDetails, table: Any) -> KeyPath:
+    """The key path of an error in the file's own terms: without union tags, with the key that a rule named."""
+    path: KeyPath = ()
+    node: Any = table
+    for part in error["loc"]:
+        if isinstance(node, Mapping) and isinstance(part, str) and part == node.get("law") and part not in node:
+            continue
+        path, node = (*path, part), _child(node, part)
+    key = error.get("ctx", {}).get("key") if error["type"] == "tissuebench" else None
+    return path + tuple(int(part) if part.isdecimal() else part for part in key.split(".")) if key else path
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= 80 else f"{text[:77]}..."
+
+
+def _child(node: Any, part: str | int) -> Any:
+    if isinstance(node, Mapping):
+        return node.get(part)
+    if isinstance(node, list | tuple) and isinstance(part, int) and part < len(node):
+        return node[part]
+    return None
+
+
+def _known_keys(model: type[BaseModel], parents: KeyPath, table: Any) -> list[str]:
+    """The keys that the table at a path may have."""
+    models: list[type[BaseModel]] = [model]
+    node = table
+    for part in parents:
+        node = _child(node, part)
+        if isinstance(part, str):
+            fields = [field for each in models for key, field in _fields(each).items() if key == part]
+            models = [found for field in fields for found in _models_in(field)] or models  # a mapping's own keys
+    law = node.get("law") if isinstance(node, Mapping) else None
+    keys: dict[str, None] = {}
+    for each in models:
+        allowed = _fields(each).get("law")
+        if law is None or allowed is None or law in typing.get_args(allowed):
+            keys.update(dict.fromkeys(known_keys(each)))
+    return list(keys)
+
+
+def known_keys(model: type[BaseModel]) -> list[str]:
+    """The keys that the table of a model may have in a file."""
+    return [*_fields(model), *getattr(model, "other_keys", ())]
+
+
+def _fields(model: type[BaseModel]) -> dict[str, Any]:
+    """Each key of a model as files spell it, with its annotation."""
+    return {field.alias or name: field.annotation for name, field in model.model_fields.items()}
+
+
+def _models_in(annotation: Any) -> list[type[BaseModel]]:
+    """The models that a field's annotation can hold."""
+    if typing.get_origin(annotation) is None and isinstance(annotation, type):
+        return [annotation] if issubclass(annotation, BaseModel) else []
+    return [found for part in typing.get_args(annotation) for found in _models_in(part)]

@@ -1,0 +1,126 @@
+"""What lies in a session's folder, and that nothing outside it is reached."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from benchmark.errors import InputError
+from benchmark.files.base import SCHEMA
+from benchmark.files.loading import read_file
+from benchmark.files.sources import Source, is_file
+
+SESSION_FILE = "session.toml"
+TRIAL_SUFFIXES = (".csv", ".mcap")
+
+
+def session_table(path: Path) -> tuple[dict[str, Any], Source]:
+    """The table of a session: of its session.toml, or one made from the trial files in the folder.
+
+    Parameters
+    ----------
+    path : Path
+        A folder, a session.toml, or one trial file.
+
+    Returns
+    -------
+    (dict, Source)
+        The table; the source's folder is the session's.
+
+    Raises
+    ------
+    InputError
+        When there is nothing to read.
+    """
+    if is_file(path):
+        if path.name == SESSION_FILE:
+            return read_file(path, "session")
+        if path.suffix.lower() not in TRIAL_SUFFIXES:
+            raise InputError(f"{path}: this is no trial; allowed: a session's folder, its session.toml, .csv, .mcap.")
+        entry = {"file": path.name, "condition": path.stem}
+        return _made(path.stem, [entry]), Source(str(path), "", path.parent)
+    try:
+        if not path.is_dir():
+            raise InputError(f"{path}: there is no such session folder.")
+        if (path / SESSION_FILE).exists():
+            return read_file(path / SESSION_FILE, "session")
+        name = path.resolve().name or "session"
+        return _made(name, _entries(path, name)), Source(str(path), "", path)
+    except OSError as error:
+        raise InputError(f"{path}: this session folder cannot be read ({error.strerror or error}).") from None
+
+
+def inside(folder: Path, name: str, place: str) -> Path:
+    """A file of a session by its name, which may not lead out of the folder, by links neither.
+
+    Parameters
+    ----------
+    folder : Path
+        The session's folder.
+    name : str
+        As the session names it, relative to the folder.
+    place : str
+        Where the name stands, for messages.
+
+    Returns
+    -------
+    Path
+        `folder / name`, an existing regular file.
+
+    Raises
+    ------
+    InputError
+        When the file lies outside the folder or is not there.
+    """
+    path = folder / name
+    try:
+        within = not Path(name).is_absolute() and path.resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError):  # a link that leads to itself
+        within = False
+    if not within:
+        raise InputError(
+            f"{place}: {name!r} is outside the session's folder {folder}; allowed: relative paths inside it."
+        )
+    if not is_file(path):
+        raise InputError(f"{place}: there is no file {name!r} in the session's folder {folder}.")
+    return path
+
+
+def fingerprint(folder: Path, files: Iterable[Path]) -> str:
+    """SHA-256 over the names and contents of a session's files, in hex; their order does not matter."""
+    total = hashlib.sha256()
+    for file in sorted(set(files)):
+        with file.open("rb") as stream:
+            digest = hashlib.file_digest(stream, "sha256").hexdigest()
+        total.update(f"{file.relative_to(folder).as_posix()} {digest}\n".encode())
+    return total.hexdigest()
+
+
+def _made(name: str, trials: list[dict[str, str]]) -> dict[str, Any]:
+    return {"schema": SCHEMA, "name": name, "trials": trials}
+
+
+def _entries(folder: Path, name: str) -> list[dict[str, str]]:
+    """The trials of a folder without a session file: its own, and those of each sub-folder as a condition."""
+    found = [{"file": file.name, "condition": name} for file in _trial_files(folder)]
+    for sub in sorted((each for each in folder.iterdir() if each.is_dir()), key=_natural):
+        if not sub.name.startswith("."):
+            files = _trial_files(sub)
+            found += [{"file": f"{sub.name}/{file.name}", "condition": sub.name} for file in files]
+    if not found:
+        raise InputError(f"{folder}: there is neither a {SESSION_FILE} nor a trial (.csv, .mcap) in this folder.")
+    return found
+
+
+def _trial_files(folder: Path) -> list[Path]:
+    files = (file for file in folder.iterdir() if file.suffix.lower() in TRIAL_SUFFIXES and not file.is_dir())
+    return sorted((file for file in files if not file.name.startswith(".")), key=_natural)
+
+
+def _natural(path: Path) -> list[tuple[int, int | str]]:
+    """Sorting as people count: trial_2 before trial_10."""
+    parts = re.split(r"(\d+)", path.name)
+    return [(0, int(part)) if part.isdecimal() else (1, part) for part in parts]

@@ -1,0 +1,199 @@
+"""Trial sessions from their folders: read whole, checked, and what is not known assumed and said."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from benchmark.files.base import FileModel
+from benchmark.files.load import Load
+from benchmark.files.loading import (
+    TISSUE_KEYS,
+    Overrides,
+    layer_names,
+    read_file,
+    referred,
+    tissue_from_table,
+    tissue_keys,
+)
+from benchmark.files.overrides import layer_path, put_in, unknown_key
+from benchmark.files.problems import known_keys, validated
+from benchmark.files.registry import find, shipped_tissues
+from benchmark.files.session import Session
+from benchmark.files.session_file import Camera, SessionFile
+from benchmark.files.session_folder import fingerprint, inside, session_table
+from benchmark.files.session_setup import assumptions, base_setup, setups
+from benchmark.files.sources import KeyPath, Source
+from benchmark.files.specimen import assumed_specimen
+from benchmark.files.tissue import Tissue
+from benchmark.files.tool import Support, Tool
+from benchmark.files.trials import Trial, is_synthetic, read_markers, read_table, trial_names, trial_paths
+
+_NO_OVERRIDES: Overrides = {}
+
+OF_SCENARIOS = ("physics", "comparison", "fem", "wave")
+"""Sections that a session does not have, but the scenarios made of it do."""
+
+
+def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specimen: str | Path | None = None) -> Session:
+    """Read a trial session.
+
+    Parameters
+    ----------
+    path : str or Path
+        A folder with a session.toml; a folder of trial files, which are one condition named after the folder, its
+        sub-folders being conditions too; or one trial file.
+    overrides : mapping of str to str, optional
+        What `--set KEY=VALUE` replaces: keys of session.toml (`tool.radius`, `conditions.NAME.tool.radius`,
+        `specimen`...), and the specimen's layers by their names (`dermis.youngs_modulus`). Keys of the sections in
+        `OF_SCENARIOS` (`fem.mesh`) are checked and kept in `settings`.
+    specimen : str or Path, optional
+        A shipped tissue or a path relative to the current folder (`--specimen`).
+
+    Returns
+    -------
+    Session
+        All values in SI units; `warnings` says what was assumed.
+
+    Raises
+    ------
+    InputError
+        When any file of the session cannot be used: one bad trial refuses the whole session.
+    """
+    table, source = session_table(Path(path))
+    settings = {key: value for key, value in overrides.items() if key.partition(".")[0] in OF_SCENARIOS}
+    inner = {key: value for key, value in overrides.items() if key not in settings and key != "specimen"}
+    paths = {key: route for key in inner if (route := _session_path(key, table))}
+    changed, source = put_in(table, source, paths, inner)
+    file = validated(SessionFile, changed, source)
+    trials, warnings = _trials(file, source)
+    chosen = overrides.get("specimen", specimen)
+    of_tissue = {key: value for key, value in inner.items() if key not in paths}
+    tissue, assumed, tissue_file = _specimen(file, source, chosen, trials, of_tissue)
+    base = base_setup(file, source)
+    files = [*_files(trials), *_other_files(file, source, tissue_file)]
+    session = Session(
+        name=file.name,
+        folder=source.folder,
+        specimen=tissue,
+        specimen_assumed=assumed is not None,
+        tool=base.tool,
+        support=base.support,
+        drive=file.drive.channel,
+        camera=file.camera,
+        synthetic=file.synthetic or any(is_synthetic(trial.path) for trial in trials),
+        trials=tuple(trials),
+        warnings=(*warnings, *([assumed] if assumed else [])),
+        settings=settings,
+        fingerprint=fingerprint(source.folder, files),
+    )
+    _check_presses(session)
+    return session
+
+
+def _check_presses(session: Session) -> None:
+    """Refuse tools, supports and settings that no scenario can have, before anything long begins."""
+    for tool, support in dict.fromkeys((trial.tool, trial.support) for trial in session.trials):
+        session.scenario(session.specimen, tool, support, Load(peak=1.0))
+
+
+def _session_path(key: str, table: dict[str, Any]) -> KeyPath | None:
+    """Where a `--set` key points in session.toml; None where it is for the specimen."""
+    head, _, rest = key.partition(".")
+    if head not in known_keys(SessionFile) or (head == "specimen" and rest):
+        return None
+    if head == "conditions":
+        for name in sorted(_conditions(table), key=len, reverse=True):
+            if rest.startswith(f"{name}."):
+                return ("conditions", name, *rest[len(name) + 1 :].split("."))
+    return tuple(key.split("."))
+
+
+def _conditions(table: dict[str, Any]) -> list[str]:
+    """The conditions of a session's table that nobody has checked yet."""
+    trials = table.get("trials")
+    entries = [entry for entry in trials if isinstance(entry, dict)] if isinstance(trials, list) else []
+    return list(dict.fromkeys(str(entry.get("condition")) for entry in entries))
+
+
+def _trials(file: SessionFile, source: Source) -> tuple[list[Trial], list[str]]:
+    """All trials read, and what was assumed about them."""
+    conditions = dict.fromkeys(entry.condition for entry in file.trials)
+    setup = setups(file, conditions, source)
+    paths, marker_paths = trial_paths(file.trials, source)
+    warnings = assumptions(file, conditions) + _doubled(paths)
+    if file.camera is None and any(marker_paths):
+        warnings.append("marker files are listed but [camera] does not give their layout: they are left out")
+        marker_paths = [None] * len(paths)
+    names = trial_names(paths, source.folder)
+    trials = [
+        Trial(
+            name=name,
+            condition=entry.condition,
+            path=path,
+            tool=setup[entry.condition].tool,
+            support=setup[entry.condition].support,
+            table=read_table(path),
+            markers=None if markers is None else read_markers(markers),
+            markers_path=markers,
+        )
+        for name, entry, path, markers in zip(names, file.trials, paths, marker_paths, strict=True)
+    ]
+    return trials, warnings
+
+
+def _doubled(paths: Sequence[Path]) -> list[str]:
+    """A warning where one file is listed as several trials, which are then no replicates."""
+    times = Counter(path.resolve() for path in paths)
+    doubled = [path.name for path, count in times.items() if count > 1]
+    return [f"listed as more than one trial: {', '.join(doubled)}; these are no replicates"] if doubled else []
+
+
+def _specimen(
+    file: SessionFile,
+    source: Source,
+    chosen: str | Path | None,
+    trials: Sequence[Trial],
+    overrides: Overrides,
+) -> tuple[Tissue, str | None, Path | None]:
+    """The specimen, the warning where it is assumed, and its file where that is part of the session."""
+    own, assumed = None, None
+    if chosen is not None:
+        table, where = read_file(find(chosen, "tissue"), "tissue")
+    elif file.specimen is not None:
+        path = referred(source, "specimen", file.specimen)
+        if file.specimen not in shipped_tissues():
+            path = own = inside(source.folder, file.specimen, source.place(("specimen",), "specimen"))
+        table, where = read_file(path, "tissue")
+    else:
+        tissue, assumed = assumed_specimen([trial.table for trial in trials])
+        table, where = tissue.to_table(), Source("assumed specimen")
+    for key in overrides:
+        _check_key(key, table)
+    return tissue_from_table(table, where, overrides), assumed, own
+
+
+def _check_key(key: str, tissue: dict[str, Any]) -> None:
+    """Refuse a key that is neither of a session nor of its specimen."""
+    head = key.partition(".")[0]
+    if head in (*TISSUE_KEYS, "tissue") or layer_path(key, layer_names(tissue)):
+        return
+    sections: dict[str, type[FileModel]] = {"tool": Tool, "support": Support, "camera": Camera}
+    dotted = [f"{name}.{inner}" for name, model in sections.items() for inner in known_keys(model)]
+    raise unknown_key(key, [*dotted, *tissue_keys(tissue), *known_keys(SessionFile)])
+
+
+def _files(trials: Sequence[Trial]) -> list[Path]:
+    return [path for trial in trials for path in (trial.path, trial.markers_path) if path is not None]
+
+
+def _other_files(file: SessionFile, source: Source, specimen: Path | None) -> list[Path]:
+    """The files of a session besides its trials."""
+    files = [] if specimen is None else [specimen]
+    if source.text:
+        files.append(Path(source.name))
+    if file.camera is not None and file.camera.file is not None:
+        files.append(inside(source.folder, file.camera.file, source.place(("camera", "file"), "camera.file")))
+    return files

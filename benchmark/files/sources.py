@@ -1,0 +1,119 @@
+"""Where a value came from: a TOML file read with its line numbers, and what the command line replaced in it."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pydantic_core.core_schema import ValidationInfo
+
+from benchmark.errors import InputError
+from benchmark.files.toml_lines import line_of
+
+KeyPath = tuple[str | int, ...]
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a table of values came from.
+
+    Attributes
+    ----------
+    name : str
+        What messages call it: the path as it was given.
+    text : str
+        The file's text; empty for a table that is no file.
+    folder : Path
+        What relative paths in it are relative to.
+    overrides : mapping of key path to str
+        Values that the command line replaced, by their path from the root of the file, with the key as typed.
+    prefix : tuple of str
+        Where in the file the table stands, when it is not the whole file.
+    """
+
+    name: str
+    text: str = ""
+    folder: Path = field(default_factory=Path)
+    overrides: Mapping[KeyPath, str] = field(default_factory=dict)
+    prefix: KeyPath = ()
+
+    def place(self, path: KeyPath, shown: str) -> str:
+        """Where a key stands, for a message: "--set KEY", or file, line and key.
+
+        Parameters
+        ----------
+        path : tuple of str and int
+            Keys and list indices from the root of the table.
+        shown : str
+            The same for a person.
+        """
+        whole = (*self.prefix, *path)
+        for length in range(len(whole), 0, -1):
+            if whole[:length] in self.overrides:
+                inner = ".".join(str(part) for part in whole[length:])
+                return f"--set {self.overrides[whole[:length]]}{f' ({inner})' if inner else ''}"
+        line = line_of(self.text, whole)
+        key = self.key(shown)
+        within = [f"--set {typed}" for path, typed in self.overrides.items() if whole and path[: len(whole)] == whole]
+        key += f" (with {', '.join(within)})" if within else ""
+        return ", ".join(part for part in (self.name, f"line {line}" if line else "", key) if part)
+
+    def key(self, shown: str) -> str:
+        """A key of the table as a key of the whole file."""
+        return ".".join([*(str(part) for part in self.prefix), *([shown] if shown else [])])
+
+    def context(self) -> dict[str, Any]:
+        """The validation context: values come from a person, files are looked for in this folder."""
+        return {"from_file": True, "folder": self.folder}
+
+
+def folder_of(info: ValidationInfo) -> Path:
+    """The folder that relative paths belong to: the file's, or the current one for a model made in code."""
+    return Path((info.context or {}).get("folder", "."))
+
+
+def is_file(path: Path) -> bool:
+    """Whether there is a regular file of that name; a name that no file can have is none."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def read_toml(path: Path, what: str) -> tuple[dict[str, Any], Source]:
+    """Read a TOML file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    what : str
+        What it should be, for messages: "tissue", "scenario".
+
+    Returns
+    -------
+    (dict, Source)
+        Its table and where it came from.
+
+    Raises
+    ------
+    InputError
+        When there is no such file, or it is no TOML.
+    """
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+        table = tomllib.loads(text)
+    except FileNotFoundError:
+        raise InputError(f"{path}: there is no such {what} file.") from None
+    except OSError as error:
+        raise InputError(f"{path}: this {what} file cannot be read ({error.strerror or error}).") from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: this {what} file is not UTF-8 text (byte {error.start}).") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{path}: this {what} file is no valid TOML: {error}.") from None
+    except (RecursionError, ValueError) as error:
+        raise InputError(f"{path}: this {what} file cannot be read ({error}).") from None
+    return table, Source(str(path), text, path.parent)

@@ -1,0 +1,101 @@
+"""The trials of a session: their tables read, each with the tool and the support that it was made with."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from bench_hw.errors import BenchError
+from bench_hw.tables import MarkerTable, TrialTable, read_marker_csv, read_trial_csv
+from benchmark.errors import InputError
+from benchmark.files.session_file import TrialEntry
+from benchmark.files.session_folder import inside
+from benchmark.files.sources import Source
+from benchmark.files.tool import Support, Tool
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """One press.
+
+    Attributes
+    ----------
+    name : str
+        Unique in the session: the file's path in the folder, without its ending.
+    condition : str
+        What it shares with others.
+    path : Path
+        Its file.
+    tool, support
+        What it was made with, its condition's overrides included.
+    table : TrialTable
+        time (n,) s, depth (n,) m, force (n,) N and further columns.
+    markers : MarkerTable or None
+        Marker tracks.
+    markers_path : Path or None
+        Their file.
+    """
+
+    name: str
+    condition: str
+    path: Path
+    tool: Tool
+    support: Support
+    table: TrialTable
+    markers: MarkerTable | None = None
+    markers_path: Path | None = None
+
+
+def trial_paths(entries: Sequence[TrialEntry], source: Source) -> tuple[list[Path], list[Path | None]]:
+    """The files of the trials and of their markers, all inside the session's folder; raises InputError."""
+    files, markers = [], []
+    for index, entry in enumerate(entries):
+        place = source.place(("trials", index, "file"), f"trials[#{index + 1}].file")
+        files.append(inside(source.folder, entry.file, place))
+        place = source.place(("trials", index, "markers"), f"trials[#{index + 1}].markers")
+        markers.append(None if entry.markers is None else inside(source.folder, entry.markers, place))
+    return files, markers
+
+
+def trial_names(paths: Sequence[Path], folder: Path) -> list[str]:
+    """A name for each trial: its path in the folder without the ending, with it and a number where two are alike."""
+    names = [path.relative_to(folder).with_suffix("").as_posix() for path in paths]
+    times = Counter(names)
+    names = [
+        name if times[name] == 1 else path.relative_to(folder).as_posix()
+        for name, path in zip(names, paths, strict=True)
+    ]
+    times = Counter(names)
+    return [name if times[name] == 1 else f"{name} #{number}" for number, name in enumerate(names, start=1)]
+
+
+def read_table(path: Path) -> TrialTable:
+    """The table of a trial file, CSV or native; raises InputError."""
+    try:
+        if path.suffix.lower() == ".mcap":
+            from bench_hw.trial_file import read_trial_mcap
+
+            return read_trial_mcap(path)
+        return read_trial_csv(path)
+    except BenchError as error:
+        raise InputError(f"{error}.") from None
+
+
+def is_synthetic(path: Path) -> bool:
+    """Whether a native trial file says that simulated devices made it; a CSV file cannot say."""
+    if path.suffix.lower() != ".mcap":
+        return False
+    from bench_hw.trial_file.contents import read_contents
+
+    header = read_contents(path, ()).header
+    return header is not None and header.synthetic
+
+
+def read_markers(path: Path) -> MarkerTable:
+    """The marker tracks of a trial; raises InputError."""
+    try:
+        return read_marker_csv(path)
+    except BenchError as error:
+        raise InputError(f"{error}.") from None

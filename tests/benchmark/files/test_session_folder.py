@@ -1,0 +1,92 @@
+import os
+from pathlib import Path
+
+import pytest
+
+from benchmark.errors import InputError
+from benchmark.files.session_folder import fingerprint, inside, session_table
+
+
+def entries(path: Path):
+    return [(trial["file"], trial["condition"]) for trial in session_table(path)[0]["trials"]]
+
+
+def test_a_session_file_is_read(session_folder):
+    table, source = session_table(session_folder)
+    assert table["name"] == "two presses"
+    assert source.folder == session_folder
+    assert session_table(session_folder / "session.toml")[0] == table
+
+
+def test_without_one_the_folder_is_a_condition(tmp_path, write_trial):
+    for name in ("t_10.csv", "t_2.csv", "t_1.CSV", ".hidden.csv"):
+        write_trial(tmp_path / "day" / name)
+    (tmp_path / "day" / "README.md").write_text("text")
+    (tmp_path / "day" / "odd.csv").mkdir()
+    assert entries(tmp_path / "day") == [("t_1.CSV", "day"), ("t_2.csv", "day"), ("t_10.csv", "day")]
+    assert session_table(tmp_path / "day")[0]["name"] == "day"
+
+
+def test_sub_folders_are_conditions(tmp_path, write_trial):
+    for name in ("top.csv", "slow/a.csv", "fast/a.csv", ".git/a.csv", "slow/deeper/b.csv"):
+        write_trial(tmp_path / "s" / name)
+    assert entries(tmp_path / "s") == [("top.csv", "s"), ("fast/a.csv", "fast"), ("slow/a.csv", "slow")]
+
+
+def test_native_trials_count(tmp_path):
+    (tmp_path / "s").mkdir()
+    for name in ("a.mcap", "b.mcap.part"):
+        (tmp_path / "s" / name).write_bytes(b"")
+    assert entries(tmp_path / "s") == [("a.mcap", "s")]
+
+
+def test_one_file_is_a_session_of_one_trial(tmp_path, write_trial):
+    assert entries(write_trial(tmp_path / "one.csv")) == [("one.csv", "one")]
+
+
+@pytest.mark.parametrize("name", ["none", "", "notes.txt", "empty", "x" * 300, "a\0b"])
+def test_what_is_no_session_is_refused(tmp_path, name):
+    (tmp_path / "notes.txt").write_text("text")
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(InputError):
+        session_table(tmp_path / name)
+
+
+def test_files_inside_are_found(session_folder, write_trial):
+    write_trial(session_folder / "sub" / "three.csv")
+    for name in ("one.csv", "sub/three.csv", "./one.csv", "sub/../one.csv"):
+        assert inside(session_folder, name, "here").is_file()
+
+
+def test_a_link_inside_may_lead_inside(session_folder):
+    (session_folder / "link.csv").symlink_to("one.csv")
+    assert inside(session_folder, "link.csv", "here") == session_folder / "link.csv"
+
+
+def test_nothing_outside_is_reached(session_folder, write_trial):
+    outside = write_trial(session_folder.parent / "outside.csv")
+    (session_folder / "link.csv").symlink_to(outside)
+    (session_folder / "folder").symlink_to(session_folder.parent)
+    (session_folder / "loop.csv").symlink_to("loop.csv")
+    absolute = str((session_folder / "one.csv").absolute())
+    for name in ("../outside.csv", str(outside), absolute, "link.csv", "folder/outside.csv", "loop.csv", ".."):
+        with pytest.raises(InputError, match=r"^here: .* is outside the session's folder"):
+            inside(session_folder, name, "here")
+
+
+def test_what_is_missing_or_no_file_is_said(session_folder):
+    (session_folder / "sub").mkdir()
+    os.mkfifo(session_folder / "pipe.csv")
+    for name in ("none.csv", "sub", "pipe.csv"):
+        with pytest.raises(InputError, match="there is no file"):
+            inside(session_folder, name, "here")
+
+
+def test_a_fingerprint_is_of_names_and_contents_in_any_order(session_folder):
+    one, two = session_folder / "one.csv", session_folder / "two.csv"
+    first = fingerprint(session_folder, [one, two])
+    assert len(first) == 64
+    assert fingerprint(session_folder, [two, one, one]) == first
+    assert fingerprint(session_folder, [one]) != first
+    two.write_text(two.read_text() + "\n")
+    assert fingerprint(session_folder, [one, two]) != first

@@ -1,0 +1,219 @@
+import os
+from pathlib import Path
+
+import pytest
+
+from benchmark.errors import InputError
+from benchmark.files import load_session, load_tissue
+from benchmark.files.load import Load
+from benchmark.files.tool import Support, Tool
+
+DATA = os.environ.get("TISSUEBENCH_DATA")
+
+
+def refusal(*arguments, **keywords):
+    with pytest.raises(InputError) as error:
+        load_session(*arguments, **keywords)
+    said = str(error.value)
+    assert "\n" not in said
+    return said
+
+
+def test_a_session_file(session_folder):
+    session = load_session(session_folder)
+    assert (session.name, session.folder, session.drive) == ("two presses", session_folder, "depth")
+    assert (session.synthetic, session.camera, session.specimen_assumed) == (False, None, False)
+    assert session.specimen == load_tissue("skin_forearm")
+    assert [(trial.name, trial.condition) for trial in session.trials] == [("one", "slow"), ("two", "fast")]
+    assert session.conditions == ("slow", "fast")
+    assert session.trials[0].tool == session.tool == Tool(radius=5e-3, contact="rigid_bonded")
+    assert session.trials[0].support == session.support == Support()
+    assert len(session.trials[0].table.time) == 30
+    assert len(session.warnings) == 3
+
+
+def test_plain_files(tmp_path, write_trial):
+    for name in ("one.csv", "two.csv"):
+        write_trial(tmp_path / "day" / name)
+    session = load_session(tmp_path / "day")
+    assert (session.name, session.conditions) == ("day", ("day",))
+    assert session.specimen_assumed
+    assert session.specimen.thickness == 8e-3
+    assert len(session.warnings) == 4
+    assert any("the specimen is not given" in warning for warning in session.warnings)
+
+
+def test_plain_files_without_a_gap(tmp_path, write_trial):
+    session = load_session(write_trial(tmp_path / "one.csv", gap=None))
+    assert session.specimen.thickness == 10e-3
+
+
+def test_a_folder_of_native_trials_is_as_synthetic_as_they_are(tmp_path, write_native_trial):
+    write_native_trial(tmp_path / "day" / "one.mcap", synthetic=False)
+    assert not load_session(tmp_path / "day").synthetic
+    write_native_trial(tmp_path / "day" / "two.mcap", synthetic=True)
+    session = load_session(tmp_path / "day")
+    assert session.synthetic
+    assert [trial.name for trial in session.trials] == ["one", "two"]
+
+
+def test_everything_can_be_given_on_the_command_line(tmp_path, write_trial):
+    write_trial(tmp_path / "day" / "one.csv")
+    given = {
+        "tool.radius": "3 mm",
+        "tool.contact": "rigid_bonded",
+        "support.kind": "hole",
+        "support.hole_radius": "30 mm",
+        "dermis.youngs_modulus": "120 kPa",
+        "synthetic": "true",
+        "drive.channel": "force",
+        "name": "mine",
+    }
+    session = load_session(tmp_path / "day", given, specimen="skin_forearm")
+    assert session.warnings == ()
+    assert session.trials[0].tool.radius == 3e-3
+    assert session.trials[0].support == Support(kind="hole", hole_radius=30e-3)
+    assert session.specimen.layer("dermis").youngs_modulus == 120e3
+    assert (session.synthetic, session.drive, session.name, session.specimen_assumed) == (True, "force", "mine", False)
+    assert load_session(tmp_path / "day", {**given, "specimen": "skin_forearm"}).specimen == session.specimen
+
+
+def test_the_assumed_layer_can_be_changed(tmp_path, write_trial):
+    session = load_session(write_trial(tmp_path / "one.csv"), {"specimen.thickness": "12 mm"})
+    assert session.specimen.thickness == 12e-3
+    assert session.specimen_assumed
+
+
+def test_a_condition_has_its_own_tool(session_folder):
+    path = session_folder / "session.toml"
+    path.write_text(path.read_text() + '[tool]\nradius = "4 mm"\n[conditions.fast.tool]\nradius = "2 mm"\n')
+    session = load_session(session_folder)
+    assert [trial.tool.radius for trial in session.trials] == [4e-3, 2e-3]
+    assert session.tool.radius == 4e-3
+    session = load_session(session_folder, {"tool.radius": "3 mm", "conditions.slow.tool.radius": "1 mm"})
+    assert [trial.tool.radius for trial in session.trials] == [1e-3, 2e-3]
+
+
+def test_a_condition_whose_name_has_a_dot_can_be_set(tmp_path, write_trial):
+    write_trial(tmp_path / "s" / "1.5mm" / "a.csv")
+    session = load_session(tmp_path / "s", {"conditions.1.5mm.tool.radius": "1 mm"})
+    assert session.trials[0].tool.radius == 1e-3
+
+
+def test_markers_need_a_camera(session_folder, change):
+    markers = session_folder / "markers.csv"
+    rows = [f"{0.1 * row:.1f},{marker},{marker},0" for row in range(30) for marker in range(3)]
+    markers.write_text("time_s,marker,x_mm,y_mm\n" + "\n".join(rows) + "\n")
+    change(session_folder / "session.toml", 'condition = "slow"', 'condition = "slow"\nmarkers = "markers.csv"')
+    session = load_session(session_folder)
+    assert session.trials[0].markers is None
+    assert any("[camera] does not give their layout" in warning for warning in session.warnings)
+    grid = {"camera.marker_rows": "1", "camera.marker_columns": "3", "camera.marker_spacing": "1 mm"}
+    session = load_session(session_folder, grid)
+    assert session.trials[0].markers.marker.max() == 2
+    assert session.trials[1].markers is None
+    assert session.camera.marker_spacing == 1e-3
+
+
+def test_the_fingerprint_covers_every_file(session_folder, tissue_file, change):
+    (session_folder / "mine.toml").write_text(tissue_file.read_text())
+    change(session_folder / "session.toml", '"skin_forearm"', '"mine.toml"')
+    seen = {load_session(session_folder).fingerprint}
+    for name in ("one.csv", "session.toml", "mine.toml"):
+        (session_folder / name).write_text((session_folder / name).read_text().replace("\n", " \n", 1))
+        seen.add(load_session(session_folder).fingerprint)
+    assert len(seen) == 4
+    assert load_session(session_folder, {"tool.radius": "3 mm"}).fingerprint in seen
+
+
+def test_settings_of_scenarios_are_checked_and_handed_on(session_folder):
+    session = load_session(session_folder, {"fem.mesh": "coarse", "tool.radius": "3 mm"})
+    assert session.settings == {"fem.mesh": "coarse"}
+    press = session.scenario(session.specimen, session.tool, session.support, Load(peak=2.0))
+    assert (press.name, press.tissue, press.tool.radius) == ("two presses", session.specimen, 3e-3)
+    assert (press.fem.mesh, press.load.peak) == ("coarse", 2.0)
+    assert "--set fem.mesh: 'cors' is not allowed" in refusal(session_folder, {"fem.mesh": "cors"})
+    assert "--set wave.windw: this key is not known" in refusal(session_folder, {"wave.windw": "1 mm"})
+
+
+def test_a_tool_that_no_press_can_have_is_refused_at_once(session_folder):
+    smooth = {"conditions.fast.tool.contact": "rigid_frictionless"}
+    assert "tool.edge_radius: a rigid_frictionless tool in finite strain" in refusal(session_folder, smooth)
+    session = load_session(session_folder, {**smooth, "fem.kinematics": "linear"})
+    assert session.trials[1].tool.contact == "rigid_frictionless"
+
+
+def test_a_specimen_without_an_end_needs_a_half_space(session_folder, tissue_file, change):
+    change(tissue_file, 'thickness = "10 mm"\n', "")
+    assert "the last layer 'fat' has no thickness" in refusal(session_folder, specimen=tissue_file)
+    session = load_session(session_folder, {"support.kind": "half_space"}, specimen=tissue_file)
+    assert session.trials[0].support.kind == "half_space"
+
+
+@pytest.mark.parametrize(
+    ("overrides", "says"),
+    [
+        ({"tol.radius": "3 mm"}, "--set tol.radius: this key is not known; did you mean tool.radius"),
+        ({"tool.radius": "3 kPa"}, "--set tool.radius: '3 kPa' is a pressure"),
+        ({"tool.radus": "3 mm"}, "--set tool.radus: this key is not known; did you mean radius"),
+        ({"dermi.thickness": "1 mm"}, "--set dermi.thickness: this key is not known; did you mean dermis.thickness"),
+        ({"dermis.thickness": "-1 mm"}, "--set dermis.thickness: '-1 mm' is outside"),
+        ({"conditions.slow.tool.radius": "0 mm"}, "--set conditions.slow.tool.radius: '0 mm' is outside"),
+        ({"conditions.slo.tool.radius": "1 mm"}, "no trial has this condition; did you mean slow"),
+        ({"specimen": "skin_forarm"}, "did you mean skin_forearm"),
+        ({"trials": "5"}, "--set trials: 5 is no list"),
+    ],
+)
+def test_a_bad_override_names_its_key(session_folder, overrides, says):
+    assert says in refusal(session_folder, overrides)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("schema = 1", "schema = 2", "line 1, schema: 2 is not a schema"),
+        ("schema = 1", "", "the key schema is missing; a session file begins with schema = 1"),
+        ('"one.csv"', '"../press.csv"', "line 6, trials[#1].file: '../press.csv' is outside the session's folder"),
+        ('"one.csv"', '"none.csv"', "line 6, trials[#1].file: there is no file 'none.csv'"),
+        ('"skin_forearm"', '"skin_forarm"', "line 3, specimen: no tissue 'skin_forarm' ships"),
+        ('"skin_forearm"', '"../slab.toml"', "line 3, specimen: '../slab.toml' is outside the session's folder"),
+        ('"skin_forearm"', '"none.toml"', "line 3, specimen: there is no file 'none.toml'"),
+        ("[[trials]]", "[[trial]]", "this key is not known; did you mean trials?"),
+    ],
+)
+def test_a_bad_session_file_is_refused_with_line_and_key(session_folder, change, old, new, says):
+    assert says in refusal(change(session_folder / "session.toml", old, new))
+
+
+def test_one_bad_trial_refuses_the_session(session_folder, write_trial):
+    write_trial(session_folder / "two.csv", rows=3)
+    assert "two.csv: the table has 3 rows" in refusal(session_folder)
+
+
+def test_a_missing_camera_file_is_refused(session_folder):
+    grid = {"camera.marker_rows": "1", "camera.marker_columns": "3", "camera.marker_spacing": "1 mm"}
+    assert "there is no file 'camera.toml'" in refusal(session_folder, {**grid, "camera.file": "camera.toml"})
+
+
+def test_a_file_listed_twice_is_said(session_folder, change):
+    change(session_folder / "session.toml", '"two.csv"', '"one.csv"')
+    session = load_session(session_folder)
+    assert [trial.name for trial in session.trials] == ["one.csv #1", "one.csv #2"]
+    assert any("more than one trial: one.csv" in warning for warning in session.warnings)
+
+
+@pytest.mark.skipif(DATA is None, reason="measured data: set TISSUEBENCH_DATA to the folder that holds pig_indentation")
+@pytest.mark.parametrize(("day", "trials"), [("2023-03-27", 17), ("2023-03-31", 49), ("2023-04-03", 29)])
+def test_measured_tissue_loads(day, trials):
+    session = load_session(Path(str(DATA)) / "pig_indentation" / day)
+    assert len(session.trials) == trials
+    assert session.conditions == (day,)
+    assert 10e-3 < session.specimen.thickness < 25e-3
+    assert not session.synthetic
+
+
+@pytest.mark.skipif(DATA is None, reason="measured data: set TISSUEBENCH_DATA to the folder that holds pig_indentation")
+def test_days_of_measured_tissue_are_conditions():
+    session = load_session(Path(str(DATA)) / "pig_indentation")
+    assert session.conditions == ("2023-03-27", "2023-03-31", "2023-04-03")
+    assert len({trial.name for trial in session.trials}) == len(session.trials) == 95
