@@ -1,0 +1,73 @@
+"""The `benchmark` command: one verb a file, exit codes in one place.
+
+Nothing heavy is imported here or at the top of a verb's file, so that `--help` answers at once.
+"""
+
+from __future__ import annotations
+
+import sys
+import textwrap
+import traceback
+from collections.abc import Sequence
+
+import typer
+
+from benchmark.cli import fit, run, scenarios, tissues
+
+EXIT_USAGE = 2
+EXIT_INTERRUPTED = 130
+EXIT_BUG = 70
+
+app = typer.Typer(
+    name="benchmark",
+    help="Validate and benchmark fast soft-tissue models against finite elements and measured trials.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
+for verb in (run, fit, tissues, scenarios):
+    verb.register(app)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code.
+
+    0 good, 1 a gate failed, 2 usage, configuration or input data, 3 not comparable, 4 a solver did not converge,
+    5 a device failed; 70 is a fault of the program itself, 130 an interruption.
+    """
+    arguments = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        code = app(args=arguments, prog_name="python -m benchmark", standalone_mode=False)
+    except KeyboardInterrupt:
+        return _fail("interrupted; results that were not finished were not written", EXIT_INTERRUPTED)
+    except Exception as error:
+        return _report(error, debug="--debug" in arguments)
+    return code if isinstance(code, int) else 0
+
+
+def _report(error: Exception, *, debug: bool) -> int:
+    """Print one paragraph for an error and return its exit code."""
+    if debug:
+        traceback.print_exc()
+    if hasattr(error, "format_message"):  # a usage error of the command-line library
+        return _fail(f"{error.format_message()} See python -m benchmark --help.", EXIT_USAGE)
+    if isinstance(error, typer.Abort):
+        return _fail("interrupted", EXIT_INTERRUPTED)
+    from benchmark.errors import TissuebenchError
+
+    if isinstance(error, TissuebenchError):
+        return _fail(str(error), error.exit_code)
+    if isinstance(error, OSError):
+        return _fail(str(error), EXIT_USAGE)
+    text = f"a fault of the program, {type(error).__name__}: {error}; --debug shows where"
+    return _fail(text, EXIT_BUG)
+
+
+def _fail(text: str, code: int) -> int:
+    """Write the paragraph to stderr."""
+    print(
+        textwrap.fill(f"error: {text}", width=100, break_long_words=False, break_on_hyphens=False),
+        file=sys.stderr,
+    )
+    return code

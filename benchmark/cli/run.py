@@ -1,0 +1,49 @@
+"""`benchmark run`: FEM and wave model side by side, with or without measured trials."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from benchmark.cli.options import Debug, Json, Out, Quiet, Seed, Set, parse_settings
+
+Scenario = Annotated[str | None, typer.Argument(help="A shipped scenario's name or a TOML file.")]
+Trials = Annotated[Path | None, typer.Option("--trials", help="A trial session: a folder of CSV files.")]
+Specimen = Annotated[str | None, typer.Option("--specimen", help="Tissue of the trials: a name or a TOML file.")]
+Fields = Annotated[Literal["peak", "all"], typer.Option("--fields", help="Which steps' fields are written as VTU.")]
+Repeats = Annotated[int, typer.Option("--repeats", min=3, help="Timed repeats of each model.")]
+
+
+def register(app: typer.Typer) -> None:
+    """Add the verb to the command line."""
+    app.command("run", help=run.__doc__)(run)
+
+
+def run(
+    scenario: Scenario = None,
+    trials: Trials = None,
+    specimen: Specimen = None,
+    out: Out = None,
+    settings: Set = None,
+    fields: Fields = "peak",
+    repeats: Repeats = 3,
+    seed: Seed = 0,
+    json: Json = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> int:
+    """Run FEM and wave model side by side, compare them, and write a report.
+
+    With SCENARIO that scenario; with --trials a session, its specimen fitted first; with neither the shipped
+    phantom session and the scenario skin-5N, each into a folder of its own.
+    """
+    from benchmark.cli.console import Console
+    from benchmark.cli.show import show_runs
+    from benchmark.runs import RunOptions, RunRequest, carry_out
+
+    console = Console(quiet=quiet)
+    request = RunRequest(scenario, trials, specimen, parse_settings(settings), out)
+    options = RunOptions(every_field=fields == "all", repeats=repeats, seed=seed)
+    return show_runs(carry_out(request, options, console), console, as_json=json)

@@ -1,0 +1,48 @@
+"""What a finished run prints: verdict, warnings, where the report is."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+from benchmark.cli.console import Console
+from benchmark.errors import SolverError
+from benchmark.runs import RunOutcome
+
+
+def show_runs(outcomes: Sequence[RunOutcome], console: Console, *, as_json: bool) -> int:
+    """Print the outcomes and return the exit code.
+
+    Raises
+    ------
+    SolverError
+        A solver stopped early; results up to there are on disk.
+    """
+    if as_json:
+        objects = [{**outcome.document, "out": str(outcome.folder)} for outcome in outcomes]
+        print_json(objects[0] if len(objects) == 1 else {"schema": 1, "runs": objects})
+    for outcome in outcomes:
+        for warning in outcome.warnings:
+            console.say(f"  warning: {warning}")
+        if not as_json:
+            print(f"{outcome.document['name']}: {outcome.headline}\n  report: {outcome.report}")
+    stopped = [outcome for outcome in outcomes if not outcome.complete]
+    if stopped:
+        failures = [
+            f"{name} {model['failure']}"
+            for outcome in stopped
+            for name, model in outcome.document["models"].items()
+            if model["failure"]
+        ]
+        raise SolverError(f"{'; '.join(failures)}. Results up to there are in {stopped[0].folder}, marked incomplete")
+    return 0
+
+
+def print_json(value: Any) -> None:
+    """Print one JSON object on stdout."""
+    from reports.atomic import plain
+
+    json.dump(plain(value), sys.stdout, indent=2, ensure_ascii=False)
+    print()

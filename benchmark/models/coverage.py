@@ -1,0 +1,35 @@
+"""What both models of this version leave out: refused where it would change the answer, said where it fades."""
+
+from __future__ import annotations
+
+from benchmark.files import Scenario
+from benchmark.models.result import UncoveredError
+
+FRICTION = "friction_coefficient"
+"""Belongs to a rigid_frictional tool, which each model refuses by itself, and has no effect on any other."""
+
+
+def refuse_options(scenario: Scenario) -> None:
+    """Refuse what neither model has.
+
+    Raises
+    ------
+    UncoveredError
+        For options of the body, a tilted tool, or fibres.
+    """
+    options = [name for name, value in dict(scenario.physics).items() if value is not None and name != FRICTION]
+    if options:
+        raise UncoveredError(f"the option physics.{options[0]} is not part of this model")
+    if scenario.tool.tilt != 0.0:
+        raise UncoveredError("a tilted tool needs a three-dimensional geometry")
+    fibres = [layer.name for layer in scenario.tissue.layers if layer.fibre is not None]
+    if fibres:
+        raise UncoveredError(f"the layer {fibres[0]} has fibres, which this model does not have")
+
+
+def relaxation_warnings(scenario: Scenario) -> tuple[str, ...]:
+    """Say which layers relax in their file and are elastic here."""
+    names = [layer.name for layer in scenario.tissue.layers if layer.relaxation]
+    if not names:
+        return ()
+    return (f"relaxation of {', '.join(names)} is left out: the layers are elastic with their initial moduli",)

@@ -1,0 +1,159 @@
+"""The finite-element solver as a model of the harness."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import fem
+from benchmark.errors import InputError
+from benchmark.files import Layer, Scenario
+from benchmark.models.coverage import refuse_options, relaxation_warnings
+from benchmark.models.radii import profile_radii
+from benchmark.models.result import (
+    Drive,
+    FieldSnapshot,
+    ModelResult,
+    OnStep,
+    RunFailure,
+    StepProgress,
+    UncoveredError,
+    silent,
+)
+
+VTK_QUAD = 9
+
+
+class FemModel:
+    """A scenario meshed and set up.
+
+    Raises
+    ------
+    UncoveredError
+        The solver has no answer to this scenario.
+    InputError
+        The scenario cannot be meshed or solved as it stands.
+    """
+
+    def __init__(self, scenario: Scenario, *, every_field: bool = False):
+        refuse_options(scenario)
+        if scenario.fem.geometry != "axisymmetric":
+            raise UncoveredError(f"the geometry {scenario.fem.geometry} is not part of this solver; axisymmetric is")
+        self._scenario = scenario
+        self._every_field = every_field
+        _refuse_contact(scenario)
+        try:
+            self._model = fem.prepare(_problem(scenario))
+        except fem.FemError as error:
+            raise InputError(f"scenario {scenario.name}: {error}") from None
+
+    def run(self, drive: Drive, on_step: OnStep = silent) -> ModelResult:
+        """Follow a load history; a run that stops early keeps what it reached."""
+        load = fem.Load(drive.control, drive.time, drive.value)
+
+        def report(step: fem.StepReport) -> None:
+            on_step(StepProgress(step.step, step.total, step.force, step.depth))
+
+        solution = self._model.run(load, on_step=report)
+        steps = solution.force.size
+        peak = int(np.abs(drive.value[:steps]).argmax()) if steps else 0
+        radii = profile_radii(self._scenario.tool.radius)
+        layers = solution.layer_names
+        return ModelResult(
+            model="fem",
+            layers=tuple(layers),
+            time=solution.time,
+            force=solution.force,
+            depth=solution.depth,
+            top_deflection=solution.top_deflection,
+            profile_radii=radii,
+            profile=solution.profile(peak, radii) if steps else np.full((len(layers), radii.size), np.nan),
+            peak_step=peak,
+            unknowns=self._model.unknowns,
+            notes=self._notes(),
+            warnings=(*relaxation_warnings(self._scenario), *solution.warnings),
+            failure=_failure(solution, load),
+            fields=tuple(_snapshot(solution, step) for step in self._field_steps(peak, steps)),
+        )
+
+    def _notes(self) -> dict[str, str]:
+        """Choices of the solver, in words."""
+        options = self._scenario.fem
+        return {
+            "kinematics": "finite strain" if options.kinematics == "finite" else "small strain",
+            "geometry": options.geometry,
+            "mesh": options.mesh,
+            "linear solver": str(self._model.linear_solver),
+        }
+
+    def _field_steps(self, peak: int, steps: int) -> list[int]:
+        """Steps whose fields are kept."""
+        if not steps:
+            return []
+        return list(range(steps)) if self._every_field else sorted({peak, steps - 1})
+
+
+def _refuse_contact(scenario: Scenario) -> None:
+    """Refuse contacts that this solver does not have."""
+    tool, finite = scenario.tool, scenario.fem.kinematics == "finite"
+    if tool.contact == "rigid_frictional":
+        raise UncoveredError("the contact rigid_frictional is not part of this solver")
+    if tool.contact == "rigid_frictionless" and finite:
+        raise UncoveredError(
+            "a rigid_frictionless tool in finite strain is not part of this solver; linear kinematics is"
+        )
+    if tool.contact == "rigid_bonded" and tool.edge_radius is not None:
+        raise UncoveredError("a rigid_bonded tool with a rounded edge is not part of this solver; a sharp edge is")
+
+
+def _problem(scenario: Scenario) -> fem.Problem:
+    """The scenario in the solver's terms."""
+    tool, options = scenario.tool, scenario.fem
+    return fem.Problem(
+        layers=tuple(_layer(layer, options.kinematics) for layer in scenario.tissue.layers),
+        tool=fem.Tool(tool.radius, tool.contact, tool.edge_radius),
+        support=fem.Support(
+            scenario.support.kind, scenario.support.hole_radius if scenario.support.kind == "hole" else None
+        ),
+        kinematics=options.kinematics,
+        discretisation=fem.Discretisation(options.mesh, options.radius),
+    )
+
+
+def _layer(layer: Layer, kinematics: str) -> fem.Layer:
+    """A layer with its law: linear elastic in small strain, neo-Hookean otherwise."""
+    if kinematics == "linear":
+        material: fem.Material = fem.LinearElastic(layer.youngs_modulus, layer.poisson_ratio)
+        return fem.Layer(layer.name, layer.thickness, layer.density, material)
+    if layer.hyperelastic.law != "neo_hookean":
+        raise UncoveredError(
+            f"the layer {layer.name} follows the law {layer.hyperelastic.law}; this solver has neo_hookean"
+        )
+    shear = layer.hyperelastic.shear_modulus
+    youngs = layer.youngs_modulus if shear is None else 2 * shear * (1 + layer.poisson_ratio)
+    return fem.Layer(layer.name, layer.thickness, layer.density, fem.NeoHookean(youngs, layer.poisson_ratio))
+
+
+def _failure(solution: fem.Solution, load: fem.Load) -> RunFailure | None:
+    """The solver's failure in the harness's terms."""
+    stop = solution.failure
+    if stop is None:
+        return None
+    return RunFailure(stop.step, stop.time, stop.reached, stop.target, load.unit, stop.reason)
+
+
+def _snapshot(solution: fem.Solution, step: int) -> FieldSnapshot:
+    """The continuum at one step."""
+    fields = solution.fields(step)
+    return FieldSnapshot(
+        step=step,
+        points=fields.points,
+        cells=fields.cells,
+        cell_type=VTK_QUAD,
+        point_data={"displacement_m": fields.displacement},
+        cell_data={
+            "layer": fields.layer.astype(np.float64),
+            "cauchy_stress_Pa": fields.cauchy_stress.reshape(-1, 9),
+            "strain": fields.strain.reshape(-1, 9),
+            "det_F": fields.det_F,
+        },
+    )

@@ -1,0 +1,79 @@
+"""The wave models as a model of the harness."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from benchmark.errors import InputError
+from benchmark.files import Scenario
+from benchmark.models.coverage import refuse_options, relaxation_warnings
+from benchmark.models.radii import profile_radii
+from benchmark.models.result import Drive, ModelResult, OnStep, StepProgress, UncoveredError, silent
+from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveError, WaveLayer
+
+
+class WaveModel:
+    """A scenario's layered wave, set up.
+
+    Raises
+    ------
+    UncoveredError
+        The wave model has no answer to this scenario.
+    InputError
+        The scenario cannot be used as it stands.
+    """
+
+    def __init__(self, scenario: Scenario):
+        refuse_options(scenario)
+        if scenario.wave.model != "layered":
+            raise UncoveredError(f"the wave model {scenario.wave.model} does not predict a scenario; layered does")
+        self._scenario = scenario
+        try:
+            self._model = _layered(scenario)
+        except NotCoveredError as error:
+            raise UncoveredError(str(error)) from None
+        except WaveError as error:
+            raise InputError(f"scenario {scenario.name}: {error}") from None
+
+    def run(self, drive: Drive, on_step: OnStep = silent) -> ModelResult:
+        """Follow a load history."""
+        solution = self._model.run(drive.control, drive.time, drive.value)
+        peak = int(np.abs(drive.value).argmax())
+        radii = profile_radii(self._scenario.tool.radius)
+        steps = drive.time.size
+        on_step(StepProgress(steps, steps, float(solution.force[peak]), float(solution.depth[peak])))
+        return ModelResult(
+            model="wave",
+            layers=tuple(solution.layer_names),
+            time=solution.time,
+            force=solution.force,
+            depth=solution.depth,
+            top_deflection=solution.top_deflection,
+            profile_radii=radii,
+            profile=solution.profile(peak, radii),
+            peak_step=peak,
+            unknowns=self._model.unknowns,
+            notes={
+                "model": "layered vector wave, small strain, no calibration",
+                "window": f"{1e3 * self._model.window:.4g} mm",
+                "modes": f"m, n = 1..{self._model.modes}",
+            },
+            warnings=(*relaxation_warnings(self._scenario), *solution.warnings),
+        )
+
+
+def _layered(scenario: Scenario) -> LayeredWave:
+    """The scenario in the wave model's terms."""
+    if scenario.support.kind == "half_space":
+        raise UncoveredError("the layered wave needs a base at a finite depth, a half_space has none")
+    layers = [
+        WaveLayer(layer.name, layer.thickness, layer.density, layer.youngs_modulus, layer.poisson_ratio)
+        for layer in scenario.tissue.layers
+    ]
+    return LayeredWave(
+        layers,
+        DiscTool(scenario.tool.radius, scenario.tool.contact),
+        support=scenario.support.kind,
+        window=scenario.wave.window,
+        modes=scenario.wave.modes,
+    )

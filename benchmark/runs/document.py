@@ -1,0 +1,58 @@
+"""`results.json`: the run in one object for programs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from benchmark.comparison import comparison_summary
+from benchmark.runs.record import RunRecord
+from benchmark.side_by_side import ModelRun
+
+SCHEMA = 1
+
+
+def results_document(record: RunRecord) -> dict[str, Any]:
+    """Return the content of `results.json`; None stands where a model has no value."""
+    scenario, ratio = record.scenario, record.pair.speedup
+    document: dict[str, Any] = {
+        "schema": SCHEMA,
+        "name": record.name,
+        "scenario": scenario.name,
+        "tissue": scenario.tissue.name,
+        "protocol": "prediction",
+        "complete": record.complete,
+        "warnings": list(record.warnings),
+        "models": {run.model: _model(run, record) for run in (record.pair.fem, record.pair.wave)},
+        "comparison": comparison_summary(record.comparisons),
+        "equivalence_margin": scenario.comparison.equivalence_margin,
+        "speedup": {
+            "median": ratio.median if ratio else None,
+            "ci95": list(ratio.ci95) if ratio else None,
+            "repeats": ratio.repeats if ratio else 0,
+        },
+    }
+    if record.measured is not None:
+        document["trials"] = {
+            "session": record.measured.session.name,
+            "synthetic": record.measured.session.synthetic,
+            "fingerprint": record.measured.session.fingerprint,
+            "count": len(record.measured.trials),
+        }
+    return document
+
+
+def _model(run: ModelRun, record: RunRecord) -> dict[str, Any]:
+    """One model's entry."""
+    result, seconds = run.result, run.seconds
+    largest = None if result is None else 1e3 * result.max_deformation()
+    return {
+        "covers_scenario": result is not None,
+        "reason": run.declined,
+        "unknowns": None if result is None else result.unknowns,
+        "seconds": {part: None if seconds is None else getattr(seconds, part) for part in ("setup", "wall", "cpu")},
+        "max_deformation_mm": {
+            name: None if largest is None else float(largest[column]) for column, name in enumerate(record.layers)
+        },
+        "notes": {} if result is None else dict(result.notes),
+        "failure": None if result is None or result.failure is None else str(result.failure),
+    }

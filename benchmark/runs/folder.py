@@ -1,0 +1,68 @@
+"""A result folder, written whole or not at all."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from benchmark.runs.document import results_document
+from benchmark.runs.environment import describe_environment
+from benchmark.runs.fields import write_fields
+from benchmark.runs.record import RunRecord
+from benchmark.runs.report import run_page
+from benchmark.runs.tables import run_tables
+from reports import whole_folder, write_csv, write_json, write_page, write_text
+
+
+@dataclass(frozen=True)
+class RunOutcome:
+    """A finished run on disk.
+
+    Attributes
+    ----------
+    folder
+        The result folder.
+    document
+        The content of `results.json`.
+    headline
+        The verdict in one sentence.
+    complete
+        False where a solver stopped early.
+    warnings
+        What the reader must know.
+    """
+
+    folder: Path
+    document: dict[str, Any]
+    headline: str
+    complete: bool
+    warnings: tuple[str, ...]
+
+    @property
+    def report(self) -> Path:
+        """The page."""
+        return self.folder / "report.html"
+
+
+def write_run(record: RunRecord, folder: Path) -> RunOutcome:
+    """Write tables, JSON, resolved scenario, fields and report of a run into `folder`.
+
+    Raises
+    ------
+    OSError
+        Where the file system refuses; `folder` is then as it was.
+    """
+    document, environment = results_document(record), describe_environment(seed=record.seed)
+    tables = run_tables(record)
+    page = run_page(record, environment, list(tables))
+    with whole_folder(folder) as new:
+        for name, columns in tables.items():
+            write_csv(new / "tables" / name, columns)
+        write_json(new / "results.json", document)
+        write_json(new / "environment.json", environment)
+        write_text(new / "scenario.toml", record.scenario.to_toml())
+        fem = record.pair.fem.result
+        write_fields(new / "fields", fem.fields if fem is not None else ())
+        write_page(new / "report.html", page)
+    return RunOutcome(folder, document, page.verdict.headline, record.complete, record.warnings)

@@ -1,0 +1,115 @@
+"""Everything a run found, before it becomes tables, JSON and a page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmark.comparison import LayerComparison, compare_layer
+from benchmark.files import Scenario, scenario_notes
+from benchmark.models import Array, ModelResult
+from benchmark.runs.measured import MeasuredComparison
+from benchmark.side_by_side import SideBySide
+
+
+@dataclass(frozen=True)
+class RunRecord:
+    """A run of one scenario, with the trials it was fitted to where there are any.
+
+    Attributes
+    ----------
+    name
+        Of the scenario or the session.
+    scenario
+        Fully resolved.
+    time, load
+        (n,) s and N or m, the prescribed history.
+    pair
+        Both models' results and timings.
+    comparisons
+        One a layer.
+    measured
+        Trials, fit and predictions; None without trials.
+    warnings
+        What the reader must know, one sentence each.
+    seed
+        Of every random draw.
+    """
+
+    name: str
+    scenario: Scenario
+    time: Array
+    load: Array
+    pair: SideBySide
+    comparisons: tuple[LayerComparison, ...]
+    measured: MeasuredComparison | None
+    warnings: tuple[str, ...]
+    seed: int
+
+    @property
+    def layers(self) -> tuple[str, ...]:
+        """Layer names from the surface down."""
+        return self.scenario.tissue.layer_names
+
+    @property
+    def results(self) -> tuple[ModelResult, ...]:
+        """The results there are."""
+        return tuple(run.result for run in (self.pair.fem, self.pair.wave) if run.result is not None)
+
+    @property
+    def complete(self) -> bool:
+        """False where a solver stopped before the end of its load history."""
+        return all(result.complete for result in self.results)
+
+    def deflections(self, result: ModelResult | None) -> Array:
+        """(n, L) m of one model over all steps; NaN where there is no value."""
+        return deflections(result, self.time.size, len(self.layers))
+
+    def force(self) -> Array:
+        """(n,) N: the prescribed force, or under depth control the FEM's (the wave's without FEM)."""
+        if self.scenario.load.control == "force":
+            return self.load
+        whole = np.full(self.time.size, np.nan)
+        for result in self.results[:1]:
+            whole[: result.force.size] = result.force
+        return whole
+
+
+def deflections(result: ModelResult | None, steps: int, layers: int) -> Array:
+    """(n, L) m of one model over all `steps`; NaN where it has no value."""
+    whole = np.full((steps, layers), np.nan)
+    if result is not None:
+        whole[: len(result.top_deflection)] = result.top_deflection
+    return whole
+
+
+def compare_layers(scenario: Scenario, load: Array, fem: Array, wave: Array) -> tuple[LayerComparison, ...]:
+    """Compare each layer of `fem` and `wave`, (n, L) m; empty where there is no FEM value to compare with."""
+    if np.isnan(fem).all():
+        return ()
+    margin = scenario.comparison.equivalence_margin
+    return tuple(
+        compare_layer(name, fem[:, column], wave[:, column], load, margin)
+        for column, name in enumerate(scenario.tissue.layer_names)
+    )
+
+
+def gather_warnings(scenario: Scenario, pair: SideBySide, more: Sequence[str]) -> tuple[str, ...]:
+    """Every warning of the inputs, of both models, and of what is missing, each once."""
+    found = [*more, *scenario_notes(scenario)]
+    limit = scenario.tissue.max_force
+    if limit is not None and scenario.load.control == "force" and abs(scenario.load.peak) > limit:
+        found.append(
+            f"the press of {abs(scenario.load.peak):g} N is beyond max_force = {limit:g} N, the largest press that the "
+            f"sources of tissue {scenario.tissue.name} cover"
+        )
+    for run, label in ((pair.fem, "FEM"), (pair.wave, "wave model")):
+        if run.declined is not None:
+            found.append(f"the {label} does not cover this scenario, its columns are empty: {run.declined}")
+        elif run.result is not None:
+            found.extend(f"{label}: {warning}" for warning in run.result.warnings)
+            if run.result.failure is not None:
+                found.append(f"{label} stopped early at {run.result.failure}; results up to there are kept")
+    return tuple(dict.fromkeys(found))

@@ -1,0 +1,6 @@
+"""What the report of a run says: which sections, tables and figures, in which words."""
+
+from benchmark.runs.report.fit_page import fit_page
+from benchmark.runs.report.run_page import run_page
+
+__all__ = ["fit_page", "run_page"]

@@ -1,0 +1,104 @@
+"""Section: deformations of FEM and wave model, layer by layer."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from benchmark.comparison import LayerComparison, profile_error
+from benchmark.runs.record import RunRecord
+from benchmark.runs.report.values import MM, fem_mm, peak_errors, profile_mm, wave_mm
+from benchmark.runs.tables import max_deformation as deformation_columns
+from reports import Block, Column, Download, Notice, Section, Table
+from reports.figures.force_depth import force_depth
+from reports.figures.max_deformation import max_deformation
+from reports.figures.profile import profile
+
+
+def deformation_section(record: RunRecord) -> Section:
+    """Return the section on maximum deformations and profiles."""
+    fem, wave = record.pair.fem.result, record.pair.wave.result
+    blocks: list[Block] = [_table(record)]
+    errors = np.reshape(deformation_columns(record)["percent_error"], (record.time.size, len(record.layers)))
+    steps = np.arange(1, record.time.size + 1)
+    blocks.append(
+        max_deformation(record.layers, steps, fem_mm(record), wave_mm(record), None if wave is None else errors)
+    )
+    blocks.append(
+        Notice(
+            "finding",
+            "Percent errors are those of the wave model against the FEM; no value of the FEM was fed in.",
+        )
+    )
+    reference = fem if fem is not None else wave
+    if reference is not None:
+        empty = np.full_like(reference.profile, np.nan)
+        blocks.append(
+            profile(
+                record.layers,
+                MM * reference.profile_radii,
+                empty if fem is None else profile_mm(fem),
+                profile_mm(wave),
+                MM * record.scenario.tool.radius,
+            )
+        )
+    if fem is not None and fem.time.size:
+        blocks.append(_force_depth(record))
+    return Section("Deformation", blocks)
+
+
+def _table(record: RunRecord) -> Table:
+    """Maximum per layer and errors."""
+    columns = (
+        "layer",
+        Column("FEM maximum", "mm"),
+        Column("wave maximum", "mm"),
+        Column("error at peak", "%", 3),
+        Column("mean |error|", "%", 3),
+        Column("max |error|", "%", 3),
+        Column("largest profile error", "% of peak", 3),
+    )
+    errors = peak_errors(record)
+    comparisons = {comparison.layer: comparison for comparison in record.comparisons}
+    rows = [_row(record, column, name, errors, comparisons) for column, name in enumerate(record.layers)]
+    return Table(
+        "Maximum deformation of each layer's top face on the tool axis",
+        columns,
+        rows,
+        download=Download("tables/max_deformation.csv", "every step and layer"),
+    )
+
+
+def _row(
+    record: RunRecord,
+    column: int,
+    name: str,
+    errors: dict[str, float],
+    comparisons: dict[str, LayerComparison],
+) -> tuple[object, ...]:
+    fem, wave = record.pair.fem.result, record.pair.wave.result
+    comparison = comparisons.get(name)
+    whole = None
+    if fem is not None and wave is not None and fem.time.size and wave.time.size:
+        whole = profile_error(fem.profile[column], wave.profile[column])
+    return (
+        name,
+        None if fem is None else MM * fem.max_deformation()[column],
+        None if wave is None else MM * wave.max_deformation()[column],
+        errors.get(name),
+        comparison.percent.mean if comparison and wave is not None else None,
+        comparison.percent.maximum if comparison and wave is not None else None,
+        None if whole is None else whole.maximum_percent,
+    )
+
+
+def _force_depth(record: RunRecord) -> Block:
+    fem, wave = record.pair.fem.result, record.pair.wave.result
+    assert fem is not None
+    planned = abs(record.scenario.load.peak) if record.scenario.load.control == "force" else None
+    return force_depth(
+        MM * fem.depth,
+        fem.force,
+        None if wave is None else MM * wave.depth,
+        None if wave is None else wave.force,
+        planned,
+    )

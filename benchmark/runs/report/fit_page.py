@@ -1,0 +1,60 @@
+"""The page of a fit alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from benchmark.files import Session
+from benchmark.fitting import SessionFit
+from benchmark.runs.report.measured_section import fit_headline, fit_section, sentence
+from reports import Column, Download, Fact, Notice, Page, Section, Table, Verdict
+
+
+def fit_page(session: Session, fit: SessionFit, warnings: Sequence[str], environment: Mapping[str, Any]) -> Page:
+    """Return the page of a session's fit."""
+    notices = []
+    if session.synthetic:
+        notices.append(Notice("synthetic", "These trials were computed, not measured."))
+    if warnings:
+        notices.append(Notice("warning", "Read these before you quote a figure.", warnings))
+    return Page(
+        title=f"{session.name}: fit",
+        subtitle=f"{len(session.trials)} trials of {session.specimen.name}",
+        verdict=Verdict("finding", sentence(fit_headline(fit))),
+        facts=(Fact("Made", str(environment["made"])), Fact("Session", session.fingerprint[:16])),
+        notices=notices,
+        sections=(fit_section(fit), Section("Trials", (_trials(fit),))),
+        downloads=(
+            Download("fitted_parameters.csv", "fitted and fixed parameters with intervals"),
+            Download("fit.json", "the fit for programs", media_type="application/json"),
+        ),
+        footer=f"tissuebench {environment['packages']['tissuebench']}",
+    )
+
+
+def _trials(fit: SessionFit) -> Table:
+    columns = (
+        "trial",
+        "condition",
+        Column("stiffness factor"),
+        Column("contact onset", "mm"),
+        Column("zero", "N"),
+        Column("peak force", "N"),
+        Column("residual, rms", "% of peak", 3),
+        Column("decay in the hold", "%", 3),
+    )
+    rows = [
+        (
+            trial.name,
+            trial.condition,
+            trial.stiffness,
+            1e3 * trial.onset,
+            trial.zero,
+            trial.peak,
+            trial.residual_percent,
+            None if trial.hold is None else trial.hold.decay_percent,
+        )
+        for trial in fit.trials
+    ]
+    return Table("Each trial fitted by itself", columns, rows)

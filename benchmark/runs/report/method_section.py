@@ -1,0 +1,29 @@
+"""Section: how the numbers were made."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from benchmark.runs.record import RunRecord
+from reports import Block, Fact, Facts, Listing, Paragraph, Section
+
+PROTOCOL = (
+    "Protocol: prediction. Both models get the same layers, tool, support and load; no value of the finite-element run "
+    "is fed into the wave model."
+)
+
+
+def method_section(record: RunRecord, environment: Mapping[str, Any]) -> Section:
+    """Return the section on models, versions and the resolved scenario."""
+    blocks: list[Block] = [Paragraph(PROTOCOL)]
+    for run, label in ((record.pair.fem, "Finite elements"), (record.pair.wave, "Wave model")):
+        if run.result is None:
+            blocks.append(Paragraph(f"{label}: no values; {run.declined}."))
+            continue
+        notes = [Fact(f"{label}: {name}", text) for name, text in run.result.notes.items()]
+        blocks.append(Facts((Fact(f"{label}: unknowns", str(run.result.unknowns)), *notes)))
+    versions = "\n".join(f"{name} {version}" for name, version in environment["packages"].items())
+    blocks.append(Listing(versions, "Versions"))
+    blocks.append(Listing(record.scenario.to_toml(), "The resolved scenario (scenario.toml)"))
+    return Section("Method", blocks)

@@ -1,0 +1,109 @@
+"""The page of a run, section after section."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from benchmark.runs.record import RunRecord
+from benchmark.runs.report.deformation_section import deformation_section
+from benchmark.runs.report.measured_section import fit_section, measured_section, session_notices
+from benchmark.runs.report.method_section import method_section
+from benchmark.runs.report.scenario_section import scenario_section
+from benchmark.runs.report.statistics_section import statistics_section
+from benchmark.runs.report.timing_section import timing_section
+from benchmark.runs.report.values import peak_errors
+from benchmark.runs.report.verdict import run_verdict
+from reports import Download, Fact, KeyFigure, Notice, Page, Section
+
+DESCRIPTIONS = {
+    "max_deformation.csv": "deflection of each layer at every step",
+    "profile.csv": "deflection over the radius at peak load",
+    "statistics.csv": "all tests of every layer",
+    "normal_fits.csv": "normal fits with goodness",
+    "timing.csv": "every timed repeat",
+    "fitted_parameters.csv": "fitted and fixed parameters with intervals",
+    "measured.csv": "every trial beside both models",
+}
+
+
+def run_page(record: RunRecord, environment: Mapping[str, Any], tables: Sequence[str]) -> Page:
+    """Return the page of a run.
+
+    Parameters
+    ----------
+    record
+        What the run found.
+    environment
+        Content of `environment.json`.
+    tables
+        File names of the tables in the result folder.
+    """
+    sections: list[Section] = []
+    if record.measured is not None:
+        sections += [measured_section(record.measured), fit_section(record.measured.fit)]
+    sections += [scenario_section(record)]
+    if record.results:
+        sections += [deformation_section(record), statistics_section(record)]
+    sections += [timing_section(record), method_section(record, environment)]
+    return Page(
+        title=record.name,
+        subtitle=_subtitle(record),
+        verdict=run_verdict(record),
+        facts=_facts(environment),
+        notices=_notices(record),
+        key_figures=_key_figures(record),
+        sections=sections,
+        downloads=_downloads(tables),
+        footer=f"tissuebench {environment['packages']['tissuebench']}",
+    )
+
+
+def _subtitle(record: RunRecord) -> str:
+    if record.measured is None:
+        return "Finite elements and wave model side by side"
+    return f"{len(record.measured.session.trials)} trials, fitted, beside finite elements and wave model"
+
+
+def _facts(environment: Mapping[str, Any]) -> tuple[Fact, ...]:
+    machine = f"{environment['processor']}, {environment['usable_cores']} cores, one thread per model"
+    return (
+        Fact("Made", str(environment["made"])),
+        Fact("On", machine),
+        Fact("Seed", str(environment["seed"])),
+    )
+
+
+def _key_figures(record: RunRecord) -> tuple[KeyFigure, ...]:
+    """Deepest press of both models, the error between them, and the speed-up."""
+    figures = [
+        KeyFigure(label, 1e3 * float(result.max_deformation()[0]), "mm", f"maximum of {record.layers[0]}")
+        for label, result in (("FEM", record.pair.fem.result), ("wave", record.pair.wave.result))
+        if result is not None and result.time.size
+    ]
+    errors = peak_errors(record)
+    if errors:
+        layer, error = max(errors.items(), key=lambda item: abs(item[1]))
+        figures.append(KeyFigure("wave against FEM", f"{error:+.3g}", "%", f"{layer} at peak load, the worst layer"))
+    if record.pair.speedup is not None:
+        note = f"{record.pair.speedup.repeats} interleaved repeats, one thread each"
+        figures.append(KeyFigure("speed-up", record.pair.speedup.median, "×", note))
+    return tuple(figures)
+
+
+def _notices(record: RunRecord) -> tuple[Notice, ...]:
+    """What must be known before any figure: origin of the data, circularity, warnings."""
+    notices = [] if record.measured is None else list(session_notices(record.measured))
+    if record.warnings:
+        notices.append(Notice("warning", "Read these before you quote a figure.", record.warnings))
+    return tuple(notices)
+
+
+def _downloads(tables: Sequence[str]) -> tuple[Download, ...]:
+    files = [Download(f"tables/{name}", DESCRIPTIONS.get(name, "")) for name in tables]
+    return (
+        *files,
+        Download("results.json", "the run for programs", media_type="application/json"),
+        Download("scenario.toml", "the resolved scenario; runs again as it stands", media_type="application/toml"),
+        Download("environment.json", "versions and machine", media_type="application/json"),
+    )

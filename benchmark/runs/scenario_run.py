@@ -1,0 +1,76 @@
+"""One scenario: both models side by side, compared."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from benchmark.files import Scenario
+from benchmark.models import StepProgress, scenario_drive
+from benchmark.runs.listener import Listener
+from benchmark.runs.measured import MeasuredComparison
+from benchmark.runs.options import RunOptions
+from benchmark.runs.record import RunRecord, compare_layers, deflections, gather_warnings
+from benchmark.side_by_side import run_side_by_side
+
+LABELS = {"fem": "FEM", "wave": "wave model"}
+
+
+def run_scenario(
+    scenario: Scenario,
+    options: RunOptions,
+    listener: Listener,
+    *,
+    name: str | None = None,
+    measured: MeasuredComparison | None = None,
+    warnings: Sequence[str] = (),
+) -> RunRecord:
+    """Run FEM and wave model on a scenario and compare them.
+
+    Parameters
+    ----------
+    scenario
+        Resolved scenario.
+    options
+        Repeats, seed, fields.
+    listener
+        Told of progress.
+    name
+        Of the run; the scenario's by default.
+    measured
+        Trials behind the scenario's tissue, if any.
+    warnings
+        What is known before the run.
+
+    Raises
+    ------
+    InputError, SolverError
+        See `run_side_by_side`.
+    """
+    drive = scenario_drive(scenario)
+    unit, scale = ("N", 1.0) if scenario.load.control == "force" else ("mm", 1e3)
+    with listener.progress(f"{scenario.name}: FEM and wave model side by side") as advance:
+
+        def on_progress(model: str, step: StepProgress) -> None:
+            value = step.force if scenario.load.control == "force" else step.depth
+            advance(LABELS[model], step.step, step.total, f"{scale * value:.3g} {unit}")
+
+        pair = run_side_by_side(
+            scenario,
+            repeats=options.repeats,
+            seed=options.seed,
+            every_field=options.every_field,
+            on_progress=on_progress,
+        )
+    layers = len(scenario.tissue.layers)
+    fem, wave = (deflections(run.result, drive.time.size, layers) for run in (pair.fem, pair.wave))
+    return RunRecord(
+        name=name or scenario.name,
+        scenario=scenario,
+        time=drive.time,
+        load=drive.value,
+        pair=pair,
+        comparisons=compare_layers(scenario, drive.value, fem, wave),
+        measured=measured,
+        warnings=gather_warnings(scenario, pair, warnings),
+        seed=options.seed,
+    )

@@ -1,0 +1,150 @@
+"""A trial session: fit its specimen, run both models at its median peak force, set both beside every trial."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from benchmark.errors import InputError
+from benchmark.files import Load, Scenario, Session, Tissue, Trial, load_session, scaled_tissue
+from benchmark.fitting import (
+    FittingError,
+    ForceCurve,
+    SessionFit,
+    TrialData,
+    fit_session,
+    predict,
+    required_depth,
+)
+from benchmark.models import Array, Drive, PreparedModel, UncoveredError, prepare
+from benchmark.runs.base_curve import Setup, base_curves, setup_scenario
+from benchmark.runs.listener import Listener
+from benchmark.runs.measured import MeasuredComparison, TrialPrediction
+from benchmark.runs.options import RunOptions
+from benchmark.runs.record import RunRecord
+from benchmark.runs.scenario_run import run_scenario
+
+MARGIN = 1.02
+OBSERVATIONS = 100
+
+
+@dataclass(frozen=True)
+class FittedSession:
+    """A session with its fit.
+
+    Attributes
+    ----------
+    session
+        As read.
+    fit
+        Of its specimen.
+    trials
+        In the session's order, each with the force curve of its tool and support.
+    warnings
+        Of reading, of the curves, and of the fit.
+    """
+
+    session: Session
+    fit: SessionFit
+    trials: tuple[TrialData, ...]
+    warnings: tuple[str, ...]
+
+
+def fit_trials(path: Path, specimen: str | None, settings: Mapping[str, str], listener: Listener) -> FittedSession:
+    """Read a session and fit its specimen to all trials.
+
+    Raises
+    ------
+    InputError
+        Files or trials that cannot be used.
+    SolverError
+        The finite-element curve could not be computed deep enough.
+    """
+    session = load_session(path, settings, specimen)
+    base = base_curves(session, _depths(session), listener)
+    listener.say(f"{session.name}: fitting {len(session.trials)} trials")
+    try:
+        trials = tuple(_trial_data(trial, base.curves[trial.tool, trial.support]) for trial in session.trials)
+        fit = fit_session(trials, session.specimen.layers)
+    except FittingError as error:
+        raise InputError(f"session {session.folder}: {error}") from None
+    return FittedSession(session, fit, trials, (*session.warnings, *base.warnings, *fit.warnings))
+
+
+def run_session(
+    path: Path, specimen: str | None, settings: Mapping[str, str], options: RunOptions, listener: Listener
+) -> RunRecord:
+    """Fit a session and run both models with the fitted specimen; raises like `fit_trials`."""
+    found = fit_trials(path, specimen, settings, listener)
+    session, fit = found.session, found.fit
+    fitted = scaled_tissue(session.specimen, fit.stiffness_factor, f"{session.specimen.name}, fitted")
+    scenario = session_scenario(session, fitted, fit)
+    measured = MeasuredComparison(session, fit, _predictions(found, fitted))
+    return run_scenario(scenario, options, listener, name=session.name, measured=measured, warnings=found.warnings)
+
+
+def session_scenario(session: Session, tissue: Tissue, fit: SessionFit) -> Scenario:
+    """Return a press to the trials' median peak force with the tool and support of the first trial."""
+    peak = float(np.median([trial.peak for trial in fit.trials]))
+    load = Load(control="force", peak=peak, shape="triangle", duration=10.0, observations=OBSERVATIONS)
+    first = session.trials[0]
+    return session.scenario(tissue, first.tool, first.support, load)
+
+
+def _depths(session: Session) -> dict[Setup, float]:
+    """The depth each tool and support needs a curve to."""
+    depths: dict[Setup, float] = {}
+    for trial in session.trials:
+        key = (trial.tool, trial.support)
+        needed = MARGIN * required_depth(trial.table.depth, trial.table.force)
+        depths[key] = max(depths.get(key, 0.0), needed)
+    return depths
+
+
+def _trial_data(trial: Trial, curve: ForceCurve) -> TrialData:
+    table = trial.table
+    return TrialData(trial.name, trial.condition, table.time, table.depth, table.force, curve)
+
+
+def _predictions(found: FittedSession, tissue: Tissue) -> tuple[TrialPrediction, ...]:
+    """Both models' forces for each trial that was fitted."""
+    kept = {trial.key for trial in found.fit.trials}
+    setups = [(trial.tool, trial.support) for trial in found.session.trials]
+    waves = {setup: _wave(found.session, tissue, setup) for setup in dict.fromkeys(setups)}
+    return tuple(
+        _prediction(trial, found.fit, waves[setup])
+        for setup, trial in zip(setups, found.trials, strict=True)
+        if trial.key in kept
+    )
+
+
+def _wave(session: Session, tissue: Tissue, setup: Setup) -> PreparedModel | None:
+    """The wave model of the fitted specimen; None where it does not cover it."""
+    try:
+        return prepare("wave", setup_scenario(session, tissue, setup))
+    except UncoveredError:
+        return None
+
+
+def _prediction(trial: TrialData, fit: SessionFit, wave: PreparedModel | None) -> TrialPrediction:
+    return TrialPrediction(
+        trial=trial.name,
+        condition=trial.condition,
+        time=trial.time,
+        depth=trial.depth,
+        force=trial.force,
+        fem_force=predict(fit, trial),
+        wave_force=None if wave is None else _wave_force(trial, fit, wave),
+        held_out_force=predict(fit, trial, leave_one_out=True) if len(fit.trials) > 1 else None,
+    )
+
+
+def _wave_force(trial: TrialData, fit: SessionFit, wave: PreparedModel) -> Array:
+    """Force (n,) N of the wave model at the trial's depth below its contact; zero in the air."""
+    own = fit.trial(trial.name, trial.condition)
+    below = np.maximum(trial.depth - own.onset, 0.0)
+    drive = Drive("depth", trial.time - trial.time[0] + float(np.diff(trial.time)[0]), below)
+    return wave.run(drive).force + own.zero

@@ -1,0 +1,96 @@
+"""The CSV tables of a result folder, as columns: names, units and order are the contract with readers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from benchmark.comparison import normal_fit_columns, statistics_columns
+from benchmark.fitting import parameter_columns
+from benchmark.models import Array, ModelResult
+from benchmark.runs.measured import MeasuredComparison
+from benchmark.runs.record import RunRecord
+from benchmark.side_by_side import SideBySide
+
+Columns = dict[str, Any]
+MM = 1e3
+
+
+def run_tables(record: RunRecord) -> dict[str, Columns]:
+    """Return the tables of a run by file name."""
+    tables = {
+        "max_deformation.csv": max_deformation(record),
+        "profile.csv": profile(record),
+        "statistics.csv": statistics_columns(record.comparisons),
+        "normal_fits.csv": normal_fit_columns(record.comparisons),
+        "timing.csv": timing(record.pair),
+    }
+    if record.measured is not None:
+        tables["fitted_parameters.csv"] = parameter_columns(record.measured.fit.parameters)
+        tables["measured.csv"] = measured(record.measured)
+    return tables
+
+
+def max_deformation(record: RunRecord) -> Columns:
+    """Deflection of each layer's top face on the tool axis, one row a step and layer.
+
+    The percent error is that of the wave model against the FEM, empty where the load or the FEM is zero.
+    """
+    fem, wave = (MM * record.deflections(run.result) for run in (record.pair.fem, record.pair.wave))
+    loaded = (record.load != 0.0)[:, None] & (fem != 0.0)
+    error = np.divide(100.0 * (wave - fem), fem, out=np.full_like(fem, np.nan), where=loaded)
+    steps, layers = fem.shape
+    return {
+        "step": np.repeat(np.arange(1, steps + 1), layers),
+        "time_s": np.repeat(record.time, layers),
+        "force_N": np.repeat(record.force(), layers),
+        "layer": list(record.layers) * steps,
+        "fem_mm": fem.ravel(),
+        "wave_mm": wave.ravel(),
+        "percent_error": error.ravel(),
+    }
+
+
+def profile(record: RunRecord) -> Columns:
+    """Deflection of each layer's top face over the radius at peak load, layer after layer."""
+    layers = len(record.layers)
+    radii = next((result.profile_radii for result in record.results), np.empty(0))
+    return {
+        "layer": np.repeat(np.array(record.layers, dtype=object), radii.size),
+        "r_mm": np.tile(MM * radii, layers),
+        "fem_mm": MM * _profile(record.pair.fem.result, layers, radii).ravel(),
+        "wave_mm": MM * _profile(record.pair.wave.result, layers, radii).ravel(),
+    }
+
+
+def _profile(result: ModelResult | None, layers: int, radii: Array) -> Array:
+    """(L, m) m, NaN without a result."""
+    return np.full((layers, radii.size), np.nan) if result is None else result.profile
+
+
+def timing(pair: SideBySide) -> Columns:
+    """One row a model and timed repeat."""
+    rows = [
+        (run.model, repeat, seconds.setup, seconds.wall, seconds.cpu)
+        for run in (pair.fem, pair.wave)
+        for repeat, seconds in enumerate(run.repeats, start=1)
+    ]
+    names = ("model", "repeat", "setup_s", "wall_s", "cpu_s")
+    return {name: [row[column] for row in rows] for column, name in enumerate(names)}
+
+
+def measured(comparison: MeasuredComparison) -> Columns:
+    """Each trial's rows beside both models' forces at the measured depth."""
+    trials = comparison.trials
+    empty = [np.full(trial.time.size, np.nan) for trial in trials]
+    wave = [blank if trial.wave_force is None else trial.wave_force for trial, blank in zip(trials, empty, strict=True)]
+    return {
+        "trial": [trial.trial for trial in trials for _ in trial.time],
+        "condition": [trial.condition for trial in trials for _ in trial.time],
+        "time_s": np.concatenate([trial.time for trial in trials]),
+        "depth_mm": MM * np.concatenate([trial.depth for trial in trials]),
+        "force_N": np.concatenate([trial.force for trial in trials]),
+        "fem_force_N": np.concatenate([trial.fem_force for trial in trials]),
+        "wave_force_N": np.concatenate(wave),
+    }

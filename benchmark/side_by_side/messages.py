@@ -1,0 +1,51 @@
+"""What passes between the harness and a model's process: small frozen dataclasses, nothing else."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from benchmark.models import ModelResult, StepProgress
+
+
+@dataclass(frozen=True)
+class RunCommand:
+    """Set the model up and follow the load history; `keep_result` False returns the timing alone."""
+
+    keep_result: bool
+
+
+@dataclass(frozen=True)
+class Seconds:
+    """One execution: set-up, then wall and CPU time of the load history, in s."""
+
+    setup: float
+    wall: float
+    cpu: float
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A finished execution, complete or stopped early."""
+
+    seconds: Seconds
+    result: ModelResult | None
+
+
+@dataclass(frozen=True)
+class Declined:
+    """The model does not cover the scenario."""
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class Crashed:
+    """An exception in the model's process. `input_error` says that the scenario, not the code, is at fault."""
+
+    message: str
+    trace: str
+    input_error: bool
+
+
+Answer = Finished | Declined | Crashed
+Message = StepProgress | Answer

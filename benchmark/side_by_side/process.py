@@ -1,0 +1,98 @@
+"""The parent's handle on a model's process."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import TracebackType
+
+from benchmark.errors import InputError, SolverError
+from benchmark.files import Scenario
+from benchmark.side_by_side.messages import Answer, Crashed, Message, RunCommand
+from benchmark.side_by_side.worker import serve
+
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMEXPR_NUM_THREADS")
+
+
+@contextmanager
+def single_threaded_children() -> Iterator[None]:
+    """Processes started inside have one thread per linear-algebra library; the parent keeps its own."""
+    before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
+    os.environ.update(dict.fromkeys(THREAD_VARIABLES, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+class ModelProcess:
+    """A model alone in a process of its own, on one core where the system lets us choose.
+
+    Use as a context manager: leaving it ends the process.
+    """
+
+    def __init__(self, model: str, scenario: Scenario, *, every_field: bool = False, core: int | None = None):
+        context = multiprocessing.get_context("spawn")
+        self.model = model
+        self.connection, far_end = context.Pipe()
+        arguments = (far_end, model, scenario, every_field, core)
+        self._process = context.Process(target=serve, args=arguments, daemon=True, name=f"tissuebench-{model}")
+        with single_threaded_children():
+            self._process.start()
+        far_end.close()
+
+    def command(self, *, keep_result: bool) -> None:
+        """Start one execution; its messages arrive on `connection`."""
+        self.connection.send(RunCommand(keep_result))
+
+    def receive(self) -> Message:
+        """Return the next message; a crash of the model is raised as the error it is.
+
+        Raises
+        ------
+        InputError
+            The scenario is at fault.
+        SolverError
+            The model's code failed or its process died.
+        """
+        try:
+            message: Message = self.connection.recv()
+        except EOFError:
+            self._process.join(5)
+            raise SolverError(
+                f"the process of the {self.model} model ended unexpectedly (exit code {self._process.exitcode}); "
+                "on Linux -9 usually means that memory ran out"
+            ) from None
+        if isinstance(message, Crashed):
+            if message.input_error:
+                raise InputError(message.message)
+            failure = SolverError(f"the {self.model} model failed: {message.message}")
+            failure.add_note(message.trace)
+            raise failure
+        return message
+
+    def answer(self) -> Answer:
+        """Wait for the end of the execution, passing over progress."""
+        while not isinstance(message := self.receive(), Answer):
+            pass
+        return message
+
+    def __enter__(self) -> ModelProcess:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if kind is None and self._process.is_alive():
+            self.connection.send(None)
+            self._process.join(5)
+        if self._process.is_alive():
+            self._process.terminate()
+            self._process.join(5)
+        self.connection.close()

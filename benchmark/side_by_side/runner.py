@@ -1,0 +1,131 @@
+"""FEM and wave model side by side: together for the results, then in turn for the timing.
+
+The first execution of both runs at the same time, each in its own process on its own core, and gives the results; it
+also warms caches, so it is not a timing repeat. The timed repeats follow one after the other, FEM, wave, FEM, wave...,
+so that both models meet the same state of the machine.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from multiprocessing.connection import wait
+
+from benchmark.files import Scenario
+from benchmark.models import ModelResult, StepProgress
+from benchmark.side_by_side.messages import Answer, Declined, Finished, Seconds
+from benchmark.side_by_side.process import ModelProcess
+from benchmark.side_by_side.timing import Speedup, median_seconds, speedup
+
+MODELS = ("fem", "wave")
+OnProgress = Callable[[str, StepProgress], None]
+
+
+@dataclass(frozen=True)
+class ModelRun:
+    """One model's part: its result, or why there is none, and its timed repeats."""
+
+    model: str
+    result: ModelResult | None
+    declined: str | None
+    repeats: tuple[Seconds, ...]
+
+    @property
+    def seconds(self) -> Seconds | None:
+        """Medians over the repeats, None where nothing was timed."""
+        return median_seconds(self.repeats) if self.repeats else None
+
+
+@dataclass(frozen=True)
+class SideBySide:
+    """Both models on one scenario."""
+
+    fem: ModelRun
+    wave: ModelRun
+    speedup: Speedup | None
+
+
+def cores(count: int) -> list[int | None]:
+    """Return a core for each of `count` processes, or None where the system offers no choice."""
+    available = sorted(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else []
+    if len(available) < count:
+        return [None] * count
+    return list(available[:count])
+
+
+def run_side_by_side(
+    scenario: Scenario, *, repeats: int, seed: int, every_field: bool, on_progress: OnProgress
+) -> SideBySide:
+    """Run both models on `scenario`.
+
+    Parameters
+    ----------
+    scenario
+        The resolved scenario.
+    repeats
+        Timed repeats of each model; skipped where the FEM stopped early, since a part of a load history is not the job.
+    seed
+        Of the bootstrap of the speed-up.
+    every_field
+        Keep the fields of each step instead of the peak's and the last one's.
+    on_progress
+        Called with the model's name and its progress.
+
+    Raises
+    ------
+    InputError, SolverError
+        See `ModelProcess.receive`.
+    """
+    with ExitStack() as stack:
+        processes = [
+            stack.enter_context(ModelProcess(model, scenario, every_field=every_field, core=core))
+            for model, core in zip(MODELS, cores(len(MODELS)), strict=True)
+        ]
+        first = _together(processes, on_progress)
+        timed = [p for p in processes if isinstance(first[p.model], Finished)]
+        whole = all(a.result is not None and a.result.complete for a in first.values() if isinstance(a, Finished))
+        seconds = _in_turn(timed, repeats if whole else 0)
+    runs = {model: _model_run(model, first[model], seconds.get(model, [])) for model in MODELS}
+    fem, wave = runs["fem"], runs["wave"]
+    ratio = speedup(fem.repeats, wave.repeats, seed=seed) if fem.repeats and wave.repeats else None
+    return SideBySide(fem, wave, ratio)
+
+
+def _together(processes: list[ModelProcess], on_progress: OnProgress) -> dict[str, Answer]:
+    """Start every model at once and collect the answers as they come."""
+    for process in processes:
+        process.command(keep_result=True)
+    waiting = {process.connection: process for process in processes}
+    answers: dict[str, Answer] = {}
+    while waiting:
+        for connection in wait(list(waiting)):
+            process = waiting[connection]  # type: ignore[index]
+            message = process.receive()
+            if isinstance(message, StepProgress):
+                on_progress(process.model, message)
+            else:
+                answers[process.model] = message
+                del waiting[connection]  # type: ignore[arg-type]
+    return answers
+
+
+def _in_turn(processes: list[ModelProcess], repeats: int) -> dict[str, list[Seconds]]:
+    """Timed repeats, one model after the other."""
+    seconds: dict[str, list[Seconds]] = {process.model: [] for process in processes}
+    for _ in range(repeats):
+        for process in processes:
+            process.command(keep_result=False)
+            answer = process.answer()
+            if isinstance(answer, Finished):
+                seconds[process.model].append(answer.seconds)
+    return seconds
+
+
+def _model_run(model: str, answer: Answer, repeats: list[Seconds]) -> ModelRun:
+    """Join the first answer of a model with its timing."""
+    if isinstance(answer, Finished):
+        return ModelRun(model, answer.result, None, tuple(repeats))
+    reason = answer.reason if isinstance(answer, Declined) else answer.message
+    return ModelRun(model, None, reason, ())

@@ -1,0 +1,51 @@
+"""The command as a whole: quick help, one paragraph for an error, tracebacks only where asked for."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from benchmark.cli import app
+
+HEAVY = ("numpy", "scipy", "pandas", "pint", "pydantic", "skfem", "matplotlib", "pyvista", "statsmodels")
+
+
+def test_help_loads_nothing_heavy() -> None:
+    code = (
+        "import sys; from benchmark.cli.app import main; main(['--help']); "
+        f"print([name for name in {HEAVY!r} if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+    for verb in ("run", "fit", "tissues", "scenarios"):
+        assert verb in done.stdout
+
+
+def test_the_module_runs_as_a_program(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "benchmark", "run", "nowhere.toml"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env={**os.environ, "NO_COLOR": "1"})
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert "nowhere.toml" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_debug_shows_where(benchmark_cli) -> None:
+    assert "Traceback" in benchmark_cli("run", "nowhere.toml", "--debug").err
+
+
+def test_a_fault_of_the_program_is_no_user_error(benchmark_cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(app, "app", lambda **_: 1 / 0)
+    called = benchmark_cli("tissues")
+    assert called.code == app.EXIT_BUG
+    assert "ZeroDivisionError" in called.err
+
+
+def test_an_interruption_has_its_own_code(benchmark_cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(**_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(app, "app", interrupted)
+    assert benchmark_cli("tissues").code == app.EXIT_INTERRUPTED

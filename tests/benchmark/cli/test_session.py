@@ -1,0 +1,95 @@
+"""`benchmark run --trials` and `benchmark fit` on the shipped phantom session and on measured tissue."""
+
+import json
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from benchmark.sessions import SHIPPED
+from benchmark.sessions.make_phantom import TRUE_FACTOR
+
+PHANTOM = SHIPPED / "phantom"
+COARSE = ("--set", "fem.mesh=coarse")
+
+
+def test_the_phantom_fit_finds_the_hidden_stiffness(benchmark_cli, tmp_path: Path) -> None:
+    called = benchmark_cli("fit", PHANTOM, "--out", tmp_path / "fit", "--json", "--quiet")
+    assert called.code == 0
+    parameters = pd.read_csv(tmp_path / "fit/fitted_parameters.csv").set_index("name")
+    assert list(parameters.columns) == ["value", "unit", "ci95_low", "ci95_high", "identifiable", "source"]
+    factor = parameters.loc["stiffness_factor"]
+    assert factor.ci95_low <= TRUE_FACTOR <= factor.ci95_high
+    assert factor.value == pytest.approx(TRUE_FACTOR, rel=0.05)
+    assert bool(parameters.loc["silicone.youngs_modulus"].identifiable)
+    assert not bool(parameters.loc["silicone.thickness"].identifiable)
+    document = json.loads(called.out)
+    assert document["session"]["synthetic"] is True
+    assert "Synthetic data" in (tmp_path / "fit/report.html").read_text()
+
+
+def test_a_session_run_compares_measured_with_both_models(benchmark_cli, tmp_path: Path) -> None:
+    called = benchmark_cli("run", "--trials", PHANTOM, *COARSE, "--out", tmp_path / "r", "--quiet")
+    assert called.code == 0
+    measured = pd.read_csv(tmp_path / "r/tables/measured.csv")
+    assert list(measured) == [
+        "trial", "condition", "time_s", "depth_mm", "force_N", "fem_force_N", "wave_force_N",
+    ]  # fmt: skip
+    assert measured.trial.nunique() == 10
+    residual = measured.force_N - measured.fem_force_N
+    assert np.sqrt((residual**2).mean()) < 0.03 * measured.force_N.max()
+    page = (tmp_path / "r/report.html").read_text()
+    assert "Synthetic data" in page
+    assert "Circular comparison" in page
+    document = json.loads((tmp_path / "r/results.json").read_text())
+    peaks = measured.groupby("trial").force_N.max()
+    deformation = pd.read_csv(tmp_path / "r/tables/max_deformation.csv")
+    assert deformation.force_N.max() == pytest.approx(peaks.median(), rel=0.02)
+    assert document["trials"]["count"] == 10
+
+
+def test_several_layers_are_not_told_apart(benchmark_cli, tmp_path: Path) -> None:
+    session = tmp_path / "mine"
+    session.mkdir()
+    for source in sorted(PHANTOM.glob("trial_00[1-3].csv")):
+        shutil.copy(source, session)
+    called = benchmark_cli("fit", session, "--specimen", "skin_forearm", *COARSE, "--out", tmp_path / "fit", "--quiet")
+    assert called.code == 0
+    parameters = pd.read_csv(tmp_path / "fit/fitted_parameters.csv").set_index("name")
+    assert bool(parameters.loc["stiffness_factor"].identifiable)
+    moduli = parameters[parameters.index.str.endswith("youngs_modulus")]
+    assert len(moduli) == 3
+    assert not moduli.identifiable.any()
+    assert moduli.source.str.contains("one stiffness, not several").all()
+
+
+def test_what_a_bare_folder_leaves_open_is_assumed_and_said(benchmark_cli, tmp_path: Path) -> None:
+    session = tmp_path / "mine"
+    session.mkdir()
+    for source in sorted(PHANTOM.glob("trial_00[1-3].csv")):
+        shutil.copy(source, session)
+    called = benchmark_cli("fit", session, *COARSE, "--out", tmp_path / "fit", "--json", "--quiet")
+    assert called.code == 0
+    said = " ".join(json.loads(called.out)["warnings"])
+    for word in ("radius", "5 mm", "rigid_bonded", "bonded", "10 mm"):
+        assert word in said
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("day", ["2023-03-27", "2023-03-31", "2023-04-03"])
+def test_measured_tissue_by_others(benchmark_cli, tmp_path: Path, day: str) -> None:
+    data = os.environ.get("TISSUEBENCH_DATA")
+    if not data:
+        pytest.skip("TISSUEBENCH_DATA is not set: measured data by others is not there")
+    folder = Path(data) / "pig_indentation" / day
+    called = benchmark_cli("run", "--trials", folder, "--out", tmp_path / "r", "--quiet")
+    assert called.code == 0, called.err
+    measured = pd.read_csv(tmp_path / "r/tables/measured.csv")
+    assert measured.trial.nunique() == len(list(folder.glob("*.csv")))
+    assert measured.fem_force_N.notna().all()
+    assert measured.wave_force_N.notna().all()
+    document = json.loads((tmp_path / "r/results.json").read_text())
+    assert any("time dependence is in the data" in warning for warning in document["warnings"])

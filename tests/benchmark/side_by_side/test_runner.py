@@ -1,0 +1,85 @@
+"""Both models in processes of their own, on a press that is small and coarse."""
+
+import os
+
+import numpy as np
+import pytest
+
+from benchmark.errors import InputError, SolverError
+from benchmark.files import Scenario, load_scenario
+from benchmark.models import StepProgress, prepare, scenario_drive
+from benchmark.side_by_side import ModelProcess, run_side_by_side
+from benchmark.side_by_side.process import THREAD_VARIABLES, single_threaded_children
+from benchmark.side_by_side.runner import cores
+
+SMALL = {"load.peak": "0.5 N", "load.observations": "4", "fem.mesh": "coarse"}
+
+
+@pytest.fixture(scope="module")
+def scenario() -> Scenario:
+    return load_scenario("skin-5N", SMALL)
+
+
+def test_processes_give_what_the_models_give(scenario: Scenario) -> None:
+    seen: dict[str, list[StepProgress]] = {"fem": [], "wave": []}
+    pair = run_side_by_side(
+        scenario, repeats=3, seed=0, every_field=False, on_progress=lambda model, step: seen[model].append(step)
+    )
+    for run in (pair.fem, pair.wave):
+        own = prepare(run.model, scenario).run(scenario_drive(scenario))
+        assert run.result is not None
+        np.testing.assert_allclose(run.result.top_deflection, own.top_deflection, rtol=1e-9)
+        assert len(run.repeats) == 3
+        assert all(seconds.wall > 0.0 and seconds.setup > 0.0 for seconds in run.repeats)
+    assert [step.step for step in seen["fem"]] == [1, 2, 3, 4]
+    assert pair.speedup is not None
+    assert pair.speedup.ci95[0] <= pair.speedup.median <= pair.speedup.ci95[1]
+
+
+def test_a_model_that_does_not_cover_the_scenario_declines(scenario: Scenario) -> None:
+    half_space = load_scenario("skin-5N", {**SMALL, "support.kind": "half_space", "fem.kinematics": "linear"})
+    pair = run_side_by_side(half_space, repeats=3, seed=0, every_field=False, on_progress=lambda *_: None)
+    assert pair.wave.result is None
+    assert pair.wave.declined is not None
+    assert "half_space" in pair.wave.declined
+    assert pair.fem.result is not None
+    assert len(pair.fem.repeats) == 3
+    assert pair.speedup is None
+
+
+def test_fields_are_kept_only_where_asked(scenario: Scenario) -> None:
+    with ModelProcess("fem", scenario, every_field=True) as process:
+        process.command(keep_result=True)
+        answer = process.answer()
+        process.command(keep_result=False)
+        timing = process.answer()
+    assert len(answer.result.fields) == 4
+    assert timing.result is None
+
+
+def test_a_fault_in_the_scenario_is_an_input_error(scenario: Scenario) -> None:
+    narrow = scenario.model_copy(update={"wave": scenario.wave.model_copy(update={"window": 1e-3})})
+    with ModelProcess("wave", narrow) as process:
+        process.command(keep_result=True)
+        with pytest.raises(InputError, match="window"):
+            process.answer()
+
+
+def test_a_dead_process_is_said_to_be_dead(scenario: Scenario) -> None:
+    with ModelProcess("wave", scenario) as process:
+        process._process.kill()
+        with pytest.raises(SolverError, match="ended unexpectedly"):
+            process.receive()
+
+
+def test_children_get_one_thread_and_the_parent_keeps_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
+    with single_threaded_children():
+        assert {os.environ[name] for name in THREAD_VARIABLES} == {"1"}
+    assert os.environ["OMP_NUM_THREADS"] == "7"
+    assert "MKL_NUM_THREADS" not in os.environ
+
+
+def test_no_core_is_chosen_where_there_are_too_few() -> None:
+    assert cores(10_000) == [None] * 10_000
