@@ -86,7 +86,13 @@ def deflections(result: ModelResult | None, steps: int, layers: int) -> Array:
 
 
 def compare_layers(scenario: Scenario, load: Array, fem: Array, wave: Array) -> tuple[LayerComparison, ...]:
-    """Compare each layer of `fem` and `wave`, (n, L) m; empty where there is no FEM value to compare with."""
+    """Compare each layer of `fem` and `wave`, (n, L) m; empty where there is no FEM value to compare with.
+
+    Raises
+    ------
+    ComparisonError
+        The FEM's mean is zero, so that a margin in its per cent says nothing.
+    """
     if np.isnan(fem).all():
         return ()
     margin = scenario.comparison.equivalence_margin

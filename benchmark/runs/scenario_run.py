@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from benchmark.comparison import ComparisonError
 from benchmark.files import Scenario
 from benchmark.models import StepProgress, scenario_drive
 from benchmark.runs.listener import Listener
@@ -63,14 +64,20 @@ def run_scenario(
         )
     layers = len(scenario.tissue.layers)
     fem, wave = (deflections(run.result, drive.time.size, layers) for run in (pair.fem, pair.wave))
+    said = list(warnings)
+    try:
+        comparisons = compare_layers(scenario, drive.value, fem, wave)
+    except ComparisonError as error:
+        comparisons = ()
+        said.append(f"the layers are not compared: {error}")
     return RunRecord(
         name=name or scenario.name,
         scenario=scenario,
         time=drive.time,
         load=drive.value,
         pair=pair,
-        comparisons=compare_layers(scenario, drive.value, fem, wave),
+        comparisons=comparisons,
         measured=measured,
-        warnings=gather_warnings(scenario, pair, warnings),
+        warnings=gather_warnings(scenario, pair, said),
         seed=options.seed,
     )

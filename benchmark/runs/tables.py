@@ -38,8 +38,6 @@ def max_deformation(record: RunRecord) -> Columns:
     The percent error is that of the wave model against the FEM, empty where the load or the FEM is zero.
     """
     fem, wave = (MM * record.deflections(run.result) for run in (record.pair.fem, record.pair.wave))
-    loaded = (record.load != 0.0)[:, None] & (fem != 0.0)
-    error = np.divide(100.0 * (wave - fem), fem, out=np.full_like(fem, np.nan), where=loaded)
     steps, layers = fem.shape
     return {
         "step": np.repeat(np.arange(1, steps + 1), layers),
@@ -48,8 +46,15 @@ def max_deformation(record: RunRecord) -> Columns:
         "layer": list(record.layers) * steps,
         "fem_mm": fem.ravel(),
         "wave_mm": wave.ravel(),
-        "percent_error": error.ravel(),
+        "percent_error": percent_errors(record).ravel(),
     }
+
+
+def percent_errors(record: RunRecord) -> Array:
+    """(n, L) error of the wave model against the FEM in %, NaN where it has no meaning."""
+    if not record.comparisons:
+        return np.full((record.time.size, len(record.layers)), np.nan)
+    return np.column_stack([comparison.percent.signed for comparison in record.comparisons])
 
 
 def profile(record: RunRecord) -> Columns:

@@ -7,7 +7,7 @@ import numpy as np
 from benchmark.comparison import LayerComparison, profile_error
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.values import MM, fem_mm, peak_errors, profile_mm, wave_mm
-from benchmark.runs.tables import max_deformation as deformation_columns
+from benchmark.runs.tables import percent_errors
 from reports import Block, Column, Download, Notice, Section, Table
 from reports.figures.force_depth import force_depth
 from reports.figures.max_deformation import max_deformation
@@ -18,10 +18,11 @@ def deformation_section(record: RunRecord) -> Section:
     """Return the section on maximum deformations and profiles."""
     fem, wave = record.pair.fem.result, record.pair.wave.result
     blocks: list[Block] = [_table(record)]
-    errors = np.reshape(deformation_columns(record)["percent_error"], (record.time.size, len(record.layers)))
     steps = np.arange(1, record.time.size + 1)
     blocks.append(
-        max_deformation(record.layers, steps, fem_mm(record), wave_mm(record), None if wave is None else errors)
+        max_deformation(
+            record.layers, steps, fem_mm(record), wave_mm(record), None if wave is None else percent_errors(record)
+        )
     )
     blocks.append(
         Notice(

@@ -1,0 +1,82 @@
+"""Percent error of the wave model against the FEM, step by step."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from benchmark.comparison.errors import ComparisonError
+from benchmark.comparison.result import Result, Row
+from benchmark.comparison.samples import Array, aligned
+
+UNLOADED = 1e-9
+"""A FEM value below this fraction of its own largest magnitude counts as unloaded: no percentage there."""
+
+
+@dataclass(frozen=True)
+class PercentError(Result):
+    """Signed error of each step and its summary.
+
+    Attributes
+    ----------
+    signed : (n,) array
+        100 (wave - fem) / fem in %, NaN where the FEM is unloaded or a value is missing.
+    mean : float
+        Mean of the absolute value, in %; NaN without a single loaded step.
+    maximum : float
+        Largest absolute value, in %.
+    at_peak : float
+        Signed error of the step at which |fem| is largest, in %.
+    steps : int
+        Number of steps that have a percentage.
+    """
+
+    signed: Array
+    mean: float
+    maximum: float
+    at_peak: float
+    steps: int
+
+    def rows(self) -> list[Row]:
+        """Lines for the statistics table, in %."""
+        return [
+            ("mean absolute %", None, None, self.mean),
+            ("max absolute %", None, None, self.maximum),
+            ("at peak %", None, None, self.at_peak),
+            ("steps", None, None, float(self.steps)),
+        ]
+
+
+def percent_error(fem: ArrayLike, wave: ArrayLike, load: ArrayLike | None = None) -> PercentError:
+    """Percent error of `wave` (n,) against `fem` (n,), in any one unit.
+
+    A step has no percentage where `load` (n,), if given, is zero, where |fem| <= 1e-9 of its largest value,
+    or where a value is missing.
+
+    Raises
+    ------
+    ComparisonError
+        Shapes that differ, infinite values.
+    """
+    reference, values = aligned(fem, wave)
+    loaded = _loaded(reference, load) & ~np.isnan(values)
+    signed = np.full(reference.shape, np.nan)
+    signed[loaded] = 100.0 * (values[loaded] - reference[loaded]) / reference[loaded]
+    if not loaded.any():
+        return PercentError(signed, np.nan, np.nan, np.nan, 0)
+    absolute = np.abs(signed[loaded])
+    peak = int(np.nanargmax(np.abs(reference)))
+    return PercentError(signed, float(absolute.mean()), float(absolute.max()), float(signed[peak]), int(loaded.sum()))
+
+
+def _loaded(reference: Array, load: ArrayLike | None) -> NDArray[np.bool_]:
+    known = ~np.isnan(reference)
+    largest = float(np.max(np.abs(reference[known]))) if known.any() else 0.0
+    loaded: NDArray[np.bool_] = known & (np.abs(reference) > UNLOADED * largest)
+    if load is None:
+        return loaded
+    force = np.asarray(load, dtype=float)
+    if force.shape != reference.shape:
+        raise ComparisonError(f"load has shape {force.shape}, fem {reference.shape}: they must be the same")
+    pressed: NDArray[np.bool_] = loaded & (force != 0.0)
+    return pressed

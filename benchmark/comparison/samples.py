@@ -1,0 +1,84 @@
+"""Reading the two samples of a comparison: one dimension, same length, pairs without a gap, moments.
+
+No test lives here; each measure takes its samples through these functions, so that all drop the same rows.
+"""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from benchmark.comparison.errors import ComparisonError
+from benchmark.comparison.result import Result
+
+Array: TypeAlias = NDArray[np.float64]
+
+ROUNDING = 1e-13
+"""Spread below this fraction of the largest magnitude is rounding: the sample counts as constant."""
+
+
+@dataclass(frozen=True)
+class Moments(Result):
+    """Mean, variance (divisor n - 1) and number of observations of one sample."""
+
+    mean: float
+    variance: float
+    observations: int
+
+
+def moments(sample: Array) -> Moments:
+    """Moments of a sample (n,), n >= 2."""
+    return Moments(float(np.mean(sample)), float(np.var(sample, ddof=1)), len(sample))
+
+
+def aligned(fem: ArrayLike, wave: ArrayLike) -> tuple[Array, Array]:
+    """Both samples as float arrays (n,), gaps (NaN) kept.
+
+    Raises
+    ------
+    ComparisonError
+        Not one-dimensional, different lengths, or an infinite value.
+    """
+    first, second = np.asarray(fem, dtype=float), np.asarray(wave, dtype=float)
+    if first.ndim != 1 or first.shape != second.shape:
+        raise ComparisonError(
+            f"fem has shape {first.shape}, wave {second.shape}: both must have one dimension and one length"
+        )
+    for name, sample in (("fem", first), ("wave", second)):
+        if np.isinf(sample).any():
+            raise ComparisonError(f"{name}[{int(np.argmax(np.isinf(sample)))}] is infinite: values must be finite")
+    return first, second
+
+
+def paired_samples(fem: ArrayLike, wave: ArrayLike, least: int = 2) -> tuple[Array, Array]:
+    """Rows in which both samples have a value, as (m,) and (m,).
+
+    Raises
+    ------
+    ComparisonError
+        As `aligned`, or fewer than `least` common rows.
+    """
+    first, second = aligned(fem, wave)
+    both = ~(np.isnan(first) | np.isnan(second))
+    if int(both.sum()) < least:
+        raise ComparisonError(f"{int(both.sum())} common rows of {len(first)}: at least {least} are needed")
+    return first[both], second[both]
+
+
+def single_sample(values: ArrayLike, least: int = 2) -> Array:
+    """Values (n,) without gaps.
+
+    Raises
+    ------
+    ComparisonError
+        Not one-dimensional, infinite, or fewer than `least` values.
+    """
+    sample, _ = paired_samples(values, values, least)
+    return sample
+
+
+def is_constant(sample: Array, magnitude: float | None = None) -> bool:
+    """Whether a sample (n,) has no spread beyond rounding of `magnitude` (the largest |value| by default)."""
+    scale = float(np.max(np.abs(sample))) if magnitude is None else magnitude
+    return float(np.ptp(sample)) <= ROUNDING * scale
