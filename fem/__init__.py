@@ -1,1 +1,34 @@
-"""Finite-element solver of layered soft tissue."""
+"""Finite-element solver of layered soft tissue.
+
+Describe a :class:`Problem`, :func:`prepare` it once, run load histories on the model::
+
+    model = fem.prepare(problem)
+    solution = model.run(fem.Load("force", time, force))
+
+SI units; a press and its deflection are positive into the tissue. The package knows nothing of files,
+reports or other models.
+"""
+
+from fem.errors import FemError
+from fem.load import Load
+from fem.materials import LinearElastic, Material, NeoHookean
+from fem.prepare import prepare
+from fem.problem import Discretisation, Layer, Problem, Support, Tool
+from fem.solution import Failure, Solution, StepReport
+
+__all__ = [
+    "Discretisation",
+    "Failure",
+    "FemError",
+    "Layer",
+    "LinearElastic",
+    "Load",
+    "Material",
+    "NeoHookean",
+    "Problem",
+    "Solution",
+    "StepReport",
+    "Support",
+    "Tool",
+    "prepare",
+]

@@ -1,0 +1,109 @@
+"""Reference geometry at points of every element, and the way between reference rows and physical components.
+
+Shapes are (..., q, E): point before element, so that one matrix product serves all elements at once. A
+displacement gradient is made from the rows d/dxi, d/deta and value of :class:`fem.assembly.shapes.Shapes`;
+stresses and moduli go the transposed way, "pulled back" to the rows and weighted.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import skfem
+
+from fem.arrays import FloatArray
+from fem.assembly.shapes import Shapes, tabulate
+from fem.mesh import Mesh
+
+QUADRATURE_ORDER = 5  # three Gauss points a direction, none of them on the axis
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """Factors at q points of E elements.
+
+    Attributes
+    ----------
+    shapes
+        Tables at the points.
+    inverse
+        d(xi, eta)/d(r, z), (2, 2, q, E).
+    hoop
+        1/r, (q, E).
+    weight
+        Volume 2 pi r dr dz of each point, (q, E), in m3; at Gauss points its sum is the specimen's volume.
+    pressure
+        Pressure shapes (3, q, E): 1, xi, eta made orthonormal in the weight on each element.
+    pressure_transform
+        Lower triangular (3, 3, E): pressure shapes from (1, xi, eta).
+    """
+
+    shapes: Shapes
+    inverse: FloatArray
+    hoop: FloatArray
+    weight: FloatArray
+    pressure: FloatArray
+    pressure_transform: FloatArray
+
+    def gradient(self, u: FloatArray) -> FloatArray:
+        """Displacement gradient (5, q, E) of nodal displacements (18, E), radial ones first."""
+        shape = self.weight.shape
+        radial = (self.shapes.radial @ u[:9]).reshape(3, *shape)
+        vertical = (self.shapes.vertical @ u[9:]).reshape(2, *shape)
+        (xi_r, xi_z), (eta_r, eta_z) = self.inverse
+        out = np.empty((5, *shape))
+        out[0] = radial[0] * xi_r + radial[1] * eta_r
+        out[1] = radial[0] * xi_z + radial[1] * eta_z
+        out[2] = radial[2] * self.hoop
+        out[3] = vertical[0] * xi_r + vertical[1] * eta_r
+        out[4] = vertical[0] * xi_z + vertical[1] * eta_z
+        return out
+
+    def pull_back(self, stress: FloatArray) -> FloatArray:
+        """Reference rows (5, ..., q, E) of components (5, ..., q, E), not weighted."""
+        (xi_r, xi_z), (eta_r, eta_z) = self.inverse
+        out = np.empty_like(stress)
+        out[0] = stress[0] * xi_r + stress[1] * xi_z
+        out[1] = stress[0] * eta_r + stress[1] * eta_z
+        out[2] = stress[2] * self.hoop
+        out[3] = stress[3] * xi_r + stress[4] * xi_z
+        out[4] = stress[3] * eta_r + stress[4] * eta_z
+        return out
+
+
+def gauss_geometry(mesh: Mesh) -> Geometry:
+    """Geometry at the Gauss points."""
+    points, weights = skfem.quadrature.get_quadrature(skfem.ElementQuad2(), QUADRATURE_ORDER)
+    shapes = tabulate(points)
+    inverse, determinant, radius = _mapping(mesh, shapes)
+    weight = 2.0 * np.pi * radius * determinant * weights[:, None]
+    monomials = _monomials(shapes)
+    mass = np.einsum("iq,jq,qe->eij", monomials, monomials, weight)
+    transform = np.ascontiguousarray(np.linalg.inv(np.linalg.cholesky(mass)).transpose(1, 2, 0))
+    pressure = np.einsum("ije,jq->iqe", transform, monomials)
+    return Geometry(shapes, inverse, 1.0 / radius, weight, pressure, transform)
+
+
+def point_geometry(mesh: Mesh, gauss: Geometry, points: FloatArray) -> Geometry:
+    """Geometry at other reference points (2, q), off the axis; weights are zero."""
+    shapes = tabulate(points)
+    inverse, _, radius = _mapping(mesh, shapes)
+    pressure = np.einsum("ije,jq->iqe", gauss.pressure_transform, _monomials(shapes))
+    return Geometry(shapes, inverse, 1.0 / radius, np.zeros_like(radius), pressure, gauss.pressure_transform)
+
+
+def _mapping(mesh: Mesh, shapes: Shapes) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Inverse Jacobian (2, 2, q, E), the determinant (q, E) and the radius (q, E)."""
+    r, z = mesh.nodes[mesh.elements].transpose(2, 0, 1)
+    shape = (shapes.count, r.shape[1])
+    r_xi, r_eta, radius = (shapes.radial @ r).reshape(3, *shape)
+    z_xi, z_eta = (shapes.vertical @ z).reshape(2, *shape)
+    determinant = r_xi * z_eta - r_eta * z_xi
+    inverse = np.array([[z_eta, -r_eta], [-z_xi, r_xi]]) / determinant
+    return inverse, determinant, radius
+
+
+def _monomials(shapes: Shapes) -> FloatArray:
+    xi, eta = 2.0 * shapes.points - 1.0
+    return np.stack((np.ones_like(xi), xi, eta))

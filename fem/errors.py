@@ -1,0 +1,11 @@
+"""Errors of the finite-element package: input that cannot be used.
+
+A run that does not converge is not an error here; it is a :class:`fem.solution.Solution` with a
+:class:`fem.solution.Failure`.
+"""
+
+from __future__ import annotations
+
+
+class FemError(ValueError):
+    """Input the solver cannot use; the message names the parameter, its value, its unit and what is allowed."""

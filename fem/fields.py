@@ -1,0 +1,115 @@
+"""Stress and strain at the parts of the elements, as plain arrays for a file writer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from fem.arrays import FloatArray, IntArray
+from fem.assembly import ElementLaws, Geometry, point_geometry
+from fem.components import AXISYMMETRIC
+from fem.deformation import Deformation
+from fem.mesh import Mesh
+
+# A 9-node element is written as four linear quads over all its nodes, values at their middles.
+QUADS = np.array([[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]])
+MIDDLES = np.array([[0.25, 0.75, 0.75, 0.25], [0.25, 0.25, 0.75, 0.75]])
+
+_Measures: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
+
+
+@dataclass(frozen=True)
+class Fields:
+    """Fields of one step in the plane theta = 0; axes x = r, y = theta, z upwards.
+
+    Attributes
+    ----------
+    points
+        Reference positions (P, 3) in m, top face at z = 0.
+    cells
+        Corner points (C, 4) of linear quads; four make one element.
+    layer
+        Layer of each cell (C,), 0 on top.
+    displacement
+        At the points, (P, 3) in m.
+    cauchy_stress
+        At the cells' middles, (C, 3, 3) in Pa.
+    strain
+        Green-Lagrange strain (small strain in linear kinematics), (C, 3, 3).
+    det_F
+        Volume ratio (C,); 1 + trace of the strain in linear kinematics.
+    """
+
+    points: FloatArray
+    cells: IntArray
+    layer: IntArray
+    displacement: FloatArray
+    cauchy_stress: FloatArray
+    strain: FloatArray
+    det_F: FloatArray
+
+
+@dataclass(frozen=True)
+class FieldRecovery:
+    """Evaluates fields of a mesh with laws.
+
+    Attributes
+    ----------
+    mesh
+        The mesh.
+    laws
+        Laws of its elements.
+    gauss
+        Geometry at the Gauss points.
+    point_modulus
+        Bulk modulus (E,) in Pa that acts at points (see :class:`fem.assembly.System`).
+    finite
+        Whether the kinematics is finite.
+    """
+
+    mesh: Mesh
+    laws: ElementLaws
+    gauss: Geometry
+    point_modulus: FloatArray
+    finite: bool
+
+    def fields(self, displacement: FloatArray, pressure: FloatArray) -> Fields:
+        """Fields of nodal displacements (N, 2) and pressure coefficients (3, E)."""
+        geometry = point_geometry(self.mesh, self.gauss, MIDDLES)
+        u = displacement[self.mesh.elements].transpose(2, 0, 1).reshape(18, -1)
+        deformation = Deformation(AXISYMMETRIC, geometry.gradient(u))
+        mean_stress = np.einsum("ie,iqe->qe", pressure, geometry.pressure)
+        stress, measure, ratio = (self._finite if self.finite else self._linear)(deformation, mean_stress)
+        nodes, moved = np.zeros((len(displacement), 3)), np.zeros((len(displacement), 3))
+        nodes[:, ::2], moved[:, ::2] = self.mesh.nodes, displacement
+        return Fields(
+            points=nodes,
+            cells=self.mesh.elements[QUADS].transpose(2, 0, 1).reshape(-1, 4),
+            layer=np.repeat(self.mesh.layer, len(QUADS)),
+            displacement=moved,
+            cauchy_stress=_per_cell(AXISYMMETRIC.tensor(stress)),
+            strain=_per_cell(AXISYMMETRIC.tensor(measure)),
+            det_F=_per_cell(ratio),
+        )
+
+    def _finite(self, deformation: Deformation, mean_stress: FloatArray) -> _Measures:
+        mean = mean_stress + self.point_modulus * deformation.volume_change
+        P = self.laws.stress(deformation) + mean * deformation.cofactor
+        full = AXISYMMETRIC.tensor(P) @ np.swapaxes(AXISYMMETRIC.tensor(deformation.F), -1, -2)
+        cauchy = np.stack([full[..., i, j] for i, j in AXISYMMETRIC.positions]) / deformation.J
+        return cauchy, deformation.green_strain, deformation.J
+
+    def _linear(self, deformation: Deformation, mean_stress: FloatArray) -> _Measures:
+        small = deformation.small_strain
+        moduli = AXISYMMETRIC.unpack(self.laws.tangent(Deformation(AXISYMMETRIC, np.zeros_like(small))))
+        change = small[AXISYMMETRIC.normal].sum(axis=0)
+        mean = mean_stress + self.point_modulus * change
+        stress = np.einsum("kmqe,mqe->kqe", moduli, small) + mean * deformation.identity
+        return stress, small, 1.0 + change
+
+
+def _per_cell(values: FloatArray) -> FloatArray:
+    """Values (q, E, ...) in the order of the cells, (E q, ...)."""
+    return np.swapaxes(values, 0, 1).reshape(-1, *values.shape[2:])

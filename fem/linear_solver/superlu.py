@@ -1,0 +1,70 @@
+"""SuperLU of SciPy in symmetric mode, the fallback where the MKL is missing."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+
+from fem.arrays import FloatArray, IntArray
+from fem.linear_solver.symmetric import DiagonalScaling, SingularMatrixError, require_finite
+
+PIVOT_THRESHOLD = 0.01
+
+
+class SuperLUSolver:
+    """SuperLU for one pattern; the ordering is made anew in each factorisation.
+
+    Parameters
+    ----------
+    indptr, indices
+        Pattern of the upper triangle in compressed rows, diagonal first in each row.
+    """
+
+    name = "superlu"
+
+    def __init__(self, indptr: IntArray, indices: IntArray) -> None:
+        count = len(indptr) - 1
+        self._scaling = DiagonalScaling(indptr, indices)
+        row = np.repeat(np.arange(count), np.diff(indptr))
+        mirrored = np.flatnonzero(row != indices)
+        source = np.concatenate((np.arange(len(indices)), mirrored))
+        rows = np.concatenate((row, indices[mirrored]))
+        columns = np.concatenate((indices, row[mirrored]))
+        order = np.lexsort((rows, columns))
+        self._source = source[order]
+        starts = np.searchsorted(columns[order], np.arange(count + 1))
+        self._matrix = sp.csc_matrix((np.ones(order.size), rows[order], starts), shape=(count, count))
+        self._factors: spla.SuperLU | None = None
+
+    def factorise(self, data: FloatArray) -> None:
+        """Factorise the entries (nnz,).
+
+        Raises
+        ------
+        SingularMatrixError
+            If the matrix is singular.
+        """
+        self._matrix.data[:] = self._scaling.scale(data)[self._source]
+        try:
+            self._factors = spla.splu(
+                self._matrix,
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=PIVOT_THRESHOLD,
+                options={"SymmetricMode": True},
+            )
+        except RuntimeError as error:
+            raise SingularMatrixError(str(error)) from error
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Solution (n, k) of right-hand sides (n, k).
+
+        Raises
+        ------
+        SingularMatrixError
+            If nothing was factorised, or the solution is not finite.
+        """
+        if self._factors is None:
+            raise SingularMatrixError("nothing is factorised")
+        factor = self._scaling.factor[:, None]
+        return require_finite(factor * self._factors.solve(factor * right))

@@ -1,0 +1,87 @@
+"""Isotropic linear elasticity (Hooke's law), for linear kinematics only.
+
+sigma = 2 mu dev(eps) + K tr(eps) I. It is not objective: a rotation would give stress, so finite kinematics
+refuses it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem.arrays import FloatArray
+from fem.deformation import Deformation
+from fem.materials import elastic_constants
+from fem.materials.law import IsochoricLaw
+
+
+@dataclass(frozen=True)
+class HookeLaw:
+    """Deviatoric part of Hooke's law; the one parameter is the shear modulus in Pa."""
+
+    def stress(self, deformation: Deformation, parameters: FloatArray) -> FloatArray:
+        """2 mu dev(eps), shape (components, *points), in Pa."""
+        components = deformation.components
+        strain = deformation.small_strain
+        trace = strain[components.normal].sum(axis=0)
+        out = strain.copy()
+        out[components.normal] -= trace / 3.0
+        out *= 2.0 * parameters[0]
+        return out
+
+    def tangent(self, deformation: Deformation, parameters: FloatArray) -> FloatArray:
+        """Constant derivative, packed upper triangle (pairs, *points), in Pa."""
+        components = deformation.components
+        shape = (len(components.pairs[0]), *deformation.J.shape)
+        pattern = components.deviator.reshape(-1, *(1,) * deformation.J.ndim)
+        return np.broadcast_to(2.0 * parameters[0] * pattern, shape).copy()
+
+
+@dataclass(frozen=True)
+class LinearElastic:
+    """Isotropic linear elastic solid.
+
+    Attributes
+    ----------
+    youngs_modulus
+        Young's modulus in Pa, above 0.
+    poisson_ratio
+        Poisson's ratio, above -1 and at most 0.4999.
+
+    Raises
+    ------
+    FemError
+        If a constant is outside its range.
+    """
+
+    youngs_modulus: float
+    poisson_ratio: float
+
+    def __post_init__(self) -> None:
+        elastic_constants.require_elastic_constants(self.youngs_modulus, self.poisson_ratio)
+
+    @property
+    def shear_modulus(self) -> float:
+        """Shear modulus in Pa."""
+        return elastic_constants.shear_modulus(self.youngs_modulus, self.poisson_ratio)
+
+    @property
+    def bulk_modulus(self) -> float:
+        """Bulk modulus in Pa."""
+        return elastic_constants.bulk_modulus(self.youngs_modulus, self.poisson_ratio)
+
+    @property
+    def law(self) -> IsochoricLaw:
+        """The deviatoric law."""
+        return HookeLaw()
+
+    @property
+    def parameters(self) -> tuple[float, ...]:
+        """The shear modulus in Pa."""
+        return (self.shear_modulus,)
+
+    @property
+    def finite_strain(self) -> bool:
+        """Not objective: linear kinematics only."""
+        return False

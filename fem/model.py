@@ -1,0 +1,83 @@
+"""A prepared model: mesh, equations and linear solver of one problem, ready for load histories."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from fem.fields import FieldRecovery
+from fem.linear_run import run_linear
+from fem.load import Load
+from fem.mesh import Mesh
+from fem.nonlinear_run import run_nonlinear
+from fem.problem import Problem
+from fem.record import Record
+from fem.solution import Solution, StepReport
+from fem.solving import Equilibrium, NewtonSettings
+
+PULLING = "the load history pulls (negative values): the contact is tied to the surface and cannot lift off"
+
+
+@dataclass(frozen=True)
+class Model:
+    """A problem with its mesh, equations and linear solver.
+
+    Attributes
+    ----------
+    problem
+        What was asked.
+    mesh
+        The mesh.
+    equilibrium
+        Equations, linear solver, unit load and depth probe.
+    newton
+        Limits of Newton's method.
+    warnings
+        Texts for people, repeated in every solution.
+    """
+
+    problem: Problem
+    mesh: Mesh
+    equilibrium: Equilibrium
+    newton: NewtonSettings
+    warnings: tuple[str, ...]
+
+    @property
+    def unknowns(self) -> int:
+        """Number of displacement unknowns; the pressure is condensed."""
+        return self.equilibrium.system.numbering.count
+
+    @property
+    def linear_solver(self) -> str:
+        """Name of the linear solver in use."""
+        return self.equilibrium.solver.name
+
+    def run(self, load: Load, on_step: Callable[[StepReport], None] | None = None) -> Solution:
+        """Follow a load history.
+
+        Parameters
+        ----------
+        load
+            Prescribed force or depth over time.
+        on_step
+            Called after each accepted step.
+
+        Returns
+        -------
+        Solution
+            With `complete` False and a `failure` if a step could not be reached; never raises for that.
+        """
+        record = Record(self.mesh, self.equilibrium, self._recovery(), self._names())
+        warnings = self.warnings + ((PULLING,) if load.value.min() < 0.0 else ())
+        if self.problem.kinematics == "linear":
+            return run_linear(record, load, warnings, on_step)
+        return run_nonlinear(record, load, self.newton, warnings, on_step)
+
+    def _names(self) -> tuple[str, ...]:
+        return tuple(layer.name for layer in self.problem.layers)
+
+    def _recovery(self) -> FieldRecovery:
+        system = self.equilibrium.system
+        return FieldRecovery(
+            self.mesh, system.laws, system.geometry, system.point_modulus, self.problem.kinematics == "finite"
+        )

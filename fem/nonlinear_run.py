@@ -1,0 +1,82 @@
+"""Finite-strain runs: step by step with Newton."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from fem.linear_run import unit_state
+from fem.load import Load
+from fem.record import Record, largest_strain, reaction
+from fem.solution import Failure, Solution, StepReport
+from fem.solving import Advance, Equilibrium, NewtonSettings, Stepper
+
+LEAST_SHARE_OF_PEAK = 1e-3
+
+
+def run_nonlinear(
+    record: Record,
+    load: Load,
+    settings: NewtonSettings,
+    warnings: tuple[str, ...],
+    on_step: Callable[[StepReport], None] | None,
+) -> Solution:
+    """Follow a load history in finite strain.
+
+    Parameters
+    ----------
+    record
+        Empty record of the model.
+    load
+        Prescribed force (N) or depth (m).
+    settings
+        Limits of Newton's method.
+    warnings
+        Texts of the model.
+    on_step
+        Called after each accepted step.
+
+    Returns
+    -------
+    Solution
+        All steps that were reached, and the failure if there was one.
+    """
+    problem = record.equilibrium
+    scale = LEAST_SHARE_OF_PEAK * force_scale(problem, load)
+    stepper = Stepper(problem, load.control, scale, settings)
+    for n, (time, value) in enumerate(zip(load.time.tolist(), load.value.tolist(), strict=True)):
+        advance = stepper.advance(value)
+        if advance.reason:
+            return record.solution(Failure(n + 1, time, load.control, advance.value, value, advance.reason), warnings)
+        _keep(record, time, advance)
+        if on_step is not None:
+            depth = problem.depth(advance.state.y)
+            on_step(
+                StepReport(
+                    n + 1,
+                    len(load.time),
+                    time,
+                    advance.state.force,
+                    depth,
+                    advance.iterations,
+                    advance.cuts,
+                )
+            )
+    return record.solution(None, warnings)
+
+
+def force_scale(problem: Equilibrium, load: Load) -> float:
+    """Largest force in N of a load history, from the stiffness at rest if depth is prescribed."""
+    largest = float(np.abs(load.value).max())
+    if load.control == "force":
+        return largest
+    return largest / problem.depth(unit_state(problem)[0].y)
+
+
+def _keep(record: Record, time: float, advance: Advance) -> None:
+    system, state = record.equilibrium.system, advance.state
+    evaluation = system.evaluate(state.y, state.pressure)
+    if evaluation is None:
+        raise ArithmeticError("an accepted state cannot be evaluated")
+    record.add(time, state, reaction(system, evaluation.element_force), largest_strain(system, state.y, finite=True))

@@ -1,0 +1,191 @@
+"""The problem: layers, tool, support, kinematics and discretisation, checked when made.
+
+Nothing here computes; :func:`fem.prepare` turns a problem into a model.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal
+
+from fem.checks import require_one_of, require_positive
+from fem.errors import FemError
+from fem.materials import Material
+
+CONTACTS = ("uniform_pressure", "rigid_bonded", "rigid_frictionless", "rigid_frictional")
+SUPPORTS = ("bonded", "hole", "half_space")
+
+
+@dataclass(frozen=True)
+class Layer:
+    """One layer of the specimen; layers are listed from the surface down.
+
+    Attributes
+    ----------
+    name
+        What it is called in results.
+    thickness
+        In m, above 0. The last layer of a half-space is endless: its thickness is not used and may be `inf`.
+    density
+        In kg/m3, above 0. The quasi-static solver does not need it.
+    material
+        A law of :mod:`fem.materials`.
+    """
+
+    name: str
+    thickness: float
+    density: float
+    material: Material
+
+    def __post_init__(self) -> None:
+        if self.thickness != math.inf:
+            require_positive(f"layer {self.name!r}: thickness", self.thickness, "m")
+        require_positive(f"layer {self.name!r}: density", self.density, "kg/m3")
+
+
+@dataclass(frozen=True)
+class Tool:
+    """The round tool on the axis.
+
+    Attributes
+    ----------
+    radius
+        In m, above 0.
+    contact
+        "uniform_pressure", "rigid_bonded", "rigid_frictionless" or "rigid_frictional".
+    edge_radius
+        Rounding of the edge in m, above 0 and at most `radius`; None for a sharp flat cylinder.
+    """
+
+    radius: float
+    contact: str
+    edge_radius: float | None = None
+
+    def __post_init__(self) -> None:
+        require_positive("tool.radius", self.radius, "m")
+        require_one_of("tool.contact", self.contact, CONTACTS)
+        if self.edge_radius is not None:
+            require_positive("tool.edge_radius", self.edge_radius, "m")
+            if self.edge_radius > self.radius:
+                raise FemError(
+                    f"tool.edge_radius = {self.edge_radius:g} m: must be at most tool.radius = {self.radius:g} m"
+                )
+
+
+@dataclass(frozen=True)
+class Support:
+    """What holds the specimen.
+
+    Attributes
+    ----------
+    kind
+        "bonded" (lower face fixed), "hole" (lower face fixed from `hole_radius` outwards, free inside)
+        or "half_space" (the last layer is endless).
+    hole_radius
+        In m, above 0; needed for "hole", and only there.
+    """
+
+    kind: str
+    hole_radius: float | None = None
+
+    def __post_init__(self) -> None:
+        require_one_of("support.kind", self.kind, SUPPORTS)
+        if (self.hole_radius is None) == (self.kind == "hole"):
+            state = "missing" if self.hole_radius is None else f"{self.hole_radius:g} m"
+            raise FemError(f"support.hole_radius = {state}: needed for the support 'hole', and only there")
+        if self.hole_radius is not None:
+            require_positive("support.hole_radius", self.hole_radius, "m")
+
+
+@dataclass(frozen=True)
+class Discretisation:
+    """How fine the mesh is and how far it reaches.
+
+    Attributes
+    ----------
+    density
+        "coarse", "default" or "fine"; "fine" has half the element size of "default".
+    radius
+        Radius of the outer border in m; None follows tool, stack and support.
+    stabilisation
+        Finite strain: part of the bulk modulus, in shear moduli, that acts at each Gauss point instead of
+        on the pressure field (see :class:`fem.assembly.System`); 0 gives the plain Q2/P1 element.
+    """
+
+    density: Literal["coarse", "default", "fine"] = "default"
+    radius: float | None = None
+    stabilisation: float = 1.0
+
+    def __post_init__(self) -> None:
+        require_one_of("discretisation.density", self.density, ("coarse", "default", "fine"))
+        if self.radius is not None:
+            require_positive("discretisation.radius", self.radius, "m")
+        if not 0.0 <= self.stabilisation <= 10.0:
+            raise FemError(f"discretisation.stabilisation = {self.stabilisation:g}: must be from 0 to 10 shear moduli")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Everything but the load history.
+
+    Attributes
+    ----------
+    layers
+        From the surface down, at least one, with different names.
+    tool, support
+        Tool and support.
+    kinematics
+        "finite" (large strain) or "linear" (small strain).
+    discretisation
+        Mesh density and outer radius.
+
+    Raises
+    ------
+    FemError
+        If the parts do not fit together.
+    """
+
+    layers: tuple[Layer, ...]
+    tool: Tool
+    support: Support
+    kinematics: Literal["finite", "linear"] = "finite"
+    discretisation: Discretisation = field(default_factory=Discretisation)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "layers", tuple(self.layers))
+        require_one_of("kinematics", self.kinematics, ("finite", "linear"))
+        if not self.layers:
+            raise FemError("layers: none given, at least one is needed")
+        names = [layer.name for layer in self.layers]
+        for name in names:
+            if names.count(name) > 1:
+                raise FemError(f"layers: the name {name!r} is used {names.count(name)} times, names must differ")
+        self._require_finite_thickness()
+        self._require_finite_strain_laws()
+        self._require_room()
+
+    def _require_finite_thickness(self) -> None:
+        endless = 1 if self.support.kind == "half_space" else 0
+        for layer in self.layers[: len(self.layers) - endless]:
+            if math.isinf(layer.thickness):
+                raise FemError(
+                    f"layer {layer.name!r}: thickness = inf m: "
+                    "only the last layer of the support 'half_space' is endless"
+                )
+
+    def _require_finite_strain_laws(self) -> None:
+        for layer in self.layers:
+            if self.kinematics == "finite" and not layer.material.finite_strain:
+                raise FemError(
+                    f"layer {layer.name!r}: material {type(layer.material).__name__} is for kinematics = 'linear' "
+                    "only; kinematics = 'finite' needs a hyperelastic law such as NeoHookean"
+                )
+
+    def _require_room(self) -> None:
+        radius, hole = self.discretisation.radius, self.support.hole_radius
+        least, why = self.tool.radius, "tool.radius"
+        if hole is not None and hole > least:
+            least, why = hole, "support.hole_radius"
+        if radius is not None and radius <= least:
+            raise FemError(f"discretisation.radius = {radius:g} m: must be above {why} = {least:g} m")

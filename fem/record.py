@@ -1,0 +1,95 @@
+"""Collects the accepted steps of a run and makes the solution of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fem import strain
+from fem.arrays import FloatArray
+from fem.assembly import System
+from fem.components import AXISYMMETRIC
+from fem.deformation import Deformation
+from fem.fields import FieldRecovery
+from fem.mesh import Mesh
+from fem.solution import Failure, Solution
+from fem.solving import Equilibrium, State
+
+
+@dataclass
+class Record:
+    """Accepted steps of a run.
+
+    Attributes
+    ----------
+    mesh, equilibrium, recovery
+        What the states belong to.
+    layer_names
+        Names of the layers.
+    time
+        Times in s so far.
+    states
+        States so far.
+    reactions
+        Reactions in N so far.
+    strains
+        Largest strains so far.
+    """
+
+    mesh: Mesh
+    equilibrium: Equilibrium
+    recovery: FieldRecovery
+    layer_names: tuple[str, ...]
+    time: list[float] = field(default_factory=list)
+    states: list[State] = field(default_factory=list)
+    reactions: list[float] = field(default_factory=list)
+    strains: list[float] = field(default_factory=list)
+
+    def add(self, time: float, state: State, reaction: float, largest_strain: float) -> None:
+        """Keep an accepted step."""
+        self.time.append(time)
+        self.states.append(state)
+        self.reactions.append(reaction)
+        self.strains.append(largest_strain)
+
+    def solution(self, failure: Failure | None, warnings: tuple[str, ...]) -> Solution:
+        """Arrays of all steps kept."""
+        numbering = self.equilibrium.system.numbering
+        y = np.array([state.y for state in self.states]).reshape(len(self.states), numbering.count)
+        nodal = np.concatenate((y, np.zeros((len(y), 1))), axis=1)[:, numbering.unknown.T]
+        rest_pressure = self.equilibrium.system.rest()[1]
+        pressure = np.array([s.pressure for s in self.states]).reshape(-1, *rest_pressure.shape)
+        return Solution(
+            time=np.array(self.time),
+            force=np.array([state.force for state in self.states]),
+            reaction=np.array(self.reactions),
+            depth=-y[:, self.equilibrium.probe],
+            layer_names=self.layer_names,
+            top_deflection=-nodal[:, [row[0] for row in self.mesh.interfaces], 1],
+            max_strain=np.array(self.strains),
+            displacement=nodal,
+            pressure=pressure,
+            complete=failure is None,
+            failure=failure,
+            warnings=warnings,
+            mesh=self.mesh,
+            recovery=self.recovery,
+        )
+
+
+def reaction(system: System, element_force: FloatArray) -> float:
+    """Upward force in N of the support on the specimen, from element forces (18, E).
+
+    Internal forces in z add up to zero over all nodes, so what the support returns is minus the sum over the
+    nodes that may move.
+    """
+    vertical = element_force[9:][system.scatter.element_unknowns[9:] < system.numbering.count]
+    return float(-vertical.sum())
+
+
+def largest_strain(system: System, y: FloatArray, finite: bool) -> float:
+    """Largest element mean of the Green-Lagrange strain (`finite`) or of the small strain."""
+    deformation = Deformation(AXISYMMETRIC, system.geometry.gradient(system.scatter.gather(y)))
+    measure = deformation.green_strain if finite else deformation.small_strain
+    return strain.largest_element_strain(measure, system.geometry)

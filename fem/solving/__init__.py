@@ -1,0 +1,8 @@
+"""Newton, prediction and step cutting."""
+
+from fem.solving.equilibrium import Equilibrium
+from fem.solving.newton import NewtonSettings
+from fem.solving.state import State
+from fem.solving.stepping import Advance, Stepper
+
+__all__ = ["Advance", "Equilibrium", "NewtonSettings", "State", "Stepper"]

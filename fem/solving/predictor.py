@@ -1,0 +1,60 @@
+"""Prediction of the next state from known ones.
+
+Lagrange interpolation or extrapolation of second order over the load through the nearest known states. On
+the way back of a load history the states of the way up are near, so the prediction is good; it is still
+corrected by Newton like any other.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fem.arrays import FloatArray
+from fem.solving.state import State
+
+ORDER = 2
+LEAST_SPACING = 0.3
+
+
+class KnownStates:
+    """States of equilibrium with the load value each belongs to."""
+
+    def __init__(self, value: float, state: State) -> None:
+        self._values = [value]
+        self._states = [state]
+
+    def add(self, value: float, state: State) -> None:
+        """Remember a state."""
+        self._values.append(value)
+        self._states.append(state)
+
+    def predict(self, value: float, order: int = ORDER) -> State:
+        """State at a load value, of at most the given order."""
+        chosen = self._choose(value, order + 1)
+        weights = _lagrange(np.array([self._values[n] for n in chosen]), value)
+        states = [self._states[n] for n in chosen]
+        y = np.tensordot(weights, [s.y for s in states], axes=1)
+        pressure = np.tensordot(weights, [s.pressure for s in states], axes=1)
+        return State(y, pressure, float(weights @ [s.force for s in states]))
+
+    def _choose(self, value: float, most: int) -> list[int]:
+        """Nearest known states, far enough from each other for the distance to the value."""
+        distance = np.abs(np.array(self._values) - value)
+        order = np.argsort(distance, kind="stable")
+        chosen = [int(order[0])]
+        spacing = LEAST_SPACING * max(float(distance[order[0]]), 1e-9 * float(distance.max()))
+        for n in order[1:]:
+            if len(chosen) == most or distance[order[0]] == 0.0:
+                break
+            if all(abs(self._values[n] - self._values[m]) > spacing for m in chosen):
+                chosen.append(int(n))
+        return chosen
+
+
+def _lagrange(points: FloatArray, at: float) -> FloatArray:
+    weights = np.ones(len(points))
+    for i, p in enumerate(points):
+        for j, other in enumerate(points):
+            if i != j:
+                weights[i] *= (at - other) / (p - other)
+    return weights

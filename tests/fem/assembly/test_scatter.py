@@ -1,0 +1,77 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fem.assembly import build_scatter, number_unknowns
+from fem.assembly.scatter import packed_positions
+
+
+def dense(scatter, data, n):
+    full = np.zeros((n, n))
+    row = np.repeat(np.arange(n), np.diff(scatter.indptr))
+    full[row, scatter.indices] = data
+    return full + full.T - np.diag(full.diagonal())
+
+
+def test_fixed_and_tied_displacements_are_no_unknowns_of_their_own():
+    fixed = np.zeros((2, 6), dtype=bool)
+    fixed[:, 0] = True
+    tied = np.array([False, False, False, True, True, True])
+    numbering = number_unknowns(fixed, tied)
+    assert numbering.count == 12 - 2 - 2
+    assert (numbering.unknown[:, 0] == -1).all()
+    assert len(set(numbering.unknown[1, tied].tolist())) == 1
+    y = np.arange(1.0, numbering.count + 1)
+    assert numbering.expand(y)[0, 0] == 0.0
+
+
+def test_reduction_adds_what_is_tied():
+    numbering = number_unknowns(np.zeros((2, 4), dtype=bool), np.array([True, True, False, False]))
+    nodal = np.zeros((2, 4))
+    nodal[1, :2] = 1.0, 2.0
+    assert numbering.reduce(nodal)[numbering.unknown[1, 0]] == 3.0
+
+
+@given(st.integers(0, 2**31 - 1))
+@settings(max_examples=20, deadline=None)
+def test_matrix_sum_equals_dense_assembly(seed):
+    rng = np.random.default_rng(seed)
+    nodes, count = 15, 3
+    elements = np.array([rng.permutation(nodes)[:9] for _ in range(count)]).T
+    fixed = rng.random((2, nodes)) < 0.2
+    tied = np.zeros(nodes, dtype=bool)
+    tied[rng.permutation(nodes)[:4]] = True
+    fixed[1, tied] = False
+    numbering = number_unknowns(fixed, tied)
+    scatter = build_scatter(elements, numbering)
+    stiffness = rng.normal(size=(18, 18, count))
+    stiffness += stiffness.transpose(1, 0, 2)
+    expected = np.zeros((numbering.count, numbering.count))
+    for e in range(count):
+        unknown = numbering.unknown[:, elements[:, e]].ravel()
+        for i, row in enumerate(unknown):
+            for j, column in enumerate(unknown):
+                if row >= 0 and column >= 0:
+                    expected[row, column] += stiffness[i, j, e]
+    row, column = packed_positions()
+    used = np.unique(numbering.unknown[:, elements][numbering.unknown[:, elements] >= 0])
+    data = scatter.matrix(stiffness[row, column])
+    np.testing.assert_allclose(
+        dense(scatter, data, numbering.count)[np.ix_(used, used)], expected[np.ix_(used, used)], atol=1e-12
+    )
+
+
+def test_pattern_has_the_diagonal_first(block):
+    mesh = block()
+    numbering = number_unknowns(np.stack((mesh.base | mesh.axis, mesh.base)), mesh.top)
+    scatter = build_scatter(mesh.elements, numbering)
+    np.testing.assert_array_equal(scatter.indices[scatter.indptr[:-1]], np.arange(numbering.count))
+
+
+def test_round_off_is_eps_times_the_sizes(block, system_of):
+    system = system_of(block())
+    y = np.random.default_rng(7).normal(size=system.numbering.count)
+    tangent = system.tangent(system.evaluate(*system.rest()))
+    bound = np.abs(dense(system.scatter, tangent, len(y))) @ np.abs(y)
+    assert system.scatter.round_off(tangent, y) == pytest.approx(np.finfo(float).eps * np.linalg.norm(bound))

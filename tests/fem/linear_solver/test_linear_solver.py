@@ -1,0 +1,97 @@
+import builtins
+import sys
+
+import numpy as np
+import pytest
+
+from fem import FemError
+from fem.linear_solver import SingularMatrixError, make_solver
+
+CHOICES = ["superlu", pytest.param("pardiso", marks=pytest.mark.skipif(sys.platform == "darwin", reason="no MKL"))]
+
+
+def tridiagonal(n, diagonal):
+    """Upper triangle of a symmetric tridiagonal matrix with off-diagonal -1."""
+    full = np.diag(diagonal) - np.eye(n, k=1) - np.eye(n, k=-1)
+    indptr = np.append(2 * np.arange(n), 2 * n - 1)
+    indices = np.concatenate([(i, i + 1) for i in range(n)])[:-1]
+    data = np.ravel(np.stack((diagonal, np.full(n, -1.0)), axis=1))[:-1]
+    return full, indptr, indices, data
+
+
+@pytest.mark.parametrize("choice", CHOICES)
+@pytest.mark.parametrize("low", [2.5, -2.5], ids=["definite", "indefinite"])
+def test_solution_equals_the_dense_one(choice, low):
+    rng = np.random.default_rng(12)
+    diagonal = np.where(np.arange(50) % 3 == 0, low, 3.0)
+    full, indptr, indices, data = tridiagonal(50, diagonal)
+    solver = make_solver(choice, indptr, indices)
+    assert solver.name == choice
+    solver.factorise(data)
+    right = rng.normal(size=(50, 2))
+    np.testing.assert_allclose(solver.solve(right), np.linalg.solve(full, right), rtol=1e-9)
+
+
+@pytest.mark.parametrize("choice", CHOICES)
+def test_values_may_change_on_one_pattern(choice):
+    full, indptr, indices, data = tridiagonal(20, np.full(20, 4.0))
+    solver = make_solver(choice, indptr, indices)
+    right = np.ones((20, 1))
+    for factor in (1.0, 1e6):
+        solver.factorise(factor * data)
+        np.testing.assert_allclose(solver.solve(right), np.linalg.solve(factor * full, right), rtol=1e-10)
+
+
+@pytest.mark.parametrize("choice", CHOICES)
+def test_sizes_that_span_many_orders_are_solved(choice):
+    scale = np.geomspace(1e-9, 1e9, 30)
+    full, indptr, indices, data = tridiagonal(30, np.full(30, 4.0))
+    row = np.repeat(np.arange(30), np.diff(indptr))
+    solver = make_solver(choice, indptr, indices)
+    solver.factorise(data * scale[row] * scale[indices])
+    exact = np.random.default_rng(13).normal(size=(30, 1)) / scale[:, None]
+    right = scale[:, None] * (full @ (scale[:, None] * exact))
+    np.testing.assert_allclose(solver.solve(right), exact, rtol=1e-10)
+
+
+@pytest.mark.parametrize("choice", CHOICES)
+def test_entries_that_are_not_finite_are_refused(choice):
+    _, indptr, indices, data = tridiagonal(5, np.full(5, 4.0))
+    solver = make_solver(choice, indptr, indices)
+    data[0] = np.nan
+    with pytest.raises(SingularMatrixError, match="not finite"):
+        solver.factorise(data)
+
+
+def test_singular_matrix_is_reported_by_superlu():
+    _, indptr, indices, data = tridiagonal(5, np.full(5, 4.0))
+    solver = make_solver("superlu", indptr, indices)
+    with pytest.raises(SingularMatrixError):
+        solver.factorise(0.0 * data)
+
+
+def test_superlu_needs_factors_first():
+    _, indptr, indices, _ = tridiagonal(5, np.full(5, 4.0))
+    with pytest.raises(SingularMatrixError, match="nothing is factorised"):
+        make_solver("superlu", indptr, indices).solve(np.ones((5, 1)))
+
+
+def test_unknown_choice_is_refused():
+    with pytest.raises(FemError, match="linear_solver = 'mumps': allowed are auto, pardiso, superlu"):
+        make_solver("mumps", np.array([0, 1]), np.array([0]))
+
+
+def test_superlu_takes_over_where_pardiso_cannot_be_loaded(monkeypatch):
+    """Without the MKL, "auto" falls back and "pardiso" says why not."""
+    load = builtins.__import__
+
+    def without_pardiso(name, *rest, **more):
+        if name in ("fem.linear_solver.pardiso", "pypardiso"):
+            raise ImportError("no MKL here")
+        return load(name, *rest, **more)
+
+    monkeypatch.setattr(builtins, "__import__", without_pardiso)
+    _, indptr, indices, _ = tridiagonal(5, np.full(5, 4.0))
+    assert make_solver("auto", indptr, indices).name == "superlu"
+    with pytest.raises(FemError, match="no MKL here"):
+        make_solver("pardiso", indptr, indices)
