@@ -1,0 +1,52 @@
+"""The application: it finds the verbs beside it and turns whatever goes wrong into one paragraph.
+
+A verb is a module of this package with a function `register(app)`. It imports what it needs inside its
+command, so that `--help` answers at once.
+"""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+import sys
+from pathlib import Path
+
+import typer
+
+from bench_hw.cli._report import report_unexpected
+
+
+def make_app() -> typer.Typer:
+    """Make the application with all verbs, in alphabetical order."""
+    application = typer.Typer(
+        name="bench_hw",
+        help="The measuring bench: devices, trials, files. Exit codes: 0 good, 2 input, 5 a device failed.",
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,
+    )
+    application.callback()(_bench)
+    for module in sorted(pkgutil.iter_modules([str(Path(__file__).parent)]), key=lambda info: info.name):
+        if not module.name.startswith("_"):
+            importlib.import_module(f"bench_hw.cli.{module.name}").register(application)
+    return application
+
+
+def _bench() -> None:
+    """Measure with the bench, look at what was measured, save it, take it elsewhere."""
+
+
+EXIT_BUG = 70
+"""A mistake in the program; the codes of the contract stay for what a user can mend."""
+
+app = make_app()
+
+
+def main() -> None:
+    """Run the command line and end the process with its exit code."""
+    try:
+        app()
+    except Exception as error:
+        report_unexpected(error, debug="--debug" in sys.argv)
+        sys.exit(EXIT_BUG)

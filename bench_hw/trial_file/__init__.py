@@ -1,0 +1,23 @@
+"""Native trial files: one `.mcap` a trial, written to survive a kill, read without inventing anything."""
+
+from bench_hw.trial_file.records import (
+    DepthRecord,
+    EventRecord,
+    ForceRecord,
+    FrameRecord,
+    TrialHeader,
+    TrialWriter,
+)
+from bench_hw.trial_file.trial_table import read_trial_mcap
+from bench_hw.trial_file.writer import open_trial
+
+__all__ = [
+    "DepthRecord",
+    "EventRecord",
+    "ForceRecord",
+    "FrameRecord",
+    "TrialHeader",
+    "TrialWriter",
+    "open_trial",
+    "read_trial_mcap",
+]

@@ -1,0 +1,129 @@
+"""Records to message bytes and back.
+
+A number that is not finite is written as `null` and read as NaN: JSON has no other word for it, and a zero
+would be a lie.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from bench_hw.trial_file.records import DepthRecord, EventRecord, ForceRecord, FrameRecord, Level, Vector
+
+Record = ForceRecord | DepthRecord | FrameRecord | EventRecord
+NANOSECONDS = 1_000_000_000
+_LEVELS: dict[Level, int] = {"info": 2, "warning": 3, "fault": 4}
+_LEVEL_NAMES: dict[int, Level] = {number: name for name, number in _LEVELS.items()}
+
+
+def nanoseconds(time: float) -> int:
+    """Turn seconds into whole nanoseconds, to the nearest."""
+    return round(time * NANOSECONDS)
+
+
+def _number(value: float | None) -> str:
+    return repr(float(value)) if value is not None and math.isfinite(value) else "null"
+
+
+def _axes(vector: Vector) -> str:
+    x, y, z = vector
+    return f'{{"x":{_number(x)},"y":{_number(y)},"z":{_number(z)}}}'
+
+
+def _timestamp(time: float) -> str:
+    seconds, rest = divmod(nanoseconds(time), NANOSECONDS)
+    return f'{{"sec":{seconds},"nsec":{rest}}}'
+
+
+def _encode_force(record: ForceRecord) -> bytes:
+    counts = "null" if record.counts is None else f"[{','.join(map(str, record.counts))}]"
+    return (
+        f'{{"rdt_sequence":{record.rdt_sequence},"ft_sequence":{record.ft_sequence},'
+        f'"status":{record.status},"counts":{counts},'
+        f'"force":{_axes(record.force)},"torque":{_axes(record.torque)}}}'
+    ).encode()
+
+
+def _encode_depth(record: DepthRecord) -> bytes:
+    counts = "null" if record.counts is None else record.counts
+    return f'{{"depth":{_number(record.depth)},"counts":{counts},"target":{_number(record.target)}}}'.encode()
+
+
+def _encode_frame(record: FrameRecord) -> bytes:
+    head = (
+        f'{{"timestamp":{_timestamp(record.time)},"frame_id":"camera","frame":{record.frame},'
+        f'"format":{json.dumps(record.format)},"data":"'
+    )
+    return head.encode() + base64.b64encode(record.data) + b'"}'
+
+
+def _encode_event(record: EventRecord) -> bytes:
+    head = f'{{"timestamp":{_timestamp(record.time)},"level":{_LEVELS[record.level]},'
+    body = f'"message":{json.dumps(record.message)},"name":{json.dumps(record.kind)},"file":"","line":0}}'
+    return (head + body).encode()
+
+
+_ENCODERS: dict[type, tuple[int, Callable[[Any], bytes]]] = {
+    ForceRecord: (1, _encode_force),
+    DepthRecord: (2, _encode_depth),
+    FrameRecord: (3, _encode_frame),
+    EventRecord: (4, _encode_event),
+}
+
+
+def encode(record: Record) -> tuple[int, bytes]:
+    """Give the channel number (of `schemas.CHANNELS`) and the message bytes of a record."""
+    channel, encoder = _ENCODERS[type(record)]
+    return channel, encoder(record)
+
+
+def decode_force(time: float, data: bytes) -> ForceRecord:
+    """Read a message of `/force`.
+
+    Raises
+    ------
+    ValueError, KeyError, TypeError
+        The message is none.
+    """
+    message = json.loads(data.decode())
+    counts = message["counts"]
+    return ForceRecord(
+        time,
+        message["rdt_sequence"],
+        message["ft_sequence"],
+        message["status"],
+        _vector(message["force"]),
+        _vector(message["torque"]),
+        None if counts is None else tuple(counts),
+    )
+
+
+def _vector(axes: Mapping[str, float | None]) -> Vector:
+    return _float(axes["x"]), _float(axes["y"]), _float(axes["z"])
+
+
+def _float(value: float | None) -> float:
+    return math.nan if value is None else float(value)
+
+
+def decode_depth(time: float, data: bytes) -> DepthRecord:
+    """Read a message of `/depth`; raises as `decode_force`."""
+    message = json.loads(data.decode())
+    return DepthRecord(time, _float(message["depth"]), message["counts"], message["target"])
+
+
+def decode_frame(time: float, data: bytes) -> FrameRecord:
+    """Read a message of `/camera`; raises as `decode_force`."""
+    message = json.loads(data.decode())
+    picture = base64.b64decode(message["data"])
+    return FrameRecord(time, message["frame"], picture, message["format"])
+
+
+def decode_event(time: float, data: bytes) -> EventRecord:
+    """Read a message of `/events`; raises as `decode_force`."""
+    message = json.loads(data.decode())
+    return EventRecord(time, message["name"], message["message"], _LEVEL_NAMES[message["level"]])

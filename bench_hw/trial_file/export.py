@@ -1,0 +1,147 @@
+"""A trial file as plain tables: every raw row of every device, and force over depth."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from bench_hw.atomic import replacing, write_bytes, write_text
+from bench_hw.errors import TrialFileError
+from bench_hw.tables.output import csv_text
+from bench_hw.trial_file.contents import TrialContents, read_contents
+from bench_hw.trial_file.encoding import decode_frame
+from bench_hw.trial_file.export_tables import Columns, frame_name, text_cells, trial_tables
+from bench_hw.trial_file.messages import read_messages
+from bench_hw.trial_file.records import PressAxis
+from bench_hw.trial_file.schemas import CAMERA
+
+SCHEMA = 1
+
+
+@dataclass(frozen=True)
+class Export:
+    """What an export wrote.
+
+    Parameters
+    ----------
+    files : tuple of pathlib.Path
+        The tables.
+    rows : Mapping[str, int]
+        Rows by table name.
+    frames : int
+        Pictures written.
+    complete : bool
+        Whether the trial is complete; if not, the tables hold what is whole.
+    warnings : tuple of str
+        What is not in the tables, and why.
+    """
+
+    files: tuple[Path, ...]
+    rows: Mapping[str, int]
+    frames: int
+    complete: bool
+    warnings: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give it as it stands in the JSON of `export`."""
+        return {
+            "schema": SCHEMA,
+            "files": [str(file) for file in self.files],
+            "rows": dict(self.rows),
+            "frames": self.frames,
+            "complete": self.complete,
+            "warnings": list(self.warnings),
+        }
+
+
+@dataclass(frozen=True)
+class ExportOptions:
+    """What to write besides the CSV tables.
+
+    Parameters
+    ----------
+    parquet : bool
+        The same tables as Parquet, too.
+    frames : bool
+        The pictures, as the camera encoded them, in `frames/`.
+    overwrite : bool
+        Replace tables that are there.
+    press_axis : str, optional
+        Instead of the file's own.
+    """
+
+    parquet: bool = False
+    frames: bool = False
+    overwrite: bool = False
+    press_axis: PressAxis | None = None
+
+
+def export_trial(path: Path | str, out: Path | str, options: ExportOptions | None = None) -> Export:
+    """Write the tables of a trial into a folder.
+
+    `force.csv`, `depth.csv` and `camera.csv` hold the raw rows in the order they were recorded, `trial.csv` the
+    joined rows of `trial_table`. Times are seconds since the trial's start on one clock. Numbers are written
+    exactly, depths in mm with 12 significant digits.
+
+    Parameters
+    ----------
+    path : path-like
+        The trial; of a damaged one what is whole.
+    out : path-like
+        The folder, made where it is missing.
+    options : ExportOptions, optional
+        What else to write.
+
+    Raises
+    ------
+    TrialFileError
+        The trial cannot be read, a table is there already, or the folder cannot be written.
+    """
+    path, out, options = Path(path), Path(out), options or ExportOptions()
+    contents = read_contents(path)
+    tables, warnings = trial_tables(contents, options.press_axis, with_files=options.frames)
+    files = {name: out / f"{name}.csv" for name in tables}
+    parquet = {name: out / f"{name}.parquet" for name in tables} if options.parquet else {}
+    _check_free([*files.values(), *parquet.values()], options)
+    try:
+        frames = _write_frames(contents, out) if options.frames else 0
+        for name, columns in tables.items():
+            write_text(files[name], csv_text(text_cells(columns)))
+        for name, file in parquet.items():
+            _write_parquet(file, tables[name])
+    except OSError as error:
+        raise TrialFileError(out, f"the folder cannot be written ({error})") from error
+    return Export(
+        files=(*files.values(), *parquet.values()),
+        rows={name: len(columns["time_s"]) for name, columns in tables.items()},
+        frames=frames,
+        complete=contents.scan.complete,
+        warnings=tuple(warnings),
+    )
+
+
+def _check_free(files: list[Path], options: ExportOptions) -> None:
+    for file in files:
+        if file.exists() and not options.overwrite:
+            raise TrialFileError(file, "the table exists; give another folder, or `--overwrite` to replace it")
+
+
+def _write_frames(contents: TrialContents, folder: Path) -> int:
+    """Write the pictures before the table that lists them."""
+    count = 0
+    for message in read_messages(contents.scan, (CAMERA.topic,)):
+        frame = decode_frame(0.0, message.data)
+        write_bytes(folder / frame_name(count, frame.format), frame.data)
+        count += 1
+    return count
+
+
+def _write_parquet(file: Path, columns: Columns) -> None:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    table = pa.table({name: pa.array(column, from_pandas=True) for name, column in columns.items()})
+    with replacing(file) as temporary:
+        pq.write_table(table, temporary)

@@ -1,0 +1,171 @@
+"""`capture` on the command line."""
+
+import json
+import tomllib
+
+import pytest
+
+QUICK = """
+schema = 1
+name = "quick"
+[[segments]]
+kind = "approach"
+touch_force = "0.05 N"
+speed = "5 mm/s"
+max_depth = "15 mm"
+[[segments]]
+kind = "move"
+depth = "1 mm"
+speed = "5 mm/s"
+[[segments]]
+kind = "retract"
+depth = "-2 mm"
+speed = "10 mm/s"
+"""
+RIG = """
+schema = 1
+name = "simulated"
+[force]
+kind = "simulated"
+{force}
+[actuator]
+kind = "simulated"
+stroke = "50 mm"
+contact = "5 mm"
+{actuator}
+[safety]
+travel = ["0 mm", "20 mm"]
+{safety}
+"""
+
+
+@pytest.fixture
+def quick(tmp_path):
+    path = tmp_path / "quick.toml"
+    path.write_text(QUICK)
+    return path
+
+
+@pytest.fixture
+def rig(tmp_path):
+    def write(force="", actuator="", safety=""):
+        path = tmp_path / "rig.toml"
+        path.write_text(RIG.format(force=force, actuator=actuator, safety=safety))
+        return path
+
+    return write
+
+
+def test_a_session(run, quick, rig, tmp_path):
+    out = tmp_path / "s"
+    ran = run("capture", quick, "--rig", rig(), "--out", out, "--trials", 2, "--fast", "--json",
+              "--condition", "slow", "--specimen", "rtv3498_sheet", "--set", 'tool.radius="5 mm"')  # fmt: skip
+    assert (ran.exit_code, ran.stderr) == (0, "")
+    answer = json.loads(ran.stdout)
+    assert (answer["schema"], answer["complete"], answer["fault"]) == (1, True, None)
+    assert answer["trials"] == [str(out / "trial_001.mcap"), str(out / "trial_002.mcap")]
+    listed = tomllib.loads((out / "session.toml").read_text())
+    assert (listed["specimen"], listed["tool"]) == ("rtv3498_sheet", {"radius": "5 mm"})
+    assert listed["trials"][1] == {"file": "trial_002.mcap", "condition": "slow"}
+
+
+def test_progress_is_lines_where_there_is_no_terminal(run, quick, rig, tmp_path):
+    ran = run("capture", quick, "--rig", rig(), "--out", tmp_path / "s", "--fast")
+    assert ran.exit_code == 0
+    assert "trial 1/1" in ran.stderr
+    assert "depth" in ran.stderr
+    assert "1 trial(s) in" in ran.stdout
+
+
+def test_quiet_says_nothing(run, quick, rig, tmp_path):
+    ran = run("capture", quick, "--rig", rig(), "--out", tmp_path / "s", "--fast", "--quiet")
+    assert (ran.exit_code, ran.stdout, ran.stderr) == (0, "", "")
+
+
+def test_the_dry_run_needs_no_rig_and_moves_nothing(run):
+    ran = run("capture", "paper_press", "--dry-run", "--trials", 10)
+    assert ran.exit_code == 0
+    assert "8.0 s a trial, 10 trial(s): 80.0 s in all" in ran.stdout
+    assert "*" in ran.stdout
+
+
+def test_the_dry_run_as_json_and_as_a_picture(run, tmp_path):
+    ran = run("capture", "paper_press", "--dry-run", "--json", "--plot", tmp_path / "plan.svg")
+    answer = json.loads(ran.stdout)
+    assert (answer["duration_s"], answer["protocol"]) == (8.0, "paper_press")
+    assert (tmp_path / "plan.svg").read_text().lstrip().startswith("<?xml")
+
+
+@pytest.mark.parametrize(
+    ("changes", "code", "says"),
+    [
+        ({"force": 'serial = "FT9"'}, 5, "the rig asks for 'FT9'"),
+        ({"actuator": 'serial = "LAC9"'}, 5, "the rig asks for 'LAC9'"),
+        ({"force": "colour = 1"}, 2, "colour: is unknown here"),
+        ({"actuator": 'max_speed = "6 mm/s"'}, 2, "a speed of 10 mm/s"),
+    ],
+)
+def test_a_wrong_rig_is_one_paragraph_and_no_folder(run, quick, rig, tmp_path, changes, code, says):
+    out = tmp_path / "s"
+    ran = run("capture", quick, "--rig", rig(**changes), "--out", out, "--fast")
+    assert ran.exit_code == code
+    assert says in ran.stderr
+    assert ran.stderr.count("\n") == 1
+    assert not out.exists()
+
+
+def test_a_wrong_address_is_exit_5_and_nothing_made(run, quick, tmp_path):
+    rig = tmp_path / "rig.toml"
+    rig.write_text(
+        'schema = 1\nname = "r"\n[force]\nkind = "netft"\nhost = "127.0.0.1"\nhttp_port = 9\n'
+        '[actuator]\nkind = "simulated"\nstroke = "50 mm"\ncontact = "5 mm"\n'
+    )
+    ran = run("capture", quick, "--rig", rig, "--out", tmp_path / "s")
+    assert ran.exit_code == 5
+    assert "no answer" in ran.stderr
+    assert not (tmp_path / "s").exists()
+
+
+def test_a_fault_is_exit_5_and_named(run, quick, rig, tmp_path):
+    out = tmp_path / "s"
+    ran = run("capture", quick, "--rig", rig(safety='force_limit = "0.3 N"'), "--out", out, "--fast", "--json")
+    assert ran.exit_code == 5
+    assert json.loads(ran.stdout)["fault"]["kind"] == "force_limit"
+    assert "the tool was sent back" in ran.stderr
+    assert [path.name for path in out.glob("*.mcap")] == ["trial_001.mcap"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["capture", "paper_press"], "needs --rig and --out"),
+        (["capture", "no_such", "--dry-run"], "shipped are"),
+        (["capture", "paper_press", "--rig", "no_such", "--out", "x"], "shipped are simulated"),
+    ],
+)
+def test_usage(run, arguments, says):
+    ran = run(*arguments)
+    assert ran.exit_code == 2
+    assert says in ran.stderr
+
+
+def test_a_folder_that_is_not_empty_is_left_alone(run, quick, rig, tmp_path):
+    (tmp_path / "s").mkdir()
+    (tmp_path / "s" / "mine.txt").write_text("mine")
+    ran = run("capture", quick, "--rig", rig(), "--out", tmp_path / "s", "--fast")
+    assert ran.exit_code == 2
+    assert [path.name for path in (tmp_path / "s").iterdir()] == ["mine.txt"]
+
+
+def test_a_place_that_cannot_be_written_is_exit_2(run, quick, rig, tmp_path):
+    (tmp_path / "file").write_text("")
+    ran = run("capture", quick, "--rig", rig(), "--out", tmp_path / "file" / "s", "--fast")
+    assert ran.exit_code == 2
+    assert "cannot be written" in ran.stderr
+
+
+def test_what_a_person_must_do_first_is_said(run, quick, rig, tmp_path):
+    quick.write_text(QUICK.replace('name = "quick"\n', 'name = "quick"\n[setup]\ntool_radius = "8 mm"\n', 1))
+    ran = run("capture", quick, "--rig", rig(), "--out", tmp_path / "s", "--fast")
+    assert ran.exit_code == 0
+    assert "to be done by hand first: tool_radius = 8 mm" in ran.stderr

@@ -1,0 +1,64 @@
+"""The command line as a whole: its help, its start, its last resort."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from bench_hw.cli import _app
+from bench_hw.cli._report import print_json
+
+VERBS = ("inspect", "recover", "export", "import")
+
+
+def bench(*arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "bench_hw", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60)
+
+
+def test_help_lists_the_verbs_and_loads_nothing_heavy():
+    ran = bench("--help")
+    assert ran.returncode == 0
+    for verb in VERBS:
+        assert f"  {verb} " in ran.stdout
+    heavy = "import sys, bench_hw.cli; print(sorted({'numpy', 'mcap', 'pandas', 'pint', 'cv2'} & set(sys.modules)))"
+    loaded = subprocess.run([sys.executable, "-c", heavy], capture_output=True, text=True, check=True, timeout=60)
+    assert loaded.stdout == "[]\n"
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_each_verb_explains_itself(run, verb):
+    ran = run(verb, "--help")
+    assert ran.exit_code == 0
+    assert "--json" in ran.stdout
+    assert "--debug" in ran.stdout
+
+
+def test_a_wrong_use_is_exit_two():
+    for arguments in (("inspect",), ("inspect", "a", "--unknown"), ("nonsense",), ("recover", "a")):
+        ran = bench(*arguments)
+        assert (ran.returncode, ran.stdout) == (2, "")
+        assert "Error: " in ran.stderr
+
+
+@pytest.mark.parametrize("debug", [False, True])
+def test_an_error_nobody_foresaw_is_one_line_without_debug(monkeypatch, capsys, debug):
+    def broken() -> None:
+        raise ZeroDivisionError("half a device")
+
+    monkeypatch.setattr(_app, "app", broken)
+    monkeypatch.setattr(sys, "argv", ["bench_hw", *(["--debug"] if debug else [])])
+    with pytest.raises(SystemExit) as ended:
+        _app.main()
+    error = capsys.readouterr().err
+    assert ended.value.code == 70
+    assert "unexpected error: ZeroDivisionError: half a device" in error
+    assert ("Traceback" in error) == debug
+
+
+def test_what_is_no_number_is_null_in_json(capsys):
+    print_json({"a": [float("nan"), 1.5, (float("inf"), None, True)], "b": {"c": "µ"}})
+    printed = capsys.readouterr().out
+    assert json.loads(printed) == {"a": [None, 1.5, [None, None, True]], "b": {"c": "µ"}}
+    assert "µ" in printed

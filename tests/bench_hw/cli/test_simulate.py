@@ -1,0 +1,105 @@
+"""`simulate` on the command line."""
+
+import json
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import cv2
+import pytest
+
+from bench_hw.devices.netft_wire import parse_records
+
+PORTS = re.compile(r"http://127\.0\.0\.1:(\d+)/.*RDT on UDP (\d+)")
+
+
+@pytest.fixture
+def start():
+    """Start `simulate ...` as a process and read its announcement."""
+    processes = []
+
+    def run(*arguments):
+        command = [sys.executable, "-m", "bench_hw", "simulate", *map(str, arguments)]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        processes.append(process)
+        return process, process.stderr.readline()
+
+    yield run
+    for process in processes:
+        if process.poll() is None:
+            process.kill()
+            process.communicate()
+
+
+def test_a_box_until_sigterm(start):
+    process, said = start("netft", "--rate-hz", 1000, "--drop", "20-22,50", "--seed", 3, "--json")
+    rdt = int(PORTS.search(said)[2])
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
+        client.settimeout(5.0)
+        client.sendto(bytes.fromhex("12 34 00 02 00 00 00 00"), ("127.0.0.1", rdt))
+        numbers = [int(parse_records(client.recv(2048))["rdt_sequence"][0]) for _ in range(100)]
+        client.sendto(bytes.fromhex("12 34 00 00 00 00 00 00"), ("127.0.0.1", rdt))
+        client.settimeout(0.3)
+        try:
+            while True:
+                numbers.append(int(parse_records(client.recv(2048))["rdt_sequence"][0]))
+        except TimeoutError:
+            pass
+    process.send_signal(signal.SIGTERM)
+    out, _ = process.communicate(timeout=10)
+    assert process.returncode == 0
+    assert json.loads(out) == {"schema": 1, "sent": len(numbers), "dropped": 4}
+    assert set(range(1, numbers[-1] + 1)) - set(numbers) == {20, 21, 22, 50}
+
+
+def test_a_box_ends_at_its_duration(start):
+    began = time.monotonic()
+    process, _ = start("netft", "--duration-s", 0.5, "--json")
+    out, _ = process.communicate(timeout=20)
+    assert (process.returncode, json.loads(out)["sent"]) == (0, 0)
+    assert time.monotonic() - began >= 0.5
+
+
+def test_a_camera_as_a_stream(start):
+    process, said = start("camera", "--size", "64x48", "--rate-hz", 50, "--duration-s", 20, "--json")
+    capture = cv2.VideoCapture(said.split()[-1])
+    pictures = [capture.read() for _ in range(5)]
+    capture.release()
+    assert all(good and picture.shape[:2] == (48, 64) for good, picture in pictures)
+    process.send_signal(signal.SIGTERM)
+    out, _ = process.communicate(timeout=10)
+    assert process.returncode == 0
+    assert json.loads(out)["sent"] >= 5
+
+
+def test_a_camera_as_files(run, tmp_path):
+    ran = run("simulate", "camera", "--size", "64x48", "--images", tmp_path / "p", "--frames", 3, "--json")
+    assert ran.exit_code == 0
+    assert json.loads(ran.stdout) == {"schema": 1, "sent": 3, "dropped": 0}
+    assert len(list((tmp_path / "p").glob("frame_*.png"))) == 3
+
+
+def test_a_session(run, tmp_path):
+    ran = run("simulate", "session", "--out", tmp_path / "s", "--trials", 1, "--no-camera", "--json", "--seed", 2)
+    assert ran.exit_code == 0
+    assert json.loads(ran.stdout)["complete"] is True
+    assert (tmp_path / "s" / "session.toml").is_file()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["netft", "--drop", "5-3"],
+        ["netft", "--loss", "1.5"],
+        ["netft", "--rate-hz", "0"],
+        ["camera", "--size", "big"],
+        ["session", "no_such", "--out", "x"],
+    ],
+)
+def test_usage(run, arguments):
+    ran = run("simulate", *arguments)
+    assert ran.exit_code == 2
+    assert ran.stderr

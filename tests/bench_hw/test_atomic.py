@@ -1,0 +1,21 @@
+"""Files are written whole or not at all."""
+
+import pytest
+
+from bench_hw.atomic import replacing, write_text
+
+
+def test_a_file_is_made_with_its_folder_and_the_usual_permissions(tmp_path):
+    path = write_text(tmp_path / "new" / "a.txt", "µ\r\n")
+    assert path.read_bytes() == "µ\r\n".encode()
+    plain = tmp_path / "plain"
+    plain.write_text("")
+    assert path.stat().st_mode == plain.stat().st_mode
+
+
+def test_what_was_there_stays_when_writing_fails(tmp_path):
+    path = write_text(tmp_path / "a.txt", "before")
+    with pytest.raises(UnicodeEncodeError), replacing(path) as temporary:
+        temporary.write_text("after, half \ud800", encoding="utf-8")
+    assert path.read_text() == "before"
+    assert list(tmp_path.iterdir()) == [path]
