@@ -12,7 +12,7 @@ from fem.supports.extent import Extent
 
 CLAMP_IN_THICKNESSES = 4.0
 # A sheet bends: the tool's edge weighs little, but the press goes several thicknesses deep.
-EDGE_FACTOR = 1.25
+EDGE_FACTOR = 1.5
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
 """Closed forms of the half-space: a disc of uniform pressure and a flat punch.
 
-On the axis under a disc of radius a with pressure q (Timoshenko and Goodier, Theory of Elasticity, 3rd ed., art. 139):
+On the axis under a disc of radius a with pressure q (Johnson, Contact Mechanics, chapter 3):
 u_z = (1 + nu) q / E (2 (1 - nu) (s - z) + z (1 - z / s)), s = sqrt(a^2 + z^2).
-Flat frictionless punch: F = 2 E a w / (1 - nu^2) (the same book, art. 140).
+Flat frictionless punch: F = 2 E a w / (1 - nu^2) (the same chapter).
 """
 
 import numpy as np
@@ -48,7 +48,7 @@ def test_flat_punch_within_a_thousandth(nu):
 
 
 def test_surface_profile_outside_the_punch():
-    """w(r) = (2 w / pi) arcsin(a / r) outside (art. 140)."""
+    """w(r) = (2 w / pi) arcsin(a / r) outside (the same chapter)."""
     solution = model("rigid_frictionless", 0.35, [np.inf]).run(fem.Load("depth", [1.0], [1e-3]))
     r = A * np.array([1.2, 1.5, 2.0, 3.0, 5.0])
     np.testing.assert_allclose(solution.profile(0, r)[0], 2e-3 / np.pi * np.arcsin(A / r), rtol=2e-3)
