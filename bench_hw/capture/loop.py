@@ -1,0 +1,230 @@
+"""`Loop`: the turns in which all devices are read, watched and recorded, on one clock, by one thread.
+
+A turn takes a millisecond or two: drain the force sensor and check every sample first of all, ask the actuator
+when it is due, take the camera's frames, then let the protocol decide. Nothing here waits for the disk.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from bench_hw.capture.progress import Progress, Snapshot
+from bench_hw.capture.recording import Recorder
+from bench_hw.clock import Clock
+from bench_hw.errors import BenchError, DeviceError
+from bench_hw.motion.steps import Action, Halt, MotionError, MoveTo, Note, Observation
+from bench_hw.rig.bench import Bench
+from bench_hw.safety import SafetyError, SafetyLimits, SafetyMonitor
+
+RETRACT_TIME = 3.0
+"""How long the tool's way back is tried for while the actuator is lost, s."""
+_RETRACT_PAUSE = 0.05
+_EARLY = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What a loop works with besides the devices.
+
+    Parameters
+    ----------
+    clock : Clock
+        The bench's clock.
+    limits : SafetyLimits
+        What is safe.
+    stop : threading.Event
+        Set by Ctrl-C.
+    progress : Progress
+        What a person sees.
+    turn : float
+        Rest between two turns, s.
+    """
+
+    clock: Clock
+    limits: SafetyLimits
+    stop: threading.Event
+    progress: Progress
+    turn: float = 1e-3
+
+
+class Loop:
+    """The turns of one trial, or of a motion that is not recorded.
+
+    Parameters
+    ----------
+    bench : Bench
+        The connected, streaming devices.
+    around : Surroundings
+        Clock, limits, stop flag and progress.
+    recorder : Recorder or None
+        Where samples go; None records nothing.
+    zero : float
+        Position of the actuator that is depth zero, m.
+    snapshot : Snapshot
+        The state to show.
+    """
+
+    def __init__(
+        self, bench: Bench, around: Surroundings, recorder: Recorder | None, zero: float, snapshot: Snapshot
+    ) -> None:
+        self._bench, self._around, self._recorder = bench, around, recorder
+        self._zero, self._snapshot, self._clock = zero, snapshot, around.clock
+        self._began = self._next_position = self._clock.now()
+        self._target: float | None = None
+        self._monitor = SafetyMonitor(around.limits, self._began, bench.actuator.uncertainty)
+        self.now = Observation(self._began, 0.0, 0.0, zero, bench.actuator.uncertainty, around.limits.travel)
+
+    def run(self, script: Iterator[Action]) -> None:
+        """Turn until the script ends.
+
+        Raises
+        ------
+        BenchError
+            Whatever is unsafe, lost, interrupted or cannot be written; the tool has NOT been sent back yet.
+        """
+        self._drain()
+        while True:
+            self._turn()
+            if not self._obey(script):
+                return
+            self._clock.sleep(self._around.turn)
+
+    def send_back(self) -> str:
+        """Send the tool back at once; while the actuator is lost, go on recording and try again.
+
+        Returns
+        -------
+        str
+            Empty, or why the actuator did not take the command.
+        """
+        deadline = self._clock.now() + RETRACT_TIME
+        while True:
+            try:
+                self._bench.actuator.retract()
+            except DeviceError as error:
+                if self._clock.now() >= deadline:
+                    return str(error)
+                self.coast(_RETRACT_PAUSE)
+            else:
+                self._target = self._around.limits.travel[0]
+                return ""
+
+    def coast(self, duration: float) -> None:
+        """Go on recording for `duration` seconds without watching, deciding or complaining: after a fault."""
+        end = self._clock.now() + duration
+        while self._clock.now() < end:
+            for part in (self._record_force, self._record_position, self._record_frames):
+                try:
+                    part()
+                except BenchError:
+                    continue  # that something is wrong is known already
+            self._clock.sleep(self._around.turn)
+
+    def _drain(self) -> None:
+        with self._blaming("force_lost"):
+            self._bench.force.read()
+        if self._bench.camera is not None:
+            with self._blaming("camera_lost"):
+                self._bench.camera.read()
+
+    def _turn(self) -> None:
+        if self._around.stop.is_set():
+            raise SafetyError("interrupted", "stopped by Ctrl-C", self._clock.now())
+        self._force()
+        self._confirmed(lambda: self._monitor.check_fresh(self._clock.now()), self._force)
+        self._monitor.check_position(self._record_position(), self._clock.now())
+        if self._bench.camera is not None:
+            self._confirmed(lambda: self._monitor.check_camera(self._record_frames(), self._clock.now()), lambda: None)
+        self.now.time = self._clock.now()
+        self._show()
+
+    def _confirmed(self, check: Callable[[], None], read_again: Callable[[], None]) -> None:
+        """Check, and once more after simulated devices that a busy machine held up have caught up."""
+        try:
+            check()
+        except SafetyError:
+            self._bench.catch_up()
+            self._clock.settle()
+            read_again()
+            check()
+
+    def _force(self) -> None:
+        with self._blaming("force_lost"):
+            block = self._bench.force.read()
+        if not len(block):
+            return
+        try:
+            self._monitor.check_force(block)
+        finally:
+            if self._recorder is not None:
+                self._recorder.force(block)
+        self.now.press = float(self._bench.press(block)[-1])
+
+    def _record_force(self) -> None:
+        block = self._bench.force.read()
+        if self._recorder is not None:
+            self._recorder.force(block)
+
+    def _record_position(self) -> float:
+        before = self._clock.now()
+        if before < self._next_position - _EARLY:
+            return self.now.position
+        actuator = self._bench.actuator
+        period = 1.0 / self._bench.rig.actuator.rate
+        self._next_position = max(self._next_position + period, before + 0.5 * period)
+        with self._blaming("actuator_lost"):
+            self.now.position = actuator.position()
+        if self._recorder is not None:
+            time = 0.5 * (before + self._clock.now())
+            self._recorder.position(time, self.now.position, actuator.counts, self._target)
+        return self.now.position
+
+    def _record_frames(self) -> int:
+        if self._bench.camera is None:
+            return 0
+        with self._blaming("camera_lost"):
+            frames = self._bench.camera.read()
+        if self._recorder is not None:
+            self._recorder.frames(frames)
+        return len(frames)
+
+    def _obey(self, script: Iterator[Action]) -> bool:
+        """Do what the script says until it waits; False at its end."""
+        for action in script:
+            if action is None:
+                return True
+            with self._blaming("actuator_lost"):
+                self._do(action)
+        return False
+
+    def _do(self, action: MoveTo | Halt | Note) -> None:
+        if isinstance(action, Note):
+            self._snapshot.doing = action.message
+            if self._recorder is not None:
+                self._recorder.event(self._clock.now(), action.kind, action.message)
+        elif isinstance(action, MoveTo):
+            self._bench.actuator.move_to(action.position, action.speed)
+            self._target = action.position
+        else:
+            self._bench.actuator.halt()
+            self._target = self.now.position
+
+    def _show(self) -> None:
+        shown = self._snapshot
+        shown.elapsed = self.now.time - self._began
+        shown.depth, shown.press = self.now.position - self._zero, self.now.press
+        shown.lost = self._bench.force.health.lost
+        self._around.progress.update(shown)
+
+    @contextmanager
+    def _blaming(self, kind: str) -> Iterator[None]:
+        """Give what a driver raises the name of its device."""
+        try:
+            yield
+        except (SafetyError, MotionError):
+            raise
+        except DeviceError as error:
+            raise SafetyError(kind, str(error), self._clock.now()) from error

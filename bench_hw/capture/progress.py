@@ -1,0 +1,143 @@
+"""What a person sees while trials are recorded: a live line on a terminal, plain lines otherwise, or nothing."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol, TextIO
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+_PLAIN_PERIOD = 1.0
+
+
+@dataclass(slots=True)
+class Snapshot:
+    """The state of the capture, brought up to date by its loop.
+
+    Parameters
+    ----------
+    trial, trials : int
+        Number of the trial and how many there are.
+    doing : str
+        What the tool does.
+    elapsed, planned : float
+        Time since the trial began and its planned length, s.
+    depth, press : float
+        m and N.
+    lost : int
+        Force records lost.
+    """
+
+    trial: int = 0
+    trials: int = 0
+    doing: str = ""
+    elapsed: float = 0.0
+    planned: float = 0.0
+    depth: float = 0.0
+    press: float = 0.0
+    lost: int = 0
+
+    def line(self) -> str:
+        """Say it in one line."""
+        return (
+            f"trial {self.trial}/{self.trials} {self.elapsed:6.1f}/{self.planned:.0f} s  "
+            f"depth {self.depth * 1e3:+.3f} mm  force {self.press:+.3f} N  lost {self.lost}  {self.doing}"
+        )
+
+
+class Progress(Protocol):
+    """Something that shows snapshots; cheap, as it is called at every turn."""
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Show a snapshot, or skip it."""
+        ...
+
+    def say(self, text: str) -> None:
+        """Show one sentence."""
+        ...
+
+    def showing(self) -> AbstractContextManager[object]:
+        """Give the context in which it shows."""
+        ...
+
+
+class Silent:
+    """Shows nothing."""
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Skip it."""
+
+    def say(self, text: str) -> None:
+        """Skip it."""
+
+    def showing(self) -> AbstractContextManager[object]:
+        """Give an empty context."""
+        return nullcontext()
+
+
+class PlainLines:
+    """Writes a line for each second of a trial and for each new doing.
+
+    Parameters
+    ----------
+    stream : TextIO, optional
+        Where to; by default standard error.
+    """
+
+    def __init__(self, stream: TextIO | None = None) -> None:
+        self._stream = stream or sys.stderr
+        self._shown: tuple[int, int] = (0, -1)
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Write a line if another second of the trial has begun."""
+        second = (snapshot.trial, int(snapshot.elapsed / _PLAIN_PERIOD))
+        if second != self._shown:
+            self._shown = second
+            self.say(snapshot.line())
+
+    def say(self, text: str) -> None:
+        """Write one line."""
+        print(text, file=self._stream, flush=True)
+
+    def showing(self) -> AbstractContextManager[object]:
+        """Give an empty context."""
+        return nullcontext()
+
+
+class LiveLine:
+    """One line on a terminal that is drawn anew eight times a second, by a thread of rich's."""
+
+    def __init__(self) -> None:
+        from rich.console import Console
+        from rich.live import Live
+
+        self._snapshot = Snapshot()
+        self._console = Console(stderr=True)
+        self._live = Live(console=self._console, get_renderable=self._draw, refresh_per_second=8, redirect_stdout=False)
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Remember it for the next drawing."""
+        self._snapshot = snapshot
+
+    def say(self, text: str) -> None:
+        """Print one line above the live one."""
+        self._console.print(text, highlight=False, markup=False)
+
+    def showing(self) -> AbstractContextManager[object]:
+        """Give the context in which the line is drawn."""
+        return self._live
+
+    def _draw(self) -> RenderableType:
+        from rich.text import Text
+
+        return Text(self._snapshot.line() if self._snapshot.trials else "", no_wrap=True, overflow="ellipsis")
+
+
+def choose_progress(quiet: bool) -> Progress:
+    """Give what suits the place: nothing, a live line on a terminal, or plain lines."""
+    if quiet:
+        return Silent()
+    return LiveLine() if sys.stderr.isatty() else PlainLines()

@@ -1,0 +1,216 @@
+"""`capture`: a session of trials from an order: devices checked, tool brought up, trials recorded, files written."""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from bench_hw.capture import camera_file
+from bench_hw.capture.folder import SessionFolder
+from bench_hw.capture.interrupt import stop_on_signals
+from bench_hw.capture.loop import Surroundings
+from bench_hw.capture.order import CaptureOrder, check_order
+from bench_hw.capture.progress import Progress, Snapshot
+from bench_hw.capture.trial import Fault, TrialOutcome, record_trial
+from bench_hw.capture.zero import find_zero, go_home
+from bench_hw.clock import Clock, MonotonicClock, SimulatedClock, wait_until
+from bench_hw.errors import DeviceError, InputError
+from bench_hw.motion.plan import plan
+from bench_hw.rig.bench import Bench
+from bench_hw.rig.opening import open_bench
+from bench_hw.safety import SafetyLimits
+from bench_hw.trial_file import open_trial
+from bench_hw.trial_file.records import TrialHeader
+
+if TYPE_CHECKING:
+    from bench_hw.simulated.specimen import Specimen
+
+_TURN, _SIMULATED_TURN = 1e-3, 2e-3
+_LARGEST_LATENCY = 0.5
+_SWITCH_INTERVAL = 5e-4
+"""How often threads take turns while trials are recorded, s: the loop must not wait for a drawing."""
+
+
+@dataclass(frozen=True, slots=True)
+class SessionOutcome:
+    """What a capture made: its folder, the finished trials and the fault that ended it, if any."""
+
+    folder: Path
+    trials: tuple[Path, ...]
+    fault: Fault | None
+
+
+def capture(order: CaptureOrder, progress: Progress, *, specimen: Specimen | None = None) -> SessionOutcome:
+    """Record a session.
+
+    Parameters
+    ----------
+    order : CaptureOrder
+        What is asked for.
+    progress : Progress
+        What a person sees.
+    specimen : Specimen, optional
+        What lies under a simulated tool.
+
+    Returns
+    -------
+    SessionOutcome
+        Its `fault` names what ended the session early; the trial it happened in is in the folder, but not in
+        `session.toml`.
+
+    Raises
+    ------
+    InputError
+        The order cannot be carried out; nothing moved.
+    DeviceError
+        A device is missing, wrong or silent; nothing moved and there is no trial file. Or something went wrong
+        before the first trial; then the tool was sent back.
+    """
+    check_order(order)
+    folder = SessionFolder(order)
+    clock: Clock = SimulatedClock(step=_SIMULATED_TURN) if order.fast else MonotonicClock()
+    try:
+        with (
+            stop_on_signals() as stop,
+            _short_turns(),
+            open_bench(order.rig, clock, specimen=specimen, seed=order.seed) as bench,
+        ):
+            return _Session(order, folder, bench, _surroundings(order, bench, clock, stop, progress)).run()
+    finally:
+        folder.abandon()
+
+
+class _Session:
+    def __init__(self, order: CaptureOrder, folder: SessionFolder, bench: Bench, around: Surroundings) -> None:
+        self._order, self._folder, self._bench, self._around = order, folder, bench, around
+        self._condition = order.condition or order.protocol.protocol.name
+        self._done: list[Path] = []
+        self._calibrations: dict[str, str] = {}
+        self._counted: dict[str, dict[str, int]] = {}
+
+    def run(self) -> SessionOutcome:
+        self._bench.start()
+        with self._around.progress.showing():
+            zero = find_zero(self._bench, self._order, self._around)
+            try:
+                self._begin_files()
+                fault = self._record_all(zero)
+            finally:  # also when a file between two trials cannot be written: the tool never stays
+                with suppress(DeviceError):
+                    go_home(self._bench, self._around)
+        return SessionOutcome(self._folder.path, tuple(self._done), fault)
+
+    def _record_all(self, zero: float) -> Fault | None:
+        self._health()
+        for number in range(1, self._order.trials + 1):
+            if number > 1 and not self._rest():
+                return Fault("interrupted", "stopped by Ctrl-C between two trials; the tool was sent back", True)
+            outcome = self._record(number, zero)
+            if outcome.fault is not None:
+                return outcome.fault
+        return None
+
+    def _record(self, number: int, zero: float) -> TrialOutcome:
+        protocol = self._order.protocol.protocol
+        self._bench.zero_force()
+        name = self._folder.next_trial()
+        header = self._header(name, zero)
+        writer = open_trial(self._folder.path / f"{name}.mcap", header, background=not self._order.fast)
+        snapshot = Snapshot(number, self._order.trials, planned=plan(protocol).duration)
+        outcome = record_trial(self._bench, protocol, writer, zero, self._around, snapshot)
+        self._note(outcome, header)
+        return outcome
+
+    def _note(self, outcome: TrialOutcome, header: TrialHeader) -> None:
+        if outcome.path is not None and outcome.fault is None:
+            self._done.append(outcome.path)
+            self._folder.add_trial(outcome.path, self._condition)
+        entry = {
+            "file": outcome.path.name if outcome.path else f"{header.name}.mcap.part",
+            "condition": self._condition,
+            "started": header.started,
+            **self._health(),
+            "fault": None if outcome.fault is None else asdict(outcome.fault),
+        }
+        self._folder.write_log(self._order, self._bench.infos(), entry)
+
+    def _health(self) -> dict[str, dict[str, int]]:
+        """Counts of each stream since the last time this was asked."""
+        camera = self._bench.camera
+        counts = {"force": asdict(self._bench.force.health)}
+        if camera is not None:
+            counts["camera"] = asdict(camera.health)
+        before, self._counted = self._counted, counts
+        return {
+            device: {name: value - before.get(device, {}).get(name, 0) for name, value in found.items()}
+            for device, found in counts.items()
+        }
+
+    def _begin_files(self) -> None:
+        order = self._order
+        keys: dict[str, dict[str, object]] = {}
+        if self._bench.twins is not None:
+            keys = getattr(self._bench.twins.settings.specimen, "session_keys", dict)()
+        if order.rig.rig.camera is None:
+            keys.pop("camera", None)
+        text = camera_file.camera_text(order.rig)
+        if text is not None:
+            self._calibrations["camera"] = hashlib.sha256(text.encode()).hexdigest()
+            if not order.append:
+                self._folder.keep(camera_file.NAME, text)
+            if "camera" in keys:
+                keys["camera"] |= {"file": camera_file.NAME} | camera_file.place(order.rig.rig)
+        self._folder.begin(order, keys)
+
+    def _header(self, name: str, zero: float) -> TrialHeader:
+        infos, order = self._bench.infos(), self._order
+        settings = {f"{device}.{key}": value for device, info in infos.items() for key, value in info.settings.items()}
+        settings |= {"depth_zero": f"{zero * 1e3:.4f} mm", "condition": self._condition, "rig": order.rig.text}
+        return TrialHeader(
+            name=name,
+            started=datetime.now(UTC).isoformat(),
+            clock_epoch=self._around.clock.now(),
+            press_axis=order.rig.rig.force.press_axis,
+            protocol=order.protocol.protocol.name,
+            protocol_text=order.protocol.text,
+            serials={device: info.serial for device, info in infos.items() if info.serial},
+            calibrations=self._calibrations | {d: info.calibration for d, info in infos.items() if info.calibration},
+            settings=settings,
+            synthetic=order.rig.rig.simulated,
+        )
+
+    def _rest(self) -> bool:
+        """Wait between two trials; False if that was interrupted."""
+        return not wait_until(self._around.clock, self._around.stop.is_set, self._order.pause, interval=0.05)
+
+
+def _surroundings(
+    order: CaptureOrder, bench: Bench, clock: Clock, stop: threading.Event, progress: Progress
+) -> Surroundings:
+    rig = order.rig.rig
+    if bench.force.latency > _LARGEST_LATENCY * rig.safety.force_stale:
+        raise InputError(
+            f"{order.rig.path}: the force sensor delivers every {bench.force.latency * 1e3:g} ms in this mode; allowed "
+            f"is {_LARGEST_LATENCY:g} of safety.force_stale ({rig.safety.force_stale * 1e3:g} ms): use realtime mode"
+        )
+    limits = SafetyLimits(
+        rig.safety.force_limit, rig.safety.force_stale, bench.travel, tuple(bench.force.ranges.tolist())
+    )
+    return Surroundings(clock, limits, stop, progress, _SIMULATED_TURN if order.fast else _TURN)
+
+
+@contextmanager
+def _short_turns() -> Iterator[None]:
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(_SWITCH_INTERVAL)
+    try:
+        yield
+    finally:
+        sys.setswitchinterval(before)

@@ -1,0 +1,112 @@
+"""One trial: the protocol carried out and recorded.
+
+Whatever goes wrong, the tool is sent back first; then the fault is written, recording goes on for a moment so
+that the file shows the tool going back, and the file is closed.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from bench_hw.capture.loop import RETRACT_TIME, Loop, Surroundings
+from bench_hw.capture.progress import Snapshot
+from bench_hw.capture.recording import Recorder
+from bench_hw.errors import BenchError, TrialFileError
+from bench_hw.motion.protocol import Protocol
+from bench_hw.motion.steps import MotionError, carry_out
+from bench_hw.rig.bench import Bench
+from bench_hw.safety import SafetyError
+from bench_hw.trial_file.records import TrialWriter
+
+_COAST = 1.0
+"""How long recording goes on after a fault, s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """What ended a trial: a short kind, what happened, and whether the actuator took the command to go back."""
+
+    kind: str
+    message: str
+    retracted: bool
+
+
+@dataclass(frozen=True, slots=True)
+class TrialOutcome:
+    """How a trial ended: its file (None if that could not be finished) and its fault, if any."""
+
+    path: Path | None
+    fault: Fault | None = None
+
+
+def record_trial(
+    bench: Bench, protocol: Protocol, writer: TrialWriter, zero: float, around: Surroundings, snapshot: Snapshot
+) -> TrialOutcome:
+    """Carry a protocol out and record it.
+
+    Parameters
+    ----------
+    bench : Bench
+        The connected, streaming devices.
+    protocol : Protocol
+        What to do.
+    writer : TrialWriter
+        The trial's file; closed here, whatever happens.
+    zero : float
+        Position of the actuator that is depth zero, m.
+    around : Surroundings
+        Clock, limits, stop flag and progress.
+    snapshot : Snapshot
+        The state to show.
+
+    Returns
+    -------
+    TrialOutcome
+        Its `fault` is None only if the protocol came to its end and the file is whole.
+    """
+    recorder = Recorder(writer, zero)
+    loop = Loop(bench, around, recorder, zero, snapshot)
+    fault = None
+    try:
+        loop.run(carry_out(protocol, loop.now))
+    except BaseException as error:
+        fault = end_safely(loop, error, recorder, around)
+        if not isinstance(error, BenchError | OSError):
+            _close(writer)
+            raise
+    path, problem = _close(writer)
+    return TrialOutcome(path, fault or problem)
+
+
+def end_safely(loop: Loop, error: BaseException, recorder: Recorder | None, around: Surroundings) -> Fault:
+    """Send the tool back, write the fault down and let the recording show the way back; give the fault."""
+    problem = loop.send_back()
+    ending = "the tool was sent back"
+    if problem:
+        ending = (
+            f"the tool could NOT be sent back within {RETRACT_TIME:g} s ({problem}): cut the actuator's power and "
+            "turn it back by hand"
+        )
+    fault = Fault(_kind(error), f"{str(error) or type(error).__name__}; {ending}", not problem)
+    around.progress.say(f"fault ({fault.kind}): {fault.message}")
+    if recorder is not None:
+        with suppress(TrialFileError):
+            recorder.event(around.clock.now(), fault.kind, fault.message, "fault")
+        loop.coast(_COAST)
+    return fault
+
+
+def _close(writer: TrialWriter) -> tuple[Path | None, Fault | None]:
+    try:
+        return writer.close(), None
+    except TrialFileError as error:
+        return None, Fault("disk", f"{error}; run `python -m bench_hw recover` on {writer.path}", True)
+
+
+def _kind(error: BaseException) -> str:
+    if isinstance(error, SafetyError):
+        return error.kind
+    named = {MotionError: "motion", TrialFileError: "disk", OSError: "disk"}
+    return next((kind for known, kind in named.items() if isinstance(error, known)), "unexpected")

@@ -1,0 +1,1 @@
+"""The shipped protocols of motion, a TOML file each."""

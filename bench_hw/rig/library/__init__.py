@@ -1,0 +1,1 @@
+"""The shipped rigs, a TOML file each."""

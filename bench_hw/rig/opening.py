@@ -1,0 +1,202 @@
+"""From a rig file to its drivers, and to the twins of its simulated devices. Nothing is connected here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import singledispatch
+from typing import TYPE_CHECKING
+
+from bench_hw.clock import Clock
+from bench_hw.configuration import read_toml
+from bench_hw.devices import protocols
+from bench_hw.errors import DeviceError, InputError
+from bench_hw.rig import schema
+from bench_hw.rig.bench import Bench
+from bench_hw.rig.loading import LoadedRig
+
+if TYPE_CHECKING:
+    from bench_hw.simulated.specimen import Specimen
+    from bench_hw.simulated.switched_on import Twins
+
+
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """What drivers are made with: the rig and its place, the clock, and the twins if any device is simulated."""
+
+    loaded: LoadedRig
+    clock: Clock
+    twins: Twins | None = None
+
+    def switched_on(self) -> Twins:
+        """Give the twins."""
+        assert self.twins is not None  # the schema lets no simulated device stand without a simulated actuator
+        return self.twins
+
+
+def open_bench(loaded: LoadedRig, clock: Clock, *, specimen: Specimen | None = None, seed: int | None = None) -> Bench:
+    """Make a bench from a rig; connect it with `with` or `connect`.
+
+    Parameters
+    ----------
+    loaded : LoadedRig
+        The rig.
+    clock : Clock
+        The bench's clock; simulated only if every device is.
+    specimen : Specimen, optional
+        What lies under a simulated tool; by default a simple sheet.
+    seed : int, optional
+        Of the simulated devices' chance and noise; by default the rig's.
+
+    Raises
+    ------
+    DeviceError
+        A calibration that the rig names is missing, or simulated devices cannot be switched on.
+    """
+    rig = loaded.rig
+    _check_calibration(loaded)
+    twins = _switch_on(rig, clock, specimen, seed) if rig.simulated else None
+    context = Opening(loaded, clock, twins)
+    camera = None if rig.camera is None else open_camera(rig.camera, context)
+    return Bench(rig, open_force(rig.force, context), open_actuator(rig.actuator, context), camera, twins)
+
+
+@singledispatch
+def open_force(device: object, context: Opening) -> protocols.ForceSensor:  # noqa: ARG001
+    """Make the driver of a force sensor."""
+    raise TypeError(f"no driver for {type(device).__name__}")
+
+
+@open_force.register
+def _(device: schema.NetFTForce, context: Opening) -> protocols.ForceSensor:
+    from bench_hw.devices.netft import NetFTSensor
+
+    return NetFTSensor(
+        device.host,
+        rate=device.rate,
+        mode=device.mode,
+        serial=device.serial,
+        http_port=device.http_port,
+        rdt_port=device.rdt_port,
+        clock=context.clock,
+    )
+
+
+@open_force.register
+def _(device: schema.DaqForce, context: Opening) -> protocols.ForceSensor:
+    from bench_hw.devices.daq import DaqForceSensor
+    from bench_hw.devices.nidaqmx_source import NidaqmxSource
+
+    path = context.loaded.resolve(device.calibration)
+    source = NidaqmxSource(device.device)
+    return DaqForceSensor(source, path, rate=device.rate, serial=device.serial, clock=context.clock)
+
+
+@open_force.register
+def _(device: schema.SimulatedForce, context: Opening) -> protocols.ForceSensor:
+    from bench_hw.devices.netft import NetFTSensor
+
+    box = context.switched_on().box
+    assert box is not None
+    return NetFTSensor(
+        box.host,
+        rate=device.rate,
+        mode=device.mode,
+        serial=device.serial,
+        http_port=box.http_port,
+        rdt_port=box.rdt_port,
+        clock=context.clock,
+    )
+
+
+@singledispatch
+def open_actuator(device: object, context: Opening) -> protocols.Actuator:  # noqa: ARG001
+    """Make the driver of an actuator."""
+    raise TypeError(f"no driver for {type(device).__name__}")
+
+
+@open_actuator.register(schema.LacActuator)
+@open_actuator.register(schema.SimulatedActuator)
+def _(device: schema.LacActuator | schema.SimulatedActuator, context: Opening) -> protocols.Actuator:
+    from bench_hw.devices.lac import LacActuator
+
+    return LacActuator(
+        device.stroke,
+        max_speed=device.max_speed,
+        accuracy=device.accuracy,
+        serial=device.serial,
+        backend=context.switched_on().usb if device.kind == "simulated" else None,
+    )
+
+
+@singledispatch
+def open_camera(device: object, context: Opening) -> protocols.Camera:  # noqa: ARG001
+    """Make the driver of a camera."""
+    raise TypeError(f"no driver for {type(device).__name__}")
+
+
+@open_camera.register
+def _(device: schema.WebcamCamera, context: Opening) -> protocols.Camera:
+    if device.driver == "v4l2":
+        from bench_hw.devices.v4l2_camera import V4l2Camera
+
+        return V4l2Camera(
+            device.device, rate=device.rate, size=device.size, controls=device.controls, clock=context.clock
+        )
+    from bench_hw.devices.webcam import WebcamCamera
+
+    return WebcamCamera(
+        device.device, rate=device.rate, size=device.size, controls=device.controls, clock=context.clock
+    )
+
+
+@open_camera.register
+def _(device: schema.HttpCamera, context: Opening) -> protocols.Camera:
+    from bench_hw.devices.http_camera import HttpCamera
+
+    return HttpCamera(device.url, rate=device.rate, clock=context.clock)
+
+
+@open_camera.register
+def _(device: schema.ImagesCamera, context: Opening) -> protocols.Camera:
+    from bench_hw.devices.images_camera import ImagesCamera
+
+    return ImagesCamera(context.loaded.resolve(device.folder), rate=device.rate, clock=context.clock)
+
+
+@open_camera.register
+def _(device: schema.SimulatedCamera, context: Opening) -> protocols.Camera:
+    from bench_hw.devices.http_camera import HttpCamera
+
+    server = context.switched_on().camera
+    assert server is not None
+    return HttpCamera(server.url, rate=device.rate, clock=context.clock)
+
+
+def _check_calibration(loaded: LoadedRig) -> None:
+    """Refuse a camera calibration that cannot be read or was made with pictures of another size."""
+    camera = loaded.rig.camera
+    if camera is None or camera.calibration is None:
+        return
+    where = f"{loaded.path}: camera.calibration {camera.calibration!r}"
+    try:
+        size = read_toml(loaded.resolve(camera.calibration))[0].get("image_size")
+    except InputError as error:
+        raise DeviceError(f"{where}: {error}") from error
+    if size is not None and list(size) != list(camera.size):
+        raise DeviceError(f"{where}: made for pictures of {size} pixels; the rig asks for {list(camera.size)}")
+
+
+def _switch_on(rig: schema.Rig, clock: Clock, specimen: Specimen | None, seed: int | None) -> Twins:
+    from bench_hw.rig.twin_settings import faults_of, settings_of
+    from bench_hw.simulated.switched_on import switch_on
+
+    try:
+        twins = switch_on(settings_of(rig, specimen, seed), clock)
+    except OSError as error:
+        raise DeviceError(f"simulated devices: {error}") from error
+    try:
+        twins.schedule(faults_of(rig))
+    except BaseException:
+        twins.close()
+        raise
+    return twins

@@ -1,0 +1,43 @@
+"""What a person sees."""
+
+import io
+import sys
+
+from bench_hw.capture.progress import LiveLine, PlainLines, Silent, Snapshot, choose_progress
+
+SHOWN = Snapshot(2, 10, "3 of 5: move", 4.2, 8.0, 1.5e-3, 0.75, lost=3)
+
+
+def test_a_snapshot_in_one_line():
+    line = SHOWN.line()
+    assert "trial 2/10" in line
+    assert "depth +1.500 mm" in line
+    assert "force +0.750 N" in line
+    assert "lost 3" in line
+    assert "3 of 5: move" in line
+
+
+def test_plain_lines_come_once_a_second():
+    stream = io.StringIO()
+    progress = PlainLines(stream)
+    with progress.showing():
+        for tenth in range(25):
+            progress.update(Snapshot(1, 1, "press", tenth / 10, 8.0))
+    assert stream.getvalue().count("\n") == 3
+
+
+def test_a_live_line_is_drawn_from_the_last_snapshot(monkeypatch, capsys):
+    progress = LiveLine()
+    with progress.showing():
+        progress.update(SHOWN)
+        progress.say("fault (force_limit): [too] much")
+    assert progress._draw().plain == SHOWN.line()
+    assert "fault (force_limit): [too] much" in capsys.readouterr().err
+
+
+def test_the_choice_suits_the_place(monkeypatch):
+    assert isinstance(choose_progress(quiet=True), Silent)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: False, raising=False)
+    assert isinstance(choose_progress(quiet=False), PlainLines)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    assert isinstance(choose_progress(quiet=False), LiveLine)

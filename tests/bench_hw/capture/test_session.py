@@ -1,0 +1,231 @@
+"""Whole sessions with simulated devices, in simulated time."""
+
+import json
+import tomllib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bench_hw.capture.order import check_order
+from bench_hw.capture.session import capture
+from bench_hw.errors import DeviceError, InputError
+from bench_hw.motion.loading import load_protocol
+from bench_hw.rig.loading import load_rig
+from bench_hw.simulated.specimen import Response
+from bench_hw.trial_file import read_trial_mcap
+from bench_hw.trial_file.inspection import inspect_trial
+
+
+def channels(path):
+    return inspect_trial(path).to_dict()["channels"]
+
+
+def test_a_session_of_three_trials(record, session):
+    outcome = record(trials=3)
+    assert outcome.fault is None
+    assert [path.name for path in outcome.trials] == ["trial_001.mcap", "trial_002.mcap", "trial_003.mcap"]
+    listed = tomllib.loads((session / "session.toml").read_text())
+    assert (listed["schema"], listed["name"], listed["synthetic"]) == (1, "session", True)
+    assert listed["trials"] == [{"file": f"trial_00{k}.mcap", "condition": "quick"} for k in (1, 2, 3)]
+    assert not list(session.glob("*.part"))
+
+
+def test_what_was_measured_is_the_press(record):
+    (path,) = record().trials
+    trial = read_trial_mcap(path)
+    assert np.all(np.diff(trial.time) > 0.0)
+    assert trial.depth[0] == pytest.approx(-2e-3, abs=2e-4)
+    peak = trial.depth.max()
+    assert peak == pytest.approx(2.05e-3, abs=2e-4)  # 2 mm from a touch of 0.05 N, less the dead band
+    held = trial.force[np.argmax(trial.depth) + 150]
+    assert held == pytest.approx(600 * peak * (1 + peak / 6e-3), rel=0.05)
+    in_air = trial.force[trial.depth < -0.5e-3]
+    assert np.abs(in_air).max() < 0.015
+
+
+def test_every_channel_is_gapless_on_one_clock(record):
+    (path,) = record(camera=True).trials
+    found = channels(path)
+    assert [found[name]["lost"] for name in ("force", "depth", "camera")] == [0, 0, 0]
+    assert found["force"]["rate_hz"] == pytest.approx(1000.0, rel=1e-3)
+    assert found["depth"]["rate_hz"] == pytest.approx(100.0, rel=0.02)
+    assert found["camera"]["rate_hz"] == pytest.approx(30.0, rel=0.01)
+    ends = [found[name]["last_time_s"] for name in ("force", "depth", "camera")]
+    assert max(ends) - min(ends) < 0.06
+    assert min(found[name]["first_time_s"] for name in found) >= 0.0
+
+
+def test_devices_and_fingerprints_are_kept(record, session):
+    (path,) = record(camera=True).trials
+    trial = inspect_trial(path).to_dict()["trial"]
+    assert trial["serials"] == {"force": "FT00000", "actuator": "LAC00001"}
+    assert {device: len(mark) for device, mark in trial["calibrations"].items()} == {"force": 64, "camera": 64}
+    assert trial["synthetic"] is True
+    log = json.loads((session / "capture.json").read_text())
+    assert log["devices"]["force"]["serial"] == "FT00000"
+    assert log["trials"][0]["fault"] is None
+    assert log["trials"][0]["force"]["lost"] == 0
+    assert log["trials"][0]["camera"]["received"] > 30
+
+
+def test_the_same_seed_gives_the_same_noise(record, tmp_path):
+    def in_air(name, **options):
+        return read_trial_mcap(record(out=tmp_path / name, **options).trials[0]).force[:200]
+
+    first, second, other = in_air("a"), in_air("b"), in_air("c", seed=9)
+    assert len(np.intersect1d(first, second)) > 180  # the machine may deliver a record a turn later
+    assert len(np.intersect1d(first, other)) < 40  # a few coincide: they are whole counts
+
+
+def test_a_simulated_camera_leaves_its_true_optics(record, session):
+    record(camera=True)
+    camera = tomllib.loads((session / "camera.toml").read_text())
+    assert camera["image_size"] == [640, 480]
+    assert camera["plane"]["mm_per_px"] == pytest.approx(70.0 / 582.0)
+    assert set(camera["distortion"]) == {"k1", "k2", "p1", "p2", "k3"}
+    listed = tomllib.loads((session / "session.toml").read_text())
+    assert listed["camera"] == {
+        "marker_rows": 3, "marker_columns": 6, "marker_spacing": "8 mm", "file": "camera.toml",
+        "distance": "70 mm",
+    }  # fmt: skip
+    assert listed["support"] == {"kind": "hole", "hole_radius": "30 mm"}
+
+
+def test_a_rigs_own_calibration_is_copied(record, session, tmp_path):
+    calibration = tmp_path / "camera.toml"
+    calibration.write_text("schema = 1\n")
+    record(camera=True, rig={"camera": {"calibration": str(calibration)}})
+    assert (session / "camera.toml").read_text() == "schema = 1\n"
+
+
+def test_keys_of_the_session_file_can_be_given(record, session):
+    record(specimen=None, session_keys={"tool.radius": "5 mm", "drive.channel": "depth", "camera.centre": "3"})
+    listed = tomllib.loads((session / "session.toml").read_text())
+    assert listed["tool"] == {"radius": "5 mm"}
+    assert listed["drive"] == {"channel": "depth"}
+    assert listed["camera"] == {"centre": 3}
+
+
+def test_depth_zero_is_found_by_touching_where_the_rig_does_not_say(order, watcher):
+    asked = order(rig={"simulation": {"contact": "7.5 mm"}})
+    rig = asked.rig.rig
+    silent = rig.model_copy(update={"actuator": rig.actuator.model_copy(update={"contact": None})})
+    seen = watcher()
+    outcome = capture(replace(asked, rig=replace(asked.rig, rig=silent)), seen)
+    assert "touching once to find depth zero" in seen.said[0]
+    trial = read_trial_mcap(outcome.trials[0])
+    pressed = trial.depth[trial.force > 0.2]
+    assert 0.0 < pressed.min() < 0.5e-3
+    assert trial.depth.max() == pytest.approx(2e-3, abs=2e-4)
+
+
+def test_a_specimen_of_ones_own(record):
+    def spring(time, depth, start):
+        force = np.zeros((len(depth) - start, 3))
+        force[:, 2] = 1500.0 * np.maximum(depth[start:], 0.0)
+        return Response(force, np.zeros((len(depth) - start, 1, 3)))
+
+    trial = read_trial_mcap(record(specimen=spring).trials[0])
+    assert trial.force.max() == pytest.approx(1500.0 * trial.depth.max(), rel=0.05)
+
+
+@pytest.mark.parametrize(("bias", "in_air"), [(True, 0.0), (False, 0.03)])
+def test_force_is_zeroed_in_air_before_each_trial_if_the_rig_says_so(record, bias, in_air):
+    def with_offset(time, depth, start):
+        force = np.zeros((len(depth) - start, 3))
+        force[:, 2] = 0.03 + 600.0 * np.maximum(depth[start:], 0.0)
+        return Response(force, np.zeros((len(depth) - start, 1, 3)))
+
+    outcome = record(specimen=with_offset, trials=2, rig={"force": {"bias": bias}})
+    for path in outcome.trials:
+        trial = read_trial_mcap(path)
+        assert trial.force[trial.depth < -1e-3].mean() == pytest.approx(in_air, abs=5e-3)
+
+
+def test_a_sensor_that_delivers_too_seldom_is_refused_before_anything_moves(record, session):
+    rig = {"force": {"mode": "buffered", "rate": "20 Hz"}}
+    with pytest.raises(InputError, match=r"delivers every 50 ms in this mode; allowed is 0\.5 of safety"):
+        record(rig=rig)
+    assert not session.exists()
+
+
+def test_buffered_mode_records_the_same_press(record):
+    (path,) = record(rig={"force": {"mode": "buffered"}}).trials
+    found = channels(path)["force"]
+    assert found["lost"] == found["gaps"] == 0
+    assert found["rate_hz"] == pytest.approx(1000.0, rel=0.01)
+
+
+def test_trials_of_another_condition_can_be_appended(record, session):
+    record(trials=2, condition="slow")
+    first = (session / "trial_001.mcap").read_bytes()
+    record(trials=1, condition="fast", append=True)
+    listed = tomllib.loads((session / "session.toml").read_text())
+    assert [trial["condition"] for trial in listed["trials"]] == ["slow", "slow", "fast"]
+    assert listed["trials"][2]["file"] == "trial_003.mcap"
+    assert (session / "trial_001.mcap").read_bytes() == first
+    assert {"capture.json", "capture-2.json"} <= {path.name for path in session.iterdir()}
+
+
+def test_an_existing_session_is_not_touched(record, session):
+    record()
+    before = {path.name: path.read_bytes() for path in session.iterdir()}
+    with pytest.raises(InputError, match="not empty and nothing in it is overwritten"):
+        record()
+    assert {path.name: path.read_bytes() for path in session.iterdir()} == before
+
+
+def test_appending_needs_a_session(record):
+    with pytest.raises(InputError, match="no session to append to"):
+        record(append=True)
+
+
+@pytest.mark.parametrize(
+    ("rig", "says"),
+    [
+        ({"force": {"serial": "FT1"}}, "the rig asks for 'FT1'"),
+        ({"actuator": {"serial": "LAC9"}}, "the rig asks for 'LAC9'"),
+    ],
+)
+def test_a_wrong_device_leaves_no_folder_behind(record, session, rig, says):
+    with pytest.raises(DeviceError, match=says):
+        record(rig=rig)
+    assert not session.exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({"trials": 0}, "--trials 0"),
+        ({"rig": {"actuator": {"max_speed": "5 mm/s"}}}, "a speed of 10 mm/s; allowed is up to"),
+        ({"rig": {"safety": {"travel": ["0 mm", "6 mm"]}}}, r"depth 2 mm is position 7\.00 mm"),
+        ({"rig": {"safety": {"travel": ["4 mm", "20 mm"]}}}, r"depth -2 mm is position 3\.00 mm"),
+    ],
+)
+def test_what_cannot_be_done_is_refused_before_anything_is_opened(record, session, options, says):
+    with pytest.raises(InputError, match=says):
+        record(**options)
+    assert not session.exists()
+
+
+def test_simulated_time_is_for_simulated_devices_only(order, tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text(
+        'schema = 1\nname = "r"\n[force]\nkind = "netft"\nhost = "192.0.2.1"\n'
+        '[actuator]\nkind = "simulated"\nstroke = "50 mm"\n'
+    )
+    with pytest.raises(InputError, match=r"--fast: .*has real devices \(netft\)"):
+        check_order(replace(order(), rig=load_rig(path)))
+
+
+def test_loss_reported_equals_loss_injected(record):
+    (path,) = record(rig={"force": {"drop": "1000-1009,1200"}}).trials
+    assert channels(path)["force"]["lost"] == 11
+
+
+@pytest.mark.parametrize("name", ["paper_press"])
+def test_the_shipped_paper_press_runs(record, name):
+    outcome = record(protocol=load_protocol(name))
+    assert outcome.fault is None
+    assert read_trial_mcap(outcome.trials[0]).depth.max() == pytest.approx(2.0e-3, abs=1.5e-4)

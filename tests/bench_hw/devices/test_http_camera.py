@@ -1,0 +1,129 @@
+"""The HTTP camera: a twin's stream in simulated time, and servers that are no camera."""
+
+import numpy as np
+import pytest
+
+from bench_hw.clock import MonotonicClock, wait_until
+from bench_hw.devices.http_camera import HttpCamera
+from bench_hw.errors import DeviceError
+from bench_hw.simulated.camera_server import CameraServer, CameraSettings
+
+
+@pytest.fixture
+def make_server(clock):
+    servers = []
+
+    def make(**settings):
+        rng = np.random.default_rng(1)
+
+        def picture(now):
+            return rng.integers(0, 255, (48, 64)).astype(np.uint8)
+
+        servers.append(CameraServer(picture, clock, CameraSettings(**settings), np.random.default_rng(2)))
+        return servers[-1]
+
+    yield make
+    for server in servers:
+        server.close()
+
+
+def collect(camera, clock, duration):
+    frames = []
+    for _ in range(round(duration / 2e-3)):
+        clock.sleep(2e-3)
+        frames += camera.read()
+    return frames
+
+
+def test_frames_come_at_their_rate_as_jpeg(make_server, clock):
+    server = make_server(rate=30.0)
+    with HttpCamera(server.url, rate=30.0, clock=clock) as camera:
+        camera.start()
+        frames = collect(camera, clock, 1.0)
+        assert camera.info.settings["rate"] == "30 Hz"
+    assert len(frames) == pytest.approx(30, abs=1)
+    assert all(frame.data[:2] == b"\xff\xd8" for frame in frames)
+    assert [frame.number for frame in frames] == list(range(len(frames)))
+    assert np.diff([frame.time for frame in frames]) == pytest.approx(np.full(len(frames) - 1, 1 / 30), abs=3e-3)
+
+
+def test_dropped_frames_are_known_by_their_numbers(make_server, clock):
+    server = make_server(rate=50.0, drop=frozenset([10, 11, 20]))
+    with HttpCamera(server.url, rate=50.0, clock=clock) as camera:
+        camera.start()
+        frames = collect(camera, clock, 1.0)
+        assert (camera.health.dropped, server.dropped) == (3, 3)
+    assert len(frames) == camera.health.received
+
+
+def test_frozen_frames_are_counted(make_server, clock):
+    server = make_server(rate=50.0, freeze=frozenset([10, 11]))
+    with HttpCamera(server.url, rate=50.0, clock=clock) as camera:
+        camera.start()
+        collect(camera, clock, 0.5)
+        assert camera.health.frozen == 2
+
+
+def test_a_stream_that_ends_is_an_error(make_server, clock):
+    server = make_server()
+    with HttpCamera(server.url, clock=clock) as camera:
+        camera.start()
+        collect(camera, clock, 0.2)
+        server.unplug()
+        with pytest.raises(DeviceError, match="the stream ended"):
+            collect(camera, clock, 0.2)
+
+
+@pytest.mark.parametrize(
+    ("answer", "says"),
+    [
+        (b"HTTP/1.0 404 Not Found\r\n\r\n", "allowed is status 200"),
+        (b"HTTP/1.0 200 OK\r\nContent-Type: text/html\r\n\r\n", "no MJPEG stream"),
+        (b"", "allowed is status 200"),
+    ],
+)
+def test_what_is_no_stream_is_refused(tcp_server, clock, answer, says):
+    def talk(client):
+        client.recv(4096)
+        client.sendall(answer)
+
+    with pytest.raises(DeviceError, match=says):
+        HttpCamera(f"http://127.0.0.1:{tcp_server(talk)}/video", clock=clock).connect()
+
+
+def test_the_request_is_plain_http(tcp_server, clock):
+    heard = []
+
+    def talk(client):
+        heard.append(client.recv(4096))
+
+    port = tcp_server(talk)
+    with pytest.raises(DeviceError):
+        HttpCamera(f"http://127.0.0.1:{port}/a/b?c=d", clock=clock).connect()
+    assert heard == [f"GET /a/b?c=d HTTP/1.0\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode()]
+
+
+@pytest.mark.parametrize("url", ["ftp://x/y", "not an address", "http:///x"])
+def test_other_addresses_are_refused(url):
+    with pytest.raises(DeviceError, match="allowed is an address like"):
+        HttpCamera(url).connect()
+
+
+def test_nobody_there(ear):
+    with pytest.raises(DeviceError, match="check address"):
+        HttpCamera(f"http://127.0.0.1:{ear.port}/", timeout=1.0).connect()
+
+
+def test_bytes_that_make_no_sense_end_the_stream(tcp_server, clock):
+    def talk(client):
+        client.recv(4096)
+        client.sendall(b"HTTP/1.0 200 OK\r\nContent-Type: multipart/x-mixed-replace; boundary=frame\r\n\r\n")
+        client.sendall(b"--frame\r\nContent-Length: many\r\n\r\n")
+        client.recv(4096)
+
+    real = MonotonicClock()
+    with (
+        pytest.raises(DeviceError, match="content-length"),
+        HttpCamera(f"http://127.0.0.1:{tcp_server(talk)}/", clock=real) as camera,
+    ):
+        wait_until(real, lambda: camera.read() is None, timeout=5.0)
