@@ -93,7 +93,8 @@ def report_channel(
         The device's own count of its samples, modulo 2^32.
     camera : bool
         A camera may drop frames without saying so: an interval over 1.5 periods without a number skipped is
-        then frames lost, as many as would have fitted in.
+        then frames lost, as many as would have fitted in. A frame that only came late, so that the next one
+        follows sooner, is not lost.
     details : Mapping, optional
         Further figures to carry along.
     """
@@ -105,7 +106,9 @@ def report_channel(
     interval = np.diff(ordered)
     neighbours = step == 1
     long = neighbours & (interval > longest_allowed(ordered, 0.0 if camera else SHORTEST_GAP))
-    unseen = np.rint(interval[long] / usual_interval(ordered)) - 1 if camera else np.zeros(0)
+    unseen = _unseen(interval, long, usual_interval(ordered)) if camera else np.zeros(len(interval))
+    if camera:
+        long &= unseen > 0
     return ChannelReport(
         rows=len(time),
         first_time=float(time.min()),
@@ -120,6 +123,12 @@ def report_channel(
         restarts=check.restarts,
         details=details or {},
     )
+
+
+def _unseen(interval: FloatArray, long: NDArray[np.bool_], usual: float) -> FloatArray:
+    """Give the frames missing in each long interval (n,), judged together with the one that follows it."""
+    pair = np.append(interval[:-1] + interval[1:] - usual, interval[-1:])
+    return np.where(long, np.maximum(np.rint(pair / usual) - 1, 0), 0)
 
 
 def _steps(numbers: IntArray) -> IntArray:

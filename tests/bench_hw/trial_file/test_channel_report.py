@@ -64,3 +64,12 @@ def test_a_restart_is_counted_and_the_rate_stays_sound():
     report = report_channel(np.arange(1000) / 1000.0, number)
     assert (report.restarts, report.lost) == (1, 0)
     assert report.rate == pytest.approx(1000.0)
+
+
+def test_a_frame_that_came_late_is_not_lost():
+    time = np.arange(60) / 30
+    time[20] += 0.7 / 30
+    late = report_channel(time, np.arange(60), camera=True)
+    assert (late.lost, late.gaps) == (0, 0)
+    dropped = report_channel(np.delete(time, 40), np.arange(59), camera=True)
+    assert (dropped.lost, dropped.gaps) == (1, 1)
