@@ -89,7 +89,8 @@ def test_measured_tissue_by_others(benchmark_cli, tmp_path: Path, day: str) -> N
     assert called.code == 0, called.err
     measured = pd.read_csv(tmp_path / "r/tables/measured.csv")
     assert measured.trial.nunique() == len(list(folder.glob("*.csv")))
-    assert measured.fem_force_N.notna().all()
     assert measured.wave_force_N.notna().all()
     document = json.loads((tmp_path / "r/results.json").read_text())
+    cut = any("deeper rows are left out" in warning for warning in document["warnings"])
+    assert measured.fem_force_N.isna().mean() < (0.03 if cut else 1e-12)
     assert any("time dependence is in the data" in warning for warning in document["warnings"])
