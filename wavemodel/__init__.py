@@ -10,7 +10,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from wavemodel.errors import NotCoveredError, WaveError
     from wavemodel.integrators.damping import Damping
+    from wavemodel.integrators.prony import Prony
     from wavemodel.layered import LayeredWave
+    from wavemodel.physics.body import Physics
+    from wavemodel.physics.in_plane_stress import InPlaneStress
+    from wavemodel.physics.quasi_static_press import QuasiStaticPress
     from wavemodel.published.membrane import PublishedWave
     from wavemodel.solution import WaveSolution
     from wavemodel.specimen import DiscTool, WaveLayer
@@ -18,9 +22,13 @@ if TYPE_CHECKING:
 __all__ = [
     "Damping",
     "DiscTool",
+    "InPlaneStress",
     "LayeredWave",
     "NotCoveredError",
+    "Physics",
+    "Prony",
     "PublishedWave",
+    "QuasiStaticPress",
     "WaveError",
     "WaveLayer",
     "WaveSolution",
@@ -31,7 +39,11 @@ _HOMES = {
     "DiscTool": "wavemodel.specimen",
     "LayeredWave": "wavemodel.layered",
     "NotCoveredError": "wavemodel.errors",
+    "Prony": "wavemodel.integrators.prony",
     "PublishedWave": "wavemodel.published.membrane",
+    "InPlaneStress": "wavemodel.physics.in_plane_stress",
+    "Physics": "wavemodel.physics.body",
+    "QuasiStaticPress": "wavemodel.physics.quasi_static_press",
     "WaveError": "wavemodel.errors",
     "WaveLayer": "wavemodel.specimen",
     "WaveSolution": "wavemodel.solution",

@@ -5,17 +5,18 @@ import numpy as np
 from wavemodel.integrators.damping import Damping
 from wavemodel.integrators.exact import ModalSystem
 from wavemodel.integrators.load import Load
+from wavemodel.integrators.prony import NO_FADING, Prony
 from wavemodel.layers.vibration import vibration
 from wavemodel.press import Press
 
 
-def modal_system(press: Press, rigid: bool, damping: Damping) -> ModalSystem:
+def modal_system(press: Press, rigid: bool, damping: Damping, series: Prony = NO_FADING) -> ModalSystem:
     """The d oscillators of each of the K wavenumbers of a press, driven by its force.
 
     A state is scaled to its static value under unit force. The depth of a rigid tool is the mean of the surface's
     motion weighted by the contact traction.
     """
-    modes = vibration(press.field.domain.wavenumber, press.stack)
+    modes = vibration(press.field.domain.wavenumber, press.modal_stack)
     drive = np.einsum("kdc,kc->kd", modes.surface, press.load)
     deflection = np.einsum("kld,kd,k->lkd", modes.deflection, drive, press.share)
     weight = press.field.domain.axis_weight
@@ -29,6 +30,7 @@ def modal_system(press: Press, rigid: bool, damping: Damping) -> ModalSystem:
         remainder_axis=press.remainder_axis,
         collocated=rigid,
         damping=damping,
+        series=series,
     )
 
 
@@ -36,7 +38,7 @@ def first_frequency(press: Press) -> float:
     """Lowest natural frequency of the carried modes, Hz, among two dozen of the wavenumbers."""
     k = press.field.domain.wavenumber
     chosen = np.unique(np.geomspace(1, k.size, 24).astype(np.intp)) - 1
-    return float(vibration(k[chosen], press.stack).frequency.min() / (2.0 * np.pi))
+    return float(vibration(k[chosen], press.modal_stack.at(chosen)).frequency.min() / (2.0 * np.pi))
 
 
 def ringing(load: Load, frequency: float, damping: Damping) -> float:

@@ -8,8 +8,9 @@ import numpy as np
 from wavemodel.arrays import FloatArray
 from wavemodel.domains.rectangle import Rectangle
 from wavemodel.errors import WaveError
+from wavemodel.large_press.law import LargePress
 from wavemodel.loads.traction import Traction
-from wavemodel.remainder import Remainder
+from wavemodel.remainder import Remainder, deflections
 
 
 @dataclass(frozen=True)
@@ -22,11 +23,15 @@ class Snapshot:
         (L, K) amplitude of each layer's top face by distinct wavenumber, m3: a mode's share of a centred unit load
         (1/m2) times it is the mode's deflection.
     remainder
-        Force that the static remainder answers to, N.
+        Force that the static remainder answers to, N; with layers that creep each in its own way (B,) forces, one
+        for each of its fields.
+    elastic
+        Elastic force that the large-press correction is read at, N.
     """
 
     amplitude: FloatArray
-    remainder: float
+    remainder: float | FloatArray
+    elastic: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -40,12 +45,18 @@ class Field:
     traction
         Contact traction of unit force.
     rest
-        Static remainder, or None where the modes carry the whole load.
+        Static remainder by the initial moduli, or None where the modes carry the whole load.
+    fading
+        With layers that creep each in its own way the B fields of the remainder.
+    large
+        Correction of a large press, or None.
     """
 
     domain: Rectangle
     traction: Traction
     rest: Remainder | None
+    fading: tuple[Remainder, ...] = ()
+    large: LargePress | None = None
 
     @cached_property
     def share(self) -> FloatArray:
@@ -62,6 +73,17 @@ class Field:
             return np.zeros((layers, radius.size))
         return self.rest.deflection(self.traction.coefficients, radius)
 
+    def remainders(self, radius: FloatArray) -> FloatArray:
+        """(B, L, R) deflection that each field of the remainder adds per force at radii (R,), m/N."""
+        return deflections(self.fading, self.traction.coefficients, radius)
+
+    def _sharp(self, state: Snapshot, radius: FloatArray, layers: int) -> FloatArray:
+        if np.ndim(state.remainder) == 0:
+            return np.asarray(state.remainder * self.remainder(radius, layers))
+        if self.rest is None:
+            return np.zeros((layers, radius.size))
+        return np.asarray(np.tensordot(state.remainder, self.remainders(radius), axes=1))
+
     def along_x(self, state: Snapshot, radius: FloatArray) -> FloatArray:
         """(L, R) deflection at radii (R,) along +x, m; NaN outside the window.
 
@@ -76,5 +98,8 @@ class Field:
         out = np.full((state.amplitude.shape[0], radius.size), np.nan)
         line = self.modal(state.amplitude) @ self.domain.sines(np.zeros(1), axis=1)[0]
         out[:, inside] = line @ self.domain.sines(radius[inside]).T
-        out[:, inside] += state.remainder * self.remainder(radius[inside], out.shape[0])
+        out[:, inside] += self._sharp(state, radius[inside], out.shape[0])
+        if self.large is not None:
+            weights = self.large.weights_at(state.elastic)
+            out[:, inside] += np.tensordot(weights, self.large.at_radius(radius[inside]), axes=1)
         return out

@@ -2,10 +2,11 @@
 
 Each layer is an elastic wave equation in (u, v, w), quadratic through the thickness of its sub-layers, on a window of
 sine modes round the tool. Nothing is calibrated: the answer follows from thickness, density, E and nu alone. It is
-linear: small strain.
+linear, small strain, unless a large-press correction or options of the body are asked for.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -13,17 +14,25 @@ import numpy as np
 from wavemodel import notices
 from wavemodel.arrays import FloatArray
 from wavemodel.dynamics import first_frequency, modal_system, ringing
+from wavemodel.elastic_law import ElasticLaw
 from wavemodel.errors import NotCoveredError, WaveError
 from wavemodel.field import Snapshot
 from wavemodel.integrators.damping import Damping
 from wavemodel.integrators.exact import ModalSystem, integrate
+from wavemodel.integrators.history import History
 from wavemodel.integrators.load import Load, checked_load
-from wavemodel.integrators.quasi_static import quasi_static
+from wavemodel.integrators.prony import Prony
+from wavemodel.integrators.quasi_static import StaticBody, quasi_static
 from wavemodel.layers.laminate import BASES
+from wavemodel.memory import one_series, series_of, shared, static_body
+from wavemodel.options import large_press_of, options_of
+from wavemodel.physics.body import Physics
+from wavemodel.physics.in_plane_stress import InPlaneStress, in_plane_stress
 from wavemodel.press import Press, prepare
 from wavemodel.settings import Settings
 from wavemodel.solution import WaveSolution
 from wavemodel.specimen import DiscTool, WaveLayer
+from wavemodel.static_runs import large_press_run, options_run
 from wavemodel.surface import Surface, surface
 
 SLOW = 0.02
@@ -57,11 +66,27 @@ class LayeredWave:
         twice.
     damping
         Proportional to mass and stiffness; none by default.
+    relaxation
+        Fading memory: one series for all layers, or one (or None) for each; E is then the initial modulus. None: the
+        layers are elastic. Series that differ are followed without inertia.
+    pretension
+        In-plane tensile stress before the press, Pa: one for all layers, one for x and one for y, or an
+        `InPlaneStress` with one for each layer. Where x and y differ, the sharp part of the field close to the tool
+        (see `static_correction`) takes their mean.
+    large_press
+        "linear", or "corrected": the elastic answer is that of a neo-Hookean stack with these moduli under finite
+        strain, worked out once in the wave's own modes (see `wavemodel.large_press`); no inertia. Series that differ
+        between layers then fade what the correction adds by the linear body's creep.
+    physics
+        Options of the body beyond elasticity, all off by default (see `Physics`); no inertia. Damping by stiffness and
+        a shared relaxation take part; series that differ do not.
 
     Attributes
     ----------
     press
         The set-up, with the errors of its sub-layers and border.
+    law
+        Force over depth of the elastic body; what `QuasiStaticPress` takes.
     first_frequency
         Lowest natural frequency of the carried modes, Hz.
 
@@ -85,15 +110,27 @@ class LayeredWave:
         static_correction: bool | None = None,
         integrator: str = "auto",
         damping: Damping | None = None,
+        relaxation: Prony | Sequence[Prony | None] | None = None,
+        pretension: float | Sequence[float] | InPlaneStress | None = None,
+        large_press: str = "linear",
+        physics: Physics | None = None,
     ) -> None:
         if integrator not in INTEGRATORS:
             raise WaveError(f"integrator = {integrator!r} is not allowed: one of {', '.join(INTEGRATORS)}")
         counts = None if sublayers is None else tuple(sublayers)
-        settings = Settings(window, modes, counts, static_correction)
+        settings = Settings(window, modes, counts, static_correction, in_plane_stress(pretension, len(layers)))
         self.layers, self.tool = tuple(layers), tool
         self.integrator, self.damping = integrator, damping or Damping()
-        self.press: Press = prepare(self.layers, tool, _base(support), settings)
+        self.relaxation = series_of(relaxation, len(self.layers))
+        elastic = prepare(self.layers, tool, _base(support), settings)
+        self.body: StaticBody
+        self.press: Press
+        self.body, self.press = static_body(elastic, self.layers, tool.rigid, self.relaxation, self.damping)
         self.first_frequency: float = first_frequency(self.press)
+        self.options = options_of(physics, self.relaxation, self.damping, integrator)
+        large = large_press_of(large_press, self.press, tool, integrator)
+        self.press = replace(self.press, field=replace(self.press.field, large=large))
+        self.law = ElasticLaw(self.press.compliance, large)
         if integrator == "exact":
             self._modal_system  # noqa: B018 (set-up, not part of a run)
 
@@ -137,12 +174,7 @@ class LayeredWave:
         """
         load = checked_load(control, time, value)
         method = self._method(load)
-        if method == "exact":
-            history = integrate(load, self._modal_system)
-        else:
-            lag = self.damping.stiffness_time
-            press = self.press
-            history = quasi_static(load, press.unit, press.unit_axis, press.compliance, lag)
+        history = integrate(load, self._modal_system) if method == "exact" else self._static_run(load)
         return WaveSolution(
             time=load.time,
             force=history.force,
@@ -155,18 +187,26 @@ class LayeredWave:
             _history=history,
         )
 
+    def _static_run(self, load: Load) -> History:
+        if self.options is not None:
+            return options_run(load, self.press, self.law, self.options)
+        if self.law.large is not None:
+            return large_press_run(load, self.body, self.law)
+        return quasi_static(load, self.body)
+
     def static_state(self, force: float) -> Snapshot:
-        """State at rest under a force (N), for `Surface.frame`."""
-        return Snapshot(self.press.unit * force, force)
+        """State at rest under an elastic force (N), by the initial moduli, for `Surface.frame`."""
+        return Snapshot(self.press.unit * force, force, force)
 
     @cached_property
     def _modal_system(self) -> ModalSystem:
-        return modal_system(self.press, self.tool.rigid, self.damping)
+        return modal_system(self.press, self.tool.rigid, self.damping, one_series(self.relaxation))
 
     def _method(self, load: Load) -> str:
         if self.integrator != "auto":
             return self.integrator
         slow = load.control == "depth" or ringing(load, self.first_frequency, self.damping) <= SLOW
+        slow = slow or shared(self.relaxation) is None or self.options is not None or self.law.large is not None
         return "quasi_static" if slow else "exact"
 
     def surface(self, x: FloatArray, y: FloatArray) -> Surface:

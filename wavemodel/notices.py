@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from wavemodel.corrected import VERIFIED
 from wavemodel.integrators.history import History
 from wavemodel.press import Press
 
@@ -31,7 +32,14 @@ def notices(press: Press, history: History, method: str, ringing: float) -> tupl
 
 def _strain(press: Press, history: History) -> Iterator[str]:
     deepest, height = float(abs(history.depth).max()), press.stack.height
-    if deepest > SMALL_STRAIN * height:
+    if press.field.large is not None:
+        if deepest > VERIFIED * height:
+            yield (
+                f"layered wave: the deepest press, {deepest * 1e3:.3g} mm, is {100 * deepest / height:.3g} % of the "
+                f"{height * 1e3:.3g} mm stack, outside the range that the large-press correction is verified in "
+                f"({100 * VERIFIED:.0f} %)"
+            )
+    elif deepest > SMALL_STRAIN * height:
         yield (
             f"layered wave: the deepest press, {deepest * 1e3:.3g} mm, is {100 * deepest / height:.3g} % of the "
             f"{height * 1e3:.3g} mm stack; this wave is linear, for small strain (up to about "

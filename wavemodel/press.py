@@ -1,7 +1,7 @@
 """The set-up of one tool on one stack: window, modes, sub-layers, contact traction and static answer."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from wavemodel.loads.rigid import enough_functions, punch_tractions
 from wavemodel.loads.traction import Traction, TractionBasis
 from wavemodel.loads.uniform import UniformPressure
 from wavemodel.parts import Parts, parts
+from wavemodel.physics.in_plane_stress import InPlaneStress
 from wavemodel.remainder import remainder
 from wavemodel.settings import Settings
 from wavemodel.specimen import DiscTool, WaveLayer
@@ -46,6 +47,10 @@ class Press:
         Depth per force in statics, m/N: of the top face on the axis, or of the tool if it is rigid.
     remainder_axis, remainder_depth
         The remainder's part of the last two: (L,) and a number.
+    modal_stack
+        The sub-layers as the modes see them: with the in-plane stress of each one's direction.
+    flexibility
+        (J, J) work of each traction function of a rigid tool on the displacement under each other, m/N; else None.
     """
 
     stack: Laminate
@@ -59,6 +64,8 @@ class Press:
     compliance: float
     remainder_axis: FloatArray
     remainder_depth: float
+    modal_stack: Laminate
+    flexibility: FloatArray | None = None
 
 
 def prepare(layers: Sequence[WaveLayer], tool: DiscTool, base: str, settings: Settings) -> Press:
@@ -72,14 +79,23 @@ def prepare(layers: Sequence[WaveLayer], tool: DiscTool, base: str, settings: Se
     NotCoveredError
         If the tool's contact is not covered.
     """
-    whole = laminate(layers, subdivision.uniform([1] * len(layers)), base)
+    stress = settings.pretension
+    whole = laminate(layers, subdivision.uniform([1] * len(layers)), base, None if stress is None else stress.mean)
     domain, taper = _window(whole, tool, settings)
     chosen = settings.window is not None and base == "bonded"
     border = automatic.border_cost(whole, tool.radius, domain.width) if chosen else 0.0
     stack, mistake = _sublayers(layers, whole, settings, _yardstick(whole, tool, taper, domain))
     basis = _basis(whole, tool, settings)
     rest = remainder(whole, basis, taper, domain) if taper.active else None
-    return _assemble(stack, (mistake, border), parts(stack, domain, basis, taper, rest), tool.rigid)
+    modal = _seen_by_modes(stack, domain, stress)
+    return _assemble(stack, modal, (mistake, border), parts(modal, domain, basis, taper, rest), tool.rigid)
+
+
+def _seen_by_modes(stack: Laminate, domain: Rectangle, stress: InPlaneStress | None) -> Laminate:
+    if stress is None or not stress.directed:
+        return stack
+    counts = np.diff(stack.top_of_layer, append=stack.sublayers)
+    return replace(stack, tension=np.repeat(stress.along(domain.direction), counts, axis=1))
 
 
 def _window(whole: Laminate, tool: DiscTool, settings: Settings) -> tuple[Rectangle, Taper]:
@@ -93,7 +109,9 @@ def _window(whole: Laminate, tool: DiscTool, settings: Settings) -> tuple[Rectan
         )
     count = automatic.modes(side, tool.radius) if settings.modes is None else settings.modes
     taper = Taper(count * np.pi / side, settings.corrected)
-    return Rectangle(side, side, count, cutoff=taper.limit if taper.active else np.inf), taper
+    directed = settings.pretension is not None and settings.pretension.directed
+    cutoff = taper.limit if taper.active else np.inf
+    return Rectangle(side, side, count, cutoff=cutoff, directed=directed), taper
 
 
 def _yardstick(whole: Laminate, tool: DiscTool, taper: Taper, domain: Rectangle) -> subdivision.Yardstick:
@@ -117,18 +135,18 @@ def _sublayers(
     layers: Sequence[WaveLayer], whole: Laminate, settings: Settings, measure: subdivision.Yardstick
 ) -> tuple[Laminate, float]:
     if settings.sublayers is None:
-        fractions = subdivision.automatic(layers, whole.base, measure)
+        fractions = subdivision.automatic(layers, whole.base, measure, whole.tension)
     elif len(settings.sublayers) == len(layers):
         fractions = subdivision.uniform(settings.sublayers)
     else:
         raise WaveError(
             f"sublayers = {settings.sublayers} is not allowed: one number for each of the {len(layers)} layers"
         )
-    stack = laminate(layers, fractions, whole.base)
+    stack = laminate(layers, fractions, whole.base, whole.tension)
     return stack, subdivision.error(stack, measure)
 
 
-def _assemble(stack: Laminate, costs: tuple[float, float], made: Parts, rigid: bool) -> Press:
+def _assemble(stack: Laminate, modal: Laminate, costs: tuple[float, float], made: Parts, rigid: bool) -> Press:
     traction = made.contact(rigid)
     coefficients = traction.coefficients
     load = np.einsum("kji,j->ki", made.load, coefficients)
@@ -141,4 +159,7 @@ def _assemble(stack: Laminate, costs: tuple[float, float], made: Parts, rigid: b
         depth, rest_depth = (
             float(coefficients @ work @ coefficients) for work in (made.flexibility, made.remainder_flexibility)
         )
-    return Press(stack, *costs, field, made.share, load, unit, unit_axis, depth, rest_axis, rest_depth)
+    flexibility = made.flexibility if rigid else None
+    return Press(
+        stack, *costs, field, made.share, load, unit, unit_axis, depth, rest_axis, rest_depth, modal, flexibility
+    )

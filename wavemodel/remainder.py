@@ -4,6 +4,7 @@ It is exact layered elasticity of the endless specimen: the stack's exact compli
 load, with the half-space that it tends to at large k taken out of the integral and put back in closed form.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,6 +19,8 @@ from wavemodel.loads.half_space import HalfSpace
 from wavemodel.loads.traction import TractionBasis
 from wavemodel.taper import Taper
 
+DEEP = 24.0
+"""Thickness of a layer that is as good as endless, times the wavenumber."""
 SHARPEST, DEEPEST = 2000.0, 12.0
 """The integral stops at k = DEEPEST / thickness of the first layer, where it is a half-space and nothing below it moves
 (to exp(-12)), or at SHARPEST / tool radius."""
@@ -41,6 +44,8 @@ class Remainder:
         The half-space.
     reach
         Beyond this distance from the axis (m) the remainder is nothing.
+    share
+        (q,) share of the load that belongs to the remainder.
     """
 
     basis: TractionBasis
@@ -49,21 +54,29 @@ class Remainder:
     faces: FloatArray
     body: HalfSpace
     reach: float
+    share: FloatArray
 
     def deflection(self, coefficients: FloatArray, radius: FloatArray) -> FloatArray:
         """(L, R) of each layer's top face at radii (R,) in m under coefficients (J,), m/N."""
-        out = np.zeros((self.faces.shape[1], radius.size))
-        near = radius < self.reach
-        load = np.einsum("nji,j->ni", self.load, coefficients)
-        answer = np.einsum("nli,ni->ln", self.faces[:, :, 1], load)
-        out[:, near] = self.spectrum.at_radius(answer, radius[near])
-        out[0, near] += self.basis.half_space_deflection(self.body, radius[near]) @ coefficients
-        return out
+        return np.asarray(deflections((self,), coefficients, radius)[0])
 
     @cached_property
     def flexibility(self) -> FloatArray:
         """(J, J) work of each traction on the displacement under each other, m/N."""
         return work(self.load, self.faces[:, 0], self.spectrum.weight) + self.basis.half_space_flexibility(self.body)
+
+
+def deflections(fields: Sequence[Remainder], coefficients: FloatArray, radius: FloatArray) -> FloatArray:
+    """(B, L, R) of each layer's top face for B remainders of one tool that differ in what answers, m/N."""
+    one = fields[0]
+    out = np.zeros((len(fields), one.faces.shape[1], radius.size))
+    near = radius < one.reach
+    load = np.einsum("nji,j->ni", one.load, coefficients)
+    answer = np.stack([np.einsum("nli,ni->ln", field.faces[:, :, 1], load) for field in fields])
+    out[..., near] = one.spectrum.at_radius(answer, radius[near])
+    for index, field in enumerate(fields):
+        out[index, 0, near] += one.basis.half_space_deflection(field.body, radius[near]) @ coefficients
+    return out
 
 
 def work(load: FloatArray, faces: FloatArray, weight: FloatArray) -> FloatArray:
@@ -100,8 +113,31 @@ def remainder(laminate: Laminate, basis: TractionBasis, taper: Taper, window: Re
     limit = max(1.2 * taper.limit, min(SHARPEST / basis.radius, DEEPEST / float(laminate.thickness[0])))
     spectrum = endless(limit, reach + basis.radius)
     k = spectrum.wavenumber
-    body = HalfSpace.of(float(laminate.shear_modulus[0]), float(laminate.lame_modulus[0]))
+    body = _half_space(laminate)
     faces = compliance(np.maximum(k, window.lowest), laminate, exact_faces).faces
-    faces = faces * np.where(k < window.lowest, 0.0, taper.remainder(k))[:, None, None, None]
-    faces[:, 0] -= body.matrix / k[:, None, None]
-    return Remainder(basis, spectrum, basis.transform(k), faces, body, reach)
+    share = np.where(k < window.lowest, 0.0, taper.remainder(k))
+    return Remainder(basis, spectrum, basis.transform(k), less_half_space(faces, share, body, k), body, reach, share)
+
+
+def _half_space(laminate: Laminate) -> HalfSpace:
+    """What the stack looks like at large wavenumbers: an endless first layer."""
+    if laminate.tension is None:
+        return HalfSpace.of(float(laminate.shear_modulus[0]), float(laminate.lame_modulus[0]))
+    deep = Laminate(
+        thickness=np.array([DEEP]),
+        shear_modulus=laminate.shear_modulus[:1],
+        lame_modulus=laminate.lame_modulus[:1],
+        density=laminate.density[:1],
+        top_of_layer=np.zeros(1, dtype=np.intp),
+        base="bonded",
+        tension=laminate.tension[:1],
+    )
+    surface = compliance(np.ones(1), deep, exact_faces).faces[0, 0]
+    return HalfSpace(float(surface[1, 1]), float(surface[0, 1]), float(surface[0, 0]))
+
+
+def less_half_space(faces: FloatArray, share: FloatArray, body: HalfSpace, wavenumber: FloatArray) -> FloatArray:
+    """(q, L, 2, 2) what is integrated: compliance (q, L, 2, 2) times share (q,), less the half-space on the surface."""
+    out: FloatArray = faces * share[:, None, None, None]
+    out[:, 0] -= body.matrix / wavenumber[:, None, None]
+    return out

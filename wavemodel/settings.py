@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from wavemodel.errors import WaveError, require_positive
+from wavemodel.physics.in_plane_stress import InPlaneStress
 
 FEWEST_FOR_CORRECTION = 8
 """With fewer modes the smooth part of a load, which the modes carry, would be next to nothing."""
@@ -22,6 +23,8 @@ class Settings:
         Number of equal sub-layers in each layer.
     static_correction
         Whether what the modes leave out of the load is answered statically. None: from 8 modes up.
+    pretension
+        In-plane stress of the layers before the press; None: none.
 
     Raises
     ------
@@ -33,6 +36,7 @@ class Settings:
     modes: int | None = None
     sublayers: tuple[int, ...] | None = None
     static_correction: bool | None = None
+    pretension: InPlaneStress | None = None
 
     def __post_init__(self) -> None:
         if self.window is not None:

@@ -41,7 +41,9 @@ class WaveSolution:
 
     def snapshot(self, step: int) -> Snapshot:
         """State of the modes after a step (0..n-1), for `Field` and `Surface`."""
-        return Snapshot(self._history.amplitude(step), float(self._history.static_force[step]))
+        force = self._history.static_force[step]
+        elastic = 0.0 if self._history.elastic is None else float(self._history.elastic[step])
+        return Snapshot(self._history.amplitude(step), float(force[0]) if force.size == 1 else force, elastic)
 
     def profile(self, step: int, radii: FloatArray) -> FloatArray:
         """Deflection of each layer's top face along +x after a step.

@@ -72,11 +72,13 @@ def uniform(counts: Sequence[int]) -> Fractions:
     return tuple((1.0 / count,) * count for count in counts)
 
 
-def automatic(layers: Sequence[WaveLayer], base: str, measure: Yardstick) -> Fractions:
+def automatic(
+    layers: Sequence[WaveLayer], base: str, measure: Yardstick, tension: FloatArray | None = None
+) -> Fractions:
     """Halve sub-layers until the deflection of every layer is right to `TOLERANCE` of its peak."""
     fractions = uniform([1] * len(layers))
     while sum(map(len, fractions)) < MOST_SUBLAYERS:
-        stack = laminate(layers, fractions, base)
+        stack = laminate(layers, fractions, base, tension)
         if error(stack, measure) <= TOLERANCE:
             break
         fractions = _halve(fractions, _blame(stack, measure))

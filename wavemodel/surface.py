@@ -1,5 +1,6 @@
 """One frame of the deflected faces on a grid of vertices: U = Sx A Sy' per layer, from tables made beforehand."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,8 +8,9 @@ import numpy as np
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import WaveError
 from wavemodel.field import Field, Snapshot
+from wavemodel.large_press.law import LargePress
 
-REMAINDER_RADII = 512
+REMAINDER_RADII, LARGE_RADII = 512, 2048
 
 
 @dataclass(frozen=True)
@@ -25,12 +27,18 @@ class Surface:
         (P, M) and (M, Q) tables.
     remainder
         (L, P, Q) deflection that the static remainder adds per force, m/N.
+    fading
+        (B, L, P, Q) that of each field of the remainder, where layers creep each in its own way; else of none.
+    large
+        (B, L, P, Q) what each field of a large-press correction adds, m; of none without one.
     """
 
     field: Field
     sines_x: FloatArray
     sines_y: FloatArray
     remainder: FloatArray
+    fading: FloatArray
+    large: FloatArray
     _memory: "_Memory"
 
     def frame(self, state: Snapshot) -> FloatArray:
@@ -42,7 +50,15 @@ class Surface:
         np.matmul(self.sines_x, memory.modal, out=memory.half)
         np.matmul(memory.half, self.sines_y, out=memory.out)
         if self.field.rest is not None:
-            np.multiply(self.remainder, state.remainder, out=memory.rest)
+            scalar = np.ndim(state.remainder) == 0
+            if scalar:
+                np.multiply(self.remainder, state.remainder, out=memory.rest)
+            else:
+                np.dot(state.remainder, self.fading.reshape(self.fading.shape[0], -1), out=memory.rest.reshape(-1))
+            np.add(memory.out, memory.rest, out=memory.out)
+        if self.field.large is not None:
+            weights = self.field.large.weights_at(state.elastic)
+            np.dot(weights, self.large.reshape(weights.size, -1), out=memory.rest.reshape(-1))
             np.add(memory.out, memory.rest, out=memory.out)
         return memory.out
 
@@ -80,21 +96,35 @@ def surface(field: Field, x: FloatArray, y: FloatArray, layers: int) -> Surface:
         np.empty((layers, x.size, y.size)),
         np.empty((layers, x.size, y.size)),
     )
+    distance = np.hypot(x[:, None], y)
     return Surface(
         field,
         field.domain.sines(x),
         np.ascontiguousarray(field.domain.sines(y, axis=1).T),
-        _remainder(field, np.hypot(x[:, None], y), layers),
+        _remainder(field, distance, lambda radius: field.remainder(radius, layers)[None])[0],
+        _remainder(field, distance, field.remainders) if field.fading else np.empty((0, layers, 0, 0)),
+        _large(field.large, distance) if field.large else np.empty((0, layers, 0, 0)),
         memory,
     )
 
 
-def _remainder(field: Field, distance: FloatArray, layers: int) -> FloatArray:
-    """(L, P, Q) by interpolation between radii that crowd towards the tool's edge."""
+def _remainder(field: Field, distance: FloatArray, deflection: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    """(B, L, P, Q) by interpolation between radii that crowd towards the tool's edge."""
     if field.rest is None:
-        return np.zeros((layers, *distance.shape))
+        return np.zeros((*deflection(np.zeros(1)).shape[:2], *distance.shape))
     edge, reach = field.traction.basis.radius, field.rest.reach
     turn = np.linspace(0.0, 1.0, REMAINDER_RADII)
     radius = np.concatenate([edge * np.sin(0.5 * np.pi * turn), edge + (reach - edge) * turn[1:] ** 2])
-    values = field.remainder(radius, layers)
-    return np.stack([np.interp(distance, radius, row, right=0.0) for row in values])
+    return _spread(deflection(radius), radius, distance)
+
+
+def _large(correction: LargePress, distance: FloatArray) -> FloatArray:
+    """(B, L, P, Q) by interpolation between many radii."""
+    radius = np.linspace(0.0, float(distance.max()), LARGE_RADII)
+    return _spread(correction.at_radius(radius), radius, distance)
+
+
+def _spread(values: FloatArray, radius: FloatArray, distance: FloatArray) -> FloatArray:
+    """From (B, L, R) at radii to (B, L, P, Q) at distances."""
+    rows = [np.interp(distance, radius, row, right=0.0) for row in values.reshape(-1, radius.size)]
+    return np.stack(rows).reshape(*values.shape[:2], *distance.shape)

@@ -27,6 +27,8 @@ class Rectangle:
         Whether only what is symmetric about both centre lines is wanted; then only odd m and n take part.
     cutoff
         Modes with a larger wavenumber (rad/m) are left out.
+    directed
+        Whether modes of one wavenumber but of different directions count as different.
 
     Raises
     ------
@@ -39,6 +41,7 @@ class Rectangle:
     modes: int
     symmetric: bool = True
     cutoff: float = np.inf
+    directed: bool = False
 
     def __post_init__(self) -> None:
         require_positive("window", self.width, "m")
@@ -52,11 +55,20 @@ class Rectangle:
         return np.arange(1, self.modes + 1, 2 if self.symmetric else 1, dtype=np.intp)
 
     @cached_property
-    def _distinct(self) -> tuple[FloatArray, IntArray]:
+    def _square(self) -> FloatArray:
+        """(M, M) k^2 of every pair."""
         kx, ky = self.order * np.pi / self.width, self.order * np.pi / self.height
-        square = kx[:, None] ** 2 + ky**2
+        square: FloatArray = kx[:, None] ** 2 + ky**2
+        return square
+
+    @cached_property
+    def _distinct(self) -> tuple[FloatArray, IntArray]:
+        square, kx = self._square, self.order * np.pi / self.width
         unit = (np.pi / max(self.width, self.height)) ** 2
-        _, first, index = np.unique(np.round(square / unit, 6), return_index=True, return_inverse=True)
+        keys, along = np.round(square / unit, 6), np.round(kx[:, None] ** 2 / unit, 6)
+        _, first, index = np.unique(
+            keys + 1j * along if self.directed else keys, return_index=True, return_inverse=True
+        )
         wavenumber = np.sqrt(square.ravel()[first])
         kept = int(np.searchsorted(wavenumber, self.cutoff, side="right"))
         return wavenumber[:kept], np.minimum(index, kept).reshape(square.shape)
@@ -65,6 +77,15 @@ class Rectangle:
     def wavenumber(self) -> FloatArray:
         """(K,) the distinct k = pi sqrt(m^2/a^2 + n^2/b^2) that are carried, rising, rad/m."""
         return self._distinct[0]
+
+    @property
+    def direction(self) -> FloatArray:
+        """(K,) share kx^2 / k^2 of each carried wavenumber that runs along x (of the first such mode)."""
+        share = (self.order[:, None] * np.pi / self.width) ** 2 / self._square
+        index = self._distinct[1]
+        out = np.empty(self.wavenumber.size + 1)
+        out[index.ravel()[::-1]] = share.ravel()[::-1]
+        return out[:-1]
 
     @property
     def lowest(self) -> float:

@@ -12,11 +12,13 @@ import numpy as np
 
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import WaveError
+from wavemodel.integrators.creep import creep
 from wavemodel.integrators.damping import Damping
 from wavemodel.integrators.history import History
 from wavemodel.integrators.lag import LagStep, lag_step
 from wavemodel.integrators.load import Load
-from wavemodel.integrators.oscillators import OscillatorStep, oscillator_step
+from wavemodel.integrators.motion import Motion
+from wavemodel.integrators.prony import Prony
 
 SAME_STEP = 1e-12
 """Steps that differ by less (relatively) are the same step; clocks round at 1e-14."""
@@ -44,6 +46,8 @@ class ModalSystem:
         Whether the depth is what the force works on (its rate times the force the power).
     damping
         Of the modes; its stiffness part also of the remainder.
+    series
+        Fading memory of all layers alike, also of the remainder.
     """
 
     frequency: FloatArray
@@ -54,6 +58,7 @@ class ModalSystem:
     remainder_axis: FloatArray
     collocated: bool
     damping: Damping
+    series: Prony
 
 
 def integrate(load: Load, system: ModalSystem) -> History:
@@ -78,7 +83,7 @@ def integrate(load: Load, system: ModalSystem) -> History:
         force[step], depth[step], static[step] = march.force, march.depth, march.static
         amplitude[step] = march.amplitude
     top = amplitude @ system.axis_weight + np.outer(static, system.remainder_axis)
-    return History(force, depth, top, static, amplitude.__getitem__)
+    return History(force, depth, top, static[:, None], amplitude.__getitem__)
 
 
 def _advance(march: "_March", duration: float, value: float, by_depth: bool) -> None:
@@ -91,55 +96,62 @@ def _advance(march: "_March", duration: float, value: float, by_depth: bool) -> 
 
 
 class _March:
-    """State of a run and the coefficients of its latest step length."""
+    """State of a run: the oscillators, and what the static remainder answers to."""
 
     def __init__(self, system: ModalSystem) -> None:
         self.system = system
-        self.u = np.zeros(system.frequency.size)
-        self.v = np.zeros(system.frequency.size)
-        self.force = self.static = 0.0
+        self.motion = Motion(system.frequency.ravel(), system.damping, system.series)
+        self.creep = creep(system.series, system.damping.stiffness_time)
+        self.lags = np.zeros(self.creep.time.size)
+        self.force = 0.0
         self.weight = system.depth.ravel()
         self.duration = 0.0
 
     def start(self, target: float, by_depth: bool) -> None:
         """Static state of the first value."""
         self.force = target / self.static_compliance if by_depth else target
-        self.u[:] = self.static = self.force
+        self.motion.rest(self.force)
+        self.lags[:] = self.force
 
     def by_force(self, duration: float, force: float) -> None:
         """Step with the force going linearly to `force`."""
         self._prepare(duration)
-        self.modal.advance(self.u, self.v, self.force, force - self.force)
-        self.static = self.lag.keep * self.static + self.lag.first * self.force + self.lag.last * force
+        self.motion.advance(self.force, force - self.force)
+        self.lags = self.lag.keep * self.lags + self.lag.first * self.force + self.lag.last * force
         self.force = force
 
     def by_depth(self, duration: float, depth: float) -> None:
         """Step with the constant force that ends at `depth`."""
         self._prepare(duration)
-        rest, keep = self.system.remainder_depth, self.lag.keep
-        free = float(self.weight @ (self.modal.stay * self.u + self.modal.swing * self.v)) + rest * keep * self.static
-        self.force = (depth - free) / (self.gain + rest * (1.0 - keep))
-        self.modal.advance(self.u, self.v, self.force, 0.0)
-        self.static = keep * self.static + (1.0 - keep) * self.force
+        rest, kept = self.system.remainder_depth, self.lag.keep * self.lags
+        free = float(self.weight @ self.motion.free()) + rest * float(self.creep.weight @ kept)
+        self.force = (depth - free) / (self.gain + rest * self.rest_gain)
+        self.motion.advance(self.force, 0.0)
+        self.lags = kept + (1.0 - self.lag.keep) * self.force
+
+    @property
+    def static(self) -> float:
+        """Force that the remainder answers to."""
+        return self.creep.instant * self.force + float(self.creep.weight @ self.lags)
 
     @property
     def depth(self) -> float:
-        return float(self.weight @ self.u) + self.system.remainder_depth * self.static
+        return float(self.weight @ self.motion.displacement) + self.system.remainder_depth * self.static
 
     @property
     def amplitude(self) -> FloatArray:
-        state = self.u.reshape(self.system.frequency.shape)
+        state = self.motion.displacement.reshape(self.system.frequency.shape)
         return np.asarray(np.einsum("lkd,kd->lk", self.system.deflection, state))
 
     @property
     def static_compliance(self) -> float:
-        return float(self.weight.sum()) + self.system.remainder_depth
+        return (float(self.weight.sum()) + self.system.remainder_depth) / self.system.series.long_term
 
     def _prepare(self, duration: float) -> None:
         if abs(duration - self.duration) <= SAME_STEP * duration:
             return
         self.duration = duration
-        damping = self.system.damping
-        self.modal: OscillatorStep = oscillator_step(self.system.frequency.ravel(), damping, duration)
-        self.lag: LagStep = lag_step(duration, damping.stiffness_time)
-        self.gain = float(self.weight @ (1.0 - self.modal.stay))
+        self.motion.prepare(duration)
+        self.lag: LagStep = lag_step(duration / self.creep.time)
+        self.gain = float(self.weight @ self.motion.gain())
+        self.rest_gain = self.creep.instant + float(self.creep.weight @ (1.0 - self.lag.keep))

@@ -17,9 +17,11 @@ class History:
     top_deflection
         (n, L) in m: each layer's top face on the axis.
     static_force
-        (n,) force that the static remainder answers to, N (the lagged force with Kelvin-Voigt damping).
+        (n, B) forces that the B fields of the static remainder answer to, N (the force as creep delays it).
     amplitude
         Step to (L, K): amplitudes of the top faces by wavenumber.
+    elastic
+        (n,) elastic forces that a large-press correction is read at, N; None where the body is linear.
     """
 
     force: FloatArray
@@ -27,3 +29,4 @@ class History:
     top_deflection: FloatArray
     static_force: FloatArray
     amplitude: Callable[[int], FloatArray]
+    elastic: FloatArray | None = None

@@ -40,11 +40,9 @@ class Load:
             return self.time, self.value
         return np.concatenate([[0.0], self.time]), np.concatenate([[0.0], self.value])
 
-    @property
-    def rates(self) -> FloatArray:
-        """(n,) slope of the value within each step; zero where a step has no duration."""
-        change = np.diff(self.value, prepend=0.0)
-        return np.divide(change, self.durations, out=np.zeros_like(change), where=self.durations > 0.0)
+    def initial(self, driven: FloatArray) -> float:
+        """What the body has rested at before the first step, for what drives it (n,): zero or the first value."""
+        return float(driven[0]) if self.time[0] <= 0.0 else 0.0
 
 
 def checked_load(control: str, time: FloatArray, value: FloatArray) -> Load:

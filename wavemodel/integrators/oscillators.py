@@ -1,6 +1,6 @@
 """Damped oscillators under a force that is linear within each step, exactly.
 
-u'' / w^2 + c u' / w^2 + u = F(t), c = mass_rate + stiffness_time w^2, with v = u' / w. The linear force has the
+u'' / w^2 + c u' / w^2 + u = F(t) with v = u' / w; c = mass_rate + stiffness_time w^2. The linear force has the
 particular solution u_p = F - c F' / w^2, v_p = F' / w; what is left over is free and moves by
 
     [ a        d w   ]     a = e^(-s h) (cos(p h) + s sin(p h) / p)
@@ -52,7 +52,11 @@ class OscillatorStep:
 
 def oscillator_step(frequency: FloatArray, damping: Damping, duration: float) -> OscillatorStep:
     """Coefficients for angular frequencies (N,) in rad/s, above zero, and a duration (s) above zero."""
-    rate = damping.mass_rate + damping.stiffness_time * frequency**2
+    return pair_step(frequency, damping.mass_rate + damping.stiffness_time * frequency**2, duration)
+
+
+def pair_step(frequency: FloatArray, rate: FloatArray, duration: float) -> OscillatorStep:
+    """The same for any rates c (N,), 1/s."""
     half = 0.5 * rate
     inner = (frequency - half) * (frequency + half)
     cosine, sine = np.empty_like(frequency), np.empty_like(frequency)

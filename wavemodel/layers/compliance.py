@@ -6,7 +6,7 @@ at once.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -14,10 +14,13 @@ import numpy as np
 from wavemodel.arrays import FloatArray
 from wavemodel.layers import exact, quadratic
 from wavemodel.layers.laminate import Laminate
+from wavemodel.layers.stacking import inverse, stacked
 
 FaceStiffness: TypeAlias = Callable[[FloatArray, Laminate], FloatArray]
 """(n,) wavenumbers and a laminate to (n, S, 4, 4)."""
 
+THIN = 0.005
+"""Thickness of a slice times the wavenumber: the layer comes out to 1e-7, as good as rounding allows."""
 BLOCK = 512
 """Wavenumbers taken at once: their matrices stay in the cache."""
 
@@ -48,12 +51,42 @@ def quadratic_faces(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
     """Quadratic sub-layers, their middle nodes condensed: (n, S, 4, 4) in Pa/m."""
     full = quadratic.stiffness(wavenumber, laminate)
     outer, to_mid, mid = full[..., :4, :4], full[..., :4, 4:], full[..., 4:, 4:]
-    return outer - to_mid @ _inverse(mid) @ np.swapaxes(to_mid, -1, -2)
+    return outer - to_mid @ inverse(mid) @ np.swapaxes(to_mid, -1, -2)
 
 
 def exact_faces(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
     """Exact static sub-layers: (n, S, 4, 4) in Pa/m."""
+    if laminate.tension is not None:
+        return doubled_faces(wavenumber, laminate)
     return exact.stiffness(wavenumber, laminate)
+
+
+def doubled_faces(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
+    """The same for any sub-layers: a slice thin against the wavelength, put on its like again and again."""
+    out = np.empty((wavenumber.size, laminate.sublayers, 4, 4))
+    for s in range(laminate.sublayers):
+        times = np.maximum(np.ceil(np.log2(wavenumber * laminate.thickness[s] / THIN)), 0.0)
+        for count in np.unique(times):
+            chosen = np.flatnonzero(times == count)
+            slice_ = _slice(laminate.at(chosen), s, 2.0**-count)
+            whole = quadratic_faces(wavenumber[chosen], slice_)
+            for _ in range(int(count)):
+                whole = stacked(whole, whole)
+            out[chosen, s] = whole[:, 0]
+    return out
+
+
+def _slice(laminate: Laminate, index: int, share: float) -> Laminate:
+    """A share of one sub-layer's thickness."""
+    only = slice(index, index + 1)
+    return replace(
+        laminate,
+        thickness=share * laminate.thickness[only],
+        shear_modulus=laminate.shear_modulus[only],
+        lame_modulus=laminate.lame_modulus[only],
+        density=laminate.density[only],
+        tension=None if laminate.tension is None else laminate.tension[..., only],
+    )
 
 
 def compliance(wavenumber: FloatArray, laminate: Laminate, stiffness: FaceStiffness = quadratic_faces) -> Compliance:
@@ -68,8 +101,11 @@ def compliance(wavenumber: FloatArray, laminate: Laminate, stiffness: FaceStiffn
     stiffness
         `quadratic_faces` or `exact_faces`.
     """
-    blocks = np.array_split(wavenumber, max(1, wavenumber.size // BLOCK))
-    faces = [every_face(laminate, stiffness(k, laminate))[:, laminate.top_of_layer] for k in blocks]
+    blocks = np.array_split(np.arange(wavenumber.size), max(1, wavenumber.size // BLOCK))
+    faces = [
+        every_face(laminate, stiffness(wavenumber[block], laminate.at(block)))[:, laminate.top_of_layer]
+        for block in blocks
+    ]
     return Compliance(wavenumber, np.concatenate(faces))
 
 
@@ -93,23 +129,13 @@ def every_face(laminate: Laminate, blocks: FloatArray) -> FloatArray:
     carry = np.zeros((count, blocks.shape[0], 2, 2))
     schur = top[:, -1]
     if laminate.base == "free":
-        carry[-1] = -_inverse(bottom[:, -1]) @ across[:, -1]
+        carry[-1] = -inverse(bottom[:, -1]) @ across[:, -1]
         schur = schur + np.swapaxes(across[:, -1], -1, -2) @ carry[-1]
     for s in range(count - 2, -1, -1):
-        carry[s] = -_inverse(bottom[:, s] + schur) @ across[:, s]
+        carry[s] = -inverse(bottom[:, s] + schur) @ across[:, s]
         schur = top[:, s] + np.swapaxes(across[:, s], -1, -2) @ carry[s]
     faces = np.empty((blocks.shape[0], count + 1, 2, 2))
-    faces[:, 0] = _inverse(schur)
+    faces[:, 0] = inverse(schur)
     for s in range(count):
         faces[:, s + 1] = carry[s] @ faces[:, s]
     return faces
-
-
-def _inverse(matrix: FloatArray) -> FloatArray:
-    """Inverse of symmetric 2 x 2 matrices (..., 2, 2)."""
-    a, b, d = matrix[..., 0, 0], matrix[..., 0, 1], matrix[..., 1, 1]
-    out = np.empty_like(matrix)
-    out[..., 0, 0] = d
-    out[..., 1, 1] = a
-    out[..., 0, 1] = out[..., 1, 0] = -b
-    return out / (a * d - b * b)[..., None, None]

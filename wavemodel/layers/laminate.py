@@ -1,7 +1,7 @@
 """The stack of layers as it is cut into sub-layers: plain arrays, from the surface down."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,9 @@ class Laminate:
         (L,) index of the sub-layer whose upper face is the layer's top face.
     base
         "bonded" (no motion of the lowest face) or "free".
+    tension
+        In-plane tensile stress before the press, Pa: None, (S,), or (n, S) for n wavenumbers whose directions see
+        different stresses.
     """
 
     thickness: FloatArray
@@ -32,6 +35,13 @@ class Laminate:
     density: FloatArray
     top_of_layer: IntArray
     base: str
+    tension: FloatArray | None = None
+
+    def at(self, wavenumbers: IntArray) -> "Laminate":
+        """The stack as some of the wavenumbers see it."""
+        if self.tension is None or self.tension.ndim == 1:
+            return self
+        return replace(self, tension=self.tension[wavenumbers])
 
     @property
     def sublayers(self) -> int:
@@ -49,7 +59,12 @@ class Laminate:
         return float(self.thickness.sum())
 
 
-def laminate(layers: Sequence[WaveLayer], fractions: Sequence[Sequence[float]], base: str) -> Laminate:
+def laminate(
+    layers: Sequence[WaveLayer],
+    fractions: Sequence[Sequence[float]],
+    base: str,
+    tension: FloatArray | None = None,
+) -> Laminate:
     """Cut the layers into sub-layers.
 
     Parameters
@@ -60,6 +75,8 @@ def laminate(layers: Sequence[WaveLayer], fractions: Sequence[Sequence[float]], 
         For each layer the parts of its thickness, from its top down; each list sums to one.
     base
         "bonded" or "free".
+    tension
+        (L,) in-plane tensile stress before the press, Pa.
 
     Raises
     ------
@@ -80,4 +97,5 @@ def laminate(layers: Sequence[WaveLayer], fractions: Sequence[Sequence[float]], 
         density=np.repeat([layer.density for layer in layers], counts),
         top_of_layer=np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.intp),
         base=base,
+        tension=None if tension is None else np.repeat(tension, counts),
     )

@@ -5,9 +5,10 @@ z and w downwards. The strain energy per unit of int S^2 dA is
 
     1/2 int [ lam (W' - k U)^2 + 2 G (k^2 U^2 + W'^2) + G (U' + k W)^2 ] dz ,
 
-and three nodes (top, bottom, middle) carry U and W. The terms in lam take two Gauss points, which leaves no
-volumetric locking as Poisson's ratio nears one half. Unknowns of a sub-layer: U_top, W_top, U_bottom, W_bottom,
-U_mid, W_mid.
+to which an in-plane stress sigma before the press adds 1/2 int sigma k^2 (U^2 + W^2) dz (Biot's incremental
+deformations, moduli unchanged). Three nodes (top, bottom, middle) carry U and W. The terms in lam take two Gauss
+points, which leaves no volumetric locking as Poisson's ratio nears one half. Unknowns of a sub-layer: U_top, W_top,
+U_bottom, W_bottom, U_mid, W_mid.
 """
 
 import numpy as np
@@ -51,6 +52,10 @@ def stiffness(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
     coupling = k * (shear * SHAPE_SLOPE.T - lame * SHAPE_SLOPE)
     out[..., 0::2, 1::2] = coupling
     out[..., 1::2, 0::2] = np.swapaxes(coupling, -1, -2)
+    if laminate.tension is not None:
+        stressed = k**2 * (laminate.tension[..., None, None] * h * SHAPE_SHAPE)
+        out[..., 0::2, 0::2] += stressed
+        out[..., 1::2, 1::2] += stressed
     return out
 
 

@@ -68,7 +68,7 @@ class PunchTractions:
         n, m = np.arange(self.normal), np.arange(self.shear)
         out = np.zeros((self.normal + self.shear,) * 2)
         out[n, n] = body.normal * np.pi / (2.0 * (4.0 * n + 1.0))
-        out[self.normal + m, self.normal + m] = body.normal * np.pi / (2.0 * (4.0 * m + 3.0))
+        out[self.normal + m, self.normal + m] = body.shear * np.pi / (2.0 * (4.0 * m + 3.0))
         apart = n[:, None] - m
         crossed = body.cross * (-1.0) ** apart / ((2.0 * apart - 1.0) * 2.0 * (n[:, None] + m + 1.0))
         out[: self.normal, self.normal :] = crossed

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.linalg import cholesky, expm
 
-from wavemodel import Damping, DiscTool, LayeredWave, WaveError
+from wavemodel import Damping, DiscTool, LayeredWave, Prony, WaveError
 from wavemodel.layers import quadratic
 from wavemodel.layers.vibration import assemble
 
@@ -111,6 +111,23 @@ def test_starts_from_the_static_state_of_a_history_that_begins_at_zero(skin):
     wave = few_modes(skin())
     held = wave.run("force", np.array([0.0, 0.001, 0.5]), np.ones(3))
     np.testing.assert_allclose(held.top_deflection, np.tile(wave.press.unit_axis, (3, 1)), rtol=1e-9)
+
+
+def test_slow_presses_with_and_without_inertia_relax_alike(skin):
+    series, options = Prony((0.4,), (2.0,)), {"window": 50e-3, "modes": 16}
+    time = np.arange(1, 41) * 0.25
+    force, tool = np.minimum(time / 2.0, 1.0), DiscTool(5e-3, "rigid_frictionless")
+    damping = Damping(0.0, 1e-3)
+    runs = [
+        LayeredWave(skin(), tool, integrator=name, relaxation=series, damping=damping, **options)
+        for name in ("exact", "quasi_static")
+    ]
+    by_force = [wave.run("force", time, force).depth for wave in runs]
+    np.testing.assert_allclose(*by_force, rtol=1e-3)
+    by_depth = [wave.run("depth", time, 1e-3 * force) for wave in runs]
+    np.testing.assert_allclose(by_depth[0].depth, 1e-3 * force, rtol=1e-9)
+    np.testing.assert_allclose(by_depth[0].force[4:], by_depth[1].force[4:], rtol=0.05)
+    np.testing.assert_allclose(by_depth[0].force[-1], by_depth[1].force[-1], rtol=2e-3)
 
 
 def test_refuses_to_drive_one_point_under_a_uniform_pressure(skin):

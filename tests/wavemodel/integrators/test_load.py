@@ -8,7 +8,7 @@ from wavemodel.integrators.load import checked_load
 def test_the_first_step_starts_at_time_zero_unloaded():
     load = checked_load("force", [0.1, 0.2, 0.4], [1.0, 3.0, 3.0])
     np.testing.assert_allclose(load.durations, [0.1, 0.1, 0.2])
-    np.testing.assert_allclose(load.rates, [10.0, 20.0, 0.0])
+    assert load.initial(load.value) == 0.0
     np.testing.assert_allclose(load.line[0], [0.0, 0.1, 0.2, 0.4])
 
 
@@ -16,7 +16,7 @@ def test_the_first_step_starts_at_time_zero_unloaded():
 def test_a_history_from_zero_on_starts_in_its_first_state(start):
     load = checked_load("depth", np.array([start, start + 1.0]), np.array([2.0, 3.0]))
     np.testing.assert_allclose(load.durations, [0.0, 1.0])
-    np.testing.assert_allclose(load.rates, [0.0, 1.0])
+    assert load.initial(load.value) == 2.0
 
 
 @pytest.mark.parametrize(

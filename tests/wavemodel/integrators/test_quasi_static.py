@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 
 from wavemodel.integrators.load import checked_load
-from wavemodel.integrators.quasi_static import quasi_static
+from wavemodel.integrators.quasi_static import SharedBody, quasi_static
 
 UNIT, AXIS = np.array([[2.0, 1.0]]), np.array([4.0])
 
 
 def run(control, time, value, lag=0.0):
-    return quasi_static(checked_load(control, time, value), UNIT, AXIS, 4.0, lag)
+    return quasi_static(checked_load(control, time, value), SharedBody(UNIT[None], AXIS[None], 4.0, retardation=lag))
 
 
 def test_all_modes_follow_the_force():

@@ -1,7 +1,9 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from wavemodel.layers.compliance import compliance, exact_faces, quadratic_faces
+from wavemodel.layers.compliance import compliance, doubled_faces, exact_faces, quadratic_faces
 from wavemodel.layers.laminate import laminate
 
 K = np.geomspace(20.0, 30e3, 25)
@@ -51,3 +53,34 @@ def test_condensation_leaves_the_energy_of_the_middle_node_out(skin):
     middle = -np.linalg.solve(full[4:, 4:], full[4:, :4] @ outer)
     whole = np.concatenate([outer, middle])
     assert outer @ condensed @ outer == pytest.approx(whole @ full @ whole)
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.48, 0.499])
+def test_a_slice_put_on_its_like_again_and_again_is_the_exact_layer(skin, nu):
+    stack = halves(skin(poisson_ratio=nu), 1)
+    exact, doubled = exact_faces(K, stack), doubled_faces(K, stack)
+    scale = np.abs(exact).max(axis=(2, 3), keepdims=True)
+    np.testing.assert_allclose(doubled / scale, exact / scale, atol=2e-7)
+
+
+def test_stressed_layers_are_what_many_sublayers_come_to(skin):
+    stress = np.array([3e4, 2e4, 5e3])
+    k = np.array([100.0, 400.0, 1600.0])
+    layers = skin()
+    exact = compliance(k, laminate(layers, [(1.0,)] * 3, "bonded", stress), exact_faces).faces
+    fine = compliance(k, laminate(layers, [(1 / 64,) * 64] * 3, "bonded", stress)).faces
+    relaxed = compliance(k, laminate(layers, [(1.0,)] * 3, "bonded"), exact_faces).faces
+    scale = np.abs(exact[:, :1]).max(axis=(2, 3), keepdims=True)
+    np.testing.assert_allclose(fine / scale, exact / scale, atol=5e-6)
+    assert np.all(exact[:, 0, 1, 1] < 0.97 * relaxed[:, 0, 1, 1])
+
+
+def test_stress_by_direction_is_taken_for_its_wavenumber_also_in_blocks(skin):
+    k = np.tile([100.0, 400.0, 1600.0], 400)
+    stress = np.repeat(np.linspace(0.0, 3e4, 400), 3)[:, None] * np.ones(3)
+    all_at_once = compliance(k, laminate(skin(), [(1.0,)] * 3, "bonded", stress[0]).at(np.arange(3)))
+    stack = laminate(skin(), [(1.0,)] * 3, "bonded")
+    directed = compliance(k, replace(stack, tension=stress))
+    last = compliance(k[-3:], replace(stack, tension=stress[-1]))
+    np.testing.assert_allclose(directed.faces[-3:], last.faces, rtol=1e-12)
+    np.testing.assert_allclose(directed.faces[:3], all_at_once.faces[:3], rtol=1e-12)

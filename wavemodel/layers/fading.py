@@ -1,0 +1,123 @@
+"""Creep of a stack whose layers fade each in its own way, one wavenumber at a time.
+
+Layer l has the stiffness K_l between its faces and the series g_lj, tau_lj. With the displacement q_lj that each
+branch lags behind by, tau_lj q_lj' = u - q_lj,
+
+    sum_l (1 + eta d/dt) K_l u - sum_lj g_lj K_l q_lj = f.
+
+With K_l = R_l' R_l and y_lj = sqrt(g_lj tau_lj) R_l q_lj this is symmetric,
+
+    y' = -D y + C u,    K u = f + C' y,    D = diag(1 / tau_lj),    C_lj = sqrt(g_lj / tau_lj) R_l,
+
+so that the answer to f is what comes at once, K^-1, and lags whose rates are the eigenvalues of D - C K^-1 C'. Under
+Kelvin-Voigt damping u is a state too and nothing comes at once. Shear and bulk modulus of a layer fade alike.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from wavemodel.arrays import FloatArray
+from wavemodel.integrators.prony import Prony
+
+
+@dataclass(frozen=True)
+class Fading:
+    """Compliance of n wavenumbers as an instant part and m lags each.
+
+    Attributes
+    ----------
+    instant
+        (n, L, 2, 2) in m/Pa, as `Compliance.faces`.
+    rate
+        (n, m) of the lags, 1/s.
+    faces
+        (n, m, L, 2, 2) of the lags, m/Pa: instant and lags together are the compliance after a long time.
+    """
+
+    instant: FloatArray
+    rate: FloatArray
+    faces: FloatArray
+
+
+def fading(layers: FloatArray, base: str, series: Sequence[Prony], retardation: float) -> Fading:
+    """Creep of a stack.
+
+    Parameters
+    ----------
+    layers
+        (n, L, 4, 4) stiffness of each layer between its faces, Pa/m.
+    base
+        "bonded" or "free".
+    series
+        L, from the surface down.
+    retardation
+        Kelvin-Voigt time, s.
+    """
+    roots = _roots(layers)
+    stiffness = _assembled(layers, base)
+    branch = _branches(roots, series, stiffness.shape[-1])
+    rates = np.repeat(np.concatenate([one.ordered[1] for one in series]), 4)
+    if retardation:
+        system, readout = _damped(stiffness, branch, rates, retardation)
+    else:
+        readout = np.swapaxes(np.linalg.solve(stiffness, np.swapaxes(branch, -1, -2)), -1, -2)
+        system = np.diag(rates) - branch @ np.swapaxes(readout, -1, -2)
+    rate, shapes = np.linalg.eigh(0.5 * (system + np.swapaxes(system, -1, -2)))
+    moved = np.swapaxes(shapes, -1, -2) @ readout
+    tops = moved[..., : 2 * layers.shape[1]].reshape(*rate.shape, layers.shape[1], 2)
+    instant = np.zeros_like(stiffness)
+    if retardation == 0.0:
+        instant[:] = np.linalg.inv(stiffness)
+    return Fading(
+        instant[:, : 2 * layers.shape[1], :2].reshape(-1, layers.shape[1], 2, 2),
+        rate,
+        tops[..., None] * (moved[..., :2] / rate[..., None])[:, :, None, None],
+    )
+
+
+def _roots(layers: FloatArray) -> FloatArray:
+    """(n, L, 4, 4) R of K = R' R."""
+    values, vectors = np.linalg.eigh(layers)
+    roots: FloatArray = np.sqrt(np.maximum(values, 0.0))[..., None] * np.swapaxes(vectors, -1, -2)
+    return roots
+
+
+def _assembled(layers: FloatArray, base: str) -> FloatArray:
+    """(n, d, d) stiffness of all faces that move."""
+    count = layers.shape[1]
+    out = np.zeros((layers.shape[0], 2 * count + 2, 2 * count + 2))
+    for index in range(count):
+        at = slice(2 * index, 2 * index + 4)
+        out[:, at, at] += layers[:, index]
+    kept = 2 * count + (2 if base == "free" else 0)
+    return out[:, :kept, :kept]
+
+
+def _branches(roots: FloatArray, series: Sequence[Prony], unknowns: int) -> FloatArray:
+    """(n, 4 J, d) C, four rows a branch."""
+    rows = []
+    for index, one in enumerate(series):
+        for strength, rate in zip(*one.ordered, strict=True):
+            row = np.zeros((roots.shape[0], 4, 2 * roots.shape[1] + 2))
+            row[:, :, 2 * index : 2 * index + 4] = np.sqrt(strength * rate) * roots[:, index]
+            rows.append(row[..., :unknowns])
+    return np.concatenate(rows, axis=1) if rows else np.zeros((roots.shape[0], 0, unknowns))
+
+
+def _damped(
+    stiffness: FloatArray, branch: FloatArray, rates: FloatArray, retardation: float
+) -> tuple[FloatArray, FloatArray]:
+    """System and readout with the faces as states: sqrt(eta) R u with K = R' R."""
+    root = np.linalg.cholesky(stiffness)
+    size = root.shape[-1]
+    back = np.linalg.inv(root) / np.sqrt(retardation)
+    across = -branch @ np.swapaxes(back, -1, -2)
+    system = np.zeros((root.shape[0], size + rates.size, size + rates.size))
+    system[:, :size, :size] = np.eye(size) / retardation
+    system[:, size:, :size] = across
+    system[:, :size, size:] = np.swapaxes(across, -1, -2)
+    system[:, size:, size:] = np.diag(rates)
+    readout = np.concatenate([back, np.zeros((root.shape[0], rates.size, size))], axis=1)
+    return system, readout

@@ -1,0 +1,111 @@
+"""A press on layers that fade each in its own way: its static answer as fields of a few shared lags.
+
+The contact traction of a rigid tool is that of the initial moduli throughout. Its work, and with it the tool's depth,
+is stationary against what creep shifts it by; the face under the tool does not stay quite flat: where one layer loses
+half of its modulus and its neighbour a fifth, the depth is 0.3 % and the face 3 % off.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from wavemodel.arrays import FloatArray
+from wavemodel.integrators.creep import creep
+from wavemodel.integrators.layerwise import LayerwiseBody
+from wavemodel.integrators.prony import Prony
+from wavemodel.layers import fading
+from wavemodel.layers.compliance import exact_faces, quadratic_faces
+from wavemodel.layers.lag_nodes import LagNodes, lag_nodes
+from wavemodel.layers.laminate import Laminate
+from wavemodel.layers.stacking import layer_faces
+from wavemodel.press import Press
+from wavemodel.remainder import Remainder, deflections, less_half_space, work
+
+
+@dataclass(frozen=True)
+class _Creep:
+    """What creeps: the modes and, where there is one, the remainder with the half-space in it."""
+
+    modal: fading.Fading
+    sharp: fading.Fading | None
+    surface_rate: FloatArray
+    surface_weight: FloatArray
+    surface_instant: float
+
+    @property
+    def nodes(self) -> LagNodes:
+        sharp = [] if self.sharp is None else [self.sharp.rate.ravel(), self.surface_rate]
+        return lag_nodes(np.concatenate([self.modal.rate.ravel(), *sharp]))
+
+
+def layerwise(
+    press: Press, whole: Laminate, rigid: bool, series: Sequence[Prony], retardation: float
+) -> tuple[LayerwiseBody, Press]:
+    """Set up creep by layers.
+
+    Parameters
+    ----------
+    press
+        The set-up by the initial moduli.
+    whole
+        The stack with one sub-layer a layer.
+    rigid
+        Whether the face under the tool moves as one.
+    series
+        L, from the surface down.
+    retardation
+        Kelvin-Voigt time, s.
+
+    Returns
+    -------
+    tuple
+        The body, and the press with the remainder's fields.
+    """
+    made = _creep(press, whole, series, retardation)
+    nodes = made.nodes
+    faces = _by_node(made.modal, nodes)
+    unit = np.einsum("bklij,kj->bkli", faces, press.load)[..., 1] * press.share[:, None]
+    rests = _remainders(press.field.rest, made, nodes)
+    coefficients, weight = press.field.traction.coefficients, press.field.domain.axis_weight
+    axis = np.einsum("bkl,k->bl", unit, weight)
+    if rests:
+        axis = axis + deflections(rests, coefficients, np.zeros(1))[..., 0]
+    depth = axis[:, 0].copy()
+    if rigid:
+        for b, one in enumerate(rests):
+            modal = work(press.load[:, None], faces[b, :, 0], press.share * weight)
+            depth[b] = modal[0, 0] + coefficients @ one.flexibility @ coefficients
+    body = LayerwiseBody(np.ascontiguousarray(np.swapaxes(unit, 1, 2)), axis, depth, nodes.rate)
+    return body, replace(press, field=replace(press.field, fading=rests))
+
+
+def _creep(press: Press, whole: Laminate, series: Sequence[Prony], retardation: float) -> _Creep:
+    stack, rest = press.modal_stack, press.field.rest
+    k = press.field.domain.wavenumber
+    modal = fading.fading(layer_faces(stack, quadratic_faces(k, stack)), stack.base, series, retardation)
+    sharp = None
+    if rest is not None:
+        q = np.maximum(rest.spectrum.wavenumber, press.field.domain.lowest)
+        sharp = fading.fading(exact_faces(q, whole), stack.base, series, retardation)
+    surface = creep(series[0], retardation)
+    return _Creep(modal, sharp, 1.0 / surface.time, surface.weight, surface.instant)
+
+
+def _by_node(made: fading.Fading, nodes: LagNodes) -> FloatArray:
+    """(B, n, L, 2, 2): what comes at once, and each shared lag."""
+    shared = np.einsum("nmM,nmlij->Mnlij", nodes.share(made.rate), made.faces, optimize=True)
+    return np.concatenate([made.instant[None], shared])
+
+
+def _remainders(rest: Remainder | None, made: _Creep, nodes: LagNodes) -> tuple[Remainder, ...]:
+    """B fields of the remainder; none where there is no remainder."""
+    if rest is None or made.sharp is None:
+        return ()
+    factors = [made.surface_instant, *(made.surface_weight @ nodes.share(made.surface_rate))]
+    fields = []
+    for faces, factor in zip(_by_node(made.sharp, nodes), factors, strict=True):
+        body = rest.body.times(float(factor))
+        sharp = less_half_space(faces, rest.share, body, rest.spectrum.wavenumber)
+        fields.append(replace(rest, faces=sharp, body=body))
+    return tuple(fields)

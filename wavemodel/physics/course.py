@@ -1,0 +1,63 @@
+"""A piece of a press as the options of a body see it, and what an option is."""
+
+from dataclasses import dataclass
+from typing import Protocol, TypeAlias
+
+from wavemodel.arrays import BoolArray, FloatArray
+from wavemodel.errors import WaveError
+
+Memory: TypeAlias = tuple[float, ...]
+"""What an option remembers between two pieces of a history; empty before the first."""
+
+
+@dataclass(frozen=True)
+class Course:
+    """n successive samples.
+
+    Attributes
+    ----------
+    duration
+        (n,) of the steps that end at the samples, s. The first is zero where the body has been in the first state for
+        ever.
+    depth
+        (n,) of the tool below the surface as it stands, m; negative in air, or while the tissue is pulled.
+    force
+        (n,) as far as it is worked out, N.
+    touching
+        (n,) whether tool and tissue are in contact.
+    """
+
+    duration: FloatArray
+    depth: FloatArray
+    force: FloatArray
+    touching: BoolArray
+
+    @property
+    def endless(self) -> bool:
+        """Whether the body has been in its first state for ever."""
+        return bool(self.duration[0] == 0.0)
+
+
+class Option(Protocol):
+    """One effect: it changes the force, knowing its own past."""
+
+    def act(self, course: Course, memory: Memory) -> tuple[FloatArray, Memory]:
+        """(n,) force with the effect, and the memory after the last sample."""
+        ...
+
+
+def require(
+    option: str, name: str, value: float, unit: str, low: float, high: float, *, open_low: bool = False
+) -> None:
+    """Refuse a parameter outside its bounds.
+
+    Raises
+    ------
+    WaveError
+        If `value` is not a number from `low` (excluded if `open_low`) to `high`, both included.
+    """
+    if (low < value if open_low else low <= value) and value <= high:
+        return
+    bound = f"above {low:g}" if open_low else f"{low:g}"
+    text = f"{value:g} {unit}".strip()
+    raise WaveError(f"{option}: {name} = {text} is not allowed: {bound} to {high:g}{' ' + unit if unit else ''}")
