@@ -19,7 +19,7 @@ def test_help_loads_nothing_heavy() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
-    for verb in ("run", "fit", "tissues", "scenarios"):
+    for verb in ("run", "fit", "tissues", "scenarios", "verify"):
         assert verb in done.stdout
 
 

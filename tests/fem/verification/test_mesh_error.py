@@ -1,4 +1,4 @@
-"""Mesh error of the default mesh at large press, against the fine mesh (half the element size)."""
+"""Mesh error of the default mesh at large press, against the fine mesh: what the gated cases leave out."""
 
 import numpy as np
 import pytest
@@ -9,14 +9,6 @@ import fem
 def depths(problem, force):
     load = fem.Load("force", np.arange(1.0, 11.0), force * np.arange(1, 11) / 10)
     return fem.prepare(problem).run(load).top_deflection
-
-
-@pytest.mark.parametrize("contact", ["uniform_pressure", "rigid_bonded"])
-def test_halving_the_elements_of_skin_changes_the_depth_by_less_than_half_a_percent(skin, contact):
-    default, fine = (
-        depths(skin(contact, discretisation=fem.Discretisation(density)), 5.0) for density in ("default", "fine")
-    )
-    np.testing.assert_allclose(default, fine, rtol=5e-3)
 
 
 @pytest.mark.slow

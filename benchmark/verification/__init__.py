@@ -1,0 +1,1 @@
+"""`verify`: every case of the models against published values and closed forms, as table, files and page."""

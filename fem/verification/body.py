@@ -1,0 +1,192 @@
+"""A body of one material with loads of its own, for cases that are no press of a tool.
+
+It uses the solver's element, assembly, Newton and linear solver on any mesh of quadrilaterals in (r, z).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fem.arrays import BoolArray, FloatArray
+from fem.assembly import (
+    Evaluation,
+    Geometry,
+    Numbering,
+    Scatter,
+    System,
+    build_scatter,
+    element_laws,
+    gauss_geometry,
+    number_unknowns,
+    point_geometry,
+)
+from fem.components import AXISYMMETRIC
+from fem.deformation import Deformation
+from fem.linear_solver import make_solver
+from fem.materials import Material
+from fem.mesh import Mesh
+from fem.solving import Equilibrium, NewtonSettings, State, Stepper
+from fem.solving.newton import solve_newton
+
+SIDES = ((0, 4, 1), (1, 5, 2), (2, 6, 3), (3, 7, 0))
+CORNERS = np.array([[0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]])
+NEAR = 1e-6  # of the section's height: corners this near each other are one
+SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
+
+
+@dataclass(frozen=True)
+class Body:
+    """A mesh with one material and its supports.
+
+    Attributes
+    ----------
+    mesh
+        The mesh.
+    material
+        The material of all elements.
+    fixed
+        Displacements that are zero, (2, N): radial, vertical.
+    tied
+        Nodes (N,) that share one vertical displacement.
+    stabilisation
+        See :class:`fem.assembly.System`.
+    """
+
+    mesh: Mesh
+    material: Material
+    fixed: BoolArray
+    tied: BoolArray
+    stabilisation: float = 0.0
+
+    @cached_property
+    def numbering(self) -> Numbering:
+        """The unknowns."""
+        return number_unknowns(self.fixed, self.tied)
+
+    @cached_property
+    def scatter(self) -> Scatter:
+        """The sums into the unknowns."""
+        return build_scatter(self.mesh.elements, self.numbering)
+
+    @cached_property
+    def geometry(self) -> Geometry:
+        """Geometry at the Gauss points."""
+        return gauss_geometry(self.mesh)
+
+    @cached_property
+    def system(self) -> System:
+        """Residual and tangent."""
+        laws = element_laws((self.material,), self.mesh.layer)
+        return System(self.geometry, laws, self.numbering, self.scatter, self.stabilisation)
+
+    @property
+    def points(self) -> FloatArray:
+        """Gauss points (2, q, E) in m."""
+        shapes = self.geometry.shapes
+        value = shapes.radial[-shapes.count :]
+        return np.stack([value @ x[self.mesh.elements] for x in self.mesh.nodes.T])
+
+    def equilibrium(self, load: FloatArray, probe: int = 0) -> Equilibrium:
+        """Equations under a load (n,) on the unknowns times a factor."""
+        solver = make_solver("superlu", self.scatter.indptr, self.scatter.indices)
+        return Equilibrium(self.system, solver, load, probe)
+
+    def traction(self, on: BoolArray, traction: FloatArray) -> FloatArray:
+        """Load (n,) of a traction (2,) in Pa on the sides whose three nodes are in `on` (N,)."""
+        return self._side_load(on, lambda along: np.linalg.norm(along, axis=1) * traction[:, None])
+
+    def pull(self, on: BoolArray, tension: float) -> FloatArray:
+        """Load (n,) of a normal tension in Pa, outwards, on the sides whose three nodes are in `on` (N,)."""
+        return self._side_load(on, lambda along: tension * np.stack((along[:, 1], -along[:, 0])))
+
+    def _side_load(self, on: BoolArray, force: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        """Load (n,) of `force` (2, S) per unit depth on straight sides (S, 2), counter-clockwise.
+
+        Simpson's rule is exact for a constant traction: shape function times radius is cubic along a side.
+        """
+        nodal = np.zeros((2, len(self.mesh.nodes)))
+        for side in SIDES:
+            nodes = self.mesh.elements[list(side)]
+            nodes = nodes[:, on[nodes].all(axis=0)]
+            share = 2.0 * np.pi * self.mesh.nodes[nodes, 0] * SIMPSON[:, None]
+            for component, part in enumerate(force(self.mesh.nodes[nodes[2]] - self.mesh.nodes[nodes[0]])):
+                np.add.at(nodal[component], nodes, share * part)
+        return self.numbering.reduce(nodal)
+
+    def work_of(self, stress: FloatArray) -> FloatArray:
+        """Load (n,) that does the work of a nominal stress (5, q, E) in Pa: int P : grad v."""
+        geometry = self.geometry
+        flat = geometry.pull_back(stress * geometry.weight).reshape(-1, stress.shape[2])
+        split = 3 * geometry.shapes.count
+        shapes = geometry.shapes
+        return self.scatter.vector(np.concatenate((shapes.radial.T @ flat[:split], shapes.vertical.T @ flat[split:])))
+
+    def solve_linear(self, load: FloatArray) -> FloatArray:
+        """Unknowns (n,) of small displacements under a load (n,)."""
+        problem, rest = self.equilibrium(load), self._rest()
+        problem.solver.factorise(self.system.tangent(rest))
+        y = problem.solver.solve(load[:, None])[:, 0]
+        left = load - self.scatter.vector(self.system.linear_force(rest, y))
+        return y + problem.solver.solve(left[:, None])[:, 0]
+
+    def solve_finite(self, load: FloatArray, steps: int = 1) -> FloatArray:
+        """Unknowns (n,) under a dead load (n,), brought up in equal steps."""
+        scale = float(np.linalg.norm(load))
+        stepper = Stepper(self.equilibrium(load / scale), "force", 1e-3 * scale, NewtonSettings())
+        for step in range(1, steps + 1):
+            reached = stepper.advance(scale * step / steps)
+            if reached.reason:
+                raise ArithmeticError(reached.reason)
+        return reached.state.y
+
+    def solve_from(self, load: FloatArray, guess: FloatArray) -> FloatArray:
+        """Unknowns (n,) under a dead load (n,), by Newton's method from a guess (n,)."""
+        scale = float(np.linalg.norm(load))
+        state = State(guess, self.system.rest()[1], scale)
+        result = solve_newton(self.equilibrium(load / scale), state, "force", scale, scale, NewtonSettings())
+        if not result.success:
+            raise ArithmeticError(result.reason)
+        return result.state.y
+
+    def corner_stress(self, y: FloatArray, place: tuple[float, float]) -> FloatArray:
+        """Small-strain stress (rr, rz, tt, zr, zz) in Pa at the corner nearest (r, z), mean over its elements."""
+        rest = self._rest()
+        geometry = point_geometry(self.mesh, self.geometry, CORNERS)
+        H = geometry.gradient(self.scatter.gather(y))
+        deformation = Deformation(AXISYMMETRIC, H)
+        mean = np.einsum("ie,iqe->qe", self.system.pressure_after(rest, y), geometry.pressure)
+        strain, trace = deformation.small_strain, H[AXISYMMETRIC.normal].sum(axis=0)
+        stress = 2.0 * self.material.shear_modulus * strain
+        stress[AXISYMMETRIC.normal] += mean - 2.0 / 3.0 * self.material.shear_modulus * trace
+        value = geometry.shapes.radial[-geometry.shapes.count :]
+        distance = np.hypot(
+            *(value @ x[self.mesh.elements] - at for x, at in zip(self.mesh.nodes.T, place, strict=True))
+        )
+        near = distance <= distance.min() + NEAR * float(np.ptp(self.mesh.nodes[:, 1]))
+        out: FloatArray = stress[:, near].mean(axis=1)
+        return out
+
+    def _rest(self) -> Evaluation:
+        rest = self.system.evaluate(*self.system.rest())
+        if rest is None:
+            raise ArithmeticError("the mesh has an element without volume")
+        return rest
+
+    def gradient(self, y: FloatArray) -> FloatArray:
+        """Displacement gradient (5, q, E) at the Gauss points of unknowns (n,)."""
+        return self.geometry.gradient(self.scatter.gather(y))
+
+
+def worst(values: FloatArray, reference: float) -> float:
+    """The value that is farthest from the reference."""
+    flat = np.ravel(values)
+    return float(flat[np.argmax(np.abs(flat - reference))])
+
+
+def free_of_ties(mesh: Mesh) -> BoolArray:
+    """No node tied, (N,)."""
+    return np.zeros(len(mesh.nodes), dtype=np.bool_)

@@ -1,0 +1,103 @@
+"""Neo-Hookean bodies in homogeneous deformation, on distorted meshes: exact whatever the mesh.
+
+W = mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2. With principal stretches l_i the principal nominal stresses are
+P_i = mu J^(-2/3) (l_i - I1 / (3 l_i)) + K (J - 1) J / l_i (Bonet and Wood, chapter 6).
+Simple shear F = I + g e_z x e_x: J = 1, I1 = 3 + g^2, P = mu (F - I1/3 F^-T).
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+from scipy.optimize import brentq
+
+from fem.arrays import FloatArray
+from fem.materials import NeoHookean
+from fem.solving import NewtonSettings, Stepper
+from fem.verification.body import Body, free_of_ties, worst
+from fem.verification.case import Case, Quantity
+from fem.verification.section import PLANE_PERCENT, RING, distorted_square
+
+YOUNGS_MODULUS = 6e4
+POISSON_RATIOS = (0.45, 0.4999)
+STRETCHES = (0.5, 1.5)
+EQUIBIAXIAL = (0.8, 1.4)
+SHEARS = (0.5, 1.5)
+ALLOWED_PERCENT = 1e-6
+SOURCE = "neo-Hookean closed form (Bonet and Wood, 2nd ed., chapter 6)"
+COUNT, SEED = 3, 20
+SHEAR_STEPS = 12
+
+
+def cases() -> tuple[Case, ...]:
+    """Uniaxial stretch, equibiaxial stretch and simple shear at two Poisson's ratios."""
+    kinds = (("uniaxial", uniaxial, STRETCHES), ("equibiaxial", equibiaxial, EQUIBIAXIAL), ("shear", shear, SHEARS))
+    return tuple(
+        Case(f"neo_hookean_{name}/nu_{nu:g}/{amount:g}", SOURCE, partial(function, nu, amount))
+        for name, function, amounts in kinds
+        for nu in POISSON_RATIOS
+        for amount in amounts
+    )
+
+
+def principal_stress(material: NeoHookean, radial: float, axial: float) -> tuple[float, float]:
+    """Nominal stresses in Pa, radial and axial, of the stretches (radial, radial, axial)."""
+    mu, bulk = material.shear_modulus, material.bulk_modulus
+    volume, invariant = radial * radial * axial, 2.0 * radial * radial + axial * axial
+    isochoric, pressure = mu * volume ** (-2.0 / 3.0), bulk * (volume - 1.0) * volume
+    across, along = (isochoric * (x - invariant / (3.0 * x)) + pressure / x for x in (radial, axial))
+    return across, along
+
+
+def uniaxial(poisson_ratio: float, stretch: float, stabilisation: float = 1.0) -> tuple[Quantity, ...]:
+    """Cylinder between frictionless plates: axial nominal stress and radial stretch at an axial stretch."""
+    mesh, material = distorted_square(COUNT, SEED), NeoHookean(YOUNGS_MODULUS, poisson_ratio)
+    body = Body(mesh, material, np.stack((mesh.axis, mesh.base)), mesh.top, stabilisation)
+    probe = int(body.numbering.unknown[1, mesh.interfaces[0][0]])
+    load = np.zeros(body.numbering.count)
+    load[probe] = -1.0
+    stepper = Stepper(body.equilibrium(load, probe), "depth", 1e-3 * YOUNGS_MODULUS, NewtonSettings())
+    state = stepper.advance(1.0 - stretch).state
+    exact = float(brentq(lambda a: principal_stress(material, a, stretch)[0], 0.2, 5.0, xtol=1e-15))
+    unknowns, found = body.numbering.count, 1.0 + body.gradient(state.y)[2]
+    stress = principal_stress(material, exact, stretch)[1]
+    return (
+        Quantity("nominal_stress", 1e-3 * stress, -1e-3 * state.force / np.pi, "kPa", ALLOWED_PERCENT, unknowns),
+        Quantity("lateral_stretch", exact, worst(found, exact), "", ALLOWED_PERCENT, unknowns),
+    )
+
+
+def equibiaxial(poisson_ratio: float, stretch: float) -> tuple[Quantity, ...]:
+    """Disc pulled all round by the closed-form nominal stress: radial and axial stretch."""
+    mesh, material = distorted_square(COUNT, SEED), NeoHookean(YOUNGS_MODULUS, poisson_ratio)
+    axial = float(brentq(lambda x: principal_stress(material, stretch, x)[1], 0.1, 10.0, xtol=1e-15))
+    body = Body(mesh, material, np.stack((mesh.axis, mesh.base)), free_of_ties(mesh), 1.0)
+    load = body.traction(mesh.border, np.array([principal_stress(material, stretch, axial)[0], 0.0]))
+    H, unknowns = body.gradient(body.solve_finite(load, 4)), body.numbering.count
+    return (
+        Quantity("stretch", stretch, worst(1.0 + H[2], stretch), "", ALLOWED_PERCENT, unknowns),
+        Quantity("thickness_stretch", axial, worst(1.0 + H[4], axial), "", ALLOWED_PERCENT, unknowns),
+    )
+
+
+def shear(poisson_ratio: float, amount: float) -> tuple[Quantity, ...]:
+    """Block in plane strain that slides along its border, tractions following the closed form: the shear at the end."""
+    mesh, material = distorted_square(COUNT, SEED, RING), NeoHookean(YOUNGS_MODULUS, poisson_ratio)
+    left = mesh.nodes[:, 0] == mesh.nodes[:, 0].min()
+    around = left | mesh.border | mesh.top | mesh.base
+    body = Body(mesh, material, np.stack((around, left)), free_of_ties(mesh), 1.0)
+    y = np.zeros(body.numbering.count)
+    for part in np.linspace(0.0, amount, SHEAR_STEPS + 1)[1:].tolist():
+        stress = _shear_stress(material, part)
+        load = body.traction(mesh.border, stress[[0, 3]])
+        load += body.traction(mesh.top, stress[[1, 4]]) - body.traction(mesh.base, stress[[1, 4]])
+        y = body.solve_from(load, y)
+    found = body.gradient(y)[3]
+    return (Quantity("", amount, worst(found, amount), "", PLANE_PERCENT, body.numbering.count),)
+
+
+def _shear_stress(material: NeoHookean, amount: float) -> FloatArray:
+    """Nominal stress (rr, rz, tt, zr, zz) in Pa of u_z = amount x."""
+    third = 1.0 + amount * amount / 3.0
+    return material.shear_modulus * np.array([1.0 - third, third * amount, 1.0 - third, amount, 1.0 - third])

@@ -1,0 +1,37 @@
+"""All cases of the finite-element solver, family after family."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from fem.verification import (
+    cook,
+    cylinder,
+    half_space,
+    hayes,
+    homogeneous,
+    layered,
+    le1,
+    manufactured,
+    patch,
+    press,
+)
+from fem.verification.case import Case
+
+FAMILIES: tuple[Callable[[], tuple[Case, ...]], ...] = (
+    patch.cases,
+    manufactured.cases,
+    homogeneous.cases,
+    half_space.cases,
+    hayes.cases,
+    layered.cases,
+    cylinder.cases,
+    cook.cases,
+    le1.cases,
+    press.cases,
+)
+
+
+def fem_cases() -> tuple[Case, ...]:
+    """Every case, their names all different."""
+    return tuple(case for family in FAMILIES for case in family())
