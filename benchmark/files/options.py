@@ -115,8 +115,11 @@ class WaveOptions(FileModel):
         N for m, n = 1..N; None follows the window.
     window : float or None
         Side of the square window, m; None follows tool and stack.
+    large_press : str
+        linear (small strain at any depth) | corrected (the layers' finite strain in the same modes).
     """
 
     model: Literal["layered", "published", "plate"] = "layered"
     modes: Modes = None
     window: AutoLength = None
+    large_press: Literal["linear", "corrected"] = "linear"

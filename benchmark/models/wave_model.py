@@ -6,10 +6,12 @@ import numpy as np
 
 from benchmark.errors import InputError
 from benchmark.files import Scenario
-from benchmark.models.coverage import refuse_options, relaxation_warnings
+from benchmark.models.coverage import refuse_options
 from benchmark.models.radii import profile_radii
 from benchmark.models.result import Drive, ModelResult, OnStep, StepProgress, UncoveredError, silent
-from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveError, WaveLayer
+from wavemodel import DiscTool, LayeredWave, NotCoveredError, Prony, WaveError, WaveLayer
+
+STRAINS = {"linear": "small strain", "corrected": "finite strain of the layers"}
 
 
 class WaveModel:
@@ -36,8 +38,17 @@ class WaveModel:
             raise InputError(f"scenario {scenario.name}: {error}") from None
 
     def run(self, drive: Drive, on_step: OnStep = silent) -> ModelResult:
-        """Follow a load history."""
-        solution = self._model.run(drive.control, drive.time, drive.value)
+        """Follow a load history.
+
+        Raises
+        ------
+        UncoveredError
+            A press beyond the range of a large press.
+        """
+        try:
+            solution = self._model.run(drive.control, drive.time, drive.value)
+        except WaveError as error:
+            raise UncoveredError(str(error)) from None
         peak = int(np.abs(drive.value).argmax())
         radii = profile_radii(self._scenario.tool.radius)
         steps = drive.time.size
@@ -54,11 +65,11 @@ class WaveModel:
             peak_step=peak,
             unknowns=self._model.unknowns,
             notes={
-                "model": "layered vector wave, small strain, no calibration",
+                "model": f"layered vector wave, {STRAINS[self._scenario.wave.large_press]}, no calibration",
                 "window": f"{1e3 * self._model.window:.4g} mm",
                 "modes": f"m, n = 1..{self._model.modes}",
             },
-            warnings=(*relaxation_warnings(self._scenario), *solution.warnings),
+            warnings=tuple(solution.warnings),
         )
 
 
@@ -76,4 +87,17 @@ def _layered(scenario: Scenario) -> LayeredWave:
         support=scenario.support.kind,
         window=scenario.wave.window,
         modes=scenario.wave.modes,
+        relaxation=_relaxation(scenario),
+        large_press=scenario.wave.large_press,
     )
+
+
+def _relaxation(scenario: Scenario) -> list[Prony | None] | None:
+    """A series a layer; None where all layers are elastic."""
+    series = [
+        Prony(tuple(term.g for term in layer.relaxation), tuple(term.tau for term in layer.relaxation))
+        if layer.relaxation
+        else None
+        for layer in scenario.tissue.layers
+    ]
+    return series if any(series) else None

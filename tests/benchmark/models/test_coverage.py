@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 
 from benchmark.files import load_scenario
@@ -26,16 +27,26 @@ def test_what_a_model_lacks_it_declines(case: str) -> None:
             prepare(model, scenario)
 
 
-def test_relaxation_left_out_is_said() -> None:
-    scenario = load_scenario(
-        "skin-5N",
-        {
-            "subcutaneous_fat.relaxation": '[{ g = 0.3, tau = "0.5 s" }]',
-            "load.peak": "0.1 N",
-            "load.observations": "2",
-            "fem.mesh": "coarse",
-        },
-    )
-    for model in ("fem", "wave"):
-        result = prepare(model, scenario).run(scenario_drive(scenario))
-        assert any("relaxation of subcutaneous_fat is left out" in warning for warning in result.warnings)
+def test_a_wave_creeps_where_its_layers_relax() -> None:
+    series = '[{ g = 0.3, tau = "50 s" }]'
+    settings = {f"{layer}.relaxation": series for layer in ("epidermis", "dermis", "subcutaneous_fat")}
+    press = {"load.peak": "0.1 N", "load.shape": "ramp_hold", "load.duration": "100 ms", "load.hold": "2000 s"}
+    scenario = load_scenario("skin-5N", {**settings, **press})
+    depth = prepare("wave", scenario).run(scenario_drive(scenario)).depth
+    assert depth[-1] / depth[0] == pytest.approx(1 / (1 - 0.3), rel=1e-3)
+
+
+def test_a_corrected_wave_follows_the_finite_strain_of_the_fem() -> None:
+    press = {"load.peak": "4 N", "load.observations": "6", "wave.large_press": "corrected"}
+    scenario = load_scenario("skin-5N", press)
+    drive = scenario_drive(scenario)
+    fem, wave = (prepare(model, scenario).run(drive) for model in ("fem", "wave"))
+    loaded = drive.value > 0
+    np.testing.assert_allclose(wave.top_deflection[loaded], fem.top_deflection[loaded], rtol=0.01)
+    np.testing.assert_allclose(wave.profile, fem.profile, atol=0.02 * fem.profile.max())
+
+
+def test_a_press_beyond_the_corrected_range_is_declined() -> None:
+    scenario = load_scenario("skin-5N", {"load.peak": "12 N", "wave.large_press": "corrected"})
+    with pytest.raises(UncoveredError, match="mm"):
+        prepare("wave", scenario).run(scenario_drive(scenario))
