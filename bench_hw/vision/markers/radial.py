@@ -1,0 +1,178 @@
+"""Markers to a hundredth of a pixel: edges on rays, undistorted, and the area centroid of what they enclose.
+
+Not the picture is undistorted but the edges: resampling a picture costs more accuracy than its noise does. The
+centroid of the area is the centre of any marker shape, where an ellipse or circle would have to fit first.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench_hw.vision.camera.distortion import jacobian
+from bench_hw.vision.camera.inverse import undistort, undistort_near
+from bench_hw.vision.camera.model import Camera
+from bench_hw.vision.markers.centroid import area_centroids
+from bench_hw.vision.markers.edges import Edges, find_edges
+from bench_hw.vision.markers.look import Look
+from bench_hw.vision.markers.model import FloatArray, Grid, IntArray, Picture
+from bench_hw.vision.markers.outline import compare, outline_basis, taken_anew
+from bench_hw.vision.markers.rays import ray_fan, sample
+from bench_hw.vision.markers.sighting import Sighting
+
+LEAST_SHARE = 0.85
+"""A marker counts as seen where at least this share of its rays has a sound edge."""
+LEAST_CONTRAST = 0.4
+"""... and where its contrast is at least this share of what it was at first."""
+RADIUS_RANGE = (0.6, 1.6)
+"""... and its radius within this range of its first one."""
+_RECENTRE = 0.1
+_PASSES = 3
+_HALF_SHARE = 0.375
+_WHOLE_SHARE = 0.98
+_LEARNING = 0.05
+_OTHER_LIGHT, _SURE = 0.02, 4.0
+"""A change of the tilt of light beyond this share of the contrast, and so many standard deviations, is real."""
+_SLACK, _MORE_SLACK, _MOST_SLACK = 0.03, 0.003, 0.1
+"""How much an outline may change from one picture to the next, for each picture it is not seen, and at most."""
+_FIRST_SLACK = 0.3
+
+
+class MarkerEdges:
+    """Measures markers it knows; what it knows of them follows their slow change.
+
+    Parameters
+    ----------
+    grey : ndarray of uint8, shape (height, width)
+        The picture the grid was found in.
+    grid : Grid
+        The markers.
+    camera : Camera
+        Whose distortion is taken off the edges.
+    """
+
+    def __init__(self, grey: Picture, grid: Grid, camera: Camera) -> None:
+        count = len(grid.centres)
+        self._camera = camera
+        self._fan = ray_fan(grid.radius, grid.spacing)
+        self._basis = outline_basis(self._fan)
+        self._outline = np.full((count, len(self._basis)), grid.radius)
+        self._tilt = np.zeros((count, 2))
+        self._inverse = camera.undistorted(grid.centres)
+        self._looks = 0
+        self._slack, self._noise = np.full(count, _FIRST_SLACK), np.full(count, np.inf)
+        self._contrast, self._radius = np.ones(count), np.full(count, grid.radius)
+        everyone = np.arange(count)
+        first = self._look(grey, grid.centres, everyone, self._tilt)
+        self._contrast, self._radius = first.edges.contrast, first.outlines.radius.mean(axis=1)
+        self._learn(first, everyone, first.outlines.share > LEAST_SHARE)
+
+    @property
+    def radius(self) -> FloatArray:
+        """First radius of each marker, pixels, shape (m,)."""
+        return self._radius
+
+    def look(self, grey: Picture, starts: FloatArray, which: IntArray) -> Sighting:
+        """Measure some markers in a picture.
+
+        Parameters
+        ----------
+        grey : ndarray of uint8, shape (height, width)
+            The picture.
+        starts : ndarray, shape (k, 2)
+            Where to look, pixels; right to about half a marker radius.
+        which : ndarray of int, shape (k,)
+            The numbers of the markers.
+
+        Returns
+        -------
+        Sighting
+            Of the k markers.
+        """
+        look = self._look(grey, starts, which, self._tilt[which])
+        points, radius = self._undistorted(look, which)
+        confidence = self._confidence(look, which)
+        confidence[~np.isfinite(points).all(axis=1)] = 0.0
+        seen = confidence > 0.0
+        self._learn(look, which, seen & (look.outlines.share > _WHOLE_SHARE))
+        return Sighting(points, look.pixels, radius, confidence).kept(seen)
+
+    def _look(
+        self, grey: Picture, starts: FloatArray, which: IntArray, tilt: FloatArray, passes: int = _PASSES
+    ) -> Look:
+        """Measure, and once more about the centroid where the rays began off the middle, or in another light."""
+        look = self._pass(grey, starts, which, tilt)
+        off = np.abs(look.pixels - starts).max(axis=1) > _RECENTRE * self._radius[which]
+        other = _in_other_light(look.edges, tilt)
+        again = np.flatnonzero((off | other) & (look.edges.there.mean(axis=1) > _HALF_SHARE))
+        if passes == 1 or not len(again):
+            return look
+        light = np.where(other[:, None], look.edges.tilt, tilt)[again]
+        return look.with_part(self._look(grey, look.pixels[again], which[again], light, passes - 1), again)
+
+    def _pass(self, grey: Picture, middles: FloatArray, which: IntArray, tilt: FloatArray) -> Look:
+        edges = find_edges(sample(grey, middles, self._fan), self._fan, tilt)
+        outlines = compare(edges, self._outline[which], self._basis, self._slack[which], self._noise[which])
+        if len(which) == len(self._outline):
+            outlines = taken_anew(edges, outlines, self._outline, self._basis)
+        offsets = outlines.radius[:, None, :] * self._fan.directions
+        centroids, _ = area_centroids(offsets[:, 0], offsets[:, 1])
+        return Look(middles, edges, outlines, middles + np.nan_to_num(centroids))
+
+    def _undistorted(self, look: Look, which: IntArray) -> tuple[FloatArray, FloatArray]:
+        """The centroids of the undistorted outlines (k, 2), normalised, and radii of equal area, pixels."""
+        camera = self._camera
+        offsets = look.outlines.radius[:, None, :] * self._fan.directions
+        edges = camera.to_normalised(np.moveaxis(look.middles[:, :, None] + offsets, 1, 2))
+        middles = camera.to_normalised(look.middles)
+        if any(camera.distortion):
+            inverse = self._inverse_of(middles, which)
+            slope = jacobian(inverse, camera.distortion)
+            left, up = edges[..., 0] - middles[:, None, 0], edges[..., 1] - middles[:, None, 1]
+            scale = 1.0 / slope.determinant[:, None]
+            guess = np.empty_like(edges)
+            guess[..., 0] = inverse[:, None, 0] + scale * (slope.yy[:, None] * left - slope.xy[:, None] * up)
+            guess[..., 1] = inverse[:, None, 1] + scale * (slope.xx[:, None] * up - slope.xy[:, None] * left)
+            edges = undistort_near(edges, camera.distortion, guess, steps=2)
+        centroids, areas = area_centroids(edges[..., 0], edges[..., 1])
+        return centroids, np.sqrt(areas * camera.focal[0] * camera.focal[1] / np.pi)
+
+    def _inverse_of(self, middles: FloatArray, which: IntArray) -> FloatArray:
+        """Invert the distortion near where each marker was before; with the full search where that fails."""
+        coefficients = self._camera.distortion
+        inverse = undistort_near(middles, coefficients, self._inverse[which])
+        lost = ~np.isfinite(inverse).all(axis=1)
+        if lost.any():
+            inverse[lost] = undistort(middles[lost], coefficients)
+        self._inverse[which] = inverse
+        return inverse
+
+    def _confidence(self, look: Look, which: IntArray) -> FloatArray:
+        """Share of sound rays times contrast as a share of the first one; 0 for what is no marker."""
+        share = look.outlines.share
+        contrast = look.edges.contrast / self._contrast[which]
+        growth = look.outlines.radius.mean(axis=1) / self._radius[which]
+        good = (share >= LEAST_SHARE) & (contrast >= LEAST_CONTRAST)
+        good &= (growth > RADIUS_RANGE[0]) & (growth < RADIUS_RANGE[1])
+        return np.where(good, share * np.minimum(contrast, 1.0), 0.0)
+
+    def _learn(self, look: Look, which: IntArray, whole: NDArray[np.bool_]) -> None:
+        """Take the outlines and the light of markers that are seen wholly as what is usual from now on."""
+        self._looks += 1
+        self._slack[which] = np.minimum(self._slack[which] + _MORE_SLACK, _MOST_SLACK)
+        chosen, weight = which[whole], max(_LEARNING, 1.0 / self._looks)
+        shift = (look.pixels - look.middles)[whole]
+        self._outline[chosen] = look.outlines.radius[whole] - shift @ self._fan.directions
+        self._slack[chosen] = _SLACK
+        noise = look.edges.noise[whole]
+        new = ~np.isfinite(self._noise[chosen])
+        self._noise[chosen[new]] = noise[new]
+        self._noise[chosen] += weight * (noise - self._noise[chosen])
+        self._tilt[chosen] += weight * (look.edges.tilt[whole] - self._tilt[chosen])
+
+
+def _in_other_light(edges: Edges, tilt: FloatArray) -> NDArray[np.bool_]:
+    """Which markers, seen all round, lie in light that is not what was learned: a shadow has come near."""
+    change = np.abs(edges.tilt - tilt).max(axis=1)
+    real = change > np.maximum(_OTHER_LIGHT * edges.contrast, _SURE * edges.tilt_std)
+    return np.asarray(real & edges.there.all(axis=1))

@@ -1,0 +1,77 @@
+"""Outlines against those before."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bench_hw.vision.markers.edges import Edges
+from bench_hw.vision.markers.outline import compare, outline_basis, taken_anew
+from bench_hw.vision.markers.rays import ray_fan
+
+FAN = ray_fan(10.0, 70.0)
+BASIS = outline_basis(FAN)
+ANGLE = np.arctan2(FAN.directions[1], FAN.directions[0])
+BEFORE = (10.0 + 0.5 * np.cos(3 * ANGLE + 1))[None]
+NOISE, SLACK = np.array([0.05]), np.array([0.03])
+
+
+def edges(radius: np.ndarray, there: np.ndarray | None = None) -> Edges:
+    count = len(radius)
+    there = np.ones(radius.shape, dtype=bool) if there is None else there
+    numbers = np.ones(count)
+    return Edges(np.where(there, radius, 0.0), there, 170 * numbers, np.zeros((count, 2)), numbers, 0.05 * numbers)
+
+
+@given(st.floats(-0.9, 0.9), st.floats(-0.9, 0.9), st.floats(-0.25, 0.25))
+def test_a_marker_that_moved_and_grew_a_little_is_its_own(dx, dy, growth):
+    moved = BEFORE + growth + dx * np.cos(ANGLE) + dy * np.sin(ANGLE)
+    outlines = compare(edges(moved), BEFORE, BASIS, SLACK, NOISE)
+    assert outlines.sound.all()
+    assert np.array_equal(outlines.radius, moved)
+
+
+def test_covered_rays_are_filled_from_the_outline_before():
+    moved = BEFORE + 0.4 * np.cos(ANGLE) - 0.2 * np.sin(ANGLE) + 0.1
+    there = np.ones(BEFORE.shape, dtype=bool)
+    there[0, 5:12] = False
+    outlines = compare(edges(moved, there), BEFORE, BASIS, SLACK, NOISE)
+    assert not outlines.sound[0, 5:12].any()
+    assert 0.7 < outlines.share[0] < 1.0
+    assert np.abs(outlines.radius - moved).max() < 0.02
+
+
+def test_edges_of_something_else_are_not_its_own():
+    """A straight edge 8.4 px from the middle cuts off a segment."""
+    cut = np.minimum(BEFORE, 8.4 / np.maximum(np.cos(ANGLE), 1e-9))
+    outlines = compare(edges(np.where(np.cos(ANGLE) > 0, cut, BEFORE)), BEFORE, BASIS, SLACK, NOISE)
+    strayed = np.cos(ANGLE) * BEFORE[0] > 9.0
+    assert strayed.sum() > 5
+    assert not outlines.sound[0, strayed].any()
+    assert outlines.sound[0, np.cos(ANGLE) < 0].all()
+    assert np.abs(outlines.radius - BEFORE).max() < 0.25
+
+
+def test_a_marker_cannot_grow_much_from_one_picture_to_the_next():
+    assert not compare(edges(BEFORE * 1.15), BEFORE, BASIS, SLACK, NOISE).sound.any()
+    assert compare(edges(BEFORE * 1.15), BEFORE, BASIS, np.array([0.2]), NOISE).sound.all()
+
+
+def test_if_most_outlines_are_new_they_are_taken_and_if_one_is_it_is_not():
+    new = np.repeat(BEFORE, 4, axis=0)
+    new[:3] += 1.0 * np.cos(2 * ANGLE + np.arange(3)[:, None])
+    before = np.repeat(BEFORE, 4, axis=0)
+    slack, noise = np.repeat(SLACK, 4), np.repeat(NOISE, 4)
+    judged = compare(edges(new), before, BASIS, slack, noise)
+    assert judged.share[:3].max() < 0.9
+    assert np.array_equal(taken_anew(edges(new), judged, before, BASIS).radius, new)
+    new[1:3] = before[1:3]
+    judged = compare(edges(new), before, BASIS, slack, noise)
+    assert taken_anew(edges(new), judged, before, BASIS).share[0] == judged.share[0] < 0.9
+
+
+def test_nothing_seen_is_no_error():
+    nothing = edges(BEFORE, np.zeros(BEFORE.shape, dtype=bool))
+    outlines = compare(nothing, BEFORE, BASIS, SLACK, NOISE)
+    assert outlines.share[0] == 0.0
+    assert outlines.radius == pytest.approx(BEFORE)

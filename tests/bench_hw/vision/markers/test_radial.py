@@ -1,0 +1,97 @@
+"""Markers measured where they are about."""
+
+import numpy as np
+import pytest
+
+from bench_hw.vision.camera import to_plane
+from bench_hw.vision.markers import MarkerEdges, detect_grid
+
+EVERYONE = np.arange(18)
+
+
+@pytest.fixture
+def set_up(rendering, scene, camera_of):
+    """A sheet, its renderer, its camera and what measures it."""
+    random = np.random.default_rng(5)
+    renderer = rendering.Renderer(scene, rendering.sheet(random), random)
+    grey, camera = renderer.frame(), camera_of(scene)
+    grid = detect_grid(grey)
+    return renderer, camera, grid, MarkerEdges(grey, grid, camera)
+
+
+def errors(sighting, camera, renderer, moved=None) -> np.ndarray:
+    """Distance from the truth in undistorted pixels."""
+    return (
+        np.hypot(*(to_plane(camera, sighting.points) * 1e3 - renderer.sheet.truth(moved)).T) / renderer.scene.mm_per_px
+    )
+
+
+def test_the_truth_is_found_to_two_hundredths_of_a_pixel(set_up):
+    renderer, camera, grid, edges = set_up
+    sighting = edges.look(renderer.frame(), grid.centres, EVERYONE)
+    assert sighting.seen.all()
+    assert np.sqrt((errors(sighting, camera, renderer) ** 2).mean()) < 0.02
+    assert sighting.confidence.min() > 0.9
+    assert sighting.radius == pytest.approx(1.2 / renderer.scene.mm_per_px, rel=0.08)
+
+
+@pytest.mark.parametrize("off", [0.5, 1.5, 3.0, 4.0])
+def test_where_it_begins_makes_no_difference(set_up, off):
+    renderer, camera, grid, edges = set_up
+    clean = renderer.noisy(renderer.clean(), 0.0)
+    sighting = edges.look(clean, grid.centres + off * np.array([0.6, -0.8]), EVERYONE)
+    assert sighting.seen.all()
+    assert errors(sighting, camera, renderer).max() < 0.015
+
+
+def test_a_part_of_the_markers_can_be_asked_for(set_up):
+    renderer, _, grid, edges = set_up
+    grey = renderer.frame()
+    whole = edges.look(grey, grid.centres, EVERYONE)
+    part = edges.look(grey, grid.centres[[3, 11]], np.array([3, 11]))
+    assert np.abs(part.pixels - whole.pixels[[3, 11]]).max() < 0.01
+
+
+@pytest.mark.parametrize("level", [30, 100, 150, 205])
+def test_a_marker_half_covered_is_not_seen_and_a_grazed_one_is_right_or_not_seen(set_up, level):
+    renderer, camera, grid, edges = set_up
+    grey = renderer.frame()
+    x, y = grid.centres[8]
+    half, grazed = grey.copy(), grey.copy()
+    half[:, round(x) : round(x) + 40] = level
+    assert not edges.look(half, grid.centres, EVERYONE).seen[8]
+    grazed[round(y) + 9 : round(y) + 30, round(x) - 30 : round(x) + 30] = level
+    error = errors(edges.look(grazed, grid.centres, EVERYONE), camera, renderer)[8]
+    assert np.isnan(error) or error < 0.15
+
+
+def test_a_shadow_does_not_shift_a_marker(set_up):
+    renderer, camera, grid, edges = set_up
+    for _ in range(5):
+        edges.look(renderer.frame(), grid.centres, EVERYONE)
+    shade = 1.0 - 0.3 / (1.0 + np.exp((np.arange(640) - grid.centres[8, 0]) / 15.0))
+    shaded = renderer.noisy(renderer.clean() * shade.astype(np.float32))
+    error = errors(edges.look(shaded, grid.centres, EVERYONE), camera, renderer)
+    assert not error[8] > 0.06
+
+
+def test_markers_at_the_border_and_outside_are_not_seen(set_up, rendering):
+    renderer, _, grid, edges = set_up
+    grey = renderer.frame()
+    starts = grid.centres.copy()
+    starts[0], starts[1], starts[2] = (-50.0, 100.0), (3.0, 3.0), (700.0, 500.0)
+    sighting = edges.look(grey, starts, EVERYONE)
+    assert sighting.seen.tolist() == [False] * 3 + [True] * 15
+    assert np.isnan(sighting.points[:3]).all()
+    assert np.isnan(sighting.radius[:3]).all()
+
+
+def test_sightings_can_be_hidden_and_joined(set_up):
+    renderer, _, grid, edges = set_up
+    sighting = edges.look(renderer.frame(), grid.centres, EVERYONE)
+    hidden = sighting.kept(EVERYONE != 4)
+    assert hidden.seen.sum() == 17
+    assert np.isnan(hidden.points[4]).all()
+    again = edges.look(renderer.frame(), grid.centres[[4]], np.array([4]))
+    assert hidden.merged(again, np.array([4])).seen.all()
+    assert not hidden.seen[4]

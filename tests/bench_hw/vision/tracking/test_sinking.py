@@ -1,0 +1,41 @@
+"""What is known of how far markers sank."""
+
+import numpy as np
+import pytest
+
+from bench_hw.errors import InputError
+from bench_hw.vision.tracking.sinking import read_sinking
+
+
+def write(tmp_path, text: str):
+    path = tmp_path / "sinking.csv"
+    path.write_text(text)
+    return path
+
+
+def test_one_history_for_all_markers(tmp_path):
+    sinking = read_sinking(write(tmp_path, "time_s,sunk_mm\n0,0\n2,1\n3,3\n"))
+    assert np.allclose(sinking.at(1.0, 3), 0.5e-3)
+    assert np.allclose(sinking.at(3.0, 2), 3e-3)
+    assert np.isnan(sinking.at(3.01, 2)).all()
+    assert np.isnan(sinking.at(-0.01, 2)).all()
+
+
+def test_a_history_for_each_marker_and_none_for_others(tmp_path):
+    sinking = read_sinking(write(tmp_path, "time_s,marker,sunk_mm\n0,0,0\n0,2,1\n1,0,2\n1,2,1\n"))
+    assert np.allclose(sinking.at(0.5, 3), [1e-3, np.nan, 1e-3], equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("time_s,depth_mm\n0,0\n", "the column is missing"),
+        ("time_s,sunk_mm\n", "no rows"),
+        ("time_s,sunk_mm\n0,0\n0,1\n", "does not increase"),
+        ("time_s,sunk_mm\n0,x\n", "no finite number"),
+        ("time_s,marker,sunk_mm\n0,0.5,0\n", "whole numbers from 0"),
+    ],
+)
+def test_other_tables_are_refused(tmp_path, text, reason):
+    with pytest.raises(InputError, match=reason):
+        read_sinking(write(tmp_path, text))
