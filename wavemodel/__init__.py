@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from wavemodel.physics.body import Physics
     from wavemodel.physics.in_plane_stress import InPlaneStress
     from wavemodel.physics.quasi_static_press import QuasiStaticPress
+    from wavemodel.plate.model import PlateWave
+    from wavemodel.plate.solution import PlateSolution
     from wavemodel.published.membrane import PublishedWave
     from wavemodel.solution import WaveSolution
     from wavemodel.specimen import DiscTool, WaveLayer
@@ -26,6 +28,8 @@ __all__ = [
     "LayeredWave",
     "NotCoveredError",
     "Physics",
+    "PlateSolution",
+    "PlateWave",
     "Prony",
     "PublishedWave",
     "QuasiStaticPress",
@@ -39,6 +43,8 @@ _HOMES = {
     "DiscTool": "wavemodel.specimen",
     "LayeredWave": "wavemodel.layered",
     "NotCoveredError": "wavemodel.errors",
+    "PlateSolution": "wavemodel.plate.solution",
+    "PlateWave": "wavemodel.plate.model",
     "Prony": "wavemodel.integrators.prony",
     "PublishedWave": "wavemodel.published.membrane",
     "InPlaneStress": "wavemodel.physics.in_plane_stress",

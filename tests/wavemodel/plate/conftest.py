@@ -1,0 +1,34 @@
+"""The sheets that finite elements were solved for, and a factory of the plain sheet."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from wavemodel import DiscTool, WaveLayer
+from wavemodel.plate.sheet import Sheet, sheet
+
+FEM = json.loads((Path(__file__).parent / "fem_sheets.json").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="session")
+def fem_sheets() -> dict[str, dict]:
+    """Presses of 0.5 to 5 N (or as said) by the finite-element package, by name."""
+    return {case["name"]: case for case in FEM["cases"]}
+
+
+def _layers(thickness: float = 4e-3, poisson_ratio: float = 0.49) -> list[WaveLayer]:
+    return [WaveLayer("silicone", thickness, 1100.0, 4e5, poisson_ratio)]
+
+
+@pytest.fixture(scope="session")
+def silicone() -> Callable[..., list[WaveLayer]]:
+    """Factory of the phantom's sheet: 4 mm, 400 kPa, nu 0.49."""
+    return _layers
+
+
+@pytest.fixture(scope="session")
+def pressed_sheet() -> Callable[[str], Sheet]:
+    """The phantom's sheet over its 30 mm hole under a 5 mm tool of some contact."""
+    return lambda contact: sheet(_layers(), DiscTool(5e-3, contact), 30e-3, 10)

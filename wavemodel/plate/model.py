@@ -1,0 +1,195 @@
+"""The wave of a sheet over a hole: a disc pressed on layers that are clamped round a hole and hang free over it.
+
+Large deflections stretch the sheet, and its tension carries most of the load. Nothing but three numbers of the tool's
+edge (`edge_law`) is calibrated. The clamp holds the sheet's lower face only, outside the hole: how far the sheet gives
+way behind that edge is worked out from layered elasticity (`edge`), so there is no effective radius to choose.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from wavemodel.arrays import FloatArray
+from wavemodel.errors import WaveError, require_positive
+from wavemodel.integrators.damping import Damping
+from wavemodel.integrators.load import checked_load
+from wavemodel.plate.carrier import carrier
+from wavemodel.plate.checks import checked_count, checked_hole, checked_tension
+from wavemodel.plate.history import PlateHistory, Statics
+from wavemodel.plate.law import plate_law
+from wavemodel.plate.prepared import PreparedLaw
+from wavemodel.plate.sheet import sheet
+from wavemodel.plate.solution import PlateSolution
+from wavemodel.plate.uniform import UniformTension
+from wavemodel.specimen import DiscTool, WaveLayer
+
+REACH = 0.4
+"""Depth over the hole's radius up to which the set-up goes; a deeper press extends it."""
+VERIFIED = 0.5
+"""Depth over the hole's radius up to which the model was compared with finite elements."""
+
+
+class PlateWave:
+    """A disc-shaped tool on layers over a round hole, on the hole's axis; the constructor does the set-up.
+
+    Parameters
+    ----------
+    layers
+        L layers from the surface down.
+    tool
+        Uniform pressure, or rigid and flat, bonded or frictionless.
+    support
+        "hole".
+    hole_radius
+        In m; the lower face is held outside it.
+    modes
+        Radial functions for each of u, w and the rotation. None: 12, right to 1e-4.
+    pretension
+        Of the sheet before the press, N/m, equal in all directions.
+    reach
+        Depth up to which the set-up finds equilibria, m. None: 0.4 of the hole's radius. A run that goes beyond it
+        extends the set-up.
+    tension
+        "local": the sheet's own, at any strain, neo-Hookean. "uniform": Kirchhoff's and Carrier's, the same everywhere,
+        Hookean. None: "local", or "uniform" with the integrator "mid_point".
+    integrator
+        "quasi_static" (without inertia) or "mid_point" (with it, energy kept; a uniform tension only).
+    damping
+        With inertia: proportional to mass and stiffness; none by default.
+    tool_mass
+        With inertia: of a rigid tool, kg.
+
+    Raises
+    ------
+    NotCoveredError
+        For a support or contact that the model does not describe.
+    WaveError
+        For a value outside its range.
+    """
+
+    def __init__(
+        self,
+        layers: Sequence[WaveLayer],
+        tool: DiscTool,
+        support: str = "hole",
+        hole_radius: float | None = None,
+        modes: int | None = None,
+        *,
+        pretension: float = 0.0,
+        reach: float | None = None,
+        tension: str | None = None,
+        integrator: str = "quasi_static",
+        damping: Damping | None = None,
+        tool_mass: float = 0.0,
+    ) -> None:
+        self.layers, self.tool, self.hole_radius = tuple(layers), tool, checked_hole(tool, support, hole_radius)
+        self.modes, self.integrator = checked_count(modes), integrator
+        self.tension = checked_tension(tension, integrator)
+        for name, value, unit in (("pretension", pretension, "N/m"), ("tool_mass", tool_mass, "kg")):
+            if not 0.0 <= value < float("inf"):
+                raise WaveError(f"{name} = {value:g} {unit} is not allowed: finite and not negative")
+        if reach is not None:
+            require_positive("reach", reach, "m")
+        hole = self.hole_radius
+        law = plate_law(self.layers, tool, sheet(self.layers, tool, hole, self.modes, pretension))
+        self.unknowns: int = law.sheet.unknowns
+        self._damping = damping or Damping()
+        self._moving = UniformTension(carrier(law.sheet, tool_mass), law.faces, law.dent)
+        self._statics: Statics = self._moving
+        if self.tension == "local":
+            self._statics = PreparedLaw(law, REACH * hole if reach is None else reach)
+
+    @property
+    def window(self) -> float:
+        """Diameter of the hole, m."""
+        return 2.0 * self.hole_radius
+
+    @property
+    def first_frequency(self) -> float:
+        """Lowest natural frequency of the sheet with the tool on it, at rest, Hz."""
+        return self._moving.wave.first_frequency
+
+    def force_of_depth(self, depth: FloatArray) -> FloatArray:
+        """Press (n,) in N at depths (n,) in m, at rest; with the local tension splines between equilibria.
+
+        Raises
+        ------
+        WaveError
+            If the sheet has no equilibrium at the deepest.
+        """
+        return self._statics.rest("depth", np.asarray(depth, dtype=np.float64))[0]
+
+    def depth_of_force(self, force: FloatArray) -> FloatArray:
+        """Depth (n,) in m under presses (n,) in N; the inverse of `force_of_depth`.
+
+        Raises
+        ------
+        WaveError
+            If the sheet has no equilibrium at the largest.
+        """
+        return self._statics.rest("force", np.asarray(force, dtype=np.float64))[1]
+
+    def field(self, depth: float, radii: FloatArray) -> FloatArray:
+        """Outward and downward displacement of the layers' faces at rest.
+
+        Parameters
+        ----------
+        depth
+            Of the press, m.
+        radii
+            (m,) from the axis before the press, up to the hole's, m.
+
+        Returns
+        -------
+        ndarray (2, L + 1, m)
+            In m, the lowest face included.
+
+        Raises
+        ------
+        WaveError
+            If the sheet has no equilibrium at the depth.
+        """
+        return self._statics.field(depth, np.asarray(radii, dtype=np.float64))
+
+    def run(self, control: str, time: FloatArray, value: FloatArray) -> PlateSolution:
+        """Go through a load history.
+
+        Parameters
+        ----------
+        control
+            "force" or "depth" (of the top face on the axis, or of a rigid tool).
+        time
+            (n,) in s, rising; with inertia each step is as long as the history's.
+        value
+            (n,) in N or m, press positive.
+
+        Raises
+        ------
+        WaveError
+            If the history is not usable or the sheet has no equilibrium under it.
+        """
+        load = checked_load(control, time, value)
+        moving = self.integrator == "mid_point"
+        history = self._moving.move(load, self._damping) if moving else self._statics.run(load)
+        return PlateSolution(
+            time=load.time,
+            force=history.force,
+            depth=history.depth,
+            layer_names=tuple(layer.name for layer in self.layers),
+            top_deflection=history.axis,
+            integrator=self.integrator,
+            warnings=self._warnings(history),
+            energy=history.energy,
+            _hole=self.hole_radius,
+            _faces=history.faces,
+        )
+
+    def _warnings(self, history: PlateHistory) -> tuple[str, ...]:
+        deepest = float(np.abs(history.depth).max())
+        if deepest <= VERIFIED * self.hole_radius:
+            return ()
+        return (
+            f"sheet over a hole: the deepest press, {deepest * 1e3:.3g} mm, is "
+            f"{100 * deepest / self.hole_radius:.3g} % of the hole's radius, beyond the {100 * VERIFIED:.0f} % up to "
+            "which the model was verified",
+        )
