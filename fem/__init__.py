@@ -15,6 +15,7 @@ from fem.materials import LinearElastic, Material, NeoHookean
 from fem.prepare import prepare
 from fem.problem import Discretisation, Layer, Problem, Support, Tool
 from fem.solution import Failure, Solution, StepReport
+from fem.surface_file import read_surface
 
 __all__ = [
     "Discretisation",
@@ -31,4 +32,5 @@ __all__ = [
     "Support",
     "Tool",
     "prepare",
+    "read_surface",
 ]

@@ -1,19 +1,21 @@
-"""The set-up of a model: mesh, numbering, equations and linear solver."""
+"""The set-up of a model by its geometry."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from fem.arrays import FloatArray
-from fem.assembly import System, build_scatter, element_laws, gauss_geometry, number_unknowns
-from fem.contact import CONTACT_MODELS, Conditions
+from fem.assembly import gauss_geometry
+from fem.contact import CONTACT_MODELS
+from fem.equations import set_up
 from fem.errors import FemError
+from fem.fields import FieldRecovery
 from fem.layout import lay_out
-from fem.linear_solver import make_solver
-from fem.mesh import Mesh
+from fem.layout_block import lay_out_block
+from fem.layout_surface import lay_out_surface
 from fem.model import Model
 from fem.problem import Problem
-from fem.solving import Equilibrium, NewtonSettings
+from fem.setup_solid import solid_model
+from fem.solving import NewtonSettings
 from fem.supports import SUPPORT_MODELS
 
 
@@ -26,24 +28,21 @@ def build_model(problem: Problem, linear_solver: str) -> Model:
             f"available are {', '.join(sorted(CONTACT_MODELS))}"
         )
     warnings = contact.check(problem)
+    if problem.geometry == "block":
+        return solid_model(problem, lay_out_block(problem), linear_solver, warnings)
+    if problem.surface is not None:
+        mesh = lay_out_surface(problem, problem.surface)
+        return solid_model(problem, mesh, linear_solver, (*warnings, *mesh.remarks))
+    return _axisymmetric_model(problem, linear_solver, warnings)
+
+
+def _axisymmetric_model(problem: Problem, linear_solver: str, warnings: tuple[str, ...]) -> Model:
     mesh = lay_out(problem)
-    equilibrium = _equilibrium(problem, mesh, contact.conditions(mesh, problem), linear_solver)
-    return Model(problem, mesh, equilibrium, NewtonSettings(), warnings)
-
-
-def _equilibrium(problem: Problem, mesh: Mesh, conditions: Conditions, linear_solver: str) -> Equilibrium:
+    conditions = CONTACT_MODELS[problem.tool.contact].conditions(mesh, problem)
     support = SUPPORT_MODELS[problem.support.kind].fixed(mesh, problem)
     fixed = np.stack((support | mesh.axis | conditions.held, support))
-    numbering = number_unknowns(fixed, conditions.tied)
     geometry = gauss_geometry(mesh)
-    laws = element_laws(tuple(layer.material for layer in problem.layers), mesh.layer)
-    scatter = build_scatter(mesh.elements, numbering)
-    solver = make_solver(linear_solver, scatter.indptr, scatter.indices)
-    load: FloatArray = numbering.reduce(np.stack((np.zeros(len(mesh.nodes)), conditions.load)))
-    probe = int(numbering.unknown[1, mesh.interfaces[0][0]])
-    return Equilibrium(System(geometry, laws, numbering, scatter, _stabilisation(problem)), solver, load, probe)
-
-
-def _stabilisation(problem: Problem) -> float:
-    """Small strain needs none."""
-    return problem.discretisation.stabilisation if problem.kinematics == "finite" else 0.0
+    equilibrium = set_up(problem, mesh, geometry, fixed, conditions, linear_solver)
+    system = equilibrium.system
+    recovery = FieldRecovery(mesh, system.laws, geometry, system.point_modulus, problem.kinematics == "finite")
+    return Model(problem, mesh, equilibrium, recovery, NewtonSettings(), warnings)

@@ -7,6 +7,7 @@ their upper triangle (pairs, *points). Laws are written in these components and 
 from __future__ import annotations
 
 import itertools
+from abc import ABC, abstractmethod
 from functools import cached_property
 
 import numpy as np
@@ -14,8 +15,8 @@ import numpy as np
 from fem.arrays import FloatArray, IntArray
 
 
-class Components:
-    """A list of tensor components (i, j) in the axes (r, theta, z), with their packing.
+class Components(ABC):
+    """A list of tensor components (i, j) in the axes (r, theta, z) or (x, y, z), with their packing.
 
     Parameters
     ----------
@@ -95,6 +96,42 @@ class Components:
             full[..., i, j] = values[k]
         return full
 
+    def right_product(self, H: FloatArray) -> FloatArray:
+        """H^T H, (components, *points)."""
+        out = np.zeros_like(H)
+        at = {position: k for k, position in enumerate(self.positions)}
+        for n, (i, j) in enumerate(self.positions):
+            for k in range(3):
+                if (k, i) in at and (k, j) in at:
+                    out[n] += H[at[k, i]] * H[at[k, j]]
+        return out
+
+    def volume_change(self, H: FloatArray, cofactor_change: FloatArray) -> FloatArray:
+        """J - 1, (*points), of H and cof F - I: det F by its second row, without the 1."""
+        middle = self.positions.index((1, 1))
+        out: FloatArray = H[middle] + cofactor_change[middle]
+        for k, (i, _) in enumerate(self.positions):
+            if i == 1:
+                out += H[k] * cofactor_change[k]
+        return out
+
+    @property
+    @abstractmethod
+    def cofactor_pairs(self) -> IntArray:
+        """Packed positions of the pairs that d(cof F)/dF has."""
+
+    @abstractmethod
+    def cofactor_change(self, H: FloatArray) -> FloatArray:
+        """Cofactor dJ/dF less the unit tensor, (components, *points), of H = F - I."""
+
+    @abstractmethod
+    def cofactor_derivative(self, F: FloatArray) -> FloatArray:
+        """Second derivative of J at the pairs of `cofactor_pairs`."""
+
+    @abstractmethod
+    def largest_principal(self, strain: FloatArray) -> FloatArray:
+        """Largest principal value by amount, (*points), of symmetric tensors (components, *points)."""
+
 
 class AxisymmetricComponents(Components):
     """Axial symmetry without torsion: rr, rz and theta-theta of u_r, zr and zz of u_z."""
@@ -123,5 +160,59 @@ class AxisymmetricComponents(Components):
         rr, rz, tt, zr, zz = F
         return np.stack((zz, tt, -zr, -tt, -rz, rr))
 
+    def largest_principal(self, strain: FloatArray) -> FloatArray:
+        """Largest principal value by amount, (*points), of symmetric tensors (5, *points)."""
+        rr, rz, tt, _, zz = strain
+        middle, radius = 0.5 * (rr + zz), np.hypot(0.5 * (rr - zz), rz)
+        out: FloatArray = np.maximum(np.abs(middle) + radius, np.abs(tt))
+        return out
+
+
+class SolidComponents(Components):
+    """All nine components in (x, y, z), row by row: the gradients of u_x, u_y and u_z."""
+
+    def __init__(self) -> None:
+        super().__init__(tuple((i, j) for i in range(3) for j in range(3)), (3, 3, 3))
+
+    @cached_property
+    def _curvature(self) -> tuple[IntArray, IntArray, FloatArray]:
+        """Pairs (i j, k l) with i != k and j != l: their packed place, the remaining component and its sign."""
+        place, component, sign = [], [], []
+        for n, (a, b) in enumerate(zip(*self.pairs, strict=True)):
+            (i, j), (k, m) = self.positions[a], self.positions[b]
+            if i != k and j != m:
+                place.append(n)
+                component.append(3 * (3 - i - k) + 3 - j - m)
+                sign.append(1.0 if (k - i) % 3 == (m - j) % 3 else -1.0)
+        return np.array(place), np.array(component), np.array(sign)
+
+    @property
+    def cofactor_pairs(self) -> IntArray:
+        """Packed positions of the 18 pairs that d(cof F)/dF has."""
+        return self._curvature[0]
+
+    def cofactor_change(self, H: FloatArray) -> FloatArray:
+        """Cofactor dJ/dF less the unit tensor, (9, *points), of H = F - I."""
+        out = np.empty_like(H)
+        trace = H[0] + H[4] + H[8]
+        for n, (i, j) in enumerate(self.positions):
+            a, b, c, d = (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3
+            out[n] = H[3 * a + c] * H[3 * b + d] - H[3 * a + d] * H[3 * b + c] - H[3 * j + i]
+            if i == j:
+                out[n] += trace
+        return out
+
+    def cofactor_derivative(self, F: FloatArray) -> FloatArray:
+        """Second derivative of J at the pairs of `cofactor_pairs`, (18, *points)."""
+        _, component, sign = self._curvature
+        out: FloatArray = F[component] * sign.reshape(-1, *(1,) * (F.ndim - 1))
+        return out
+
+    def largest_principal(self, strain: FloatArray) -> FloatArray:
+        """Largest principal value by amount, (*points), of symmetric tensors (9, *points)."""
+        out: FloatArray = np.abs(np.linalg.eigvalsh(self.tensor(strain))).max(axis=-1)
+        return out
+
 
 AXISYMMETRIC = AxisymmetricComponents()
+SOLID = SolidComponents()

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.components import AxisymmetricComponents
+from fem.components import Components
 
 
 class Deformation:
@@ -25,7 +25,7 @@ class Deformation:
         Displacement gradient, (components, *points).
     """
 
-    def __init__(self, components: AxisymmetricComponents, H: FloatArray) -> None:
+    def __init__(self, components: Components, H: FloatArray) -> None:
         self.components = components
         self.H = H
 
@@ -53,10 +53,8 @@ class Deformation:
 
     @cached_property
     def volume_change(self) -> FloatArray:
-        """J - 1, (*points): with rr + zz + det of the plane part = cof_tt - 1."""
-        plane, hoop = self.cofactor_change[2], self.H[2]
-        out: FloatArray = plane + hoop + plane * hoop
-        return out
+        """J - 1, (*points)."""
+        return self.components.volume_change(self.H, self.cofactor_change)
 
     @cached_property
     def J(self) -> FloatArray:  # noqa: N802 (the field's symbol)
@@ -66,7 +64,7 @@ class Deformation:
 
     @cached_property
     def cofactor_derivative(self) -> FloatArray:
-        """d(cof F)/dF at `components.cofactor_pairs`, (6, *points)."""
+        """d(cof F)/dF at `components.cofactor_pairs`."""
         return self.components.cofactor_derivative(self.F)
 
     @cached_property
@@ -91,10 +89,5 @@ class Deformation:
     @cached_property
     def green_strain(self) -> FloatArray:
         """Green-Lagrange strain (F^T F - I)/2 = sym H + H^T H / 2, (components, *points)."""
-        rr, rz, tt, zr, zz = self.H
-        out = self.small_strain.copy()
-        out[0] += 0.5 * (rr * rr + zr * zr)
-        out[[1, 3]] += 0.5 * (rr * rz + zr * zz)
-        out[2] += 0.5 * tt * tt
-        out[4] += 0.5 * (rz * rz + zz * zz)
+        out: FloatArray = self.small_strain + 0.5 * self.components.right_product(self.H)
         return out

@@ -16,20 +16,24 @@ from fem.mesh import Mesh
 # A 9-node element is written as four linear quads over all its nodes, values at their middles.
 QUADS = np.array([[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]])
 MIDDLES = np.array([[0.25, 0.75, 0.75, 0.25], [0.25, 0.25, 0.75, 0.75]])
+VTK_QUAD = 9
 
 _Measures: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
 
 
 @dataclass(frozen=True)
 class Fields:
-    """Fields of one step in the plane theta = 0; axes x = r, y = theta, z upwards.
+    """Fields of one step, z upwards: in the plane theta = 0 with x = r, y = theta, or in three dimensions.
+
+    A mesh with mirror planes shows its half or quarter.
 
     Attributes
     ----------
     points
         Reference positions (P, 3) in m, top face at z = 0.
     cells
-        Corner points (C, 4) of linear quads; four make one element.
+        Points (C, k) of each cell in VTK's order: linear quads, four of which make one axisymmetric
+        element, or one quadratic hexahedron or tetrahedron an element.
     layer
         Layer of each cell (C,), 0 on top.
     displacement
@@ -40,6 +44,8 @@ class Fields:
         Green-Lagrange strain (small strain in linear kinematics), (C, 3, 3).
     det_F
         Volume ratio (C,); 1 + trace of the strain in linear kinematics.
+    cell_type
+        VTK's number of the cells' type.
     """
 
     points: FloatArray
@@ -49,6 +55,7 @@ class Fields:
     cauchy_stress: FloatArray
     strain: FloatArray
     det_F: FloatArray
+    cell_type: int = VTK_QUAD
 
 
 @dataclass(frozen=True)
@@ -81,7 +88,7 @@ class FieldRecovery:
         u = displacement[self.mesh.elements].transpose(2, 0, 1).reshape(18, -1)
         deformation = Deformation(AXISYMMETRIC, geometry.gradient(u))
         mean_stress = np.einsum("ie,iqe->qe", pressure, geometry.pressure)
-        stress, measure, ratio = (self._finite if self.finite else self._linear)(deformation, mean_stress)
+        stress, measure, ratio = stresses(self.laws, deformation, mean_stress, self.point_modulus, self.finite)
         nodes, moved = np.zeros((len(displacement), 3)), np.zeros((len(displacement), 3))
         nodes[:, ::2], moved[:, ::2] = self.mesh.nodes, displacement
         return Fields(
@@ -94,20 +101,48 @@ class FieldRecovery:
             det_F=_per_cell(ratio),
         )
 
-    def _finite(self, deformation: Deformation, mean_stress: FloatArray) -> _Measures:
-        mean = mean_stress + self.point_modulus * deformation.volume_change
-        P = self.laws.stress(deformation) + mean * deformation.cofactor
-        full = AXISYMMETRIC.tensor(P) @ np.swapaxes(AXISYMMETRIC.tensor(deformation.F), -1, -2)
-        cauchy = np.stack([full[..., i, j] for i, j in AXISYMMETRIC.positions]) / deformation.J
-        return cauchy, deformation.green_strain, deformation.J
 
-    def _linear(self, deformation: Deformation, mean_stress: FloatArray) -> _Measures:
-        small = deformation.small_strain
-        moduli = AXISYMMETRIC.unpack(self.laws.tangent(Deformation(AXISYMMETRIC, np.zeros_like(small))))
-        change = small[AXISYMMETRIC.normal].sum(axis=0)
-        mean = mean_stress + self.point_modulus * change
-        stress = np.einsum("kmqe,mqe->kqe", moduli, small) + mean * deformation.identity
-        return stress, small, 1.0 + change
+def stresses(
+    laws: ElementLaws, deformation: Deformation, mean_stress: FloatArray, point_modulus: FloatArray, finite: bool
+) -> _Measures:
+    """Cauchy stress in Pa, strain (components, q, E each) and volume ratio (q, E).
+
+    Parameters
+    ----------
+    laws
+        Laws of the elements.
+    deformation
+        Deformation at q points of the elements.
+    mean_stress
+        The pressure field there, (q, E) in Pa.
+    point_modulus
+        Bulk modulus (E,) in Pa that acts at points.
+    finite
+        Green-Lagrange strain and the stress of the deformed state; otherwise small strain.
+    """
+    return (_finite if finite else _linear)(laws, deformation, mean_stress, point_modulus)
+
+
+def _finite(
+    laws: ElementLaws, deformation: Deformation, mean_stress: FloatArray, point_modulus: FloatArray
+) -> _Measures:
+    components = deformation.components
+    mean = mean_stress + point_modulus * deformation.volume_change
+    P = laws.stress(deformation) + mean * deformation.cofactor
+    full = components.tensor(P) @ np.swapaxes(components.tensor(deformation.F), -1, -2)
+    cauchy = np.stack([full[..., i, j] for i, j in components.positions]) / deformation.J
+    return cauchy, deformation.green_strain, deformation.J
+
+
+def _linear(
+    laws: ElementLaws, deformation: Deformation, mean_stress: FloatArray, point_modulus: FloatArray
+) -> _Measures:
+    small, components = deformation.small_strain, deformation.components
+    moduli = components.unpack(laws.tangent(Deformation(components, np.zeros_like(small))))
+    change = small[components.normal].sum(axis=0)
+    mean = mean_stress + point_modulus * change
+    stress = np.einsum("kmqe,mqe->kqe", moduli, small) + mean * deformation.identity
+    return stress, small, 1.0 + change
 
 
 def _per_cell(values: FloatArray) -> FloatArray:

@@ -10,7 +10,7 @@ from fem.arrays import FloatArray
 from fem.load import Load
 from fem.record import Record, largest_strain, reaction
 from fem.solution import Solution, StepReport
-from fem.solving import Equilibrium, State
+from fem.solving import Equilibrium, State, at_rest, settle_linear
 
 LARGEST_SMALL_STRAIN = 0.05
 
@@ -20,17 +20,14 @@ def unit_state(problem: Equilibrium) -> tuple[State, float]:
 
     The tangent at rest is factorised here; its two passes of refinement bring the residual to round-off.
     """
-    system = problem.system
-    rest = system.evaluate(*system.rest())
-    if rest is None:
-        raise ArithmeticError("the mesh has an element without volume")
+    system, rest = problem.system.plain, at_rest(problem)
     tangent = system.tangent(rest)
     problem.solver.factorise(tangent)
     y = problem.solver.solve(problem.unit_load[:, None])[:, 0]
     force = system.linear_force(rest, y)
     y = y + problem.solver.solve((problem.unit_load - system.scatter.vector(force))[:, None])[:, 0]
     force = system.linear_force(rest, y)
-    return State(y, system.pressure_after(rest, y), 1.0), reaction(system, force)
+    return State(y, system.linear_pressure(rest, y), 1.0), reaction(system, force)
 
 
 def run_linear(
@@ -54,15 +51,16 @@ def run_linear(
     """
     problem = record.equilibrium
     unit, unit_reaction = unit_state(problem)
-    compliance = problem.depth(unit.y)
-    strain = largest_strain(problem.system, unit.y, finite=False)
-    forces: FloatArray = load.value if load.control == "force" else load.value / compliance
+    start = settle_linear(problem)
+    compliance, depth = problem.depth(unit.y), problem.depth(start.y)
+    strain = None if problem.system.is_displaced else largest_strain(problem.system, unit.y, finite=False)
+    forces: FloatArray = load.value if load.control == "force" else (load.value - depth) / compliance
     for n, (time, force) in enumerate(zip(load.time.tolist(), forces.tolist(), strict=True)):
-        record.add(
-            time, State(force * unit.y, force * unit.pressure, force), force * unit_reaction, abs(force) * strain
-        )
+        state = State(start.y + force * unit.y, start.pressure + force * unit.pressure, force)
+        largest = largest_strain(problem.system, state.y, finite=False) if strain is None else abs(force) * strain
+        record.add(time, state, force * unit_reaction, largest)
         if on_step is not None:
-            on_step(StepReport(n + 1, len(forces), time, force, force * compliance, 0, 0))
+            on_step(StepReport(n + 1, len(forces), time, force, problem.depth(state.y), 0, 0))
     return record.solution(None, warnings + _strain_warning(record.strains))
 
 

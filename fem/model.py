@@ -8,12 +8,14 @@ from dataclasses import dataclass
 from fem.fields import FieldRecovery
 from fem.linear_run import run_linear
 from fem.load import Load
-from fem.mesh import Mesh
+from fem.mesh import AnyMesh
 from fem.nonlinear_run import run_nonlinear
 from fem.problem import Problem
 from fem.record import Record
+from fem.solid_fields import SolidFieldRecovery
 from fem.solution import Solution, StepReport
 from fem.solving import Equilibrium, NewtonSettings
+from fem.threads import suited_threads
 
 PULLING = "the load history pulls (negative values): the contact is tied to the surface and cannot lift off"
 
@@ -30,6 +32,8 @@ class Model:
         The mesh.
     equilibrium
         Equations, linear solver, unit load and depth probe.
+    recovery
+        Evaluates stress and strain.
     newton
         Limits of Newton's method.
     warnings
@@ -37,8 +41,9 @@ class Model:
     """
 
     problem: Problem
-    mesh: Mesh
+    mesh: AnyMesh
     equilibrium: Equilibrium
+    recovery: FieldRecovery | SolidFieldRecovery
     newton: NewtonSettings
     warnings: tuple[str, ...]
 
@@ -67,17 +72,12 @@ class Model:
         Solution
             With `complete` False and a `failure` if a step could not be reached; never raises for that.
         """
-        record = Record(self.mesh, self.equilibrium, self._recovery(), self._names())
+        record = Record(self.mesh, self.equilibrium, self.recovery, self._names())
         warnings = self.warnings + ((PULLING,) if load.value.min() < 0.0 else ())
-        if self.problem.kinematics == "linear":
-            return run_linear(record, load, warnings, on_step)
-        return run_nonlinear(record, load, self.newton, warnings, on_step)
+        with suited_threads(self.unknowns):
+            if self.problem.kinematics == "linear":
+                return run_linear(record, load, warnings, on_step)
+            return run_nonlinear(record, load, self.newton, warnings, on_step)
 
     def _names(self) -> tuple[str, ...]:
         return tuple(layer.name for layer in self.problem.layers)
-
-    def _recovery(self) -> FieldRecovery:
-        system = self.equilibrium.system
-        return FieldRecovery(
-            self.mesh, system.laws, system.geometry, system.point_modulus, self.problem.kinematics == "finite"
-        )

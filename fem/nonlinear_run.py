@@ -10,7 +10,7 @@ from fem.linear_run import unit_state
 from fem.load import Load
 from fem.record import Record, largest_strain, reaction
 from fem.solution import Failure, Solution, StepReport
-from fem.solving import Advance, Equilibrium, NewtonSettings, Stepper
+from fem.solving import Advance, Equilibrium, NewtonSettings, Stepper, settle
 
 LEAST_SHARE_OF_PEAK = 1e-3
 
@@ -44,7 +44,11 @@ def run_nonlinear(
     """
     problem = record.equilibrium
     scale = LEAST_SHARE_OF_PEAK * force_scale(problem, load)
-    stepper = Stepper(problem, load.control, scale, settings)
+    start, reason = settle(problem, scale, settings)
+    if reason:
+        failure = Failure(1, float(load.time[0]), load.control, 0.0, float(load.value[0]), reason)
+        return record.solution(failure, warnings)
+    stepper = Stepper(problem, load.control, scale, settings, start)
     for n, (time, value) in enumerate(zip(load.time.tolist(), load.value.tolist(), strict=True)):
         advance = stepper.advance(value)
         if advance.reason:

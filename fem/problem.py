@@ -7,14 +7,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from fem.checks import require_one_of, require_positive
 from fem.errors import FemError
 from fem.materials import Material
 
+if TYPE_CHECKING:
+    from fem.mesh.surface.model import Surface
+
 CONTACTS = ("uniform_pressure", "rigid_bonded", "rigid_frictionless", "rigid_frictional")
 SUPPORTS = ("bonded", "hole", "half_space")
+GEOMETRIES = ("axisymmetric", "block", "surface")
+LARGEST_TILT = math.radians(30.0)
 
 
 @dataclass(frozen=True)
@@ -46,7 +51,7 @@ class Layer:
 
 @dataclass(frozen=True)
 class Tool:
-    """The round tool on the axis.
+    """The round tool.
 
     Attributes
     ----------
@@ -56,11 +61,18 @@ class Tool:
         "uniform_pressure", "rigid_bonded", "rigid_frictionless" or "rigid_frictional".
     edge_radius
         Rounding of the edge in m, above 0 and at most `radius`; None for a sharp flat cylinder.
+    position
+        (x, y) in m where the tool's axis meets the surface; in three dimensions only, on a block along x only.
+    tilt
+        Angle in rad of the tool's axis from the vertical in the x-z plane, its upper end towards +x, at most
+        30 degrees. The tool presses and moves vertically.
     """
 
     radius: float
     contact: str
     edge_radius: float | None = None
+    position: tuple[float, float] = (0.0, 0.0)
+    tilt: float = 0.0
 
     def __post_init__(self) -> None:
         require_positive("tool.radius", self.radius, "m")
@@ -71,6 +83,14 @@ class Tool:
                 raise FemError(
                     f"tool.edge_radius = {self.edge_radius:g} m: must be at most tool.radius = {self.radius:g} m"
                 )
+        self._require_place()
+
+    def _require_place(self) -> None:
+        x, y = self.position
+        if not (math.isfinite(x) and math.isfinite(y)):
+            raise FemError(f"tool.position = ({x:g}, {y:g}) m: must be finite")
+        if not abs(self.tilt) <= LARGEST_TILT:
+            raise FemError(f"tool.tilt = {self.tilt:g} rad: must be from {-LARGEST_TILT:.4g} to {LARGEST_TILT:.4g} rad")
 
 
 @dataclass(frozen=True)
@@ -139,6 +159,11 @@ class Problem:
         "finite" (large strain) or "linear" (small strain).
     discretisation
         Mesh density and outer radius.
+    geometry
+        "axisymmetric"; "block": three dimensions, a square block of half side `discretisation.radius`; or
+        "surface": the body inside `surface`, whose layers count inwards from it, the last one filling the rest.
+    surface
+        The body's surface, for that geometry only (see :func:`fem.read_surface`).
 
     Raises
     ------
@@ -151,10 +176,13 @@ class Problem:
     support: Support
     kinematics: Literal["finite", "linear"] = "finite"
     discretisation: Discretisation = field(default_factory=Discretisation)
+    geometry: Literal["axisymmetric", "block", "surface"] = "axisymmetric"
+    surface: Surface | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "layers", tuple(self.layers))
         require_one_of("kinematics", self.kinematics, ("finite", "linear"))
+        require_one_of("geometry", self.geometry, GEOMETRIES)
         if not self.layers:
             raise FemError("layers: none given, at least one is needed")
         names = [layer.name for layer in self.layers]
@@ -164,14 +192,15 @@ class Problem:
         self._require_finite_thickness()
         self._require_finite_strain_laws()
         self._require_room()
+        self._require_three_dimensions()
 
     def _require_finite_thickness(self) -> None:
-        endless = 1 if self.support.kind == "half_space" else 0
+        endless = 1 if self.support.kind == "half_space" or self.geometry == "surface" else 0
         for layer in self.layers[: len(self.layers) - endless]:
             if math.isinf(layer.thickness):
                 raise FemError(
                     f"layer {layer.name!r}: thickness = inf m: "
-                    "only the last layer of the support 'half_space' is endless"
+                    "only the last layer of the support 'half_space' is endless and that of a surface fills the rest"
                 )
 
     def _require_finite_strain_laws(self) -> None:
@@ -189,3 +218,30 @@ class Problem:
             least, why = hole, "support.hole_radius"
         if radius is not None and radius <= least:
             raise FemError(f"discretisation.radius = {radius:g} m: must be above {why} = {least:g} m")
+
+    def _require_three_dimensions(self) -> None:
+        tool = self.tool
+        if self.geometry == "axisymmetric" and (tool.position != (0.0, 0.0) or tool.tilt != 0.0):
+            raise FemError(
+                f"tool.position = ({tool.position[0]:g}, {tool.position[1]:g}) m, tool.tilt = {tool.tilt:g} rad: "
+                "geometry = 'axisymmetric' has the tool upright on the axis; use geometry = 'block'"
+            )
+        if tool.tilt != 0.0 and tool.contact != "rigid_bonded":
+            raise FemError(f"tool.tilt = {tool.tilt:g} rad: only a tool of contact 'rigid_bonded' can be tilted")
+        if self.geometry == "block" and tool.position[1] != 0.0:
+            raise FemError(
+                f"tool.position = ({tool.position[0]:g}, {tool.position[1]:g}) m: must be (x, 0) with geometry = "
+                "'block'; turn the specimen so that the tool stands off-centre along x"
+            )
+        self._require_surface()
+
+    def _require_surface(self) -> None:
+        if (self.surface is None) == (self.geometry == "surface"):
+            state = "missing" if self.surface is None else "given"
+            raise FemError(f"surface is {state}: needed for geometry = 'surface', and only there")
+        if self.geometry != "surface":
+            return
+        if self.support.kind != "bonded":
+            raise FemError(f"support.kind = {self.support.kind!r}: geometry = 'surface' has the support 'bonded' only")
+        if self.tool.tilt != 0.0:
+            raise FemError(f"tool.tilt = {self.tool.tilt:g} rad: must be 0 with geometry = 'surface'")

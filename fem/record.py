@@ -9,10 +9,10 @@ import numpy as np
 from fem import strain
 from fem.arrays import FloatArray
 from fem.assembly import System
-from fem.components import AXISYMMETRIC
 from fem.deformation import Deformation
 from fem.fields import FieldRecovery
-from fem.mesh import Mesh
+from fem.mesh import AnyMesh
+from fem.solid_fields import SolidFieldRecovery
 from fem.solution import Failure, Solution
 from fem.solving import Equilibrium, State
 
@@ -37,9 +37,9 @@ class Record:
         Largest strains so far.
     """
 
-    mesh: Mesh
+    mesh: AnyMesh
     equilibrium: Equilibrium
-    recovery: FieldRecovery
+    recovery: FieldRecovery | SolidFieldRecovery
     layer_names: tuple[str, ...]
     time: list[float] = field(default_factory=list)
     states: list[State] = field(default_factory=list)
@@ -57,16 +57,16 @@ class Record:
         """Arrays of all steps kept."""
         numbering = self.equilibrium.system.numbering
         y = np.array([state.y for state in self.states]).reshape(len(self.states), numbering.count)
-        nodal = np.concatenate((y, np.zeros((len(y), 1))), axis=1)[:, numbering.unknown.T]
+        nodal = numbering.expand(y).swapaxes(1, 2)
         rest_pressure = self.equilibrium.system.rest()[1]
-        pressure = np.array([s.pressure for s in self.states]).reshape(-1, *rest_pressure.shape)
+        pressure = np.array([s.pressure for s in self.states]).reshape(len(self.states), *rest_pressure.shape)
         return Solution(
             time=np.array(self.time),
             force=np.array([state.force for state in self.states]),
             reaction=np.array(self.reactions),
             depth=-y[:, self.equilibrium.probe],
             layer_names=self.layer_names,
-            top_deflection=-nodal[:, [row[0] for row in self.mesh.interfaces], 1],
+            top_deflection=self._top_deflection(nodal),
             max_strain=np.array(self.strains),
             displacement=nodal,
             pressure=pressure,
@@ -77,19 +77,26 @@ class Record:
             recovery=self.recovery,
         )
 
+    def _top_deflection(self, nodal: FloatArray) -> FloatArray:
+        """Deflection (n, L) in m of the layers' top faces on the tool's axis of displacements (n, N, components)."""
+        axis = np.zeros(1)
+        rows = [self.mesh.profile(-u[:, -1], axis)[:, 0] for u in nodal]
+        return np.array(rows).reshape(len(nodal), len(self.layer_names))
+
 
 def reaction(system: System, element_force: FloatArray) -> float:
-    """Upward force in N of the support on the specimen, from element forces (18, E).
+    """Upward force in N of the support on the specimen, from element forces, vertical ones last.
 
     Internal forces in z add up to zero over all nodes, so what the support returns is minus the sum over the
     nodes that may move.
     """
-    vertical = element_force[9:][system.scatter.element_unknowns[9:] < system.numbering.count]
+    last = -len(element_force) // len(system.numbering.unknown)
+    vertical = element_force[last:][system.scatter.element_unknowns[last:] < system.numbering.count]
     return float(-vertical.sum())
 
 
 def largest_strain(system: System, y: FloatArray, finite: bool) -> float:
     """Largest element mean of the Green-Lagrange strain (`finite`) or of the small strain."""
-    deformation = Deformation(AXISYMMETRIC, system.geometry.gradient(system.scatter.gather(y)))
+    deformation = Deformation(system.geometry.components, system.geometry.gradient(system.element_displacement(y)))
     measure = deformation.green_strain if finite else deformation.small_strain
     return strain.largest_element_strain(measure, system.geometry)

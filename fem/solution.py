@@ -12,7 +12,8 @@ from fem.errors import FemError
 
 if TYPE_CHECKING:
     from fem.fields import FieldRecovery, Fields
-    from fem.mesh import Mesh
+    from fem.mesh import AnyMesh
+    from fem.solid_fields import SolidFieldRecovery
 
 
 @dataclass(frozen=True)
@@ -102,9 +103,10 @@ class Solution:
         (n,) largest principal strain (absolute; Green-Lagrange, or small strain in linear kinematics)
         of the elements' mean strains.
     displacement
-        Nodal displacements (n, N, 2) in m: u_r, u_z (z upwards).
+        Nodal displacements (n, N, 2) in m: u_r, u_z (z upwards); (n, N, 3) in three dimensions.
     pressure
-        Coefficients (n, 3, E) of the mean stress in the elements, in Pa times the root of a volume.
+        Coefficients (n, p, E), p = 3 if axisymmetric, of the mean stress in the elements, in Pa times the
+        root of a volume.
     complete
         Whether all steps were reached.
     failure
@@ -129,11 +131,11 @@ class Solution:
     complete: bool
     failure: Failure | None
     warnings: tuple[str, ...]
-    mesh: Mesh
-    recovery: FieldRecovery
+    mesh: AnyMesh
+    recovery: FieldRecovery | SolidFieldRecovery
 
     def profile(self, step: int, radii: FloatArray) -> FloatArray:
-        """Deflection of each layer's top face at reference radii.
+        """Deflection of each layer's top face at reference radii (from the tool's axis along +x).
 
         Parameters
         ----------
@@ -157,8 +159,7 @@ class Solution:
         if r.ndim != 1 or not np.isfinite(r).all() or (r < 0.0).any():
             raise FemError("radii: must be a one-dimensional array of finite values >= 0 m")
         u = self._displacement_at(step)
-        rows = self.mesh.interfaces
-        return np.stack([_along(self.mesh.nodes[row, 0], -u[row, 1], r) for row in rows])
+        return self.mesh.profile(-u[:, -1], r)
 
     def fields(self, step: int) -> Fields:
         """Displacement, stress and strain at one step, as plain arrays for a file writer.
@@ -181,13 +182,3 @@ class Solution:
             raise FemError(f"step = {step}: the solution has {count} steps, rows 0 to {count - 1}")
         out: FloatArray = self.displacement[step]
         return out
-
-
-def _along(nodes: FloatArray, values: FloatArray, r: FloatArray) -> FloatArray:
-    """Quadratic interpolation over a row of nodes (2 n + 1,), at radii r (m,); NaN outside."""
-    lines = nodes[::2]
-    column = np.clip(np.searchsorted(lines, r, side="right") - 1, 0, len(lines) - 2)
-    s = (r - lines[column]) / (lines[column + 1] - lines[column])
-    first, middle, last = values[2 * column], values[2 * column + 1], values[2 * column + 2]
-    inside = first * (1 - s) * (1 - 2 * s) + middle * 4 * s * (1 - s) + last * s * (2 * s - 1)
-    return np.where(r <= lines[-1] * (1 + 1e-12), inside, np.nan)

@@ -5,24 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.assembly import Geometry
+from fem.assembly import ElementGeometry
 
 
-def largest_principal(strain: FloatArray) -> FloatArray:
-    """Largest principal strain by absolute value, (*points), of components (5, *points)."""
-    rr, rz, tt, _, zz = strain
-    middle, radius = 0.5 * (rr + zz), np.hypot(0.5 * (rr - zz), rz)
-    out: FloatArray = np.maximum(np.abs(middle) + radius, np.abs(tt))
-    return out
-
-
-def largest_element_strain(strain: FloatArray, geometry: Geometry) -> float:
+def largest_element_strain(strain: FloatArray, geometry: ElementGeometry) -> float:
     """Largest principal strain of the elements' mean strains.
 
     Parameters
     ----------
     strain
-        Components (5, q, E) at the points of the geometry.
+        Components (components, q, E) at the points of the geometry.
     geometry
         Gauss points with weights.
 
@@ -32,4 +24,4 @@ def largest_element_strain(strain: FloatArray, geometry: Geometry) -> float:
         Largest absolute value. Means over elements keep the singular edge of a sharp tool from deciding alone.
     """
     weight = geometry.weight / geometry.weight.sum(axis=0)
-    return float(largest_principal(np.einsum("kqe,qe->ke", strain, weight)).max())
+    return float(geometry.components.largest_principal(np.einsum("kqe,qe->ke", strain, weight)).max())

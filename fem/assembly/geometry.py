@@ -1,8 +1,7 @@
-"""Reference geometry at points of every element, and the way between reference rows and physical components.
+"""Reference geometry of the axisymmetric element, and the way between reference rows and physical components.
 
-Shapes are (..., q, E): point before element, so that one matrix product serves all elements at once. A
-displacement gradient is made from the rows d/dxi, d/deta and value of :class:`fem.assembly.shapes.Shapes`;
-stresses and moduli go the transposed way, "pulled back" to the rows and weighted.
+A displacement gradient is made from the rows d/dxi, d/deta and value of :class:`fem.assembly.shapes.Shapes`;
+stresses and moduli go the transposed way.
 """
 
 from __future__ import annotations
@@ -13,14 +12,16 @@ import numpy as np
 import skfem
 
 from fem.arrays import FloatArray
+from fem.assembly.element_geometry import ElementGeometry
 from fem.assembly.shapes import Shapes, tabulate
+from fem.components import AXISYMMETRIC, Components
 from fem.mesh import Mesh
 
 QUADRATURE_ORDER = 5  # three Gauss points a direction, none of them on the axis
 
 
 @dataclass(frozen=True)
-class Geometry:
+class Geometry(ElementGeometry):
     """Factors at q points of E elements.
 
     Attributes
@@ -46,6 +47,16 @@ class Geometry:
     pressure: FloatArray
     pressure_transform: FloatArray
 
+    @property
+    def components(self) -> Components:
+        """The five components without torsion."""
+        return AXISYMMETRIC
+
+    @property
+    def tables(self) -> tuple[FloatArray, ...]:
+        """Rows of the radial and of the vertical displacement."""
+        return self.shapes.radial, self.shapes.vertical
+
     def gradient(self, u: FloatArray) -> FloatArray:
         """Displacement gradient (5, q, E) of nodal displacements (18, E), radial ones first."""
         shape = self.weight.shape
@@ -60,13 +71,13 @@ class Geometry:
         out[4] = vertical[0] * xi_z + vertical[1] * eta_z
         return out
 
-    def pull_back(self, stress: FloatArray) -> FloatArray:
+    def pull_back(self, stress: FloatArray, elements: slice = slice(None)) -> FloatArray:
         """Reference rows (5, ..., q, E) of components (5, ..., q, E), not weighted."""
-        (xi_r, xi_z), (eta_r, eta_z) = self.inverse
+        (xi_r, xi_z), (eta_r, eta_z) = self.inverse[..., elements]
         out = np.empty_like(stress)
         out[0] = stress[0] * xi_r + stress[1] * xi_z
         out[1] = stress[0] * eta_r + stress[1] * eta_z
-        out[2] = stress[2] * self.hoop
+        out[2] = stress[2] * self.hoop[..., elements]
         out[3] = stress[3] * xi_r + stress[4] * xi_z
         out[4] = stress[3] * eta_r + stress[4] * eta_z
         return out

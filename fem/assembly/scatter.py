@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 
 from fem.arrays import BoolArray, FloatArray, IntArray
-from fem.assembly.shapes import COLUMNS, NODES, ROWS
 
 FIXED = -1
+Index: TypeAlias = NDArray[np.int32]  # half the memory of the pattern's large arrays
 
 
 @dataclass(frozen=True)
@@ -20,18 +22,21 @@ class Numbering:
     Attributes
     ----------
     unknown
-        Unknown of (component, node), (2, N); -1 where the displacement is zero.
+        Unknown of (component, node), (2, N) or (3, N); -1 where the displacement is zero.
     count
         Number of unknowns n.
+    prescribed
+        Displacements (2, N) in m on top of those of the unknowns, or None for none.
     """
 
     unknown: IntArray
     count: int
+    prescribed: FloatArray | None = None
 
     def expand(self, y: FloatArray) -> FloatArray:
-        """Nodal displacements (2, N) in m of the unknowns (n,)."""
-        out: FloatArray = np.append(y, 0.0)[self.unknown]
-        return out
+        """Nodal displacements (..., 2, N) in m of the unknowns (..., n)."""
+        out: FloatArray = np.concatenate((y, np.zeros((*y.shape[:-1], 1))), axis=-1)[..., self.unknown]
+        return out if self.prescribed is None else out + self.prescribed
 
     def reduce(self, nodal: FloatArray) -> FloatArray:
         """Forces on the unknowns (n,) of nodal forces (2, N)."""
@@ -46,13 +51,13 @@ def number_unknowns(fixed: BoolArray, tied: BoolArray) -> Numbering:
     Parameters
     ----------
     fixed
-        Displacements that are zero, (2, N): radial, vertical.
+        Displacements that are zero, (2, N) or (3, N), the vertical one last.
     tied
         Nodes (N,) that share one vertical displacement.
     """
     representative = np.arange(fixed.size).reshape(fixed.shape)
     if tied.any():
-        representative[1, tied] = representative[1, tied].min()
+        representative[-1, tied] = representative[-1, tied].min()
     free = np.unique(representative[~fixed])
     unknown = np.searchsorted(free, representative)
     unknown[fixed] = FIXED
@@ -105,28 +110,48 @@ class Scatter:
         return out
 
 
-def packed_positions() -> tuple[IntArray, IntArray]:
-    """Local row and column (171,) of each packed entry: rr upper, rz full, zz upper."""
-    i, j = (grid.ravel() for grid in np.meshgrid(np.arange(NODES), np.arange(NODES), indexing="ij"))
-    row = np.concatenate((ROWS, i, ROWS + NODES))
-    column = np.concatenate((COLUMNS, j + NODES, COLUMNS + NODES))
-    return row, column
+def packed_positions(nodes: int, components: int) -> tuple[IntArray, IntArray]:
+    """Local row and column (entries,) of each packed entry: the upper triangle of the diagonal blocks, all of others.
+
+    Blocks belong to two displacement components each, in the order (0, 0), (0, 1), ...
+    """
+    upper = np.triu_indices(nodes)
+    full = tuple(grid.ravel() for grid in np.indices((nodes, nodes)))
+    rows, columns = [], []
+    for a in range(components):
+        for b in range(a, components):
+            i, j = upper if a == b else full
+            rows.append(i + a * nodes)
+            columns.append(j + b * nodes)
+    return np.concatenate(rows), np.concatenate(columns)
 
 
 def build_scatter(elements: IntArray, numbering: Numbering) -> Scatter:
-    """Scatter of elements (9, E) with a numbering."""
+    """Scatter of elements (nodes, E) with a numbering."""
     n = numbering.count
-    unknowns = np.concatenate([numbering.unknown[c][elements] for c in range(2)])
-    local_row, local_column = packed_positions()
+    unknowns = np.concatenate([unknown[elements] for unknown in numbering.unknown]).astype(np.int32)
+    local_row, local_column = packed_positions(len(elements), len(numbering.unknown))
     row, column = unknowns[local_row].ravel(), unknowns[local_column].ravel()
+    low, high = np.minimum(row, column), np.maximum(row, column)
     # An off-diagonal packed entry stands for itself and its mirror: both land on the diagonal of a tied unknown.
-    twice = np.repeat(local_row != local_column, elements.shape[1]) & (row == column)
-    kept = np.flatnonzero((row >= 0) & (column >= 0))
-    key = np.minimum(row, column)[kept] * n + np.maximum(row, column)[kept]
-    entries, position = np.unique(key, return_inverse=True)
-    weight = np.where(twice[kept], 2.0, 1.0)
-    matrix_sum = sp.csr_array((weight, (position, kept)), shape=(len(entries), row.size))
+    twice = (low == high) & np.repeat(local_row != local_column, elements.shape[1])
+    order = np.flatnonzero(low >= 0).astype(np.int32)
+    order = _stable_order(low, n, _stable_order(high, n, order))
+    row, column = low[order], high[order]
+    new = np.flatnonzero(np.concatenate(([True], (row[1:] != row[:-1]) | (column[1:] != column[:-1]))))
+    weight = 1.0 + twice[order]
+    matrix_sum = sp.csr_array((weight, order, np.append(new, len(order)).astype(np.int32)), shape=(len(new), low.size))
+    first_row, indices = row[new].astype(np.int64), column[new].astype(np.int64)
     flat = np.flatnonzero(unknowns.ravel() >= 0)
     vector_sum = sp.csr_array((np.ones(flat.size), (unknowns.ravel()[flat], flat)), shape=(n, unknowns.size))
-    indptr = np.searchsorted(entries // n, np.arange(n + 1))
-    return Scatter(np.where(unknowns < 0, n, unknowns), matrix_sum, vector_sum, indptr, entries % n)
+    indptr = np.searchsorted(first_row, np.arange(n + 1))
+    gathered = np.where(unknowns < 0, n, unknowns).astype(np.int64)
+    return Scatter(gathered, matrix_sum, vector_sum, indptr, indices)
+
+
+def _stable_order(key: Index, count: int, order: Index) -> Index:
+    """`order` (m,) sorted by key[order] in 0..count - 1, stable: a counting sort, as SciPy does it to transpose."""
+    ends = np.array([0, len(order)], dtype=order.dtype)
+    row = sp.csr_array((order, key[order], ends), shape=(1, count))
+    out: Index = row.tocsc().data
+    return out

@@ -13,10 +13,8 @@ import numpy as np
 import skfem
 
 from fem.arrays import FloatArray
-from fem.components import AXISYMMETRIC
 
 NODES = 9
-ROWS, COLUMNS = np.triu_indices(NODES)
 
 
 @dataclass(frozen=True)
@@ -54,27 +52,3 @@ def tabulate(points: FloatArray) -> Shapes:
         np.concatenate((gradient[0], gradient[1], value)),
         np.concatenate((gradient[0], gradient[1])),
     )
-
-
-def stiffness_tables(shapes: Shapes) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Products of gradient rows that turn packed moduli into packed element stiffness.
-
-    Returns
-    -------
-    tuple of ndarray
-        For the blocks rr (45, 6 q), rz (81, 6 q) and zz (45, 3 q): times moduli (pairs * q, E) of the block
-        they give the entries of `ROWS, COLUMNS` (rr and zz) or all 81 entries (rz).
-    """
-    q = shapes.count
-    rows = np.concatenate((shapes.radial, shapes.vertical)).reshape(-1, q, NODES)
-    rr: list[FloatArray] = []
-    rz: list[FloatArray] = []
-    zz: list[FloatArray] = []
-    for k, m in zip(*AXISYMMETRIC.pairs, strict=True):
-        product = np.einsum("qi,qj->ijq", rows[k], rows[m])
-        if k < 3 <= m:
-            rz.append(product.reshape(NODES * NODES, q))
-        else:
-            full = product if k == m else product + product.transpose(1, 0, 2)
-            (rr if m < 3 else zz).append(full[ROWS, COLUMNS])
-    return np.concatenate(rr, axis=1), np.concatenate(rz, axis=1), np.concatenate(zz, axis=1)

@@ -1,7 +1,10 @@
 """The discrete equations: residual and tangent of displacement and pressure, the pressure condensed.
 
-Two-field form (perturbed Lagrangian): W_iso(F) + p (J - 1) - p^2 / (2 K), u biquadratic, p linear and
-discontinuous (Q2/P1, inf-sup stable: Boffi, Brezzi and Fortin, Mixed Finite Element Methods and Applications,
+The shapes in the docstrings are those of the axisymmetric element (18 displacements, 3 pressures); other
+elements have others. An element without pressure shapes has all of its bulk modulus at the Gauss points.
+
+Two-field form (perturbed Lagrangian): W_iso(F) + p (J - 1) - p^2 / (2 K), u quadratic, p discontinuous, as a rule
+linear (Q2/P1, inf-sup stable: Boffi, Brezzi and Fortin, Mixed Finite Element Methods and Applications,
 chapter 8). The pressure shapes are orthonormal on each element, so that condensing it adds
 K sum_i b_i b_i^T to the element's stiffness, b_i the integral of pressure shape i times dJ/du.
 Linear kinematics is the tangent at rest.
@@ -9,16 +12,15 @@ Linear kinematics is the tangent at rest.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import copy
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fem.arrays import FloatArray
-from fem.assembly.geometry import Geometry
+from fem.arrays import FloatArray, IntArray
+from fem.assembly.element_geometry import ELEMENTS_AT_ONCE, ElementGeometry
 from fem.assembly.laws import ElementLaws
 from fem.assembly.scatter import Numbering, Scatter, packed_positions
-from fem.assembly.shapes import stiffness_tables
-from fem.components import AXISYMMETRIC
 from fem.deformation import Deformation
 
 
@@ -74,12 +76,12 @@ class System:
         Part of the bulk modulus, in shear moduli (at most half of it), that acts on J at each Gauss point
         instead of on the pressure field. It takes nothing from the continuum's energy, but Q2/P1 controls only
         three moments of J on an element, and at large strain the rest can become unstable (Pantuso and
-        Bathe, Int. J. Numer. Meth. Engng 40 (1997) 2051).
+        Bathe, Finite Elements in Analysis and Design 28 (1997) 83).
     """
 
     def __init__(
         self,
-        geometry: Geometry,
+        geometry: ElementGeometry,
         laws: ElementLaws,
         numbering: Numbering,
         scatter: Scatter,
@@ -89,15 +91,53 @@ class System:
         self.laws = laws
         self.numbering = numbering
         self.scatter = scatter
-        self._tables = stiffness_tables(geometry.shapes)
-        self._rows, self._columns = packed_positions()
+        count, components = scatter.element_unknowns.shape[0], len(geometry.tables)
+        self._rows, self._columns = packed_positions(count // components, components)
         at_points = np.minimum(stabilisation * laws.shear_modulus, 0.5 * laws.bulk_modulus)
+        if len(geometry.pressure) == 0:
+            at_points = laws.bulk_modulus
         self.point_modulus = at_points
         self._field_modulus = laws.bulk_modulus - at_points
+        self._prescribed: FloatArray | None = None
+
+    def displaced(self, elements: IntArray, prescribed: FloatArray) -> System:
+        """The same equations with displacements (components, N) in m on top of the unknowns', elements (nodes, E)."""
+        other = copy.copy(self)
+        other.numbering = replace(self.numbering, prescribed=prescribed)
+        other._prescribed = np.concatenate([u[elements] for u in prescribed])
+        return other
+
+    @property
+    def is_displaced(self) -> bool:
+        """Whether there are prescribed displacements."""
+        return self._prescribed is not None
+
+    @property
+    def plain(self) -> System:
+        """The same equations without prescribed displacements."""
+        if self._prescribed is None:
+            return self
+        other = copy.copy(self)
+        other.numbering, other._prescribed = replace(self.numbering, prescribed=None), None
+        return other
+
+    def scaled(self, share: float) -> System:
+        """The same equations with a share of the prescribed displacements."""
+        nodal, element = self.numbering.prescribed, self._prescribed
+        if nodal is None or element is None:
+            return self
+        other = copy.copy(self)
+        other.numbering, other._prescribed = replace(self.numbering, prescribed=share * nodal), share * element
+        return other
+
+    def element_displacement(self, y: FloatArray) -> FloatArray:
+        """Nodal displacements of each element (18, E) in m at the unknowns y (n,)."""
+        u = self.scatter.gather(y)
+        return u if self._prescribed is None else u + self._prescribed
 
     def rest(self) -> tuple[FloatArray, FloatArray]:
         """Unknowns (n,) and pressure coefficients (3, E) at rest."""
-        return np.zeros(self.numbering.count), np.zeros((3, len(self.laws.bulk_modulus)))
+        return np.zeros(self.numbering.count), np.zeros((len(self.geometry.pressure), len(self.laws.bulk_modulus)))
 
     def evaluate(self, y: FloatArray, pressure: FloatArray) -> Evaluation | None:
         """Equations at unknowns y (n,) and pressure coefficients (3, E).
@@ -107,7 +147,7 @@ class System:
         Evaluation or None
             None where an element is turned inside out (J <= 0) or a value is not finite.
         """
-        deformation = Deformation(AXISYMMETRIC, self.geometry.gradient(self.scatter.gather(y)))
+        deformation = Deformation(self.geometry.components, self.geometry.gradient(self.element_displacement(y)))
         if not deformation.J.min() > 0.0:
             return None
         shapes, weight, bulk = self.geometry.pressure, self.geometry.weight, self._field_modulus
@@ -115,28 +155,30 @@ class System:
         at_points = np.einsum("ie,iqe->qe", pressure, shapes) + self.point_modulus * change
         volume_change = np.einsum("iqe,qe->ie", shapes, weight * change)
         mismatch = bulk * volume_change - pressure
-        coupling = self._coupling(deformation)
+        coupling = self.geometry.coupling(deformation.cofactor * weight)
         stress = self.laws.stress(deformation) + at_points * deformation.cofactor
-        force = self._forces(stress) + np.einsum("nie,ie->ne", coupling, mismatch)
+        force = self.geometry.forces(stress * weight) + np.einsum("nie,ie->ne", coupling, mismatch)
         residual = self.scatter.vector(force)
         return Evaluation(deformation, pressure, at_points, coupling, mismatch, force, residual)
 
     def tangent(self, state: Evaluation) -> FloatArray:
         """Upper triangle (nnz,) of the tangent, the pressure condensed."""
+        components = self.geometry.components
         moduli = self.laws.tangent(state.deformation)
-        moduli[AXISYMMETRIC.cofactor_pairs] += state.pressure_at_points * state.deformation.cofactor_derivative
-        k, m = AXISYMMETRIC.pairs
+        moduli[components.cofactor_pairs] += state.pressure_at_points * state.deformation.cofactor_derivative
+        k, m = components.pairs
         cofactor = state.deformation.cofactor
         moduli += (self.point_modulus * cofactor)[k] * cofactor[m]
-        half = self.geometry.pull_back(AXISYMMETRIC.unpack(moduli * self.geometry.weight))
-        rows = self.geometry.pull_back(np.swapaxes(half, 0, 1))[k, m]
-        flat = rows.reshape(-1, rows.shape[2])
-        q = self.geometry.shapes.count
-        rr, rz, zz = self._tables
-        packed = np.concatenate((rr @ flat[: 6 * q], rz @ flat[6 * q : 12 * q], zz @ flat[12 * q :]))
-        b, bulk = state.coupling, self._field_modulus
-        packed += np.einsum("pie,pie->pe", (b * bulk)[self._rows], b[self._columns])
+        packed = self.geometry.stiffness(moduli * self.geometry.weight)
+        self._condense(packed, state.coupling)
         return self.scatter.matrix(packed)
+
+    def _condense(self, packed: FloatArray, coupling: FloatArray) -> None:
+        """Add what the eliminated pressure does to the packed stiffness."""
+        for start in range(0, packed.shape[1], ELEMENTS_AT_ONCE):
+            part = slice(start, start + ELEMENTS_AT_ONCE)
+            b, bulk = coupling[..., part], self._field_modulus[part]
+            packed[:, part] += np.einsum("pie,pie->pe", (b * bulk)[self._rows], b[self._columns])
 
     def pressure_after(self, state: Evaluation, dy: FloatArray) -> FloatArray:
         """Pressure coefficients (3, E) after a Newton increment dy (n,) of the unknowns."""
@@ -144,28 +186,20 @@ class System:
         out: FloatArray = state.pressure + state.mismatch + self._field_modulus * change
         return out
 
-    def linear_force(self, rest: Evaluation, y: FloatArray) -> FloatArray:
-        """Nodal forces (18, E) in N of small displacements y (n,), from the moduli at rest."""
-        u = self.scatter.gather(y)
-        H = self.geometry.gradient(u)
-        moduli = AXISYMMETRIC.unpack(self.laws.tangent(rest.deformation))
-        stress = np.einsum("kmqe,mqe->kqe", moduli, H)
-        stress[AXISYMMETRIC.normal] += self.point_modulus * H[AXISYMMETRIC.normal].sum(axis=0)
-        pressure = self._field_modulus * np.einsum("nie,ne->ie", rest.coupling, u)
-        out: FloatArray = self._forces(stress) + np.einsum("nie,ie->ne", rest.coupling, pressure)
+    def linear_pressure(self, rest: Evaluation, y: FloatArray) -> FloatArray:
+        """Pressure coefficients (3, E) at small displacements y (n,)."""
+        out: FloatArray = self._field_modulus * np.einsum("nie,ne->ie", rest.coupling, self.element_displacement(y))
         return out
 
-    def _forces(self, stress: FloatArray) -> FloatArray:
-        flat = self.geometry.pull_back(stress * self.geometry.weight).reshape(-1, stress.shape[2])
-        split = 3 * self.geometry.shapes.count
-        radial, vertical = self.geometry.shapes.radial, self.geometry.shapes.vertical
-        return np.concatenate((radial.T @ flat[:split], vertical.T @ flat[split:]))
-
-    def _coupling(self, deformation: Deformation) -> FloatArray:
-        """Coupling b (18, 3, E)."""
-        q, count = deformation.J.shape
-        rate = self.geometry.pull_back(deformation.cofactor * self.geometry.weight)
-        weighted = (rate[:, :, None, :] * self.geometry.pressure.transpose(1, 0, 2)).reshape(5 * q, 3 * count)
-        radial, vertical = self.geometry.shapes.radial, self.geometry.shapes.vertical
-        both = np.concatenate((radial.T @ weighted[: 3 * q], vertical.T @ weighted[3 * q :]))
-        return both.reshape(18, 3, count)
+    def linear_force(self, rest: Evaluation, y: FloatArray) -> FloatArray:
+        """Nodal forces (18, E) in N of small displacements y (n,), from the moduli at rest."""
+        u = self.element_displacement(y)
+        H, components = self.geometry.gradient(u), self.geometry.components
+        moduli = components.unpack(self.laws.tangent(rest.deformation))
+        stress = np.einsum("kmqe,mqe->kqe", moduli, H)
+        stress[components.normal] += self.point_modulus * H[components.normal].sum(axis=0)
+        pressure = self.linear_pressure(rest, y)
+        out: FloatArray = self.geometry.forces(stress * self.geometry.weight) + np.einsum(
+            "nie,ie->ne", rest.coupling, pressure
+        )
+        return out

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fem.arrays import IntArray
 from fem.checks import require_one_of
 from fem.errors import FemError
+from fem.linear_solver.mkl import name_library
 from fem.linear_solver.superlu import SuperLUSolver
 from fem.linear_solver.symmetric import SymmetricSolver
 
@@ -28,6 +29,7 @@ def make_solver(choice: str, indptr: IntArray, indices: IntArray) -> SymmetricSo
     """
     require_one_of("linear_solver", choice, LINEAR_SOLVERS)
     if choice != "superlu":
+        name_library()
         try:
             from fem.linear_solver.pardiso import PardisoSolver
 

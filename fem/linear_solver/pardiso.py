@@ -15,6 +15,7 @@ from fem.linear_solver.symmetric import DiagonalScaling, SingularMatrixError, re
 
 REAL_SYMMETRIC_INDEFINITE = -2
 ANALYSE, FACTORISE, SOLVE = 11, 22, 33
+SMALL = 10_000  # unknowns below which threads wait for each other longer than they work
 
 
 class PardisoSolver:
@@ -33,6 +34,7 @@ class PardisoSolver:
         self._scaling = DiagonalScaling(indptr, indices)
         self._matrix = sp.csr_matrix((np.ones(len(indices)), indices, indptr), shape=(count, count))
         self._solver = _new_solver()
+        self._threads = 1 if count < SMALL else int(self._solver.libmkl.MKL_Get_Max_Threads())
         self._nothing = np.zeros((count, 1))
         self._call(ANALYSE, self._nothing)
         weakref.finalize(self, _release, self._solver)
@@ -60,11 +62,15 @@ class PardisoSolver:
         return require_finite(factor * self._call(SOLVE, np.asfortranarray(factor * right)))
 
     def _call(self, phase: int, right: FloatArray) -> FloatArray:
+        """One phase, always with the threads of the analysis: Pardiso crashes if they change between phases."""
         self._solver.set_phase(phase)
+        before = self._solver.libmkl.MKL_Set_Num_Threads_Local(self._threads)
         try:
             out: FloatArray = self._solver._call_pardiso(self._matrix, right)
         except PyPardisoError as error:
             raise SingularMatrixError(f"Pardiso error {error.value} in phase {phase}") from error
+        finally:
+            self._solver.libmkl.MKL_Set_Num_Threads_Local(before)
         return out
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import skfem
 
 from fem.arrays import BoolArray, FloatArray, IntArray
+from fem.mesh.rows import along_row
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,16 @@ class Mesh:
     def radius(self) -> float:
         """Radius of the outer border in m."""
         return float(self.nodes[:, 0].max())
+
+    @property
+    def specimen_distance(self) -> FloatArray:
+        """Distance of the nodes (N,) in m from the specimen's axis, which is the tool's."""
+        out: FloatArray = self.nodes[:, 0]
+        return out
+
+    def profile(self, values: FloatArray, r: FloatArray) -> FloatArray:
+        """Nodal values (N,) on each layer's top face at distances r (m,) from the tool's axis, (L, m)."""
+        return np.stack([along_row(self.nodes[row, 0], values[row], r) for row in self.interfaces])
 
 
 def mesh_of_quads(points: FloatArray, quads: IntArray, layer_tops: FloatArray) -> Mesh:

@@ -50,6 +50,8 @@ class Stepper:
         Force in N below which the tolerance is not tightened further.
     settings
         Limits of each Newton run.
+    start
+        State without force to start from; None for rest.
     """
 
     def __init__(
@@ -58,14 +60,15 @@ class Stepper:
         control: Literal["force", "depth"],
         force_scale: float,
         settings: NewtonSettings,
+        start: State | None = None,
     ) -> None:
         self._problem = problem
         self._control: Literal["force", "depth"] = control
         self._force_scale = force_scale
         self._settings = settings
-        self._state = State(*problem.system.rest(), 0.0)
-        self._value = 0.0
-        self._known = KnownStates(0.0, self._state)
+        self._state = State(*problem.system.rest(), 0.0) if start is None else start
+        self._value = 0.0 if control == "force" else problem.depth(self._state.y)
+        self._known = KnownStates(self._value, self._state)
 
     def advance(self, target: float) -> Advance:
         """Go to the load value `target`, halving the way as often as needed."""

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from fem.arrays import BoolArray
-from fem.mesh import Mesh
+from fem.mesh import AnyMesh
 from fem.problem import Problem
 from fem.supports.extent import Extent
 
@@ -36,7 +36,7 @@ class Bonded:
             radius = 2.0 * problem.tool.radius + BORDER_IN_DECAY_LENGTHS * decay_length(problem)
         return Extent(radius, tuple(layer.thickness for layer in problem.layers))
 
-    def fixed(self, mesh: Mesh, problem: Problem) -> BoolArray:
+    def fixed(self, mesh: AnyMesh, problem: Problem) -> BoolArray:
         """Lower face and outer border."""
         del problem
         return mesh.base | mesh.border

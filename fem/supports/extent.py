@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from fem.arrays import BoolArray
-from fem.mesh import Feature, Mesh
+from fem.mesh import AnyMesh, Feature
 from fem.problem import Problem
 
 
@@ -46,6 +46,6 @@ class SupportModel(Protocol):
         """How far the mesh reaches."""
         ...
 
-    def fixed(self, mesh: Mesh, problem: Problem) -> BoolArray:
+    def fixed(self, mesh: AnyMesh, problem: Problem) -> BoolArray:
         """Nodes (N,) that are held in both directions."""
         ...

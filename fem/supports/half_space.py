@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fem.arrays import BoolArray
-from fem.mesh import Mesh
+from fem.mesh import AnyMesh
 from fem.problem import Problem
 from fem.supports.extent import Extent
 
@@ -28,7 +28,7 @@ class HalfSpace:
         border, radius = FAR_BORDER * unit, problem.discretisation.radius
         return Extent(border if radius is None else radius, (*above, border), far=FAR_FIELD * unit)
 
-    def fixed(self, mesh: Mesh, problem: Problem) -> BoolArray:
+    def fixed(self, mesh: AnyMesh, problem: Problem) -> BoolArray:
         """Lower face and outer border."""
         del problem
         return mesh.base | mesh.border

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from fem.arrays import BoolArray
 from fem.errors import FemError
-from fem.mesh import Feature, Mesh
+from fem.mesh import AnyMesh, Feature
 from fem.problem import Problem
 from fem.supports.extent import Extent
 
@@ -31,9 +31,9 @@ class Hole:
         underside = Feature(total, 2.0 * size, 0.5)
         return Extent(radius, thickness, (rim,), (underside,), edge_factor=EDGE_FACTOR)
 
-    def fixed(self, mesh: Mesh, problem: Problem) -> BoolArray:
+    def fixed(self, mesh: AnyMesh, problem: Problem) -> BoolArray:
         """Lower face outside the hole, rim included, and the outer border."""
-        outside = mesh.nodes[:, 0] >= hole_radius(problem)
+        outside = mesh.specimen_distance >= hole_radius(problem) * (1.0 - 1e-9)
         return (mesh.base & outside) | mesh.border
 
 

@@ -2,16 +2,15 @@ import numpy as np
 import pytest
 
 from fem import strain
-from fem.components import AXISYMMETRIC
+from fem.assembly import gauss_geometry
+from fem.mesh import build_mesh
 
 
-def test_largest_principal_strain_is_the_eigenvalue():
-    rng = np.random.default_rng(14)
-    values = rng.normal(size=(5, 20))
-    values[3] = values[1]
-    eigenvalues = np.linalg.eigvalsh(AXISYMMETRIC.tensor(values))
-    np.testing.assert_allclose(strain.largest_principal(values), np.abs(eigenvalues).max(axis=1), rtol=1e-12)
-
-
-def test_uniaxial_strain_is_itself():
-    assert strain.largest_principal(np.array([0.0, 0.0, 0.0, 0.0, -0.2])) == pytest.approx(0.2)
+def test_one_singular_point_does_not_decide():
+    """The largest strain is that of an element's mean."""
+    mesh = build_mesh(np.array([0.0, 0.5, 1.0]), np.array([0.0, 1.0]), np.array([0.0]))
+    geometry = gauss_geometry(mesh)
+    values = np.zeros((5, *geometry.weight.shape))
+    values[4, :, 0], values[4, 0, 1] = -0.1, -0.5
+    share = geometry.weight[0, 1] / geometry.weight[:, 1].sum()
+    assert strain.largest_element_strain(values, geometry) == pytest.approx(max(0.1, 0.5 * share))

@@ -54,7 +54,7 @@ def test_matrix_sum_equals_dense_assembly(seed):
             for j, column in enumerate(unknown):
                 if row >= 0 and column >= 0:
                     expected[row, column] += stiffness[i, j, e]
-    row, column = packed_positions()
+    row, column = packed_positions(9, 2)
     used = np.unique(numbering.unknown[:, elements][numbering.unknown[:, elements] >= 0])
     data = scatter.matrix(stiffness[row, column])
     np.testing.assert_allclose(

@@ -1,0 +1,99 @@
+"""The problems the finite-element programs are compared on: meshes and loads as plain arrays in one file each.
+
+Not part of the product. Every program gets the same nodes, elements, supports and nodal forces.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+import fem
+from fem.assembly import SOLID_ELEMENTS
+from fem.contact.solid import uniform_pressure
+from fem.contact.uniform_pressure import UniformPressure
+from fem.layout import lay_out
+from fem.mesh import DiscGrid, Feature, Sizing, build_block, graded_line
+
+LAYERS = ((1.0e-4, 1.0e6), (1.5e-3, 1.0e5), (8.0e-3, 1.0e4))  # thickness in m, Young's modulus in Pa
+POISSON = 0.48
+TOOL_RADIUS = 5.0e-3
+BORDER = 30.0e-3
+
+
+@dataclass(frozen=True)
+class Case:
+    """One problem.
+
+    Attributes
+    ----------
+    kind
+        "linear" (hex20, three dimensions) or "hyperelastic" (9-node axisymmetric).
+    nodes, elements
+        Positions (N, dim) in m and nodes (n, E) in scikit-fem's order.
+    layer
+        Layer of each element (E,).
+    fixed
+        Displacements (dim, N) that are zero.
+    load
+        Vertical nodal forces (N,) in N at the end of the ramp.
+    steps
+        Load steps.
+    """
+
+    kind: str
+    nodes: np.ndarray
+    elements: np.ndarray
+    layer: np.ndarray
+    fixed: np.ndarray
+    load: np.ndarray
+    steps: int
+
+    @property
+    def unknowns(self) -> int:
+        """Displacements that are not fixed."""
+        return int((~self.fixed).sum())
+
+    def save(self, path: Path) -> None:
+        """Write the arrays."""
+        np.savez(path, **asdict(self))
+
+
+def load_case(path: Path) -> Case:
+    """Read what :meth:`Case.save` wrote."""
+    with np.load(path) as data:
+        values = {name: data[name] for name in data.files}
+    return Case(**{**values, "kind": str(values["kind"]), "steps": int(values["steps"])})
+
+
+def block_case(density: float) -> Case:
+    """Quarter block of serendipity hexahedra with 8 Gauss points; density 1 gives about 9 000 unknowns."""
+    depths = np.concatenate(([0.0], np.cumsum([thickness for thickness, _ in LAYERS])))
+    size = TOOL_RADIUS / 12.0
+    inner = 0.45 * TOOL_RADIUS
+    line = graded_line((inner, TOOL_RADIUS, BORDER), Sizing((Feature(TOOL_RADIUS, size, 0.5),)), density)
+    rings = line[(line == inner) | (line >= 1.4 * inner)]
+    grid = DiscGrid(rings, max(2, round(2 * density)), 1, 0.0, TOOL_RADIUS, BORDER, TOOL_RADIUS)
+    lines = graded_line(tuple(depths), Sizing((Feature(0.0, size, 0.5),)), density)
+    mesh = build_block(grid, lines, depths[:-1], SOLID_ELEMENTS["hex20"].node_places, "hex20")
+    held = mesh.base | mesh.border
+    fixed = np.stack((held | mesh.mirror_x, held | mesh.mirror_y, held))
+    load = 0.25 * uniform_pressure(mesh, TOOL_RADIUS).load
+    return Case("linear", mesh.nodes, mesh.elements, mesh.layer, fixed, load, 1)
+
+
+def axisymmetric_case(steps: int = 50, force: float = 2.5) -> Case:
+    """The default axisymmetric mesh under a uniform dead pressure at large strain."""
+    layers = tuple(fem.Layer(f"layer {n}", h, 1000.0, fem.NeoHookean(E, POISSON)) for n, (h, E) in enumerate(LAYERS))
+    problem = fem.Problem(
+        layers,
+        fem.Tool(TOOL_RADIUS, "uniform_pressure"),
+        fem.Support("bonded"),
+        discretisation=fem.Discretisation(radius=BORDER),
+    )
+    mesh = lay_out(problem)
+    held = mesh.base | mesh.border
+    load = force * UniformPressure().conditions(mesh, problem).load
+    return Case("hyperelastic", mesh.nodes, mesh.elements, mesh.layer, np.stack((held | mesh.axis, held)), load, steps)
