@@ -13,6 +13,15 @@ Scenario = Annotated[str | None, typer.Argument(help="A shipped scenario's name 
 Trials = Annotated[Path | None, typer.Option("--trials", help="A trial session: a folder of CSV files.")]
 Specimen = Annotated[str | None, typer.Option("--specimen", help="Tissue of the trials: a name or a TOML file.")]
 Fields = Annotated[Literal["peak", "all"], typer.Option("--fields", help="Which steps' fields are written as VTU.")]
+Tissue = Annotated[
+    list[str] | None,
+    typer.Option("--tissue", help="Another tissue for the scenario; give two or more to compare them in one report."),
+]
+Wave = Annotated[Path | None, typer.Option("--wave", help="Your own fast model in the wave's place: a Python file.")]
+Reference = Annotated[
+    Path | None,
+    typer.Option("--reference", help="Your own FEA in the FEM's place: a CSV file like max_deformation.csv."),
+]
 Repeats = Annotated[int, typer.Option("--repeats", min=3, help="Timed repeats of each model.")]
 
 
@@ -25,6 +34,9 @@ def run(
     scenario: Scenario = None,
     trials: Trials = None,
     specimen: Specimen = None,
+    tissue: Tissue = None,
+    wave: Wave = None,
+    reference: Reference = None,
     out: Out = None,
     settings: Set = None,
     fields: Fields = "peak",
@@ -44,6 +56,8 @@ def run(
     from benchmark.runs import RunOptions, RunRequest, carry_out
 
     console = Console(quiet=quiet)
-    request = RunRequest(scenario, trials, specimen, parse_settings(settings), out)
+    request = RunRequest(
+        scenario, trials, specimen, parse_settings(settings), out, wave, reference, tuple(tissue or ())
+    )
     options = RunOptions(every_field=fields == "all", repeats=repeats, seed=seed)
     return show_runs(carry_out(request, options, console), console, as_json=json)

@@ -16,12 +16,17 @@ def statistics_columns(layers: Sequence[LayerComparison]) -> dict[str, list[Any]
     return _columns(STATISTICS, lines)
 
 
-def normal_fit_columns(layers: Sequence[LayerComparison]) -> dict[str, list[Any]]:
-    """Columns of `normal_fits.csv`, one line per layer and model; a model without values has no line."""
+def normal_fit_columns(
+    layers: Sequence[LayerComparison], models: tuple[str, str] = ("fem", "wave")
+) -> dict[str, list[Any]]:
+    """Columns of `normal_fits.csv`, one line per layer and model; a model without values has no line.
+
+    `models` are the names of the two in the column `model`.
+    """
     lines = [
         (layer.layer, model, fit.mean, fit.std, fit.n, fit.anderson_darling, fit.p_value)
         for layer in layers
-        for model, fit in (("fem", layer.fem_fit), ("wave", layer.wave_fit))
+        for model, fit in zip(models, (layer.fem_fit, layer.wave_fit), strict=True)
         if fit is not None
     ]
     return _columns(NORMAL_FITS, lines)

@@ -1,6 +1,8 @@
-"""One face over the finite-element solver and the wave models."""
+"""One face over the finite-element solver, the wave models, and a user's own in their places."""
 
+from benchmark.models.own import NOTHING, Own
 from benchmark.models.prepare import prepare, scenario_drive
+from benchmark.models.reference import Reference, read_reference
 from benchmark.models.result import (
     Array,
     Drive,
@@ -12,17 +14,24 @@ from benchmark.models.result import (
     UncoveredError,
     silent,
 )
+from benchmark.models.user_file import UserFile, read_user_file
 
 __all__ = [
+    "NOTHING",
     "Array",
     "Drive",
     "FieldSnapshot",
     "ModelResult",
+    "Own",
     "PreparedModel",
+    "Reference",
     "RunFailure",
     "StepProgress",
     "UncoveredError",
+    "UserFile",
     "prepare",
+    "read_reference",
+    "read_user_file",
     "scenario_drive",
     "silent",
 ]

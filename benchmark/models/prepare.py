@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from benchmark.files import Scenario
 from benchmark.models.result import Drive, PreparedModel
+from benchmark.models.user_file import UserFile
 
 
-def prepare(model: str, scenario: Scenario, *, every_field: bool = False) -> PreparedModel:
+def prepare(model: str, scenario: Scenario, *, every_field: bool = False, own: UserFile | None = None) -> PreparedModel:
     """Set a model up for a scenario.
 
     Parameters
@@ -17,6 +18,8 @@ def prepare(model: str, scenario: Scenario, *, every_field: bool = False) -> Pre
         Resolved scenario.
     every_field
         Keep the fields of each step instead of the peak's and the last one's (FEM).
+    own
+        A user's own model in the wave's place.
 
     Raises
     ------
@@ -29,6 +32,10 @@ def prepare(model: str, scenario: Scenario, *, every_field: bool = False) -> Pre
         from benchmark.models.fem_model import FemModel
 
         return FemModel(scenario, every_field=every_field)
+    if own is not None:
+        from benchmark.models.user_model import UserModel
+
+        return UserModel(scenario, own)
     from benchmark.models.wave_model import WaveModel
 
     return WaveModel(scenario)

@@ -79,7 +79,7 @@ class ModelResult:
     peak_step
         Index (from 0) of the step with the largest load.
     unknowns
-        Unknowns of the model.
+        Unknowns of the model; None where it does not say.
     notes
         Choices the model made, by name, as readable text.
     warnings
@@ -99,7 +99,7 @@ class ModelResult:
     profile_radii: Array
     profile: Array
     peak_step: int
-    unknowns: int
+    unknowns: int | None
     notes: Mapping[str, str] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     failure: RunFailure | None = None

@@ -23,7 +23,7 @@ def destination(out: Path | None, name: str) -> Path:
         `out` is a file, or a folder with something else in it.
     """
     if out is None:
-        return _fresh(Path("results"), f"{_file_name(name)}-{datetime.now():%Y%m%d-%H%M%S}")
+        return _fresh(Path("results"), f"{file_name(name)}-{datetime.now():%Y%m%d-%H%M%S}")
     if out.exists() and not out.is_dir():
         raise InputError(f"--out {out} is a file; it must be a folder that is new, empty, or an earlier result")
     if out.is_dir() and any(out.iterdir()) and not any((out / file).is_file() for file in RESULT_FILES):
@@ -40,6 +40,6 @@ def _fresh(parent: Path, name: str) -> Path:
     return next(path for path in candidates if not path.exists())
 
 
-def _file_name(name: str) -> str:
+def file_name(name: str) -> str:
     """Return `name` with everything that file systems dislike replaced."""
     return re.sub(r"[^A-Za-z0-9._-]+", "-", name).strip("-.") or "run"

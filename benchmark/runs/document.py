@@ -46,6 +46,7 @@ def _model(run: ModelRun, record: RunRecord) -> dict[str, Any]:
     result, seconds = run.result, run.seconds
     largest = None if result is None else 1e3 * result.max_deformation()
     return {
+        "name": run.name,
         "covers_scenario": result is not None,
         "reason": run.declined,
         "unknowns": None if result is None else result.unknowns,

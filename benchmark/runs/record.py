@@ -111,11 +111,11 @@ def gather_warnings(scenario: Scenario, pair: SideBySide, more: Sequence[str]) -
             f"the press of {abs(scenario.load.peak):g} N is beyond max_force = {limit:g} N, the largest press that the "
             f"sources of tissue {scenario.tissue.name} cover"
         )
-    for run, label in ((pair.fem, "FEM"), (pair.wave, "wave model")):
+    for run in (pair.fem, pair.wave):
         if run.declined is not None:
-            found.append(f"the {label} does not cover this scenario, its columns are empty: {run.declined}")
+            found.append(f"the {run.name} does not cover this scenario, its columns are empty: {run.declined}")
         elif run.result is not None:
-            found.extend(f"{label}: {warning}" for warning in run.result.warnings)
+            found.extend(f"{run.name}: {warning}" for warning in run.result.warnings)
             if run.result.failure is not None:
-                found.append(f"{label} stopped early at {run.result.failure}; results up to there are kept")
+                found.append(f"{run.name} stopped early at {run.result.failure}; results up to there are kept")
     return tuple(dict.fromkeys(found))

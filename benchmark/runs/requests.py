@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from benchmark.errors import InputError
-from benchmark.files import load_scenario
+from benchmark.files import Scenario, load_scenario
+from benchmark.models import NOTHING, Own, read_reference, read_user_file
 from benchmark.runs.destination import destination
 from benchmark.runs.folder import RunOutcome, write_run
 from benchmark.runs.listener import Listener
 from benchmark.runs.options import RunOptions
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.session_run import run_session
+from benchmark.runs.tissues_run import run_tissues
 from benchmark.sessions import SHIPPED
 
 DEFAULT_SCENARIO = "skin-5N"
@@ -29,6 +31,9 @@ class RunRequest:
     specimen: str | None = None
     settings: Mapping[str, str] | None = None
     out: Path | None = None
+    wave: Path | None = None
+    reference: Path | None = None
+    tissues: Sequence[str] = ()
 
 
 def carry_out(request: RunRequest, options: RunOptions, listener: Listener) -> list[RunOutcome]:
@@ -41,17 +46,40 @@ def carry_out(request: RunRequest, options: RunOptions, listener: Listener) -> l
     SolverError
         A model's process failed.
     """
+    _check_together(request)
+    if request.trials is not None:
+        return [_session(request, request.trials, request.out, options, listener)]
+    if request.scenario is not None and len(request.tissues) > 1:
+        return run_tissues(
+            request.scenario, request.tissues, request.settings or {}, request.out, _own(request), options, listener
+        )
+    if request.scenario is not None:
+        return [_scenario(request, request.scenario, request.out, options, listener)]
+    return _shipped(request, options, listener)
+
+
+def _check_together(request: RunRequest) -> None:
+    """Refuse options that do not go together."""
     if request.scenario is not None and request.trials is not None:
         raise InputError("SCENARIO and --trials exclude each other: a session brings its own tool, support and load")
     if request.specimen is not None and request.trials is None:
         raise InputError("--specimen names the tissue of trials: give --trials SESSION with it")
-    if request.trials is not None:
-        return [_session(request, request.trials, request.out, options, listener)]
-    if request.scenario is not None:
-        return [_scenario(request, request.scenario, request.out, options, listener)]
-    if request.settings:
-        raise InputError("--set needs a SCENARIO or --trials, so that it is clear what it changes")
-    return _shipped(request, options, listener)
+    if request.trials is None and request.scenario is None and (request.settings or request.wave):
+        raise InputError("--set and --wave need a SCENARIO or --trials, so that it is clear what they change")
+    if request.scenario is None and (request.reference or request.tissues):
+        raise InputError("--reference and --tissue belong to a SCENARIO: a session's press and specimen are its own")
+    if request.tissues and "tissue" in (request.settings or {}):
+        raise InputError("--tissue and --set tissue=... name the same thing: give one of them")
+    if request.reference is not None and len(request.tissues) > 1:
+        raise InputError("--reference is the FEA of one tissue: give one --tissue with it, or none")
+
+
+def _own(request: RunRequest, scenario: Scenario | None = None) -> Own:
+    """What the user puts in the place of our models."""
+    wave = None if request.wave is None else read_user_file(request.wave)
+    if request.reference is None or scenario is None:
+        return NOTHING if wave is None else Own(wave)
+    return Own(wave, read_reference(request.reference, scenario))
 
 
 def _shipped(request: RunRequest, options: RunOptions, listener: Listener) -> list[RunOutcome]:
@@ -64,11 +92,13 @@ def _shipped(request: RunRequest, options: RunOptions, listener: Listener) -> li
 
 
 def _scenario(request: RunRequest, name: str, out: Path | None, options: RunOptions, listener: Listener) -> RunOutcome:
-    scenario = load_scenario(name, request.settings or {})
+    chosen = {"tissue": request.tissues[0]} if request.tissues else {}
+    scenario = load_scenario(name, {**(request.settings or {}), **chosen})
     folder = destination(out, scenario.name)
-    return write_run(run_scenario(scenario, options, listener), folder)
+    own = _own(request, scenario)
+    return write_run(run_scenario(scenario, options, listener, own=own), folder)
 
 
 def _session(request: RunRequest, path: Path, out: Path | None, options: RunOptions, listener: Listener) -> RunOutcome:
-    record = run_session(path, request.specimen, request.settings or {}, options, listener)
+    record = run_session(path, request.specimen, request.settings or {}, options, listener, _own(request))
     return write_run(record, destination(out, record.name))

@@ -6,14 +6,12 @@ from collections.abc import Sequence
 
 from benchmark.comparison import ComparisonError
 from benchmark.files import Scenario
-from benchmark.models import StepProgress, scenario_drive
+from benchmark.models import NOTHING, Own, StepProgress, scenario_drive
 from benchmark.runs.listener import Listener
 from benchmark.runs.measured import MeasuredComparison
 from benchmark.runs.options import RunOptions
 from benchmark.runs.record import RunRecord, compare_layers, deflections, gather_warnings
-from benchmark.side_by_side import run_side_by_side
-
-LABELS = {"fem": "FEM", "wave": "wave model"}
+from benchmark.side_by_side import NAMES, run_side_by_side
 
 
 def run_scenario(
@@ -24,6 +22,7 @@ def run_scenario(
     name: str | None = None,
     measured: MeasuredComparison | None = None,
     warnings: Sequence[str] = (),
+    own: Own = NOTHING,
 ) -> RunRecord:
     """Run FEM and wave model on a scenario and compare them.
 
@@ -41,6 +40,8 @@ def run_scenario(
         Trials behind the scenario's tissue, if any.
     warnings
         What is known before the run.
+    own
+        A user's own model or FEA in the place of ours.
 
     Raises
     ------
@@ -49,11 +50,12 @@ def run_scenario(
     """
     drive = scenario_drive(scenario)
     unit, scale = ("N", 1.0) if scenario.load.control == "force" else ("mm", 1e3)
-    with listener.progress(f"{scenario.name}: FEM and wave model side by side") as advance:
+    names = {model: own.name(model) or name for model, name in NAMES.items()}
+    with listener.progress(f"{scenario.name}: {names['fem']} and {names['wave']} side by side") as advance:
 
         def on_progress(model: str, step: StepProgress) -> None:
             value = step.force if scenario.load.control == "force" else step.depth
-            advance(LABELS[model], step.step, step.total, f"{scale * value:.3g} {unit}")
+            advance(names[model], step.step, step.total, f"{scale * value:.3g} {unit}")
 
         pair = run_side_by_side(
             scenario,
@@ -61,6 +63,7 @@ def run_scenario(
             seed=options.seed,
             every_field=options.every_field,
             on_progress=on_progress,
+            own=own,
         )
     layers = len(scenario.tissue.layers)
     fem, wave = (deflections(run.result, drive.time.size, layers) for run in (pair.fem, pair.wave))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,13 +20,14 @@ from benchmark.fitting import (
     predict,
     required_depth,
 )
-from benchmark.models import Array, Drive, PreparedModel, UncoveredError, prepare
+from benchmark.models import NOTHING, Array, Drive, Own, PreparedModel, UncoveredError, prepare
 from benchmark.runs.base_curve import Setup, base_curves, setup_scenario
 from benchmark.runs.listener import Listener
 from benchmark.runs.measured import MeasuredComparison, TrialPrediction
 from benchmark.runs.options import RunOptions
 from benchmark.runs.record import RunRecord
 from benchmark.runs.scenario_run import run_scenario
+from benchmark.side_by_side import NAMES
 
 MARGIN = 1.02
 OBSERVATIONS = 100
@@ -75,15 +77,24 @@ def fit_trials(path: Path, specimen: str | None, settings: Mapping[str, str], li
 
 
 def run_session(
-    path: Path, specimen: str | None, settings: Mapping[str, str], options: RunOptions, listener: Listener
+    path: Path,
+    specimen: str | None,
+    settings: Mapping[str, str],
+    options: RunOptions,
+    listener: Listener,
+    own: Own = NOTHING,
 ) -> RunRecord:
-    """Fit a session and run both models with the fitted specimen; raises like `fit_trials`."""
+    """Fit a session and run both models with the fitted specimen; raises like `fit_trials`.
+
+    The fit is that of the finite elements, whatever `own` model stands in the wave's place.
+    """
     found = fit_trials(path, specimen, settings, listener)
     session, fit = found.session, found.fit
     fitted = scaled_tissue(session.specimen, fit.stiffness_factor, f"{session.specimen.name}, fitted")
     scenario = session_scenario(session, fitted, fit)
-    measured = MeasuredComparison(session, fit, _predictions(found, fitted))
-    return run_scenario(scenario, options, listener, name=session.name, measured=measured, warnings=found.warnings)
+    predictions, said = _predictions(found, fitted, own)
+    measured, warnings = MeasuredComparison(session, fit, predictions), (*found.warnings, *said)
+    return run_scenario(scenario, options, listener, name=session.name, measured=measured, warnings=warnings, own=own)
 
 
 def session_scenario(session: Session, tissue: Tissue, fit: SessionFit) -> Scenario:
@@ -109,27 +120,31 @@ def _trial_data(trial: Trial, curve: ForceCurve) -> TrialData:
     return TrialData(trial.name, trial.condition, table.time, table.depth, table.force, curve)
 
 
-def _predictions(found: FittedSession, tissue: Tissue) -> tuple[TrialPrediction, ...]:
-    """Both models' forces for each trial that was fitted."""
+def _predictions(found: FittedSession, tissue: Tissue, own: Own) -> tuple[tuple[TrialPrediction, ...], tuple[str, ...]]:
+    """Both models' forces for each trial that was fitted, and why the wave model has none for some."""
     kept = {trial.key for trial in found.fit.trials}
     setups = [(trial.tool, trial.support) for trial in found.session.trials]
-    waves = {setup: _wave(found.session, tissue, setup) for setup in dict.fromkeys(setups)}
-    return tuple(
-        _prediction(trial, found.fit, waves[setup])
+    waves = {setup: _wave(found.session, tissue, setup, own) for setup in dict.fromkeys(setups)}
+    answers = [
+        (trial, _wave_force(trial, found.fit, waves[setup]))
         for setup, trial in zip(setups, found.trials, strict=True)
         if trial.key in kept
-    )
+    ]
+    reasons = Counter(answer for _, answer in answers if isinstance(answer, str))
+    name = own.name("wave") or NAMES["wave"]
+    said = tuple(f"the {name} has no force for {count} of the trials: {reason}" for reason, count in reasons.items())
+    return tuple(_prediction(trial, found.fit, answer) for trial, answer in answers), said
 
 
-def _wave(session: Session, tissue: Tissue, setup: Setup) -> PreparedModel | None:
-    """The wave model of the fitted specimen; None where it does not cover it."""
+def _wave(session: Session, tissue: Tissue, setup: Setup, own: Own) -> PreparedModel | str:
+    """The wave model of the fitted specimen, or why it does not cover it."""
     try:
-        return prepare("wave", setup_scenario(session, tissue, setup))
-    except UncoveredError:
-        return None
+        return prepare("wave", setup_scenario(session, tissue, setup), own=own.wave)
+    except UncoveredError as error:
+        return str(error)
 
 
-def _prediction(trial: TrialData, fit: SessionFit, wave: PreparedModel | None) -> TrialPrediction:
+def _prediction(trial: TrialData, fit: SessionFit, wave: Array | str) -> TrialPrediction:
     return TrialPrediction(
         trial=trial.name,
         condition=trial.condition,
@@ -137,14 +152,19 @@ def _prediction(trial: TrialData, fit: SessionFit, wave: PreparedModel | None) -
         depth=trial.depth,
         force=trial.force,
         fem_force=predict(fit, trial),
-        wave_force=None if wave is None else _wave_force(trial, fit, wave),
+        wave_force=None if isinstance(wave, str) else wave,
         held_out_force=predict(fit, trial, leave_one_out=True) if len(fit.trials) > 1 else None,
     )
 
 
-def _wave_force(trial: TrialData, fit: SessionFit, wave: PreparedModel) -> Array:
-    """Force (n,) N of the wave model at the trial's depth below its contact; zero in the air."""
+def _wave_force(trial: TrialData, fit: SessionFit, wave: PreparedModel | str) -> Array | str:
+    """Force (n,) N of the wave model at the trial's depth below its contact, zero in the air; or why there is none."""
+    if isinstance(wave, str):
+        return wave
     own = fit.trial(trial.name, trial.condition)
     below = np.maximum(trial.depth - own.onset, 0.0)
     drive = Drive("depth", trial.time - trial.time[0] + float(np.diff(trial.time)[0]), below)
-    return wave.run(drive).force + own.zero
+    try:
+        return wave.run(drive).force + own.zero
+    except UncoveredError as error:
+        return str(error)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ def run_tables(record: RunRecord) -> dict[str, Columns]:
         "max_deformation.csv": max_deformation(record),
         "profile.csv": profile(record),
         "statistics.csv": statistics_columns(record.comparisons),
-        "normal_fits.csv": normal_fit_columns(record.comparisons),
+        "normal_fits.csv": normal_fit_columns(record.comparisons, (record.pair.fem.key, record.pair.wave.key)),
         "timing.csv": timing(record.pair),
     }
     if record.measured is not None:
@@ -57,6 +58,40 @@ def percent_errors(record: RunRecord) -> Array:
     return np.column_stack([comparison.percent.signed for comparison in record.comparisons])
 
 
+def tissue_columns(records: Mapping[str, RunRecord]) -> Columns:
+    """Columns of `tissues.csv`: one row a tissue and layer, its properties, both models' largest deflections.
+
+    The percent error is that of the wave model against the FEM at peak load.
+    """
+    names = (
+        "tissue", "layer", "thickness_mm", "youngs_modulus_kPa", "poisson_ratio", "fem_max_mm", "wave_max_mm",
+        "percent_error",
+    )  # fmt: skip
+    rows = [row for name, record in records.items() for row in _tissue_rows(name, record)]
+    return {column: [row[place] for row in rows] for place, column in enumerate(names)}
+
+
+def _tissue_rows(name: str, record: RunRecord) -> list[tuple[Any, ...]]:
+    errors = percent_errors(record)[int(np.abs(record.load).argmax())]
+    fem, wave = (
+        np.full(len(record.layers), np.nan) if run.result is None else MM * run.result.max_deformation()
+        for run in (record.pair.fem, record.pair.wave)
+    )
+    return [
+        (
+            name,
+            layer.name,
+            MM * layer.thickness if np.isfinite(layer.thickness) else None,
+            layer.youngs_modulus / 1e3,
+            layer.poisson_ratio,
+            float(fem[place]),
+            float(wave[place]),
+            float(errors[place]),
+        )
+        for place, layer in enumerate(record.scenario.tissue.layers)
+    ]
+
+
 def profile(record: RunRecord) -> Columns:
     """Deflection of each layer's top face over the radius at peak load, layer after layer."""
     layers = len(record.layers)
@@ -77,7 +112,7 @@ def _profile(result: ModelResult | None, layers: int, radii: Array) -> Array:
 def timing(pair: SideBySide) -> Columns:
     """One row a model and timed repeat."""
     rows = [
-        (run.model, repeat, seconds.setup, seconds.wall, seconds.cpu)
+        (run.key, repeat, seconds.setup, seconds.wall, seconds.cpu)
         for run in (pair.fem, pair.wave)
         for repeat, seconds in enumerate(run.repeats, start=1)
     ]

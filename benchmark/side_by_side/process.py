@@ -10,8 +10,9 @@ from types import TracebackType
 
 from benchmark.errors import InputError, SolverError
 from benchmark.files import Scenario
+from benchmark.models import UserFile
 from benchmark.side_by_side.messages import Answer, Crashed, Message, RunCommand
-from benchmark.side_by_side.worker import serve
+from benchmark.side_by_side.worker import Job, serve
 
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 
@@ -37,11 +38,19 @@ class ModelProcess:
     Use as a context manager: leaving it ends the process.
     """
 
-    def __init__(self, model: str, scenario: Scenario, *, every_field: bool = False, core: int | None = None):
+    def __init__(
+        self,
+        model: str,
+        scenario: Scenario,
+        *,
+        every_field: bool = False,
+        core: int | None = None,
+        own: UserFile | None = None,
+    ):
         context = multiprocessing.get_context("spawn")
         self.model = model
         self.connection, far_end = context.Pipe()
-        arguments = (far_end, model, scenario, every_field, core)
+        arguments = (far_end, Job(model, scenario, every_field, own), core)
         self._process = context.Process(target=serve, args=arguments, daemon=True, name=f"tissuebench-{model}")
         with single_threaded_children():
             self._process.start()
@@ -70,9 +79,11 @@ class ModelProcess:
                 "on Linux -9 usually means that memory ran out"
             ) from None
         if isinstance(message, Crashed):
-            if message.input_error:
-                raise InputError(message.message)
-            failure = SolverError(f"the {self.model} model failed: {message.message}")
+            failure = (
+                InputError(message.message)
+                if message.input_error
+                else SolverError(f"the {self.model} model failed: {message.message}")
+            )
             failure.add_note(message.trace)
             raise failure
         return message

@@ -14,23 +14,38 @@ from dataclasses import dataclass
 from multiprocessing.connection import wait
 
 from benchmark.files import Scenario
-from benchmark.models import ModelResult, StepProgress
+from benchmark.models import NOTHING, ModelResult, Own, StepProgress
 from benchmark.side_by_side.messages import Answer, Declined, Finished, Seconds
 from benchmark.side_by_side.process import ModelProcess
 from benchmark.side_by_side.timing import Speedup, median_seconds, speedup
 
 MODELS = ("fem", "wave")
+NAMES = {"fem": "FEM", "wave": "wave model"}
 OnProgress = Callable[[str, StepProgress], None]
 
 
 @dataclass(frozen=True)
 class ModelRun:
-    """One model's part: its result, or why there is none, and its timed repeats."""
+    """One model's part: its result, or why there is none, and its timed repeats.
+
+    `model` is its place, `"fem"` or `"wave"`; `own` what the user calls a model put there.
+    """
 
     model: str
     result: ModelResult | None
     declined: str | None
     repeats: tuple[Seconds, ...]
+    own: str | None = None
+
+    @property
+    def name(self) -> str:
+        """What reports call it."""
+        return self.own or NAMES[self.model]
+
+    @property
+    def key(self) -> str:
+        """What the column `model` of tables calls it."""
+        return self.own or self.model
 
     @property
     def seconds(self) -> Seconds | None:
@@ -56,7 +71,13 @@ def cores(count: int) -> list[int | None]:
 
 
 def run_side_by_side(
-    scenario: Scenario, *, repeats: int, seed: int, every_field: bool, on_progress: OnProgress
+    scenario: Scenario,
+    *,
+    repeats: int,
+    seed: int,
+    every_field: bool,
+    on_progress: OnProgress,
+    own: Own = NOTHING,
 ) -> SideBySide:
     """Run both models on `scenario`.
 
@@ -72,6 +93,8 @@ def run_side_by_side(
         Keep the fields of each step instead of the peak's and the last one's.
     on_progress
         Called with the model's name and its progress.
+    own
+        A user's own model in the wave's place, timed like it, or own FEA in the FEM's, which does not run.
 
     Raises
     ------
@@ -80,17 +103,23 @@ def run_side_by_side(
     """
     with ExitStack() as stack:
         processes = [
-            stack.enter_context(ModelProcess(model, scenario, every_field=every_field, core=core))
+            stack.enter_context(_process(model, scenario, every_field, core, own))
             for model, core in zip(MODELS, cores(len(MODELS)), strict=True)
+            if model == "wave" or own.reference is None
         ]
         first = _together(processes, on_progress)
         timed = [p for p in processes if isinstance(first[p.model], Finished)]
         whole = all(a.result is not None and a.result.complete for a in first.values() if isinstance(a, Finished))
         seconds = _in_turn(timed, repeats if whole else 0)
-    runs = {model: _model_run(model, first[model], seconds.get(model, [])) for model in MODELS}
-    fem, wave = runs["fem"], runs["wave"]
+    fem, wave = (_model_run(model, first.get(model), seconds.get(model, []), own) for model in MODELS)
     ratio = speedup(fem.repeats, wave.repeats, seed=seed) if fem.repeats and wave.repeats else None
     return SideBySide(fem, wave, ratio)
+
+
+def _process(model: str, scenario: Scenario, every_field: bool, core: int | None, own: Own) -> ModelProcess:
+    """The process of one model, which may be the user's in the wave's place."""
+    users = own.wave if model == "wave" else None
+    return ModelProcess(model, scenario, every_field=every_field, core=core, own=users)
 
 
 def _together(processes: list[ModelProcess], on_progress: OnProgress) -> dict[str, Answer]:
@@ -123,9 +152,12 @@ def _in_turn(processes: list[ModelProcess], repeats: int) -> dict[str, list[Seco
     return seconds
 
 
-def _model_run(model: str, answer: Answer, repeats: list[Seconds]) -> ModelRun:
-    """Join the first answer of a model with its timing."""
+def _model_run(model: str, answer: Answer | None, repeats: list[Seconds], own: Own) -> ModelRun:
+    """Join the first answer of a model with its timing; without an answer it is the user's reference."""
+    name = own.name(model)
+    if answer is None:
+        return ModelRun(model, own.reference.result if own.reference else None, None, (), name)
     if isinstance(answer, Finished):
-        return ModelRun(model, answer.result, None, tuple(repeats))
+        return ModelRun(model, answer.result, None, tuple(repeats), name)
     reason = answer.reason if isinstance(answer, Declined) else answer.message
-    return ModelRun(model, None, reason, ())
+    return ModelRun(model, None, reason, (), name)

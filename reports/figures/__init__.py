@@ -10,6 +10,7 @@ from reports.figures.load_history import load_history
 from reports.figures.max_deformation import max_deformation
 from reports.figures.measured import measured
 from reports.figures.normal_fit import Normal, normal_fit
+from reports.figures.pair import Pair
 from reports.figures.profile import profile
 from reports.figures.section import StackLayer
 from reports.figures.timing import timing
@@ -18,6 +19,7 @@ from reports.figures.trials import TrialCurve
 __all__ = [
     "FittedParameter",
     "Normal",
+    "Pair",
     "StackLayer",
     "TrialCurve",
     "fitted_parameters",

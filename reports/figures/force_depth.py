@@ -9,7 +9,8 @@ import numpy as np
 from reports.blocks import Figure
 from reports.figures.arrays import Floats, column, last_value, peak, thinned
 from reports.figures.marks import model_line, planned_line, stop_mark
-from reports.figures.style import FEM, WAVE, WIDE, Stroke, draw, legend_above
+from reports.figures.pair import DEFAULT, Pair
+from reports.figures.style import WIDE, Stroke, draw, legend_above
 from reports.formatting import format_number
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ def force_depth(
     wave_depth_mm: Any = None,
     wave_force_N: Any = None,
     planned_peak_N: float | None = None,
+    pair: Pair = DEFAULT,
 ) -> Figure:
     """Draw the tool's force over its depth.
 
@@ -36,15 +38,17 @@ def force_depth(
         The wave model's, each of shape (m,); None where it does not cover the case.
     planned_peak_N
         The force the load asked for in N, drawn as a line where the FEM did not reach it.
+    pair
+        What the two models are called.
 
     Raises
     ------
     ValueError
         For arrays of other shapes, or infinite values.
     """
-    curves = [(_curve("fem", fem_depth_mm, fem_force_N), FEM)]
+    curves = [(_curve("fem", fem_depth_mm, fem_force_N), pair.fem)]
     if wave_depth_mm is not None and wave_force_N is not None:
-        curves.append((_curve("wave", wave_depth_mm, wave_force_N), WAVE))
+        curves.append((_curve("wave", wave_depth_mm, wave_force_N), pair.wave))
     reached = peak(curves[0][0][1])
     missed = planned_peak_N is not None and not reached >= 0.999 * planned_peak_N
 
@@ -58,9 +62,8 @@ def force_depth(
         axes.set(xlabel="depth (mm)", ylabel="force (N)")
         legend_above(axes)
 
-    caption = "Force on the tool over its depth: FEM (solid)"
-    caption += " and wave model (dashed)." if len(curves) > 1 else " alone; the wave model has no values here."
-    caption += f" The FEM run stopped at {format_number(reached, 3)} N." if missed else ""
+    caption = f"Force on the tool over its depth: {pair.caption(len(curves) > 1)}."
+    caption += f" The {pair.fem.name} run stopped at {format_number(reached, 3)} N." if missed else ""
     words = "; ".join(_words(curve, stroke) for curve, stroke in curves) + "."
     return Figure.of(draw(paint, WIDE, 350), caption, words, "Force over depth")
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 from reports.blocks import Figure
 from reports.figures.arrays import column, optional_column, peak, stopped_at
 from reports.figures.marks import model_line
-from reports.figures.style import FEM, INK, WAVE, WIDE, draw, legend_above
+from reports.figures.pair import DEFAULT, Pair
+from reports.figures.style import INK, WIDE, draw, legend_above
 from reports.formatting import format_number
 
 if TYPE_CHECKING:
@@ -17,7 +18,9 @@ _AXIS = {"force": "force (N)", "depth": "depth (mm)"}
 _OTHER = {"force": "depth", "depth": "force"}
 
 
-def load_history(time_s: Any, load: Any, control: str, fem: Any = None, wave: Any = None) -> Figure:
+def load_history(
+    time_s: Any, load: Any, control: str, fem: Any = None, wave: Any = None, pair: Pair = DEFAULT
+) -> Figure:
     """Draw the prescribed load over time and, under it, the answer of the models.
 
     Parameters
@@ -31,6 +34,8 @@ def load_history(time_s: Any, load: Any, control: str, fem: Any = None, wave: An
     fem, wave
         The other of the two, depth in mm or force in N, shape (n,), NaN after the step a model stopped
         at; None without the model.
+    pair
+        What the two models are called.
 
     Raises
     ------
@@ -44,8 +49,8 @@ def load_history(time_s: Any, load: Any, control: str, fem: Any = None, wave: An
     answers = [
         (values, stroke)
         for values, stroke in (
-            (optional_column("fem", fem, len(time)), FEM),
-            (optional_column("wave", wave, len(time)), WAVE),
+            (optional_column("fem", fem, len(time)), pair.fem),
+            (optional_column("wave", wave, len(time)), pair.wave),
         )
         if values is not None
     ]

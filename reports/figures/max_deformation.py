@@ -20,7 +20,8 @@ from reports.figures.arrays import (
     stopped_at,
 )
 from reports.figures.marks import model_line
-from reports.figures.style import FEM, INK, SMALL, WAVE, draw, heading, legend_above, zero_line
+from reports.figures.pair import DEFAULT, Pair
+from reports.figures.style import INK, SMALL, draw, heading, legend_above, zero_line
 from reports.formatting import format_number
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ def max_deformation(
     wave_mm: Any = None,
     percent_error: Any = None,
     x_label: str = "load step",
+    pair: Pair = DEFAULT,
 ) -> Figure:
     """Draw the deflection of each layer's top face on the tool axis, a panel a layer.
 
@@ -53,6 +55,8 @@ def max_deformation(
         Error of wave against FEM in percent, shape (n, L), NaN where it has no meaning; None leaves it out.
     x_label
         What `x` is, with its unit.
+    pair
+        What the two models are called.
 
     Raises
     ------
@@ -77,12 +81,14 @@ def max_deformation(
             layer_of(error, place),
             scale,
             error_scale,
+            pair,
         )
         for place, name in enumerate(layer_names)
     ]
     height = 290 if error is None else 380
     panels = [Panel(draw(layer.paint, SMALL, height), layer.words(), layer.name) for layer in layers]
-    return Figure(panels, _caption(wave is not None, error is not None, scale is not None), "Maximum deformation")
+    caption = _caption(pair, wave is not None, error is not None, scale is not None)
+    return Figure(panels, caption, "Maximum deformation")
 
 
 @dataclass(frozen=True)
@@ -98,6 +104,7 @@ class _Layer:
     error: Floats | None
     scale: Limits
     error_scale: Limits
+    pair: Pair
 
     def paint(self, drawing: Drawing) -> None:
         """Draw the deflections and, under them, the error."""
@@ -106,9 +113,9 @@ class _Layer:
         else:
             top, bottom = drawing.subplots(2, 1, sharex=True, height_ratios=(2.3, 1))
             self._paint_error(bottom, self.error)
-        model_line(top, self.x, self.fem, FEM)
+        model_line(top, self.x, self.fem, self.pair.fem)
         if self.wave is not None:
-            model_line(top, self.x, self.wave, WAVE)
+            model_line(top, self.x, self.wave, self.pair.wave)
         top.set_ylim(*(self.scale or (None, None)))
         top.set_ylabel("deflection (mm)")
         bottom.set_xlabel(self.x_label)
@@ -123,19 +130,19 @@ class _Layer:
 
     def words(self) -> str:
         """Say what the panel shows."""
-        text = f"{self.name}: FEM reaches {format_number(peak(self.fem))} mm"
-        text += "" if self.wave is None else f", wave {format_number(peak(self.wave))} mm"
+        fem, wave = self.pair.fem.name, self.pair.wave.name
+        text = f"{self.name}: {fem} reaches {format_number(peak(self.fem))} mm"
+        text += "" if self.wave is None else f", {wave} {format_number(peak(self.wave))} mm"
         if self.error is not None:
             low, high = (format_number(float(end(self.error)), 3) for end in (np.nanmin, np.nanmax))
-            text += f"; the error of wave against FEM lies between {low} and {high} percent"
+            text += f"; the error of {wave} against {fem} lies between {low} and {high} percent"
         if stopped_at(self.fem) is not None:
-            text += "; the FEM run stopped before the end"
+            text += f"; the {fem} run stopped before the end"
         return text + "."
 
 
-def _caption(wave: bool, error: bool, shared: bool) -> str:
+def _caption(pair: Pair, wave: bool, error: bool, shared: bool) -> str:
     """Say what is compared with what."""
-    text = "Deflection of each layer's top face on the tool axis, press positive"
-    text += ": FEM (solid) and wave model (dashed)." if wave else ": FEM alone; the wave model has no values here."
-    text += " Below, the error of the wave model against the FEM." if error else ""
+    text = f"Deflection of each layer's top face on the tool axis, press positive: {pair.caption(wave)}."
+    text += f" Below, the error of the {pair.wave.name} against the {pair.fem.name}." if error else ""
     return text + ("" if shared else " Each panel has its own vertical scale.")

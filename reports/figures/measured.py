@@ -10,12 +10,11 @@ import numpy as np
 
 from reports.blocks import Figure, Panel
 from reports.figures.arrays import Floats, thinned
+from reports.figures.pair import DEFAULT, Pair
 from reports.figures.style import (
-    FEM,
     MEASURED,
     SMALL,
     TRIAL,
-    WAVE,
     WIDE,
     Stroke,
     draw,
@@ -30,13 +29,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Drawing
 
-_MODELS: tuple[tuple[Stroke, Series], ...] = (
-    (FEM, lambda trial: trial.fem_force_N),
-    (WAVE, lambda trial: trial.wave_force_N),
-)
 
-
-def measured(trials: Sequence[TrialCurve], synthetic: bool = False) -> Figure:
+def measured(trials: Sequence[TrialCurve], synthetic: bool = False, pair: Pair = DEFAULT) -> Figure:
     """Draw all trials thin, their median thick, the models over them, and measured minus model below.
 
     Medians are taken over the first loading, to the depth that four fifths of the trials reach.
@@ -47,6 +41,8 @@ def measured(trials: Sequence[TrialCurve], synthetic: bool = False) -> Figure:
         At least one; each condition gets a panel, in order of appearance.
     synthetic
         Whether the trials are synthetic; then each panel says so.
+    pair
+        What the two models are called.
 
     Raises
     ------
@@ -57,12 +53,12 @@ def measured(trials: Sequence[TrialCurve], synthetic: bool = False) -> Figure:
         raise ValueError("trials is empty; at least one trial is needed")
     groups = by_condition(trials)
     conditions = [
-        _Condition(name, group, place if len(groups) > 1 else None, synthetic)
+        _Condition(name, group, place if len(groups) > 1 else None, synthetic, pair)
         for place, (name, group) in enumerate(groups.items())
     ]
     width, height = (WIDE, 470) if len(groups) == 1 else (SMALL, 400)
     panels = [Panel(draw(item.paint, width, height), item.words(), item.name) for item in conditions]
-    modelled = any(_models_of(group) for group in groups.values())
+    modelled = any(_models_of(group, pair) for group in groups.values())
     caption = "Force over depth as measured"
     if len(trials) > len(groups):
         caption = "Force over depth of every trial (thin grey lines) and their median while loading (thick)"
@@ -79,10 +75,11 @@ class _Condition:
     trials: Sequence[TrialCurve]
     place: int | None
     synthetic: bool
+    pair: Pair
 
     def paint(self, drawing: Drawing) -> None:
         """Draw forces and, under them, residuals."""
-        models = _models_of(self.trials)
+        models = _models_of(self.trials, self.pair)
         if models:
             top, bottom = drawing.subplots(2, 1, sharex=True, height_ratios=(2.2, 1))
             self._paint_residuals(bottom, models)
@@ -132,16 +129,20 @@ class _Condition:
         text = f"{self.name}: {len(self.trials)} trials"
         if depth.size:
             text += f", median force {_read(force[-1])} N at {_read(depth[-1])} mm"
-        for stroke, series in _models_of(self.trials):
+        for stroke, series in _models_of(self.trials, self.pair):
             deep, value = self._median(series)
             if deep.size:
                 text += f"; {stroke.label} {_read(value[-1])} N at {_read(deep[-1])} mm"
         return text + "."
 
 
-def _models_of(trials: Sequence[TrialCurve]) -> list[tuple[Stroke, Series]]:
+def _models_of(trials: Sequence[TrialCurve], pair: Pair) -> list[tuple[Stroke, Series]]:
     """Return the models that have values for any of the trials."""
-    return [(stroke, series) for stroke, series in _MODELS if any(series(trial) is not None for trial in trials)]
+    models: list[tuple[Stroke, Series]] = [
+        (pair.fem, lambda trial: trial.fem_force_N),
+        (pair.wave, lambda trial: trial.wave_force_N),
+    ]
+    return [(stroke, series) for stroke, series in models if any(series(trial) is not None for trial in trials)]
 
 
 def _force(trial: TrialCurve) -> Floats:

@@ -10,7 +10,8 @@ import numpy as np
 
 from reports.blocks import Figure, Panel
 from reports.figures.arrays import Floats, matrix, optional_matrix
-from reports.figures.style import FEM, SMALL, WAVE, Stroke, draw, heading, legend_above
+from reports.figures.pair import DEFAULT, Pair
+from reports.figures.style import SMALL, Stroke, draw, heading, legend_above
 from reports.formatting import format_number
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ def normal_fit(
     fem_fits: Sequence[Normal],
     wave_mm: Any = None,
     wave_fits: Sequence[Normal] = (),
+    pair: Pair = DEFAULT,
 ) -> Figure:
     """Draw each layer's maximum deformations as a histogram, and the normal distribution fitted to them.
 
@@ -48,6 +50,8 @@ def normal_fit(
         Observations in mm, shape (n, L), NaN where a model has none; `wave_mm` None without a wave model.
     fem_fits, wave_fits
         The normal fitted to each layer's observations, L of each.
+    pair
+        What the two models are called.
 
     Raises
     ------
@@ -57,7 +61,7 @@ def normal_fit(
     shape = (len(np.asarray(fem_mm, dtype=np.float64)), len(layer_names))
     fem = matrix("fem_mm", fem_mm, shape)
     wave = optional_matrix("wave_mm", wave_mm, shape)
-    models = [(FEM, fem, fem_fits)] + ([] if wave is None else [(WAVE, wave, wave_fits)])
+    models = [(pair.fem, fem, fem_fits)] + ([] if wave is None else [(pair.wave, wave, wave_fits)])
     for stroke, _, fits in models:
         if len(fits) != len(layer_names):
             raise ValueError(f"{len(fits)} normal fits of the {stroke.label} for {len(layer_names)} layers")
@@ -73,7 +77,8 @@ def normal_fit(
     caption = (
         "Observations of the maximum deformation over the load history (bars, scaled to a density) "
         "and the normal distributions fitted to them, "
-        + ("FEM (solid line, filled bars) and wave model (dashed)." if wave is not None else "FEM alone.")
+        + (pair.caption(True, fem="solid line, filled bars") if wave is not None else f"{pair.fem.name} alone")
+        + "."
     )
     return Figure(panels, caption, "Normal fits")
 
@@ -121,7 +126,7 @@ class _Layer:
         grid = np.linspace(low, high, 161)
         for sample in samples:
             stroke = sample.stroke
-            filled = stroke is FEM
+            filled = stroke.line == "-"
             heights, _ = np.histogram(sample.values, edges, density=True)
             axes.stairs(heights, edges, fill=filled, color=stroke.colour, alpha=0.22 if filled else 0.75, linewidth=1)
             axes.plot(grid, sample.fit.density(grid), color=stroke.colour, linestyle=stroke.line, label=stroke.label)

@@ -11,7 +11,8 @@ import numpy as np
 from reports.blocks import Figure, Panel
 from reports.figures.arrays import Floats, column, layer_of, matrix, optional_matrix, peak, shared_limits
 from reports.figures.marks import edge_line, model_line
-from reports.figures.style import FEM, SMALL, WAVE, draw, heading, legend_above, zero_line
+from reports.figures.pair import DEFAULT, Pair
+from reports.figures.style import SMALL, draw, heading, legend_above, zero_line
 from reports.formatting import format_number
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ def profile(
     fem_mm: Any,
     wave_mm: Any = None,
     tool_radius_mm: float | None = None,
+    pair: Pair = DEFAULT,
 ) -> Figure:
     """Draw the deflection of each layer's top face over the distance from the tool axis, a panel a layer.
 
@@ -38,6 +40,8 @@ def profile(
         (outside the wave model's window); `wave_mm` is None where the wave model does not cover the case.
     tool_radius_mm
         Radius of the tool, marked in each panel.
+    pair
+        What the two models are called.
 
     Raises
     ------
@@ -53,11 +57,11 @@ def profile(
     columns = None if wave is None else wave.T
     scale = shared_limits([*fem, *([] if wave is None else wave)])
     layers = [
-        _Layer(name, place, radius, fem[place], layer_of(columns, place), tool_radius_mm, scale)
+        _Layer(name, place, radius, fem[place], layer_of(columns, place), tool_radius_mm, scale, pair)
         for place, name in enumerate(layer_names)
     ]
     panels = [Panel(draw(layer.paint, SMALL, 290), layer.words(), layer.name) for layer in layers]
-    return Figure(panels, _caption(wave is not None, scale is not None), "Profiles at peak load")
+    return Figure(panels, _caption(pair, wave is not None, scale is not None), "Profiles at peak load")
 
 
 @dataclass(frozen=True)
@@ -71,14 +75,15 @@ class _Layer:
     wave: Floats | None
     tool_radius: float | None
     scale: tuple[float, float] | None
+    pair: Pair
 
     def paint(self, drawing: Drawing) -> None:
         """Draw the dent, the surface at the top."""
         axes = drawing.subplots()
         zero_line(axes)
-        model_line(axes, self.radius, self.fem, FEM, stops=False)
+        model_line(axes, self.radius, self.fem, self.pair.fem, stops=False)
         if self.wave is not None:
-            model_line(axes, self.radius, self.wave, WAVE, stops=False)
+            model_line(axes, self.radius, self.wave, self.pair.wave, stops=False)
         axes.set_ylim(*(self.scale or (None, None)))
         axes.invert_yaxis()
         axes.set_xlim(float(self.radius.min()), float(self.radius.max()))
@@ -90,16 +95,16 @@ class _Layer:
 
     def words(self) -> str:
         """Say what the panel shows."""
-        text = f"{self.name}: the largest deflection is {format_number(peak(self.fem))} mm in the FEM"
+        text = f"{self.name}: the largest deflection is {format_number(peak(self.fem))} mm in the {self.pair.fem.name}"
         if self.wave is None:
             return text + "."
-        text += f" and {format_number(peak(self.wave))} mm in the wave model"
+        text += f" and {format_number(peak(self.wave))} mm in the {self.pair.wave.name}"
         apart = np.abs(self.wave - self.fem)
         return text + f"; they differ by at most {format_number(peak(apart), 3)} mm along the radius."
 
 
-def _caption(wave: bool, shared: bool) -> str:
+def _caption(pair: Pair, wave: bool, shared: bool) -> str:
     """Say what is compared with what."""
     text = "Deflection of each layer's top face at peak load over the reference radius, press downwards"
-    text += ": FEM (solid) and wave model (dashed, within its window)." if wave else ": FEM alone."
+    text += f": {pair.caption(True, wave='dashed, within its window')}." if wave else f": {pair.fem.name} alone."
     return text + ("" if shared else " Each panel has its own vertical scale.")

@@ -28,18 +28,19 @@ _TYPE_WIDE, _TYPE_SMALL = 13.2, 11.0  # wide pictures shrink on a narrow page
 
 @dataclass(frozen=True)
 class Stroke:
-    """How a series is drawn, never by colour alone: its name in words, colour, line style and marker."""
+    """How a series is drawn, never by colour alone: its label, colour, line style, marker and name in a sentence."""
 
     label: str
     colour: str
     line: LineStyle
     marker: str
+    name: str
 
 
-FEM = Stroke("FEM", PALETTE["fem"].light, "-", "o")
-WAVE = Stroke("Wave", PALETTE["wave"].light, (0, (4, 1.8)), "s")
-MEASURED = Stroke("Measured", PALETTE["measured"].light, "-", "D")
-TRIAL = Stroke("Trial", PALETTE["trial"].light, "-", "o")
+FEM = Stroke("FEM", PALETTE["fem"].light, "-", "o", "FEM")
+WAVE = Stroke("Wave", PALETTE["wave"].light, (0, (4, 1.8)), "s", "wave model")
+MEASURED = Stroke("Measured", PALETTE["measured"].light, "-", "D", "measured")
+TRIAL = Stroke("Trial", PALETTE["trial"].light, "-", "o", "trial")
 
 _SETTINGS: Mapping[Any, Any] = MappingProxyType(
     {

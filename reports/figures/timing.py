@@ -10,7 +10,8 @@ import numpy as np
 
 from reports.blocks import Figure
 from reports.figures.arrays import Floats, column
-from reports.figures.style import FEM, INK, MUTED, TRIAL, WAVE, WIDE, Stroke, draw
+from reports.figures.pair import DEFAULT, Pair
+from reports.figures.style import INK, MUTED, TRIAL, WIDE, Stroke, draw
 from reports.formatting import format_number
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ def timing(
     wall_s: Mapping[str, Any],
     setup_s: Mapping[str, float] | None = None,
     quoted_s: Mapping[str, float] | None = None,
+    pair: Pair = DEFAULT,
 ) -> Figure:
     """Draw the wall seconds of every repeat as a dot and the median as a bar, a row a model.
 
@@ -33,6 +35,8 @@ def timing(
         One-time set-up in s by model, drawn as a hollow diamond.
     quoted_s
         Times printed elsewhere in s by label, each a row of its own, drawn as a cross.
+    pair
+        What `fem` and `wave` are called.
 
     Raises
     ------
@@ -44,13 +48,13 @@ def timing(
         raise ValueError("wall_s is empty; the wall seconds of at least one model are needed")
     setups = {name: float(_times(f"set-up of {name}", [value])[0]) for name, value in (setup_s or {}).items()}
     quotes = {label: float(_times(label, [value])[0]) for label, value in (quoted_s or {}).items()}
-    labels = [*(_stroke(name).label for name in walls), *quotes]
+    labels = [*(_stroke(name, pair).label for name in walls), *quotes]
 
     def paint(drawing: Drawing) -> None:
         axes = drawing.subplots()
         _seconds_axis(axes, np.concatenate([*walls.values(), [*setups.values()], [*quotes.values()]]))
         for row, (name, values) in enumerate(walls.items()):
-            _paint_row(axes, row, values, _stroke(name), setups.get(name))
+            _paint_row(axes, row, values, _stroke(name, pair), setups.get(name))
         for row, value in enumerate(quotes.values(), len(walls)):
             axes.plot(value, row, marker="x", color=INK, markersize=7, markeredgewidth=1.6, linestyle="")
             _write(axes, value, row, f"{format_number(value, 3, trim=True)} s as printed")
@@ -61,7 +65,7 @@ def timing(
     caption = "Wall seconds of the load history, a dot a repeat, the median as a bar with its value"
     caption += "; one-time set-up as a hollow diamond." if setups else "."
     caption += " Crosses are times printed elsewhere, measured on other machines." if quotes else ""
-    return Figure.of(draw(paint, WIDE, 70 + 58 * len(labels)), caption, _words(walls), "Wall time")
+    return Figure.of(draw(paint, WIDE, 70 + 58 * len(labels)), caption, _words(walls, pair), "Wall time")
 
 
 def _paint_row(axes: Axes, row: int, values: Floats, stroke: Stroke, setup: float | None) -> None:
@@ -98,14 +102,14 @@ def _times(name: str, values: Any) -> Floats:
     return times
 
 
-def _stroke(name: str) -> Stroke:
-    return {"fem": FEM, "wave": WAVE}.get(name, replace(TRIAL, label=name))
+def _stroke(name: str, pair: Pair) -> Stroke:
+    return {"fem": pair.fem, "wave": pair.wave}.get(name, replace(TRIAL, label=name, name=name))
 
 
-def _words(walls: Mapping[str, Floats]) -> str:
+def _words(walls: Mapping[str, Floats], pair: Pair) -> str:
     """Say what the figure shows."""
     return " ".join(
-        f"{_stroke(name).label}: median {_read(np.median(values))} s of {values.size} repeats, "
+        f"{_stroke(name, pair).label}: median {_read(np.median(values))} s of {values.size} repeats, "
         f"from {_read(values.min())} to {_read(values.max())} s."
         for name, values in walls.items()
     )

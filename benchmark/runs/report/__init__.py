@@ -2,5 +2,6 @@
 
 from benchmark.runs.report.fit_page import fit_page
 from benchmark.runs.report.run_page import run_page
+from benchmark.runs.report.tissues_page import tissues_page
 
-__all__ = ["fit_page", "run_page"]
+__all__ = ["fit_page", "run_page", "tissues_page"]

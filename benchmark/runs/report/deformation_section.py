@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from benchmark.comparison import LayerComparison, profile_error
+from benchmark.comparison import LayerComparison, ProfileError, profile_error
+from benchmark.models import Array
 from benchmark.runs.record import RunRecord
-from benchmark.runs.report.values import MM, fem_mm, peak_errors, profile_mm, wave_mm
+from benchmark.runs.report.values import MM, fem_mm, pair_names, peak_errors, profile_mm, wave_mm
 from benchmark.runs.tables import percent_errors
 from reports import Block, Column, Download, Notice, Section, Table
 from reports.figures.force_depth import force_depth
@@ -21,13 +22,19 @@ def deformation_section(record: RunRecord) -> Section:
     steps = np.arange(1, record.time.size + 1)
     blocks.append(
         max_deformation(
-            record.layers, steps, fem_mm(record), wave_mm(record), None if wave is None else percent_errors(record)
+            record.layers,
+            steps,
+            fem_mm(record),
+            wave_mm(record),
+            None if wave is None else percent_errors(record),
+            pair=pair_names(record),
         )
     )
     blocks.append(
         Notice(
             "finding",
-            "Percent errors are those of the wave model against the FEM; no value of the FEM was fed in.",
+            f"Percent errors are those of the {record.pair.wave.name} against the {record.pair.fem.name}; no value of "
+            f"the {record.pair.fem.name} was fed in.",
         )
     )
     reference = fem if fem is not None else wave
@@ -40,6 +47,7 @@ def deformation_section(record: RunRecord) -> Section:
                 empty if fem is None else profile_mm(fem),
                 profile_mm(wave),
                 MM * record.scenario.tool.radius,
+                pair_names(record),
             )
         )
     if fem is not None and fem.time.size:
@@ -51,8 +59,8 @@ def _table(record: RunRecord) -> Table:
     """Maximum per layer and errors."""
     columns = (
         "layer",
-        Column("FEM maximum", "mm"),
-        Column("wave maximum", "mm"),
+        Column(f"{record.pair.fem.name} maximum", "mm"),
+        Column(f"{record.pair.wave.name} maximum", "mm"),
         Column("error at peak", "%", 3),
         Column("mean |error|", "%", 3),
         Column("max |error|", "%", 3),
@@ -80,7 +88,7 @@ def _row(
     comparison = comparisons.get(name)
     whole = None
     if fem is not None and wave is not None and fem.time.size and wave.time.size:
-        whole = profile_error(fem.profile[column], wave.profile[column])
+        whole = _profile_error(fem.profile[column], wave.profile[column])
     return (
         name,
         None if fem is None else MM * fem.max_deformation()[column],
@@ -90,6 +98,11 @@ def _row(
         comparison.percent.maximum if comparison and wave is not None else None,
         None if whole is None else whole.maximum_percent,
     )
+
+
+def _profile_error(fem: Array, wave: Array) -> ProfileError | None:
+    """None where the two profiles have no common point, as with a table in a model's place."""
+    return profile_error(fem, wave) if np.isfinite(fem + wave).any() else None
 
 
 def _force_depth(record: RunRecord) -> Block:
@@ -102,4 +115,5 @@ def _force_depth(record: RunRecord) -> Block:
         None if wave is None else MM * wave.depth,
         None if wave is None else wave.force,
         planned,
+        pair_names(record),
     )

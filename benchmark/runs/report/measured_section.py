@@ -8,10 +8,12 @@ from benchmark.fitting import SessionFit
 from benchmark.models import Array
 from benchmark.runs.measured import MeasuredComparison, TrialPrediction
 from benchmark.runs.report.values import MM
+from benchmark.side_by_side import SideBySide
 from reports import Block, Bullets, Column, Download, Notice, Paragraph, Section, Table
 from reports.figures.fitted_parameters import FittedParameter as Dot
 from reports.figures.fitted_parameters import fitted_parameters
 from reports.figures.measured import measured
+from reports.figures.pair import Pair
 from reports.figures.trials import TrialCurve
 
 CIRCULAR = (
@@ -45,8 +47,8 @@ def session_notices(comparison: MeasuredComparison) -> tuple[Notice, ...]:
     return tuple(notices)
 
 
-def measured_section(comparison: MeasuredComparison) -> Section:
-    """Return the section on trials beside both models."""
+def measured_section(comparison: MeasuredComparison, pair: SideBySide) -> Section:
+    """Return the section on trials beside both models, called what `pair` calls them."""
     curves = [
         TrialCurve(
             trial.trial,
@@ -64,19 +66,19 @@ def measured_section(comparison: MeasuredComparison) -> Section:
     )
     blocks: list[Block] = [
         Paragraph(text),
-        measured(curves, comparison.session.synthetic),
-        _residuals(comparison),
+        measured(curves, comparison.session.synthetic, Pair.named(pair.fem.own, pair.wave.own)),
+        _residuals(comparison, pair),
     ]
     return Section("Measured against the models", blocks)
 
 
-def _residuals(comparison: MeasuredComparison) -> Table:
+def _residuals(comparison: MeasuredComparison, pair: SideBySide) -> Table:
     columns = (
         "trial",
         "condition",
         Column("peak force", "N"),
         Column("FEM residual, rms", "% of peak", 3),
-        Column("wave residual, rms", "% of peak", 3),
+        Column(f"{pair.wave.name} residual, rms", "% of peak", 3),
         Column("FEM residual held out, rms", "% of peak", 3),
     )
     rows = [_residual_row(trial) for trial in comparison.trials]

@@ -41,7 +41,7 @@ def run_page(record: RunRecord, environment: Mapping[str, Any], tables: Sequence
     """
     sections: list[Section] = []
     if record.measured is not None:
-        sections += [measured_section(record.measured), fit_section(record.measured.fit)]
+        sections += [measured_section(record.measured, record.pair), fit_section(record.measured.fit)]
     sections += [scenario_section(record)]
     if record.results:
         sections += [deformation_section(record), statistics_section(record)]
@@ -60,9 +60,10 @@ def run_page(record: RunRecord, environment: Mapping[str, Any], tables: Sequence
 
 
 def _subtitle(record: RunRecord) -> str:
+    models = f"{record.pair.fem.name} and {record.pair.wave.name}"
     if record.measured is None:
-        return "Finite elements and wave model side by side"
-    return f"{len(record.measured.session.trials)} trials, fitted, beside finite elements and wave model"
+        return f"{models} side by side"
+    return f"{len(record.measured.session.trials)} trials, fitted, beside {models}"
 
 
 def _facts(environment: Mapping[str, Any]) -> tuple[Fact, ...]:
@@ -77,14 +78,15 @@ def _facts(environment: Mapping[str, Any]) -> tuple[Fact, ...]:
 def _key_figures(record: RunRecord) -> tuple[KeyFigure, ...]:
     """Deepest press of both models, the error between them, and the speed-up."""
     figures = [
-        KeyFigure(label, 1e3 * float(result.max_deformation()[0]), "mm", f"maximum of {record.layers[0]}")
-        for label, result in (("FEM", record.pair.fem.result), ("wave", record.pair.wave.result))
-        if result is not None and result.time.size
+        KeyFigure(run.name, 1e3 * float(run.result.max_deformation()[0]), "mm", f"maximum of {record.layers[0]}")
+        for run in (record.pair.fem, record.pair.wave)
+        if run.result is not None and run.result.time.size
     ]
     errors = peak_errors(record)
     if errors:
         layer, error = max(errors.items(), key=lambda item: abs(item[1]))
-        figures.append(KeyFigure("wave against FEM", f"{error:+.3g}", "%", f"{layer} at peak load, the worst layer"))
+        label = f"{record.pair.wave.name} against {record.pair.fem.name}"
+        figures.append(KeyFigure(label, f"{error:+.3g}", "%", f"{layer} at peak load, the worst layer"))
     if record.pair.speedup is not None:
         note = f"{record.pair.speedup.repeats} interleaved repeats, one thread each"
         figures.append(KeyFigure("speed-up", record.pair.speedup.median, "×", note))

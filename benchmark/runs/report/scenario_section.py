@@ -6,7 +6,7 @@ import numpy as np
 
 from benchmark.files import Scenario
 from benchmark.runs.record import RunRecord
-from benchmark.runs.report.values import MM, padded
+from benchmark.runs.report.values import MM, padded, pair_names
 from reports import Block, Column, Fact, Facts, Section, Table
 from reports.figures.layer_stack import StackLayer, layer_stack
 from reports.figures.load_history import load_history
@@ -22,7 +22,7 @@ CONTACTS = {
 def scenario_section(record: RunRecord) -> Section:
     """Return the section on tissue, tool, support and load."""
     scenario = record.scenario
-    blocks: list[Block] = [_facts(scenario), _stack(scenario), layer_table(scenario), _history(record)]
+    blocks: list[Block] = [_facts(scenario), layer_stack_of(scenario), layer_table(scenario), _history(record)]
     return Section("Scenario", blocks)
 
 
@@ -47,7 +47,8 @@ def _facts(scenario: Scenario) -> Facts:
     )
 
 
-def _stack(scenario: Scenario) -> Block:
+def layer_stack_of(scenario: Scenario) -> Block:
+    """Return the picture of the layers."""
     layers = [
         StackLayer(
             layer.name,
@@ -91,4 +92,5 @@ def _history(record: RunRecord) -> Block:
         values = None if result is None else (MM * result.depth if force else result.force)
         answers.append(padded(result, values, record.time.size))
     load = record.load if force else MM * record.load
-    return load_history(record.time, load, record.scenario.load.control, *answers)
+    fem, wave = answers
+    return load_history(record.time, load, record.scenario.load.control, fem, wave, pair_names(record))

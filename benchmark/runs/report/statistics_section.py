@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from benchmark.comparison import LayerComparison, describe_equivalence, describe_t_test, statistics_columns
 from benchmark.runs.record import RunRecord
-from benchmark.runs.report.values import fem_mm, wave_mm
+from benchmark.runs.report.values import fem_mm, pair_names, wave_mm
 from reports import Block, Column, Download, Paragraph, Section, Subsection, Table
 from reports.figures.normal_fit import Normal, normal_fit
 
@@ -18,7 +18,7 @@ INTRODUCTION = (
 def statistics_section(record: RunRecord) -> Section:
     """Return the section on tests and normal fits."""
     blocks: list[Block] = [Paragraph(INTRODUCTION)]
-    blocks.extend(_layer(comparison) for comparison in record.comparisons if comparison.statistics is not None)
+    blocks.extend(_layer(comparison, record) for comparison in record.comparisons if comparison.statistics is not None)
     if not any(comparison.statistics for comparison in record.comparisons):
         blocks.append(Paragraph("There is nothing to test: one of the models has no values here."))
     figure = _normal_fits(record)
@@ -27,7 +27,7 @@ def statistics_section(record: RunRecord) -> Section:
     return Section("Statistics", blocks)
 
 
-def _layer(comparison: LayerComparison) -> Subsection:
+def _layer(comparison: LayerComparison, record: RunRecord) -> Subsection:
     """Tests of one layer."""
     found = comparison.statistics
     assert found is not None
@@ -36,8 +36,8 @@ def _layer(comparison: LayerComparison) -> Subsection:
     columns = (
         "test",
         "quantity",
-        Column("FEM", digits=6),
-        Column("wave", digits=6),
+        Column(record.pair.fem.name, digits=6),
+        Column(record.pair.wave.name, digits=6),
         Column("value", digits=6),
     )
     return Subsection(
@@ -70,4 +70,5 @@ def _normal_fits(record: RunRecord) -> Block | None:
         [Normal(fit.mean, fit.std) for fit in fem if fit is not None],
         wave_mm(record) if whole else None,
         [Normal(fit.mean, fit.std) for fit in wave if fit is not None] if whole else (),
+        pair_names(record),
     )

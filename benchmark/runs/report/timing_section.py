@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from benchmark.runs.record import RunRecord
+from benchmark.runs.report.values import pair_names
 from benchmark.side_by_side import ModelRun
 from reports import Block, Column, Download, Paragraph, Section, Table
 from reports.figures.timing import timing
@@ -19,7 +20,7 @@ def timing_section(record: RunRecord) -> Section:
     blocks: list[Block] = [Paragraph(_words(record)), _table(runs)]
     walls = {run.model: [seconds.wall for seconds in run.repeats] for run in runs}
     setups = {run.model: seconds.setup for run in runs if (seconds := run.seconds) is not None}
-    blocks.append(timing(walls, setups, PRINTED))
+    blocks.append(timing(walls, setups, PRINTED, pair_names(record)))
     return Section("Compute time", blocks)
 
 
@@ -30,10 +31,12 @@ def _words(record: RunRecord) -> str:
         "interleaved; set-up (mesh, tables, factorisations) apart. "
     )
     if ratio is None:
-        return text + "No speed-up: only one model has values."
+        return text + "No speed-up: only one model was timed."
+    fem, wave = record.pair.fem.name, record.pair.wave.name
     return text + (
-        f"Speed-up, FEM wall over wave wall: median {ratio.median:.3g}, 95 % bootstrap interval {ratio.ci95[0]:.3g} to "
-        f"{ratio.ci95[1]:.3g} over {ratio.repeats} pairs. The article printed 4 minutes against 10 seconds."
+        f"Speed-up, {fem} wall over {wave} wall: median {ratio.median:.3g}, 95 % bootstrap interval "
+        f"{ratio.ci95[0]:.3g} to {ratio.ci95[1]:.3g} over {ratio.repeats} pairs. The article printed 4 minutes against "
+        "10 seconds."
     )
 
 
@@ -53,7 +56,7 @@ def _table(runs: list[ModelRun]) -> Table:
         if seconds is None or result is None:
             continue
         per_step = 1e3 * seconds.wall / max(result.time.size, 1)
-        rows.append((run.model, result.unknowns, len(run.repeats), seconds.setup, seconds.wall, seconds.cpu, per_step))
+        rows.append((run.name, result.unknowns, len(run.repeats), seconds.setup, seconds.wall, seconds.cpu, per_step))
     return Table(
         "Medians over the repeats",
         columns,

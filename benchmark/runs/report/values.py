@@ -6,8 +6,14 @@ import numpy as np
 
 from benchmark.models import Array, ModelResult
 from benchmark.runs.record import RunRecord
+from reports.figures.pair import Pair
 
 MM = 1e3
+
+
+def pair_names(record: RunRecord) -> Pair:
+    """What figures call the two models: their usual names, or the user's."""
+    return Pair.named(record.pair.fem.own, record.pair.wave.own)
 
 
 def fem_mm(record: RunRecord) -> Array:

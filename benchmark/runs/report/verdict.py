@@ -21,7 +21,7 @@ def run_verdict(record: RunRecord) -> Verdict:
 def _one_sided(record: RunRecord) -> Verdict:
     """A model has no values: nothing to compare it with, but the trials may still have told something."""
     missing = [run for run in (record.pair.fem, record.pair.wave) if run.result is None]
-    names = " and ".join("FEM" if run.model == "fem" else "wave model" for run in missing)
+    names = " and ".join(run.name for run in missing)
     nothing = f"Nothing to compare the models by: {names} without values here"
     points = [f"{nothing}, because {run.declined}" for run in missing]
     if record.measured is None:
@@ -34,21 +34,22 @@ def _agreement(record: RunRecord) -> Verdict:
     margin = f"{100 * record.scenario.comparison.equivalence_margin:g} % of the FEM's mean"
     shown = [c for c in record.comparisons if c.statistics is not None and c.statistics.equivalence.equivalent]
     errors = peak_errors(record)
-    points = [f"{name}: wave against FEM {error:+.2f} % at peak load" for name, error in errors.items()]
+    wave, fem = record.pair.wave.name, record.pair.fem.name
+    points = [f"{name}: {wave} against {fem} {error:+.2f} % at peak load" for name, error in errors.items()]
     if record.pair.speedup is not None:
         ratio = record.pair.speedup
         points.append(
-            f"the wave model follows the load history {ratio.median:.3g} times as fast "
+            f"the {wave} follows the load history {ratio.median:.3g} times as fast "
             f"(95 % {ratio.ci95[0]:.3g} to {ratio.ci95[1]:.3g}, {ratio.repeats} interleaved repeats, one thread each)"
         )
     points.extend(_measured(record))
     if len(shown) == len(record.comparisons):
-        headline = f"Wave model and FEM are equivalent within {margin} in every layer's maximum deformation."
+        headline = sentence(f"{wave} and {fem} are equivalent within {margin} in every layer's maximum deformation")
         return Verdict("good", headline, points)
     worst = max(errors.values(), key=abs, default=float("nan"))
     headline = (
         f"Equivalence within {margin} is not shown in {len(record.comparisons) - len(shown)} of "
-        f"{len(record.comparisons)} layers; the wave model is off by up to {worst:+.1f} % at peak load."
+        f"{len(record.comparisons)} layers; the {wave} is off by up to {worst:+.1f} % at peak load."
     )
     return Verdict("finding", headline, points)
 

@@ -18,7 +18,8 @@ def test_words_tell_peaks_and_errors(ramp):
     step, fem, wave = ramp
     panel = max_deformation(["skin", "fat"], step, fem, wave, np.tile(np.linspace(-2, 3, 24)[:, None], 2)).panels[0]
     assert panel.alt == (
-        "skin: FEM reaches 2.000 mm, wave 2.200 mm; the error of wave against FEM lies between −2.00 and 3.00 percent."
+        "skin: FEM reaches 2.000 mm, wave model 2.200 mm; "
+        "the error of wave model against FEM lies between −2.00 and 3.00 percent."
     )
 
 

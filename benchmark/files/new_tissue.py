@@ -1,0 +1,63 @@
+"""A commented tissue file to start from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from benchmark.errors import InputError
+from benchmark.files.registry import shipped_tissues
+
+TEMPLATE: Final = """# A tissue of your own. Values are text with units; --set LAYER.key="VALUE" changes one.
+# Use it as `tissue = "{file}"` in a scenario, or: python -m benchmark run skin-5N --tissue {file}
+schema = 1
+name = "{name}"
+citation = ""                       # where the values come from: reports show it beside every result
+# max_force = "5 N"                 # the largest press that the sources cover; a run beyond it warns
+
+# Layers from the surface down. The last one lies on the support.
+[[layers]]
+name = "dermis"                     # one of its own in the file; --set dermis.thickness="2 mm" finds it by this
+thickness = "1.5 mm"                # undeformed
+density = "1100 kg/m^3"
+youngs_modulus = "100 kPa"          # initial: for small strain, before anything relaxes
+poisson_ratio = 0.48                # 0 to 0.49999; soft tissue is nearly incompressible
+
+[[layers]]
+name = "fat"
+thickness = "10 mm"
+density = "970 kg/m^3"
+youngs_modulus = "20 kPa"
+poisson_ratio = 0.48
+# Optional, in any layer (without `hyperelastic` the layer is neo-Hookean with the moduli above):
+# hyperelastic = {{ law = "yeoh", c10 = "3.4 kPa", c20 = "1 kPa" }}
+# relaxation = [{{ g = 0.3, tau = "0.5 s" }}, {{ g = 0.2, tau = "10 s" }}]   # fractions of the stiffness that fade
+# fibre = {{ angle = "0 deg", k1 = "3 kPa", k2 = 1.0 }}                     # a fibre family, angle in the layer's plane
+"""
+
+
+def write_new_tissue(name: str) -> Path:
+    """Write a commented tissue file and return its path.
+
+    Parameters
+    ----------
+    name : str
+        The tissue's name, for `NAME.toml` in the current folder, or a path that ends in .toml.
+
+    Raises
+    ------
+    InputError
+        There is such a file, such a tissue ships, the folder is missing, or the name cannot be one.
+    """
+    path = Path(name if name.endswith(".toml") else f"{name}.toml")
+    stem = path.stem
+    if not stem.strip() or not stem.isprintable() or any(sign in stem for sign in '"\\'):
+        raise InputError(f"{name!r} is no name for a tissue; allowed: printable characters without quotes")
+    if stem in shipped_tissues():
+        raise InputError(f"a tissue {stem!r} ships with tissuebench; give yours another name")
+    try:
+        with path.open("x", encoding="utf-8") as stream:
+            stream.write(TEMPLATE.format(name=stem, file=path))
+    except FileExistsError:
+        raise InputError(f"{path} is there already and is left as it is; give another name") from None
+    return path

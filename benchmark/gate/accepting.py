@@ -1,0 +1,143 @@
+"""Making a baseline from what is measured now."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from benchmark.errors import InputError, SolverError, TissuebenchError
+from benchmark.gate.history import Entry, append
+from benchmark.gate.measurement import gated_values, this_version
+from benchmark.gate.origin import Origin, origin_of
+from benchmark.gate.plan import Plan, load_plan
+from benchmark.gate.request import CheckRequest
+from benchmark.gate.rounds import measure
+from benchmark.gate.stored import Baseline, StoredTiming, StoredValue, read_baseline, write_baseline
+from benchmark.runs.listener import Listener
+
+REFERENCE_TIMES = "reference times"
+
+
+@dataclass(frozen=True)
+class Step:
+    """What a quantity was in the old baseline (None where it was not there) and is in the new one (None: gone)."""
+
+    quantity: str
+    unit: str
+    old: float | None
+    new: float | None
+
+    def words(self) -> str:
+        """Old -> new."""
+        old, new = ("none" if value is None else f"{value:.9g}" for value in (self.old, self.new))
+        return f"{self.quantity}: {old} -> {new} {self.unit}".rstrip()
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """A baseline that was written, what changed in it, and what a reader must know."""
+
+    path: Path
+    steps: tuple[Step, ...]
+    warnings: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """What `check --accept --json` prints."""
+        steps = [vars(step).copy() for step in self.steps]
+        return {"schema": 1, "accepted": str(self.path), "changes": steps, "warnings": list(self.warnings)}
+
+
+def accept(request: CheckRequest, listener: Listener) -> Accepted:
+    """Measure this version, write it as the baseline, and add it to the history.
+
+    Raises
+    ------
+    SolverError
+        A gated value does not exist, so that nothing could be compared with it.
+    InputError
+        `--against` was asked for too, or the gate file cannot be used.
+    OSError
+        Where the file system refuses; the old baseline then stays.
+    """
+    if request.against is not None:
+        raise InputError("--accept and --against exclude each other: a baseline is made from this version alone")
+    plan = load_plan(request.gate)
+    origin = origin_of(plan, request.seed)
+    old, warnings = _old(request.baseline_path)
+    new = _measured(plan, origin, listener)
+    write_baseline(request.baseline_path, new)
+    append(request.history_path, _entry(new))
+    return Accepted(request.baseline_path, _steps(old, new), tuple(warnings))
+
+
+def _old(path: Path) -> tuple[Baseline | None, list[str]]:
+    """The baseline that is replaced; one that cannot be read is replaced too, with a warning."""
+    if not path.exists():
+        return None, []
+    try:
+        return read_baseline(path), []
+    except TissuebenchError as error:
+        return None, [f"the old baseline is replaced without a comparison: {error}"]
+
+
+def _measured(plan: Plan, origin: Origin, listener: Listener) -> Baseline:
+    head, file = this_version(plan), plan.file
+    listener.say(f"gate {file.name}: values of {len(plan.cases)} cases")
+    values = gated_values(head)
+    missing = [f"{name} ({value.reason})" for name, value in values.items() if value.value is None]
+    if missing:
+        raise SolverError(f"no baseline was made: there is no value of {', '.join(missing)}")
+    with listener.progress(f"gate {file.name}: {len(file.timed)} times") as advance:
+        measured = measure((head,), lambda _: False, lambda done, most: advance("processes", done, most, ""))
+    return Baseline(
+        gate=file.name,
+        fingerprint=plan.fingerprint,
+        made=origin.made,
+        revision=origin.revision,
+        machine=origin.machine,
+        accuracy=values,
+        timing={
+            name: StoredTiming(ratios=[math.exp(each) for each in found]) for name, found in measured.ratios[0].items()
+        },
+    )
+
+
+def _entry(baseline: Baseline) -> Entry:
+    ratios = {name: {"ratio": typical(each), "ci95": None, "allowed": None} for name, each in baseline.timing.items()}
+    return Entry(
+        made=baseline.made,
+        revision=baseline.revision,
+        machine=baseline.machine.processor,
+        against=None,
+        passed=None,
+        accuracy={name: each.value for name, each in baseline.accuracy.items()},
+        timing=ratios,
+    )
+
+
+def typical(timing: StoredTiming) -> float:
+    """Geometric mean over the processes of a stored time."""
+    return math.exp(math.fsum(map(math.log, timing.ratios)) / len(timing.ratios))
+
+
+def _steps(old: Baseline | None, new: Baseline) -> tuple[Step, ...]:
+    before = {} if old is None else old.accuracy
+    steps = [
+        Step(name, _unit(name, before, new.accuracy), _value(before, name), _value(new.accuracy, name))
+        for name in {**new.accuracy, **before}
+    ]
+    times = {} if old is None else {name: typical(each) for name, each in old.timing.items()}
+    now = {name: typical(each) for name, each in new.timing.items()}
+    return (*steps, *(Step(name, REFERENCE_TIMES, times.get(name), now.get(name)) for name in {**now, **times}))
+
+
+def _unit(name: str, old: Mapping[str, StoredValue], new: Mapping[str, StoredValue]) -> str:
+    return (new.get(name) or old[name]).unit
+
+
+def _value(values: Mapping[str, StoredValue], name: str) -> float | None:
+    found = values.get(name)
+    return None if found is None else found.value

@@ -1,0 +1,146 @@
+"""A check from request to verdict: measure, compare, write."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from benchmark.gate.accuracy import compare_values
+from benchmark.gate.folder import check_folder, write_check
+from benchmark.gate.history import Entry, append, read_history
+from benchmark.gate.measurement import gated_values, rival, this_version
+from benchmark.gate.origin import Origin, origin_of
+from benchmark.gate.plan import Plan, load_plan
+from benchmark.gate.request import CheckRequest
+from benchmark.gate.rounds import Measured, Party, measure
+from benchmark.gate.timing import Judge, TimingRow
+from benchmark.gate.verdict import Verdict
+from benchmark.gate.yardstick import Yardstick, stored_baseline
+from benchmark.runs.listener import Listener
+
+NOTABLE = 0.25
+"""The slowdown that a check should catch; where the scatter does not allow it, the check says so."""
+
+
+@dataclass(frozen=True)
+class CheckOutcome:
+    """A finished check on disk: its folder, the verdict, and the content of `check.json`."""
+
+    folder: Path
+    verdict: Verdict
+    document: dict[str, Any]
+
+    @property
+    def report(self) -> Path:
+        """The page."""
+        return self.folder / "report.html"
+
+
+def check(request: CheckRequest, listener: Listener) -> CheckOutcome:
+    """Compare this version with a baseline or another revision, write a report, and add to the history.
+
+    Raises
+    ------
+    NotComparableError
+        No baseline, one of another schema or gate, or a revision that this gate cannot measure.
+    InputError
+        Files or options that cannot be used.
+    SolverError
+        This version's code fails, beyond a solver that stops early.
+    OSError
+        Where the file system refuses; no report is written then.
+    """
+    folder = check_folder(request.out)
+    plan = load_plan(request.gate)
+    baseline = stored_baseline(request, plan)
+    origin = origin_of(plan, request.seed)
+    with ExitStack() as stack:
+        other = None if request.against is None else stack.enter_context(rival(plan, request.against))
+        yardstick = Yardstick(baseline, other, str(request.baseline_path))
+        verdict, measured = _verdict(plan, yardstick, origin, request.seed, listener)
+    verdict = replace(verdict, warnings=(*verdict.warnings, *_record(request, origin, verdict)))
+    entries, _ = read_history(request.history_path)
+    return CheckOutcome(folder, verdict, write_check(folder, verdict, measured, entries, origin))
+
+
+def _verdict(
+    plan: Plan, yardstick: Yardstick, origin: Origin, seed: int, listener: Listener
+) -> tuple[Verdict, Measured]:
+    """Measure and compare."""
+    head, file = this_version(plan), plan.file
+    listener.say(f"gate {file.name}: values of {len(plan.cases)} cases")
+    values = gated_values(head)
+    accuracy = compare_values(values, yardstick.values(), file.tolerances, yardstick.values_from)
+    measured, timing = _times(head, yardstick, origin, seed, listener)
+    warnings = (*yardstick.remarks(origin, file.timing.other_machine_margin), *remarks(measured, timing))
+    verdict = Verdict(
+        gate=file.name,
+        accuracy=accuracy,
+        timing=timing,
+        accuracy_source=yardstick.values_from,
+        timing_source=yardstick.times_from,
+        rounds=measured.rounds,
+        against=None if yardstick.rival is None else yardstick.rival.commit,
+        warnings=warnings,
+    )
+    return verdict, measured
+
+
+def _times(
+    head: Party, yardstick: Yardstick, origin: Origin, seed: int, listener: Listener
+) -> tuple[Measured, tuple[TimingRow, ...]]:
+    """Measure until it is clear, and judge."""
+    file, same = head.plan.file, yardstick.same_machine(origin)
+    judge = Judge(file.timed, file.timing, paired=yardstick.rival is not None, same_machine=same, seed=seed)
+    parties = (head,) if yardstick.rival is None else (head, yardstick.rival.party)
+    with listener.progress(f"gate {file.name}: {len(file.timed)} times against {yardstick.times_from}") as advance:
+        measured = measure(
+            parties,
+            lambda found: judge.clear(found.ratios[0], yardstick.ratios(found)),
+            lambda done, most: advance("processes", done, most, ""),
+        )
+    return measured, judge.rows(measured.ratios[0], yardstick.ratios(measured))
+
+
+def remarks(measured: Measured, timing: Sequence[TimingRow]) -> list[str]:
+    """What a reader must know of the measurement itself."""
+    found = []
+    if not measured.sees_waiting:
+        found.append(
+            "this system does not tell waiting from other programs' turns: times are CPU times, sleep is unseen"
+        )
+    loud = [row for row in timing if row.caught > NOTABLE]
+    if loud:
+        names = ", ".join(f"{row.quantity} ({100 * row.caught:.0f} %)" for row in loud)
+        found.append(
+            f"too noisy to catch a slowdown of {100 * NOTABLE:g} % in 19 of 20 checks: {names}; "
+            "more rounds in the gate file, or a quieter machine, help"
+        )
+    return found
+
+
+def _record(request: CheckRequest, origin: Origin, verdict: Verdict) -> list[str]:
+    """Add the check to the history; what goes wrong there is a warning, since the verdict stands without it."""
+    _, unread = read_history(request.history_path)
+    warnings = (
+        [f"{request.history_path}: {unread} lines of this history cannot be read, left as they are"] if unread else []
+    )
+    entry = Entry(
+        made=origin.made,
+        revision=origin.revision,
+        machine=origin.machine.processor,
+        against=verdict.against,
+        passed=verdict.passed,
+        accuracy={row.quantity: row.now for row in verdict.accuracy},
+        timing={
+            row.quantity: {"ratio": row.now, "ci95": list(row.ci95), "allowed": row.allowed} for row in verdict.timing
+        },
+    )
+    try:
+        append(request.history_path, entry)
+    except OSError as error:
+        warnings.append(f"{request.history_path}: the history cannot be written ({error.strerror or error})")
+    return warnings

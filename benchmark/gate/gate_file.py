@@ -1,0 +1,189 @@
+"""The gate file: which scenarios are gated, what is timed beside which reference, and how much may change.
+
+    schema = 1
+    name = "mine"
+    [timing]
+    rounds = [4, 6]                   # fewest and most measured processes
+    blocks = 24                       # interleavings in each
+    margin = "12 %"                   # slower than the baseline by more is a regression
+    other_machine_margin = "50 %"     # against a baseline from another processor
+    [[tolerances]]                    # the first whose pattern fits a quantity's name holds
+    quantity = "*.max_deformation_mm.*"
+    rtol = "0.1 %"
+    atol = "1 nm"
+    [[cases]]
+    name = "press"
+    model = "wave"                    # fem | wave | fit
+    scenario = "press.toml"           # a shipped name or a path; a fit has session = "FOLDER" instead
+    own = "my_model.py"               # optional: your own model in the wave's place
+    [[timed]]
+    name = "wave.step"
+    workload = "history"              # history | wave_frame | fem_assembly | fit
+    model = "wave"
+    scenario = "press.toml"
+    references = ["elements", "dense"]
+    set = { "load.peak" = "2 N" }     # optional: values put into the scenario, as by --set
+    calls = 2                         # in a row, in each block
+
+Each timed quantity is divided by its references, each block's by the same block's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Literal, Self, TypeVar
+
+from pydantic import Field, model_validator
+
+from benchmark.files.base import FileModel, Name, Schema
+from benchmark.files.quantities import Bounds, Margin, Number, problem
+
+Count = Annotated[int, Number("1 to 1000 (a whole number)", Bounds(1, 1000), whole=True)]
+Reference = Literal["dense", "elements", "calls"]
+
+
+class Timing(FileModel):
+    """How time is measured and judged.
+
+    Attributes
+    ----------
+    rounds : (int, int)
+        Fewest and most processes: fewer where all is clearly well, the most before anything is called slower.
+    blocks : int
+        Interleavings of all workloads and references in each process.
+    margin : float
+        How much slower than the baseline is let pass, a fraction.
+    other_machine_margin : float
+        The same where the baseline comes from another machine.
+    """
+
+    rounds: tuple[Count, Count] = (4, 6)
+    blocks: Count = 24
+    margin: Margin = 0.12
+    other_machine_margin: Margin = 0.5
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if self.rounds[0] > self.rounds[1]:
+            raise problem(f"{list(self.rounds)}: the fewest rounds come first", key="rounds")
+        return self
+
+
+class Tolerance(FileModel):
+    """How far the quantities whose names fit a pattern may be from the baseline: rtol |baseline| + atol.
+
+    Attributes
+    ----------
+    quantity : str
+        A pattern with * and ?.
+    rtol : float
+        A fraction.
+    atol : str
+        With the quantity's unit, "1 nm"; a plain number for a quantity without one.
+    """
+
+    quantity: Name
+    rtol: Margin
+    atol: Name
+
+
+class Work(FileModel):
+    """What a case and a timed quantity share: what the model is given.
+
+    Attributes
+    ----------
+    name : str
+        First part of the names of a case's quantities; the name of a timed quantity.
+    scenario, session : str or None
+        A shipped name or a path, relative to the gate file.
+    set : mapping of str to str
+        Values put into the scenario, as by `--set`.
+    own : str or None
+        A user's own model in the wave's place.
+    """
+
+    name: Name
+    scenario: Name | None = None
+    session: Name | None = None
+    set: Mapping[str, str] = Field(default_factory=dict)
+    own: Name | None = None
+
+
+Found = TypeVar("Found", bound=Work)
+
+
+class Case(Work):
+    """A gated scenario or session; `model` says what computes it: fem | wave | fit."""
+
+    model: Literal["fem", "wave", "fit"]
+
+    @model_validator(mode="after")
+    def _has_input(self) -> Self:
+        return _with_input(self, "session" if self.model == "fit" else "scenario", wave=self.model == "wave")
+
+
+class Timed(Work):
+    """A timed quantity.
+
+    Attributes
+    ----------
+    workload : str
+        history (all load steps of a scenario) | wave_frame | fem_assembly | fit.
+    model : str
+        fem | wave, for a history.
+    references : tuple of str
+        dense | elements | calls; the time is divided by their geometric mean.
+    calls : int
+        How often it runs in a row in each block; 3 to 10 ms in all are a good length.
+    margin : float or None
+        In the place of the file's.
+    """
+
+    workload: Literal["history", "wave_frame", "fem_assembly", "fit"]
+    model: Literal["fem", "wave"] = "wave"
+    references: Annotated[tuple[Reference, ...], Field(min_length=1, max_length=3)]
+    calls: Count = 1
+    margin: Margin | None = None
+
+    @model_validator(mode="after")
+    def _has_input(self) -> Self:
+        wave = self.workload == "history" and self.model == "wave"
+        return _with_input(self, "session" if self.workload == "fit" else "scenario", wave=wave)
+
+
+class GateFile(FileModel):
+    """The whole file."""
+
+    schema_: Annotated[Schema, Field(alias="schema")] = 1
+    name: Name
+    timing: Timing = Timing()
+    tolerances: Annotated[tuple[Tolerance, ...], Field(min_length=1)]
+    cases: Annotated[tuple[Case, ...], Field(min_length=1)]
+    timed: tuple[Timed, ...] = ()
+
+    @model_validator(mode="after")
+    def _names_are_unique(self) -> Self:
+        for key in ("cases", "timed"):
+            names = [each.name for each in getattr(self, key)]
+            twice = [name for index, name in enumerate(names) if name in names[:index]]
+            if twice:
+                raise problem(f"the name {twice[0]!r} is there twice", key=f"{key}.{names.index(twice[0])}.name")
+        return self
+
+
+def _with_input(work: Found, needed: str, *, wave: bool) -> Found:
+    """Refuse work without its scenario or session, with both, or with a user's model in the wrong place."""
+    other = "scenario" if needed == "session" else "session"
+    if getattr(work, needed) is None:
+        raise problem(f"{work.name!r} needs a {needed}", key=needed)
+    if getattr(work, other) is not None:
+        raise problem(f"{work.name!r} has no use for a {other}", key=other)
+    if work.own is not None and not wave:
+        raise problem("a user's own model stands in the wave's place only", key="own")
+    return work
+
+
+def gate_path(path: Path | None) -> Path:
+    """The gate file that is meant: the shipped one where none is given."""
+    return Path(__file__).parent / "default.toml" if path is None else path

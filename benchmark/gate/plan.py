@@ -1,0 +1,133 @@
+"""What is to be measured: a gate file with its scenarios, sessions and own models found."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from benchmark.errors import InputError
+from benchmark.files import load_scenario
+from benchmark.files.loading import read_file
+from benchmark.files.problems import validated
+from benchmark.files.registry import find
+from benchmark.gate.gate_file import GateFile, Timed, Work, gate_path
+from benchmark.sessions import SHIPPED
+
+MEASURING = Path(__file__).parent / "measuring"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A gate ready to be measured.
+
+    Attributes
+    ----------
+    file
+        As read.
+    path
+        Where it stands.
+    cases, jobs
+        What measured processes are told, as plain tables with absolute paths.
+    references
+        Names of the references that any timed quantity needs.
+    fingerprint
+        SHA-256 over everything that decides a time apart from the product: timed quantities, their scenarios and the
+        measuring code. Ratios of another fingerprint cannot be compared.
+    """
+
+    file: GateFile
+    path: Path
+    cases: tuple[Mapping[str, Any], ...]
+    jobs: tuple[Mapping[str, Any], ...]
+    references: tuple[str, ...]
+    fingerprint: str
+
+    @property
+    def shipped(self) -> bool:
+        """Whether it is the product's own gate."""
+        return self.path == gate_path(None)
+
+    def moved(self, source: Path, target: Path) -> Plan:
+        """Return the plan with users' models taken from `target` where they stand in `source`; inputs stay."""
+
+        def move(table: Mapping[str, Any]) -> Mapping[str, Any]:
+            own = table["own"]
+            inside = own is not None and Path(own).is_relative_to(source)
+            return {**table, "own": str(target / Path(own).relative_to(source))} if inside else table
+
+        cases, jobs = (tuple(map(move, tables)) for tables in (self.cases, self.jobs))
+        return Plan(self.file, self.path, cases, jobs, self.references, self.fingerprint)
+
+
+def load_plan(path: Path | None) -> Plan:
+    """Read a gate file, the shipped one by default, and find what it names.
+
+    Raises
+    ------
+    InputError
+        A file that is missing or cannot be used, with file, key and what is allowed.
+    """
+    found = gate_path(path).resolve()
+    table, source = read_file(found, "gate")
+    file = validated(GateFile, table, source)
+    cases = tuple({**_job(case, found), "model": case.model} for case in file.cases)
+    jobs = tuple(_timed_job(timed, found) for timed in file.timed)
+    references = tuple(dict.fromkeys(name for timed in file.timed for name in timed.references))
+    return Plan(file, found, cases, jobs, references, _fingerprint(jobs, references))
+
+
+def _timed_job(timed: Timed, gate: Path) -> dict[str, Any]:
+    return {**_job(timed, gate), "model": timed.model, "workload": timed.workload, "calls": timed.calls}
+
+
+def _job(work: Work, gate: Path) -> dict[str, Any]:
+    """Name and absolute paths; every file is looked at, so that a mistake shows before anything long begins."""
+    return {
+        "name": work.name,
+        "scenario": None if work.scenario is None else _scenario(work, work.scenario, gate),
+        "set": dict(work.set),
+        "session": None if work.session is None else _session(work.session, gate),
+        "own": None if work.own is None else _own(work.own, gate),
+    }
+
+
+def _scenario(work: Work, name: str, gate: Path) -> str:
+    path = find(name, "scenario", gate.parent).resolve()
+    load_scenario(path, work.set)
+    return str(path)
+
+
+def _session(name: str, gate: Path) -> str:
+    shipped = SHIPPED / name
+    path = shipped if "/" not in name and (shipped / "session.toml").is_file() else gate.parent / name
+    if not path.exists():
+        raise InputError(f"{gate}: there is no session {name!r}; give a folder or a shipped session, such as phantom")
+    return str(path.resolve())
+
+
+def _own(name: str, gate: Path) -> str:
+    path = (gate.parent / name).resolve()
+    if not path.is_file():
+        raise InputError(f"{gate}: there is no model file {str(path)!r}; give a Python file for own")
+    return str(path)
+
+
+def _fingerprint(jobs: tuple[Mapping[str, Any], ...], references: tuple[str, ...]) -> str:
+    described = [{**job, "scenario": _text(job["scenario"]), "session": _text(job["session"])} for job in jobs]
+    for job, table in zip(jobs, described, strict=True):
+        table["own"] = job["own"] is not None
+    code = {path.name: path.read_text(encoding="utf-8") for path in sorted(MEASURING.glob("*.py"))}
+    whole = json.dumps([described, references, code], sort_keys=True)
+    return hashlib.sha256(whole.encode()).hexdigest()
+
+
+def _text(path: str | None) -> str:
+    """The content of a scenario, or of a session's own file; nothing for a bare folder of trials."""
+    if path is None:
+        return ""
+    file = Path(path) / "session.toml" if Path(path).is_dir() else Path(path)
+    return file.read_text(encoding="utf-8") if file.is_file() else ""

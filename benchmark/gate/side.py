@@ -1,0 +1,128 @@
+"""The parent's handle on a measured process."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from benchmark.errors import InputError, NotComparableError, SolverError, TissuebenchError
+from benchmark.gate.plan import MEASURING, Plan
+from benchmark.side_by_side.process import THREAD_VARIABLES
+
+PATIENCE = 5.0
+LAST_LINES = 3
+
+
+class Side:
+    """A process that measures the product in a tree; use as a context manager.
+
+    Parameters
+    ----------
+    tree
+        Folder with the packages to measure.
+    revision
+        What the tree is of, for messages; None for the version that runs this check.
+
+    Raises
+    ------
+    InputError, SolverError
+        From any command: the input, or the code of this version, is at fault.
+    NotComparableError
+        The same of another revision.
+    """
+
+    def __init__(self, tree: Path, revision: str | None = None):
+        self._revision = revision
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115 (closed on leaving)
+        command = [sys.executable, "-P", str(MEASURING / "child.py"), str(MEASURING.parent), str(tree)]
+        self._process = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+            env=_environment(tree, temporary=revision is not None),
+            text=True,
+        )
+
+    def values(self, plan: Plan) -> list[dict[str, Any]]:
+        """The gated values: name, value, unit, reason."""
+        return list(self._ask({"do": "values", "cases": plan.cases})["values"])
+
+    def prepare(self, plan: Plan) -> bool:
+        """Set the workloads up and warm them; whether waiting will be seen (see `measuring.clock`)."""
+        return bool(self._ask({"do": "prepare", "timed": plan.jobs, "references": plan.references})["sees_waiting"])
+
+    def block(self) -> dict[str, float]:
+        """Seconds of one call of each workload and reference, all done in turn."""
+        return dict(self._ask({"do": "block"})["seconds"])
+
+    def _ask(self, command: Mapping[str, Any]) -> dict[str, Any]:
+        assert self._process.stdin is not None, "it is a pipe"
+        assert self._process.stdout is not None, "it is a pipe"
+        try:
+            self._process.stdin.write(json.dumps(command) + "\n")
+            self._process.stdin.flush()
+            line = self._process.stdout.readline()
+        except BrokenPipeError:
+            line = ""
+        if not line:
+            raise self._error(f"its process ended: {self._last_words()}", fault=True)
+        answer: dict[str, Any] = json.loads(line)
+        if "error" in answer:
+            error = self._error(answer["error"], fault=answer["fault"])
+            error.add_note(answer["trace"])
+            raise error
+        return answer
+
+    def _error(self, text: str, *, fault: bool) -> TissuebenchError:
+        """The error that a failure is: another revision cannot be compared with, this one is at fault itself."""
+        if self._revision is not None:
+            return NotComparableError(f"revision {self._revision} cannot be measured with this gate: {text}")
+        return SolverError(f"the gate could not be measured: {text}") if fault else InputError(text)
+
+    def _last_words(self) -> str:
+        """The end of what the process wrote to stderr."""
+        try:
+            self._process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            return "it closed its output"
+        self._errors.seek(0)
+        lines = self._errors.read().decode("utf-8", "replace").strip().splitlines()
+        return " | ".join(lines[-LAST_LINES:]) or f"exit code {self._process.returncode}"
+
+    def __enter__(self) -> Side:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for stream in (self._process.stdin, self._process.stdout):
+            if stream is not None:
+                stream.close()
+        try:
+            self._process.wait(PATIENCE if kind is None else 0.0)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._errors.close()
+
+
+def _environment(tree: Path, *, temporary: bool) -> dict[str, str]:
+    """One thread in every library, the same order of sets each time, and the packages of `tree` before all others.
+
+    A tree that is where packages are installed is found anyway, and must not go before the standard library.
+    Code of a temporary tree is compiled once for all its processes, whatever the caller wants for other folders.
+    """
+    first = [] if str(tree) == sysconfig.get_path("purelib") else [str(tree)]
+    paths = os.pathsep.join([*first, *filter(None, [os.environ.get("PYTHONPATH")])])
+    fixed = {"PYTHONPATH": paths, "PYTHONHASHSEED": "0", **dict.fromkeys(THREAD_VARIABLES, "1")}
+    left_out = {"PYTHONDONTWRITEBYTECODE"} if temporary else set()
+    return {**{name: value for name, value in os.environ.items() if name not in left_out}, **fixed}

@@ -1,0 +1,135 @@
+"""The baseline file: what a check is compared with, and where it was made."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from benchmark.errors import InputError, NotComparableError
+from reports import write_json
+
+SCHEMA = 1
+DEFAULT = Path("tissuebench-baseline.json")
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Ratio = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+
+
+class _Stored(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+
+class StoredValue(_Stored):
+    """A gated value with its unit; `reason` says why there is none."""
+
+    value: Finite | None
+    unit: str
+    reason: str | None = None
+
+
+class StoredTiming(_Stored):
+    """A timed quantity: for each measured process its time in units of its references."""
+
+    ratios: Annotated[list[Ratio], Field(min_length=1)]
+
+
+class Machine(_Stored):
+    """What a ratio of times depends on besides the code."""
+
+    processor: str
+    python: str
+    packages: Mapping[str, str | None]
+
+    def same_as(self, other: Machine) -> bool:
+        """Whether ratios carry over: the same processor and Python (first two numbers)."""
+        return self.processor == other.processor and self.python.split(".")[:2] == other.python.split(".")[:2]
+
+    def differences(self, here: Machine) -> list[str]:
+        """Packages that have another version here, as "numpy 2.4.6 (here 2.4.5)"."""
+        return [
+            f"{name} {version} (here {here.packages.get(name)})"
+            for name, version in self.packages.items()
+            if version != here.packages.get(name)
+        ]
+
+
+class Baseline(_Stored):
+    """A baseline.
+
+    Attributes
+    ----------
+    schema_
+        Of the file.
+    gate
+        Name of the gate it was made with.
+    fingerprint
+        Of what was timed and how (see `plan.Plan`).
+    made
+        Date and time, UTC.
+    revision
+        Commit of the product, with "+" where it had changes; None outside a repository.
+    machine
+        Where it was made.
+    accuracy, timing
+        By quantity.
+    """
+
+    schema_: Annotated[int, Field(alias="schema")] = SCHEMA
+    gate: str
+    fingerprint: str
+    made: str
+    revision: str | None
+    machine: Machine
+    accuracy: Mapping[str, StoredValue]
+    timing: Mapping[str, StoredTiming]
+
+
+def write_baseline(path: Path, baseline: Baseline) -> Path:
+    """Write a baseline, whole or not at all; raises OSError where the file system refuses."""
+    return write_json(path, baseline.model_dump(by_alias=True))
+
+
+def read_baseline(path: Path) -> Baseline:
+    """Read a baseline.
+
+    Raises
+    ------
+    NotComparableError
+        There is none, or it has another schema.
+    InputError
+        The file is no baseline.
+    """
+    table = _table(path)
+    if table.get("schema") != SCHEMA:
+        raise NotComparableError(
+            f"{path} has schema {table.get('schema')!r} and this version compares with schema {SCHEMA}; {how_to(path)}"
+        )
+    try:
+        return Baseline.model_validate(table)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        place = ".".join(str(part) for part in first["loc"])
+        raise InputError(f"{path}, {place}: {first['msg']}; the file is no whole baseline; {how_to(path)}") from None
+
+
+def how_to(path: Path) -> str:
+    """How to make a baseline, as the end of a sentence."""
+    return f"make one from this version with: python -m benchmark check --baseline {path} --accept"
+
+
+def _table(path: Path) -> dict[str, Any]:
+    try:
+        table = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise NotComparableError(f"there is no baseline {path} to compare with; {how_to(path)}") from None
+    except OSError as error:
+        raise InputError(f"{path}: this baseline cannot be read ({error.strerror or error})") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: this baseline is no JSON ({error}); {how_to(path)}") from None
+    if not isinstance(table, dict):
+        raise InputError(f"{path}: this baseline is no JSON object; {how_to(path)}")
+    return table

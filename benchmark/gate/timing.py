@@ -1,0 +1,125 @@
+"""The verdict on time: each timed quantity against the baseline's, or against another revision's."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from benchmark.gate.gate_file import Timed, Timing
+from benchmark.gate.statistics import Change, caught, change
+
+Ratios = Mapping[str, Sequence[float]]
+"""Log ratios of the processes, by timed quantity."""
+
+CLEARANCE = 0.04
+"""Measuring ends before the most rounds only where every estimate is this far (logarithm) below its limit."""
+
+
+@dataclass(frozen=True)
+class TimingRow:
+    """One timed quantity.
+
+    Attributes
+    ----------
+    quantity
+        Its name.
+    baseline, now
+        Time in units of its references: the geometric mean over the baseline's processes, and that times the change.
+    allowed
+        The largest `now` that passes.
+    ci95
+        Interval of `now`, the baseline's scatter included.
+    caught
+        The smallest slowdown, a fraction, that 19 of 20 checks catch at this scatter between processes; NaN where
+        there is only one.
+    noise
+        Standard error of the slowdown (logarithm) from the scatter between processes; NaN where there is only one.
+    passed
+        Whether `now` is at most `allowed`.
+    """
+
+    quantity: str
+    baseline: float
+    now: float
+    allowed: float
+    ci95: tuple[float, float]
+    caught: float
+    noise: float
+    passed: bool
+
+    @property
+    def slowdown(self) -> float:
+        """How much slower than the baseline, a fraction; negative where it is faster."""
+        return self.now / self.baseline - 1.0
+
+    def to_dict(self) -> dict[str, Any]:
+        """The row for `check.json`."""
+        return {
+            "quantity": self.quantity,
+            "baseline_ratio": self.baseline,
+            "now_ratio": self.now,
+            "ci95": list(self.ci95),
+            "allowed": self.allowed,
+            "passed": self.passed,
+            "slowdown_percent": 100.0 * self.slowdown,
+            "caught_19_of_20_percent": 100.0 * self.caught,
+        }
+
+
+@dataclass(frozen=True)
+class Judge:
+    """How times are judged.
+
+    Attributes
+    ----------
+    timed, timing
+        Of the gate file.
+    paired
+        Whether process k of both sides ran in the same minute.
+    same_machine
+        Whether the baseline comes from this machine.
+    seed
+        Of the bootstrap.
+    """
+
+    timed: Sequence[Timed]
+    timing: Timing
+    paired: bool
+    same_machine: bool
+    seed: int
+
+    def limit(self, timed: Timed) -> float:
+        """The largest logarithm of a slowdown that passes."""
+        margin = self.timing.margin if timed.margin is None else timed.margin
+        if not self.same_machine:
+            margin = max(margin, self.timing.other_machine_margin)
+        return math.log1p(margin)
+
+    def rows(self, now: Ratios, base: Ratios) -> tuple[TimingRow, ...]:
+        """One row a timed quantity."""
+        return tuple(self._row(each, now[each.name], base[each.name]) for each in self.timed)
+
+    def clear(self, now: Ratios, base: Ratios) -> bool:
+        """Whether every quantity is far below its limit, so that more rounds would change nothing."""
+        return all(
+            self._change(now[each.name], base[each.name]).estimate < self.limit(each) - CLEARANCE for each in self.timed
+        )
+
+    def _change(self, now: Sequence[float], base: Sequence[float]) -> Change:
+        return change(now, base, paired=self.paired, seed=self.seed)
+
+    def _row(self, timed: Timed, now: Sequence[float], base: Sequence[float]) -> TimingRow:
+        found, limit = self._change(now, base), self.limit(timed)
+        level = math.exp(math.fsum(base) / len(base))
+        return TimingRow(
+            quantity=timed.name,
+            baseline=level,
+            now=level * math.exp(found.estimate),
+            allowed=level * math.exp(limit),
+            ci95=(level * math.exp(found.low), level * math.exp(found.high)),
+            caught=math.expm1(caught(limit, found.noise)),
+            noise=found.noise,
+            passed=found.estimate <= limit,
+        )

@@ -1,0 +1,106 @@
+"""The verdict of a check, and its words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from benchmark.gate.accuracy import AccuracyRow
+from benchmark.gate.timing import TimingRow
+
+SCHEMA = 1
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a check found.
+
+    Attributes
+    ----------
+    gate
+        Name of the gate file.
+    accuracy, timing
+        One row a quantity.
+    accuracy_source, timing_source
+        What "baseline" is in each, in words.
+    rounds
+        Measured processes of each side.
+    against
+        Full name of the other commit; None for a stored baseline.
+    warnings
+        What a reader must know.
+    """
+
+    gate: str
+    accuracy: Sequence[AccuracyRow]
+    timing: Sequence[TimingRow]
+    accuracy_source: str
+    timing_source: str
+    rounds: int
+    against: str | None
+    warnings: Sequence[str]
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing got worse."""
+        return all(row.passed for row in self.accuracy) and all(row.passed for row in self.timing)
+
+    def failures(self) -> list[str]:
+        """One line for each quantity that got worse: what, baseline, now, allowed."""
+        values = [value_words(row) for row in self.accuracy if not row.passed]
+        return values + [time_words(row) for row in self.timing if not row.passed]
+
+    def summary(self) -> list[str]:
+        """One line for the values and one for each time."""
+        worst = max((row.share for row in self.accuracy), default=0.0)
+        farthest = f"the farthest at {100 * worst:.3g} % of its allowance"
+        first = f"values: {len(self.accuracy)} against {self.accuracy_source}, {farthest}"
+        return [first, *(f"time: {time_words(row)}" for row in self.timing)]
+
+    def headline(self) -> str:
+        """The verdict in one sentence."""
+        values, times = len(self.accuracy), len(self.timing)
+        if self.passed:
+            return f"Nothing got worse: {_count(values, 'gated value')} and {_count(times, 'time')} are as allowed."
+        bad_values = sum(not row.passed for row in self.accuracy)
+        bad_times = sum(not row.passed for row in self.timing)
+        return (
+            f"{bad_values} of {_count(values, 'gated value')} changed, {bad_times} of {_count(times, 'time')} slower."
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """The content of `check.json`."""
+        return {
+            "schema": SCHEMA,
+            "passed": self.passed,
+            "gate": self.gate,
+            "against": self.against,
+            "accuracy_baseline": self.accuracy_source,
+            "timing_baseline": self.timing_source,
+            "accuracy": [row.to_dict() for row in self.accuracy],
+            "timing": [row.to_dict() for row in self.timing],
+            "rounds": self.rounds,
+            "warnings": list(self.warnings),
+        }
+
+
+def value_words(row: AccuracyRow) -> str:
+    """One value against its baseline."""
+    unit = f" {row.unit}" if row.unit else ""
+    now = f"{row.now:.9g}{unit}" if row.now is not None else f"without a value ({row.reason})"
+    base = f"{row.baseline:.9g}{unit}" if row.baseline is not None else "without a value"
+    return f"{row.quantity}: baseline {base}, now {now}, allowed a difference of {row.allowed:.3g}{unit}"
+
+
+def time_words(row: TimingRow) -> str:
+    """One time against its baseline."""
+    low, high = row.ci95
+    return (
+        f"{row.quantity}: baseline {row.baseline:.4g} reference times, now {row.now:.4g} (95 % interval {low:.4g} to "
+        f"{high:.4g}; {100 * row.slowdown:+.1f} %), allowed {row.allowed:.4g}"
+    )
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"

@@ -1,0 +1,143 @@
+"""A user's Python file: read, run, and called so that whatever goes wrong in it names the file and the line.
+
+What its functions are asked for is in `user_model`.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import inspect
+import sys
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, redirect_stdout
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from benchmark.errors import InputError
+from benchmark.models.result import UncoveredError
+
+NAME = "NAME"
+LONGEST_NAME = 60
+
+
+@dataclass(frozen=True)
+class UserFile:
+    """A user's own model as a file.
+
+    Attributes
+    ----------
+    path : str
+        As it was given.
+    name : str
+        What the user calls the model: `NAME` in the file, or the file's name without .py.
+    text : str
+        Its content when it was read; this is what runs.
+    """
+
+    path: str
+    name: str
+    text: str
+
+    @property
+    def fingerprint(self) -> str:
+        """SHA-256 of the text."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
+
+
+def read_user_file(path: Path) -> UserFile:
+    """Read a user's file and check its syntax; nothing in it runs.
+
+    Raises
+    ------
+    InputError
+        No such file, no UTF-8, no Python, or a `NAME` that cannot be shown.
+    """
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+        tree = ast.parse(text, str(path))
+    except SyntaxError as error:
+        raise InputError(f"{path}, line {error.lineno}: this is no valid Python ({error.msg})") from None
+    except OSError as error:
+        raise InputError(f"{path}: this model file cannot be read ({error.strerror or error})") from None
+    except ValueError as error:
+        raise InputError(f"{path}: this model file is no UTF-8 text ({error})") from None
+    return UserFile(str(path), _name(tree, path), text)
+
+
+def _name(tree: ast.Module, path: Path) -> str:
+    """The text that the file assigns to `NAME`, its own name otherwise."""
+    for node in tree.body:
+        if not isinstance(node, ast.Assign) or not isinstance(node.value, ast.Constant):
+            continue
+        if any(isinstance(target, ast.Name) and target.id == NAME for target in node.targets):
+            value = node.value.value
+            if not isinstance(value, str) or not value.isprintable() or not 0 < len(value.strip()) <= LONGEST_NAME:
+                allowed = f"allowed: 1 to {LONGEST_NAME} printable characters"
+                raise InputError(f"{path}, line {node.lineno}: {NAME} = {value!r} is no name; {allowed}")
+            return value.strip()
+    return path.stem
+
+
+class UserCode:
+    """The functions of a user's file, its top level run once.
+
+    What it prints goes to stderr, and it may import its neighbours. A `NotImplementedError` from it says that the
+    model does not cover the scenario (`UncoveredError`).
+
+    Raises
+    ------
+    InputError
+        Any other exception in the file, with its line.
+    """
+
+    def __init__(self, file: UserFile):
+        self._file = file
+        self._module = ModuleType(f"user_model_{Path(file.path).stem}")
+        self._module.__file__ = file.path
+        sys.modules[self._module.__name__] = self._module
+        with self._guarded(1):
+            exec(compile(file.text, file.path, "exec"), self._module.__dict__)
+
+    def has(self, function: str) -> bool:
+        """Whether the file has a callable of that name."""
+        return callable(getattr(self._module, function, None))
+
+    def call(self, function: str, *arguments: Any, **keywords: Any) -> Any:
+        """Call a function that the file has and return what it returns."""
+        called: Callable[..., Any] = getattr(self._module, function)
+        with self._guarded(self._line(function)):
+            return called(*arguments, **keywords)
+
+    def fault(self, function: str, text: str) -> InputError:
+        """The error for what a function returned, or for one that is missing."""
+        line = self._line(function)
+        place = f"{self._file.path}, line {line}" if line else self._file.path
+        return InputError(f"{place}, {function}: {text}")
+
+    def _line(self, function: str) -> int:
+        """Where a function begins; 0 where it is not the file's own."""
+        called = getattr(self._module, function, None)
+        code = getattr(inspect.unwrap(called), "__code__", None) if callable(called) else None
+        return code.co_firstlineno if code is not None and code.co_filename == self._file.path else 0
+
+    @contextmanager
+    def _guarded(self, line: int) -> Iterator[None]:
+        """Run the user's code; `line` stands for errors that have none in the file."""
+        folder = str(Path(self._file.path).absolute().parent)
+        sys.path.insert(0, folder)
+        try:
+            with redirect_stdout(sys.stderr):
+                yield
+        except NotImplementedError as error:
+            raise UncoveredError(str(error) or f"{self._file.path} raised NotImplementedError") from None
+        except (Exception, SystemExit) as error:
+            lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == self._file.path]
+            place = f"{self._file.path}, line {lines[-1] if lines else line}"
+            raise InputError(f"{place}: {type(error).__name__}: {error}") from error
+        finally:
+            if folder in sys.path:
+                sys.path.remove(folder)

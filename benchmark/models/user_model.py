@@ -1,0 +1,130 @@
+"""A user's own fast model in the wave's place: one Python file with one function, and three more if it likes.
+
+    deform(layers, tool, support, time, force)  ->  deflection (n, L) in m of each layer's top face on the tool axis
+
+`layers`, `tool` and `support` are those of `user_specimen`, `time` (n,) in s and `force` (n,) in N the load history
+from rest; press and deflection are positive into the tissue. The file may also have
+
+    set_up(layers, tool, support)                        ->  anything; the others get it as their keyword `prepared`
+    profile(layers, tool, support, time, force, radii)   ->  deflection (L, m) in m at the radii (m,) in m at the end of
+                                                             the history, NaN where the model has no value
+    press(layers, tool, support, time, depth)            ->  force (n,) in N for the depth (n,) in m of the top face
+
+`set_up` counts as set-up in the timing; without `press` the model does not cover depth control.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from benchmark.files import Scenario
+from benchmark.models.radii import profile_radii
+from benchmark.models.result import Array, Drive, ModelResult, OnStep, StepProgress, UncoveredError, silent
+from benchmark.models.user_file import UserCode, UserFile
+from benchmark.models.user_specimen import specimen_of
+
+DEFORM, SET_UP, PROFILE, PRESS = "deform", "set_up", "profile", "press"
+
+
+class UserModel:
+    """A user's file on a scenario.
+
+    Raises
+    ------
+    UncoveredError
+        The scenario has what the functions are not told of, is under depth control without a `press`, or the file
+        raises `NotImplementedError`.
+    InputError
+        The file raises anything else, has no `deform`, or returns what cannot be used: file, line and what is wrong.
+    """
+
+    def __init__(self, scenario: Scenario, file: UserFile):
+        self._scenario, self._file = scenario, file
+        self._specimen = specimen_of(scenario)
+        self._code = UserCode(file)
+        if not self._code.has(DEFORM):
+            raise self._code.fault(
+                DEFORM, f"there is no such function; needed: {DEFORM}(layers, tool, support, time, force)"
+            )
+        if scenario.load.control == "depth" and not self._code.has(PRESS):
+            raise UncoveredError(f"the load is a depth and {file.path} has no function {PRESS}")
+        prepared = self._code.has(SET_UP)
+        self._keywords = {"prepared": self._code.call(SET_UP, *self._specimen)} if prepared else {}
+
+    def run(self, drive: Drive, on_step: OnStep = silent) -> ModelResult:
+        """Follow a load history."""
+        steps, names = drive.time.size, self._scenario.tissue.layer_names
+        force = drive.value
+        if drive.control == "depth":
+            force = self._array(PRESS, (steps,), drive.time, drive.value)
+        top = self._array(DEFORM, (steps, len(names)), drive.time, force)
+        depth = drive.value if drive.control == "depth" else top[:, 0]
+        peak = int(np.abs(drive.value).argmax())
+        radii = profile_radii(self._scenario.tool.radius)
+        on_step(StepProgress(steps, steps, float(force[peak]), float(depth[peak])))
+        return ModelResult(
+            model="wave",
+            layers=names,
+            time=drive.time,
+            force=force,
+            depth=depth,
+            top_deflection=top,
+            profile_radii=radii,
+            profile=self._profile(drive.time[: peak + 1], force[: peak + 1], radii),
+            peak_step=peak,
+            unknowns=None,
+            notes={"model": f"the user's own, {self._file.path}", "SHA-256 of the file": self._file.fingerprint},
+            warnings=self._warnings(force, top),
+        )
+
+    def _profile(self, time: Array, force: Array, radii: Array) -> Array:
+        """(L, m) m; NaN without a function for it."""
+        shape = (len(self._scenario.tissue.layers), radii.size)
+        if not self._code.has(PROFILE):
+            return np.full(shape, np.nan)
+        return self._array(PROFILE, shape, time, force, radii, may_be_nan=True)
+
+    def _array(self, function: str, shape: tuple[int, ...], *arguments: Array, may_be_nan: bool = False) -> Array:
+        """What a function returns, checked: numbers of this shape, finite."""
+        copies = [argument.copy() for argument in arguments]
+        given = self._code.call(function, *self._specimen, *copies, **self._keywords)
+        found = _numbers(given)
+        if found is None or found.shape != shape:
+            what = f"a {type(given).__name__} without numbers" if found is None else f"an array of shape {found.shape}"
+            axes = {1: "one number a step", 2: "one row a step and one column a layer"}[len(shape)]
+            axes = "one row a layer and one column a radius" if function == PROFILE else axes
+            raise self._code.fault(function, f"it returned {what}; allowed: numbers of shape {shape}, {axes}")
+        bad = np.isinf(found) if may_be_nan else ~np.isfinite(found)
+        if bad.any():
+            place = np.argwhere(bad)[0]
+            index = ", ".join(str(each) for each in place)
+            raise self._code.fault(
+                function, f"it returned {found[tuple(place)]} at [{index}]; allowed: finite numbers in SI units"
+            )
+        return found
+
+    def _warnings(self, force: Array, top: Array) -> tuple[str, ...]:
+        """What a reader must know, and what looks like a slip of sign or unit."""
+        said = []
+        if not self._code.has(PROFILE):
+            said.append(f"no profile: {self._file.path} has no function {PROFILE}, those columns are empty")
+        if float(np.sum(force * top[:, 0])) < 0.0:
+            said.append("its deflections point out of the tissue under a press; both are positive into the tissue")
+        largest, thickness = float(np.abs(top).max()), self._scenario.tissue.thickness
+        if largest > thickness:
+            said.append(
+                f"its largest deflection, {1e3 * largest:.4g} mm, is more than the thickness of the tissue, "
+                f"{1e3 * thickness:.4g} mm; deflections are in m"
+            )
+        return tuple(said)
+
+
+def _numbers(given: Any) -> Array | None:
+    """What was returned as an array of doubles of its own; None where it is no real numbers."""
+    try:
+        array = np.asarray(given)
+    except ValueError:
+        return None
+    return np.array(array, dtype=np.float64) if array.dtype.kind in "iuf" else None

@@ -1,0 +1,108 @@
+"""Points on a Dask cluster that is there already, reached by the address of its scheduler.
+
+The scheduler gives the points of a worker that dies to another one. Without a scheduler the sweep stops; what is
+finished is on disk, and the same command goes on.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import CancelledError
+from contextlib import contextmanager
+from importlib import metadata
+from typing import Any
+
+from benchmark.sweep.errors import ClusterError
+from benchmark.sweep.point import PointResult, Task, evaluate, failed
+
+PATIENCE = 10.0
+"""Seconds for the scheduler to answer."""
+
+
+def work_on_cluster(tasks: Sequence[Task], address: str, say: Callable[[str], None]) -> Iterator[PointResult]:
+    """Compute points on the cluster at `address` and yield each as it finishes; `say` gets remarks on it.
+
+    Raises
+    ------
+    ClusterError
+        Nobody answers there, a worker has another version of this program or none, or the scheduler is gone.
+    """
+    with _connected(address) as client:
+        workers = _check_workers(client, address)
+        say(
+            f"{address}: {workers} worker{'s' * (workers > 1)}"
+            if workers
+            else f"{address}: no worker yet, waiting for one"
+        )
+        try:
+            yield from _rows(client, tasks)
+        except (OSError, CancelledError):
+            raise ClusterError(
+                f"the Dask scheduler at {address} is gone; what is finished is kept, the same command goes on with it"
+            ) from None
+
+
+def _rows(client: Any, tasks: Sequence[Task]) -> Iterator[PointResult]:
+    """The points as they finish; an `OSError` or a cancelled future where the scheduler is gone."""
+    import distributed
+
+    as_completed: Any = distributed.as_completed
+    futures = [client.submit(evaluate, task, pure=False) for task in tasks]
+    points = {future.key: task.point for future, task in zip(futures, tasks, strict=True)}
+    for future in as_completed(futures):
+        if future.status == "error":
+            yield failed(points[future.key], _fault(future.exception()))
+        else:
+            yield future.result()
+        future.release()
+
+
+@contextmanager
+def _connected(address: str) -> Iterator[Any]:
+    """A client of the cluster; what it logs of a lost connection is left out, since the error says it."""
+    import distributed
+
+    connect: Any = distributed.Client
+    logs = [logging.getLogger(f"distributed.{name}") for name in ("client", "core", "batched", "comm.tcp")]
+    levels = [log.level for log in logs]
+    for log in logs:
+        log.setLevel(logging.CRITICAL + 1)
+    client = None
+    try:
+        try:
+            client = connect(address, timeout=PATIENCE)
+        except (OSError, ValueError, TypeError, RuntimeError) as error:
+            raise ClusterError(
+                f"--scheduler {address}: no Dask scheduler answers there within {PATIENCE:g} s "
+                f"({type(error).__name__}); allowed: its address, such as tcp://127.0.0.1:8786"
+            ) from None
+        yield client
+    finally:
+        if client is not None:
+            client.close(timeout=PATIENCE)
+        for log, level in zip(logs, levels, strict=True):
+            log.setLevel(level)
+
+
+def _check_workers(client: Any, address: str) -> int:
+    """The number of workers; refuses those of another version. Workers that come later are taken as they are."""
+    own = metadata.version("tissuebench")
+    try:
+        versions = client.run(metadata.version, "tissuebench", on_error="return")
+    except OSError:
+        raise ClusterError(f"the Dask scheduler at {address} is gone") from None
+    for worker, version in versions.items():
+        if version != own:
+            raise ClusterError(
+                f"--scheduler {address}: the worker {worker} answers {version!r} when asked for its tissuebench; "
+                f"allowed: version {own}, as here"
+            )
+    return len(versions)
+
+
+def _fault(error: BaseException | None) -> str:
+    """Why the cluster has no result for a point."""
+    if type(error).__name__ == "KilledWorker":
+        return "its worker died again and again; the workers' logs say of what, often no memory left"
+    return f"{type(error).__name__}: {error}"

@@ -1,0 +1,140 @@
+"""The folder of a sweep: whose it is, what is finished in it, and that only one process works in it."""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from benchmark.errors import InputError
+from benchmark.sweep.journal import Journal, read_journal
+from benchmark.sweep.plan import SCHEMA, SweepPlan, differences
+from benchmark.sweep.point import PointResult
+from benchmark.sweep.table import point_columns, write_points
+from reports import write_json, write_text
+
+PLAN, JOURNAL, POINTS = "sweep.json", "journal.jsonl", "points.parquet"
+LEAST_PAUSE = 0.5
+SHARE = 0.02
+"""`points.parquet` is written anew as points finish, but takes no more than about this share of the time."""
+
+
+class SweepFolder:
+    """Finished points on disk: each in the journal at once, in `points.parquet` soon after."""
+
+    def __init__(self, path: Path, plan: SweepPlan, journal: Journal):
+        self.path = path
+        self._plan, self._journal = plan, journal
+        self.finished: dict[int, PointResult] = read_journal(path / JOURNAL)
+        self._due = 0.0
+
+    def add(self, row: PointResult) -> None:
+        """Keep a finished point."""
+        self._journal.add(row)
+        self.finished[row.point] = row
+        if time.monotonic() >= self._due:
+            self.write_table()
+
+    def write_table(self) -> None:
+        """Write `points.parquet` with every finished point."""
+        started = time.monotonic()
+        columns = point_columns(self._plan.parameters, self._plan.points, self.finished.values())
+        write_points(self.path / POINTS, columns)
+        now = time.monotonic()
+        self._due = now + max(LEAST_PAUSE, (now - started) / SHARE)
+
+
+@contextmanager
+def open_folder(path: Path, plan: SweepPlan) -> Iterator[SweepFolder]:
+    """Take a new or empty folder for a sweep, or go on with the same sweep in its folder.
+
+    Raises
+    ------
+    InputError
+        The folder holds another sweep (the difference is named) or something else, or is in use.
+    """
+    _check_holds(path, plan)
+    path.mkdir(parents=True, exist_ok=True)
+    with _locked(path):
+        _remove_leftovers(path)
+        if not (path / PLAN).exists():
+            write_text(path / "scenario.toml", plan.scenario.to_toml())
+            write_json(path / PLAN, plan.document)
+        journal = Journal(path / JOURNAL)
+        folder = SweepFolder(path, plan, journal)
+        try:
+            yield folder
+        finally:
+            journal.close()
+            if folder.finished:
+                folder.write_table()
+
+
+def _check_holds(path: Path, plan: SweepPlan) -> None:
+    """Refuse what is not this sweep's folder."""
+    if path.exists() and not path.is_dir():
+        raise InputError(f"--out {path} is a file; it must be a folder that is new, empty, or of the same sweep")
+    if (path / PLAN).is_file():
+        there = _read_plan(path / PLAN)
+        if there.get("schema") != SCHEMA:
+            raise InputError(f"{path / PLAN} has the schema {there.get('schema')!r}; this version reads {SCHEMA}")
+        apart = differences(there, json.loads(json.dumps(plan.document)))
+        if apart:
+            raise InputError(
+                f"--out {path} holds another sweep; it differs in {', '.join(apart)}. Give another --out, or the same "
+                "command to go on with it"
+            )
+        return
+    others = [each.name for each in path.iterdir() if not _is_leftover(each)] if path.is_dir() else []
+    if set(others) - {"scenario.toml"}:
+        raise InputError(f"--out {path} holds files that are not a sweep; it must be a folder that is new or empty")
+
+
+def _read_plan(path: Path) -> Mapping[str, Any]:
+    try:
+        table = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError:
+        table = None
+    if not isinstance(table, dict):
+        raise InputError(f"{path} is no sweep of this program: it cannot be read as JSON")
+    return table
+
+
+def _is_leftover(path: Path) -> bool:
+    """Whether a file is what a crash left of a file that was being written."""
+    return path.name.startswith(".") and path.name.endswith(".part")
+
+
+def _remove_leftovers(path: Path) -> None:
+    for each in path.iterdir():
+        if _is_leftover(each):
+            each.unlink()
+
+
+@contextmanager
+def _locked(path: Path) -> Iterator[None]:
+    """Keep other processes out of a folder until this one ends, however it ends (where the system has such locks)."""
+    handle = os.open(path, os.O_RDONLY) if os.name == "posix" else None
+    try:
+        if handle is not None:
+            _lock(path, handle)
+        yield
+    finally:
+        if handle is not None:
+            os.close(handle)
+
+
+def _lock(path: Path, handle: int) -> None:
+    """Lock an open folder; a file system without locks goes without."""
+    import fcntl
+
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise InputError(f"--out {path}: another sweep is at work in this folder") from None
+    except OSError:
+        return

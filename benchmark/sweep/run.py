@@ -1,0 +1,148 @@
+"""A sweep from request to report: choose the points, compute what is missing, say what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from benchmark.errors import InputError
+from benchmark.runs.destination import destination
+from benchmark.runs.environment import describe_environment
+from benchmark.runs.listener import Listener
+from benchmark.sensitivity import Sensitivity
+from benchmark.sweep.design import chosen_design
+from benchmark.sweep.folder import SweepFolder, open_folder
+from benchmark.sweep.local import usable_cores, work_locally
+from benchmark.sweep.page import sweep_page
+from benchmark.sweep.parameter import parse_parameter
+from benchmark.sweep.plan import SweepPlan, make_plan
+from benchmark.sweep.point import FAILED, OK, PointResult, Task, failed
+from benchmark.sweep.progress import Progress
+from benchmark.sweep.sensitivity import sensitivity_columns, sweep_sensitivity
+from reports import write_csv, write_json, write_page
+
+
+@dataclass(frozen=True)
+class SweepRequest:
+    """What the command line asked for; see `python -m benchmark sweep --help`."""
+
+    scenario: str
+    vary: Sequence[str]
+    settings: Mapping[str, str] = field(default_factory=dict)
+    sample: str | None = None
+    points: int | None = None
+    sensitivity: bool = False
+    out: Path | None = None
+    seed: int = 0
+    workers: int | None = None
+    scheduler: str | None = None
+
+
+@dataclass(frozen=True)
+class SweepOutcome:
+    """A finished sweep on disk: its folder, the object for programs, its headline, and whether any point succeeded."""
+
+    folder: Path
+    document: dict[str, Any]
+    headline: str
+    any_ok: bool
+
+
+def run_sweep(request: SweepRequest, listener: Listener) -> SweepOutcome:
+    """Compute the points of a sweep that are not there yet, then write its tables and report.
+
+    Raises
+    ------
+    InputError
+        A request that cannot be carried out, or a folder that is another's; nothing is computed then.
+    ClusterError
+        The cluster is not there or is gone; finished points are kept.
+    OSError
+        Where the file system refuses.
+    """
+    plan = _plan(request)
+    path = destination(None, f"{plan.scenario.name}-sweep") if request.out is None else request.out
+    with open_folder(path, plan) as folder:
+        _finish(folder, plan, request, listener)
+        rows = [folder.finished[point] for point in sorted(folder.finished)]
+        return _write(path, plan, rows, request)
+
+
+def _plan(request: SweepRequest) -> SweepPlan:
+    """The points of a request."""
+    if not request.vary:
+        raise InputError('nothing varies; give at least one --vary, as in --vary tool.radius="2 mm,5 mm"')
+    if request.workers is not None and request.scheduler is not None:
+        raise InputError("--workers is for this machine: a cluster (--scheduler) has its own workers")
+    parameters = [parse_parameter(text) for text in request.vary]
+    design = chosen_design(request.sample, request.points, request.sensitivity, len(parameters), request.seed)
+    return make_plan(request.scenario, request.settings, parameters, design)
+
+
+def _finish(folder: SweepFolder, plan: SweepPlan, request: SweepRequest, listener: Listener) -> None:
+    """Compute the missing points."""
+    total, done = len(plan.points), len(folder.finished)
+    missing = [point for point in range(1, total + 1) if point not in folder.finished]
+    if done:
+        listener.say(f"{folder.path}: {done} of {total} points are there already")
+    if not missing:
+        return
+    with listener.progress(f"{plan.scenario.name}: {len(missing)} points") as advance:
+        progress = Progress(total, done, advance)
+        for row in _rows(plan, missing, request, listener):
+            folder.add(row)
+            progress.add(row)
+
+
+def _rows(plan: SweepPlan, missing: Sequence[int], request: SweepRequest, listener: Listener) -> Iterator[PointResult]:
+    """The missing points as they finish: first those that have no scenario, then the computed ones."""
+    tasks = []
+    for point in missing:
+        scenario = plan.scenarios[point - 1]
+        if isinstance(scenario, str):
+            yield failed(point, scenario)
+        else:
+            tasks.append(Task(point, scenario))
+    if request.scheduler is None:
+        yield from work_locally(tasks, request.workers or usable_cores())
+    elif tasks:
+        from benchmark.sweep.cluster import work_on_cluster
+
+        yield from work_on_cluster(tasks, request.scheduler, listener.say)
+
+
+def _write(path: Path, plan: SweepPlan, rows: Sequence[PointResult], request: SweepRequest) -> SweepOutcome:
+    """Write what a finished sweep leaves beside its points."""
+    found = sweep_sensitivity(plan, rows) if request.sensitivity else None
+    environment = describe_environment(seed=request.seed)
+    page = sweep_page(plan, rows, found, environment)
+    if found is not None:
+        write_csv(path / "sensitivity.csv", sensitivity_columns(found))
+    write_json(path / "environment.json", environment)
+    write_page(path / "report.html", page)
+    document = _document(plan, rows, found)
+    return SweepOutcome(path, document, page.verdict.headline, any(row.status == OK for row in rows))
+
+
+def _document(plan: SweepPlan, rows: Sequence[PointResult], found: Sensitivity | None) -> dict[str, Any]:
+    """The sweep for programs."""
+    failures = [{"point": row.point, "reason": row.reason} for row in rows if row.status == FAILED]
+    document: dict[str, Any] = {
+        "schema": 1,
+        "name": plan.scenario.name,
+        "points": len(rows),
+        "ok": len(rows) - len(failures),
+        "failed": failures,
+        "vary": plan.document["vary"],
+        "sample": plan.design.kind,
+        "results": list(dict.fromkeys(name for row in rows for name in row.values)),
+    }
+    if found is not None:
+        document["sensitivity"] = {
+            "base_samples": found.base_samples,
+            "warnings": list(found.warnings),
+            "indices": [vars(index) for index in found.indices],
+        }
+    return document

@@ -1,0 +1,155 @@
+"""`benchmark check` from the command line: exit codes, what is printed, what is left behind."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+MODEL = """\
+import numpy as np
+
+
+def deform(layers, tool, support, time, force):
+    return np.outer(force, [1e-3])
+"""
+
+SCENARIO = """\
+schema = 1
+name = "press"
+[tissue]
+schema = 1
+name = "one layer"
+[[tissue.layers]]
+name = "skin"
+thickness = "10 mm"
+density = "1100 kg/m^3"
+youngs_modulus = "50 kPa"
+poisson_ratio = 0.48
+[tool]
+radius = "5 mm"
+[load]
+peak = "5 N"
+observations = 10
+"""
+
+GATE = """\
+schema = 1
+name = "tiny"
+[timing]
+rounds = [1, 1]
+blocks = 2
+[[tolerances]]
+quantity = "*"
+rtol = "0.1 %"
+atol = "1 nm"
+[[cases]]
+name = "spring"
+model = "wave"
+scenario = "press.toml"
+own = "my_model.py"
+[[timed]]
+name = "spring.history"
+workload = "history"
+scenario = "press.toml"
+own = "my_model.py"
+references = ["dense"]
+"""
+
+
+@pytest.fixture
+def call(benchmark_cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """`check` with a tiny gate, in a folder of its own."""
+    for name, text in {"gate.toml": GATE, "press.toml": SCENARIO, "my_model.py": MODEL}.items():
+        (tmp_path / name).write_text(text)
+    monkeypatch.chdir(tmp_path)
+    return lambda *arguments: benchmark_cli("check", "--gate", "gate.toml", *arguments)
+
+
+def change(path: str, table_change: Callable[[dict], None]) -> None:
+    table = json.loads(Path(path).read_text())
+    table_change(table)
+    Path(path).write_text(json.dumps(table))
+
+
+def paragraph(called) -> str:
+    assert "Traceback" not in called.err
+    return " ".join(called.err.split())
+
+
+def test_the_first_run_says_how_to_make_a_baseline(call) -> None:
+    called = call()
+    assert called.code == 3
+    assert called.out == ""
+    assert "python -m benchmark check --baseline tissuebench-baseline.json --accept" in paragraph(called)
+    assert not Path("results").exists()
+
+
+def test_accept_then_check(call) -> None:
+    accepted = call("--accept")
+    assert accepted.code == 0
+    assert "spring.max_deformation_mm.skin: none -> 5 mm" in accepted.out
+    assert Path("tissuebench-baseline.json").is_file()
+    change("tissuebench-baseline.json", lambda table: table["timing"]["spring.history"].update(ratios=[1e9]))
+    checked = call()
+    assert checked.code == 0, checked.err
+    assert "Nothing got worse" in checked.out
+    report = checked.out.split("report: ")[1].strip()
+    assert Path(report).is_file()
+    assert "checks" not in checked.err
+
+
+def test_a_deflection_off_by_one_per_cent_is_exit_one(call) -> None:
+    call("--accept", "--quiet")
+    change("tissuebench-baseline.json", lambda table: table["timing"]["spring.history"].update(ratios=[1e9]))
+    Path("my_model.py").write_text(MODEL.replace("1e-3", "1.01e-3"))
+    called = call("--json", "--quiet", "--out", "out")
+    assert called.code == 1
+    document = json.loads(called.out)
+    assert document["passed"] is False
+    assert document["accuracy"][0]["passed"] is False
+    assert document.pop("out") == "out"
+    assert document == json.loads(Path("out/check.json").read_text())
+    text = paragraph(called)
+    assert "spring.max_deformation_mm.skin: baseline 5 mm, now 5.05 mm, allowed a difference of 0.005" in text
+
+
+def test_slower_is_exit_one(call) -> None:
+    call("--accept", "--quiet")
+    change("tissuebench-baseline.json", lambda table: table["timing"]["spring.history"].update(ratios=[1e-9]))
+    change("tissuebench-baseline.json", lambda table: table["machine"].update(processor="another"))
+    called = call()
+    assert called.code == 1
+    assert "warning: the baseline's times come from another machine" in paragraph(called)
+    assert "spring.history: baseline 1e-09 reference times" in paragraph(called)
+    assert "slower" in called.out
+
+
+def test_another_schema_is_exit_three_and_a_broken_file_exit_two(call) -> None:
+    call("--accept", "--quiet")
+    change("tissuebench-baseline.json", lambda table: table.update(schema=2))
+    assert call("--quiet").code == 3
+    Path("tissuebench-baseline.json").write_text("{")
+    broken = call("--quiet")
+    assert broken.code == 2
+    assert "tissuebench-baseline.json" in paragraph(broken)
+
+
+def test_usage(call) -> None:
+    assert call("--accept", "--against", "HEAD").code == 2
+    assert call("--baseline", "b.json", "--gate", "nowhere.toml").code == 2
+
+
+def test_accept_prints_one_object_as_json(call) -> None:
+    called = call("--accept", "--json", "--quiet", "--baseline", "ci/b.json")
+    assert called.code == 0
+    assert called.err == ""
+    document = json.loads(called.out)
+    assert document["accepted"] == "ci/b.json"
+    assert document["changes"][0] == {
+        "quantity": "spring.max_deformation_mm.skin",
+        "unit": "mm",
+        "old": None,
+        "new": 5.0,
+    }
+    assert Path("ci/b.history.jsonl").is_file()

@@ -1,0 +1,160 @@
+"""`benchmark run` with a user's own model, own FEA, and several tissues."""
+
+import json
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from benchmark.sessions import SHIPPED
+
+SMALL = ("--set", "fem.mesh=coarse", "--set", "load.observations=8", "--quiet")
+EXAMPLE = Path(__file__).parents[3] / "examples" / "own_model.py"
+NAME = "layer-by-layer squeeze"
+
+
+def test_the_example_stands_in_the_waves_place(benchmark_cli, tmp_path: Path) -> None:
+    out = tmp_path / "r"
+    called = benchmark_cli("run", "skin-5N", *SMALL, "--wave", EXAMPLE, "--out", out, "--json")
+    assert called.code == 0, called.err
+    document = json.loads(called.out)
+    assert document["models"]["wave"]["name"] == NAME
+    assert document["speedup"]["repeats"] == 3
+    timing = pd.read_csv(out / "tables/timing.csv")
+    assert timing.groupby("model").size().to_dict() == {"fem": 3, NAME: 3}
+    assert set(pd.read_csv(out / "tables/normal_fits.csv").model) == {"fem", NAME}
+    deformation = pd.read_csv(out / "tables/max_deformation.csv")
+    assert (deformation[deformation.force_N > 0].wave_mm > 0).all()
+    page = (out / "report.html").read_text()
+    assert NAME in page
+    assert "wave model" not in page.lower()
+
+
+def test_measured_trials_drive_it_through_its_press(benchmark_cli, tmp_path: Path) -> None:
+    model = tmp_path / "springs.py"
+    model.write_text(
+        "import numpy as np\n"
+        "def deform(layers, tool, support, time, force):\n    return 1e-3 * np.outer(force, np.ones(len(layers)))\n"
+        "def press(layers, tool, support, time, depth):\n    return 1e3 * depth\n"
+    )
+    out = tmp_path / "r"
+    called = benchmark_cli("run", "--trials", SHIPPED / "phantom", *SMALL[:2], "--wave", model, "--out", out, "--quiet")
+    assert called.code == 0, called.err
+    measured = pd.read_csv(out / "tables/measured.csv")
+    assert measured.wave_force_N.notna().all()
+    assert "springs residual, rms" in (out / "report.html").read_text()
+
+
+def test_a_press_that_declines_leaves_the_measured_column_empty(benchmark_cli, tmp_path: Path) -> None:
+    out = tmp_path / "r"
+    trials = ("--trials", SHIPPED / "phantom", *SMALL[:2])
+    called = benchmark_cli("run", *trials, "--wave", EXAMPLE, "--out", out)
+    assert called.code == 0, called.err
+    assert pd.read_csv(out / "tables/measured.csv").wave_force_N.isna().all()
+    assert "has no force for 10 of the trials: it knows a bonded base only" in called.err
+
+
+def test_a_users_fea_stands_in_the_fems_place(benchmark_cli, tmp_path: Path) -> None:
+    first, second = tmp_path / "a", tmp_path / "b"
+    assert benchmark_cli("run", "skin-5N", *SMALL, "--out", first).code == 0
+    table = first / "tables/max_deformation.csv"
+    called = benchmark_cli("run", "skin-5N", *SMALL, "--reference", table, "--out", second, "--json")
+    assert called.code == 0, called.err
+    document = json.loads(called.out)
+    assert document["models"]["fem"]["name"] == "FEA of max_deformation.csv"
+    assert document["models"]["fem"]["unknowns"] is None
+    assert document["speedup"]["median"] is None
+    assert any("a table has no profile" in warning for warning in document["warnings"])
+    for name in ("max_deformation", "statistics"):
+        frames = [pd.read_csv(folder / f"tables/{name}.csv") for folder in (first, second)]
+        pd.testing.assert_frame_equal(*frames, rtol=1e-9)
+    assert pd.read_csv(second / "tables/profile.csv").fem_mm.isna().all()
+    assert set(pd.read_csv(second / "tables/timing.csv").model) == {"wave"}
+    assert not (second / "fields").exists()
+
+
+def test_own_model_against_own_fea_needs_none_of_ours(benchmark_cli, tmp_path: Path) -> None:
+    first = tmp_path / "a"
+    assert benchmark_cli("run", "skin-5N", *SMALL, "--wave", EXAMPLE, "--out", first).code == 0
+    frame = pd.read_csv(first / "tables/max_deformation.csv")
+    frame.assign(fem_mm=frame.wave_mm).to_csv(tmp_path / "mine.csv", index=False)
+    own = ("--wave", EXAMPLE, "--reference", tmp_path / "mine.csv")
+    called = benchmark_cli("run", "skin-5N", *SMALL, *own, "--out", tmp_path / "b", "--json")
+    assert called.code == 0, called.err
+    assert all(layer["percent_error_max"] < 1e-9 for layer in json.loads(called.out)["comparison"].values())
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("def deform(:\n", ["mine.py, line 1", "no valid Python"]),
+        ("x = 1\n", ["mine.py", "deform"]),
+        ("def deform(layers, tool, support, time, force):\n    return 1 / 0\n", ["mine.py, line 2", "ZeroDivision"]),
+        ("def deform(layers, tool, support, time, force):\n    return force\n", ["mine.py, line 1", "(8, 3)"]),
+        ("def deform(*_):\n    return [[float('nan')] * 3] * 8\n", ["mine.py, line 1", "nan"]),
+    ],
+)
+def test_a_model_at_fault_ends_the_run_and_leaves_nothing(benchmark_cli, tmp_path: Path, text: str, words) -> None:
+    model = tmp_path / "mine.py"
+    model.write_text(text)
+    called = benchmark_cli("run", "skin-5N", *SMALL, "--wave", model, "--out", tmp_path / "r")
+    assert called.code == 2
+    assert called.out == ""
+    assert "Traceback" not in called.err
+    assert all(word in " ".join(called.err.split()) for word in words), called.err
+    assert list(tmp_path.iterdir()) == [model]
+
+
+def test_a_model_that_declines_leaves_its_columns_empty(benchmark_cli, tmp_path: Path) -> None:
+    settings = ("--set", "support.kind=half_space", "--set", "load.peak=0.1 N")
+    called = benchmark_cli("run", "skin-5N", *SMALL[:4], *settings, "--wave", EXAMPLE, "--out", tmp_path / "r")
+    assert called.code == 0
+    assert f"the {NAME} does not cover this scenario" in called.err
+    assert pd.read_csv(tmp_path / "r/tables/max_deformation.csv").wave_mm.isna().all()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--wave", "mine.py"), ["--wave", "SCENARIO"]),
+        (("--reference", "a.csv"), ["--reference", "SCENARIO"]),
+        (("--trials", "s", "--reference", "a.csv"), ["--reference", "SCENARIO"]),
+        (("--trials", "s", "--tissue", "skin_forearm"), ["--tissue", "SCENARIO"]),
+        (("skin-5N", "--tissue", "skin_forearm", "--set", "tissue=skin_traction"), ["--tissue", "--set"]),
+        (("skin-5N", "--reference", "a.csv", "--tissue", "a", "--tissue", "b"), ["--reference", "--tissue"]),
+        (("skin-5N", "--tissue", "skin_forearm", "--tissue", "skin_forearm"), ["not different"]),
+        (("skin-5N", "--wave", "nowhere.py"), ["nowhere.py"]),
+        (("skin-5N", "--reference", "nowhere.csv"), ["nowhere.csv"]),
+    ],
+)
+def test_what_does_not_go_together_is_refused(benchmark_cli, arguments, words) -> None:
+    called = benchmark_cli("run", *arguments)
+    assert called.code == 2
+    assert all(word in called.err for word in words), called.err
+
+
+def test_tissues_are_set_side_by_side(benchmark_cli, tmp_path: Path) -> None:
+    tissues = ("skin_forearm", "skin_traction")
+    options = [word for tissue in tissues for word in ("--tissue", tissue)]
+    out = tmp_path / "r"
+    called = benchmark_cli("run", "skin-5N", *SMALL, "--set", "load.peak=1 N", *options, "--out", out, "--json")
+    assert called.code == 0, called.err
+    whole, *each = json.loads(called.out)["runs"]
+    assert whole["tissues"] == list(tissues)
+    assert [run["out"] for run in each] == [str(out / tissue) for tissue in tissues]
+    table = pd.read_csv(out / "tables/tissues.csv")
+    assert list(table.columns) == [
+        "tissue", "layer", "thickness_mm", "youngs_modulus_kPa", "poisson_ratio", "fem_max_mm", "wave_max_mm",
+        "percent_error",
+    ]  # fmt: skip
+    for tissue in tissues:
+        deformation = pd.read_csv(out / tissue / "tables/max_deformation.csv")
+        rows = table[table.tissue == tissue].set_index("layer")
+        for layer, values in deformation.groupby("layer"):
+            assert rows.fem_max_mm[layer] == values.fem_mm.max()
+            assert rows.wave_max_mm[layer] == values.wave_mm.max()
+    page = (out / "report.html").read_text()
+    assert all(f"{tissue}/report.html" in page for tissue in tissues)
+    again = benchmark_cli("run", "skin-5N", *SMALL, *options[:2], "--out", out)
+    assert again.code == 0, "an earlier comparison may be replaced"
+    assert not (out / "skin_traction").exists()

@@ -1,0 +1,80 @@
+"""Commands to a measured process, answered in this one."""
+
+import math
+
+import pytest
+
+from benchmark.gate.measuring.clock import Clock
+from benchmark.gate.measuring.references import REFERENCES
+from benchmark.gate.measuring.service import Service
+from benchmark.gate.plan import Plan, load_plan
+
+
+@pytest.fixture
+def service():
+    with Clock() as clock:
+        yield Service(clock)
+
+
+def values_of(service: Service, plan: Plan) -> dict[str, dict]:
+    answer = service.answer({"do": "values", "cases": plan.cases})
+    assert "error" not in answer, answer
+    return {each["name"]: each for each in answer["values"]}
+
+
+def test_values_of_a_users_model(service: Service, tiny_gate) -> None:
+    found = values_of(service, load_plan(tiny_gate().path))
+    assert found["springs.max_deformation_mm.skin"]["value"] == pytest.approx(5.0)
+    assert found["springs.max_deformation_mm.fat"] == {
+        "name": "springs.max_deformation_mm.fat", "value": pytest.approx(4.0), "unit": "mm", "reason": None,
+    }  # fmt: skip
+
+
+def test_values_of_the_shipped_gate(service: Service) -> None:
+    plan = load_plan(None)
+    found = values_of(service, plan)
+    assert {name.rsplit(".", 1)[0] for name in found if "max_deformation_mm" in name} == {
+        f"{case['name']}.max_deformation_mm" for case in plan.cases if case["model"] != "fit"
+    }
+    assert all(math.isfinite(each["value"]) and each["reason"] is None for each in found.values())
+    fem, wave = (found[f"linear.{model}.max_deformation_mm.dermis"]["value"] for model in ("fem", "wave"))
+    assert wave == pytest.approx(fem, rel=0.01)
+    assert found["sheet.fem.max_deformation_mm.sheet"]["value"] == pytest.approx(5.0, rel=1e-6)
+    assert found["sheet.fem.peak_force_N"]["value"] > 0.0
+    assert 0.7 < found["fit.stiffness_factor"]["value"] < 0.95
+
+
+def test_a_run_that_stops_early_has_no_value_but_a_reason(service: Service) -> None:
+    plan = load_plan(None)
+    case = next(case for case in plan.cases if case["name"] == "finite.fem")
+    hopeless = {**case, "set": {"load.peak": "100 kN", "load.observations": "1", "fem.mesh": "coarse"}}
+    answer = service.answer({"do": "values", "cases": [hopeless]})
+    assert all(each["value"] is None and "stopped early" in each["reason"] for each in answer["values"])
+
+
+def test_a_block_times_every_workload_and_reference(service: Service) -> None:
+    plan = load_plan(None)
+    prepared = service.answer({"do": "prepare", "timed": plan.jobs, "references": plan.references})
+    assert set(prepared) == {"sees_waiting"}, prepared
+    seconds = service.answer({"do": "block"})["seconds"]
+    assert set(seconds) == {*plan.references, *(job["name"] for job in plan.jobs)}
+    assert all(each > 0.0 for each in seconds.values())
+
+
+def test_mistakes_and_faults_are_answers(service: Service, tiny_gate) -> None:
+    gate = tiny_gate()
+    plan = load_plan(gate.path)
+    gate.change("my_model.py", "np.outer(force, [1e-3, 0.8e-3])", "1 / 0")
+    answer = service.answer({"do": "values", "cases": plan.cases})
+    assert "my_model.py, line 7" in answer["error"]
+    assert answer["fault"] is False
+    fault = service.answer({"do": "dance"})
+    assert fault["fault"] is True
+    assert "Traceback" in fault["trace"]
+
+
+@pytest.mark.parametrize("name", REFERENCES)
+def test_references_do_the_same_each_time(name: str) -> None:
+    work = REFERENCES[name]()
+    assert work() is None
+    assert work() is None

@@ -1,0 +1,86 @@
+"""The verdict on accuracy."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from benchmark.errors import InputError, NotComparableError
+from benchmark.gate.accuracy import compare_values, tolerance_of
+from benchmark.gate.gate_file import Tolerance
+from benchmark.gate.plan import load_plan
+from benchmark.gate.stored import StoredValue
+
+SHIPPED = load_plan(None).file.tolerances
+
+
+def mm(value: float | None, reason: str | None = None) -> StoredValue:
+    return StoredValue(value=value, unit="mm", reason=reason)
+
+
+def compare(now: StoredValue, base: StoredValue, name: str = "press.max_deformation_mm.skin"):
+    return compare_values({name: now}, {name: base}, SHIPPED, "the baseline")[0]
+
+
+@given(
+    value=st.floats(1e-3, 100.0),
+    sign=st.sampled_from([-1.0, 1.0]),
+    off=st.one_of(st.floats(0.0099, 0.5), st.floats(-0.5, -0.0099)),
+)
+def test_one_per_cent_in_any_deflection_is_always_caught(value: float, sign: float, off: float) -> None:
+    row = compare(mm(sign * value * (1.0 + off)), mm(sign * value))
+    assert not row.passed
+    assert row.share > 1.0
+
+
+@given(value=st.floats(1e-3, 100.0), off=st.floats(-0.0009, 0.0009))
+def test_less_than_the_tolerance_passes(value: float, off: float) -> None:
+    row = compare(mm(value * (1.0 + off)), mm(value))
+    assert row.passed
+    assert row.share <= 1.0
+
+
+def test_allowed_is_relative_and_absolute() -> None:
+    assert compare(mm(5.0), mm(5.0)).allowed == pytest.approx(5e-3 + 1e-6)
+    assert compare(mm(0.9e-6), mm(0.0)).passed
+    assert not compare(mm(1.1e-6), mm(0.0)).passed
+
+
+def test_a_value_that_is_gone_fails_with_its_reason() -> None:
+    row = compare(mm(None, "stopped early at step 3"), mm(5.0))
+    assert not row.passed
+    assert row.share == math.inf
+    assert row.to_dict()["reason"] == "stopped early at step 3"
+
+
+def test_without_a_value_on_both_sides_nothing_got_worse() -> None:
+    row = compare(mm(None, "stopped early"), mm(None, "stopped early"))
+    assert row.passed
+    assert row.share == 0.0
+
+
+@pytest.mark.parametrize(
+    ("now", "base"),
+    [
+        ({"a_mm": mm(1.0)}, {"b_mm": mm(1.0)}),
+        ({"a_mm": mm(1.0)}, {}),
+        ({"a": StoredValue(value=1, unit="N")}, {"a": mm(1.0)}),
+    ],
+)
+def test_other_quantities_cannot_be_compared(now: dict, base: dict) -> None:
+    with pytest.raises(NotComparableError, match=r"a.*--accept"):
+        compare_values(now, base, SHIPPED, "the baseline")
+
+
+def test_the_first_pattern_that_fits_holds() -> None:
+    rules = [
+        Tolerance(quantity="*.skin", rtol=0.02, atol="0.5 mm"),
+        Tolerance(quantity="*", rtol=0.01, atol="1 um"),
+    ]
+    assert tolerance_of("press.max_deformation_mm.skin", "mm", rules) == pytest.approx((0.02, 0.5))
+    assert tolerance_of("press.max_deformation_mm.fat", "mm", rules) == pytest.approx((0.01, 1e-3))
+    with pytest.raises(InputError, match=r"atol.*press\.peak_force_N"):
+        tolerance_of("press.peak_force_N", "N", rules)
+    with pytest.raises(InputError, match="no tolerance"):
+        tolerance_of("press.peak_force_N", "N", rules[:1])

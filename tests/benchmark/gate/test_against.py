@@ -1,0 +1,110 @@
+"""This version beside another revision: of a user's own model, in a repository made for the test."""
+
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from benchmark.errors import InputError, NotComparableError
+from benchmark.gate import CheckRequest, accept, check
+from benchmark.gate.measurement import PRODUCT, subject
+from benchmark.gate.measuring.values import Silent
+from benchmark.gate.plan import load_plan
+
+AUTHOR = ("-c", "user.name=test", "-c", "user.email=test@localhost")
+
+
+def git(folder: Path, *arguments: str) -> str:
+    done = subprocess.run(["git", "-C", str(folder), *arguments], check=True, capture_output=True, text=True)
+    return done.stdout.strip()
+
+
+@pytest.fixture
+def repository(tiny_gate):
+    """The tiny gate, committed."""
+    gate = tiny_gate(timed=True)
+    git(gate.folder, "init", "--quiet")
+    git(gate.folder, "add", ".")
+    git(gate.folder, *AUTHOR, "commit", "--quiet", "-m", "first")
+    return gate
+
+
+def run(gate, tmp_path: Path, revision: str = "HEAD", **options: object):
+    return check(CheckRequest(against=revision, gate=gate.path, out=tmp_path / "out", **options), Silent())
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The default baseline and history belong to the current folder."""
+    monkeypatch.chdir(tmp_path)
+
+
+def test_a_change_of_the_users_model_is_found_without_a_baseline(repository, tmp_path: Path) -> None:
+    repository.change("my_model.py", "[1e-3", "[1.01e-3")
+    verdict = run(repository, tmp_path).verdict
+    failed = [row for row in verdict.accuracy if not row.passed]
+    assert [(row.baseline, row.now) for row in failed] == [(pytest.approx(5.0), pytest.approx(5.05))]
+    assert verdict.against == git(repository.folder, "rev-parse", "HEAD")
+    assert "measured in the same minutes" in verdict.timing_source
+    assert len(git(repository.folder, "worktree", "list").splitlines()) == 1
+
+
+def test_a_change_that_is_far_slower_is_found(repository, tmp_path: Path) -> None:
+    repository.change("my_model.py", "    return", "    sum(range(3_000_000))\n    return")
+    outcome = run(repository, tmp_path)
+    row = outcome.document["timing"][0]
+    assert not row["passed"]
+    assert row["now_ratio"] > 2.0 * row["baseline_ratio"]
+    table = (tmp_path / "out" / "tables" / "rounds.csv").read_text()
+    assert "now,1,springs.history," in table
+    assert "against,1,springs.history," in table
+
+
+def test_an_accepted_baseline_goes_before_the_revision_for_values(repository, tmp_path: Path) -> None:
+    repository.change("my_model.py", "[1e-3", "[1.01e-3")
+    accept(CheckRequest(gate=repository.path), Silent())
+    verdict = run(repository, tmp_path).verdict
+    assert all(row.passed for row in verdict.accuracy)
+    assert "baseline" in verdict.accuracy_source
+    assert "revision" in verdict.timing_source
+
+
+def test_a_baseline_that_is_asked_for_must_be_there(repository, tmp_path: Path) -> None:
+    with pytest.raises(NotComparableError, match=r"b\.json"):
+        run(repository, tmp_path, baseline=tmp_path / "b.json")
+
+
+def test_a_revision_without_the_model_cannot_be_compared(repository, tmp_path: Path) -> None:
+    git(repository.folder, "mv", "my_model.py", "new_model.py")
+    repository.change("gate.toml", "my_model.py", "new_model.py")
+    with pytest.raises(NotComparableError, match="HEAD"):
+        run(repository, tmp_path)
+    assert len(git(repository.folder, "worktree", "list").splitlines()) == 1
+
+
+def test_unknown_revisions_are_bad_input(repository, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no-such-branch"):
+        run(repository, tmp_path, "no-such-branch")
+
+
+def test_outside_a_repository_there_are_no_revisions(
+    tiny_gate, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
+    with pytest.raises(InputError, match="not in a git repository"):
+        run(tiny_gate(), tmp_path)
+
+
+def test_a_revision_is_the_products_unless_the_gate_has_own_models(tiny_gate) -> None:
+    gate = tiny_gate()
+    assert subject(load_plan(None)) == PRODUCT
+    assert subject(load_plan(gate.path)) == gate.folder
+    gate.change("gate.toml", '\nown = "my_model.py"', "")
+    assert subject(load_plan(gate.path)) == PRODUCT
+
+
+def test_its_history_is_told_apart(repository, tmp_path: Path) -> None:
+    run(repository, tmp_path)
+    entry = json.loads((tmp_path / "tissuebench-baseline.history.jsonl").read_text())
+    assert entry["against"] == git(repository.folder, "rev-parse", "HEAD")

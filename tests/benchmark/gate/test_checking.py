@@ -1,0 +1,233 @@
+"""A check from request to report, with a gate so small that nothing is left to chance."""
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Self
+
+import pytest
+
+from benchmark.errors import InputError, NotComparableError, SolverError
+from benchmark.gate import CheckRequest, accept, check
+from benchmark.gate.checking import remarks
+from benchmark.gate.history import read_history
+from benchmark.gate.measuring.clock import Clock
+from benchmark.gate.measuring.service import Service
+from benchmark.gate.plan import Plan
+from benchmark.gate.rounds import Measured
+from benchmark.gate.stored import read_baseline
+from benchmark.gate.timing import TimingRow
+
+
+class Said:
+    """A listener that keeps what it was told."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+
+    def say(self, text: str) -> None:
+        self.lines.append(text)
+
+    @contextmanager
+    def progress(self, title: str) -> Iterator[Callable[[str, int, int, str], None]]:
+        self.lines.append(title)
+        yield lambda *_: None
+
+
+class Here:
+    """A side in this process, which a test need not wait for; `test_side` has the real one."""
+
+    def __init__(self, tree: Path, revision: str | None = None):
+        self._clock = Clock()
+        self._service = Service(self._clock)
+
+    def values(self, plan: Plan) -> list[dict]:
+        return self._service.answer({"do": "values", "cases": plan.cases})["values"]
+
+    def prepare(self, plan: Plan) -> bool:
+        return self._service.answer({"do": "prepare", "timed": plan.jobs, "references": plan.references})[
+            "sees_waiting"
+        ]
+
+    def block(self) -> dict[str, float]:
+        return self._service.answer({"do": "block"})["seconds"]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._clock.__exit__()
+
+
+@pytest.fixture(autouse=True)
+def here(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("benchmark.gate.measurement.Side", Here)
+
+
+@pytest.fixture
+def request_of(tmp_path: Path) -> Callable[..., CheckRequest]:
+    def make(gate, **options: object) -> CheckRequest:
+        return CheckRequest(**{"baseline": tmp_path / "b.json", "gate": gate.path, "out": tmp_path / "out", **options})
+
+    return make
+
+
+def rewrite(path: Path, change: Callable[[dict], None]) -> None:
+    table = json.loads(path.read_text())
+    change(table)
+    path.write_text(json.dumps(table))
+
+
+def test_unchanged_passes_and_is_written_whole(tiny_gate, request_of, tmp_path: Path) -> None:
+    request = request_of(tiny_gate())
+    accept(request, Said())
+    outcome = check(request, Said())
+    assert outcome.verdict.passed
+    assert outcome.document == json.loads((tmp_path / "out" / "check.json").read_text())
+    assert outcome.document["accuracy"][0] == {
+        "quantity": "springs.max_deformation_mm.skin", "unit": "mm", "baseline": 5.0, "now": 5.0,
+        "allowed": pytest.approx(5e-3 + 1e-6), "passed": True, "reason": None,
+    }  # fmt: skip
+    names = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*") if path.is_file()}
+    assert names == {"check.json", "environment.json", "report.html", "tables/accuracy.csv", "tables/rounds.csv"}
+    assert "Nothing got worse" in outcome.report.read_text()
+
+
+@pytest.mark.parametrize("factor", ["1.01e-3", "0.99e-3"])
+def test_one_per_cent_in_one_deflection_fails(tiny_gate, request_of, factor: str) -> None:
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    gate.change("my_model.py", "[1e-3", f"[{factor}")
+    verdict = check(request_of(gate), Said()).verdict
+    assert [row.quantity for row in verdict.accuracy if not row.passed] == ["springs.max_deformation_mm.skin"]
+    assert "baseline 5 mm" in verdict.failures()[0]
+
+
+def test_slower_than_the_baseline_fails_and_faster_does_not(tiny_gate, request_of, tmp_path: Path) -> None:
+    request = request_of(tiny_gate(timed=True))
+    accept(request, Said())
+    rewrite(tmp_path / "b.json", lambda table: table["timing"]["springs.history"].update(ratios=[1e9]))
+    assert check(request, Said()).verdict.passed
+    rewrite(tmp_path / "b.json", lambda table: table["timing"]["springs.history"].update(ratios=[1e-9]))
+    outcome = check(request, Said())
+    assert not outcome.verdict.passed
+    row = outcome.document["timing"][0]
+    assert row["quantity"] == "springs.history"
+    assert row["now_ratio"] > row["allowed"] == pytest.approx(1.12e-9)
+    assert "springs.history: baseline 1e-09 reference times" in outcome.verdict.failures()[0]
+
+
+def test_without_a_baseline_nothing_is_measured_or_written(tiny_gate, request_of, tmp_path: Path) -> None:
+    with pytest.raises(NotComparableError, match="--accept"):
+        check(request_of(tiny_gate()), Said())
+    assert {path.name for path in tmp_path.iterdir()} == {"gate"}
+
+
+def test_a_baseline_of_another_gate_cannot_be_compared_with(tiny_gate, request_of) -> None:
+    gate = tiny_gate(timed=True)
+    accept(request_of(gate), Said())
+    gate.change("gate.toml", 'references = ["dense"]', 'references = ["calls"]')
+    with pytest.raises(NotComparableError, match="another gate"):
+        check(request_of(gate), Said())
+
+
+def test_a_layer_more_cannot_be_compared(tiny_gate, request_of) -> None:
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    gate.change("press.toml", 'name = "fat"', 'name = "muscle"')
+    with pytest.raises(NotComparableError, match=r"fat.*muscle|muscle.*fat"):
+        check(request_of(gate), Said())
+
+
+def test_every_check_is_added_to_the_history(tiny_gate, request_of, tmp_path: Path) -> None:
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    check(request_of(gate), Said())
+    gate.change("my_model.py", "[1e-3", "[1.02e-3")
+    check(request_of(gate), Said())
+    entries, unread = read_history(tmp_path / "b.history.jsonl")
+    assert [entry.passed for entry in entries] == [None, True, False]
+    assert entries[2].accuracy["springs.max_deformation_mm.skin"] == pytest.approx(5.1)
+    assert unread == 0
+
+
+def test_the_trend_is_in_the_report_from_the_second_check(tiny_gate, request_of) -> None:
+    request = request_of(tiny_gate(timed=True))
+    accept(request, Said())
+    assert "<svg" in check(request, Said()).report.read_text()
+
+
+def test_a_history_that_cannot_be_written_is_a_warning(tiny_gate, request_of, tmp_path: Path) -> None:
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    (tmp_path / "folder").mkdir()
+    outcome = check(request_of(gate, history=tmp_path / "folder"), Said())
+    assert outcome.verdict.passed
+    assert any("cannot be written" in warning for warning in outcome.document["warnings"])
+
+
+def test_a_baseline_of_another_machine_is_judged_widely_and_said(tiny_gate, request_of, tmp_path: Path) -> None:
+    request = request_of(tiny_gate(timed=True))
+    accept(request, Said())
+    rewrite(tmp_path / "b.json", lambda table: table["machine"].update(processor="another", packages={"numpy": "1.0"}))
+    document = check(request, Said()).document
+    row = document["timing"][0]
+    assert row["allowed"] == pytest.approx(1.5 * row["baseline_ratio"])
+    assert any("another machine" in warning and "--against" in warning for warning in document["warnings"])
+    assert any("numpy 1.0 (here" in warning for warning in document["warnings"])
+
+
+def test_out_must_be_new_or_an_earlier_check(tiny_gate, request_of, tmp_path: Path) -> None:
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    check(request_of(gate), Said())
+    check(request_of(gate), Said())
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "thesis.tex").touch()
+    with pytest.raises(InputError, match="--out"):
+        check(request_of(gate, out=tmp_path / "mine"), Said())
+
+
+def test_accepting_says_old_and_new(tiny_gate, request_of, tmp_path: Path) -> None:
+    gate = tiny_gate()
+    first = accept(request_of(gate), Said())
+    assert next(step.words() for step in first.steps) == "springs.max_deformation_mm.skin: none -> 5 mm"
+    gate.change("my_model.py", "[1e-3", "[1.02e-3")
+    gate.change("press.toml", 'name = "fat"', 'name = "muscle"')
+    words = [step.words() for step in accept(request_of(gate), Said()).steps]
+    assert words[0] == "springs.max_deformation_mm.skin: 5 -> 5.1 mm"
+    assert "springs.max_deformation_mm.muscle: none -> 4 mm" in words
+    assert "springs.max_deformation_mm.fat: 4 -> none mm" in words
+    assert read_baseline(tmp_path / "b.json").accuracy["springs.max_deformation_mm.skin"].value == pytest.approx(5.1)
+
+
+def test_accepting_replaces_what_cannot_be_read_and_says_so(tiny_gate, request_of, tmp_path: Path) -> None:
+    (tmp_path / "b.json").write_text('{"schema": 99}')
+    accepted = accept(request_of(tiny_gate()), Said())
+    assert "schema 99" in accepted.warnings[0]
+    assert read_baseline(tmp_path / "b.json").gate == "tiny"
+
+
+def test_a_baseline_needs_every_value(tiny_gate, request_of, tmp_path: Path) -> None:
+    gate = tiny_gate()
+    gate.change("gate.toml", 'model = "wave"', 'model = "fem"')
+    gate.change("gate.toml", 'own = "my_model.py"', 'set = { "load.peak" = "10 kN", "load.observations" = "2" }')
+    with pytest.raises(SolverError, match=r"max_deformation_mm\.skin.*stopped early"):
+        accept(request_of(gate), Said())
+    assert not (tmp_path / "b.json").exists()
+
+
+def test_accept_and_against_exclude_each_other(tiny_gate, request_of) -> None:
+    with pytest.raises(InputError, match="--against"):
+        accept(request_of(tiny_gate(), against="HEAD"), Said())
+
+
+def test_what_a_reader_must_know_of_the_measurement() -> None:
+    quiet = TimingRow("frame", 2.0, 2.0, 2.24, (1.9, 2.1), 0.14, 0.01, True)
+    loud = TimingRow("fit", 2.0, 2.0, 2.24, (1.5, 2.5), 0.31, 0.1, True)
+    assert remarks(Measured(({},), 4, True), [quiet]) == []
+    said = remarks(Measured(({},), 4, False), [quiet, loud])
+    assert "CPU times" in said[0]
+    assert "fit (31 %)" in said[1]
+    assert "frame" not in said[1]

@@ -1,0 +1,40 @@
+"""What docs/gate.md shows works as it stands."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from benchmark.cli.app import main
+from benchmark.gate.measurement import PRODUCT
+from benchmark.gate.plan import load_plan
+
+PAGE = (PRODUCT / "docs" / "gate.md").read_text(encoding="utf-8")
+
+
+def test_the_gate_file_can_be_used(tmp_path: Path) -> None:
+    (block,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    (tmp_path / "gate.toml").write_text(block)
+    (tmp_path / "my_model.py").write_text("def deform(layers, tool, support, time, force): ...\n")
+    plan = load_plan(tmp_path / "gate.toml")
+    assert plan.file.timing.margin == pytest.approx(0.15)
+    assert plan.jobs[0]["calls"] == tomllib.loads(block)["timed"][0]["calls"]
+
+
+def test_every_option_it_names_exists(capfd: pytest.CaptureFixture[str]) -> None:
+    main(["check", "--help"])
+    known = set(re.findall(r"--[a-z]+", capfd.readouterr().out))
+    commands = re.findall(r"python -m benchmark check(.*)", PAGE)
+    used = {option for command in commands for option in re.findall(r"--[a-z]+", command)}
+    assert len(commands) >= 6
+    assert used <= known
+
+
+def test_what_it_says_of_the_rule_is_what_the_gate_does() -> None:
+    timing = load_plan(None).file.timing
+    assert f"{timing.blocks} blocks in a process" in PAGE
+    assert f"more than {100 * timing.margin:g} % above" in PAGE
+    assert f"beyond {100 * timing.other_machine_margin:g} %" in PAGE
+    assert timing.rounds == (4, 6)
+    assert "four at least, six at most" in PAGE

@@ -1,0 +1,61 @@
+"""The plan: what measured processes are told, and what makes two plans comparable."""
+
+from pathlib import Path
+
+import pytest
+
+from benchmark.errors import InputError
+from benchmark.gate.plan import load_plan
+from benchmark.sessions import SHIPPED
+
+
+def test_paths_are_absolute_and_relative_to_the_gate_file(tiny_gate, monkeypatch: pytest.MonkeyPatch) -> None:
+    gate = tiny_gate(timed=True)
+    monkeypatch.chdir("/")
+    plan = load_plan(gate.path)
+    assert plan.cases[0]["scenario"] == str(gate.folder / "press.toml")
+    assert plan.jobs[0]["own"] == str(gate.model)
+    assert plan.references == ("dense",)
+    assert not plan.shipped
+
+
+def test_a_session_is_a_shipped_name_or_a_folder(tiny_gate) -> None:
+    gate = tiny_gate()
+    gate.change(
+        "gate.toml", 'model = "wave"\nscenario = "press.toml"\nown = "my_model.py"', 'model = "fit"\nsession = "x"'
+    )
+    with pytest.raises(InputError, match="phantom"):
+        load_plan(gate.path)
+    (gate.folder / "x").mkdir()
+    assert load_plan(gate.path).cases[0]["session"] == str(gate.folder / "x")
+    gate.change("gate.toml", 'session = "x"', 'session = "phantom"')
+    assert load_plan(gate.path).cases[0]["session"] == str(SHIPPED / "phantom")
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "same"),
+    [
+        ("gate.toml", 'rtol = "0.1 %"', 'rtol = "1 %"', True),
+        ("gate.toml", "blocks = 2", 'blocks = 2\nmargin = "20 %"', True),
+        ("my_model.py", "1e-3", "2e-3", True),
+        ("gate.toml", 'references = ["dense"]', 'references = ["calls"]', False),
+        ("gate.toml", 'references = ["dense"]', 'references = ["dense"]\ncalls = 3', False),
+        ("gate.toml", 'references = ["dense"]', 'references = ["dense"]\nset = { "load.peak" = "2 N" }', False),
+        ("press.toml", "observations = 10", "observations = 20", False),
+    ],
+)
+def test_ratios_are_comparable_while_the_work_is_the_same(tiny_gate, file: str, old: str, new: str, same: bool) -> None:
+    gate = tiny_gate(timed=True)
+    before = load_plan(gate.path).fingerprint
+    gate.change(file, old, new)
+    assert (load_plan(gate.path).fingerprint == before) is same
+
+
+def test_another_revision_has_its_own_models_and_the_same_inputs(tiny_gate) -> None:
+    gate = tiny_gate(timed=True)
+    plan = load_plan(gate.path)
+    moved = plan.moved(gate.folder, Path("/elsewhere"))
+    assert moved.cases[0]["own"] == moved.jobs[0]["own"] == "/elsewhere/my_model.py"
+    assert moved.cases[0]["scenario"] == plan.cases[0]["scenario"]
+    assert moved.fingerprint == plan.fingerprint
+    assert plan.moved(Path("/elsewhere"), Path("/there")) == plan

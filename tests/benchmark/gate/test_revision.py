@@ -1,0 +1,80 @@
+"""Revisions of a repository, on one made for the test."""
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from benchmark.errors import InputError
+from benchmark.gate.revision import checked_out, commit_of, describe_revision, repository_of
+
+AUTHOR = ("-c", "user.name=test", "-c", "user.email=test@localhost")
+
+
+def git(folder: Path, *arguments: str) -> str:
+    done = subprocess.run(["git", "-C", str(folder), *arguments], check=True, capture_output=True, text=True)
+    return done.stdout.strip()
+
+
+@pytest.fixture
+def repository(tmp_path: Path) -> Path:
+    folder = tmp_path / "repository"
+    folder.mkdir()
+    git(folder, "init", "--quiet")
+    for text in ("first", "second"):
+        (folder / "model.py").write_text(text)
+        git(folder, "add", ".")
+        git(folder, *AUTHOR, "commit", "--quiet", "-m", text)
+    return folder
+
+
+def test_a_revision_is_checked_out_beside_the_work_in_progress(repository: Path) -> None:
+    (repository / "model.py").write_text("third, not committed")
+    commit = commit_of(repository, "HEAD~1")
+    with checked_out(repository, commit) as tree:
+        assert (tree / "model.py").read_text() == "first"
+        assert len(git(repository, "worktree", "list").splitlines()) == 2
+    assert not tree.exists()
+    assert len(git(repository, "worktree", "list").splitlines()) == 1
+    assert (repository / "model.py").read_text() == "third, not committed"
+
+
+def test_it_is_removed_after_an_error_too(repository: Path) -> None:
+    with pytest.raises(RuntimeError), checked_out(repository, "HEAD") as tree:
+        raise RuntimeError
+    assert not tree.exists()
+    assert len(git(repository, "worktree", "list").splitlines()) == 1
+
+
+def test_hooks_of_the_repository_do_not_run(repository: Path) -> None:
+    hook = repository / ".git" / "hooks" / "post-checkout"
+    hook.parent.mkdir(exist_ok=True)
+    hook.write_text("#!/bin/sh\ntouch hooked\n")
+    hook.chmod(0o755)
+    with checked_out(repository, "HEAD") as tree:
+        assert not (tree / "hooked").exists()
+
+
+@pytest.mark.parametrize("revision", ["no-such-branch", "--help", "HEAD~7", ""])
+def test_a_revision_that_is_not_there_is_named(repository: Path, revision: str) -> None:
+    with pytest.raises(InputError, match="--against"):
+        commit_of(repository, revision)
+
+
+def test_a_description_says_whether_files_have_changed(repository: Path) -> None:
+    commit = git(repository, "rev-parse", "HEAD")
+    (repository / "new.py").write_text("unknown to git")
+    assert describe_revision(repository) == commit
+    (repository / "model.py").write_text("changed")
+    assert describe_revision(repository) == f"{commit}+"
+
+
+def test_outside_a_repository_there_is_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
+    assert repository_of(tmp_path) is None
+    assert describe_revision(tmp_path) is None
+
+
+def test_without_git_there_is_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert repository_of(tmp_path) is None

@@ -1,0 +1,76 @@
+"""The baseline file: whole or not at all, and refused with the right code where it cannot be compared with."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from benchmark.errors import InputError, NotComparableError
+from benchmark.gate.stored import Baseline, Machine, read_baseline, write_baseline
+
+
+def test_what_is_written_reads_back(baseline: Baseline, tmp_path: Path) -> None:
+    path = write_baseline(tmp_path / "new" / "b.json", baseline)
+    assert read_baseline(path) == baseline
+    assert json.loads(path.read_text())["schema"] == 1
+
+
+def test_without_a_file_it_says_how_to_make_one(tmp_path: Path) -> None:
+    path = tmp_path / "b.json"
+    with pytest.raises(NotComparableError, match=r"--accept") as caught:
+        read_baseline(path)
+    assert str(path) in str(caught.value)
+    assert caught.value.exit_code == 3
+
+
+@pytest.mark.parametrize("schema", [0, 2, "1", None])
+def test_another_schema_cannot_be_compared_with(baseline: Baseline, tmp_path: Path, schema: object) -> None:
+    path = write_baseline(tmp_path / "b.json", baseline)
+    table = {**json.loads(path.read_text()), "schema": schema}
+    path.write_text(json.dumps(table))
+    with pytest.raises(NotComparableError, match="schema"):
+        read_baseline(path)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{", "[]", "null", '{"schema": 1}', '{"schema": 1, "gate": 3}', "\x00\x01", "[" * 100_000]
+)
+def test_what_is_no_baseline_is_bad_input(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "b.json"
+    path.write_text(text)
+    with pytest.raises((InputError, NotComparableError), match=r"b\.json"):
+        read_baseline(path)
+
+
+@pytest.mark.parametrize("ratios", [[], [0.0], [-1.0], ["2"], [None]])
+def test_ratios_must_be_positive_numbers(baseline: Baseline, tmp_path: Path, ratios: list) -> None:
+    path = write_baseline(tmp_path / "b.json", baseline)
+    table = json.loads(path.read_text())
+    table["timing"]["frame"]["ratios"] = ratios
+    path.write_text(json.dumps(table))
+    with pytest.raises(InputError, match=r"timing\.frame\.ratios"):
+        read_baseline(path)
+
+
+def test_an_old_baseline_stays_where_writing_fails(
+    baseline: Baseline, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = write_baseline(tmp_path / "b.json", baseline)
+
+    def full(*_: object) -> None:
+        raise OSError("no space left")
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(OSError, match="no space"):
+        write_baseline(path, baseline.model_copy(update={"gate": "other"}))
+    assert list(tmp_path.iterdir()) == [path]
+    assert read_baseline(path) == baseline
+
+
+def test_ratios_carry_over_to_the_same_processor_and_python() -> None:
+    here = Machine(processor="A", python="3.11.7", packages={"numpy": "2.4.6"})
+    assert here.same_as(here.model_copy(update={"python": "3.11.9"}))
+    assert not here.same_as(here.model_copy(update={"python": "3.12.1"}))
+    assert not here.same_as(here.model_copy(update={"processor": "B"}))
+    assert here.differences(here) == []
+    assert here.differences(here.model_copy(update={"packages": {"numpy": "2.5"}})) == ["numpy 2.4.6 (here 2.5)"]

@@ -1,0 +1,90 @@
+"""A user's FEA as a table: its values come through, and every mismatch with the scenario is named."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from benchmark.errors import InputError
+from benchmark.files import load_scenario
+from benchmark.models import read_reference, scenario_drive
+
+SCENARIO = load_scenario("skin-5N", {"load.observations": "4", "load.peak": "2 N"})
+LAYERS = SCENARIO.tissue.layer_names
+
+
+def table(**changes: object) -> pd.DataFrame:
+    drive = scenario_drive(SCENARIO)
+    rows = [
+        {"step": step + 1, "time_s": drive.time[step], "force_N": drive.value[step], "layer": layer,
+         "fem_mm": drive.value[step] / (column + 1)}
+        for step in range(4) for column, layer in enumerate(LAYERS)
+    ]  # fmt: skip
+    return pd.DataFrame(rows).assign(**changes)
+
+
+def written(frame: pd.DataFrame, tmp_path: Path) -> Path:
+    path = tmp_path / "bench.csv"
+    frame.to_csv(path, index=False)
+    return path
+
+
+def test_values_come_through_in_si(tmp_path: Path) -> None:
+    found = read_reference(written(table(), tmp_path), SCENARIO)
+    assert found.name == "FEA of bench.csv"
+    expected = 1e-3 * np.outer(scenario_drive(SCENARIO).value, [1, 1 / 2, 1 / 3])
+    np.testing.assert_allclose(found.result.top_deflection, expected)
+    np.testing.assert_allclose(found.result.force, scenario_drive(SCENARIO).value)
+    assert np.isnan(found.result.profile).all()
+    assert any("profile" in warning and "timing" in warning for warning in found.result.warnings)
+
+
+def test_order_of_rows_and_more_columns_do_not_matter(tmp_path: Path) -> None:
+    shuffled = table(wave_mm=[None] * 12, remark="mine").sample(frac=1.0, random_state=1)
+    found = read_reference(written(shuffled, tmp_path), SCENARIO)
+    plain = read_reference(written(table(), tmp_path), SCENARIO)
+    np.testing.assert_array_equal(found.result.top_deflection, plain.result.top_deflection)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.lists(st.floats(-50, 50), min_size=12, max_size=12))
+def test_any_numbers_read_back(tmp_path_factory, values: list[float]) -> None:
+    path = written(table(fem_mm=values), tmp_path_factory.mktemp("reference"))
+    found = 1e3 * read_reference(path, SCENARIO).result.top_deflection
+    np.testing.assert_allclose(found.ravel(), values, rtol=1e-12, atol=1e-300)
+
+
+BAD = {
+    "a column is missing": (table().drop(columns="fem_mm"), ["fem_mm", "missing"]),
+    "text in a number": (table(fem_mm=["x"] * 12), ["fem_mm", "'x'"]),
+    "an empty cell": (table(fem_mm=[None] * 12), ["fem_mm", "empty"]),
+    "no rows": (table().iloc[:0], ["no rows"]),
+    "other layers": (table(layer=["skin", "dermis", "fat"] * 4), ["skin", "epidermis"]),
+    "a layer too few": (table().query("layer != 'dermis'"), ["epidermis, subcutaneous_fat", "dermis"]),
+    "a step too few": (table().query("step < 4"), ["step 4 of epidermis is missing", "1 to 4"]),
+    "a row too few": (table().drop(index=4), ["step 2 of dermis is missing"]),
+    "a row twice": (pd.concat([table(), table().iloc[:1]]), ["line 14", "twice"]),
+    "a step that is none": (table(step=[1.5] * 12), ["line 2", "1.5", "1 to 4"]),
+    "a step too many": (table(step=np.repeat([1, 2, 3, 5], 3)), ["line 11", "5"]),
+    "other times": (table(time_s=np.repeat([1, 2, 3, 4], 3)), ["line 2", "time_s", "1 s", "2.5 s"]),
+    "other forces": (table(force_N=np.repeat([1, 2, 1, 0.5], 3)), ["line 11", "force_N", "0.5 N", "0 N"]),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_a_table_that_does_not_fit_is_refused(tmp_path: Path, case: str) -> None:
+    frame, words = BAD[case]
+    with pytest.raises(InputError) as caught:
+        read_reference(written(frame, tmp_path), SCENARIO)
+    for word in ["bench.csv", *words]:
+        assert word in str(caught.value)
+
+
+def test_forces_of_a_depth_history_are_the_tables_own(tmp_path: Path) -> None:
+    scenario = load_scenario("skin-5N", {"load.observations": "4", "load.control": "depth", "load.peak": "2 mm"})
+    found = read_reference(written(table(force_N=np.repeat([3, 6, 2, 0], 3)), tmp_path), scenario)
+    np.testing.assert_allclose(found.result.force, [3, 6, 2, 0])
+    np.testing.assert_allclose(found.result.depth, scenario_drive(scenario).value)

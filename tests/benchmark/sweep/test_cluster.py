@@ -1,0 +1,148 @@
+"""Points on a Dask cluster started from the command line, also where a worker or the scheduler is killed."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from benchmark.sweep.cluster import work_on_cluster
+from benchmark.sweep.errors import ClusterError
+from benchmark.sweep.local import work_locally
+from benchmark.sweep.point import OK, Task
+
+pytestmark = pytest.mark.slow
+
+SECONDS = 60.0
+
+
+class Cluster:
+    """A scheduler and two workers on this machine; every process is ended by its handle."""
+
+    def __init__(self, folder: Path, stack: ExitStack):
+        self._folder, self._stack = folder, stack
+        self.scheduler = self._start("scheduler", "--port", "0", "--scheduler-file", str(folder / "cluster.json"))
+        self.address = self._address()
+        self.workers = [self._start("worker", self.address, "--nthreads", "1", "--no-nanny") for _ in range(2)]
+
+    def _start(self, what: str, *arguments: str) -> subprocess.Popen:
+        command = [sys.executable, "-m", "dask", what, *arguments, "--host", "127.0.0.1", "--no-dashboard"]
+        log = self._stack.enter_context((self._folder / f"{what}.log").open("ab"))
+        environment = {**os.environ, "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+        process = subprocess.Popen(command, stderr=log, stdout=log, env=environment)
+        self._stack.callback(_end, process)
+        return process
+
+    def _address(self) -> str:
+        path, end = self._folder / "cluster.json", time.monotonic() + SECONDS
+        while time.monotonic() < end:
+            try:
+                return json.loads(path.read_text())["address"]
+            except (OSError, ValueError):
+                time.sleep(0.1)
+        raise TimeoutError("the scheduler did not start")
+
+
+def _end(process: subprocess.Popen) -> None:
+    process.terminate()
+    try:
+        process.wait(15)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait(5)
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[Cluster]:
+    pytest.importorskip("distributed")
+    with ExitStack() as stack:
+        yield Cluster(tmp_path, stack)
+
+
+@pytest.fixture
+def tasks(plan_of) -> list[Task]:
+    plan = plan_of("tool.radius=3 mm:6 mm:16")
+    return [Task(number, scenario) for number, scenario in enumerate(plan.scenarios, 1)]
+
+
+def silent(_: str) -> None:
+    pass
+
+
+def results(row):
+    return {name: value for name, value in row.values.items() if not name.endswith("seconds_s")}
+
+
+def test_a_cluster_gives_what_this_machine_gives(cluster: Cluster, tasks) -> None:
+    said: list[str] = []
+    there = {row.point: row for row in work_on_cluster(tasks[:4], cluster.address, said.append)}
+    here = {row.point: row for row in work_locally(tasks[:4], 1)}
+    assert len(said) == 1
+    assert sorted(there) == [1, 2, 3, 4]
+    for point, row in here.items():
+        assert results(there[point]) == pytest.approx(results(row), rel=1e-9)
+
+
+def test_a_killed_worker_loses_nothing(cluster: Cluster, tasks) -> None:
+    work = work_on_cluster(tasks, cluster.address, silent)
+    rows = [next(work) for _ in range(3)]
+    cluster.workers[0].kill()
+    rows += list(work)
+    assert sorted(row.point for row in rows) == list(range(1, 17))
+    assert all(row.status == OK for row in rows)
+
+
+def test_a_killed_scheduler_stops_the_sweep_and_another_one_goes_on(
+    cluster: Cluster, tasks, benchmark_sweep, tmp_path: Path
+) -> None:
+    out = tmp_path / "sweep"
+    sweep = benchmark_sweep(out, cluster.address)
+    end = time.monotonic() + SECONDS
+    while rows_in(out) < 4 and time.monotonic() < end:
+        time.sleep(0.05)
+    cluster.scheduler.kill()
+    _, said = sweep.communicate(timeout=SECONDS)
+    before = rows_in(out)
+    assert sweep.returncode == 2, said
+    assert "is gone" in said
+    assert "Traceback" not in said
+    assert 4 <= before < 40
+    (tmp_path / "second").mkdir()
+    with ExitStack() as stack:
+        second = Cluster(tmp_path / "second", stack)
+        _, said = benchmark_sweep(out, second.address).communicate(timeout=SECONDS)
+    assert f"{before} of 40 points are there already" in said
+    assert rows_in(out) == 40
+
+
+@pytest.fixture
+def benchmark_sweep():
+    """Start the command on a grid of 40 points."""
+    with ExitStack() as stack:
+
+        def start(out: Path, address: str) -> subprocess.Popen:
+            settings = ("--set", "fem.mesh=coarse", "--set", "load.observations=4", "--set", "load.peak=0.5 N")
+            vary = ("--vary", "tool.radius=3 mm:6 mm:40")
+            command = [sys.executable, "-m", "benchmark", "sweep", "skin-5N", *settings, *vary]
+            command += ["--out", str(out), "--scheduler", address]
+            process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+            stack.callback(_end, process)
+            return process
+
+        yield start
+
+
+def rows_in(out: Path) -> int:
+    journal = out / "journal.jsonl"
+    lines = journal.read_bytes().splitlines(keepends=True) if journal.exists() else []
+    return sum(line.startswith(b"{") and line.endswith(b"\n") for line in lines)
+
+
+def test_where_nobody_answers_the_address_is_named(tasks) -> None:
+    with pytest.raises(ClusterError, match=r"127\.0\.0\.1:9: no Dask scheduler"):
+        next(work_on_cluster(tasks, "tcp://127.0.0.1:9", silent))

@@ -1,0 +1,104 @@
+"""The folder of a sweep: the same sweep goes on, another is refused, nobody works in it twice."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from benchmark.errors import InputError
+from benchmark.sweep.folder import open_folder
+from benchmark.sweep.point import PointResult, failed
+
+VARY = "tool.radius=2 mm,3 mm,5 mm"
+ROW = PointResult(2, "ok", None, None, {"x_mm": 1.0})
+
+
+def test_points_are_in_the_table_as_they_come_and_at_the_end(plan_of, tmp_path: Path) -> None:
+    out = tmp_path / "sweep"
+    with open_folder(out, plan_of(VARY)) as folder:
+        folder.add(ROW)
+        assert list(pd.read_parquet(out / "points.parquet").point) == [2]
+        folder.add(failed(1, "no luck"))
+    assert list(pd.read_parquet(out / "points.parquet").point) == [1, 2]
+    names = {path.name for path in out.iterdir()}
+    assert names == {"sweep.json", "scenario.toml", "journal.jsonl", "points.parquet"}
+
+
+def test_the_same_sweep_goes_on(plan_of, tmp_path: Path) -> None:
+    with open_folder(tmp_path, plan_of(VARY)) as folder:
+        folder.add(ROW)
+    with open_folder(tmp_path, plan_of(VARY)) as folder:
+        assert folder.finished == {2: ROW}
+
+
+def test_an_interrupted_sweep_keeps_its_points(plan_of, tmp_path: Path) -> None:
+    def interrupted() -> None:
+        with open_folder(tmp_path, plan_of(VARY)) as folder:
+            folder.add(failed(1, "no luck"))
+            folder.add(ROW)
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert list(pd.read_parquet(tmp_path / "points.parquet").point) == [1, 2]
+
+
+@pytest.mark.parametrize(
+    ("vary", "settings", "word"),
+    [
+        ("tool.radius=2 mm,3 mm", {}, "vary.tool.radius"),
+        ("tool.radius=2 mm,3 mm,5 mm", {"load_peak": "1 N"}, "scenario.load.peak"),
+        ("dermis.thickness=2 mm,3 mm,5 mm", {}, "vary.dermis.thickness"),
+    ],
+)
+def test_another_sweep_is_refused_with_the_difference(plan_of, tmp_path: Path, vary, settings, word) -> None:
+    with open_folder(tmp_path, plan_of(VARY)) as folder:
+        folder.add(ROW)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    with pytest.raises(InputError, match="another sweep") as caught, open_folder(tmp_path, plan_of(vary, **settings)):
+        pass
+    assert word in str(caught.value)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_folder_of_something_else_is_refused(plan_of, tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").write_text("years of work")
+    with pytest.raises(InputError, match="not a sweep"), open_folder(tmp_path, plan_of(VARY)):
+        pass
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
+    with pytest.raises(InputError, match="is a file"), open_folder(tmp_path / "thesis.tex", plan_of(VARY)):
+        pass
+
+
+@pytest.mark.parametrize("text", ["[]", "no json", "{}"])
+def test_a_plan_that_is_none_is_refused(plan_of, tmp_path: Path, text: str) -> None:
+    (tmp_path / "sweep.json").write_text(text)
+    with pytest.raises(InputError, match=r"sweep\.json"), open_folder(tmp_path, plan_of(VARY)):
+        pass
+
+
+def test_what_a_crash_left_half_written_is_removed(plan_of, tmp_path: Path) -> None:
+    (tmp_path / ".points.parquet.1234abcd.part").write_bytes(b"half")
+    (tmp_path / "scenario.toml").write_text("a crash came before sweep.json")
+    with open_folder(tmp_path, plan_of(VARY)):
+        assert {path.name for path in tmp_path.iterdir()} == {"sweep.json", "scenario.toml", "journal.jsonl"}
+
+
+def test_only_one_process_works_in_a_folder(plan_of, tmp_path: Path) -> None:
+    pytest.importorskip("fcntl", reason="this system has no such locks")
+    code = (
+        "import fcntl, os, sys\nfcntl.flock(os.open(sys.argv[1], os.O_RDONLY), fcntl.LOCK_EX)\n"
+        "print('locked', flush=True)\nsys.stdin.read()"
+    )
+    command = [sys.executable, "-c", code, str(tmp_path)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as other:
+        assert other.stdout is not None
+        assert other.stdout.readline() == "locked\n"
+        with pytest.raises(InputError, match="at work"), open_folder(tmp_path, plan_of(VARY)):
+            pass
+        other.kill()
+    with open_folder(tmp_path, plan_of(VARY)):
+        assert json.loads((tmp_path / "sweep.json").read_text())["points"] == 3

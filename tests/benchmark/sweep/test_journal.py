@@ -1,0 +1,51 @@
+"""The journal: what is whole in it is kept, wherever a crash cut it."""
+
+from pathlib import Path
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from benchmark.sweep.journal import Journal, read_journal
+from benchmark.sweep.point import PointResult, failed
+
+ROWS = [
+    PointResult(1, "ok", None, "mind \u2026 the\ttab", {"x_mm": 1 / 3, "dermis.y": -1e-300}),
+    failed(2, "no\nluck"),
+    PointResult(3, "ok", None, None, {"x_mm": 5e-324}),
+]
+
+
+def written(path: Path, rows=ROWS) -> Path:
+    journal = Journal(path)
+    for row in rows:
+        journal.add(row)
+    journal.close()
+    return path
+
+
+def test_it_reads_back_exactly(tmp_path: Path) -> None:
+    assert read_journal(written(tmp_path / "j")) == {row.point: row for row in ROWS}
+    assert read_journal(tmp_path / "nowhere") == {}
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.data())
+def test_a_cut_anywhere_keeps_the_whole_rows_and_can_go_on(tmp_path_factory, data) -> None:
+    path = written(tmp_path_factory.mktemp("journal") / "j")
+    whole = path.read_bytes()
+    cut = data.draw(st.integers(0, len(whole)))
+    path.write_bytes(whole[:cut])
+    kept = whole[:cut].count(b"\n")
+    assert read_journal(path) == {row.point: row for row in ROWS[:kept]}
+    missing = ROWS[kept:]
+    journal = Journal(path)
+    for row in missing:
+        journal.add(row)
+    journal.close()
+    assert read_journal(path) == {row.point: row for row in ROWS}
+
+
+def test_lines_of_something_else_are_passed_over(tmp_path: Path) -> None:
+    path = written(tmp_path / "j")
+    path.write_bytes(b'\x00\x00\n{"point": 9}\n[1]\n' + path.read_bytes())
+    assert read_journal(path) == {row.point: row for row in ROWS}

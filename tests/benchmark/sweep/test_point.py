@@ -1,0 +1,98 @@
+"""One point: the results of both models under the names of the table, and every way to fail as a reason."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+from benchmark.errors import InputError
+from benchmark.files import Scenario, load_scenario
+from benchmark.models import UncoveredError, prepare, scenario_drive
+from benchmark.sweep import point as point_module
+from benchmark.sweep.point import FAILED, OK, Task, evaluate, failed
+
+SMALL = {"fem.mesh": "coarse", "load.observations": "4", "load.peak": "0.5 N"}
+
+
+@pytest.fixture
+def scenario() -> Scenario:
+    return load_scenario("skin-5N", SMALL)
+
+
+def test_results_are_those_of_the_models(scenario: Scenario) -> None:
+    row = evaluate(Task(7, scenario))
+    assert (row.point, row.status, row.reason) == (7, OK, None)
+    largest = {}
+    for model in ("fem", "wave"):
+        own = prepare(model, scenario).run(scenario_drive(scenario))
+        largest[model] = 1e3 * own.max_deformation()
+        for layer, value in zip(own.layers, largest[model], strict=True):
+            assert row.values[f"{layer}.{model}_max_mm"] == pytest.approx(value, rel=1e-12)
+        assert row.values[f"{model}_depth_mm"] == pytest.approx(1e3 * own.depth[1], rel=1e-12)
+        assert row.values[f"{model}_force_N"] == pytest.approx(0.5)
+        assert row.values[f"{model}_seconds_s"] > 0
+    errors = 100 * (largest["wave"] / largest["fem"] - 1)
+    for layer, error in zip(scenario.tissue.layer_names, errors, strict=True):
+        assert row.values[f"{layer}.error_percent"] == pytest.approx(error)
+    assert row.values["error_percent"] == pytest.approx(errors[0])
+
+
+def test_under_depth_control_the_force_is_the_result() -> None:
+    row = evaluate(Task(1, load_scenario("skin-5N", {**SMALL, "load.control": "depth", "load.peak": "0.3 mm"})))
+    assert row.values["fem_depth_mm"] == pytest.approx(0.3)
+    forces = [row.values[f"{model}_force_N"] for model in ("fem", "wave")]
+    assert row.values["error_percent"] == pytest.approx(100 * (forces[1] / forces[0] - 1))
+
+
+def test_a_model_that_does_not_cover_the_point_leaves_its_columns_out() -> None:
+    row = evaluate(Task(1, load_scenario("skin-5N", {**SMALL, "support.kind": "half_space"})))
+    assert row.status == OK
+    assert "wave model does not cover" in (row.warnings or "")
+    assert "fem_depth_mm" in row.values
+    assert not any("wave" in name or "error" in name for name in row.values)
+
+
+def test_a_point_that_no_model_covers_is_failed(scenario: Scenario, monkeypatch) -> None:
+    def declines(model: str, scenario: Scenario) -> None:
+        raise UncoveredError("it is beyond me")
+
+    monkeypatch.setattr(point_module, "prepare", declines)
+    row = evaluate(Task(1, scenario))
+    assert row.status == FAILED
+    assert "the FEM does not cover this scenario: it is beyond me" in (row.reason or "")
+    assert row.values == {}
+
+
+def test_a_solver_that_stops_early_fails_the_point_and_keeps_the_other_model() -> None:
+    soft = {f"{layer}.youngs_modulus": "5 kPa" for layer in ("epidermis", "dermis", "subcutaneous_fat")}
+    row = evaluate(Task(1, load_scenario("skin-5N", {**SMALL, **soft, "load.peak": "20 N"})))
+    assert row.status == FAILED
+    assert "FEM stopped early at step" in (row.reason or "")
+    assert "wave_depth_mm" in row.values
+    assert "fem_depth_mm" not in row.values
+
+
+@pytest.mark.parametrize("error", [InputError("window is too small"), ZeroDivisionError("no\nluck")])
+def test_an_exception_is_a_reason_on_one_line(scenario: Scenario, monkeypatch, error: Exception) -> None:
+    def broken(model: str, scenario: Scenario) -> None:
+        raise error
+
+    monkeypatch.setattr(point_module, "prepare", broken)
+    row = evaluate(Task(3, scenario))
+    assert row.status == FAILED
+    assert " ".join(str(error).split()) in (row.reason or "")
+    assert "\n" not in (row.reason or "")
+    assert ("ZeroDivisionError" in (row.reason or "")) == isinstance(error, ZeroDivisionError)
+
+
+def test_values_are_finite_numbers(scenario: Scenario) -> None:
+    values = evaluate(Task(1, scenario)).values
+    assert all(type(value) is float and np.isfinite(value) for value in values.values())
+
+
+def test_a_task_travels(scenario: Scenario) -> None:
+    assert pickle.loads(pickle.dumps(Task(1, scenario))) == Task(1, scenario)
+
+
+def test_failed_is_one_line() -> None:
+    assert failed(2, "a\n  b").reason == "a b"
