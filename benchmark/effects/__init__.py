@@ -1,0 +1,1 @@
+"""The catalogue of physical effects that a model can lack: one file an effect."""
