@@ -101,6 +101,10 @@ class FemOptions(FileModel):
         for key, example in (("surface", '"liver.stl"'), ("surface_unit", '"mm"')):
             if self.geometry == "surface" and getattr(self, key) is None:
                 raise problem(f'the geometry "surface" needs it; give one such as {example}', key=key)
+            if self.geometry != "surface" and getattr(self, key) is not None:
+                raise problem('only the geometry "surface" has it; set fem.geometry, or leave it out', key=key)
+        if self.geometry == "surface" and self.radius is not None:
+            raise problem('the geometry "surface" ends at the surface; leave it out, or "auto"', key="radius")
         return self
 
 

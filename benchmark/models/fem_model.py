@@ -20,8 +20,6 @@ from benchmark.models.result import (
     silent,
 )
 
-VTK_QUAD = 9
-
 
 class FemModel:
     """A scenario meshed and set up.
@@ -36,8 +34,6 @@ class FemModel:
 
     def __init__(self, scenario: Scenario, *, every_field: bool = False):
         refuse_options(scenario)
-        if scenario.fem.geometry != "axisymmetric":
-            raise UncoveredError(f"the geometry {scenario.fem.geometry} is not part of this solver; axisymmetric is")
         self._scenario = scenario
         self._every_field = every_field
         _refuse_contact(scenario)
@@ -106,16 +102,26 @@ def _refuse_contact(scenario: Scenario) -> None:
 
 
 def _problem(scenario: Scenario) -> fem.Problem:
-    """The scenario in the solver's terms."""
+    """The scenario in the solver's terms.
+
+    A laterally endless specimen is the same everywhere, so that its axisymmetric model needs no position.
+    """
     tool, options = scenario.tool, scenario.fem
+    centred = options.geometry == "axisymmetric" and scenario.support.kind != "hole"
+    position = (0.0, 0.0) if centred else tool.position
+    surface = None
+    if options.surface is not None and options.surface_unit is not None:
+        surface = fem.read_surface(options.surface, options.surface_unit)
     return fem.Problem(
         layers=tuple(_layer(layer, options.kinematics) for layer in scenario.tissue.layers),
-        tool=fem.Tool(tool.radius, tool.contact, tool.edge_radius),
+        tool=fem.Tool(tool.radius, tool.contact, tool.edge_radius, position, tool.tilt),
         support=fem.Support(
             scenario.support.kind, scenario.support.hole_radius if scenario.support.kind == "hole" else None
         ),
         kinematics=options.kinematics,
         discretisation=fem.Discretisation(options.mesh, options.radius),
+        geometry=options.geometry,
+        surface=surface,
     )
 
 
@@ -148,7 +154,7 @@ def _snapshot(solution: fem.Solution, step: int) -> FieldSnapshot:
         step=step,
         points=fields.points,
         cells=fields.cells,
-        cell_type=VTK_QUAD,
+        cell_type=fields.cell_type,
         point_data={"displacement_m": fields.displacement},
         cell_data={
             "layer": fields.layer.astype(np.float64),

@@ -6,7 +6,7 @@ import numpy as np
 
 from benchmark.errors import InputError
 from benchmark.files import Scenario
-from benchmark.models.coverage import refuse_options
+from benchmark.models.coverage import refuse_options, refuse_solid
 from benchmark.models.radii import profile_radii
 from benchmark.models.result import Drive, ModelResult, OnStep, StepProgress, UncoveredError, silent
 from wavemodel import DiscTool, LayeredWave, NotCoveredError, Prony, WaveError, WaveLayer
@@ -27,6 +27,7 @@ class WaveModel:
 
     def __init__(self, scenario: Scenario):
         refuse_options(scenario)
+        refuse_solid(scenario)
         if scenario.wave.model != "layered":
             raise UncoveredError(f"the wave model {scenario.wave.model} does not predict a scenario; layered does")
         self._scenario = scenario
