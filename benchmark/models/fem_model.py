@@ -14,6 +14,7 @@ from benchmark.models.result import (
     FieldSnapshot,
     ModelResult,
     OnStep,
+    Reading,
     RunFailure,
     StepProgress,
     UncoveredError,
@@ -43,6 +44,10 @@ class FemModel:
             raise InputError(f"scenario {scenario.name}: {error}") from None
 
     def run(self, drive: Drive, on_step: OnStep = silent) -> ModelResult:
+        """Follow a load history and read everything off it."""
+        return self.follow(drive, on_step)()
+
+    def follow(self, drive: Drive, on_step: OnStep = silent) -> Reading:
         """Follow a load history; a run that stops early keeps what it reached."""
         load = fem.Load(drive.control, drive.time, drive.value)
 
@@ -50,6 +55,10 @@ class FemModel:
             on_step(StepProgress(step.step, step.total, step.force, step.depth))
 
         solution = self._model.run(load, on_step=report)
+        return lambda: self._result(solution, load, drive)
+
+    def _result(self, solution: fem.Solution, load: fem.Load, drive: Drive) -> ModelResult:
+        """The solution in the harness's terms, with its profile and fields."""
         steps = solution.force.size
         peak = int(np.abs(drive.value[:steps]).argmax()) if steps else 0
         radii = profile_radii(self._scenario.tool.radius)

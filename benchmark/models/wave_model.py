@@ -8,8 +8,8 @@ from benchmark.errors import InputError
 from benchmark.files import Scenario
 from benchmark.models.coverage import refuse_options, refuse_solid
 from benchmark.models.radii import profile_radii
-from benchmark.models.result import Drive, ModelResult, OnStep, StepProgress, UncoveredError, silent
-from wavemodel import DiscTool, LayeredWave, NotCoveredError, Prony, WaveError, WaveLayer
+from benchmark.models.result import Drive, ModelResult, OnStep, Reading, StepProgress, UncoveredError, silent
+from wavemodel import DiscTool, LayeredWave, NotCoveredError, Prony, WaveError, WaveLayer, WaveSolution
 
 STRAINS = {"linear": "small strain", "corrected": "finite strain of the layers"}
 
@@ -39,7 +39,11 @@ class WaveModel:
             raise InputError(f"scenario {scenario.name}: {error}") from None
 
     def run(self, drive: Drive, on_step: OnStep = silent) -> ModelResult:
-        """Follow a load history.
+        """Follow a load history and read everything off it; raises like `follow`."""
+        return self.follow(drive, on_step)()
+
+    def follow(self, drive: Drive, on_step: OnStep = silent) -> Reading:
+        """Follow a load history: force, depth and every layer's deflection on the axis at each step.
 
         Raises
         ------
@@ -50,6 +54,10 @@ class WaveModel:
             solution = self._model.run(drive.control, drive.time, drive.value)
         except WaveError as error:
             raise UncoveredError(str(error)) from None
+        return lambda: self._result(solution, drive, on_step)
+
+    def _result(self, solution: WaveSolution, drive: Drive, on_step: OnStep) -> ModelResult:
+        """The solution in the harness's terms, with its profile."""
         peak = int(np.abs(drive.value).argmax())
         radii = profile_radii(self._scenario.tool.radius)
         steps = drive.time.size
