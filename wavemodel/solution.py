@@ -1,6 +1,6 @@
 """What a run of the layered wave gives back."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -38,6 +38,10 @@ class WaveSolution:
     warnings: tuple[str, ...]
     _field: Field = field(repr=False)
     _history: History = field(repr=False)
+
+    def warned(self, warning: str) -> "WaveSolution":
+        """The same with one more warning, the first."""
+        return replace(self, warnings=(warning, *self.warnings))
 
     def snapshot(self, step: int) -> Snapshot:
         """State of the modes after a step (0..n-1), for `Field` and `Surface`."""

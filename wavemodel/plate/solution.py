@@ -1,7 +1,7 @@
 """What a run of the sheet over a hole gives back; the same face as `wavemodel.solution.WaveSolution`."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -41,6 +41,10 @@ class PlateSolution:
     energy: FloatArray | None
     _hole: float = field(repr=False)
     _faces: Callable[[int, FloatArray], FloatArray] = field(repr=False)
+
+    def warned(self, warning: str) -> "PlateSolution":
+        """The same with one more warning, the first."""
+        return replace(self, warnings=(warning, *self.warnings))
 
     def profile(self, step: int, radii: FloatArray) -> FloatArray:
         """Deflection of each layer's top face after a step.
