@@ -78,6 +78,12 @@ class PlateSolution:
         """
         return self._at(step, radii)[:, -1]
 
+    def in_plane(self, step: int, points: FloatArray, face: int) -> FloatArray:
+        """(P, 2) displacement along x and y at points (P, 2) of a face, m; see `wavemodel.markers.marker_motion`."""
+        distance = np.hypot(points[:, 0], points[:, 1])
+        outward = self._at(step, distance)[0, face]
+        return np.asarray(outward[:, None] * points / np.maximum(distance, 1e-300)[:, None])
+
     def _at(self, step: int, radii: FloatArray) -> FloatArray:
         radius = np.asarray(radii, dtype=np.float64)
         if not np.all(radius >= 0.0):
