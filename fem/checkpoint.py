@@ -117,7 +117,8 @@ def _progress(arrays: dict[str, np.ndarray]) -> Progress:
 
 
 def _state(values: Mapping[str, Any]) -> State:
-    return State(**{name: value if np.ndim(value) else float(value) for name, value in values.items()})
+    numbers: dict[str, Any] = {name: value if np.ndim(value) else float(value) for name, value in values.items()}
+    return State(**numbers)
 
 
 def fingerprint(problem: Problem, mesh: AnyMesh, load: Load) -> str:
