@@ -35,8 +35,8 @@ class _Contact:
 class InteractiveTissue:
     """A tissue under up to `contacts` tools; a frame works in memory that was made beforehand.
 
-    NumPy itself may take buffers of 64 KB for a moment. Only vertices within the body's reach of a contact move, clipped
-    at the tissue's edges; the others are untouched. Bad input raises before anything changes.
+    NumPy itself may take buffers of 64 KB for a moment. Only vertices within the body's reach of a contact move,
+    clipped at the tissue's edges; the others are untouched. Bad input raises before anything changes.
 
     Parameters
     ----------
