@@ -28,8 +28,8 @@ def main() -> None:
         error = " / ".join(f"{value:.2f}" for value in row.error)
         error += "" if len(row.error) == SEVERAL_LAYERS else " (one layer)"
         print(
-            f"| {row.vertices} x {row.vertices} | {row.way} | {row.median:.1f} | {row.p99:.1f} | {row.frames} | {error} "
-            f"| {row.setup:.2f} |",
+            f"| {row.vertices} x {row.vertices} | {row.way} | {row.median:.1f} | {row.p99:.1f} | {row.frames} "
+            f"| {error} | {row.setup:.2f} |",
             flush=True,
         )
     print(f"\nTriangle of {STEPS} steps, set-up apart, FEM on its default mesh.\n")

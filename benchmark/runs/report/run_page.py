@@ -55,6 +55,8 @@ def run_page(
     sections += [scenario_section(record)]
     if record.results:
         sections += [deformation_section(record), statistics_section(record)]
+    if record.scenario.wave.model == "published":
+        sections.append(_published())
     sections += [timing_section(record), method_section(record, environment)]
     return Page(
         title=record.name,
@@ -67,6 +69,12 @@ def run_page(
         downloads=_downloads(tables),
         footer=f"tissuebench {environment['packages']['tissuebench']}",
     )
+
+
+def _published() -> Section:
+    from benchmark.runs.report.published_section import published_section
+
+    return published_section()
 
 
 def _subtitle(record: RunRecord, trials: TrialsPart | None) -> str:
