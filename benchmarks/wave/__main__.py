@@ -22,13 +22,17 @@ def main() -> None:
         f"Frames: {2e3 * REACH:g} mm square of vertices, tool radius {1e3 * RADIUS:g} mm, {FORCE:g} N, wave window "
         f"{1e3 * WINDOW:g} mm. Errors: largest at any vertex against the linear FEM, % of the layer's peak.\n"
     )
-    print("| vertices | way | median us | p99 us | frames | error epidermis / dermis / fat, % | set-up s |")
-    print("|---|---|---|---|---|---|---|")
+    print(
+        "| vertices | way | median us | p99 us | CPU median us | CPU p99 us | frames | error epidermis / dermis / fat, % | set-up s |"
+    )
+    print("|---|---|---|---|---|---|---|---|---|")
     for row in rows(reference()):
+        times = row.times
         error = " / ".join(f"{value:.2f}" for value in row.error)
         error += "" if len(row.error) == SEVERAL_LAYERS else " (one layer)"
         print(
-            f"| {row.vertices} x {row.vertices} | {row.way} | {row.median:.1f} | {row.p99:.1f} | {row.frames} "
+            f"| {row.vertices} x {row.vertices} | {row.way} | {times.median:.1f} | {times.p99:.1f} "
+            f"| {times.cpu_median:.1f} | {times.cpu_p99:.1f} | {times.frames} "
             f"| {error} | {row.setup:.2f} |",
             flush=True,
         )

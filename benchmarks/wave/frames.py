@@ -11,7 +11,7 @@ import numpy as np
 
 from benchmarks.wave import rivals
 from benchmarks.wave.job import FORCE, RADIUS, Reference, errors, vertices, wave_layers
-from benchmarks.wave.timing import microseconds
+from benchmarks.wave.timing import Times, microseconds
 from wavemodel import DiscTool, LayeredWave, Prony
 from wavemodel.control import Grid, InteractiveTissue, layered_body
 from wavemodel.control.fading import Fading
@@ -23,13 +23,11 @@ SERIES, DT = Prony((0.3,), (0.5,)), 1e-3
 
 @dataclass(frozen=True)
 class Row:
-    """One way at one number of vertices; times in microseconds, errors in % of each layer's peak."""
+    """One way at one number of vertices; errors in % of each layer's peak."""
 
     vertices: int
     way: str
-    median: float
-    p99: float
-    frames: int
+    times: Times
     error: tuple[float, ...]
     setup: float
 
@@ -58,11 +56,11 @@ def _row(count: int, way: str, make: Make, truth: np.ndarray) -> Row:
     start = time.perf_counter()
     frame = make()
     setup = time.perf_counter() - start
-    median, p99, frames = microseconds(frame)
+    times = microseconds(frame)
     found = np.array(frame(FORCE))
     if found.shape[1:] != truth.shape[1:]:
         raise ArithmeticError(f"{way}: {found.shape} vertices instead of {truth.shape}")
-    return Row(count, way, median, p99, frames, tuple(errors(found, truth[: len(found)]).tolist()), setup)
+    return Row(count, way, times, tuple(errors(found, truth[: len(found)]).tolist()), setup)
 
 
 def _wave(x: np.ndarray, modes: int) -> Callable[[float], np.ndarray]:
@@ -96,6 +94,6 @@ def _mass_spring(count: int, x: np.ndarray, exact: Reference, truth: np.ndarray)
     start = time.perf_counter()
     grid = rivals.MassSpring(x, exact)
     setup = time.perf_counter() - start
-    median, p99, frames = microseconds(grid.frame)
+    times = microseconds(grid.frame)
     error = tuple(errors(grid.at_rest(FORCE), truth[:1]).tolist())
-    return Row(count, "mass-spring grid, one step, fitted to the peak", median, p99, frames, error, setup)
+    return Row(count, "mass-spring grid, one step, fitted to the peak", times, error, setup)
