@@ -23,7 +23,8 @@ def main() -> None:
         f"{1e3 * WINDOW:g} mm. Errors: largest at any vertex against the linear FEM, % of the layer's peak.\n"
     )
     print(
-        "| vertices | way | median us | p99 us | CPU median us | CPU p99 us | frames | error epidermis / dermis / fat, % | set-up s |"
+        "| vertices | way | median us | p99 us | CPU median us | CPU p99 us | frames "
+        "| error epidermis / dermis / fat, % | set-up s |"
     )
     print("|---|---|---|---|---|---|---|---|---|")
     for row in rows(reference()):
