@@ -5,13 +5,15 @@ PY     := $(VENV)/bin/python
 RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
-.PHONY: help run test test-slow bench-wave lint types imports check lock clean
+.PHONY: help run test test-slow bench-wave lint types imports check lock clean bench-peers bench-liver
 
 help:
 	@echo "make run        measured phantom trials and the 5 N skin press to two reports"
 	@echo "make test       the tests (under 10 minutes on 2 cores)"
 	@echo "make test-slow  the long checks"
 	@echo "make bench-wave microseconds a frame of the wave beside its rivals, each with its error"
+	@echo "make bench-peers  the same problems through FElupe and CalculiX, where they are installed"
+	@echo "make bench-liver  a synthetic liver from its STL file to a pressed VTU"
 	@echo "make check      lint, types and import rules"
 	@echo "make lock       pin the dependencies anew"
 
@@ -36,6 +38,12 @@ test: $(DEV_STAMP)
 
 test-slow: $(DEV_STAMP)
 	$(PY) -m pytest -n 2 -m slow
+
+bench-peers: $(DEV_STAMP)
+	$(PY) -m benchmarks.peers
+
+bench-liver: $(RUN_STAMP)
+	$(PY) -m benchmarks.liver results/liver
 
 lint: $(DEV_STAMP)
 	$(VENV)/bin/ruff check .

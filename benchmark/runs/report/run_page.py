@@ -15,7 +15,7 @@ from benchmark.runs.report.timing_section import timing_section
 from benchmark.runs.report.trials_part import TrialsPart
 from benchmark.runs.report.values import peak_errors
 from benchmark.runs.report.verdict import run_verdict
-from reports import Download, Fact, KeyFigure, Notice, Page, Section
+from reports import Block, Download, Fact, KeyFigure, Notice, Page, Section
 
 LARGEST_COPY = 600_000
 """Characters of a table that is still copied into the page."""
@@ -33,7 +33,11 @@ DESCRIPTIONS = {
 
 
 def run_page(
-    record: RunRecord, environment: Mapping[str, Any], tables: Mapping[str, str], trials: TrialsPart | None = None
+    record: RunRecord,
+    environment: Mapping[str, Any],
+    tables: Mapping[str, str],
+    trials: TrialsPart | None = None,
+    picture: Block | None = None,
 ) -> Page:
     """Return the page of a run.
 
@@ -47,6 +51,8 @@ def run_page(
         The text of each table in the result folder by file name.
     trials
         Measured trials, where there are any.
+    picture
+        Of the pressed tissue, or why there is none.
     """
     sections: list[Section] = []
     if trials is not None:
@@ -54,7 +60,7 @@ def run_page(
         sections.append(fit_section(trials.parameters, trials.notes))
     sections += [scenario_section(record)]
     if record.results:
-        sections += [deformation_section(record), statistics_section(record)]
+        sections += [deformation_section(record, picture), statistics_section(record)]
     if record.scenario.wave.model == "published":
         sections.append(_published())
     sections += [timing_section(record), method_section(record, environment)]
