@@ -5,7 +5,7 @@ PY     := $(VENV)/bin/python
 RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
-.PHONY: help run test test-slow bench-wave lint types imports check lock clean bench-peers bench-liver
+.PHONY: help run test test-slow bench-wave lint types imports check lock clean bench-peers bench-liver docs bench-gate
 
 help:
 	@echo "make run        measured phantom trials and the 5 N skin press to two reports"
@@ -15,6 +15,8 @@ help:
 	@echo "make bench-peers  the same problems through FElupe and CalculiX, where they are installed"
 	@echo "make bench-liver  a synthetic liver from its STL file to a pressed VTU"
 	@echo "make check      lint, types and import rules"
+	@echo "make docs       the documentation as a site in build/site"
+	@echo "make bench-gate the regression gate on trial: false alarms and power (hours at full length)"
 	@echo "make lock       pin the dependencies anew"
 
 $(PY):
@@ -56,6 +58,16 @@ imports: $(DEV_STAMP)
 	$(VENV)/bin/lint-imports
 
 check: lint types imports
+
+docs: $(DEV_STAMP)
+	$(PY) -m benchmark.files.reference > docs/reference-files.md
+	$(PY) -m mkdocs build --quiet
+
+# GATE_RUNS=3 for a short one.
+GATE_RUNS ?= 20
+bench-gate: $(DEV_STAMP)
+	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS)
+	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS) --off 0.01 --values
 
 # Needs uv (`pip install uv`). Only names and versions are written, no addresses.
 lock:

@@ -58,7 +58,7 @@ def write_run(record: RunRecord, folder: Path) -> RunOutcome:
     tables = run_tables(record)
     texts = {name: csv_text(columns, where=name) for name, columns in tables.items()}
     trials = None if record.measured is None else TrialsPart.of(record.measured)
-    page = run_page(record, environment, texts, trials, pressed_picture(record))
+    page = run_page(record, environment, texts, trials, tables, pressed_picture(record))
     with whole_folder(folder) as new:
         for name, text in texts.items():
             write_text(new / "tables" / name, text)
