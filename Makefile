@@ -5,12 +5,13 @@ PY     := $(VENV)/bin/python
 RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
-.PHONY: help run test test-slow lint types imports check lock clean
+.PHONY: help run test test-slow bench-discovery lint types imports check lock clean
 
 help:
 	@echo "make run        measured phantom trials and the 5 N skin press to two reports"
 	@echo "make test       the tests (under 10 minutes on 2 cores)"
 	@echo "make test-slow  the long checks"
+	@echo "make bench-discovery  the discovery on 150 sessions with hidden effects (hours)"
 	@echo "make check      lint, types and import rules"
 	@echo "make lock       pin the dependencies anew"
 
@@ -35,6 +36,10 @@ test: $(DEV_STAMP)
 
 test-slow: $(DEV_STAMP)
 	$(PY) -m pytest -n 2 -m slow
+
+# The table goes to benchmarks/discovery; the same command goes on where it was stopped.
+bench-discovery: $(RUN_STAMP)
+	$(PY) -m benchmark blind --suite first --out benchmarks/discovery
 
 lint: $(DEV_STAMP)
 	$(VENV)/bin/ruff check .

@@ -1,0 +1,41 @@
+"""Which discovery is put on trial: a function of a session and a seed, named `module:function`."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Protocol, cast
+
+from benchmark.discovery.result import Discovery
+from benchmark.errors import InputError
+from benchmark.files.session import Session
+
+PRODUCT = "benchmark.discovery:discover"
+
+
+class Discoverer(Protocol):
+    """Answers for a session."""
+
+    def __call__(self, session: Session, *, seed: int) -> Discovery:
+        """Find where and why the model and the session disagree."""
+        ...
+
+
+def load_discoverer(name: str) -> Discoverer:
+    """The function of that name.
+
+    Raises
+    ------
+    InputError
+        It is not of the form `module:function`, or there is no such function.
+    """
+    module, _, function = name.partition(":")
+    try:
+        found = getattr(importlib.import_module(module), function)
+    except (ImportError, ValueError, AttributeError):
+        found = None
+    if not callable(found):
+        raise InputError(
+            f"--discoverer {name!r}: there is no such function; allowed: module:function, as in {PRODUCT}, called with "
+            "a session and a seed"
+        )
+    return cast(Discoverer, found)
