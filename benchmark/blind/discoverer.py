@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib
-from typing import Protocol, cast
+from typing import Any, Protocol, cast
 
 from benchmark.discovery.result import Discovery
 from benchmark.errors import InputError
@@ -21,13 +21,26 @@ class Discoverer(Protocol):
 
 
 def load_discoverer(name: str) -> Discoverer:
-    """The function of that name.
+    """The function of that name; the product's own gets its usual settings, the seed, and one process.
 
     Raises
     ------
     InputError
         It is not of the form `module:function`, or there is no such function.
     """
+    found = _function(name)
+    if name != PRODUCT:
+        return cast(Discoverer, found)
+    settings = _function("benchmark.discovery:Settings")
+
+    def product(session: Session, *, seed: int) -> Discovery:
+        return cast(Discovery, found(session, settings=settings(seed=seed, workers=1)))
+
+    return product
+
+
+def _function(name: str) -> Any:
+    """What a module has under a name, if it can be called; raises InputError."""
     module, _, function = name.partition(":")
     try:
         found = getattr(importlib.import_module(module), function)
@@ -38,4 +51,4 @@ def load_discoverer(name: str) -> Discoverer:
             f"--discoverer {name!r}: there is no such function; allowed: module:function, as in {PRODUCT}, called with "
             "a session and a seed"
         )
-    return cast(Discoverer, found)
+    return found

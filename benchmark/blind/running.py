@@ -50,7 +50,7 @@ def run_cases(
     journal : Path
         Where each finished case is kept at once, a line of JSON.
     workers : int
-        Processes.
+        Processes; 1 is this one.
     on_case : callable
         Told how many of how many are finished, and the last one.
 
@@ -71,8 +71,9 @@ def run_cases(
 
 
 def _work(waiting: Sequence[CaseName], discoverer: str, workers: int) -> Iterator[Judged]:
-    """Yield finished cases as they come."""
-    if not waiting:
+    """Yield finished cases as they come; one worker is this process."""
+    if workers == 1 or not waiting:
+        yield from (_in_process(name, discoverer) for name in waiting)
         return
     context = multiprocessing.get_context("spawn")
     with single_threaded_children(), ProcessPoolExecutor(min(workers, len(waiting)), context) as pool:
