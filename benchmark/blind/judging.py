@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from benchmark.blind.case import Case
 from benchmark.discovery.result import Discovery
@@ -75,28 +75,25 @@ def judge(case: Case, answer: Discovery, seconds: float) -> Judged:
     reported = dict.fromkeys(slug for each in sets for slug in each)
     found = {(place.channel, place.phase) for place in answer.where}
     strongest = case.cells.strongest
-    return Judged(
-        case=case.name.text,
-        kind=case.name.kind,
-        truth=case.name.slug,
-        seed=case.name.seed,
-        session=session_in_words(case),
-        strength=case.strength,
-        verdict=answer.verdict,
+    return replace(
+        _silent(case, answer.verdict, seconds),
         said="+".join(said),
         reported="+".join(reported),
         first_set="+".join(sets[0]) if sets else "",
         p=answer.p,
-        strongest=" ".join(strongest) if strongest else "",
         place_found=None if strongest is None else strongest in found,
         place_f1=f1(found, set(case.cells.shows), set(case.cells.may_show)) if strongest else None,
         gap_closed=_gap_closed(answer, strongest[0]) if strongest and case.name.kind == "effect" else None,
-        seconds=seconds,
     )
 
 
 def failed(case: Case, error: Exception, seconds: float) -> Judged:
     """A case whose discovery raised: nothing was said."""
+    return replace(_silent(case, "error", seconds), remark=f"{type(error).__name__}: {error}")
+
+
+def _silent(case: Case, verdict: str, seconds: float) -> Judged:
+    """A case of which nothing was said and no place was found."""
     strongest = case.cells.strongest
     return Judged(
         case=case.name.text,
@@ -105,7 +102,7 @@ def failed(case: Case, error: Exception, seconds: float) -> Judged:
         seed=case.name.seed,
         session=session_in_words(case),
         strength=case.strength,
-        verdict="error",
+        verdict=verdict,
         said="",
         reported="",
         first_set="",
@@ -115,7 +112,6 @@ def failed(case: Case, error: Exception, seconds: float) -> Judged:
         place_f1=None if strongest is None else 0.0,
         gap_closed=None,
         seconds=seconds,
-        remark=f"{type(error).__name__}: {error}",
     )
 
 

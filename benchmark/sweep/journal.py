@@ -38,7 +38,7 @@ def read_rows(path: Path, row_type: Callable[..., RowType]) -> Iterator[RowType]
 
 
 class Journal:
-    """Appends finished rows, dataclasses of plain values; `close` it, or use it as a context manager."""
+    """Appends finished rows, dataclasses of plain values; `close` it."""
 
     def __init__(self, path: Path):
         self._stream = path.open("ab")
