@@ -7,6 +7,7 @@ of it. How blocks become HTML is in `reports.page`, `reports.rendering` and the 
 from reports.blocks.base import Block, Section, Subsection
 from reports.blocks.facts import Fact, Facts, KeyFigure, KeyFigures
 from reports.blocks.figure import Figure, Panel
+from reports.blocks.photo import Photo
 from reports.blocks.table import Column, Download, Downloads, Table
 from reports.blocks.text import NOTICES, Bullets, Listing, Notice, Paragraph
 from reports.blocks.verdict import VERDICTS, Verdict
@@ -28,6 +29,7 @@ __all__ = [
     "Notice",
     "Panel",
     "Paragraph",
+    "Photo",
     "Section",
     "Subsection",
     "Table",

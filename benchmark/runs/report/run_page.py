@@ -29,6 +29,9 @@ DESCRIPTIONS = {
     "timing.csv": "every timed repeat",
     "fitted_parameters.csv": "fitted and fixed parameters with intervals",
     "measured.csv": "every trial beside both models",
+    "marker_fits.csv": "a parabola over time for each marker and axis",
+    "circle.csv": "the circle around the tool in every frame",
+    "held_out.csv": "each trial predicted by the others",
 }
 
 
@@ -52,6 +55,7 @@ def run_page(
     if trials is not None:
         sections.append(measured_section(trials.trials, trials.synthetic, record.pair))
         sections.append(fit_section(trials.parameters, trials.notes))
+        sections += [] if trials.markers is None else [trials.markers]
     sections += [scenario_section(record)]
     if record.results:
         sections += [deformation_section(record), statistics_section(record)]
