@@ -5,12 +5,13 @@ PY     := $(VENV)/bin/python
 RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
-.PHONY: help run test test-slow lint types imports check lock clean
+.PHONY: help run test test-slow bench-vision lint types imports check lock clean
 
 help:
-	@echo "make run        measured phantom trials and the 5 N skin press to two reports"
+	@echo "make run        phantom trials from their films, and the 5 N skin press, to two reports"
 	@echo "make test       the tests (under 10 minutes on 2 cores)"
 	@echo "make test-slow  the long checks"
+	@echo "make bench-vision  speed and memory of the marker tracker"
 	@echo "make check      lint, types and import rules"
 	@echo "make lock       pin the dependencies anew"
 
@@ -35,6 +36,9 @@ test: $(DEV_STAMP)
 
 test-slow: $(DEV_STAMP)
 	$(PY) -m pytest -n 2 -m slow
+
+bench-vision: $(RUN_STAMP)
+	$(PY) -m benchmarks.vision
 
 lint: $(DEV_STAMP)
 	$(VENV)/bin/ruff check .

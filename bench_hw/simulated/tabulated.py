@@ -21,6 +21,7 @@ from bench_hw.errors import InputError
 from bench_hw.simulated.specimen import FloatArray, MarkerGrid, Response
 
 SCHEMA = 1
+_GRID = MarkerGrid()
 _ARRAYS = ("depth", "force", "radius", "outward", "sunk")
 
 
@@ -86,7 +87,7 @@ class TabulatedSpecimen:
     relaxation: tuple[tuple[float, float], ...] = ()
     gain: float = 1.0
     axis: tuple[float, float] = (0.0, 0.0)
-    grid: MarkerGrid = MarkerGrid()
+    grid: MarkerGrid = _GRID
     _memory: _Memory = field(default_factory=_Memory)
 
     def __call__(self, time: FloatArray, depth: FloatArray, start: int) -> Response:

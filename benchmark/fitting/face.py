@@ -39,6 +39,10 @@ class View:
         return np.asarray(self.centre + (seen - self.centre) * shrunk[..., None])
 
 
+EVERYWHERE = View()
+"""Of a camera that is too far to see anything grow."""
+
+
 @dataclass(frozen=True)
 class FaceField:
     """Displacement of a sheet's lower face over depth and distance from the tool axis, by cubic splines; SI.
@@ -66,7 +70,8 @@ class FaceField:
         shape = (len(self.depth), len(self.radius))
         if self.outward.shape != shape or self.sunk.shape != shape or min(shape) < 4:
             raise FittingError(
-                f"lower face: outward {self.outward.shape} and sunk {self.sunk.shape} need the shape {shape}, 4 at least"
+                f"lower face: outward {self.outward.shape} and sunk {self.sunk.shape} need the shape {shape}, each at "
+                "least 4"
             )
 
     def __call__(self, depth: Array, radius: Array) -> tuple[Array, Array]:

@@ -1,4 +1,4 @@
-"""What a sheet under a tool does in one trial: force and seen markers from stiffness, contact, axis, thickness, time."""
+"""What a sheet under a tool does in one trial: its force and where its markers are seen."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmark.fitting.curve import Array, ForceCurve
-from benchmark.fitting.face import FaceField, View
+from benchmark.fitting.face import EVERYWHERE, FaceField, View
 from benchmark.fitting.film import FilmedTrial
-from benchmark.fitting.relaxation import Relaxation, relaxed
+from benchmark.fitting.relaxation import NONE, Relaxation, relaxed
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Sheet:
     thick_curve: ForceCurve
     thick_face: FaceField
     thicker: float
-    view: View = View()
+    view: View = EVERYWHERE
 
     @property
     def reach(self) -> float:
@@ -69,7 +69,7 @@ class SheetState:
     zero: float
     axis: tuple[float, float] = (0.0, 0.0)
     log_thickness: float = 0.0
-    relaxation: Relaxation = Relaxation(0.0, 1.0)
+    relaxation: Relaxation = NONE
 
 
 def sheet_force(filmed: FilmedTrial, sheet: Sheet, state: SheetState) -> Array:

@@ -1,4 +1,4 @@
-"""One filmed trial fitted by lmfit: stiffness, contact, zero and tool axis, with thickness or relaxation where asked."""
+"""One filmed trial fitted by lmfit: stiffness, contact, zero, tool axis; thickness or relaxation where asked."""
 
 from __future__ import annotations
 

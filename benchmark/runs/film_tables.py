@@ -89,7 +89,7 @@ def marker_fits(motions: Sequence[Motion]) -> dict[str, Any]:
 
 
 def circles(motions: Sequence[Motion]) -> dict[str, Any]:
-    """Columns of `circle.csv`: the circle through the nine markers and through the ring of eight, whose middle is x, y."""
+    """Columns of `circle.csv`: circles through the nine markers and through the ring of eight, whose middle is x, y."""
     whole = [motion for motion in motions if motion.block is not None]
 
     def joined(values: Sequence[Array]) -> Array:

@@ -7,7 +7,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from bench_hw.errors import BenchError, TrialFileError
+from bench_hw.tables import MarkerTable
 from bench_hw.vision.camera.file import read_camera
 from bench_hw.vision.camera.model import Camera
 from bench_hw.vision.camera.plane import distance_of
@@ -34,6 +37,10 @@ class Tracked:
     still: bytes | None
     frames: int
     missing_percent: float
+
+
+Found = tuple[MarkerTable, Tracked | None, tuple[str, ...]]
+"""Tracks of one trial, what was tracked now, and what to say of it."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +80,9 @@ def session_films(session: Session, listener: Listener) -> Films:
     if camera is None:
         return NO_FILMS
     layout = Layout(camera.marker_rows, camera.marker_columns)
-    films, tracked, warnings = {}, [], []
+    films: dict[Key, Film] = {}
+    tracked: list[Tracked] = []
+    warnings: list[str] = []
     for trial, found in zip(session.trials, _sources(session, layout, listener), strict=True):
         if found is None:
             continue
@@ -89,7 +98,7 @@ def session_films(session: Session, listener: Listener) -> Films:
     return Films(films, tuple(tracked), view, (*warnings, *(said if films else ())))
 
 
-def _sources(session: Session, layout: Layout, listener: Listener) -> Iterator[tuple | None]:  # type: ignore[type-arg]
+def _sources(session: Session, layout: Layout, listener: Listener) -> Iterator[Found | None]:
     for trial in session.trials:
         if trial.markers is not None:
             yield trial.markers, None, ()
@@ -112,7 +121,7 @@ def _camera_file(session: Session) -> Path | None:
     return None if camera is None or camera.file is None else session.folder / camera.file
 
 
-def _track(session: Session, trial: Trial, layout: Layout, listener: Listener) -> tuple:  # type: ignore[type-arg]
+def _track(session: Session, trial: Trial, layout: Layout, listener: Listener) -> Found:
     """Track the pictures of a trial in a folder that is gone afterwards."""
     camera = _camera_file(session)
     assert camera is not None
@@ -151,11 +160,5 @@ def _view(session: Session) -> tuple[View, tuple[str, ...]]:
 def _centre(camera: Camera) -> tuple[float, float]:
     """Where the camera's axis meets the plane, m from the tracks' origin."""
     assert camera.plane is not None
-    x, y = (-distance_of(camera) * camera.to_normalised(_array(camera.plane.origin))).tolist()
+    x, y = (-distance_of(camera) * camera.to_normalised(np.asarray(camera.plane.origin))).tolist()
     return x, y
-
-
-def _array(values: tuple[float, float]):  # type: ignore[no-untyped-def]
-    import numpy as np
-
-    return np.asarray(values)

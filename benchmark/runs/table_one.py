@@ -21,7 +21,7 @@ THEIRS = "Table 1 in the article's own way, units mixed as there, mean over {} t
 Values = dict[str, tuple[float, str]]
 
 
-Placed = Callable[[Motion, np.ndarray], np.ndarray]  # type: ignore[type-arg]
+Placed = Callable[[Motion, np.ndarray], np.ndarray]
 """From a motion and the depths (f,) at its frames to the markers' true displacements, (f, m, 2) m."""
 
 
@@ -70,7 +70,7 @@ def _rows(values: Sequence[Mapping[str, tuple[float, str]]], source: str, condit
     return rows
 
 
-def _depth(trial: Trial, motion: Motion) -> np.ndarray:  # type: ignore[type-arg]
+def _depth(trial: Trial, motion: Motion) -> np.ndarray:
     return np.interp(motion.time, trial.table.time, trial.table.depth)
 
 

@@ -7,7 +7,8 @@ its simulated devices: ten presses of the published protocol (2 mm at 1 mm/s), t
 with the published lens distortion films the 18 markers. Of the first trial of each protocol the film is kept, of the
 others the markers as `track` finds them. What differs from trial to trial (stiffness, contact, where the tool meets the
 grid) and what the devices add (counts of 0.049 mm, noise) is drawn from one seed; `truth.toml` names it all and is not
-read by any fit. The fit works with the same finite elements: it tests the chain from pictures to parameters, not physics.
+read by any fit. The fit works with the same finite elements: it tests the chain from pictures to parameters, not the
+physics.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -36,6 +37,7 @@ from bench_hw.vision.tracking.run import TrackOrder, track
 from benchmark.errors import SolverError
 from benchmark.sessions.phantom_sheet import RELAXATION, hidden_sheet
 from benchmark.sessions.phantom_text import session_text, truth_text
+from benchmark.sessions.phantom_trial import TrueTrial
 
 PRESSES: Final = (("press", "paper_press", 10), ("rich", "rich_press", 3))
 """Condition, protocol and number of trials."""
@@ -55,20 +57,6 @@ CAMERA: Final = {
     "noise": 2.0,
     "quality": 80,
 }
-
-
-@dataclass(frozen=True)
-class TrueTrial:
-    """What is drawn for one trial: stiffness over the sheet's, contact (m), tool axis on the grid (m), seed."""
-
-    name: str
-    condition: str
-    protocol: str
-    gain: float
-    contact: float
-    axis: tuple[float, float]
-    seed: int
-    film: bool
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -9,7 +9,7 @@ from benchmark.sessions.phantom_sheet import RELAXATION, SPECIMEN, TRUE_FACTOR
 
 if TYPE_CHECKING:
     from bench_hw.simulated.specimen import MarkerGrid
-    from benchmark.sessions.make_phantom import TrueTrial
+    from benchmark.sessions.phantom_trial import TrueTrial
 
 _HEAD = """\
 schema = 1

@@ -40,8 +40,8 @@ def marker_motion(trial: str, time_s: Any, moved_mm: Any) -> Figure:
         raise ValueError(f"moved_mm has shape {moved.shape}, allowed: ({len(time)}, markers, 2)")
     panels = [_motion_panel(time, moved[:, :, axis], axis) for axis in range(2)]
     caption = (
-        f"Displacement of the {moved.shape[1]} markers of {trial} from where they were first seen, as the camera sees it "
-        "(perspective included); a line a marker."
+        f"Displacement of the {moved.shape[1]} markers of {trial} from where they were first seen, as the camera sees "
+        "it (perspective included); a line a marker."
     )
     return Figure(panels, caption, "Marker displacements")
 
