@@ -81,8 +81,10 @@ class FittedSession:
         return self.fit.stiffness_factor if sheet is None else sheet.stiffness.value
 
 
-def fit_trials(path: Path, specimen: str | None, settings: Mapping[str, str], listener: Listener) -> FittedSession:
-    """Read a session and fit its specimen to all trials.
+def fit_trials(
+    path: Path, specimen: str | None, settings: Mapping[str, str], listener: Listener, *, films: bool = True
+) -> FittedSession:
+    """Read a session and fit its specimen to all trials; with `films`, to their markers, too.
 
     Raises
     ------
@@ -100,7 +102,7 @@ def fit_trials(path: Path, specimen: str | None, settings: Mapping[str, str], li
     except FittingError as error:
         raise InputError(f"session {session.folder}: {error}") from None
     found = FittedSession(session, fit, trials, (*session.warnings, *base.warnings, *fit.warnings))
-    return _with_films(found, session_films(session, listener), listener)
+    return _with_films(found, session_films(session, listener), listener) if films else found
 
 
 def _with_films(found: FittedSession, films: Films, listener: Listener) -> FittedSession:

@@ -46,11 +46,14 @@ def test_a_session_run_compares_measured_with_both_models(benchmark_cli, tmp_pat
     page = (tmp_path / "r/report.html").read_text()
     assert "Synthetic data" in page
     assert "Circular comparison" in page
-    assert "Tracked markers" in page and "data:image/png" in page
+    assert "Tracked markers" in page
+    assert "data:image/png" in page
     held_out = pd.read_csv(tmp_path / "r/tables/held_out.csv")
-    assert held_out.force_rms_percent.max() < 5.0 and held_out.marker_rms_mm.max() < 0.05
+    assert held_out.force_rms_percent.max() < 5.0
+    assert held_out.marker_rms_mm.max() < 0.05
     fits = pd.read_csv(tmp_path / "r/tables/marker_fits.csv")
-    assert list(fits) == ["trial", "marker", "axis", "a", "b", "c", "r2"] and len(fits) == 13 * 18 * 2
+    assert list(fits) == ["trial", "marker", "axis", "a", "b", "c", "r2"]
+    assert len(fits) == 13 * 18 * 2
     circle = pd.read_csv(tmp_path / "r/tables/circle.csv")
     assert list(circle) == ["trial", "time_s", "radius_nine_mm", "radius_ring_mm", "x_mm", "y_mm"]
     assert circle.trial.nunique() == 13

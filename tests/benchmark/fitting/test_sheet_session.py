@@ -90,7 +90,8 @@ def test_modulus_and_relaxation_are_found(small) -> None:
     assert fit.stiffness.value == pytest.approx(TRUE_FACTOR, rel=0.05)
     assert fit.stiffness.low < TRUE_FACTOR < fit.stiffness.high
     (share, tau), *_ = RELAXATION
-    assert fit.share is not None and fit.tau is not None
+    assert fit.share is not None
+    assert fit.tau is not None
     assert fit.share.value == pytest.approx(share, rel=0.1)
     assert fit.tau.value == pytest.approx(tau, rel=0.25)
 
@@ -114,7 +115,8 @@ def test_thickness_and_stiffness_are_not_told_apart_by_force_alone(small, model)
 
 def test_an_elastic_sheet_without_a_hold_has_no_relaxation_and_says_what_would_tell(model) -> None:
     alone, fit = one_session(model, np.random.default_rng(2), presses=2, rich=0, relaxation=())
-    assert fit.share is None and fit.relaxation.share == 0.0
+    assert fit.share is None
+    assert fit.relaxation.share == 0.0
     rows = {row.name: row for row in sheet_parameters(fit, model[0], alone.parameters)}
     assert rows["relaxation.g_1"].value is None
     assert "hold" in rows["relaxation.g_1"].source
