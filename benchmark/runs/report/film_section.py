@@ -74,12 +74,13 @@ def _still(tracked: Tracked, synthetic: bool) -> list[Block]:
 
 
 def _motion(motion: Motion, comparison: MeasuredComparison) -> list[Block]:
-    blocks: list[Block] = [marker_motion(motion.trial, motion.time, MM * motion.moved)]
+    name = f"{motion.trial} (synthetic)" if comparison.session.synthetic else motion.trial
+    blocks: list[Block] = [marker_motion(name, motion.time, MM * motion.moved)]
     if motion.block is not None:
         table = next(trial.table for trial in comparison.session.trials if trial.name == motion.trial)
         depth = MM * np.interp(motion.time, table.time, table.depth)
         radii = (MM * motion.radius_nine, MM * motion.radius_ring)
-        blocks.append(circle_radius(motion.trial, motion.time, *radii, depth))
+        blocks.append(circle_radius(name, motion.time, *radii, depth))
     return blocks
 
 
@@ -92,8 +93,8 @@ def _trials(sheet: SheetFit) -> Table:
         Column("contact onset", "mm"),
         Column("tool axis x", "mm", 3),
         Column("tool axis y", "mm", 3),
-        Column("held out: force, rms", "% of peak", 3),
-        Column("held out: markers, rms", "mm", 3),
+        Column("force", "% of peak", 3),
+        Column("markers", "mm", 3),
     )
     rows = []
     for trial in sheet.trials:
@@ -111,8 +112,8 @@ def _trials(sheet: SheetFit) -> Table:
             )
         )
     return Table(
-        "Each trial fitted by force and markers; held out: predicted with the stiffness of the other trials, with its "
-        "own contact, zero and axis",
+        "Each trial fitted by force and markers; the last two columns: root mean square error when it is held out, "
+        "predicted with the stiffness of the other trials and its own contact, zero and axis",
         columns,
         rows,
         download=Download("tables/held_out.csv", "the last two columns"),
