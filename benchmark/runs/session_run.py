@@ -37,6 +37,7 @@ from benchmark.runs.listener import Listener
 from benchmark.runs.measured import FilmedSession, MeasuredComparison, TrialPrediction
 from benchmark.runs.options import RunOptions
 from benchmark.runs.record import RunRecord
+from benchmark.runs.report.measured_section import fit_headline
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.sheets import session_sheets
 from benchmark.runs.table_one import Placed, table_one
@@ -121,13 +122,14 @@ def _with_films(found: FittedSession, films: Films, listener: Listener) -> Fitte
         if (film := filmed_trial(data, films.films[data.key])) is not None
     }
     sheet = fit_sheet(tuple(pairs.values()), starts) if pairs else None
-    rows = found.fit.parameters
+    rows, notes = found.fit.parameters, found.fit.notes
     if sheet is not None:
         rows = sheet_parameters(sheet, session.specimen.layers, rows)
+        notes = (f"force alone: {fit_headline(found.fit)}", *(f"force alone: {note}" for note in notes))
     placed = (
         {} if sheet is None else {key[1]: _placed(pairs[key][1], own) for key in pairs if (own := sheet.trial(key))}
     )
-    fit = replace(found.fit, parameters=(*rows, *table_one(session, motions, placed)))
+    fit = replace(found.fit, notes=notes, parameters=(*rows, *table_one(session, motions, placed)))
     filmed = FilmedSession(motions, films.tracked, sheet)
     warnings = (*found.warnings, *films.warnings, *said)
     return replace(found, fit=fit, filmed=filmed, sheets=pairs, warnings=warnings)
