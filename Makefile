@@ -44,15 +44,6 @@ test: $(DEV_STAMP)
 test-slow: $(DEV_STAMP)
 	$(PY) -m pytest -n 2 -m slow
 
-bench-peers: $(DEV_STAMP)
-	$(PY) -m benchmarks.peers
-
-bench-liver: $(RUN_STAMP)
-	$(PY) -m benchmarks.liver results/liver
-# The table goes to benchmarks/discovery; the same command goes on where it was stopped.
-bench-discovery: $(RUN_STAMP)
-	$(PY) -m benchmark blind --suite first --out benchmarks/discovery
-
 lint: $(DEV_STAMP)
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/ruff format --check .
@@ -69,11 +60,27 @@ docs: $(DEV_STAMP)
 	$(PY) -m benchmark.files.reference > docs/reference-files.md
 	$(PY) -m mkdocs build --quiet
 
+bench-wave: $(RUN_STAMP)
+	$(PY) -m benchmarks.wave
+
+bench-peers: $(DEV_STAMP)
+	$(PY) -m benchmarks.peers
+
+bench-liver: $(RUN_STAMP)
+	$(PY) -m benchmarks.liver results/liver
+
+bench-vision: $(RUN_STAMP)
+	$(PY) -m benchmarks.vision
+
 # GATE_RUNS=3 for a short one.
 GATE_RUNS ?= 20
 bench-gate: $(DEV_STAMP)
 	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS)
 	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS) --off 0.01 --values
+
+# The table goes to benchmarks/discovery; the same command goes on where it was stopped.
+bench-discovery: $(RUN_STAMP)
+	$(PY) -m benchmark blind --suite first --out benchmarks/discovery
 
 # Needs uv (`pip install uv`). Only names and versions are written, no addresses.
 lock:
@@ -81,9 +88,6 @@ lock:
 		--output-file requirements.lock pyproject.toml
 	uv pip compile --universal --python-version 3.11 --no-header --no-annotate --no-emit-index-url \
 		--extra dev --extra peers --output-file requirements-dev.lock pyproject.toml
-
-bench-wave: $(RUN_STAMP)
-	$(PY) -m benchmarks.wave
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info

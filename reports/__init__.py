@@ -6,7 +6,6 @@ dataclasses of `reports.blocks` come in, strings and files go out. Figures live 
 
 from reports.atomic import whole_folder, write_bytes, write_json, write_text
 from reports.blocks import (
-    Animation,
     Block,
     Bullets,
     Column,
@@ -31,7 +30,6 @@ from reports.page import Page, render_page, write_page
 from reports.tables import csv_text, write_csv
 
 __all__ = [
-    "Animation",
     "Block",
     "Bullets",
     "Column",

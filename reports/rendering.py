@@ -46,8 +46,7 @@ def _embedded_panels(figure: Figure, number: int) -> Iterator[Markup]:
 
     for position, panel in enumerate(figure.panels):
         if isinstance(panel, Picture):
-            data = base64.b64encode(panel.png).decode("ascii")
-            yield Markup('<img src="data:image/png;base64,{}" alt="{}">').format(data, panel.alt)
+            yield Markup('<img src="{}" alt="{}">').format(panel.address, panel.alt)
             continue
         title = panel.title or figure.title or f"Figure {number}"
         # embed() has parsed the SVG, refused anything active and escaped every text in it.

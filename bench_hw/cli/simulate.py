@@ -116,6 +116,10 @@ def session(
     loss: Loss = 0.0,
     drop: Drop = "",
     condition: Annotated[str, typer.Option(help="What the trials share; the protocol's name by default.")] = "",
+    specimen: Annotated[
+        str,
+        typer.Option(help="What is pressed: phantom (a sheet by finite elements), a table like it; a simple sheet."),
+    ] = "",
     append: Annotated[bool, typer.Option("--append", help="Add the trials to a session that exists.")] = False,
     seed: Seed = 0,
     as_json: Json = False,
@@ -130,13 +134,16 @@ def session(
         from bench_hw.cli.capture import report_outcome
         from bench_hw.motion.loading import load_protocol
         from bench_hw.rig.loading import simulated_rig
+        from bench_hw.simulated.tabulated import TabulatedSpecimen, read_sheet
 
+        sheet = TabulatedSpecimen(read_sheet(specimen)) if specimen else None
         force = {"rate": f"{rate_hz:g} Hz", "loss": loss, "drop": drop}
         rig = simulated_rig({"force": force} | ({} if with_camera else {"camera": None}))
         order = CaptureOrder(
             load_protocol(protocol), rig, out, trials, condition, fast=not real_time, append=append, seed=seed
         )
-        report_outcome(capture(order, choose_progress(quiet or as_json)), as_json=as_json, quiet=quiet)
+        outcome = capture(order, choose_progress(quiet or as_json), specimen=sheet)
+        report_outcome(outcome, as_json=as_json, quiet=quiet)
 
 
 def _serve(duration: float | None) -> None:

@@ -112,10 +112,13 @@ class ImagesCamera(_Camera):
 
 
 class SimulatedCamera(_Camera):
-    """A simulated webcam as an MJPEG stream on loopback."""
+    """A simulated webcam as an MJPEG stream on loopback: its optics (OpenCV's k1, k2, p1, p2, k3) and its JPEG."""
 
     kind: Literal["simulated"]
     distance: Annotated[Length, Field(gt=0.0, le=10.0)] = 0.070
+    focal_px: Annotated[float, Field(gt=0.0, le=100_000.0)] | None = None
+    distortion: tuple[float, float, float, float, float] | None = None
+    quality: Annotated[int, Field(ge=1, le=100, strict=True)] = 92
     noise: Annotated[float, Field(ge=0.0, le=255.0)] = 3.0
     blur: Annotated[float, Field(ge=0.0, le=20.0)] = 0.8
     lighting: Annotated[float, Field(ge=-1.0, le=1.0)] = 0.15

@@ -31,10 +31,12 @@ def optics_of(rig: Rig) -> CameraModel:
     camera = rig.camera
     if not isinstance(camera, SimulatedCamera):
         return CameraModel()
+    usual = CameraModel()
     return CameraModel(
         size=camera.size,
-        focal_length=CameraModel().focal_length * camera.size[0] / CameraModel().size[0],
+        focal_length=camera.focal_px or usual.focal_length * camera.size[0] / usual.size[0],
         distance=camera.distance,
+        distortion=camera.distortion or usual.distortion,
         noise=camera.noise,
         blur=camera.blur,
         lighting=camera.lighting,
@@ -58,4 +60,4 @@ def _camera(rig: Rig) -> CameraSettings | None:
     camera = rig.camera
     if not isinstance(camera, SimulatedCamera):
         return None
-    return CameraSettings(rate=camera.rate, jitter=camera.jitter, loss=camera.loss)
+    return CameraSettings(rate=camera.rate, jitter=camera.jitter, loss=camera.loss, quality=camera.quality)

@@ -178,8 +178,15 @@ class TwinSettings:
 
 
 def switch_on(settings: TwinSettings, clock: Clock) -> Twins:
-    """Switch the twins of a bench on."""
+    """Switch the twins of a bench on.
+
+    Raises
+    ------
+    InputError
+        The camera's distortion folds over inside the picture.
+    """
     of_box, of_camera, of_noise = np.random.default_rng(settings.seed).spawn(3)
+    painter = None if settings.camera is None else _painter(settings.picture, of_noise)
     bench = VirtualBench(
         settings.specimen, ActuatorMotion(settings.stroke), contact=settings.contact, start=clock.now()
     )
@@ -187,7 +194,14 @@ def switch_on(settings: TwinSettings, clock: Clock) -> Twins:
     twins = Twins(clock, settings, bench, board, LacUsbBackend(board))
     if settings.box is not None:
         twins.box = NetFTBox(bench.force_at, clock, settings.box, of_box)
-    if settings.camera is not None:
-        painter = Painter(settings.picture, of_noise)
-        twins.camera = CameraServer(lambda now: painter.paint(bench.markers_at(now)), clock, settings.camera, of_camera)
+    if settings.camera is not None and painter is not None:
+        paint = painter.paint
+        twins.camera = CameraServer(lambda now: paint(bench.markers_at(now)), clock, settings.camera, of_camera)
     return twins
+
+
+def _painter(picture: CameraModel, rng: np.random.Generator) -> Painter:
+    try:
+        return Painter(picture, rng)
+    except ValueError as error:
+        raise InputError(f"simulated camera: {error}, or a longer focal length") from None

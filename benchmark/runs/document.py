@@ -6,7 +6,7 @@ from typing import Any
 
 from benchmark.comparison import comparison_summary
 from benchmark.runs.record import RunRecord
-from benchmark.runs.report.measured_section import fit_headline
+from benchmark.runs.report.film_section import measured_headline
 from benchmark.side_by_side import ModelRun
 
 SCHEMA = 1
@@ -38,7 +38,7 @@ def results_document(record: RunRecord) -> dict[str, Any]:
             "synthetic": record.measured.session.synthetic,
             "fingerprint": record.measured.session.fingerprint,
             "count": len(record.measured.trials),
-            "headline": fit_headline(record.measured.fit),
+            "headline": measured_headline(record.measured),
             "notes": list(record.measured.fit.notes),
         }
     return document

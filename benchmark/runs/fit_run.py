@@ -46,13 +46,15 @@ def fit_to_folder(
     """
     found = fit_trials(path, specimen, settings, listener)
     session, fit, warnings = found.session, found.fit, found.warnings
+    sheet = None if found.filmed is None else found.filmed.sheet
     document = {
         **fit.to_dict(),
+        **({} if sheet is None else {"sheet": sheet.to_dict()}),
         "session": {"name": session.name, "fingerprint": session.fingerprint, "synthetic": session.synthetic},
         "specimen": session.specimen.name,
         "warnings": list(warnings),
     }
-    page = fit_page(session, fit, warnings, describe_environment(seed=seed))
+    page = fit_page(session, fit, warnings, describe_environment(seed=seed), sheet)
     folder = destination(out, f"{session.name}-fit")
     with whole_folder(folder) as new:
         write_json(new / "fit.json", document)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from benchmark.files import Session
-from benchmark.fitting import SessionFit
+from benchmark.fitting import SessionFit, SheetFit
 from benchmark.models import Array
+from benchmark.runs.film_tables import Motion
+from benchmark.runs.filming import Tracked
 
 
 @dataclass(frozen=True)
@@ -37,9 +39,27 @@ class TrialPrediction:
 
 
 @dataclass(frozen=True)
+class FilmedSession:
+    """The markers of a session: their motion, what was tracked in this run, and the fit with them (None without)."""
+
+    motions: tuple[Motion, ...]
+    tracked: tuple[Tracked, ...]
+    sheet: SheetFit | None
+
+
+@dataclass(frozen=True)
 class MeasuredComparison:
-    """A session, its fit, and every trial beside the models."""
+    """A session, its fit, and every trial beside the models.
+
+    Attributes
+    ----------
+    session, fit, trials
+        As read, fitted and predicted.
+    filmed
+        What the markers tell; None without any.
+    """
 
     session: Session
     fit: SessionFit
     trials: tuple[TrialPrediction, ...]
+    filmed: FilmedSession | None = None

@@ -6,7 +6,7 @@ from benchmark.files import Scenario
 from benchmark.models import FieldSnapshot
 from benchmark.picture import PACKAGES, draw_pressed
 from benchmark.runs.record import RunRecord
-from reports import Block, Figure, Paragraph, Picture
+from reports import Block, Figure, Paragraph
 
 REACH = 4.0
 """Tool radii round its axis that are shown."""
@@ -37,7 +37,7 @@ def pressed_picture(record: RunRecord) -> Block | None:
         f"lines part the layers. The same fields are in fields/{_file(shown)}."
     )
     alt = f"{what}, pressed by the tool; the deflection is largest under it."
-    return Figure((Picture(drawn.png, alt),), caption, "Pressed tissue")
+    return Figure.of_picture(drawn.png, caption, alt, "Pressed tissue")
 
 
 def _axis(scenario: Scenario) -> tuple[float, float]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -16,19 +17,33 @@ from benchmark.fitting import (
     ForceCurve,
     SessionFit,
     TrialData,
+    filmed_trial,
     fit_session,
+    fit_sheet,
     predict,
     required_depth,
+    sheet_force,
 )
+from benchmark.fitting.film import FilmedTrial
+from benchmark.fitting.sheet_law import Sheet
+from benchmark.fitting.sheet_parameters import sheet_parameters
+from benchmark.fitting.sheet_session import held_out_state
+from benchmark.fitting.sheet_trial import SheetTrial
 from benchmark.models import NOTHING, Array, Drive, Own, PreparedModel, UncoveredError, prepare
 from benchmark.runs.base_curve import Setup, base_curves, setup_scenario
+from benchmark.runs.film_tables import Motion, motions_of
+from benchmark.runs.filming import Films, session_films
 from benchmark.runs.listener import Listener
-from benchmark.runs.measured import MeasuredComparison, TrialPrediction
+from benchmark.runs.measured import FilmedSession, MeasuredComparison, TrialPrediction
 from benchmark.runs.options import RunOptions
 from benchmark.runs.record import RunRecord
+from benchmark.runs.report.measured_section import fit_headline
 from benchmark.runs.scenario_run import run_scenario
+from benchmark.runs.sheets import session_sheets
+from benchmark.runs.table_one import Placed, table_one
 from benchmark.side_by_side import NAMES
 
+Key = tuple[str, str]
 MARGIN = 1.02
 OBSERVATIONS = 100
 
@@ -46,17 +61,31 @@ class FittedSession:
     trials
         In the session's order, each with the force curve of its tool and support.
     warnings
-        Of reading, of the curves, and of the fit.
+        Of reading, of the curves, of the films, and of the fit.
+    filmed
+        What the markers tell; None without any.
+    sheets
+        Each filmed trial with its model, by condition and name.
     """
 
     session: Session
     fit: SessionFit
     trials: tuple[TrialData, ...]
     warnings: tuple[str, ...]
+    filmed: FilmedSession | None = None
+    sheets: Mapping[Key, tuple[FilmedTrial, Sheet]] = field(default_factory=dict)
+
+    @property
+    def stiffness_factor(self) -> float:
+        """Of force and markers together where there are markers, else of the force alone."""
+        sheet = None if self.filmed is None else self.filmed.sheet
+        return self.fit.stiffness_factor if sheet is None else sheet.stiffness.value
 
 
-def fit_trials(path: Path, specimen: str | None, settings: Mapping[str, str], listener: Listener) -> FittedSession:
-    """Read a session and fit its specimen to all trials.
+def fit_trials(
+    path: Path, specimen: str | None, settings: Mapping[str, str], listener: Listener, *, films: bool = True
+) -> FittedSession:
+    """Read a session and fit its specimen to all trials; with `films`, to their markers, too.
 
     Raises
     ------
@@ -73,7 +102,48 @@ def fit_trials(path: Path, specimen: str | None, settings: Mapping[str, str], li
         fit = fit_session(trials, session.specimen.layers)
     except FittingError as error:
         raise InputError(f"session {session.folder}: {error}") from None
-    return FittedSession(session, fit, trials, (*session.warnings, *base.warnings, *fit.warnings))
+    found = FittedSession(session, fit, trials, (*session.warnings, *base.warnings, *fit.warnings))
+    return _with_films(found, session_films(session, listener), listener) if films else found
+
+
+def _with_films(found: FittedSession, films: Films, listener: Listener) -> FittedSession:
+    """Fit force and markers together where trials were filmed."""
+    session, camera = found.session, found.session.camera
+    if camera is None or not films.films:
+        return replace(found, warnings=(*found.warnings, *films.warnings))
+    listener.say(f"{session.name}: fitting force and markers of {len(films.films)} trials together")
+    motions = motions_of(films.films, camera)
+    models, said = session_sheets(session, _depths(session), films.view, listener)
+    starts = {trial.key: trial for trial in found.fit.trials}
+    pairs = {
+        data.key: (film, models[trial.tool, trial.support])
+        for trial, data in zip(session.trials, found.trials, strict=True)
+        if data.key in films.films and data.key in starts and (trial.tool, trial.support) in models
+        if (film := filmed_trial(data, films.films[data.key])) is not None
+    }
+    sheet = fit_sheet(tuple(pairs.values()), starts) if pairs else None
+    rows, notes = found.fit.parameters, found.fit.notes
+    if sheet is not None:
+        rows = sheet_parameters(sheet, session.specimen.layers, rows)
+        notes = (f"force alone: {fit_headline(found.fit)}", *(f"force alone: {note}" for note in notes))
+    placed = (
+        {} if sheet is None else {key[1]: _placed(pairs[key][1], own) for key in pairs if (own := sheet.trial(key))}
+    )
+    fit = replace(found.fit, notes=notes, parameters=(*rows, *table_one(session, motions, placed)))
+    filmed = FilmedSession(motions, films.tracked, sheet)
+    warnings = (*found.warnings, *films.warnings, *said)
+    return replace(found, fit=fit, filmed=filmed, sheets=pairs, warnings=warnings)
+
+
+def _placed(model: Sheet, own: SheetTrial) -> Placed:
+    """Take perspective off the markers of a trial, by how far the fitted sheet sinks."""
+
+    def true_displacements(motion: Motion, depth: Array) -> Array:
+        radius = np.hypot(*(motion.rest - np.array(own.state.axis)).T)
+        sunk = model.face(depth - own.state.onset, radius)[1]
+        return np.asarray(model.view.true(motion.rest + motion.moved, sunk) - motion.rest)
+
+    return true_displacements
 
 
 def run_session(
@@ -90,10 +160,10 @@ def run_session(
     """
     found = fit_trials(path, specimen, settings, listener)
     session, fit = found.session, found.fit
-    fitted = scaled_tissue(session.specimen, fit.stiffness_factor, f"{session.specimen.name}, fitted")
+    fitted = scaled_tissue(session.specimen, found.stiffness_factor, f"{session.specimen.name}, fitted")
     scenario = session_scenario(session, fitted, fit)
     predictions, said = _predictions(found, fitted, own)
-    measured, warnings = MeasuredComparison(session, fit, predictions), (*found.warnings, *said)
+    measured, warnings = MeasuredComparison(session, fit, predictions, found.filmed), (*found.warnings, *said)
     return run_scenario(scenario, options, listener, name=session.name, measured=measured, warnings=warnings, own=own)
 
 
@@ -133,7 +203,7 @@ def _predictions(found: FittedSession, tissue: Tissue, own: Own) -> tuple[tuple[
     reasons = Counter(answer for _, answer in answers if isinstance(answer, str))
     name = own.name("wave") or NAMES["wave"]
     said = tuple(f"the {name} has no force for {count} of the trials: {reason}" for reason, count in reasons.items())
-    return tuple(_prediction(trial, found.fit, answer) for trial, answer in answers), said
+    return tuple(_prediction(trial, found, answer) for trial, answer in answers), said
 
 
 def _wave(session: Session, tissue: Tissue, setup: Setup, own: Own) -> PreparedModel | str:
@@ -144,17 +214,30 @@ def _wave(session: Session, tissue: Tissue, setup: Setup, own: Own) -> PreparedM
         return str(error)
 
 
-def _prediction(trial: TrialData, fit: SessionFit, wave: Array | str) -> TrialPrediction:
+def _prediction(trial: TrialData, found: FittedSession, wave: Array | str) -> TrialPrediction:
+    force, held_out = _fem_forces(trial, found)
     return TrialPrediction(
         trial=trial.name,
         condition=trial.condition,
         time=trial.time,
         depth=trial.depth,
         force=trial.force,
-        fem_force=predict(fit, trial),
+        fem_force=force,
         wave_force=None if isinstance(wave, str) else wave,
-        held_out_force=predict(fit, trial, leave_one_out=True) if len(fit.trials) > 1 else None,
+        held_out_force=held_out,
     )
+
+
+def _fem_forces(trial: TrialData, found: FittedSession) -> tuple[Array, Array | None]:
+    """Force (n,) N of the session's fit, and of the other trials' (None with a single trial)."""
+    fit, sheet = found.fit, None if found.filmed is None else found.filmed.sheet
+    own = None if sheet is None else sheet.trial(trial.key)
+    if sheet is None or own is None:
+        return predict(fit, trial), predict(fit, trial, leave_one_out=True) if len(fit.trials) > 1 else None
+    film, model = found.sheets[trial.key]
+    pooled = replace(own.state, log_stiffness=math.log(sheet.stiffness.value), relaxation=sheet.relaxation)
+    others = held_out_state(own, sheet.trials, sheet.relaxation) if len(sheet.trials) > 1 else None
+    return sheet_force(film, model, pooled), None if others is None else sheet_force(film, model, others)
 
 
 def _wave_force(trial: TrialData, fit: SessionFit, wave: PreparedModel | str) -> Array | str:

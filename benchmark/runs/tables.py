@@ -10,6 +10,7 @@ import numpy as np
 from benchmark.comparison import normal_fit_columns, statistics_columns
 from benchmark.fitting import parameter_columns
 from benchmark.models import Array, ModelResult
+from benchmark.runs.film_tables import circles, marker_fits
 from benchmark.runs.measured import MeasuredComparison
 from benchmark.runs.record import RunRecord
 from benchmark.runs.validation import refinement_columns, validation_columns
@@ -32,11 +33,29 @@ def run_tables(record: RunRecord) -> dict[str, Columns]:
     if record.measured is not None:
         tables["fitted_parameters.csv"] = parameter_columns(record.measured.fit.parameters)
         tables["measured.csv"] = measured(record.measured)
+        tables |= film_tables(record.measured)
     checked = validation_columns(record, record.levels)
     if checked is not None:
         tables["validation.csv"] = checked
     if record.levels:
         tables["refinement.csv"] = refinement_columns(record.levels)
+    return tables
+
+
+def film_tables(comparison: MeasuredComparison) -> dict[str, Columns]:
+    """Tables of the markers; none without any."""
+    filmed = comparison.filmed
+    if filmed is None:
+        return {}
+    tables = {"marker_fits.csv": marker_fits(filmed.motions), "circle.csv": circles(filmed.motions)}
+    if filmed.sheet is not None and filmed.sheet.held_out:
+        rows = filmed.sheet.held_out
+        tables["held_out.csv"] = {
+            "trial": [row.name for row in rows],
+            "condition": [row.condition for row in rows],
+            "force_rms_percent": [row.force_percent for row in rows],
+            "marker_rms_mm": [row.marker_mm for row in rows],
+        }
     return tables
 
 

@@ -1,129 +1,137 @@
-"""Makes the shipped phantom session: ten synthetic presses of a silicone sheet over a hole.
+"""Makes the shipped phantom session: synthetic presses of a silicone sheet over a hole, filmed from below.
 
     python -m benchmark.sessions.make_phantom FOLDER
 
-The trials are computed, not measured, and say so (`synthetic = true`). The sheet is the tissue `rtv3498_sheet` with
-another stiffness, which the fit has to find: `TRUE_FACTOR` times the file's modulus. Its force over depth comes from
-the finite-element solver; so a fit with the same solver is circular in the law and tests the chain, not the physics.
-On top comes what a bench adds: a stiffness that differs a little from trial to trial, a contact that is not at zero
-depth, a force zero that is off, noise with memory on the force, and a depth read in counts of the actuator (0.049 mm).
+Nothing in it is measured, and every file says so. The sheet is `hidden_sheet`; the bench's own drivers capture it on
+its simulated devices: ten presses of the published protocol (2 mm at 1 mm/s), three of a richer one. A simulated camera
+with the published lens distortion films the 18 markers. Of the first trial of each protocol the film is kept, of the
+others the markers as `track` finds them. What differs from trial to trial (stiffness, contact, where the tool meets the
+grid) and what the devices add (counts of 0.049 mm, noise) is drawn from one seed; `truth.toml` names it all and is not
+read by any fit. The fit works with the same finite elements: it tests the chain from pictures to parameters, not the
+physics.
 """
 
 from __future__ import annotations
 
 import argparse
+import shutil
 import sys
-from dataclasses import dataclass
+import tempfile
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
+from bench_hw.capture.order import CaptureOrder
+from bench_hw.capture.progress import Silent
+from bench_hw.capture.session import capture
+from bench_hw.motion.loading import load_protocol
+from bench_hw.rig.loading import LoadedRig, simulated_rig
+from bench_hw.simulated.specimen import MarkerGrid
+from bench_hw.simulated.tabulated import SheetTable, TabulatedSpecimen, write_sheet
+from bench_hw.tables import write_trial_csv
+from bench_hw.trial_file import read_trial_mcap
+from bench_hw.vision.tracking.run import TrackOrder, track
 from benchmark.errors import SolverError
-from benchmark.files import Load, Scenario, Support, Tissue, Tool, load_tissue, scaled_tissue
-from benchmark.models import Array, Drive, prepare
-from reports import write_csv, write_text
+from benchmark.sessions.phantom_sheet import RELAXATION, hidden_sheet
+from benchmark.sessions.phantom_text import session_text, truth_text
+from benchmark.sessions.phantom_trial import TrueTrial
 
-SPECIMEN = "rtv3498_sheet"
-TRUE_FACTOR = 0.83
-TRIALS = 10
-SEED = 20
-TOOL = Tool(radius=5e-3, contact="rigid_bonded")
-SUPPORT = Support(kind="hole", hole_radius=30e-3)
-
-PRESS = 5e-3
-SPEED = 1e-3
-REST = 0.5
-RATE = 20.0
-
-GAIN_SCATTER = 0.02
-ONSET_SCATTER = 0.08e-3
-ZERO_SCATTER = 4e-3
-NOISE = 1.5e-3
-NOISE_MEMORY = 0.6
-COUNT = 50e-3 / 1023
-
-SESSION = """\
-schema = 1
-name = "phantom"
-specimen = "{specimen}"
-synthetic = true            # computed by benchmark/sessions/make_phantom.py, not measured
-
-[tool]
-radius = "5 mm"
-contact = "rigid_bonded"
-
-[support]
-kind = "hole"
-hole_radius = "30 mm"
-
-[drive]
-channel = "depth"
-"""
-
-
-@dataclass(frozen=True)
-class Press:
-    """One trial: s, m as the actuator reports it, N."""
-
-    time: Array
-    depth: Array
-    force: Array
+PRESSES: Final = (("press", "paper_press", 10), ("rich", "rich_press", 3))
+"""Condition, protocol and number of trials."""
+SEED: Final = 20
+GRID: Final = MarkerGrid(rows=3, columns=6, spacing=8e-3)
+DISTORTION: Final = (0.07, -0.48, -0.01, -0.01, 0.0)
+"""The published lens (section 3.2.1); it folds over inside the picture below a focal length of some 610 px."""
+GAIN_SCATTER: Final = 0.02
+CONTACT: Final = 5e-3
+CONTACT_SCATTER: Final = 0.05e-3
+AXIS_SCATTER: Final = 0.3e-3
+RATE: Final = 100.0
+CAMERA: Final = {
+    "rate": "12 Hz",
+    "focal_px": 650.0,
+    "distortion": list(DISTORTION),
+    "noise": 2.0,
+    "quality": 80,
+}
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Write the session into the folder that the command line names."""
     parser = argparse.ArgumentParser(description="Make the synthetic phantom session.")
     parser.add_argument("folder", type=Path)
-    folder = parser.parse_args(arguments).folder
-    curve_depth, curve_force = true_curve()
-    generator = np.random.default_rng(SEED)
-    text = SESSION.format(specimen=SPECIMEN)
-    for number in range(1, TRIALS + 1):
-        press = one_press(curve_depth, curve_force, generator)
-        columns = {
-            "time_s": np.round(press.time, 4),
-            "depth_mm": np.round(1e3 * press.depth, 4),
-            "force_N": np.round(press.force, 6),
-        }
-        path = write_csv(folder / f"trial_{number:03d}.csv", columns)
-        text += f'\n[[trials]]\nfile = "{path.name}"\ncondition = "press"\n'
-    write_text(folder / "session.toml", text)
-    print(f"{TRIALS} synthetic trials in {folder}")
+    parser.add_argument("--sheet", type=Path, help="also write the sheet's table here")
+    options = parser.parse_args(arguments)
+    sheet, trials = hidden_sheet(), tuple(drawn_trials(np.random.default_rng(SEED)))
+    if options.sheet is not None:
+        write_sheet(options.sheet, sheet)
+    with tempfile.TemporaryDirectory() as scratch:
+        made = Path(scratch) / "session"
+        made.mkdir()
+        for trial in trials:
+            make_trial(sheet, trial, Path(scratch) / trial.name, made)
+            print(f"{trial.name} made", flush=True)
+        (made / "session.toml").write_text(session_text(trials, GRID), encoding="utf-8")
+        (made / "truth.toml").write_text(truth_text(trials), encoding="utf-8")
+        shutil.copytree(made, options.folder, dirs_exist_ok=True)
+    print(f"{len(trials)} synthetic trials in {options.folder}")
     return 0
 
 
-def true_curve() -> tuple[Array, Array]:
-    """Depth (k,) m and force (k,) N of the hidden sheet, a little deeper than the press."""
-    tissue: Tissue = scaled_tissue(load_tissue(SPECIMEN), TRUE_FACTOR, "hidden sheet")
-    load = Load(control="depth", peak=PRESS, shape="ramp", duration=1.0, observations=1)
-    scenario = Scenario(name="hidden sheet", tissue=tissue, tool=TOOL, support=SUPPORT, load=load)
-    fractions = np.arange(1, 67) / 60
-    result = prepare("fem", scenario).run(Drive("depth", fractions, PRESS * fractions))
-    if result.failure is not None:
-        raise SolverError(f"the hidden sheet could not be pressed: {result.failure}")
-    return np.append(0.0, result.depth), np.append(0.0, result.force)
+def drawn_trials(generator: np.random.Generator) -> Iterator[TrueTrial]:
+    """Draw what differs from trial to trial."""
+    number = 0
+    for condition, protocol, count in PRESSES:
+        for index in range(1, count + 1):
+            number += 1
+            yield TrueTrial(
+                name=f"{condition}_{index:02d}",
+                condition=condition,
+                protocol=protocol,
+                gain=float(np.exp(generator.normal(0.0, GAIN_SCATTER))),
+                contact=CONTACT + float(generator.normal(0.0, CONTACT_SCATTER)),
+                axis=(float(generator.normal(0.0, AXIS_SCATTER)), float(generator.normal(0.0, AXIS_SCATTER))),
+                seed=1000 * SEED + number,
+                film=index == 1,
+            )
 
 
-def one_press(curve_depth: Array, curve_force: Array, generator: np.random.Generator) -> Press:
-    """Press and retract once, with everything that a bench adds."""
-    time = np.arange(0.0, 2 * REST + 2 * PRESS / SPEED + 0.5 / RATE, 1 / RATE)
-    pressing = np.clip(time - REST, 0.0, 2 * PRESS / SPEED)
-    depth = PRESS - np.abs(SPEED * pressing - PRESS)
-    onset = abs(generator.normal(0.0, ONSET_SCATTER))
-    gain = np.exp(generator.normal(0.0, GAIN_SCATTER))
-    force = gain * np.interp(depth - onset, curve_depth, curve_force)
-    force += generator.normal(0.0, ZERO_SCATTER) + remembered_noise(time.size, generator)
-    return Press(time, COUNT * np.round(depth / COUNT), force)
+def make_trial(sheet: SheetTable, trial: TrueTrial, scratch: Path, folder: Path) -> None:
+    """Capture a trial with the bench's drivers and keep its film, or its tables.
+
+    Raises
+    ------
+    SolverError
+        The capture ended with a fault.
+    """
+    specimen = TabulatedSpecimen(sheet, RELAXATION, trial.gain, trial.axis, GRID)
+    order = CaptureOrder(
+        load_protocol(trial.protocol), _rig(trial), scratch, condition=trial.condition, fast=True, seed=trial.seed
+    )
+    outcome = capture(order, Silent(), specimen=specimen)
+    if outcome.fault is not None:
+        raise SolverError(f"{trial.name}: {outcome.fault.message}")
+    captured = outcome.trials[0]
+    shutil.copyfile(scratch / "camera.toml", folder / "camera.toml")
+    if trial.film:
+        shutil.copyfile(captured, folder / f"{trial.name}.mcap")
+        return
+    write_trial_csv(folder / f"{trial.name}.csv", replace(read_trial_mcap(captured), extra={}, extra_units={}))
+    track(TrackOrder(str(captured), scratch / "camera.toml", folder / f"{trial.name}_markers.csv"))
 
 
-def remembered_noise(size: int, generator: np.random.Generator) -> Array:
-    """First-order autoregressive noise (size,) N with standard deviation `NOISE`."""
-    shocks = generator.normal(0.0, NOISE * np.sqrt(1 - NOISE_MEMORY**2), size)
-    noise = np.empty(size)
-    noise[0] = generator.normal(0.0, NOISE)
-    for row in range(1, size):
-        noise[row] = NOISE_MEMORY * noise[row - 1] + shocks[row]
-    return noise
+def _rig(trial: TrueTrial) -> LoadedRig:
+    """The simulated bench: depth zero is where the file says, the sheet a little off it."""
+    return simulated_rig(
+        {
+            "force": {"rate": f"{RATE:g} Hz"},
+            "camera": dict(CAMERA),
+            "simulation": {"contact": f"{1e3 * trial.contact:.6f} mm", "seed": trial.seed},
+        }
+    )
 
 
 if __name__ == "__main__":

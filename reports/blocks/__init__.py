@@ -4,7 +4,6 @@ A block type is a dataclass here and a template of its own in `templates/blocks/
 of it. How blocks become HTML is in `reports.page`, `reports.rendering` and the templates.
 """
 
-from reports.blocks.animation import Animation
 from reports.blocks.base import Block, Section, Subsection
 from reports.blocks.facts import Fact, Facts, KeyFigure, KeyFigures
 from reports.blocks.figure import Figure, Panel, Picture
@@ -15,7 +14,6 @@ from reports.blocks.verdict import VERDICTS, Verdict
 __all__ = [
     "NOTICES",
     "VERDICTS",
-    "Animation",
     "Block",
     "Bullets",
     "Column",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
@@ -18,13 +19,32 @@ class Panel:
     title: str = ""
 
 
+SIGNATURES = {b"\x89PNG\r\n\x1a\n": "image/png", b"GIF87a": "image/gif", b"GIF89a": "image/gif"}
+
+
 @dataclass(frozen=True)
 class Picture:
-    """One picture of a figure that no lines can draw: a PNG file's bytes and what it shows, in words."""
+    """One picture of a figure that no lines can draw, still (PNG) or moving (GIF), and what it shows, in words.
 
-    png: bytes
+    Raises
+    ------
+    ValueError
+        If the file's bytes are neither.
+    """
+
+    data: bytes
     alt: str
     title: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.data.startswith(tuple(SIGNATURES)):
+            raise ValueError("a picture's bytes are no PNG and no GIF")
+
+    @property
+    def address(self) -> str:
+        """The picture as a data address, which fetches nothing."""
+        kind = next(kind for start, kind in SIGNATURES.items() if self.data.startswith(start))
+        return f"data:{kind};base64,{base64.b64encode(self.data).decode('ascii')}"
 
 
 @dataclass(frozen=True)
@@ -49,5 +69,10 @@ class Figure(Block):
 
     @classmethod
     def of(cls, svg: str, caption: str, alt: str, title: str = "") -> Figure:
-        """Return a figure of a single picture."""
+        """Return a figure of a single drawing."""
         return cls(panels=(Panel(svg, alt, title),), caption=caption, title=title)
+
+    @classmethod
+    def of_picture(cls, data: bytes, caption: str, alt: str, title: str = "") -> Figure:
+        """Return a figure of a single PNG or GIF."""
+        return cls(panels=(Picture(data, alt, title),), caption=caption, title=title)

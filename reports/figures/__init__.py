@@ -7,6 +7,7 @@ from reports.figures.fitted_parameters import FittedParameter, fitted_parameters
 from reports.figures.force_depth import force_depth
 from reports.figures.layer_stack import layer_stack
 from reports.figures.load_history import load_history
+from reports.figures.markers import circle_radius, marker_motion
 from reports.figures.max_deformation import max_deformation
 from reports.figures.measured import measured
 from reports.figures.moving_surface import moving_surface
@@ -23,10 +24,12 @@ __all__ = [
     "Pair",
     "StackLayer",
     "TrialCurve",
+    "circle_radius",
     "fitted_parameters",
     "force_depth",
     "layer_stack",
     "load_history",
+    "marker_motion",
     "max_deformation",
     "measured",
     "moving_surface",

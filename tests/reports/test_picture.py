@@ -4,7 +4,7 @@ import base64
 
 from reports import Figure, Page, Picture, Section, Verdict, render_page
 
-PNG = b"\x89PNG\r\nbytes"
+PNG = b"\x89PNG\r\n\x1a\nbytes"
 
 
 def test_a_picture_is_part_of_the_page():

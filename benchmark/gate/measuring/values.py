@@ -72,7 +72,7 @@ def fit_values(case: Mapping[str, Any]) -> list[Value]:
     """Pooled stiffness factor, and the medians of contact onset and force zero over the trials of a session."""
     from benchmark.runs.session_run import fit_trials
 
-    fit = fit_trials(Path(case["session"]), None, {}, Silent()).fit
+    fit = fit_trials(Path(case["session"]), None, {}, Silent(), films=False).fit
     return [
         _value("stiffness_factor", fit.stiffness_factor, "", None),
         _value("contact_onset_mm", MM * float(np.median([trial.onset for trial in fit.trials])), "mm", None),

@@ -6,13 +6,21 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from benchmark.files import Session
-from benchmark.fitting import SessionFit
+from benchmark.fitting import SessionFit, SheetFit
+from benchmark.runs.report.film_section import sheet_headline
 from benchmark.runs.report.measured_section import fit_headline, fit_section, sentence
 from reports import Column, Download, Fact, Notice, Page, Section, Table, Verdict
 
 
-def fit_page(session: Session, fit: SessionFit, warnings: Sequence[str], environment: Mapping[str, Any]) -> Page:
-    """Return the page of a session's fit."""
+def fit_page(
+    session: Session,
+    fit: SessionFit,
+    warnings: Sequence[str],
+    environment: Mapping[str, Any],
+    sheet: SheetFit | None = None,
+) -> Page:
+    """Return the page of a session's fit, with that of its markers where there are any."""
+    headline = fit_headline(fit) if sheet is None else sheet_headline(sheet)
     notices = []
     if session.synthetic:
         notices.append(Notice("synthetic", "These trials were computed, not measured."))
@@ -21,7 +29,7 @@ def fit_page(session: Session, fit: SessionFit, warnings: Sequence[str], environ
     return Page(
         title=f"{session.name}: fit",
         subtitle=f"{len(session.trials)} trials of {session.specimen.name}",
-        verdict=Verdict("finding", sentence(fit_headline(fit))),
+        verdict=Verdict("finding", sentence(headline)),
         facts=(Fact("Made", str(environment["made"])), Fact("Session", session.fingerprint[:16])),
         notices=notices,
         sections=(fit_section(fit.parameters, fit.notes), Section("Trials", (_trials(fit),))),

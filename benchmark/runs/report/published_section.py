@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from reports import Animation, Column, Paragraph, Section, Table
+from reports import Column, Figure, Paragraph, Section, Table
 from reports.figures import moving_surface
 from wavemodel.published import PublishedWave, table_one
 
@@ -31,11 +31,11 @@ def published_frames(variant: str) -> tuple[np.ndarray, list[np.ndarray]]:
     return 1e3 * side, [-1e3 * wave.deflection(side, side, time) for time in times.tolist()]
 
 
-def _animation(variant: str) -> Animation:
+def _animation(variant: str) -> Figure:
     side, frames = published_frames(variant)
     peak = -float(min(frame.min() for frame in frames))
     period = 4e3 * 0.5 * np.pi / PublishedWave(variant).frequency[0, 0]
-    return Animation(
+    return Figure.of_picture(
         moving_surface(side, side, frames),
         f"Eq. (7) of the article, {LABELS[variant]}: half an oscillation of {period:.4g} ms, slowed down, from rest to "
         f"{peak:.1f} mm and back. The article prints 39.2012 mm, where eq. (3) gives 31.7788 mm, for 2 mm pressed.",

@@ -35,6 +35,9 @@ DESCRIPTIONS = {
     "measured.csv": "every trial beside both models",
     VALIDATION: "errors beside their uncertainties",
     REFINEMENT: "coarser and finer runs, their values and their cost",
+    "marker_fits.csv": "a parabola over time for each marker and axis",
+    "circle.csv": "the circle around the tool in every frame",
+    "held_out.csv": "each trial predicted by the others",
 }
 
 
@@ -67,6 +70,7 @@ def run_page(
     if trials is not None:
         sections.append(measured_section(trials.trials, trials.synthetic, record.pair))
         sections.append(fit_section(trials.parameters, trials.notes))
+        sections += [] if trials.markers is None else [trials.markers]
     sections += [scenario_section(record)]
     if record.results:
         sections += [deformation_section(record, picture), statistics_section(record)]

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from benchmark.fitting import FittedParameter
 from benchmark.runs.measured import MeasuredComparison, TrialPrediction
-from benchmark.runs.report.measured_section import fit_headline
+from benchmark.runs.report.film_section import film_section, measured_headline
+from reports import Section
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,8 @@ class TrialsPart:
         The fit in one sentence.
     parameters, notes
         Of the fit.
+    markers
+        What the films of the trials show; None without any, and in a page made again from files.
     """
 
     trials: Sequence[TrialPrediction]
@@ -31,9 +34,12 @@ class TrialsPart:
     headline: str
     parameters: Sequence[FittedParameter]
     notes: Sequence[str]
+    markers: Section | None = None
 
     @classmethod
     def of(cls, measured: MeasuredComparison) -> TrialsPart:
         """Return the part of a run at hand."""
         fit = measured.fit
-        return cls(measured.trials, measured.session.synthetic, fit_headline(fit), fit.parameters, fit.notes)
+        markers = None if measured.filmed is None else film_section(measured, measured.filmed)
+        headline, synthetic = measured_headline(measured), measured.session.synthetic
+        return cls(measured.trials, synthetic, headline, fit.parameters, fit.notes, markers)

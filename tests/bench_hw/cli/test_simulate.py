@@ -89,6 +89,15 @@ def test_a_session(run, tmp_path):
     assert (tmp_path / "s" / "session.toml").is_file()
 
 
+def test_a_session_of_the_phantoms_sheet(run, tmp_path):
+    arguments = ("--specimen", "phantom", "--no-camera", "--trials", 1, "--rate-hz", 100, "--json")
+    ran = run("simulate", "session", "paper_press", "--out", tmp_path / "s", *arguments)
+    assert ran.exit_code == 0
+    text = (tmp_path / "s" / "session.toml").read_text()
+    assert 'kind = "hole"' in text
+    assert "synthetic = true" in text
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -97,6 +106,7 @@ def test_a_session(run, tmp_path):
         ["netft", "--rate-hz", "0"],
         ["camera", "--size", "big"],
         ["session", "no_such", "--out", "x"],
+        ["session", "--specimen", "nobody", "--out", "x"],
     ],
 )
 def test_usage(run, arguments):

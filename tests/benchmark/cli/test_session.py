@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from benchmark.sessions import SHIPPED
-from benchmark.sessions.make_phantom import TRUE_FACTOR
+from benchmark.sessions.phantom_sheet import TRUE_FACTOR
 
 PHANTOM = SHIPPED / "phantom"
 COARSE = ("--set", "fem.mesh=coarse")
@@ -28,6 +28,8 @@ def test_the_phantom_fit_finds_the_hidden_stiffness(benchmark_cli, tmp_path: Pat
     assert not bool(parameters.loc["silicone.thickness"].identifiable)
     document = json.loads(called.out)
     assert document["session"]["synthetic"] is True
+    assert document["sheet"]["stiffness_factor"]["trials"] == 13
+    assert {"published.a", "sound.a", "relaxation.g_1", "thickness_factor"} <= set(parameters.index)
     assert "Synthetic data" in (tmp_path / "fit/report.html").read_text()
 
 
@@ -38,17 +40,28 @@ def test_a_session_run_compares_measured_with_both_models(benchmark_cli, tmp_pat
     assert list(measured) == [
         "trial", "condition", "time_s", "depth_mm", "force_N", "fem_force_N", "wave_force_N",
     ]  # fmt: skip
-    assert measured.trial.nunique() == 10
+    assert measured.trial.nunique() == 13
     residual = measured.force_N - measured.fem_force_N
     assert np.sqrt((residual**2).mean()) < 0.03 * measured.force_N.max()
     page = (tmp_path / "r/report.html").read_text()
     assert "Synthetic data" in page
     assert "Circular comparison" in page
+    assert "Tracked markers" in page
+    assert "data:image/png" in page
+    held_out = pd.read_csv(tmp_path / "r/tables/held_out.csv")
+    assert held_out.force_rms_percent.max() < 5.0
+    assert held_out.marker_rms_mm.max() < 0.05
+    fits = pd.read_csv(tmp_path / "r/tables/marker_fits.csv")
+    assert list(fits) == ["trial", "marker", "axis", "a", "b", "c", "r2"]
+    assert len(fits) == 13 * 18 * 2
+    circle = pd.read_csv(tmp_path / "r/tables/circle.csv")
+    assert list(circle) == ["trial", "time_s", "radius_nine_mm", "radius_ring_mm", "x_mm", "y_mm"]
+    assert circle.trial.nunique() == 13
     document = json.loads((tmp_path / "r/results.json").read_text())
     peaks = measured.groupby("trial").force_N.max()
     deformation = pd.read_csv(tmp_path / "r/tables/max_deformation.csv")
     assert deformation.force_N.max() == pytest.approx(peaks.median(), rel=0.02)
-    assert document["trials"]["count"] == 10
+    assert document["trials"]["count"] == 13
     check_validation(tmp_path / "r/tables/validation.csv", measured)
     assert benchmark_cli("report", tmp_path / "r", "--out", tmp_path / "again").code == 0
     again = (tmp_path / "again/report.html").read_text()
@@ -75,7 +88,7 @@ def check_validation(path: Path, measured: pd.DataFrame) -> None:
 def test_several_layers_are_not_told_apart(benchmark_cli, tmp_path: Path) -> None:
     session = tmp_path / "mine"
     session.mkdir()
-    for source in sorted(PHANTOM.glob("trial_00[1-3].csv")):
+    for source in sorted(PHANTOM.glob("press_0[2-4].csv")):
         shutil.copy(source, session)
     called = benchmark_cli("fit", session, "--specimen", "skin_forearm", *COARSE, "--out", tmp_path / "fit", "--quiet")
     assert called.code == 0
@@ -90,7 +103,7 @@ def test_several_layers_are_not_told_apart(benchmark_cli, tmp_path: Path) -> Non
 def test_what_a_bare_folder_leaves_open_is_assumed_and_said(benchmark_cli, tmp_path: Path) -> None:
     session = tmp_path / "mine"
     session.mkdir()
-    for source in sorted(PHANTOM.glob("trial_00[1-3].csv")):
+    for source in sorted(PHANTOM.glob("press_0[2-4].csv")):
         shutil.copy(source, session)
     called = benchmark_cli("fit", session, *COARSE, "--out", tmp_path / "fit", "--json", "--quiet")
     assert called.code == 0

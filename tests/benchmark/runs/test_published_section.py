@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmark.runs.report.published_section import published_frames, published_section
-from reports import Animation, Table
+from reports import Figure, Table
 
 
 @pytest.mark.parametrize(("variant", "deepest"), [("as_printed", 39.20117), ("corrected", 31.7788)])
@@ -19,7 +19,7 @@ def test_the_wave_goes_down_from_rest_and_comes_back(variant, deepest):
 
 def test_both_variants_move_and_table_1_is_there():
     blocks = published_section().blocks
-    animations = [block for block in blocks if isinstance(block, Animation)]
+    animations = [block for block in blocks if isinstance(block, Figure)]
     assert ["as printed" in animations[0].title, "corrected" in animations[1].title] == [True, True]
-    assert sum(len(animation.gif) for animation in animations) < 1_000_000
+    assert sum(len(animation.panels[0].data) for animation in animations) < 1_000_000
     assert [len(block.rows) for block in blocks if isinstance(block, Table)] == [4]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from reports import Animation, Page, Section, Verdict, render_page
+from reports import Figure, Page, Section, Verdict, render_page
 from reports.figures import moving_surface
 
 SIDE = np.linspace(0.0, 10.0, 5)
@@ -27,7 +27,7 @@ def test_frames_of_another_shape_are_refused(frames):
 
 
 def test_it_stands_in_a_page_with_its_words():
-    block = Animation(b"GIF89a-and-so-on", "Moves <down>.", "A surface that sinks", "Sinking")
+    block = Figure.of_picture(b"GIF89a-and-so-on", "Moves <down>.", "A surface that sinks", "Sinking")
     html = render_page(Page("title", Verdict("finding", "Nothing."), [Section("One", [block])]))
     assert 'src="data:image/gif;base64,R0lGODlhLWFuZC1zby1vbg=="' in html
     assert "Moves &lt;down&gt;." in html
@@ -35,5 +35,5 @@ def test_it_stands_in_a_page_with_its_words():
 
 
 def test_other_content_is_refused():
-    with pytest.raises(ValueError, match="no GIF"):
-        Animation(b"<svg>", "", "")
+    with pytest.raises(ValueError, match="no PNG and no GIF"):
+        Figure.of_picture(b"<svg>", "", "")

@@ -1,0 +1,164 @@
+"""The films of a session: marker tracks as they come with a trial, or tracked now in the pictures inside its file."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from bench_hw.errors import BenchError, TrialFileError
+from bench_hw.tables import MarkerTable
+from bench_hw.vision.camera.file import read_camera
+from bench_hw.vision.camera.model import Camera
+from bench_hw.vision.camera.plane import distance_of
+from bench_hw.vision.displacement.tracks import tracks_of
+from bench_hw.vision.frames.trial import TrialFrames
+from bench_hw.vision.markers.model import Layout
+from bench_hw.vision.tracking.outcome import TrackOutcome
+from bench_hw.vision.tracking.run import TrackOrder, track
+from benchmark.errors import InputError
+from benchmark.files import Session, Trial
+from benchmark.files.trials import read_markers
+from benchmark.fitting import Film, View
+from benchmark.runs.listener import Listener
+
+Key = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Tracked:
+    """A film that was tracked in this run: its table (text), a still of the farthest motion (PNG), and what to say."""
+
+    trial: str
+    table: bytes
+    still: bytes | None
+    frames: int
+    missing_percent: float
+
+
+Found = tuple[MarkerTable, Tracked | None, tuple[str, ...]]
+"""Tracks of one trial, what was tracked now, and what to say of it."""
+
+
+@dataclass(frozen=True)
+class Films:
+    """The films of a session, by condition and name of the trial.
+
+    Attributes
+    ----------
+    films
+        Tracks over frames.
+    tracked
+        What was tracked now.
+    view
+        The camera.
+    warnings
+        One sentence each.
+    """
+
+    films: Mapping[Key, Film]
+    tracked: tuple[Tracked, ...]
+    view: View
+    warnings: tuple[str, ...] = ()
+
+
+NO_FILMS = Films({}, (), View())
+
+
+def session_films(session: Session, listener: Listener) -> Films:
+    """Read, or track, the markers of all trials; nothing without [camera] in the session.
+
+    Raises
+    ------
+    InputError
+        A camera file or film that cannot be used, another number of markers, a marker beyond the grid.
+    """
+    camera = session.camera
+    if camera is None:
+        return NO_FILMS
+    layout = Layout(camera.marker_rows, camera.marker_columns)
+    films: dict[Key, Film] = {}
+    tracked: list[Tracked] = []
+    warnings: list[str] = []
+    for trial, found in zip(session.trials, _sources(session, layout, listener), strict=True):
+        if found is None:
+            continue
+        table, track_of_it, said = found
+        try:
+            tracks = tracks_of(table, layout.count)
+        except BenchError as error:
+            raise InputError(f"trial {trial.name}: {error}") from None
+        films[trial.condition, trial.name] = Film(tracks.time, tracks.places)
+        tracked += [] if track_of_it is None else [track_of_it]
+        warnings += said
+    view, said = _view(session)
+    return Films(films, tuple(tracked), view, (*warnings, *(said if films else ())))
+
+
+def _sources(session: Session, layout: Layout, listener: Listener) -> Iterator[Found | None]:
+    for trial in session.trials:
+        if trial.markers is not None:
+            yield trial.markers, None, ()
+        elif trial.path.suffix.lower() == ".mcap" and _camera_file(session) is not None and _filmed(trial.path):
+            yield _track(session, trial, layout, listener)
+        else:
+            yield None
+
+
+def _filmed(path: Path) -> bool:
+    try:
+        TrialFrames(path)
+    except TrialFileError:
+        return False
+    return True
+
+
+def _camera_file(session: Session) -> Path | None:
+    camera = session.camera
+    return None if camera is None or camera.file is None else session.folder / camera.file
+
+
+def _track(session: Session, trial: Trial, layout: Layout, listener: Listener) -> Found:
+    """Track the pictures of a trial in a folder that is gone afterwards."""
+    camera = _camera_file(session)
+    assert camera is not None
+    with tempfile.TemporaryDirectory() as scratch, listener.progress(f"{trial.name}: tracking the markers") as advance:
+        out, still = Path(scratch) / "markers.csv", Path(scratch) / "still.png"
+        order = TrackOrder(str(trial.path), camera, out, layout=layout, still=still)
+        try:
+            outcome = track(order, lambda done, total: advance("tracking", done, total or done, f"picture {done}"))
+        except BenchError as error:
+            raise InputError(f"{error}.") from None
+        markers = replace(read_markers(out), source=str(trial.path))
+        picture = still.read_bytes() if still.is_file() else None
+        tracked = Tracked(trial.name, out.read_bytes(), picture, outcome.tally.frames, _missing(outcome))
+    return markers, tracked, tuple(f"{trial.name}: {text}" for text in outcome.warnings)
+
+
+def _missing(outcome: TrackOutcome) -> float:
+    return 100.0 * float(outcome.tally.missing.mean()) / max(outcome.tally.frames, 1)
+
+
+def _view(session: Session) -> tuple[View, tuple[str, ...]]:
+    """The camera's distance and axis, from its file or from the session."""
+    path = _camera_file(session)
+    try:
+        camera = None if path is None else read_camera(path)
+    except BenchError as error:
+        raise InputError(f"{error}.") from None
+    distance = session.camera.distance if session.camera is not None else None
+    if distance is None and (camera is None or camera.plane is None):
+        return View(), ("the camera's distance is not known: perspective is left out of the markers' fit",)
+    if camera is None or camera.plane is None:
+        return View(float(distance or 0.0)), ()
+    return View(distance_of(camera) if distance is None else distance, _centre(camera)), ()
+
+
+def _centre(camera: Camera) -> tuple[float, float]:
+    """Where the camera's axis meets the plane, m from the tracks' origin."""
+    assert camera.plane is not None
+    x, y = (-distance_of(camera) * camera.to_normalised(np.asarray(camera.plane.origin))).tolist()
+    return x, y

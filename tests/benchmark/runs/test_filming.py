@@ -1,0 +1,102 @@
+"""Films of a session: tracked in the run, read from tables, and refused where they do not fit the grid."""
+
+import shutil
+from contextlib import nullcontext
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmark.errors import InputError
+from benchmark.files import load_session
+from benchmark.runs.film_tables import circles, marker_fits, motions_of
+from benchmark.runs.filming import session_films
+from benchmark.runs.table_one import table_one
+from benchmark.sessions import SHIPPED
+
+PHANTOM = Path(SHIPPED) / "phantom"
+HEAD = """\
+schema = 1
+name = "small"
+specimen = "rtv3498_sheet"
+synthetic = true
+[tool]
+radius = "5 mm"
+contact = "rigid_bonded"
+[support]
+kind = "hole"
+hole_radius = "30 mm"
+[camera]
+marker_rows = {rows}
+marker_columns = {columns}
+marker_spacing = "8 mm"
+{camera}
+[[trials]]
+file = "press_01.mcap"
+condition = "press"
+[[trials]]
+file = "press_02.csv"
+markers = "press_02_markers.csv"
+condition = "press"
+"""
+
+
+class Quiet:
+    def say(self, text: str) -> None:
+        pass
+
+    def progress(self, title: str):
+        return nullcontext(lambda *_: None)
+
+
+@pytest.fixture
+def session(tmp_path):
+    """The first two trials of the phantom in a folder of their own."""
+    for name in ("press_01.mcap", "press_02.csv", "press_02_markers.csv", "camera.toml"):
+        shutil.copy(PHANTOM / name, tmp_path)
+
+    def load(rows=3, columns=6, camera='file = "camera.toml"'):
+        (tmp_path / "session.toml").write_text(HEAD.format(rows=rows, columns=columns, camera=camera))
+        return load_session(tmp_path)
+
+    return load
+
+
+def test_pictures_in_a_trial_are_tracked_and_tables_are_read(session) -> None:
+    loaded = session()
+    films = session_films(loaded, Quiet())
+    assert list(films.films) == [("press", "press_01"), ("press", "press_02")]
+    assert [each.trial for each in films.tracked] == ["press_01"]
+    assert films.tracked[0].still is not None
+    assert films.tracked[0].still.startswith(b"\x89PNG")
+    assert films.view.distance == pytest.approx(70e-3)
+    motions = motions_of(films.films, loaded.camera)
+    first, second = (float(np.nanmax(np.hypot(*motion.moved.T))) for motion in motions)
+    assert first == pytest.approx(second, rel=0.2)
+    fits = marker_fits(motions)
+    assert len(fits["r2"]) == 2 * 18 * 2
+    assert np.median([r2 for r2 in fits["r2"] if np.isfinite(r2)]) > 0.85
+    circle = circles(motions)
+    ratio = np.nanmedian(np.asarray(circle["radius_nine_mm"]) / np.asarray(circle["radius_ring_mm"]))
+    assert ratio == pytest.approx(1.0 - 0.057, abs=0.003)
+    rows = {row.name: row for row in table_one(loaded, motions, {})}
+    assert 18.0 < rows["published.a"].value < 20.0
+    assert "sound.a" not in rows
+
+
+def test_a_trial_without_a_camera_file_is_not_tracked(session) -> None:
+    films = session_films(session(camera='distance = "70 mm"'), Quiet())
+    assert list(films.films) == [("press", "press_02")]
+    assert films.view.distance == pytest.approx(70e-3)
+
+
+def test_an_unknown_distance_is_said(session) -> None:
+    films = session_films(session(camera=""), Quiet())
+    assert np.isinf(films.view.distance)
+    assert any("perspective is left out" in text for text in films.warnings)
+
+
+@pytest.mark.parametrize(("rows", "columns", "camera"), [(3, 5, ""), (3, 5, 'file = "camera.toml"')])
+def test_another_grid_is_refused(session, rows, columns, camera) -> None:
+    with pytest.raises(InputError, match="marker"):
+        session_films(session(rows, columns, camera), Quiet())
