@@ -49,6 +49,11 @@ def test_a_session_run_compares_measured_with_both_models(benchmark_cli, tmp_pat
     deformation = pd.read_csv(tmp_path / "r/tables/max_deformation.csv")
     assert deformation.force_N.max() == pytest.approx(peaks.median(), rel=0.02)
     assert document["trials"]["count"] == 10
+    assert benchmark_cli("report", tmp_path / "r", "--out", tmp_path / "again").code == 0
+    again = (tmp_path / "again/report.html").read_text()
+    for text in ("Synthetic data", "Circular comparison", document["trials"]["headline"][1:], "Fitted parameters"):
+        assert text in again
+    assert again.count("<figure") == page.count("<figure")
 
 
 def test_several_layers_are_not_told_apart(benchmark_cli, tmp_path: Path) -> None:
