@@ -56,7 +56,8 @@ def write_run(record: RunRecord, folder: Path) -> RunOutcome:
     document, environment = results_document(record), describe_environment(seed=record.seed)
     tables = run_tables(record)
     texts = {name: csv_text(columns, where=name) for name, columns in tables.items()}
-    page = run_page(record, environment, texts, None if record.measured is None else TrialsPart.of(record.measured))
+    trials = None if record.measured is None else TrialsPart.of(record.measured)
+    page = run_page(record, environment, texts, trials, tables)
     with whole_folder(folder) as new:
         for name, text in texts.items():
             write_text(new / "tables" / name, text)

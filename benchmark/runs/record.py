@@ -11,6 +11,7 @@ from benchmark.comparison import LayerComparison, compare_layer
 from benchmark.files import Scenario, scenario_notes
 from benchmark.models import Array, ModelResult
 from benchmark.runs.measured import MeasuredComparison
+from benchmark.runs.refinement import Level
 from benchmark.side_by_side import SideBySide
 
 
@@ -36,6 +37,8 @@ class RunRecord:
         What the reader must know, one sentence each.
     seed
         Of every random draw.
+    levels
+        Coarser and finer runs; empty where none were asked for.
     """
 
     name: str
@@ -47,6 +50,7 @@ class RunRecord:
     measured: MeasuredComparison | None
     warnings: tuple[str, ...]
     seed: int
+    levels: tuple[Level, ...] = ()
 
     @property
     def layers(self) -> tuple[str, ...]:

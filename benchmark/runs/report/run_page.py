@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 from benchmark.runs.record import RunRecord
@@ -13,10 +14,13 @@ from benchmark.runs.report.scenario_section import scenario_section
 from benchmark.runs.report.statistics_section import statistics_section
 from benchmark.runs.report.timing_section import timing_section
 from benchmark.runs.report.trials_part import TrialsPart
-from benchmark.runs.report.values import peak_errors
+from benchmark.runs.report.validation_section import Columns, growth_section, validation_section
+from benchmark.runs.report.values import pair_names, peak_errors
 from benchmark.runs.report.verdict import run_verdict
 from reports import Download, Fact, KeyFigure, Notice, Page, Section
 
+VALIDATION, REFINEMENT = "validation.csv", "refinement.csv"
+NO_COLUMNS: Mapping[str, Columns] = MappingProxyType({})
 LARGEST_COPY = 600_000
 """Characters of a table that is still copied into the page."""
 
@@ -29,11 +33,17 @@ DESCRIPTIONS = {
     "timing.csv": "every timed repeat",
     "fitted_parameters.csv": "fitted and fixed parameters with intervals",
     "measured.csv": "every trial beside both models",
+    VALIDATION: "errors beside their uncertainties",
+    REFINEMENT: "coarser and finer runs, their values and their cost",
 }
 
 
 def run_page(
-    record: RunRecord, environment: Mapping[str, Any], tables: Mapping[str, str], trials: TrialsPart | None = None
+    record: RunRecord,
+    environment: Mapping[str, Any],
+    tables: Mapping[str, str],
+    trials: TrialsPart | None = None,
+    columns: Mapping[str, Columns] = NO_COLUMNS,
 ) -> Page:
     """Return the page of a run.
 
@@ -47,6 +57,8 @@ def run_page(
         The text of each table in the result folder by file name.
     trials
         Measured trials, where there are any.
+    columns
+        Of `validation.csv` and `refinement.csv`, where there are any.
     """
     sections: list[Section] = []
     if trials is not None:
@@ -57,7 +69,12 @@ def run_page(
         sections += [deformation_section(record), statistics_section(record)]
     if record.scenario.wave.model == "published":
         sections.append(_published())
-    sections += [timing_section(record), method_section(record, environment)]
+    if VALIDATION in columns:
+        sections.append(validation_section(columns[VALIDATION]))
+    sections.append(timing_section(record))
+    if REFINEMENT in columns:
+        sections.append(growth_section(columns[REFINEMENT], pair_names(record)))
+    sections.append(method_section(record, environment))
     return Page(
         title=record.name,
         subtitle=_subtitle(record, trials),
