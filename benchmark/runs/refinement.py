@@ -1,7 +1,7 @@
 """Mesh, load steps and modes refined: what the numbers' own error is, and how time grows with unknowns.
 
-Each model runs alone in a process of its own with one thread, twice a level, the second time timed; what a user put in a model's place is not
-refined.
+Each model runs alone in a process of its own with one thread, twice a level, the second time timed; what a user put in
+a model's place is not refined.
 """
 
 from __future__ import annotations

@@ -23,11 +23,10 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the trial and print what it has shown."""
     options = _parser().parse_args(arguments)
     faults = deflections(1.0 + options.off) if options.off else slowdowns(options.share, options.how)
+    chosen = [each for each in faults if any(only in each.name for only in options.only)]
     rows = []
     with tempfile.TemporaryDirectory(prefix="gate-trial-") as folder:
-        trees = _trees(
-            Path(folder), options.product, [each for each in faults if any(only in each.name for only in options.only)]
-        )
+        trees = _trees(Path(folder), options.product, chosen)
         work = Path(folder) / "work"
         work.mkdir()
 
