@@ -5,7 +5,7 @@ PY     := $(VENV)/bin/python
 RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
-.PHONY: help run test test-slow bench-wave lint types imports check lock clean
+.PHONY: help run test test-slow bench-wave bench-gate lint types imports check docs lock clean
 
 help:
 	@echo "make run        measured phantom trials and the 5 N skin press to two reports"
@@ -13,6 +13,8 @@ help:
 	@echo "make test-slow  the long checks"
 	@echo "make bench-wave microseconds a frame of the wave beside its rivals, each with its error"
 	@echo "make check      lint, types and import rules"
+	@echo "make docs       the documentation as a site in build/site"
+	@echo "make bench-gate the regression gate on trial: false alarms and power (hours at full length)"
 	@echo "make lock       pin the dependencies anew"
 
 $(PY):
@@ -48,6 +50,16 @@ imports: $(DEV_STAMP)
 	$(VENV)/bin/lint-imports
 
 check: lint types imports
+
+docs: $(DEV_STAMP)
+	$(PY) -m benchmark.files.reference > docs/reference-files.md
+	$(PY) -m mkdocs build --quiet
+
+# GATE_RUNS=3 for a short one.
+GATE_RUNS ?= 20
+bench-gate: $(DEV_STAMP)
+	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS)
+	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS) --off 0.01 --values
 
 # Needs uv (`pip install uv`). Only names and versions are written, no addresses.
 lock:
