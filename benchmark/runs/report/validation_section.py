@@ -25,10 +25,11 @@ def validation_section(columns: Columns) -> Section:
     """Return the section on errors and their uncertainties."""
     names = ("quantity", "protocol", "simulation", "measure", "value", "unit")
     heads = ("quantity", "protocol", "simulation", "measure", Column("value"), "unit")
+    cells = zip(*(columns[name] for name in names), strict=True)
     table = Table(
         "Errors beside their uncertainties",
         heads,
-        list(zip(*(columns[name] for name in names), strict=True)),
+        [tuple(cell or None if isinstance(cell, str) else cell for cell in row) for row in cells],
         download=Download("tables/validation.csv"),
         row_headings=False,
     )
