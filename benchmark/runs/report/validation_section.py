@@ -38,8 +38,9 @@ def validation_section(columns: Columns) -> Section:
 
 def growth_section(columns: Columns, pair: Pair) -> Section:
     """Return the section on refined runs and their cost."""
-    shown = [name for name in columns if name not in ("layer", "max_mm")]
-    rows = list(dict.fromkeys(zip(*(columns[name] for name in shown), strict=True)))
+    cells = {name: values for name, values in columns.items() if name not in ("layer", "max_mm")}
+    cells["level"] = [str(level) for level in columns["level"]]
+    rows = list(dict.fromkeys(zip(*cells.values(), strict=True)))
     heads = (
         "model", "refined", "level", Column("unknowns"), Column("load steps"), Column("set-up", "s"),
         Column("wall", "s"), Column("CPU", "s"), Column("wall per load step", "ms"),
