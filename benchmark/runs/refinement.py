@@ -71,8 +71,7 @@ def _levels(model: str, scenario: Scenario, result: ModelResult) -> Iterator[tup
     if model == "fem":
         for mesh in MESHES:
             yield model, "mesh", mesh, mesh == scenario.fem.mesh, _changed(scenario, "fem", mesh=mesh)
-    else:
-        modes = _modes(result)
+    elif (modes := _modes(result)) is not None:
         for count in (2 * modes, modes, max(modes // 2, 1)):
             yield model, "modes", str(count), count == modes, _changed(scenario, "wave", modes=count)
     steps = scenario.load.observations
@@ -86,11 +85,10 @@ def _changed(scenario: Scenario, section: str, **values: object) -> Scenario:
     return scenario.model_copy(update={section: part})
 
 
-def _modes(result: ModelResult) -> int:
-    """N of a wave model's modes m, n = 1..N, which its notes name."""
-    found = re.search(r"1\.\.(\d+)", result.notes["modes"])
-    assert found is not None
-    return int(found[1])
+def _modes(result: ModelResult) -> int | None:
+    """N of a wave model's modes m, n = 1..N, which its notes name; None for a model without."""
+    found = re.search(r"1\.\.(\d+)", result.notes.get("modes", ""))
+    return None if found is None else int(found[1])
 
 
 def _size(refined: str, level: str, result: ModelResult) -> float:
