@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from benchmark.discovery.result import ChannelGap, Discovery
+from benchmark.discovery.result import Array, ChannelGap, Discovery
 from benchmark.discovery.units import channel_unit
 from benchmark.effects.effect import Card
 from benchmark.model_file import AddedEffect, RepairedModel, Value
@@ -14,13 +14,17 @@ NAMING = ("named", "conditional", "lookalikes", "partly_explained", "instrument_
 """Verdicts under which the effects of the answer are part of the model; elsewhere they are nearest entries only."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LayerGap:
     """A layer's deflection against the reference of a run, m: root mean square over the loads held out.
 
     Attributes
     ----------
     layer : str
+    force : (n,) array
+        N.
+    reference, before, after : (n,) array
+        Deflection of its top face on the tool axis, m.
     rmse_before, rmse_after : float
         Over the loads that the fit has not seen.
     peak_before, peak_after : float
@@ -28,6 +32,10 @@ class LayerGap:
     """
 
     layer: str
+    force: Array
+    reference: Array
+    before: Array
+    after: Array
     rmse_before: float
     rmse_after: float
     peak_before: float

@@ -51,7 +51,7 @@ class RankedCandidate:
         parts = [] if math.isnan(self.z) else [f"z {format_number(self.z, 3, trim=True)}"]
         parts.append(f"ΔBIC {format_number(float(f'{self.delta_bic:.3g}'), 3, trim=True)}")
         if self.gap_closed is not None:
-            parts.append(f"closes {format_number(100 * self.gap_closed, 3, trim=True)} %")
+            parts.append(f"closes {round(100 * self.gap_closed, 1):g} %".replace("-0 %", "0 %").replace("-", "−"))
         return ", ".join(parts)
 
 

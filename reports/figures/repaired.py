@@ -108,7 +108,7 @@ def repaired(traces: Sequence[RepairedTrace], changed: bool = True, measured: st
     banded = any(trace.arrays[4].any() for trace in traces)
     caption = f"{measured} values and the model"
     caption += " before (dashed) and after (solid) the effect was added" if changed else ""
-    caption += f"; below, {measured.lower()} minus model"
+    caption += f"; below, {measured if measured.isupper() else measured.lower()} minus model"
     caption += ", with the spread of the replicates (two standard deviations) as a band." if banded else "."
     return Figure(panels, caption, "Measured against simulated")
 

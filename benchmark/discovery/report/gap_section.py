@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from benchmark.discovery.record import DiscoveryRecord
 from benchmark.discovery.report.words import HELD_OUT, channel_name
 from benchmark.discovery.result import ChannelGap
 from benchmark.discovery.units import channel_unit
 from reports import Block, Bullets, Column, Download, Paragraph, Section, Table
-from reports.figures import Gap, gap_bars
+from reports.figures import Gap, RepairedTrace, gap_bars, repaired
 
 
 def gap_section(record: DiscoveryRecord) -> Section:
@@ -25,7 +27,7 @@ def gap_section(record: DiscoveryRecord) -> Section:
             blocks.append(
                 gap_bars(layers, "the loads that the fit has not seen, a layer's deflection on the tool axis")
             )
-        blocks.append(_layers(record))
+        blocks += [_curves(record), _layers(record)]
     return Section("The gap, before and after", blocks)
 
 
@@ -51,6 +53,25 @@ def _row(gap: ChannelGap) -> tuple[object, ...]:
     closed = None if gap.closed is None else 100 * gap.closed
     sizes = (scale * gap.rmse_before, scale * gap.rmse_after, scale * gap.noise_floor)
     return (channel_name(gap.channel), unit, *sizes, closed, *ends, gap.held_out)
+
+
+def _curves(record: DiscoveryRecord) -> Block:
+    """Each layer's deflection over force."""
+    panels = [
+        RepairedTrace(
+            title=layer.layer,
+            x=layer.force,
+            measured=1e3 * layer.reference,
+            before=1e3 * layer.before,
+            after=1e3 * layer.after,
+            noise=np.zeros(layer.force.size),
+            channel="deflection",
+            unit="mm",
+            x_label="force (N)",
+        )
+        for layer in record.layers
+    ]
+    return repaired(panels, changed=record.named, measured=record.labels.get("measured", "Measured"))
 
 
 def _layers(record: DiscoveryRecord) -> Table:

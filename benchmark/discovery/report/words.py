@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from benchmark.discovery.result import Place
 from benchmark.discovery.units import channel_unit
 from reports.formatting import format_number
@@ -47,7 +49,7 @@ def sized(channel: str, size: float) -> str:
 
 def probability(p: float | None) -> str:
     """A p value, or what stands in its place."""
-    if p is None:
+    if p is None or math.isnan(p):
         return "not tested"
     return "p < 0.001" if p < 0.001 else f"p = {format_number(p, 2)}"
 
