@@ -174,7 +174,7 @@ class _Answer:
         if self.verdict == "no_discrepancy":
             return f"Wave model and FEM agree within {100 * self.margin:g} % in every layer: nothing is missing."
         if self.verdict == "outside_catalogue" or self.best is None:
-            return f"The wave model is off by up to {worst:+.1f} % at peak load, and no effect of the catalogue explains it."
+            return f"The wave model is off by up to {worst:+.1f} % at peak load, and no effect explains it."
         after = max((layer.peak_after for layer in self.layers), key=abs)
         slug = self.best.effect.slug.replace("_", " ")
         return (

@@ -118,7 +118,7 @@ class _Coordinates:
 
     def _of(self, values: Mapping[str, float]) -> Array:
         numbers = [np.log(values[p.name]) if p.logarithmic else values[p.name] for p in self._parameters]
-        return np.array(numbers) / self._scales
+        return np.asarray(np.array(numbers) / self._scales)
 
 
 def _snapped(x: float, scale: float, low: float) -> float:

@@ -34,8 +34,6 @@ class FinishedRun:
         s and N.
     reference, wave : (n, L) array
         Deflection of each layer's top face on the tool axis, m.
-    synthetic : bool
-        Always: both are computed.
     fingerprint : str
         SHA-256 over table and scenario.
     effects : tuple of str
@@ -73,9 +71,7 @@ def read_run(folder: Path) -> FinishedRun:
     table, scenario_file = folder / TABLE, folder / "scenario.toml"
     for path in (table, scenario_file):
         if not path.is_file():
-            raise InputError(
-                f"{path}: a result folder of run holds this file; it is missing, so there is nothing to read"
-            )
+            raise InputError(f"{path}: a result folder of run holds this file; it is missing")
     scenario = load_scenario(scenario_file)
     if scenario.load.control != "force":
         raise InputError(

@@ -20,8 +20,8 @@ def candidates_section(record: DiscoveryRecord) -> Section:
         text = "No candidate was tried: there is nothing that an effect would have to explain."
         return Section("Which effect", [Paragraph(record.labels.get("no_candidates", text))])
     text = (
-        "Each candidate was fitted together with the base model and scored on trials that it had not seen. An effect is "
-        "accepted from z = 3 up, with BIC on the effective sample size agreeing."
+        "Each candidate was fitted together with the base model and scored on trials that it had not seen. An effect "
+        "is accepted from z = 3 up, with BIC on the effective sample size agreeing."
     )
     figure = ranking([_ranked(each, record) for each in candidates[:MOST_CANDIDATES]])
     return Section("Which effect", [Paragraph(record.labels.get("candidates", text)), figure, _table(record)])

@@ -56,21 +56,23 @@ def _row(gap: ChannelGap) -> tuple[object, ...]:
 
 
 def _curves(record: DiscoveryRecord) -> Block:
-    """Each layer's deflection over force."""
-    panels = [
-        RepairedTrace(
-            title=layer.layer,
-            x=layer.force,
-            measured=1e3 * layer.reference,
-            before=1e3 * layer.before,
-            after=1e3 * layer.after,
-            noise=np.zeros(layer.force.size),
-            channel="deflection",
-            unit="mm",
-            x_label="force (N)",
+    """Each layer's deflection over force, up to the peak."""
+    panels = []
+    for layer in record.layers:
+        rows = slice(0, int(layer.force.argmax()) + 1)
+        panels.append(
+            RepairedTrace(
+                title=layer.layer,
+                x=layer.force[rows],
+                measured=1e3 * layer.reference[rows],
+                before=1e3 * layer.before[rows],
+                after=1e3 * layer.after[rows],
+                noise=np.zeros(rows.stop),
+                channel="deflection",
+                unit="mm",
+                x_label="force (N)",
+            )
         )
-        for layer in record.layers
-    ]
     return repaired(panels, changed=record.named, measured=record.labels.get("measured", "Measured"))
 
 

@@ -9,14 +9,14 @@ from benchmark.discovery.report.words import effect_name
 from reports import Column, Download, Listing, Paragraph, Section, Table
 
 ADVICE = {
-    "no_discrepancy": "Nothing needs to be added. A smaller disagreement would need more trials: its size falls with the "
-    "root of their number.",
-    "conditional": "Measure a second condition (another rate, depth or tool) and run this again with both: only then can "
-    "the effect be named.",
+    "no_discrepancy": "Nothing needs to be added. A smaller disagreement would need more trials: its size falls with "
+    "the root of their number.",
+    "conditional": "Measure a second condition (another rate, depth or tool) and run this again with both: only then "
+    "can the effect be named.",
     "partly_explained": "Look at the places that stay significant; a condition that isolates them tells most.",
-    "outside_catalogue": "Measure where the disagreement is largest with one thing changed at a time (rate, depth, rest "
-    "between presses), or add an effect of your own with --effects.",
-    "instrument_first": "Do the calibration first: a rigid block under the tool, a picture of a ruler, a rest in air.",
+    "outside_catalogue": "Measure where the disagreement is largest with one thing changed at a time (rate, depth, "
+    "rest between presses), or add an effect of your own with --effects.",
+    "instrument_first": "Calibrate first: a rigid block under the tool, a picture of a ruler, a rest in air.",
     "named": "Nothing more is needed to name it. A further condition tests whether its parameters stay the same.",
     "lookalikes": "The session does not say which of the set it is; a condition in which they differ would.",
 }
@@ -27,8 +27,9 @@ def next_section(record: DiscoveryRecord) -> Section:
     proposal = record.proposal
     if proposal is None:
         return Section("What to measure next", [Paragraph(record.labels.get("next", ADVICE[record.found.verdict]))])
+    first, second = map(effect_name, proposal.rivals)
     text = (
-        f"{proposal.words} Expected distance of {effect_name(proposal.rivals[0])} and {effect_name(proposal.rivals[1])}: "
+        f"{proposal.words} Expected distance of {first} and {second}: "
         f"{proposal.separation:.1f} standard deviations instead of {proposal.separation_now:.1f}, in "
         f"{proposal.minutes:.0f} minutes at the bench."
     )
