@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from benchmark.discovery.result import Array, ChannelGap, Discovery
+from benchmark.discovery.result import Array, ChannelGap, Discovery, Estimate
 from benchmark.discovery.units import channel_unit
 from benchmark.effects.effect import Card
 from benchmark.model_file import AddedEffect, RepairedModel, Value
@@ -103,7 +103,9 @@ class DiscoveryRecord:
     proposal : NextExperiment or None
         Where rivals remain.
     labels : mapping
-        What reports call `measured`, `before` and `after`.
+        What the page says where it is not a session's.
+    large_press : str
+        Elastic law of the wave under repair.
     """
 
     name: str
@@ -118,6 +120,7 @@ class DiscoveryRecord:
     layers: tuple[LayerGap, ...] = ()
     proposal: NextExperiment | None = None
     labels: Mapping[str, str] = field(default_factory=dict)
+    large_press: str = "linear"
 
     @property
     def named(self) -> bool:
@@ -127,11 +130,11 @@ class DiscoveryRecord:
     def repaired(self) -> RepairedModel:
         """The model to write: base and, where something was named, the effects."""
         effects = [
-            AddedEffect(effect.slug, {each.name: Value(each.value, each.unit, each.ci95) for each in effect.parameters})
+            AddedEffect(effect.slug, {each.name: _value(each) for each in effect.parameters})
             for effect in self.found.effects
             if self.named
         ]
-        return RepairedModel("model.toml", self.tissue, self.model, tuple(effects), self._evidence())
+        return RepairedModel("model.toml", self.tissue, self.model, tuple(effects), self._evidence(), self.large_press)
 
     def _evidence(self) -> dict[str, object]:
         return {
@@ -142,6 +145,12 @@ class DiscoveryRecord:
             "statement": self.found.statement,
             "gap": {gap.channel: _gap(gap) for gap in self.found.gap},
         }
+
+
+def _value(estimate: Estimate) -> Value:
+    """Six digits are more than any interval needs."""
+    value, low, high = (float(f"{each:.6g}") for each in (estimate.value, *estimate.ci95))
+    return Value(value, estimate.unit, (low, high))
 
 
 def _gap(gap: ChannelGap) -> dict[str, object]:

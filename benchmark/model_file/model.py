@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 
@@ -38,10 +39,14 @@ class RepairedModel:
         What messages call it: the path as given.
     tissue, model : str
         The base: tissue and "wave" or "fem".
+    large_press : str
+        Elastic law of the wave that the effects were found on top of: "linear" or "corrected".
     effects : tuple of AddedEffect
         In the order in which they were found.
     evidence : mapping
         Session, its fingerprint, verdict, gap: for people.
+    own_effects : Path or None
+        Where effects that are not of the catalogue come from.
     """
 
     name: str
@@ -49,6 +54,8 @@ class RepairedModel:
     model: str
     effects: tuple[AddedEffect, ...]
     evidence: Mapping[str, Any]
+    large_press: str = "linear"
+    own_effects: Path | None = None
 
     @property
     def slugs(self) -> tuple[str, ...]:

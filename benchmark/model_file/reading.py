@@ -21,6 +21,7 @@ from benchmark.model_file.units import dimension_of, shown
 class _Base(FileModel):
     tissue: Name
     model: Literal["wave", "fem"]
+    large_press: Literal["linear", "corrected"] = "linear"
 
 
 class _Parameter(FileModel):
@@ -63,7 +64,8 @@ def read_model(path: Path, cards: Mapping[str, Card]) -> RepairedModel:
     repeated = {effect.slug for effect in effects if sum(effect.slug == other.slug for other in effects) > 1}
     if repeated:
         raise InputError(f"{path}: the effect {min(repeated)} is there twice; each effect may be there once.")
-    return RepairedModel(str(path), file.base.tissue, file.base.model, effects, file.evidence)
+    base = file.base
+    return RepairedModel(str(path), base.tissue, base.model, effects, file.evidence, base.large_press)
 
 
 def _effect(effect: _Effect, place: int, cards: Mapping[str, Card], source: Source) -> AddedEffect:

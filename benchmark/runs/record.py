@@ -9,6 +9,7 @@ import numpy as np
 
 from benchmark.comparison import LayerComparison, compare_layer
 from benchmark.files import Scenario, scenario_notes
+from benchmark.model_file import RepairedModel
 from benchmark.models import Array, ModelResult
 from benchmark.runs.measured import MeasuredComparison
 from benchmark.side_by_side import SideBySide
@@ -36,6 +37,8 @@ class RunRecord:
         What the reader must know, one sentence each.
     seed
         Of every random draw.
+    repair
+        The model file whose effects are switched on; None without.
     """
 
     name: str
@@ -47,6 +50,7 @@ class RunRecord:
     measured: MeasuredComparison | None
     warnings: tuple[str, ...]
     seed: int
+    repair: RepairedModel | None = None
 
     @property
     def layers(self) -> tuple[str, ...]:

@@ -83,4 +83,5 @@ def run_scenario(
         measured=measured,
         warnings=gather_warnings(scenario, pair, said),
         seed=options.seed,
+        repair=own.repair,
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -20,12 +20,15 @@ from benchmark.fitting import (
     predict,
     required_depth,
 )
+from benchmark.model_file import RepairedModel
 from benchmark.models import NOTHING, Array, Drive, Own, PreparedModel, UncoveredError, prepare
+from benchmark.models.repaired import effects_of, on_its_base
 from benchmark.runs.base_curve import Setup, base_curves, setup_scenario
 from benchmark.runs.listener import Listener
 from benchmark.runs.measured import MeasuredComparison, TrialPrediction
 from benchmark.runs.options import RunOptions
 from benchmark.runs.record import RunRecord
+from benchmark.runs.repaired_fit import fit_repaired, wave_force
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.side_by_side import NAMES
 
@@ -47,16 +50,25 @@ class FittedSession:
         In the session's order, each with the force curve of its tool and support.
     warnings
         Of reading, of the curves, and of the fit.
+    added
+        By condition and trial: (n,) N that the effects of a model file add to the elastic force; empty without one.
     """
 
     session: Session
     fit: SessionFit
     trials: tuple[TrialData, ...]
     warnings: tuple[str, ...]
+    added: Mapping[tuple[str, str], Array] = field(default_factory=dict)
 
 
-def fit_trials(path: Path, specimen: str | None, settings: Mapping[str, str], listener: Listener) -> FittedSession:
-    """Read a session and fit its specimen to all trials.
+def fit_trials(
+    path: Path,
+    specimen: str | None,
+    settings: Mapping[str, str],
+    listener: Listener,
+    repair: RepairedModel | None = None,
+) -> FittedSession:
+    """Read a session and fit its specimen to all trials, with the effects of a model file where one is given.
 
     Raises
     ------
@@ -70,10 +82,25 @@ def fit_trials(path: Path, specimen: str | None, settings: Mapping[str, str], li
     listener.say(f"{session.name}: fitting {len(session.trials)} trials")
     try:
         trials = tuple(_trial_data(trial, base.curves[trial.tool, trial.support]) for trial in session.trials)
+        if repair is not None:
+            return _fitted_with(repair, session, trials, base.warnings)
         fit = fit_session(trials, session.specimen.layers)
     except FittingError as error:
         raise InputError(f"session {session.folder}: {error}") from None
     return FittedSession(session, fit, trials, (*session.warnings, *base.warnings, *fit.warnings))
+
+
+def _fitted_with(
+    repair: RepairedModel, session: Session, trials: tuple[TrialData, ...], said: tuple[str, ...]
+) -> FittedSession:
+    """The fit with the effects of a model file; raises FittingError."""
+    names = ", ".join(repair.slugs) or "no effect"
+    made = fit_repaired(session, trials, repair)
+    warnings = [f"fitted with {names} of {repair.name} switched on"]
+    if not made.settled:
+        warnings.append("the stiffness did not come to rest with the effects in the fit: take it with care")
+    everything = (*session.warnings, *said, *made.fit.warnings, *warnings)
+    return FittedSession(session, made.fit, trials, everything, made.added)
 
 
 def run_session(
@@ -88,7 +115,7 @@ def run_session(
 
     The fit is that of the finite elements, whatever `own` model stands in the wave's place.
     """
-    found = fit_trials(path, specimen, settings, listener)
+    found = fit_trials(path, specimen, settings, listener, own.repair)
     session, fit = found.session, found.fit
     fitted = scaled_tissue(session.specimen, fit.stiffness_factor, f"{session.specimen.name}, fitted")
     scenario = session_scenario(session, fitted, fit)
@@ -126,45 +153,51 @@ def _predictions(found: FittedSession, tissue: Tissue, own: Own) -> tuple[tuple[
     setups = [(trial.tool, trial.support) for trial in found.session.trials]
     waves = {setup: _wave(found.session, tissue, setup, own) for setup in dict.fromkeys(setups)}
     answers = [
-        (trial, _wave_force(trial, found.fit, waves[setup]))
+        (trial, _wave_force(trial, found, waves[setup], own))
         for setup, trial in zip(setups, found.trials, strict=True)
         if trial.key in kept
     ]
     reasons = Counter(answer for _, answer in answers if isinstance(answer, str))
     name = own.name("wave") or NAMES["wave"]
     said = tuple(f"the {name} has no force for {count} of the trials: {reason}" for reason, count in reasons.items())
-    return tuple(_prediction(trial, found.fit, answer) for trial, answer in answers), said
+    return tuple(_prediction(trial, found, answer) for trial, answer in answers), said
 
 
 def _wave(session: Session, tissue: Tissue, setup: Setup, own: Own) -> PreparedModel | str:
     """The wave model of the fitted specimen, or why it does not cover it."""
+    scenario = setup_scenario(session, tissue, setup)
     try:
-        return prepare("wave", setup_scenario(session, tissue, setup), own=own.wave)
+        if own.repair is not None:
+            return prepare("wave", on_its_base(own.repair, scenario))
+        return prepare("wave", scenario, own=own.wave)
     except UncoveredError as error:
         return str(error)
 
 
-def _prediction(trial: TrialData, fit: SessionFit, wave: Array | str) -> TrialPrediction:
+def _prediction(trial: TrialData, found: FittedSession, wave: Array | str) -> TrialPrediction:
+    fit, added = found.fit, found.added.get(trial.key, np.zeros(trial.rows))
     return TrialPrediction(
         trial=trial.name,
         condition=trial.condition,
         time=trial.time,
         depth=trial.depth,
         force=trial.force,
-        fem_force=predict(fit, trial),
+        fem_force=predict(fit, trial) + added,
         wave_force=None if isinstance(wave, str) else wave,
-        held_out_force=predict(fit, trial, leave_one_out=True) if len(fit.trials) > 1 else None,
+        held_out_force=predict(fit, trial, leave_one_out=True) + added if len(fit.trials) > 1 else None,
     )
 
 
-def _wave_force(trial: TrialData, fit: SessionFit, wave: PreparedModel | str) -> Array | str:
+def _wave_force(trial: TrialData, found: FittedSession, wave: PreparedModel | str, own: Own) -> Array | str:
     """Force (n,) N of the wave model at the trial's depth below its contact, zero in the air; or why there is none."""
     if isinstance(wave, str):
         return wave
-    own = fit.trial(trial.name, trial.condition)
-    below = np.maximum(trial.depth - own.onset, 0.0)
+    fitted = found.fit.trial(trial.name, trial.condition)
+    below = np.maximum(trial.depth - fitted.onset, 0.0)
     drive = Drive("depth", trial.time - trial.time[0] + float(np.diff(trial.time)[0]), below)
     try:
-        return wave.run(drive).force + own.zero
+        if own.repair is not None:
+            return wave_force(found.session, trial, fitted.onset, wave, effects_of(own.repair)) + fitted.zero
+        return wave.run(drive).force + fitted.zero
     except UncoveredError as error:
         return str(error)

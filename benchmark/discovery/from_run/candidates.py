@@ -75,7 +75,7 @@ def fit_candidate(effect: Effect, body: Body, history: History) -> Fit | None:
     levels = np.unique(np.round(history.force[history.fitted], 9)).size
     rmse = scale * _rms(best.fun)
     bic = levels * float(np.log(max(_rms(best.fun), 1e-12) ** 2)) + len(effect.names) * float(np.log(levels))
-    return Fit(effect, coordinates.values(best.x), coordinates.interval(best.x, best.jac, best.fun, levels), rmse, bic)
+    return Fit(effect, coordinates.settled(best.x), coordinates.interval(best.x, best.jac, best.fun, levels), rmse, bic)
 
 
 class _Coordinates:
@@ -95,8 +95,17 @@ class _Coordinates:
     def values(self, u: Array) -> dict[str, float]:
         """SI values within their bounds."""
         return {
-            p.name: float(np.clip(np.exp(x) if p.logarithmic else _snapped(x, scale, p.low), p.low, p.high))
-            for p, x, scale in zip(self._parameters, u * self._scales, self._scales, strict=True)
+            p.name: float(np.clip(np.exp(x) if p.logarithmic else x, p.low, p.high))
+            for p, x in zip(self._parameters, u * self._scales, strict=True)
+        }
+
+    def settled(self, u: Array) -> dict[str, float]:
+        """The same for the answer: what lies at its lower bound but for the fit's step away from it is the bound."""
+        near = {p.name: 1e-6 * scale for p, scale in zip(self._parameters, self._scales, strict=True)}
+        lows = {p.name: p.low for p in self._parameters}
+        return {
+            name: lows[name] if abs(value - lows[name]) < near[name] else value
+            for name, value in self.values(u).items()
         }
 
     def start(self, values: Mapping[str, float]) -> Array:
@@ -119,11 +128,6 @@ class _Coordinates:
     def _of(self, values: Mapping[str, float]) -> Array:
         numbers = [np.log(values[p.name]) if p.logarithmic else values[p.name] for p in self._parameters]
         return np.asarray(np.array(numbers) / self._scales)
-
-
-def _snapped(x: float, scale: float, low: float) -> float:
-    """A value that lies at its lower bound but for the fit's step away from it is the bound."""
-    return low if abs(x - low) < 1e-6 * scale else x
 
 
 def _rms(values: Array) -> float:

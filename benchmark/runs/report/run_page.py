@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
+from benchmark.model_file import RepairedModel
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.deformation_section import deformation_section
 from benchmark.runs.report.measured_section import fit_section, measured_section, session_notices
@@ -96,9 +98,20 @@ def _key_figures(record: RunRecord) -> tuple[KeyFigure, ...]:
 def _notices(record: RunRecord) -> tuple[Notice, ...]:
     """What must be known before any figure: origin of the data, circularity, warnings."""
     notices = [] if record.measured is None else list(session_notices(record.measured))
+    if record.repair is not None:
+        notices.append(Notice("assumption", _effects_words(record.repair)))
     if record.warnings:
         notices.append(Notice("warning", "Read these before you quote a figure.", record.warnings))
     return tuple(notices)
+
+
+def _effects_words(repair: RepairedModel) -> str:
+    """Which effects of which model file are on."""
+    names = ", ".join(slug.replace("_", " ") for slug in repair.slugs) or "none"
+    return (
+        f"Effects of {Path(repair.name).name} are switched on: {names}. Under Method stands which model took which; "
+        "warnings say what a model left out."
+    )
 
 
 def _downloads(tables: Sequence[str]) -> tuple[Download, ...]:
