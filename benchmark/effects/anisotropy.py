@@ -13,7 +13,7 @@ CARD = Card(
     slug="anisotropy",
     acts_on="body",
     sentence="The sheet is stiffer along one axis: the dent is drawn out, and markers along x and y move differently.",
-    equation="T_x w_xx + T_y w_yy = -q: the isotropic dent at r' = sqrt(x^2 / sqrt(rho) + y^2 sqrt(rho)), rho = T_x / T_y",
+    equation="T_x w_xx + T_y w_yy = -q: the dent at r' = sqrt(x^2 / sqrt(rho) + y^2 sqrt(rho)), rho = T_x / T_y",
     source="R. Haberman, Applied Partial Differential Equations, section 9.5 (scaling of the axes)",
     parameters=(linear("log_ratio", "", -2.3, 2.3, "natural logarithm of the tension along x over that along y", 0.1),),
 )
