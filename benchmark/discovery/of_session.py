@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from benchmark.discovery.carrying_out import DiscoverRequest
+from benchmark.discovery.planning import propose
 from benchmark.discovery.record import DiscoveryRecord
 from benchmark.discovery.settings import Settings
 from benchmark.discovery.workflow import Findings, findings
@@ -48,6 +49,7 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
         found=replace(found.discovery, warnings=warnings),
         cards={effect.slug: (effect.richer or effect).card for effect in effects},
         seed=request.seed,
+        proposal=propose(found),
         large_press="corrected",
     )
 

@@ -39,7 +39,9 @@ def fit_to_folder(
     model: Path | None = None,
     effects: Path | None = None,
 ) -> FitOutcome:
-    """Fit a session, with the effects of a `model` file where one is given, and write fit.json, fitted_parameters.csv and report.html.
+    """Fit a session and write fit.json, fitted_parameters.csv and report.html.
+
+    With a `model` file its effects are in the fit; `effects` is the user's own file that it may name.
 
     Raises
     ------

@@ -75,8 +75,8 @@ def read_run(folder: Path) -> FinishedRun:
     scenario = load_scenario(scenario_file)
     if scenario.load.control != "force":
         raise InputError(
-            f"{scenario_file}: the load is controlled by {scenario.load.control}; a run can be taken as the measurement "
-            'where it is controlled by "force", since its table has the force of one model only'
+            f"{scenario_file}: the load is controlled by {scenario.load.control}; a run can be taken as the "
+            'measurement where it is controlled by "force", since its table has the force of one model only'
         )
     reference = read_reference(table, scenario).result
     wave = _wave(table, reference.top_deflection.shape)

@@ -19,7 +19,10 @@ SHARE = 0.6
 
 @dataclass(frozen=True)
 class Usual:
-    """A session's own press: depth m, speed m/s, hold s, and the specimen's thickness m."""
+    """A session's own press: depth m, speed m/s, hold s, and the thickness of the specimen on its base, m.
+
+    The thickness is endless over a hole, where a sheet is pressed deeper than it is thick.
+    """
 
     depth: float
     speed: float
