@@ -6,7 +6,9 @@ under it stay where they are.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -46,6 +48,10 @@ class BaseLaw:
     outward: tuple[Array, Array] | None = None
     sink: tuple[Array, Array] | None = None
     outward_by_radius: tuple[Array, Array] | None = None
+
+
+BaseLaws: TypeAlias = Callable[[Tissue, Tool, Support, float], BaseLaw]
+"""The base of one set-up to a depth, m."""
 
 
 def base_law(tissue: Tissue, tool: Tool, support: Support, depth: float) -> BaseLaw:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmark.discovery.base_law import base_law
+from benchmark.discovery.base_law import BaseLaws, base_law
 from benchmark.discovery.fit import Fit, fit
 from benchmark.discovery.model import Model
 from benchmark.discovery.noise import fit_memory, scales
@@ -32,9 +32,9 @@ class Calibrated:
     warnings: tuple[str, ...]
 
 
-def calibrate(session: Session, study: Study) -> Calibrated:
+def calibrate(session: Session, study: Study, base_of: BaseLaws = base_law) -> Calibrated:
     """Fit the base and estimate noise and spreads, twice over."""
-    laws = tuple(base_law(session.specimen, c.tool, c.support, c.around.peak_depth) for c in study.conditions)
+    laws = tuple(base_of(session.specimen, c.tool, c.support, c.around.peak_depth) for c in study.conditions)
     problem = Problem(study, laws, _first_noise(study), _wide(study), trial_refs(study))
     vector, state = _first_guess(problem)
     model = Model(problem, ())

@@ -6,7 +6,9 @@ import shutil
 from dataclasses import replace
 from pathlib import Path
 
+from benchmark.discovery.base_law import base_law
 from benchmark.discovery.carrying_out import DiscoverRequest
+from benchmark.discovery.fem_base import fem_base
 from benchmark.discovery.planning import propose
 from benchmark.discovery.record import DiscoveryRecord
 from benchmark.discovery.settings import Settings
@@ -35,8 +37,8 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
     """
     session = load_session(request.paths[0], request.settings, request.specimen)
     own = tuple(effect for effect in effects if effect.slug not in SLUGS)
-    store = store_folder(request.out, session)
-    found = _found(session, Settings(seed=request.seed), own, listener, store)
+    store = store_folder(request.out, session, request.model)
+    found = _found(session, request, own, listener, store)
     shutil.rmtree(store, ignore_errors=True)
     warnings = tuple(dict.fromkeys((*session.warnings, *found.discovery.warnings)))
     return DiscoveryRecord(
@@ -54,18 +56,22 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
     )
 
 
-def store_folder(out: Path | None, session: Session) -> Path:
+def store_folder(out: Path | None, session: Session, model: str) -> Path:
     """Where the fits of an unfinished discovery are kept: beside the result, the same for the same session."""
     if out is not None:
-        return out.parent / f".{out.name}.unfinished"
-    return Path("results") / f".{file_name(session.name)}-{session.fingerprint[:12]}.unfinished"
+        return out.parent / f".{out.name}-{model}.unfinished"
+    return Path("results") / f".{file_name(session.name)}-{session.fingerprint[:12]}-{model}.unfinished"
 
 
-def _found(session: Session, settings: Settings, own: tuple[Effect, ...], listener: Listener, store: Path) -> Findings:
+def _found(
+    session: Session, request: DiscoverRequest, own: tuple[Effect, ...], listener: Listener, store: Path
+) -> Findings:
+    base_of = fem_base(session) if request.model == "fem" else base_law
+    settings = Settings(seed=request.seed)
     with listener.progress(f"{session.name}: what the model lacks") as advance:
 
         def on_stage(stage: str, done: int, total: int, best: str) -> None:
             remark = f"best so far {best.replace('_', ' ')}" if best else ""
             advance(STAGES.get(stage, stage), done, max(total, 1), remark)
 
-        return findings(session, settings=settings, effects=own, listener=on_stage, store=store)
+        return findings(session, settings=settings, effects=own, listener=on_stage, store=store, base_of=base_of)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmark.discovery.answer import base_estimates, candidates, named_effects, remains, transfers
+from benchmark.discovery.base_law import BaseLaws, base_law
 from benchmark.discovery.calibrate import Calibrated, calibrate
 from benchmark.discovery.contrasts import contrasts
 from benchmark.discovery.detect import Detection, detect, places, smallest_visible, unexplained
@@ -64,6 +65,7 @@ def findings(
     effects: Sequence[Effect] = (),
     listener: Listener = silent,
     store: Path | None = None,
+    base_of: BaseLaws = base_law,
 ) -> Findings:
     """Find what the model of a session lacks, and keep the fits.
 
@@ -79,6 +81,8 @@ def findings(
         Told of stage, done, total and the best candidate so far.
     store
         Folder for fits as they come, from which an interrupted discovery goes on.
+    base_of
+        The elastic base of a set-up; the wave models' by default.
 
     Raises
     ------
@@ -88,7 +92,7 @@ def findings(
     began = time.perf_counter()
     listener("prepare", 0, 1, "")
     study = prepare(session, settings.rows)
-    calibrated = calibrate(session, study)
+    calibrated = calibrate(session, study, base_of)
     base = calibrated.base
     listener("detect", 0, 1, "")
     before = detect(base, settings)

@@ -16,7 +16,7 @@ _KNOWN = {**{each.si: each for each in DIMENSIONS if each.si}, **_MORE, "": _NUM
 
 def dimension_of(unit: str) -> Dimension:
     """The dimension whose SI unit is `unit` ("" for a plain number), with the units that people read it in."""
-    spelled = {"m2/s": "m^2/s", "m**2/s": "m^2/s", "rad": "radian", "Hz": "1/s"}.get(unit, unit)
+    spelled = {"m2/s": "m^2/s", "m**2/s": "m^2/s", "rad": "radian", "Hz": "1/s", "1/m": "m^-1"}.get(unit, unit)
     return _KNOWN.get(spelled, Dimension(f"quantity in {unit}", spelled, ((spelled, 0.0),), f"1 {spelled}"))
 
 

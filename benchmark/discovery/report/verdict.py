@@ -7,6 +7,8 @@ from benchmark.discovery.report.words import channel_name, effect_name, place_wo
 from reports import Verdict
 from reports.formatting import format_number
 
+MATTERS = 2.0
+"""Of a channel's largest signal, %: what is smaller is said to be small in practice."""
 MEANING = {
     "no_discrepancy": "Verdict no_discrepancy: what is left between model and measurement is no more than chance.",
     "named": "Verdict named: one answer, and it holds on a condition that it was not fitted to.",
@@ -25,6 +27,8 @@ def discovery_verdict(record: DiscoveryRecord) -> Verdict:
     points = [MEANING[found.verdict]]
     if found.where:
         points.append(f"Largest disagreement: {place_words(found.where[0])}.")
+        if all(abs(place.percent_of_signal) < MATTERS for place in found.where):
+            points.append(f"All of it lies below {MATTERS:g} % of the signal: visible, but small in practice.")
     points.extend(_closed(record))
     similar = sorted({name for effect in found.effects for name in effect.lookalikes})
     if similar:
