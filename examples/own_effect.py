@@ -23,7 +23,7 @@ CARD = Card(
 )
 
 
-def _observe(values, readings, motion, around):
+def _observe(values, readings, motion, around):  # noqa: ARG001 - every place gets the same
     """Readings with the force fading; values in SI by name, (n,) arrays in readings and motion."""
     time = motion.time - motion.time[0]
     return replace(readings, force=readings.force * (1.0 + values["s"] * np.expm1(-time / values["tau"])))
