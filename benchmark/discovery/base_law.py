@@ -7,6 +7,7 @@ under it stay where they are.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -66,7 +67,7 @@ def base_law(tissue: Tissue, tool: Tool, support: Support, depth: float) -> Base
         raise InputError(f"the base model of {tissue.name!r} cannot be worked out: {error}.") from None
 
 
-def _layers(tissue: Tissue) -> list:
+def _layers(tissue: Tissue) -> list[Any]:
     from wavemodel import WaveLayer
 
     def thick(value: float) -> float:
