@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -72,7 +72,7 @@ def base_law(tissue: Tissue, tool: Tool, support: Support, depth: float) -> Base
         raise InputError(f"the base model of {tissue.name!r} cannot be worked out: {error}.") from None
 
 
-def _layers(tissue: Tissue) -> list:
+def _layers(tissue: Tissue) -> list[Any]:
     from wavemodel import WaveLayer
 
     def thick(value: float) -> float:

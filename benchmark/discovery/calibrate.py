@@ -10,7 +10,7 @@ from benchmark.discovery.base_law import BaseLaws, base_law
 from benchmark.discovery.fit import Fit, fit
 from benchmark.discovery.model import Model
 from benchmark.discovery.noise import fit_memory, scales
-from benchmark.discovery.problem import NoiseModel, Problem, TrialPrior, trial_refs
+from benchmark.discovery.problem import NoiseModel, Problem, TrialPrior, TrialRef, trial_refs
 from benchmark.discovery.result import Array
 from benchmark.discovery.study import Study
 from benchmark.files import Session
@@ -147,7 +147,7 @@ def _estimated(fitted: Fit) -> tuple[Problem, list[str]]:
     return replace(problem, noise=noise, prior=_spreads(fitted, scale)), warnings
 
 
-def _pairs(fitted: Fit) -> list[tuple]:
+def _pairs(fitted: Fit) -> list[tuple[TrialRef, Array]]:
     signals = fitted.model.signals(fitted.vector, fitted.nuisance)
     return list(zip(fitted.model.problem.trials, signals, strict=True))
 

@@ -100,11 +100,11 @@ def _projections(base: Fit) -> tuple[list[tuple[Array, Array, Array]], Array]:
     weight = nuisance_precision(problem)
     parts, matrix = [], np.diag(base.precision).astype(float)
     for j, n in zip(base.columns.vector, base.columns.nuisance, strict=True):
-        inner = np.linalg.inv(n.T @ n + np.diag(weight))
+        inner = np.asarray(np.linalg.inv(n.T @ n + np.diag(weight)))
         parts.append((j, n, inner))
         side = n.T @ j
         matrix += j.T @ j - side.T @ inner @ side
-    return parts, matrix
+    return parts, np.asarray(matrix)
 
 
 def _projected(

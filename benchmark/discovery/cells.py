@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from benchmark.discovery.fit import Fit
+from benchmark.discovery.fit import Fit, White
 from benchmark.discovery.model import nuisance_precision
 from benchmark.discovery.problem import Problem
-from benchmark.discovery.result import PHASES, Array
+from benchmark.discovery.result import Array
 
 ALL_FLIPS = 12
 """Up to so many trials all sign patterns are taken."""
@@ -21,14 +22,13 @@ LEAST_ROWS = 2
 
 @dataclass(frozen=True, eq=False)
 class Cell:
-    """Where a mean is taken: `rows` (n,) bool of a condition's rows, of one signal."""
+    """Where a mean is taken: of one signal, over `rows` ((n,) bool) of each condition by its number."""
 
-    condition: int
     phase: int
     cycle: int
     part: int
     signal: int
-    rows: np.ndarray
+    rows: Mapping[int, np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +51,8 @@ class FlipTest:
 
 
 def cells_of(problem: Problem) -> tuple[Cell, ...]:
-    """Cells of phase, cycle (third and later ones together), half and signal in each condition."""
-    out = []
+    """Cells of phase, cycle (third and later ones together), half and signal, over all conditions that have them."""
+    found: dict[tuple[int, int, int, int], dict[int, np.ndarray]] = {}
     for number, condition in enumerate(problem.study.conditions):
         cycle = np.minimum(condition.cycle, 3)
         keys = sorted(set(zip(condition.phase.tolist(), cycle.tolist(), condition.part.tolist(), strict=True)))
@@ -62,8 +62,8 @@ def cells_of(problem: Problem) -> tuple[Cell, ...]:
                 continue
             for signal in range(condition.signals.shape[2]):
                 if np.isfinite(condition.signals[:, rows, signal]).all():
-                    out.append(Cell(number, phase, turn, part, signal, rows))
-    return tuple(out)
+                    found.setdefault((phase, turn, part, signal), {})[number] = rows
+    return tuple(Cell(*key, rows) for key, rows in sorted(found.items(), key=lambda pair: pair[0]))
 
 
 def projected_residuals(fitted: Fit) -> list[Array]:
@@ -74,27 +74,18 @@ def projected_residuals(fitted: Fit) -> list[Array]:
     model, problem = fitted.model, fitted.model.problem
     signals = model.signals(fitted.vector, fitted.nuisance)
     plain = _tangents(fitted)
+    white_residuals = White(problem)
     out = []
     for i, trial in enumerate(problem.trials):
         j, n = fitted.columns.vector[i], fitted.columns.nuisance[i]
         white = np.hstack([j[:, : model.shape_count], n])
         weight = np.concatenate([fitted.precision[: model.shape_count], nuisance_precision(problem)])
         residual = trial.signals - signals[i]
-        from benchmark.discovery.fit import White
-
-        flat = White(problem).flat(i, residual) if i == 0 else _flat(problem, i, residual)
+        flat = white_residuals.flat(i, residual)
         inner = white.T @ white + np.diag(weight)
         amount = np.linalg.solve(inner, white.T @ flat)
         out.append(residual - np.tensordot(plain[i], amount, axes=([-1], [0])))
     return out
-
-
-def _flat(problem: Problem, index: int, rows: Array) -> Array:
-    use = problem.whiteners(index)
-    white = np.column_stack([use[k](rows[:, k]) for k in range(rows.shape[1])])
-    if problem.mask is not None:
-        white = white * problem.mask[problem.trials[index].condition]
-    return np.asarray(white.ravel())
 
 
 def _tangents(fitted: Fit) -> list[Array]:
@@ -121,9 +112,10 @@ def cell_means(problem: Problem, residuals: list[Array], cells: tuple[Cell, ...]
     means = np.full((len(cells), len(problem.trials)), np.nan)
     for k, cell in enumerate(cells):
         for i, trial in enumerate(problem.trials):
-            if trial.condition == cell.condition:
-                weight = trial.count[cell.rows, cell.signal]
-                means[k, i] = np.sum(residuals[i][cell.rows, cell.signal] * weight) / max(weight.sum(), 1e-12)
+            rows = cell.rows.get(trial.condition)
+            if rows is not None:
+                weight = trial.count[rows, cell.signal]
+                means[k, i] = np.sum(residuals[i][rows, cell.signal] * weight) / max(weight.sum(), 1e-12)
     return CellTable(cells, means)
 
 
@@ -134,7 +126,7 @@ def flip_test(table: CellTable, flips: int, seed: int) -> FlipTest:
     cells is compared with those after flipping the signs of whole trials, which under no disagreement changes nothing.
     """
     means = table.means
-    signals = np.array([(cell.condition, cell.signal) for cell in table.cells])
+    signals = np.array([(cell.signal, min(cell.rows), len(cell.rows)) for cell in table.cells])
     signs = _signs(means.shape[1], flips, seed)
     t, error = _statistic(means, signals)
     largest = np.array([np.abs(_statistic(means * sign, signals)[0]).max() for sign in signs])
@@ -163,8 +155,3 @@ def _statistic(means: Array, groups: Array) -> tuple[Array, Array]:
     shrunk = (STEADY * pooled + (count - 1) * spread) / (STEADY + count - 1)
     error = np.sqrt(shrunk / count)
     return mean / np.maximum(error, 1e-300), error
-
-
-def name(cell: Cell) -> str:
-    """Its phase."""
-    return PHASES[cell.phase]

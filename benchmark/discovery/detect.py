@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from benchmark.discovery.cells import CellTable, FlipTest, cell_means, cells_of, flip_test, projected_residuals
+from benchmark.discovery.cells import Cell, CellTable, FlipTest, cell_means, cells_of, flip_test, projected_residuals
 from benchmark.discovery.fit import Fit, fit
 from benchmark.discovery.model import Model
 from benchmark.discovery.result import PHASES, Array, Place
@@ -43,13 +44,14 @@ def _tested(fitted: Fit, settings: Settings, full: Fit | None = None) -> tuple[C
     return table, flip_test(table, settings.flips, settings.seed)
 
 
-def _refitted(fitted: Fit, table: CellTable, flagged: Array) -> Fit:
+def _refitted(fitted: Fit, table: CellTable, flagged: NDArray[np.bool_]) -> Fit:
     """The model fitted on the rows of cells that are not flagged."""
     problem = fitted.model.problem
     masks = [np.ones(c.signals.shape[1:], dtype=bool) for c in problem.study.conditions]
     for cell, bad in zip(table.cells, flagged, strict=True):
         if bad:
-            masks[cell.condition][cell.rows, cell.signal] = False
+            for condition, rows in cell.rows.items():
+                masks[condition][rows, cell.signal] = False
     clean = replace(problem, mask=tuple(masks))
     model = Model(clean, fitted.model.effects)
     return fit(model, fitted.vector, fitted.nuisance, most=4)
@@ -77,13 +79,13 @@ def places(fitted: Fit, detection: Detection, level: float) -> tuple[Place, ...]
     problem = fitted.model.problem
     study, test = problem.study, detection.test
     ranges = signal_ranges(fitted)
-    found: dict[tuple, tuple[float, Place]] = {}
+    found: dict[tuple[object, ...], tuple[float, Place]] = {}
     for k, cell in enumerate(detection.table.cells):
         if test.p[k] >= level:
             continue
-        condition = study.conditions[cell.condition]
-        size = float(np.nanmean(detection.table.means[k]))
-        depth = np.median(condition.depth[:, cell.rows], axis=0)
+        number, size = _largest(fitted, detection.table.means[k], cell)
+        condition = study.conditions[number]
+        depth = np.median(condition.depth[:, cell.rows[number]], axis=0)
         place = Place(
             channel=study.channels[cell.signal],
             phase=PHASES[cell.phase],
@@ -98,6 +100,14 @@ def places(fitted: Fit, detection: Detection, level: float) -> tuple[Place, ...]
         if key not in found or abs(test.t[k]) > found[key][0]:
             found[key] = (abs(float(test.t[k])), place)
     return tuple(place for _, place in sorted(found.values(), key=lambda pair: -pair[0]))
+
+
+def _largest(fitted: Fit, means: Array, cell: Cell) -> tuple[int, float]:
+    """The condition where a cell's mean is largest, and that mean."""
+    groups = np.array([trial.condition for trial in fitted.model.problem.trials])
+    each = {number: float(means[groups == number].mean()) for number in cell.rows}
+    number = max(each, key=lambda key: abs(each[key]))
+    return number, each[number]
 
 
 def signal_ranges(fitted: Fit) -> Array:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmark.discovery.model import Model, nuisance_count, nuisance_precision
 from benchmark.discovery.problem import Problem
@@ -16,8 +17,11 @@ from benchmark.discovery.result import Array
 
 DAMPING = 1e-3
 MOST = 12
-CLOSE = 2e-3
-"""A fit has converged where a step lowers half the sum of squares by less than this."""
+CLOSE = 0.03
+SHARE = 3e-5
+"""A fit has converged where a step lowers half the sum of squares by less than CLOSE, or this share of it."""
+LENT = 3
+"""Steps for which the base's derivatives of a start serve."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,20 +79,20 @@ class Fit:
         total = self.blocks.matrix.sum(axis=0) + np.diag(self.precision)
         return np.asarray(np.linalg.pinv(total, hermitian=True))
 
-    def without(self, trials: Array) -> Array:
+    def without(self, trials: NDArray[np.bool_]) -> Array:
         """(p,) of the fit without some trials (mask (R,)), to first order, within the bounds."""
         matrix = self.blocks.matrix[~trials].sum(axis=0) + np.diag(self.precision)
         slope = self.blocks.slope[~trials].sum(axis=0) - self.precision * (self.vector - self.prior_mean)
         step = np.linalg.solve(matrix + 1e-9 * np.diag(np.diag(matrix)), slope)
         return np.clip(self.vector + step, *self.model.bounds)
 
-    def log_density(self, vector: Array, trials: Array | None = None) -> Array:
+    def log_density(self, vector: Array) -> Array:
         """(R,) log density of each trial at another vector, to second order, its nuisances marginalised."""
         step = vector - self.vector
         misfit = self.blocks.misfit - 2.0 * self.blocks.slope @ step
         misfit = misfit + np.einsum("i,rij,j->r", step, self.blocks.matrix, step)
         density = -0.5 * np.maximum(misfit, 0.0) - 0.5 * self.blocks.log_size
-        return density if trials is None else density[trials]
+        return np.asarray(density)
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,7 +155,7 @@ def fit(
     damping, columns = DAMPING, None
     for turn in range(most):
         if columns is None:
-            columns = _columns(model, white, vector, state, signals, warm if turn == 0 else None)
+            columns = _columns(model, white, vector, state, signals, warm if turn < LENT else None)
         step, moves = _step(problem, columns, residuals, state, vector, (mean, precision), damping, model.bounds)
         tried, tried_state = np.clip(vector + step, *model.bounds), state + moves
         tried_signals = model.signals(tried, tried_state)
@@ -161,9 +165,11 @@ def fit(
             gain = value - tried_value
             vector, state, signals, residuals, value = tried, tried_state, tried_signals, tried_residuals, tried_value
             damping, columns = damping * 0.2, None
-            if gain < max(CLOSE, 1e-6 * value):
+            if gain < max(CLOSE, SHARE * value):
                 break
         else:
+            if warm is not None and turn < LENT:
+                warm, columns = None, None
             damping = max(damping, 1e-4) * 12.0
             if damping > 1e5:
                 break

@@ -74,9 +74,9 @@ def gaps(base: Fit, held: HeldOut, settings: Settings) -> tuple[ChannelGap, ...]
         resampled = [_closed(b[d].mean(), a[d].mean(), f[d].mean()) for d in draws] if closed is not None else []
         kept = [value for value in resampled if value is not None]
         ends = np.quantile(kept, [0.025, 0.975]).tolist() if kept else None
-        rmse = [float(np.sqrt(values.mean())) for values in (b, a, f)]
+        one, two, least = (float(np.sqrt(values.mean())) for values in (b, a, f))
         interval = None if ends is None else (ends[0], ends[1])
-        out.append(ChannelGap(channel, *rmse, closed, interval, held.kind))
+        out.append(ChannelGap(channel, one, two, least, closed, interval, held.kind))
     return tuple(out)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -55,7 +56,7 @@ def segments(time: Array, depth: Array) -> list[Segment]:
     turns = reversals(depth, REVERSAL * travel)
     edges = [0, *turns, depth.size - 1]
     pieces: list[tuple[int, int, str]] = []
-    for first, last in zip(edges[:-1], edges[1:], strict=True):
+    for first, last in pairwise(edges):
         if last > first:
             pieces += _with_rests(time, depth, first, last, LEVEL * travel)
     return _numbered(_joined(pieces))

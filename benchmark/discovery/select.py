@@ -61,7 +61,9 @@ class Selection:
 
 def select(base: Fit, effects: Sequence[Effect], settings: Settings, work: Pool) -> Selection:
     """Choose effects."""
-    current, steps, all_scored = base, [], []
+    current = base
+    steps: list[Scored] = []
+    all_scored: list[Scored] = []
     first_screen: tuple[Screened, ...] = ()
     rounds: list[list[Scored]] = []
     for number in range(1, settings.most_effects + 1):
@@ -80,7 +82,7 @@ def select(base: Fit, effects: Sequence[Effect], settings: Settings, work: Pool)
             break
         steps.append(best)
         current = best.fit
-    current = _pruned(base, current, effects, settings, work)
+    current = _pruned(base, current, settings, work)
     current = _swapped(base, current, rounds, work)
     lookalikes, rivals = _lookalikes(base, current, rounds, settings, work)
     return Selection(base, current, tuple(steps), tuple(all_scored), first_screen, lookalikes, rivals)
@@ -147,7 +149,7 @@ def _rebuilt(base: Fit, effects: Sequence[Effect], work: Pool, stage: str) -> Fi
     return current
 
 
-def _pruned(base: Fit, current: Fit, effects: Sequence[Effect], settings: Settings, work: Pool) -> Fit:
+def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> Fit:
     """Drop what the others make superfluous."""
     while len(current.model.effects) > 1:
         groups, now = conditions(current), held_out(current)

@@ -98,12 +98,12 @@ class Body:
         kept = self.physics
         plain = Physics(stiffening=kept.stiffening, pretension=kept.pretension, floor=kept.floor)
         still = replace(self, physics=plain)
-        time = 1.0 + np.arange(depth.size)
+        time = 1.0 + np.arange(depth.size, dtype=np.float64)
         return QuasiStaticPress(still._law, plain).force(time, depth)
 
     def force(self, depth: Array) -> Array:
         """(n,) N."""
-        return self.trace(depth).force
+        return np.asarray(self.trace(depth).force)
 
     def trace(self, depth: Array) -> Any:
         """The press as `wavemodel.physics` gives it."""

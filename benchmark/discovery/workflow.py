@@ -139,7 +139,7 @@ def _discovery(
         candidates=candidates(selection, {slugs: overall} if slugs else {}),
         base=base_estimates(chosen),
         remains=remains(chosen, after, settings.level) if not silent_answer else (),
-        warnings=(*study.warnings, *calibrated.warnings, *_remarks(before, settings)),
+        warnings=(*study.warnings, *calibrated.warnings, *_remarks(before)),
         traces=traces(base, held),
         conditions=session.conditions,
         channels=tuple(dict.fromkeys(study.channels)),
@@ -168,7 +168,7 @@ def _facts(
     )
 
 
-def _remarks(before: Detection, settings: Settings) -> tuple[str, ...]:
+def _remarks(before: Detection) -> tuple[str, ...]:
     """Whether the trials can be exchanged."""
     if before.trend.size and abs(before.trend).max() > 6.0:
         return (
