@@ -11,7 +11,7 @@ reports or other models.
 
 from fem.errors import FemError
 from fem.load import Load
-from fem.materials import LinearElastic, Material, NeoHookean
+from fem.materials import Fibre, FibreReinforced, Gent, LinearElastic, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from fem.prepare import prepare
 from fem.problem import Discretisation, Layer, Problem, Support, Tool
 from fem.solution import Failure, Solution, StepReport
@@ -21,16 +21,22 @@ __all__ = [
     "Discretisation",
     "Failure",
     "FemError",
+    "Fibre",
+    "FibreReinforced",
+    "Gent",
     "Layer",
     "LinearElastic",
     "Load",
     "Material",
+    "MooneyRivlin",
     "NeoHookean",
+    "Ogden",
     "Problem",
     "Solution",
     "StepReport",
     "Support",
     "Tool",
+    "Yeoh",
     "prepare",
     "read_surface",
 ]

@@ -30,3 +30,15 @@ def require_one_of(name: str, value: str, allowed: Collection[str]) -> None:
     """
     if value not in allowed:
         raise FemError(f"{name} = {value!r}: allowed are {', '.join(sorted(allowed))}")
+
+
+def require_finite(name: str, value: float, unit: str) -> None:
+    """Refuse a value that is infinite or not a number.
+
+    Raises
+    ------
+    FemError
+        If `value` (in `unit`) is not finite.
+    """
+    if not math.isfinite(value):
+        raise FemError(f"{name} = {value:g} {unit}: must be a finite number")

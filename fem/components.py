@@ -96,15 +96,29 @@ class Components(ABC):
             full[..., i, j] = values[k]
         return full
 
-    def right_product(self, H: FloatArray) -> FloatArray:
-        """H^T H, (components, *points)."""
-        out = np.zeros_like(H)
+    @cached_property
+    def row_pairs(self) -> tuple[IntArray, IntArray]:
+        """Packed positions of the pairs (i j, i l) of one row, and the component (j, l) of each."""
+        found = [
+            (n, self.positions.index((self.positions[k][1], self.positions[m][1])))
+            for n, (k, m) in enumerate(zip(*self.pairs, strict=True))
+            if self.positions[k][0] == self.positions[m][0]
+        ]
+        return np.array([n for n, _ in found]), np.array([c for _, c in found])
+
+    def product(self, A: FloatArray, B: FloatArray) -> FloatArray:
+        """A B, (components, *points)."""
         at = {position: k for k, position in enumerate(self.positions)}
+        out = np.zeros((len(self.positions), *np.broadcast_shapes(A.shape[1:], B.shape[1:])))
         for n, (i, j) in enumerate(self.positions):
             for k in range(3):
-                if (k, i) in at and (k, j) in at:
-                    out[n] += H[at[k, i]] * H[at[k, j]]
+                if (i, k) in at and (k, j) in at:
+                    out[n] += A[at[i, k]] * B[at[k, j]]
         return out
+
+    def right_product(self, H: FloatArray) -> FloatArray:
+        """H^T H, (components, *points)."""
+        return self.product(H[self.transposed], H)
 
     def volume_change(self, H: FloatArray, cofactor_change: FloatArray) -> FloatArray:
         """J - 1, (*points), of H and cof F - I: det F by its second row, without the 1."""
@@ -127,6 +141,10 @@ class Components(ABC):
     @abstractmethod
     def cofactor_derivative(self, F: FloatArray) -> FloatArray:
         """Second derivative of J at the pairs of `cofactor_pairs`."""
+
+    @abstractmethod
+    def principal(self, strain: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Principal values (3, *points) and axes (3, 3, *points), axis by axis in columns, of symmetric tensors."""
 
     @abstractmethod
     def largest_principal(self, strain: FloatArray) -> FloatArray:
@@ -159,6 +177,15 @@ class AxisymmetricComponents(Components):
         """Second derivative of J at the pairs of `cofactor_pairs`, (6, *points)."""
         rr, rz, tt, zr, zz = F
         return np.stack((zz, tt, -zr, -tt, -rz, rr))
+
+    def principal(self, strain: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Principal values (3, *points), the second one hoop, and axes (3, 3, *points) of tensors (5, *points)."""
+        rr, rz, tt, _, zz = strain
+        half, mean = 0.5 * (rr - zz), 0.5 * (rr + zz)
+        size, angle = np.hypot(half, rz), 0.5 * np.arctan2(rz, half)
+        c, s, none = np.cos(angle), np.sin(angle), np.zeros_like(angle)
+        axes = np.stack((np.stack((c, none, -s)), np.stack((none, none + 1.0, none)), np.stack((s, none, c))))
+        return np.stack((mean + size, tt, mean - size)), axes
 
     def largest_principal(self, strain: FloatArray) -> FloatArray:
         """Largest principal value by amount, (*points), of symmetric tensors (5, *points)."""
@@ -207,6 +234,11 @@ class SolidComponents(Components):
         _, component, sign = self._curvature
         out: FloatArray = F[component] * sign.reshape(-1, *(1,) * (F.ndim - 1))
         return out
+
+    def principal(self, strain: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Principal values (3, *points) and axes (3, 3, *points) of symmetric tensors (9, *points)."""
+        values, axes = np.linalg.eigh(self.tensor(strain))
+        return np.moveaxis(values, -1, 0), np.moveaxis(axes, (-2, -1), (0, 1))
 
     def largest_principal(self, strain: FloatArray) -> FloatArray:
         """Largest principal value by amount, (*points), of symmetric tensors (9, *points)."""

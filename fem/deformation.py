@@ -75,6 +75,18 @@ class Deformation:
         return out
 
     @cached_property
+    def isochoric_invariant_change(self) -> FloatArray:
+        """J^(-2/3) tr C less 3, (*points)."""
+        out: FloatArray = self.isochoric_factor * self.first_invariant_change + 3.0 * self.isochoric_change
+        return out
+
+    @cached_property
+    def isochoric_change(self) -> FloatArray:
+        """J^(-2/3) less 1, (*points)."""
+        out: FloatArray = np.expm1(-2.0 / 3.0 * np.log1p(self.volume_change))
+        return out
+
+    @cached_property
     def isochoric_factor(self) -> FloatArray:
         """J^(-2/3), (*points)."""
         out: FloatArray = 1.0 / np.cbrt(self.J * self.J)

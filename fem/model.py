@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
+from fem.checkpoint import Checkpoint, fingerprint
 from fem.fields import FieldRecovery
 from fem.linear_run import run_linear
 from fem.load import Load
@@ -57,7 +59,12 @@ class Model:
         """Name of the linear solver in use."""
         return self.equilibrium.solver.name
 
-    def run(self, load: Load, on_step: Callable[[StepReport], None] | None = None) -> Solution:
+    def run(
+        self,
+        load: Load,
+        on_step: Callable[[StepReport], None] | None = None,
+        checkpoint: str | Path | None = None,
+    ) -> Solution:
         """Follow a load history.
 
         Parameters
@@ -65,19 +72,28 @@ class Model:
         load
             Prescribed force or depth over time.
         on_step
-            Called after each accepted step.
+            Called after each accepted step that was computed here.
+        checkpoint
+            File in which a run at finite strain keeps its accepted steps. If it exists, the run goes on from
+            there; after the last step it stays, and can be removed. A linear run, which is one solve, has none.
 
         Returns
         -------
         Solution
             With `complete` False and a `failure` if a step could not be reached; never raises for that.
+
+        Raises
+        ------
+        FemError
+            If the checkpoint cannot be written, is damaged, or is of another problem, mesh or load history.
         """
         record = Record(self.mesh, self.equilibrium, self.recovery, self._names())
         warnings = self.warnings + ((PULLING,) if load.value.min() < 0.0 else ())
         with suited_threads(self.unknowns):
             if self.problem.kinematics == "linear":
                 return run_linear(record, load, warnings, on_step)
-            return run_nonlinear(record, load, self.newton, warnings, on_step)
+            kept = Checkpoint(Path(checkpoint), fingerprint(self.problem, self.mesh, load)) if checkpoint else None
+            return run_nonlinear(record, load, self.newton, warnings, on_step, kept)
 
     def _names(self) -> tuple[str, ...]:
         return tuple(layer.name for layer in self.problem.layers)

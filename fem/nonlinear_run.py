@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fem.checkpoint import Checkpoint, Progress
 from fem.linear_run import unit_state
 from fem.load import Load
 from fem.record import Record, largest_strain, reaction
@@ -21,6 +22,7 @@ def run_nonlinear(
     settings: NewtonSettings,
     warnings: tuple[str, ...],
     on_step: Callable[[StepReport], None] | None,
+    checkpoint: Checkpoint | None = None,
 ) -> Solution:
     """Follow a load history in finite strain.
 
@@ -35,7 +37,14 @@ def run_nonlinear(
     warnings
         Texts of the model.
     on_step
-        Called after each accepted step.
+        Called after each accepted step that was computed here.
+    checkpoint
+        Where the accepted steps are kept; what it holds already is not computed again.
+
+    Raises
+    ------
+    FemError
+        If the checkpoint cannot be used.
 
     Returns
     -------
@@ -49,11 +58,14 @@ def run_nonlinear(
         failure = Failure(1, float(load.time[0]), load.control, 0.0, float(load.value[0]), reason)
         return record.solution(failure, warnings)
     stepper = Stepper(problem, load.control, scale, settings, start)
-    for n, (time, value) in enumerate(zip(load.time.tolist(), load.value.tolist(), strict=True)):
+    first = 0 if checkpoint is None else _resume(record, stepper, checkpoint)
+    for n, (time, value) in list(enumerate(zip(load.time.tolist(), load.value.tolist(), strict=True)))[first:]:
         advance = stepper.advance(value)
         if advance.reason:
             return record.solution(Failure(n + 1, time, load.control, advance.value, value, advance.reason), warnings)
         _keep(record, time, advance)
+        if checkpoint is not None:
+            checkpoint.write(_progress(record, stepper))
         if on_step is not None:
             depth = problem.depth(advance.state.y)
             on_step(
@@ -84,3 +96,27 @@ def _keep(record: Record, time: float, advance: Advance) -> None:
     if evaluation is None:
         raise ArithmeticError("an accepted state cannot be evaluated")
     record.add(time, state, reaction(system, evaluation.element_force), largest_strain(system, state.y, finite=True))
+
+
+def _resume(record: Record, stepper: Stepper, checkpoint: Checkpoint) -> int:
+    """Put the steps of a checkpoint into record and stepper; how many there are."""
+    found = checkpoint.read()
+    if found is None:
+        return 0
+    for n, time, reached, strain in zip(found.steps, found.time, found.reactions, found.strains, strict=True):
+        record.add(float(time), found.states[n], float(reached), float(strain))
+    stepper.resume(found.values, found.states)
+    return len(found.steps)
+
+
+def _progress(record: Record, stepper: Stepper) -> Progress:
+    known = stepper.known
+    place = {id(state): n for n, state in enumerate(known.states)}
+    return Progress(
+        time=np.array(record.time),
+        reactions=np.array(record.reactions),
+        strains=np.array(record.strains),
+        steps=np.array([place[id(state)] for state in record.states]),
+        values=known.values,
+        states=known.states,
+    )

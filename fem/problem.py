@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 from fem.checks import require_one_of, require_positive
 from fem.errors import FemError
+from fem.fibre_symmetry import require_fibre_symmetry
 from fem.materials import Material
 
 if TYPE_CHECKING:
@@ -191,6 +192,7 @@ class Problem:
                 raise FemError(f"layers: the name {name!r} is used {names.count(name)} times, names must differ")
         self._require_finite_thickness()
         self._require_finite_strain_laws()
+        require_fibre_symmetry({layer.name: layer.material for layer in self.layers}, self.geometry)
         self._require_room()
         self._require_three_dimensions()
 

@@ -26,7 +26,7 @@ from reports.blocks import (
     Verdict,
 )
 from reports.page import Page, render_page, write_page
-from reports.tables import write_csv
+from reports.tables import csv_text, write_csv
 
 __all__ = [
     "Block",
@@ -48,6 +48,7 @@ __all__ = [
     "Subsection",
     "Table",
     "Verdict",
+    "csv_text",
     "render_page",
     "whole_folder",
     "write_bytes",

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from wavemodel.integrators.damping import Damping
     from wavemodel.integrators.prony import Prony
     from wavemodel.layered import LayeredWave
+    from wavemodel.markers import marker_motion
     from wavemodel.physics.body import Physics
     from wavemodel.physics.in_plane_stress import InPlaneStress
     from wavemodel.physics.quasi_static_press import QuasiStaticPress
@@ -36,6 +37,7 @@ __all__ = [
     "WaveError",
     "WaveLayer",
     "WaveSolution",
+    "marker_motion",
 ]
 
 _HOMES = {
@@ -53,6 +55,7 @@ _HOMES = {
     "WaveError": "wavemodel.errors",
     "WaveLayer": "wavemodel.specimen",
     "WaveSolution": "wavemodel.solution",
+    "marker_motion": "wavemodel.markers",
 }
 
 

@@ -36,7 +36,7 @@ class Snapshot:
 
 @dataclass(frozen=True)
 class Field:
-    """Synthesis for one tool in the middle of one window.
+    """Synthesis for one tool in one window.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ class Field:
         """
         if not np.all(radius >= 0.0):
             raise WaveError("profile: a radius that is negative or not a number is not allowed")
-        inside = radius <= 0.5 * self.domain.width
+        inside = self.domain.inside(radius, axis=0)
         out = np.full((state.amplitude.shape[0], radius.size), np.nan)
         line = self.modal(state.amplitude) @ self.domain.sines(np.zeros(1), axis=1)[0]
         out[:, inside] = line @ self.domain.sines(radius[inside]).T

@@ -53,6 +53,8 @@ class LayeredWave:
         "bonded", or "free" (nothing under the lower face, the window's border simply supported).
     window
         Side of the square window, m. None: so wide that the border costs at most 0.1 % of the peak in it.
+    place
+        (x, y) of the tool from the middle of the window, m. Off the middle even modes take part too.
     modes
         N, for m, n = 1..N. None: as many as carry the smooth part of the load, k a up to 12.
     sublayers
@@ -106,6 +108,7 @@ class LayeredWave:
         window: float | None = None,
         modes: int | None = None,
         *,
+        place: tuple[float, float] = (0.0, 0.0),
         sublayers: Sequence[int] | None = None,
         static_correction: bool | None = None,
         integrator: str = "auto",
@@ -118,7 +121,7 @@ class LayeredWave:
         if integrator not in INTEGRATORS:
             raise WaveError(f"integrator = {integrator!r} is not allowed: one of {', '.join(INTEGRATORS)}")
         counts = None if sublayers is None else tuple(sublayers)
-        settings = Settings(window, modes, counts, static_correction, in_plane_stress(pretension, len(layers)))
+        settings = Settings(window, modes, counts, static_correction, in_plane_stress(pretension, len(layers)), place)
         self.layers, self.tool = tuple(layers), tool
         self.integrator, self.damping = integrator, damping or Damping()
         self.relaxation = series_of(relaxation, len(self.layers))
@@ -183,7 +186,7 @@ class LayeredWave:
             top_deflection=history.top_deflection,
             integrator=method,
             warnings=notices.notices(self.press, history, method, ringing(load, self.first_frequency, self.damping)),
-            _field=self.press.field,
+            _press=self.press,
             _history=history,
         )
 

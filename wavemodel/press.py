@@ -24,7 +24,7 @@ from wavemodel.taper import Taper
 
 @dataclass(frozen=True)
 class Press:
-    """A tool in the middle of a window over a stack, ready to run.
+    """A tool in a window over a stack, ready to run.
 
     Attributes
     ----------
@@ -107,11 +107,17 @@ def _window(whole: Laminate, tool: DiscTool, settings: Settings) -> tuple[Rectan
             f"window = {side * 1e3:g} mm is not allowed with a tool of {tool.radius * 1e3:g} mm radius: "
             "it must be wider than the tool"
         )
+    furthest = max(map(abs, settings.place))
+    if furthest + tool.radius > 0.5 * side:
+        raise WaveError(
+            f"place = {furthest * 1e3:g} mm from the middle is not allowed: the tool of {tool.radius * 1e3:g} mm "
+            f"radius must be inside the window of {side * 1e3:g} mm"
+        )
     count = automatic.modes(side, tool.radius) if settings.modes is None else settings.modes
     taper = Taper(count * np.pi / side, settings.corrected)
     directed = settings.pretension is not None and settings.pretension.directed
     cutoff = taper.limit if taper.active else np.inf
-    return Rectangle(side, side, count, cutoff=cutoff, directed=directed), taper
+    return Rectangle(side, side, count, cutoff=cutoff, directed=directed, place=settings.place), taper
 
 
 def _yardstick(whole: Laminate, tool: DiscTool, taper: Taper, domain: Rectangle) -> subdivision.Yardstick:

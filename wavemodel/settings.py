@@ -1,6 +1,7 @@
 """What the user of a layered wave may fix; what is None is found automatically."""
 
 from dataclasses import dataclass
+from math import isfinite
 
 from wavemodel.errors import WaveError, require_positive
 from wavemodel.physics.in_plane_stress import InPlaneStress
@@ -23,6 +24,8 @@ class Settings:
         Number of equal sub-layers in each layer.
     static_correction
         Whether what the modes leave out of the load is answered statically. None: from 8 modes up.
+    place
+        (x, y) of the tool from the middle of the window, m.
     pretension
         In-plane stress of the layers before the press; None: none.
 
@@ -37,10 +40,13 @@ class Settings:
     sublayers: tuple[int, ...] | None = None
     static_correction: bool | None = None
     pretension: InPlaneStress | None = None
+    place: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         if self.window is not None:
             require_positive("window", self.window, "m")
+        if len(self.place) != 2 or not all(map(isfinite, self.place)):
+            raise WaveError(f"place = {self.place} is not allowed: two finite lengths x and y, in m")
         if self.modes is not None and self.modes < 1:
             raise WaveError(f"modes = {self.modes} is not allowed: at least 1")
         if self.sublayers is not None and any(count < 1 for count in self.sublayers):

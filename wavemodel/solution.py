@@ -1,12 +1,15 @@
 """What a run of the layered wave gives back."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.field import Field, Snapshot
+from wavemodel.errors import NotCoveredError
+from wavemodel.field import Snapshot
+from wavemodel.in_plane import InPlane
 from wavemodel.integrators.history import History
+from wavemodel.press import Press
 
 
 @dataclass(frozen=True)
@@ -36,8 +39,12 @@ class WaveSolution:
     top_deflection: FloatArray
     integrator: str
     warnings: tuple[str, ...]
-    _field: Field = field(repr=False)
+    _press: Press = field(repr=False)
     _history: History = field(repr=False)
+
+    def warned(self, warning: str) -> "WaveSolution":
+        """The same with one more warning, the first."""
+        return replace(self, warnings=(warning, *self.warnings))
 
     def snapshot(self, step: int) -> Snapshot:
         """State of the modes after a step (0..n-1), for `Field` and `Surface`."""
@@ -65,4 +72,28 @@ class WaveSolution:
         WaveError
             If a radius is negative or not a number.
         """
-        return self._field.along_x(self.snapshot(step), np.asarray(radii, dtype=np.float64))
+        return self._press.field.along_x(self.snapshot(step), np.asarray(radii, dtype=np.float64))
+
+    def in_plane(self, step: int, points: FloatArray, face: int) -> FloatArray:
+        """(P, 2) displacement along x and y at points (P, 2) of a face, m; see `marker_motion`.
+
+        Raises
+        ------
+        NotCoveredError
+            See `marker_motion`.
+        """
+        domain = self._press.field.domain
+        inside = domain.inside(points[:, 0], axis=0) & domain.inside(points[:, 1], axis=1)
+        out = np.where(inside[:, None], 0.0, np.nan) * np.ones(2)
+        if face == len(self.layer_names) and self._press.stack.base == "bonded":
+            return out
+        force = self._history.static_force[step]
+        for reason, met in (
+            ("inertia: use the integrator 'quasi_static'", self.integrator == "exact"),
+            ("layers that relax each in its own way", force.size > 1),
+            ("a large-press correction", self._press.field.large is not None),
+        ):
+            if met:
+                raise NotCoveredError(f"marker motion of the layered wave does not cover {reason}")
+        out[inside] = force[0] * InPlane(self._press, face).per_force(points[inside])
+        return out

@@ -82,11 +82,13 @@ def surface(field: Field, x: FloatArray, y: FloatArray, layers: int) -> Surface:
     WaveError
         If a vertex lies outside the window.
     """
-    for name, position, side in (("x", x, field.domain.width), ("y", y, field.domain.height)):
-        if not np.all(np.abs(position) <= 0.5 * side):
+    domain = field.domain
+    for axis, name, position, side in ((0, "x", x, domain.width), (1, "y", y, domain.height)):
+        if not domain.inside(position, axis).all():
+            place = f" of a point {-domain.place[axis] * 1e3:g} mm from it" if any(domain.place) else ""
             raise WaveError(
                 f"surface: {name} reaches {np.abs(position).max() * 1e3:g} mm from the tool axis, outside the "
-                f"window of {side * 1e3:g} mm (half of it to each side)"
+                f"window of {side * 1e3:g} mm (half of it to each side{place})"
             )
     count, kept = field.domain.order.size, field.domain.wavenumber.size
     memory = _Memory(

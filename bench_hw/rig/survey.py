@@ -15,7 +15,6 @@ from bench_hw.errors import BenchError, DeviceError
 from bench_hw.rig import schema
 from bench_hw.rig.loading import LoadedRig
 
-FACTORY_ADDRESS = "192.168.1.1"
 _QUICK = 0.5
 
 
@@ -34,10 +33,18 @@ class Finding:
         return asdict(self)
 
 
+_UNASKED = Finding(
+    "force", "netft", False, "no address to look at", "give --host (a Net F/T box leaves the factory as 192.168.1.1)"
+)
+
+
 def survey(host: str | None = None, http_port: int = 80) -> list[Finding]:
-    """Look for every kind of device on this machine and at the usual address of a Net F/T box."""
+    """Look for every kind of device on this machine, and for a Net F/T box at an address that was given.
+
+    Without one nothing is sent to the network: that address may be another machine's.
+    """
     return [
-        _netft(host or FACTORY_ADDRESS, http_port),
+        _UNASKED if host is None else _netft(host, http_port),
         _module("force", "daq", "nidaqmx", "pip install 'tissuebench[daq]' and NI's NI-DAQmx driver (only for a DAQ)"),
         _lac(),
         *_cameras(),
@@ -108,7 +115,7 @@ def _netft(host: str, http_port: int) -> Finding:
     try:
         found = netft_config.read_configuration(host, http_port, _QUICK)
     except DeviceError as error:
-        return Finding("force", "netft", False, f"no Net F/T box at {host}", f"{error}; or give --host")
+        return Finding("force", "netft", False, f"no Net F/T box at {host}", str(error))
     return Finding("force", "netft", True, f"{found.product}, serial {found.serial}, {found.rate} Hz at {host}")
 
 

@@ -12,7 +12,7 @@ _ALIKE = 0.02
 def scenario_notes(scenario: Scenario) -> tuple[str, ...]:
     """Say what of a scenario has no effect, or not the one that its file suggests; one sentence each."""
     found = [_law_apart(layer) for layer in scenario.tissue.layers]
-    found += [_stepped_over(scenario.load), _unused_hold(scenario.load)]
+    found += [_stepped_over(scenario.load), _unused_hold(scenario.load), _unused_position(scenario)]
     if scenario.support.hole_radius is not None and scenario.support.kind != "hole":
         found.append(f"support.hole_radius has no effect: the support is {scenario.support.kind}")
     if scenario.physics.friction_coefficient is not None and scenario.tool.contact != "rigid_frictional":
@@ -41,3 +41,11 @@ def _unused_hold(load: Load) -> str | None:
     if load.hold is None or load.shape == "ramp_hold":
         return None
     return f"load.hold has no effect: the shape is {load.shape}"
+
+
+def _unused_position(scenario: Scenario) -> str | None:
+    if scenario.tool.position == (0.0, 0.0) or scenario.support.kind == "hole":
+        return None
+    if scenario.fem.geometry != "axisymmetric":
+        return None
+    return "tool.position has no effect: the specimen is laterally endless, and the same everywhere"

@@ -101,6 +101,10 @@ class FemOptions(FileModel):
         for key, example in (("surface", '"liver.stl"'), ("surface_unit", '"mm"')):
             if self.geometry == "surface" and getattr(self, key) is None:
                 raise problem(f'the geometry "surface" needs it; give one such as {example}', key=key)
+            if self.geometry != "surface" and getattr(self, key) is not None:
+                raise problem('only the geometry "surface" has it; set fem.geometry, or leave it out', key=key)
+        if self.geometry == "surface" and self.radius is not None:
+            raise problem('the geometry "surface" ends at the surface; leave it out, or "auto"', key="radius")
         return self
 
 
@@ -110,16 +114,17 @@ class WaveOptions(FileModel):
     Attributes
     ----------
     model : str
-        layered | published | plate.
+        layered (over a hole the plate) | published | plate (a sheet over a hole).
     modes : int or None
         N for m, n = 1..N; None follows the window.
     window : float or None
         Side of the square window, m; None follows tool and stack.
     large_press : str
-        linear (small strain at any depth) | corrected (the layers' finite strain in the same modes).
+        linear (small strain at any depth) | corrected (the layers' finite strain in the same modes) | auto (corrected
+        where the finite elements are in finite strain and the correction reaches, else linear with a warning).
     """
 
     model: Literal["layered", "published", "plate"] = "layered"
     modes: Modes = None
     window: AutoLength = None
-    large_press: Literal["linear", "corrected"] = "linear"
+    large_press: Literal["auto", "linear", "corrected"] = "auto"

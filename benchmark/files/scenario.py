@@ -48,9 +48,10 @@ class Scenario(FileModel):
         self._check_tool()
         self._check_domains()
         last = self.tissue.layers[-1]
-        if math.isinf(last.thickness) and self.support.kind != "half_space":
+        if math.isinf(last.thickness) and self.support.kind != "half_space" and self.fem.geometry != "surface":
             raise problem(
-                f"the last layer {last.name!r} has no thickness; only a half_space may leave it out",
+                f"the last layer {last.name!r} has no thickness; only a half_space or a body from a surface file may "
+                "leave it out",
                 key="tissue",
             )
         return self

@@ -15,16 +15,30 @@ def refuse_options(scenario: Scenario) -> None:
     Raises
     ------
     UncoveredError
-        For options of the body, a tilted tool, or fibres.
+        For options of the body, or fibres.
     """
     options = [name for name, value in dict(scenario.physics).items() if value is not None and name != FRICTION]
     if options:
         raise UncoveredError(f"the option physics.{options[0]} is not part of this model")
-    if scenario.tool.tilt != 0.0:
-        raise UncoveredError("a tilted tool needs a three-dimensional geometry")
     fibres = [layer.name for layer in scenario.tissue.layers if layer.fibre is not None]
     if fibres:
         raise UncoveredError(f"the layer {fibres[0]} has fibres, which this model does not have")
+
+
+def refuse_solid(scenario: Scenario) -> None:
+    """Refuse what only a three-dimensional model has.
+
+    Raises
+    ------
+    UncoveredError
+        For a body from a surface file, a tilted tool, or an off-centre tool over a hole.
+    """
+    if scenario.fem.geometry == "surface":
+        raise UncoveredError("a body from a surface file has no plane layers")
+    if scenario.tool.tilt != 0.0:
+        raise UncoveredError("a tilted tool needs a three-dimensional geometry")
+    if scenario.support.kind == "hole" and scenario.tool.position != (0.0, 0.0):
+        raise UncoveredError("the tool stands off the centre of the hole")
 
 
 def relaxation_warnings(scenario: Scenario) -> tuple[str, ...]:

@@ -14,13 +14,12 @@ from benchmark.models.result import (
     FieldSnapshot,
     ModelResult,
     OnStep,
+    Reading,
     RunFailure,
     StepProgress,
     UncoveredError,
     silent,
 )
-
-VTK_QUAD = 9
 
 
 class FemModel:
@@ -36,8 +35,6 @@ class FemModel:
 
     def __init__(self, scenario: Scenario, *, every_field: bool = False):
         refuse_options(scenario)
-        if scenario.fem.geometry != "axisymmetric":
-            raise UncoveredError(f"the geometry {scenario.fem.geometry} is not part of this solver; axisymmetric is")
         self._scenario = scenario
         self._every_field = every_field
         _refuse_contact(scenario)
@@ -47,6 +44,10 @@ class FemModel:
             raise InputError(f"scenario {scenario.name}: {error}") from None
 
     def run(self, drive: Drive, on_step: OnStep = silent) -> ModelResult:
+        """Follow a load history and read everything off it."""
+        return self.follow(drive, on_step)()
+
+    def follow(self, drive: Drive, on_step: OnStep = silent) -> Reading:
         """Follow a load history; a run that stops early keeps what it reached."""
         load = fem.Load(drive.control, drive.time, drive.value)
 
@@ -54,6 +55,10 @@ class FemModel:
             on_step(StepProgress(step.step, step.total, step.force, step.depth))
 
         solution = self._model.run(load, on_step=report)
+        return lambda: self._result(solution, load, drive)
+
+    def _result(self, solution: fem.Solution, load: fem.Load, drive: Drive) -> ModelResult:
+        """The solution in the harness's terms, with its profile and fields."""
         steps = solution.force.size
         peak = int(np.abs(drive.value[:steps]).argmax()) if steps else 0
         radii = profile_radii(self._scenario.tool.radius)
@@ -106,16 +111,26 @@ def _refuse_contact(scenario: Scenario) -> None:
 
 
 def _problem(scenario: Scenario) -> fem.Problem:
-    """The scenario in the solver's terms."""
+    """The scenario in the solver's terms.
+
+    A laterally endless specimen is the same everywhere, so that its axisymmetric model needs no position.
+    """
     tool, options = scenario.tool, scenario.fem
+    centred = options.geometry == "axisymmetric" and scenario.support.kind != "hole"
+    position = (0.0, 0.0) if centred else tool.position
+    surface = None
+    if options.surface is not None and options.surface_unit is not None:
+        surface = fem.read_surface(options.surface, options.surface_unit)
     return fem.Problem(
         layers=tuple(_layer(layer, options.kinematics) for layer in scenario.tissue.layers),
-        tool=fem.Tool(tool.radius, tool.contact, tool.edge_radius),
+        tool=fem.Tool(tool.radius, tool.contact, tool.edge_radius, position, tool.tilt),
         support=fem.Support(
             scenario.support.kind, scenario.support.hole_radius if scenario.support.kind == "hole" else None
         ),
         kinematics=options.kinematics,
         discretisation=fem.Discretisation(options.mesh, options.radius),
+        geometry=options.geometry,
+        surface=surface,
     )
 
 
@@ -148,7 +163,7 @@ def _snapshot(solution: fem.Solution, step: int) -> FieldSnapshot:
         step=step,
         points=fields.points,
         cells=fields.cells,
-        cell_type=VTK_QUAD,
+        cell_type=fields.cell_type,
         point_data={"displacement_m": fields.displacement},
         cell_data={
             "layer": fields.layer.astype(np.float64),

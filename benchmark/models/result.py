@@ -129,6 +129,10 @@ def silent(_: StepProgress) -> None:
     """Report no progress."""
 
 
+Reading = Callable[[], ModelResult]
+"""What is left once a load history was followed; it is no part of the history's time."""
+
+
 @dataclass(frozen=True)
 class Drive:
     """A load history: force in N or depth in m over time in s, both (n,), press positive."""
@@ -141,6 +145,10 @@ class Drive:
 class PreparedModel(Protocol):
     """A model after its one-time set-up."""
 
+    def follow(self, drive: Drive, on_step: OnStep = silent) -> Reading:
+        """Follow a load history from rest; calling what comes back reads profiles, fields and notes off it."""
+        ...
+
     def run(self, drive: Drive, on_step: OnStep = silent) -> ModelResult:
-        """Follow a load history from rest."""
+        """Follow a load history from rest and read everything off it."""
         ...

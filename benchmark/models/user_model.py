@@ -10,7 +10,7 @@ from rest; press and deflection are positive into the tissue. The file may also 
                                                              the history, NaN where the model has no value
     press(layers, tool, support, time, depth)            ->  force (n,) in N for the depth (n,) in m of the top face
 
-`set_up` counts as set-up in the timing; without `press` the model does not cover depth control.
+`set_up` counts as set-up in the timing, `profile` not at all; without `press` the model does not cover depth control.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import numpy as np
 
 from benchmark.files import Scenario
 from benchmark.models.radii import profile_radii
-from benchmark.models.result import Array, Drive, ModelResult, OnStep, StepProgress, UncoveredError, silent
+from benchmark.models.result import Array, Drive, ModelResult, OnStep, Reading, StepProgress, UncoveredError, silent
 from benchmark.models.user_file import UserCode, UserFile
 from benchmark.models.user_specimen import specimen_of
 
@@ -54,12 +54,21 @@ class UserModel:
         self._keywords = {"prepared": self._code.call(SET_UP, *self._specimen)} if prepared else {}
 
     def run(self, drive: Drive, on_step: OnStep = silent) -> ModelResult:
-        """Follow a load history."""
+        """Follow a load history and read everything off it."""
+        return self.follow(drive, on_step)()
+
+    def follow(self, drive: Drive, on_step: OnStep = silent) -> Reading:
+        """Follow a load history: what `deform`, and `press` under depth control, take."""
         steps, names = drive.time.size, self._scenario.tissue.layer_names
         force = drive.value
         if drive.control == "depth":
             force = self._array(PRESS, (steps,), drive.time, drive.value)
         top = self._array(DEFORM, (steps, len(names)), drive.time, force)
+        return lambda: self._result(drive, on_step, force, top)
+
+    def _result(self, drive: Drive, on_step: OnStep, force: Array, top: Array) -> ModelResult:
+        """What the functions returned in the harness's terms, with the profile."""
+        steps, names = drive.time.size, self._scenario.tissue.layer_names
         depth = drive.value if drive.control == "depth" else top[:, 0]
         peak = int(np.abs(drive.value).argmax())
         radii = profile_radii(self._scenario.tool.radius)

@@ -6,16 +6,17 @@ import numpy as np
 
 from benchmark.errors import InputError
 from benchmark.files import Scenario
-from benchmark.models.coverage import refuse_options
+from benchmark.models.coverage import refuse_options, refuse_solid
 from benchmark.models.radii import profile_radii
-from benchmark.models.result import Drive, ModelResult, OnStep, StepProgress, UncoveredError, silent
-from wavemodel import DiscTool, LayeredWave, NotCoveredError, Prony, WaveError, WaveLayer
-
-STRAINS = {"linear": "small strain", "corrected": "finite strain of the layers"}
+from benchmark.models.result import Drive, ModelResult, OnStep, Reading, StepProgress, UncoveredError, silent
+from benchmark.models.wave_layered import layered_wave
+from benchmark.models.wave_parts import PreparedWave, Solution
+from benchmark.models.wave_plate import plate_wave
+from wavemodel import NotCoveredError, WaveError
 
 
 class WaveModel:
-    """A scenario's layered wave, set up.
+    """A scenario's wave, set up: the layered one on a base, that of a sheet over a hole.
 
     Raises
     ------
@@ -27,28 +28,35 @@ class WaveModel:
 
     def __init__(self, scenario: Scenario):
         refuse_options(scenario)
-        if scenario.wave.model != "layered":
-            raise UncoveredError(f"the wave model {scenario.wave.model} does not predict a scenario; layered does")
+        refuse_solid(scenario)
         self._scenario = scenario
         try:
-            self._model = _layered(scenario)
+            self._wave = _prepare(scenario)
         except NotCoveredError as error:
             raise UncoveredError(str(error)) from None
         except WaveError as error:
             raise InputError(f"scenario {scenario.name}: {error}") from None
 
     def run(self, drive: Drive, on_step: OnStep = silent) -> ModelResult:
-        """Follow a load history.
+        """Follow a load history and read everything off it; raises like `follow`."""
+        return self.follow(drive, on_step)()
+
+    def follow(self, drive: Drive, on_step: OnStep = silent) -> Reading:
+        """Follow a load history: force, depth and every layer's deflection on the axis at each step.
 
         Raises
         ------
         UncoveredError
-            A press beyond the range of a large press.
+            A press beyond the model's range.
         """
         try:
-            solution = self._model.run(drive.control, drive.time, drive.value)
+            solution = self._wave.follow(drive)
         except WaveError as error:
             raise UncoveredError(str(error)) from None
+        return lambda: self._result(solution, drive, on_step)
+
+    def _result(self, solution: Solution, drive: Drive, on_step: OnStep) -> ModelResult:
+        """The solution in the harness's terms, with its profile."""
         peak = int(np.abs(drive.value).argmax())
         radii = profile_radii(self._scenario.tool.radius)
         steps = drive.time.size
@@ -63,41 +71,18 @@ class WaveModel:
             profile_radii=radii,
             profile=solution.profile(peak, radii),
             peak_step=peak,
-            unknowns=self._model.unknowns,
-            notes={
-                "model": f"layered vector wave, {STRAINS[self._scenario.wave.large_press]}, no calibration",
-                "window": f"{1e3 * self._model.window:.4g} mm",
-                "modes": f"m, n = 1..{self._model.modes}",
-            },
-            warnings=tuple(solution.warnings),
+            unknowns=self._wave.unknowns,
+            notes=self._wave.notes,
+            warnings=(*self._wave.warnings, *solution.warnings),
         )
 
 
-def _layered(scenario: Scenario) -> LayeredWave:
-    """The scenario in the wave model's terms."""
-    if scenario.support.kind == "half_space":
-        raise UncoveredError("the layered wave needs a base at a finite depth, a half_space has none")
-    layers = [
-        WaveLayer(layer.name, layer.thickness, layer.density, layer.youngs_modulus, layer.poisson_ratio)
-        for layer in scenario.tissue.layers
-    ]
-    return LayeredWave(
-        layers,
-        DiscTool(scenario.tool.radius, scenario.tool.contact),
-        support=scenario.support.kind,
-        window=scenario.wave.window,
-        modes=scenario.wave.modes,
-        relaxation=_relaxation(scenario),
-        large_press=scenario.wave.large_press,
-    )
-
-
-def _relaxation(scenario: Scenario) -> list[Prony | None] | None:
-    """A series a layer; None where all layers are elastic."""
-    series = [
-        Prony(tuple(term.g for term in layer.relaxation), tuple(term.tau for term in layer.relaxation))
-        if layer.relaxation
-        else None
-        for layer in scenario.tissue.layers
-    ]
-    return series if any(series) else None
+def _prepare(scenario: Scenario) -> PreparedWave:
+    """The wave that the scenario asks for; over a hole "layered" is the plate."""
+    model = scenario.wave.model
+    if model == "published":
+        raise UncoveredError(
+            "the wave model published does not predict a scenario: it returns the depth it is fed; layered and plate do"
+        )
+    over_hole = scenario.support.kind == "hole"
+    return plate_wave(scenario) if model == "plate" or over_hole else layered_wave(scenario)

@@ -6,6 +6,7 @@ from typing import Any
 
 from benchmark.comparison import comparison_summary
 from benchmark.runs.record import RunRecord
+from benchmark.runs.report.measured_section import fit_headline
 from benchmark.side_by_side import ModelRun
 
 SCHEMA = 1
@@ -39,6 +40,8 @@ def results_document(record: RunRecord) -> dict[str, Any]:
             "synthetic": record.measured.session.synthetic,
             "fingerprint": record.measured.session.fingerprint,
             "count": len(record.measured.trials),
+            "headline": fit_headline(record.measured.fit),
+            "notes": list(record.measured.fit.notes),
         }
     return document
 
@@ -56,6 +59,7 @@ def _model(run: ModelRun, record: RunRecord) -> dict[str, Any]:
         "max_deformation_mm": {
             name: None if largest is None else float(largest[column]) for column, name in enumerate(record.layers)
         },
+        "peak_memory_MB": None if run.peak_memory is None else run.peak_memory / 1e6,
         "notes": {} if result is None else dict(result.notes),
         "failure": None if result is None or result.failure is None else str(result.failure),
     }

@@ -11,9 +11,9 @@ from benchmark.runs.document import results_document
 from benchmark.runs.environment import describe_environment
 from benchmark.runs.fields import write_fields
 from benchmark.runs.record import RunRecord
-from benchmark.runs.report import run_page
+from benchmark.runs.report import TrialsPart, run_page
 from benchmark.runs.tables import run_tables
-from reports import whole_folder, write_csv, write_json, write_page, write_text
+from reports import csv_text, whole_folder, write_json, write_page, write_text
 
 
 @dataclass(frozen=True)
@@ -56,10 +56,11 @@ def write_run(record: RunRecord, folder: Path) -> RunOutcome:
     """
     document, environment = results_document(record), describe_environment(seed=record.seed)
     tables = run_tables(record)
-    page = run_page(record, environment, list(tables))
+    texts = {name: csv_text(columns, where=name) for name, columns in tables.items()}
+    page = run_page(record, environment, texts, None if record.measured is None else TrialsPart.of(record.measured))
     with whole_folder(folder) as new:
-        for name, columns in tables.items():
-            write_csv(new / "tables" / name, columns)
+        for name, text in texts.items():
+            write_text(new / "tables" / name, text)
         write_json(new / "results.json", document)
         write_json(new / "environment.json", environment)
         write_text(new / "scenario.toml", record.scenario.to_toml())

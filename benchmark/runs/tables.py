@@ -22,6 +22,7 @@ def run_tables(record: RunRecord) -> dict[str, Columns]:
     """Return the tables of a run by file name."""
     tables = {
         "max_deformation.csv": max_deformation(record),
+        "force_depth.csv": force_depth(record),
         "profile.csv": profile(record),
         "statistics.csv": statistics_columns(record.comparisons),
         "normal_fits.csv": normal_fit_columns(record.comparisons, (record.pair.fem.key, record.pair.wave.key)),
@@ -49,6 +50,19 @@ def max_deformation(record: RunRecord) -> Columns:
         "wave_mm": wave.ravel(),
         "percent_error": percent_errors(record).ravel(),
     }
+
+
+def force_depth(record: RunRecord) -> Columns:
+    """Force and depth of both models, one row a step; empty where a model has no value."""
+    columns: Columns = {"step": np.arange(1, record.time.size + 1), "time_s": record.time}
+    for run in (record.pair.fem, record.pair.wave):
+        for name, scale in (("force", 1.0), ("depth", MM)):
+            whole = np.full(record.time.size, np.nan)
+            if run.result is not None:
+                values = getattr(run.result, name)
+                whole[: values.size] = scale * values
+            columns[f"{run.model}_{name}_{'mm' if name == 'depth' else 'N'}"] = whole
+    return columns
 
 
 def percent_errors(record: RunRecord) -> Array:

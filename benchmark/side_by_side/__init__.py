@@ -3,7 +3,7 @@
 from benchmark.side_by_side.messages import Finished, Seconds
 from benchmark.side_by_side.process import ModelProcess, single_threaded_children
 from benchmark.side_by_side.runner import NAMES, ModelRun, SideBySide, run_side_by_side
-from benchmark.side_by_side.timing import Speedup
+from benchmark.side_by_side.timing import Speedup, speedup
 
 __all__ = [
     "NAMES",
@@ -15,4 +15,5 @@ __all__ = [
     "Speedup",
     "run_side_by_side",
     "single_threaded_children",
+    "speedup",
 ]

@@ -16,7 +16,10 @@ class RunCommand:
 
 @dataclass(frozen=True)
 class Seconds:
-    """One execution: set-up, then wall and CPU time of the load history, in s."""
+    """One execution: set-up, then wall and CPU time of the load history alone, in s.
+
+    Reading profiles and fields off the finished history counts as neither.
+    """
 
     setup: float
     wall: float
@@ -25,10 +28,11 @@ class Seconds:
 
 @dataclass(frozen=True)
 class Finished:
-    """A finished execution, complete or stopped early."""
+    """A finished execution, complete or stopped early; `peak_memory` of its process in bytes where it is known."""
 
     seconds: Seconds
     result: ModelResult | None
+    peak_memory: int | None = None
 
 
 @dataclass(frozen=True)

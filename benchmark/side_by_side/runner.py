@@ -28,7 +28,8 @@ OnProgress = Callable[[str, StepProgress], None]
 class ModelRun:
     """One model's part: its result, or why there is none, and its timed repeats.
 
-    `model` is its place, `"fem"` or `"wave"`; `own` what the user calls a model put there.
+    `model` is its place, `"fem"` or `"wave"`; `own` what the user calls a model put there; `peak_memory` in bytes that
+    of its process, with the libraries it loads.
     """
 
     model: str
@@ -36,6 +37,7 @@ class ModelRun:
     declined: str | None
     repeats: tuple[Seconds, ...]
     own: str | None = None
+    peak_memory: int | None = None
 
     @property
     def name(self) -> str:
@@ -157,6 +159,6 @@ def _model_run(model: str, answer: Answer | None, repeats: list[Seconds], own: O
     if answer is None:
         return ModelRun(model, own.reference.result if own.reference else None, None, (), name)
     if isinstance(answer, Finished):
-        return ModelRun(model, answer.result, None, tuple(repeats), name)
+        return ModelRun(model, answer.result, None, tuple(repeats), name, answer.peak_memory)
     reason = answer.reason if isinstance(answer, Declined) else answer.message
     return ModelRun(model, None, reason, (), name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import time
 import traceback
 from dataclasses import dataclass
@@ -59,6 +60,17 @@ def _run(connection: Connection, command: RunCommand, job: Job) -> Finished:
     every_field = job.every_field and command.keep_result
     prepared = prepare(job.model, job.scenario, every_field=every_field, own=job.own)
     ready, cpu_ready = time.perf_counter(), time.process_time()
-    result = prepared.run(drive, report if command.keep_result else silent)
+    reading = prepared.follow(drive, report if command.keep_result else silent)
     wall, cpu = time.perf_counter() - ready, time.process_time() - cpu_ready
-    return Finished(Seconds(ready - started, wall, cpu), result if command.keep_result else None)
+    result = reading() if command.keep_result else None
+    return Finished(Seconds(ready - started, wall, cpu), result, peak_memory())
+
+
+def peak_memory() -> int | None:
+    """The most memory this process has held, in bytes; None where the system does not tell."""
+    try:
+        import resource
+    except ImportError:
+        return None
+    held = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return held if sys.platform == "darwin" else 1024 * held

@@ -159,6 +159,8 @@ class System:
         stress = self.laws.stress(deformation) + at_points * deformation.cofactor
         force = self.geometry.forces(stress * weight) + np.einsum("nie,ie->ne", coupling, mismatch)
         residual = self.scatter.vector(force)
+        if not np.isfinite(residual).all():
+            return None
         return Evaluation(deformation, pressure, at_points, coupling, mismatch, force, residual)
 
     def tangent(self, state: Evaluation) -> FloatArray:

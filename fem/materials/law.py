@@ -13,7 +13,11 @@ from fem.deformation import Deformation
 
 
 class IsochoricLaw(Protocol):
-    """Stress and tangent of the isochoric energy for many points at once."""
+    """Isochoric energy with its stress and tangent for many points at once; parameters are (k, *broadcast)."""
+
+    def energy(self, deformation: Deformation, parameters: FloatArray) -> FloatArray:
+        """Isochoric strain energy in J/m3, (*points)."""
+        ...
 
     def stress(self, deformation: Deformation, parameters: FloatArray) -> FloatArray:
         """First Piola-Kirchhoff stress in Pa, shape (components, *points); parameters (k, *broadcast)."""

@@ -20,6 +20,11 @@ from fem.materials.law import IsochoricLaw
 class HookeLaw:
     """Deviatoric part of Hooke's law; the one parameter is the shear modulus in Pa."""
 
+    def energy(self, deformation: Deformation, parameters: FloatArray) -> FloatArray:
+        """Energy mu dev(eps) : dev(eps), (*points), in J/m3."""
+        out: FloatArray = 0.5 * (self.stress(deformation, parameters) * deformation.small_strain).sum(axis=0)
+        return out
+
     def stress(self, deformation: Deformation, parameters: FloatArray) -> FloatArray:
         """2 mu dev(eps), shape (components, *points), in Pa."""
         components = deformation.components

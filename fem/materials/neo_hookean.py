@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from fem.arrays import FloatArray
 from fem.deformation import Deformation
 from fem.materials import elastic_constants
+from fem.materials.invariants import first_curvature, first_gradient
 from fem.materials.law import IsochoricLaw
 
 
@@ -18,31 +19,20 @@ from fem.materials.law import IsochoricLaw
 class NeoHookeanLaw:
     """Isochoric neo-Hookean stress and tangent; the one parameter is the shear modulus in Pa."""
 
-    def stress(self, deformation: Deformation, parameters: FloatArray) -> FloatArray:
-        """P = mu J^(-2/3) (F - I1/(3 J) cof F), shape (components, *points), in Pa.
+    def energy(self, deformation: Deformation, parameters: FloatArray) -> FloatArray:
+        """Isochoric strain energy in J/m3, (*points)."""
+        out: FloatArray = 0.5 * parameters[0] * deformation.isochoric_invariant_change
+        return out
 
-        Written with the differences from rest, H - (cof F - I) - (I1/(3 J) - 1) cof F, which do not cancel.
-        """
-        d = deformation
-        share = (d.first_invariant_change - 3.0 * d.volume_change) / (3.0 * d.J)
-        out: FloatArray = d.H - d.cofactor_change - share * d.cofactor
-        out *= parameters[0] * d.isochoric_factor
+    def stress(self, deformation: Deformation, parameters: FloatArray) -> FloatArray:
+        """P = mu J^(-2/3) (F - I1/(3 J) cof F), shape (components, *points), in Pa."""
+        out = first_gradient(deformation)
+        out *= parameters[0]
         return out
 
     def tangent(self, deformation: Deformation, parameters: FloatArray) -> FloatArray:
         """Derivative dP/dF, packed upper triangle (pairs, *points), in Pa."""
-        d = deformation
-        k, m = d.components.pairs
-        scale = parameters[0] * d.isochoric_factor
-        share = scale * (3.0 + d.first_invariant_change) / (3.0 * d.J)
-        # -2/3 s/J (F x C + C x F) + 5/9 s I1/J^2 C x C, written as (a C - b F)_k C_m - b C_k F_m
-        b = (2.0 / 3.0) * scale / d.J
-        mixed = (5.0 / 3.0) * share / d.J * d.cofactor - b * d.F
-        out: FloatArray = mixed[k] * d.cofactor[m]
-        out -= (b * d.cofactor)[k] * d.F[m]
-        out[d.components.cofactor_pairs] -= share * d.cofactor_derivative
-        out[d.components.diagonal] += scale
-        return out
+        return first_curvature(deformation, parameters[0])
 
 
 @dataclass(frozen=True)

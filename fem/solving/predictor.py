@@ -23,6 +23,16 @@ class KnownStates:
         self._values = [value]
         self._states = [state]
 
+    @property
+    def values(self) -> FloatArray:
+        """Load values (k,) in the order in which the states were added."""
+        return np.array(self._values)
+
+    @property
+    def states(self) -> tuple[State, ...]:
+        """The states in the same order."""
+        return tuple(self._states)
+
     def add(self, value: float, state: State) -> None:
         """Remember a state."""
         self._values.append(value)

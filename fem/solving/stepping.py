@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from fem.arrays import FloatArray
 from fem.solving.equilibrium import Equilibrium
 from fem.solving.newton import NewtonSettings, solve_newton
 from fem.solving.predictor import KnownStates
@@ -69,6 +71,18 @@ class Stepper:
         self._state = State(*problem.system.rest(), 0.0) if start is None else start
         self._value = 0.0 if control == "force" else problem.depth(self._state.y)
         self._known = KnownStates(self._value, self._state)
+
+    @property
+    def known(self) -> KnownStates:
+        """All states of equilibrium found so far."""
+        return self._known
+
+    def resume(self, values: FloatArray, states: Sequence[State]) -> None:
+        """Go on from the last of known states, each with its load value (k,) in N or m."""
+        self._value, self._state = float(values[-1]), states[-1]
+        self._known = KnownStates(float(values[0]), states[0])
+        for value, state in zip(values[1:].tolist(), states[1:], strict=True):
+            self._known.add(value, state)
 
     def advance(self, target: float) -> Advance:
         """Go to the load value `target`, halving the way as often as needed."""

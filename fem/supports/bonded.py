@@ -30,10 +30,11 @@ class Bonded:
     """Lower face and outer border fixed; the border is so far away that it costs at most 0.1 %."""
 
     def extent(self, problem: Problem) -> Extent:
-        """Border at the prescribed radius, or several decay lengths outside the tool."""
+        """Border at the prescribed radius, or several decay lengths outside the tool, wherever it stands."""
         radius = problem.discretisation.radius
         if radius is None:
-            radius = 2.0 * problem.tool.radius + BORDER_IN_DECAY_LENGTHS * decay_length(problem)
+            reach = abs(problem.tool.position[0]) + 2.0 * problem.tool.radius
+            radius = reach + BORDER_IN_DECAY_LENGTHS * decay_length(problem)
         return Extent(radius, tuple(layer.thickness for layer in problem.layers))
 
     def fixed(self, mesh: AnyMesh, problem: Problem) -> BoolArray:

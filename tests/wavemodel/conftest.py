@@ -25,6 +25,16 @@ def skin() -> Callable[..., list[WaveLayer]]:
     return _skin
 
 
+def _silicone(thickness: float = 4e-3, poisson_ratio: float = 0.49) -> list[WaveLayer]:
+    return [WaveLayer("silicone", thickness, 1100.0, 4e5, poisson_ratio)]
+
+
+@pytest.fixture(scope="session")
+def silicone() -> Callable[..., list[WaveLayer]]:
+    """Factory of the phantom's sheet: 4 mm, 400 kPa, nu 0.49."""
+    return _silicone
+
+
 @dataclass(frozen=True)
 class EndlessOracle:
     """Exact statics of layers bonded to a rigid base, laterally endless, by waves that decay from each face.

@@ -1,7 +1,7 @@
 """The rectangle with sines, eq. (2) of the paper: S = sin(m pi x / a) sin(n pi y / b), zero on the border.
 
 Here are the eigenfunctions, their wavenumbers, the projection of a load and the synthesis of a field. The origin of
-positions handed in is the centre of the rectangle.
+positions handed in is the place of the load, by default the centre of the rectangle.
 """
 
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from wavemodel.arrays import FloatArray, IntArray
+from wavemodel.arrays import BoolArray, FloatArray, IntArray
 from wavemodel.errors import WaveError, require_positive
 
 
@@ -29,6 +29,8 @@ class Rectangle:
         Modes with a larger wavenumber (rad/m) are left out.
     directed
         Whether modes of one wavenumber but of different directions count as different.
+    place
+        (x, y) of the load from the centre, m. Off the centre nothing is symmetric.
 
     Raises
     ------
@@ -42,6 +44,7 @@ class Rectangle:
     symmetric: bool = True
     cutoff: float = np.inf
     directed: bool = False
+    place: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         require_positive("window", self.width, "m")
@@ -52,7 +55,8 @@ class Rectangle:
     @cached_property
     def order(self) -> IntArray:
         """(M,) the m (and n) that take part."""
-        return np.arange(1, self.modes + 1, 2 if self.symmetric else 1, dtype=np.intp)
+        every_other = self.symmetric and not any(self.place)
+        return np.arange(1, self.modes + 1, 2 if every_other else 1, dtype=np.intp)
 
     @cached_property
     def _square(self) -> FloatArray:
@@ -103,10 +107,18 @@ class Rectangle:
         return int(np.count_nonzero(self._distinct[1] < self.wavenumber.size))
 
     def sines(self, position: FloatArray, axis: int = 0) -> FloatArray:
-        """(P, M) table of sin(m pi x / a) at positions (P,) from the centre, m."""
+        """(P, M) table of sin(m pi x / a) at positions (P,) from the load's place, m."""
+        return self.waves(position, axis)[0]
+
+    def waves(self, position: FloatArray, axis: int) -> tuple[FloatArray, FloatArray]:
+        """(P, M) sin(m pi x / a) and its slope in 1/m, at positions (P,) from the load's place, m."""
         side = (self.width, self.height)[axis]
-        table: FloatArray = np.sin(np.outer(position / side + 0.5, self.order * np.pi))
-        return table
+        phase = np.outer((position + self.place[axis]) / side + 0.5, self.order * np.pi)
+        return np.sin(phase), np.cos(phase) * (self.order * np.pi / side)
+
+    def inside(self, position: FloatArray, axis: int) -> BoolArray:
+        """(P,) whether positions from the load's place are in the window."""
+        return np.asarray(np.abs(position + self.place[axis]) <= 0.5 * (self.width, self.height)[axis])
 
     def spread(self, amplitude: FloatArray) -> FloatArray:
         """Give every pair (m, n) the amplitude of its wavenumber: (..., K) to (..., M, M)."""
@@ -115,7 +127,7 @@ class Rectangle:
         return spread
 
     def participation(self, x: float = 0.0, y: float = 0.0) -> FloatArray:
-        """(M, M) of S(x, y) / int S^2 dA in 1/m2: the share of each mode in a unit load centred at (x, y)."""
+        """(M, M) of S / int S^2 dA in 1/m2: the share of each mode in a unit load (x, y) away from the place."""
         share: FloatArray = np.outer(self.sines(np.array([x]))[0], self.sines(np.array([y]), axis=1)[0])
         return share * (4.0 / (self.width * self.height))
 

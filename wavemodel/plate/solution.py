@@ -1,7 +1,7 @@
 """What a run of the sheet over a hole gives back; the same face as `wavemodel.solution.WaveSolution`."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -42,6 +42,10 @@ class PlateSolution:
     _hole: float = field(repr=False)
     _faces: Callable[[int, FloatArray], FloatArray] = field(repr=False)
 
+    def warned(self, warning: str) -> "PlateSolution":
+        """The same with one more warning, the first."""
+        return replace(self, warnings=(warning, *self.warnings))
+
     def profile(self, step: int, radii: FloatArray) -> FloatArray:
         """Deflection of each layer's top face after a step.
 
@@ -73,6 +77,12 @@ class PlateSolution:
             If a radius is negative or not a number.
         """
         return self._at(step, radii)[:, -1]
+
+    def in_plane(self, step: int, points: FloatArray, face: int) -> FloatArray:
+        """(P, 2) displacement along x and y at points (P, 2) of a face, m; see `wavemodel.markers.marker_motion`."""
+        distance = np.hypot(points[:, 0], points[:, 1])
+        outward = self._at(step, distance)[0, face]
+        return np.asarray(outward[:, None] * points / np.maximum(distance, 1e-300)[:, None])
 
     def _at(self, step: int, radii: FloatArray) -> FloatArray:
         radius = np.asarray(radii, dtype=np.float64)

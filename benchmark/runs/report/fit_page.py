@@ -24,7 +24,7 @@ def fit_page(session: Session, fit: SessionFit, warnings: Sequence[str], environ
         verdict=Verdict("finding", sentence(fit_headline(fit))),
         facts=(Fact("Made", str(environment["made"])), Fact("Session", session.fingerprint[:16])),
         notices=notices,
-        sections=(fit_section(fit), Section("Trials", (_trials(fit),))),
+        sections=(fit_section(fit.parameters, fit.notes), Section("Trials", (_trials(fit),))),
         downloads=(
             Download("fitted_parameters.csv", "fitted and fixed parameters with intervals"),
             Download("fit.json", "the fit for programs", media_type="application/json"),

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from benchmark.fitting import SessionFit
+from benchmark.fitting import FittedParameter, SessionFit
 from benchmark.models import Array
-from benchmark.runs.measured import MeasuredComparison, TrialPrediction
+from benchmark.runs.measured import TrialPrediction
 from benchmark.runs.report.values import MM
 from benchmark.side_by_side import SideBySide
 from reports import Block, Bullets, Column, Download, Notice, Paragraph, Section, Table
@@ -38,16 +40,16 @@ def sentence(text: str) -> str:
     return f"{text[0].upper()}{text[1:]}."
 
 
-def session_notices(comparison: MeasuredComparison) -> tuple[Notice, ...]:
+def session_notices(synthetic: bool) -> tuple[Notice, ...]:
     """What must be known of the data before any figure."""
     notices = []
-    if comparison.session.synthetic:
+    if synthetic:
         notices.append(Notice("synthetic", "These trials were computed, not measured. They show that the chain works."))
     notices.append(Notice("circular", CIRCULAR))
     return tuple(notices)
 
 
-def measured_section(comparison: MeasuredComparison, pair: SideBySide) -> Section:
+def measured_section(trials: Sequence[TrialPrediction], synthetic: bool, pair: SideBySide) -> Section:
     """Return the section on trials beside both models, called what `pair` calls them."""
     curves = [
         TrialCurve(
@@ -58,7 +60,7 @@ def measured_section(comparison: MeasuredComparison, pair: SideBySide) -> Sectio
             trial.fem_force,
             trial.wave_force,
         )
-        for trial in comparison.trials
+        for trial in trials
     ]
     text = (
         "Each trial's measured depth drives the models; contact onset and force zero are the trial's own, the "
@@ -66,13 +68,13 @@ def measured_section(comparison: MeasuredComparison, pair: SideBySide) -> Sectio
     )
     blocks: list[Block] = [
         Paragraph(text),
-        measured(curves, comparison.session.synthetic, Pair.named(pair.fem.own, pair.wave.own)),
-        _residuals(comparison, pair),
+        measured(curves, synthetic, Pair.named(pair.fem.own, pair.wave.own)),
+        _residuals(trials, pair),
     ]
     return Section("Measured against the models", blocks)
 
 
-def _residuals(comparison: MeasuredComparison, pair: SideBySide) -> Table:
+def _residuals(trials: Sequence[TrialPrediction], pair: SideBySide) -> Table:
     columns = (
         "trial",
         "condition",
@@ -81,7 +83,7 @@ def _residuals(comparison: MeasuredComparison, pair: SideBySide) -> Table:
         Column(f"{pair.wave.name} residual, rms", "% of peak", 3),
         Column("FEM residual held out, rms", "% of peak", 3),
     )
-    rows = [_residual_row(trial) for trial in comparison.trials]
+    rows = [_residual_row(trial) for trial in trials]
     return Table(
         "Measured minus model, root mean square over the trial, in % of its peak force",
         columns,
@@ -103,11 +105,9 @@ def _rms_percent(force: Array, model: Array | None, peak: float) -> float | None
     return float(100.0 * np.sqrt(np.nanmean((force - model) ** 2)) / peak)
 
 
-def fit_section(fit: SessionFit) -> Section:
+def fit_section(parameters: Sequence[FittedParameter], notes: Sequence[str]) -> Section:
     """Return the section on the fitted parameters."""
-    fitted = [
-        parameter for parameter in fit.parameters if parameter.ci95_low is not None and parameter.value is not None
-    ]
+    fitted = [parameter for parameter in parameters if parameter.ci95_low is not None and parameter.value is not None]
     figure = fitted_parameters(
         [
             Dot(each.name, each.value or 0.0, each.unit, each.ci95_low, each.ci95_high, each.identifiable)
@@ -125,7 +125,7 @@ def fit_section(fit: SessionFit) -> Section:
     )
     rows = [
         (p.name, p.value, p.unit, p.ci95_low, p.ci95_high, "yes" if p.identifiable else "no", p.source)
-        for p in fit.parameters
+        for p in parameters
     ]
     table = Table(
         "Parameters, fitted and fixed",
@@ -135,6 +135,6 @@ def fit_section(fit: SessionFit) -> Section:
         folded=False,
     )
     blocks: list[Block] = [figure, table]
-    if fit.notes:
-        blocks.append(Bullets(fit.notes))
+    if notes:
+        blocks.append(Bullets(notes))
     return Section("Fitted parameters", blocks)

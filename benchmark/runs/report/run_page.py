@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +14,17 @@ from benchmark.runs.report.method_section import method_section
 from benchmark.runs.report.scenario_section import scenario_section
 from benchmark.runs.report.statistics_section import statistics_section
 from benchmark.runs.report.timing_section import timing_section
+from benchmark.runs.report.trials_part import TrialsPart
 from benchmark.runs.report.values import peak_errors
 from benchmark.runs.report.verdict import run_verdict
 from reports import Download, Fact, KeyFigure, Notice, Page, Section
 
+LARGEST_COPY = 600_000
+"""Characters of a table that is still copied into the page."""
+
 DESCRIPTIONS = {
     "max_deformation.csv": "deflection of each layer at every step",
+    "force_depth.csv": "force and depth of both models at every step",
     "profile.csv": "deflection over the radius at peak load",
     "statistics.csv": "all tests of every layer",
     "normal_fits.csv": "normal fits with goodness",
@@ -29,7 +34,9 @@ DESCRIPTIONS = {
 }
 
 
-def run_page(record: RunRecord, environment: Mapping[str, Any], tables: Sequence[str]) -> Page:
+def run_page(
+    record: RunRecord, environment: Mapping[str, Any], tables: Mapping[str, str], trials: TrialsPart | None = None
+) -> Page:
     """Return the page of a run.
 
     Parameters
@@ -39,21 +46,24 @@ def run_page(record: RunRecord, environment: Mapping[str, Any], tables: Sequence
     environment
         Content of `environment.json`.
     tables
-        File names of the tables in the result folder.
+        The text of each table in the result folder by file name.
+    trials
+        Measured trials, where there are any.
     """
     sections: list[Section] = []
-    if record.measured is not None:
-        sections += [measured_section(record.measured, record.pair), fit_section(record.measured.fit)]
+    if trials is not None:
+        sections.append(measured_section(trials.trials, trials.synthetic, record.pair))
+        sections.append(fit_section(trials.parameters, trials.notes))
     sections += [scenario_section(record)]
     if record.results:
         sections += [deformation_section(record), statistics_section(record)]
     sections += [timing_section(record), method_section(record, environment)]
     return Page(
         title=record.name,
-        subtitle=_subtitle(record),
-        verdict=run_verdict(record),
+        subtitle=_subtitle(record, trials),
+        verdict=run_verdict(record, None if trials is None else trials.headline),
         facts=_facts(environment),
-        notices=_notices(record),
+        notices=_notices(record, trials),
         key_figures=_key_figures(record),
         sections=sections,
         downloads=_downloads(tables),
@@ -61,11 +71,11 @@ def run_page(record: RunRecord, environment: Mapping[str, Any], tables: Sequence
     )
 
 
-def _subtitle(record: RunRecord) -> str:
+def _subtitle(record: RunRecord, trials: TrialsPart | None) -> str:
     models = f"{record.pair.fem.name} and {record.pair.wave.name}"
-    if record.measured is None:
+    if trials is None:
         return f"{models} side by side"
-    return f"{len(record.measured.session.trials)} trials, fitted, beside {models}"
+    return f"{len(trials.trials)} trials, fitted, beside {models}"
 
 
 def _facts(environment: Mapping[str, Any]) -> tuple[Fact, ...]:
@@ -95,9 +105,9 @@ def _key_figures(record: RunRecord) -> tuple[KeyFigure, ...]:
     return tuple(figures)
 
 
-def _notices(record: RunRecord) -> tuple[Notice, ...]:
+def _notices(record: RunRecord, trials: TrialsPart | None) -> tuple[Notice, ...]:
     """What must be known before any figure: origin of the data, circularity, warnings."""
-    notices = [] if record.measured is None else list(session_notices(record.measured))
+    notices = [] if trials is None else list(session_notices(trials.synthetic))
     if record.repair is not None:
         notices.append(Notice("assumption", _effects_words(record.repair)))
     if record.warnings:
@@ -114,8 +124,12 @@ def _effects_words(repair: RepairedModel) -> str:
     )
 
 
-def _downloads(tables: Sequence[str]) -> tuple[Download, ...]:
-    files = [Download(f"tables/{name}", DESCRIPTIONS.get(name, "")) for name in tables]
+def _downloads(tables: Mapping[str, str]) -> tuple[Download, ...]:
+    """The files of the folder; a copy of each table is inside the page unless it would make it heavy."""
+    files = [
+        Download(f"tables/{name}", DESCRIPTIONS.get(name, ""), text if len(text) <= LARGEST_COPY else None)
+        for name, text in tables.items()
+    ]
     return (
         *files,
         Download("results.json", "the run for programs", media_type="application/json"),

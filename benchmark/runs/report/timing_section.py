@@ -28,7 +28,7 @@ def _words(record: RunRecord) -> str:
     ratio = record.pair.speedup
     text = (
         "Wall and CPU seconds of the whole load history, each model alone in a process with one thread, repeats "
-        "interleaved; set-up (mesh, tables, factorisations) apart. "
+        "interleaved; set-up (mesh, tables, factorisations) and the reading of profiles and fields apart. "
     )
     if ratio is None:
         return text + "No speed-up: only one model was timed."
@@ -48,17 +48,21 @@ def _table(runs: list[ModelRun]) -> Table:
         Column("set-up", "s"),
         Column("wall", "s"),
         Column("CPU", "s"),
-        Column("wall per step", "ms"),
+        Column("wall per load step", "ms"),
+        Column("peak memory", "MB"),
     )
-    rows = []
+    rows: list[tuple[object, ...]] = []
     for run in runs:
         seconds, result = run.seconds, run.result
         if seconds is None or result is None:
             continue
         per_step = 1e3 * seconds.wall / max(result.time.size, 1)
-        rows.append((run.name, result.unknowns, len(run.repeats), seconds.setup, seconds.wall, seconds.cpu, per_step))
+        memory = None if run.peak_memory is None else run.peak_memory / 1e6
+        times = (seconds.setup, seconds.wall, seconds.cpu, per_step)
+        rows.append((run.name, result.unknowns, len(run.repeats), *times, memory))
+    rows.extend((label, None, None, None, wall, None, None, None) for label, wall in PRINTED.items())
     return Table(
-        "Medians over the repeats",
+        "Medians over the repeats; memory is that of the process with its libraries; the last lines are printed claims",
         columns,
         rows,
         download=Download("tables/timing.csv", "every repeat"),

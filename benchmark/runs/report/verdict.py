@@ -3,33 +3,33 @@
 from __future__ import annotations
 
 from benchmark.runs.record import RunRecord
-from benchmark.runs.report.measured_section import fit_headline, sentence
+from benchmark.runs.report.measured_section import sentence
 from benchmark.runs.report.values import peak_errors
 from reports import Verdict
 
 
-def run_verdict(record: RunRecord) -> Verdict:
-    """Return the verdict of a run."""
+def run_verdict(record: RunRecord, fit: str | None = None) -> Verdict:
+    """Return the verdict of a run; `fit` is what its trials told, in one sentence."""
     if not record.complete:
         stops = [str(result.failure) for result in record.results if result.failure is not None]
         return Verdict("incomplete", "A solver stopped before the end of the load history.", stops)
     if record.pair.fem.result is None or record.pair.wave.result is None:
-        return _one_sided(record)
-    return _agreement(record)
+        return _one_sided(record, fit)
+    return _agreement(record, fit)
 
 
-def _one_sided(record: RunRecord) -> Verdict:
+def _one_sided(record: RunRecord, fit: str | None) -> Verdict:
     """A model has no values: nothing to compare it with, but the trials may still have told something."""
     missing = [run for run in (record.pair.fem, record.pair.wave) if run.result is None]
     names = " and ".join(run.name for run in missing)
     nothing = f"Nothing to compare the models by: {names} without values here"
     points = [f"{nothing}, because {run.declined}" for run in missing]
-    if record.measured is None:
+    if fit is None:
         return Verdict("finding", f"{nothing}.", [str(run.declined) for run in missing])
-    return Verdict("finding", sentence(fit_headline(record.measured.fit)), points)
+    return Verdict("finding", sentence(fit), points)
 
 
-def _agreement(record: RunRecord) -> Verdict:
+def _agreement(record: RunRecord, fit: str | None) -> Verdict:
     """Whether equivalence is shown, where both models have values."""
     margin = f"{100 * record.scenario.comparison.equivalence_margin:g} % of the FEM's mean"
     shown = [c for c in record.comparisons if c.statistics is not None and c.statistics.equivalence.equivalent]
@@ -42,7 +42,7 @@ def _agreement(record: RunRecord) -> Verdict:
             f"the {wave} follows the load history {ratio.median:.3g} times as fast "
             f"(95 % {ratio.ci95[0]:.3g} to {ratio.ci95[1]:.3g}, {ratio.repeats} interleaved repeats, one thread each)"
         )
-    points.extend(_measured(record))
+    points.extend([] if fit is None else [fit])
     if len(shown) == len(record.comparisons):
         headline = sentence(f"{wave} and {fem} are equivalent within {margin} in every layer's maximum deformation")
         return Verdict("good", headline, points)
@@ -52,8 +52,3 @@ def _agreement(record: RunRecord) -> Verdict:
         f"{len(record.comparisons)} layers; the {wave} is off by up to {worst:+.1f} % at peak load."
     )
     return Verdict("finding", headline, points)
-
-
-def _measured(record: RunRecord) -> list[str]:
-    """One line on the fit to trials."""
-    return [] if record.measured is None else [fit_headline(record.measured.fit)]

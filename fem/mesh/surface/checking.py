@@ -34,20 +34,20 @@ def check_surface(surface: Surface) -> Surface:
     surface = _outwards(surface)
     pair = crossing_triangles(surface)
     if pair is not None:
-        raise FemError(f"surface: crosses itself near {_place(pair)}; repair it in a mesh editor")
+        raise FemError(f"{surface.label}: crosses itself near {_place(pair)}; repair it in a mesh editor")
     return surface
 
 
 def _require_points(surface: Surface) -> None:
     if len(surface.triangles) < 4:
-        raise FemError(f"surface: has {len(surface.triangles)} triangles; a closed body needs at least 4")
+        raise FemError(f"{surface.label}: has {len(surface.triangles)} triangles; a closed body needs at least 4")
     if not np.isfinite(surface.points).all():
         bad = int(np.flatnonzero(~np.isfinite(surface.points).all(axis=1))[0])
-        raise FemError(f"surface: point {bad} has a coordinate that is not finite")
+        raise FemError(f"{surface.label}: point {bad} has a coordinate that is not finite")
     size = surface.size
     if not LEAST_SIZE <= size.max() <= LARGEST_SIZE:
         raise FemError(
-            f"surface: is {size[0]:.3g} x {size[1]:.3g} x {size[2]:.3g} m large; the largest side must be from "
+            f"{surface.label}: is {size[0]:.3g} x {size[1]:.3g} x {size[2]:.3g} m large; the largest side must be from "
             f"{LEAST_SIZE:g} to {LARGEST_SIZE:g} m: is the unit right?"
         )
 
@@ -88,14 +88,14 @@ def _close(surface: Surface) -> Surface:
         width = float(np.ptp(points[loop], axis=0).max())
         if node != start or width > LARGEST_HOLE * float(surface.size.max()):
             raise FemError(
-                f"surface: is open near {_place(place)}: an edge of {len(loop)} segments, {width:.3g} m wide; "
+                f"{surface.label}: is open near {_place(place)}: an edge of {len(loop)} segments, {width:.3g} m wide; "
                 f"holes up to {LARGEST_HOLE * float(surface.size.max()):.3g} m are filled"
             )
         following = np.roll(loop, -1)
         triangles.append(np.stack((loop, following, np.full(len(loop), len(points))), axis=1))
         points = np.concatenate((points, place[None]))
         remarks.append(f"a hole of {len(loop)} edges near {_place(place)} was filled")
-    return Surface(points, np.concatenate(triangles), tuple(remarks))
+    return replace(surface, points=points, triangles=np.concatenate(triangles), remarks=tuple(remarks))
 
 
 def _require_manifold(surface: Surface) -> None:
@@ -103,7 +103,7 @@ def _require_manifold(surface: Surface) -> None:
     if (count != 2).any():
         edge = directed[np.flatnonzero(count != 2)[0]]
         place, meeting = surface.points[edge].mean(axis=0), int(count[count != 2][0])
-        raise FemError(f"surface: {meeting} triangles meet at one edge near {_place(place)}; two must")
+        raise FemError(f"{surface.label}: {meeting} triangles meet at one edge near {_place(place)}; two must")
 
 
 def _outwards(surface: Surface) -> Surface:
@@ -112,7 +112,7 @@ def _outwards(surface: Surface) -> Surface:
     if (count > 1).any():
         place = surface.points[directed[first[count > 1][0]]].mean(axis=0)
         raise FemError(
-            f"surface: neighbouring triangles near {_place(place)} look to opposite sides; orient them alike"
+            f"{surface.label}: neighbouring triangles near {_place(place)} look to opposite sides; orient them alike"
         )
     if surface.volume < 0.0:
         remarks = (*surface.remarks, "the surface looked inwards and was turned")

@@ -85,8 +85,8 @@ def fill(surface: Surface, depths: FloatArray, refinement: Refinement) -> tuple[
     layer = np.searchsorted(depths, distance[inside])
     for lost in set(range(len(depths) + 1)) - set(np.unique(layer).tolist()):
         raise FemError(
-            f"surface: layer {lost + 1} from the surface has no element; the body may be thinner than the layers "
-            f"above it (its largest depth is {distance.max():.3g} m)"
+            f"{surface.label}: layer {lost + 1} from the surface has no element; the body may be thinner than the "
+            f"layers above it (its largest depth is {distance.max():.3g} m)"
         )
     used, renumbered = np.unique(tetrahedra[inside], return_inverse=True)
     return points[used], renumbered.reshape(-1, 4), layer

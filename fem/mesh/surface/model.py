@@ -21,11 +21,19 @@ class Surface:
         Corners (T, 3), counter-clockwise seen from outside.
     remarks
         What was repaired, in words.
+    source
+        Where it came from, for messages; "" if it was made in code.
     """
 
     points: FloatArray
     triangles: IntArray
     remarks: tuple[str, ...] = ()
+    source: str = ""
+
+    @property
+    def label(self) -> str:
+        """What messages call it."""
+        return f"surface {self.source}".rstrip()
 
     @property
     def corners(self) -> FloatArray:

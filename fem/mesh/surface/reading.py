@@ -49,4 +49,4 @@ def read_surface(path: str | Path, unit: str) -> Surface:
     if triangles.n_cells == 0 or triangles.faces.size == 0:
         raise FemError(f"surface {file}: has no triangles")
     corners = np.asarray(triangles.faces).reshape(-1, 4)[:, 1:].astype(np.int64)
-    return Surface(UNITS[unit] * np.asarray(triangles.points, dtype=np.float64), corners)
+    return Surface(UNITS[unit] * np.asarray(triangles.points, dtype=np.float64), corners, source=str(file))

@@ -10,13 +10,15 @@ from fem.mesh.surface.checking import check_surface
 from fem.mesh.surface.filling import Refinement, fill
 from fem.mesh.surface.mesh import SurfaceMesh, barycentric
 from fem.mesh.surface.model import Surface
-from fem.mesh.surface.quality import POOR, measure_quality
+from fem.mesh.surface.quality import POOR, MeshQuality, measure_quality
 
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # mid-side nodes 4 to 9
 FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))  # looking outwards
 BASE_HEIGHT = 0.15  # of the body: what of its underside rests on the base
 LOOKING_UP = 0.2  # least vertical part of the normal of a face that the tool touches
 WORST = 1e-3
+MOST_VOLUME_ERROR = 0.1
+LARGEST_BODY = 100.0  # in tool radii: a larger one is remarked upon
 PARTS = 16  # of each side of a face, where the tool's circle is integrated
 
 
@@ -42,6 +44,7 @@ def build_surface_mesh(
         If the surface is bad, the tool is not above it, or the mesh is unusable.
     """
     surface = check_surface(surface)
+    _require_depth(surface, thickness[:-1])
     x, y, radius = tool
     place = touch_point(surface, x, y)
     fine = radius / (2.0 * density)
@@ -50,9 +53,10 @@ def build_surface_mesh(
     points, tetrahedra, layer = fill(surface, depths, Refinement(place, radius, fine, coarse, 0.5 / density))
     points = _with_vertex(points, tetrahedra, place)
     quality = measure_quality(points, tetrahedra, layer, surface.volume)
-    if quality.least <= WORST:
-        raise FemError(f"surface: the mesh is unusable, a tetrahedron has mean ratio {quality.least:.1e}; {quality}")
-    remarks = surface.remarks if quality.least >= POOR / 2 else (*surface.remarks, f"mesh quality: {quality}")
+    _require_quality(surface, quality)
+    remarks = (*surface.remarks, *_size_remark(surface, radius))
+    if quality.least < POOR / 2:
+        remarks = (*remarks, f"mesh quality: {quality}")
     nodes, elements = quadratic(points, tetrahedra)
     faces = _layer_faces(elements, layer)
     up = _upward(nodes, faces[0])
@@ -82,6 +86,30 @@ def build_surface_mesh(
         quality=quality,
         remarks=remarks,
     )
+
+
+def _require_depth(surface: Surface, above: tuple[float, ...]) -> None:
+    """No place lies deeper than half the smallest side."""
+    deepest = 0.5 * float(surface.size.min())
+    if sum(above) >= deepest:
+        raise FemError(
+            f"{surface.label}: the layers above the last one are {sum(above):.3g} m thick together, but no place in "
+            f"the body is deeper than {deepest:.3g} m: is the unit right?"
+        )
+
+
+def _require_quality(surface: Surface, quality: MeshQuality) -> None:
+    if abs(quality.volume_error) > MOST_VOLUME_ERROR:
+        raise FemError(f"{surface.label}: the mesh does not fill it, is it more than one body? {quality}")
+    if quality.least <= WORST:
+        raise FemError(f"{surface.label}: the mesh is unusable, a tetrahedron is flat; {quality}")
+
+
+def _size_remark(surface: Surface, radius: float) -> tuple[str, ...]:
+    width = float(surface.size.max())
+    if width <= LARGEST_BODY * radius:
+        return ()
+    return (f"{surface.label}: is {width:.3g} m wide, {width / radius:.0f} tool radii: is the unit right?",)
 
 
 def touch_point(surface: Surface, x: float, y: float) -> FloatArray:

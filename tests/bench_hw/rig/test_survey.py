@@ -7,9 +7,15 @@ from bench_hw.rig.loading import load_rig
 from bench_hw.rig.survey import survey, survey_rig
 
 
-def test_every_kind_is_listed_with_a_fix_where_it_is_missing(monkeypatch):
-    monkeypatch.setattr(module, "FACTORY_ADDRESS", "127.0.0.1")
-    findings = survey(http_port=9)
+def test_nothing_is_sent_to_the_network_unasked(monkeypatch):
+    monkeypatch.setattr(module, "_netft", lambda *_: pytest.fail("asked the network"))
+    force = survey()[0]
+    assert (force.kind, force.found) == ("netft", False)
+    assert "--host" in force.fix
+
+
+def test_every_kind_is_listed_with_a_fix_where_it_is_missing():
+    findings = survey("127.0.0.1", http_port=9)
     assert {finding.device for finding in findings} == {"force", "actuator", "camera"}
     assert {finding.kind for finding in findings} == {"netft", "daq", "lac", "webcam", "v4l2"}
     for finding in findings:

@@ -143,4 +143,4 @@ def test_a_resolved_file_states_every_default_with_units():
     }
     assert table["comparison"] == {"equivalence_margin": "2 %"}
     assert table["fem"] == {"kinematics": "finite", "geometry": "axisymmetric", "mesh": "default", "radius": "auto"}
-    assert table["wave"] == {"model": "layered", "modes": "auto", "window": "auto", "large_press": "linear"}
+    assert table["wave"] == {"model": "layered", "modes": "auto", "window": "auto", "large_press": "auto"}

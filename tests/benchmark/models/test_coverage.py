@@ -6,8 +6,12 @@ from benchmark.models import UncoveredError, prepare, scenario_drive
 
 OUTSIDE = {
     "option of the body": ({"physics.pretension": "20 kPa"}, "pretension", ("fem", "wave")),
-    "tilted tool": ({"tool.tilt": "3 deg"}, "tilted", ("fem", "wave")),
-    "block": ({"fem.geometry": "block"}, "block", ("fem",)),
+    "tilted tool": ({"tool.tilt": "3 deg"}, "tilted", ("wave",)),
+    "off the hole's centre": (
+        {"support.kind": "hole", "support.hole_radius": "30 mm", "tool.position": '["5 mm", "0 mm"]'},
+        "off the centre",
+        ("wave",),
+    ),
     "friction": (
         {"tool.contact": "rigid_frictional", "physics.friction_coefficient": "0.3"},
         "friction",

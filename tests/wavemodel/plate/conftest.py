@@ -18,17 +18,7 @@ def fem_sheets() -> dict[str, dict]:
     return {case["name"]: case for case in FEM["cases"]}
 
 
-def _layers(thickness: float = 4e-3, poisson_ratio: float = 0.49) -> list[WaveLayer]:
-    return [WaveLayer("silicone", thickness, 1100.0, 4e5, poisson_ratio)]
-
-
 @pytest.fixture(scope="session")
-def silicone() -> Callable[..., list[WaveLayer]]:
-    """Factory of the phantom's sheet: 4 mm, 400 kPa, nu 0.49."""
-    return _layers
-
-
-@pytest.fixture(scope="session")
-def pressed_sheet() -> Callable[[str], Sheet]:
+def pressed_sheet(silicone: Callable[..., list[WaveLayer]]) -> Callable[[str], Sheet]:
     """The phantom's sheet over its 30 mm hole under a 5 mm tool of some contact."""
-    return lambda contact: sheet(_layers(), DiscTool(5e-3, contact), 30e-3, 10)
+    return lambda contact: sheet(silicone(), DiscTool(5e-3, contact), 30e-3, 10)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import os
 import subprocess
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from peer_cases import LAYERS, POISSON, Case
 
+from benchmarks.peers.cases import LAYERS, POISSON, Case
 from fem.assembly import SOLID_ELEMENTS
 
 # CalculiX wants an axisymmetric model's axis along y, and forces of the whole circumference.
@@ -63,15 +63,15 @@ def _step(case: Case, linear: bool) -> list[str]:
     return [*static, "*CLOAD", *loads, f"*NODE PRINT, NSET=ALL{frequency}", "U", "*END STEP"]
 
 
-def run(path: Path, environment: dict[str, str]) -> str:
-    """Run CalculiX on an input file (given without suffix); what it printed."""
+def run(path: Path, environment: Mapping[str, str]) -> str:
+    """Run CalculiX on an input file (given without suffix) in an environment; what it printed."""
     done = subprocess.run(
         ["ccx", path.name],
         cwd=path.parent,
         capture_output=True,
         text=True,
         check=True,
-        env={**os.environ, **environment},
+        env=dict(environment),
     )
     return done.stdout
 

@@ -5,8 +5,11 @@ Not part of the product. Every program gets the same nodes, elements, supports a
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
@@ -97,3 +100,16 @@ def axisymmetric_case(steps: int = 50, force: float = 2.5) -> Case:
     held = mesh.base | mesh.border
     load = force * UniformPressure().conditions(mesh, problem).load
     return Case("hyperelastic", mesh.nodes, mesh.elements, mesh.layer, np.stack((held | mesh.axis, held)), load, steps)
+
+
+CASES: Mapping[str, Callable[[], Case]] = MappingProxyType(
+    {
+        "linear 9k": partial(block_case, 1.3),
+        "linear 21k": partial(block_case, 1.8),
+        "linear 44k": partial(block_case, 2.4),
+        "linear 97k": partial(block_case, 3.25),
+        "hyperelastic": axisymmetric_case,
+    }
+)
+"""By name: three-dimensional linear ones (C3D20R elsewhere), and fifty axisymmetric steps at large strain, Q2 with one
+constant pressure (CalculiX: CAX8R, another element)."""

@@ -1,4 +1,4 @@
-"""One case through FElupe with Pardiso: `python peer_felupe.py case.npz result.npz`."""
+"""One case through FElupe with Pardiso: `python -m benchmarks.peers.felupe case.npz result.npz`."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from pathlib import Path
 
 import felupe
 import numpy as np
-from peer_cases import LAYERS, POISSON, Case, load_case
 from scipy.sparse.linalg import spsolve
 
+from benchmarks.peers.cases import LAYERS, POISSON, Case, load_case
 from fem.assembly import SOLID_ELEMENTS
 
 try:

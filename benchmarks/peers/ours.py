@@ -1,4 +1,4 @@
-"""One case through this project's solver: `python peer_ours.py case.npz result.npz`."""
+"""One case through this project's solver: `python -m benchmarks.peers.ours case.npz result.npz`."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from peer_cases import LAYERS, POISSON, Case, load_case
 
 import fem
+from benchmarks.peers.cases import LAYERS, POISSON, Case, load_case
 from fem.assembly import System, build_scatter, element_laws, gauss_geometry, number_unknowns, solid_geometry
 from fem.linear_run import unit_state
 from fem.linear_solver import make_solver

@@ -1,0 +1,84 @@
+"""The layered wave for a scenario: linear, or with its large-press correction where that covers the press."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from benchmark.files import Scenario
+from benchmark.models.result import Drive, UncoveredError
+from benchmark.models.wave_parts import PreparedWave, Solution, law_warnings, wave_layers, wave_relaxation, wave_tool
+from wavemodel import LayeredWave, WaveError
+
+STRAINS = {"linear": "small strain", "corrected": "finite strain of the layers"}
+
+
+def layered_wave(scenario: Scenario) -> PreparedWave:
+    """Set up the layered wave.
+
+    With `large_press = "auto"` it follows the finite strain of the layers where the finite elements do, and falls back
+    to small strain, with a warning, where the correction covers neither tool nor depth.
+
+    Raises
+    ------
+    UncoveredError
+        For an endless base.
+    wavemodel.WaveError
+        A value or, unless automatic, a press that the model does not take.
+    """
+    if scenario.support.kind == "half_space":
+        raise UncoveredError("the layered wave needs a base at a finite depth, a half_space has none")
+    wanted = scenario.wave.large_press
+    if wanted != "auto":
+        return _prepared(scenario, wanted)
+    if scenario.fem.kinematics == "linear":
+        return _prepared(scenario, "linear")
+    try:
+        return _falling_back(scenario, _prepared(scenario, "corrected", to_peak=True))
+    except WaveError as error:
+        linear = _prepared(scenario, "linear")
+        return replace(linear, warnings=(*linear.warnings, _fell_back(error)))
+
+
+def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) -> PreparedWave:
+    """One wave; `to_peak`, refuse it where the scenario's peak is beyond its range."""
+    wave = LayeredWave(
+        wave_layers(scenario),
+        wave_tool(scenario),
+        support=scenario.support.kind,
+        window=scenario.wave.window,
+        modes=scenario.wave.modes,
+        relaxation=wave_relaxation(scenario),
+        large_press=large_press,
+    )
+    if to_peak:
+        peak = np.array([scenario.load.peak])
+        _ = wave.law(peak) if scenario.load.control == "depth" else wave.law.depth_at(peak)
+    return PreparedWave(
+        follow=lambda drive: wave.run(drive.control, drive.time, drive.value),
+        unknowns=wave.unknowns,
+        notes={
+            "model": f"layered vector wave, {STRAINS[large_press]}, no calibration",
+            "window": f"{1e3 * wave.window:.4g} mm",
+            "modes": f"m, n = 1..{wave.modes}",
+        },
+        warnings=law_warnings(scenario) if large_press == "corrected" else (),
+    )
+
+
+def _falling_back(scenario: Scenario, corrected: PreparedWave) -> PreparedWave:
+    """A corrected wave that answers histories beyond its range in small strain, and says so."""
+
+    def follow(drive: Drive) -> Solution:
+        try:
+            return corrected.follow(drive)
+        except WaveError as error:
+            solution = _prepared(scenario, "linear").follow(drive)
+            return solution.warned(_fell_back(error))
+
+    return replace(corrected, follow=follow)
+
+
+def _fell_back(error: WaveError) -> str:
+    return f"the wave is that of small strain throughout, without the layers' finite strain: {error}"

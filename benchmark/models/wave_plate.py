@@ -1,0 +1,67 @@
+"""The wave of a sheet over a hole for a scenario."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from benchmark.files import Scenario
+from benchmark.models.coverage import relaxation_warnings
+from benchmark.models.result import UncoveredError
+from benchmark.models.wave_parts import PreparedWave, law_warnings, wave_layers, wave_tool
+from wavemodel import PlateWave, WaveError
+
+MODEL = "sheet over a hole, finite deflection with its local tension"
+CALIBRATED = (
+    "; three numbers of a bonded tool's edge were identified once on finite elements of eleven sheets, that of the "
+    "shipped phantom among them, and are the same for all sheets"
+)
+FIRST_REACH = 0.1
+"""Of the hole's radius: how deep equilibria are looked for before the peak force says how deep they must go."""
+
+
+def plate_wave(scenario: Scenario) -> PreparedWave:
+    """Set up the sheet, with equilibria up to the scenario's peak.
+
+    Raises
+    ------
+    UncoveredError
+        The sheet has no equilibrium under the peak.
+    wavemodel.WaveError
+        A value that the model does not take.
+    """
+    hole, load, options = scenario.support.hole_radius, scenario.load, scenario.wave
+    by_depth = load.control == "depth"
+    explicit = options.model == "plate"
+    wave = PlateWave(
+        wave_layers(scenario),
+        wave_tool(scenario),
+        scenario.support.kind,
+        hole,
+        options.modes if explicit else None,
+        reach=FIRST_REACH * hole if hole is not None else None,
+    )
+    peak = np.array([abs(load.peak)])
+    try:
+        _ = wave.force_of_depth(peak) if by_depth else wave.depth_of_force(peak)
+    except WaveError as error:
+        raise UncoveredError(str(error)) from None
+    return PreparedWave(
+        follow=lambda drive: wave.run(drive.control, drive.time, drive.value),
+        unknowns=wave.unknowns,
+        notes={
+            "model": MODEL + (CALIBRATED if scenario.tool.contact == "rigid_bonded" else "; no calibration"),
+            "window": f"the hole, {1e3 * wave.window:.4g} mm wide",
+            "modes": f"{wave.modes} radial functions each",
+        },
+        warnings=(*relaxation_warnings(scenario), *law_warnings(scenario), *_ignored(scenario)),
+    )
+
+
+def _ignored(scenario: Scenario) -> tuple[str, ...]:
+    """Options of the other wave that were given and have no meaning here."""
+    options = scenario.wave
+    given = [] if options.window is None else ["window"]
+    if options.modes is not None and options.model != "plate":
+        given.append("modes")
+    reason = "over a hole the wave is that of the sheet, whose window is the hole"
+    return tuple(f"wave.{name} is left out: {reason}" for name in given)

@@ -1,0 +1,107 @@
+"""`report`: pages made from finished runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from benchmark.errors import InputError
+from benchmark.runs.destination import destination, file_name
+from benchmark.runs.environment import describe_environment
+from benchmark.runs.finished.changes import changed_parameters, result_columns
+from benchmark.runs.finished.page import compare_page
+from benchmark.runs.finished.reading import SavedRun, read_run
+from benchmark.runs.report import run_page
+from reports import csv_text, whole_folder, write_json, write_page, write_text
+
+
+@dataclass(frozen=True)
+class ReportOutcome:
+    """A page on disk: its folder, what it says in one sentence, and the same for programs."""
+
+    folder: Path
+    headline: str
+    document: dict[str, Any]
+
+
+def page_again(folder: Path, out: Path | None) -> ReportOutcome:
+    """Write the page of a finished run anew, into the run's folder or into `out`.
+
+    Raises
+    ------
+    InputError
+        The folder is no result of `run`; see `read_run`.
+    """
+    run = read_run(folder)
+    page = run_page(run.record, run.environment, run.tables, run.trials)
+    if out is None:
+        write_page(folder / "report.html", page)
+        return ReportOutcome(folder, page.verdict.headline, run.document)
+    target = destination(out, run.record.name)
+    with whole_folder(target) as new:
+        for name, text in run.tables.items():
+            write_text(new / "tables" / name, text)
+        for name in ("results.json", "environment.json", "scenario.toml"):
+            write_text(new / name, (folder / name).read_text(encoding="utf-8"))
+        write_page(new / "report.html", page)
+    return ReportOutcome(target, page.verdict.headline, run.document)
+
+
+def compare_runs(folders: Sequence[Path], out: Path | None) -> ReportOutcome:
+    """Set finished runs side by side; the first one is what the others are compared with.
+
+    The folder holds `report.html`, `report.json`, `tables/runs.csv` and `tables/parameters.csv`.
+
+    Raises
+    ------
+    InputError
+        A folder that is no result of `run`, or one that is given twice.
+    """
+    if len({folder.resolve() for folder in folders}) < len(folders):
+        raise InputError(f"report: {', '.join(map(str, folders))} are not different runs; give each one once")
+    runs = dict(zip(_labels(folders), map(read_run, folders), strict=True))
+    changed, columns = (
+        changed_parameters({name: run.record.scenario for name, run in runs.items()}),
+        result_columns(runs),
+    )
+    texts = {"runs.csv": csv_text(columns), "parameters.csv": csv_text(changed)}
+    environment = describe_environment(seed=0)
+    page = compare_page(runs, changed, columns, environment, texts)
+    document = _document(runs, folders, changed, columns)
+    target = destination(out, file_name(f"{next(iter(runs))}-compared"))
+    with whole_folder(target) as new:
+        for name, text in texts.items():
+            write_text(new / "tables" / name, text)
+        write_json(new / "report.json", document)
+        write_page(new / "report.html", page)
+    return ReportOutcome(target, page.verdict.headline, document)
+
+
+def _labels(folders: Sequence[Path]) -> list[str]:
+    """What pages call the runs: the names of their folders, with as much of the path as tells them apart."""
+    resolved = [folder.resolve() for folder in folders]
+    for depth in range(1, max(len(folder.parts) for folder in resolved) + 1):
+        names = ["/".join(folder.parts[-depth:]) for folder in resolved]
+        if len(set(names)) == len(names):
+            return names
+    return [str(folder) for folder in resolved]
+
+
+def _document(
+    runs: Mapping[str, SavedRun],
+    folders: Sequence[Path],
+    changed: Mapping[str, Sequence[Any]],
+    columns: Mapping[str, Sequence[Any]],
+) -> dict[str, Any]:
+    """`report.json`."""
+    return {
+        "schema": 1,
+        "runs": [
+            {"name": name, "folder": str(folder), "results": run.document}
+            for (name, run), folder in zip(runs.items(), folders, strict=True)
+        ],
+        "parameters_changed": changed,
+        "table": columns,
+    }

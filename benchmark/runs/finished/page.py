@@ -1,0 +1,183 @@
+"""The page that sets finished runs side by side: parameters changed, results changed, figures over each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from benchmark.models import ModelResult
+from benchmark.runs.finished.reading import SavedRun
+from benchmark.runs.record import RunRecord
+from benchmark.runs.report.values import MM
+from benchmark.runs.report.verdict import run_verdict
+from reports import Block, Column, Download, Fact, Notice, Page, Paragraph, Section, Table, Verdict
+from reports.figures.overlay import overlay
+
+Columns = Mapping[str, Sequence[Any]]
+RESULTS = (
+    ("fem_max_mm", Column("FEM maximum", "mm")),
+    ("wave_max_mm", Column("wave maximum", "mm")),
+    ("error_at_peak_percent", Column("error at peak", "%", 3)),
+    ("error_mean_percent", Column("mean |error|", "%", 3)),
+    ("error_max_percent", Column("max |error|", "%", 3)),
+    ("tost_p", Column("TOST p", digits=3)),
+    ("equivalent", Column("equivalent")),
+)
+
+
+def compare_page(
+    runs: Mapping[str, SavedRun],
+    changed: Columns,
+    columns: Columns,
+    environment: Mapping[str, Any],
+    tables: Mapping[str, str],
+) -> Page:
+    """Return the page; the first of the `runs` is what the others are compared with.
+
+    Parameters
+    ----------
+    runs
+        By what the page calls them.
+    changed, columns
+        Of `parameters.csv` and `runs.csv`.
+    environment
+        Of making the page.
+    tables
+        The text of both tables by file name.
+    """
+    about = {"parameters.csv": "parameters that differ", "runs.csv": "results of every run and layer"}
+    return Page(
+        title=f"{len(runs)} runs side by side",
+        subtitle=f"compared with {next(iter(runs))}",
+        verdict=_verdict(runs, changed),
+        facts=(Fact("Made", str(environment["made"])), *(Fact(name, _origin(run)) for name, run in runs.items())),
+        notices=_notices(runs),
+        sections=(
+            Section("Parameters changed", (_parameters(changed),)),
+            Section("Results changed", (_results(columns), _changes(columns), _timing(runs))),
+            Section("Figures over each other", _figures(runs)),
+        ),
+        downloads=[Download(f"tables/{name}", about[name], text) for name, text in tables.items()],
+        footer=f"tissuebench {environment['packages']['tissuebench']}",
+    )
+
+
+def _origin(run: SavedRun) -> str:
+    return f"{run.record.scenario.name} on {run.record.scenario.tissue.name}, made {run.environment['made']}"
+
+
+def _verdict(runs: Mapping[str, SavedRun], changed: Columns) -> Verdict:
+    """How much differs, and what each run found by itself."""
+    points = [
+        f"{name}: {run_verdict(run.record, None if run.trials is None else run.trials.headline).headline}"
+        for name, run in runs.items()
+    ]
+    count = sum(not key.endswith(("citation", "name")) for key in changed["parameter"])
+    headline = f"{count} parameter{'' if count == 1 else 's'} of the scenario {'differs' if count == 1 else 'differ'}."
+    status = "finding" if all(run.record.complete for run in runs.values()) else "incomplete"
+    return Verdict(status, headline if count else "The scenarios are the same.", points)
+
+
+def _notices(runs: Mapping[str, SavedRun]) -> list[Notice]:
+    said = [f"{name}: {warning}" for name, run in runs.items() for warning in run.record.warnings]
+    machines = {(run.environment["processor"], run.environment["usable_cores"]) for run in runs.values()}
+    if len(machines) > 1:
+        said.append("the runs were made on different machines: their times cannot be compared")
+    synthetic = [name for name, run in runs.items() if run.trials is not None and run.trials.synthetic]
+    notices = [Notice("warning", "Read these before you quote a figure.", said)] if said else []
+    if synthetic:
+        notices.insert(0, Notice("synthetic", f"The trials of {', '.join(synthetic)} were computed, not measured."))
+    return notices
+
+
+def _parameters(changed: Columns) -> Block:
+    if not changed["parameter"]:
+        return Paragraph("No value of the scenarios differs.")
+    return Table(
+        "Values that are not the same in all runs, by their keys in scenario.toml (or the layer's name)",
+        [str(name) for name in changed],
+        list(zip(*changed.values(), strict=True)),
+        download=Download("tables/parameters.csv"),
+        folded=False,
+    )
+
+
+def _results(columns: Columns) -> Table:
+    cells = [columns["run"], columns["layer"], *(columns[key] for key, _ in RESULTS)]
+    return Table(
+        "Maximum deformation of each layer's top face on the tool axis; errors are those of the wave model's place "
+        "against the FEM's",
+        ["run", "layer", *(column for _, column in RESULTS)],
+        list(zip(*cells, strict=True)),
+        download=Download("tables/runs.csv"),
+        folded=False,
+    )
+
+
+def _changes(columns: Columns) -> Block:
+    """Maxima against the first run's, for layers that both have."""
+    rows = list(zip(*(columns[key] for key in ("run", "layer", "fem_max_mm", "wave_max_mm")), strict=True))
+    first = {layer: (fem, wave) for run, layer, fem, wave in rows if run == rows[0][0]}
+    table = [
+        (run, layer, *(_percent(now, before) for now, before in zip((fem, wave), first[layer], strict=True)))
+        for run, layer, fem, wave in rows
+        if run != rows[0][0] and layer in first
+    ]
+    if not table:
+        return Paragraph("No layer of the first run is in another one by name.")
+    heads = ("run", "layer", Column("FEM maximum", "%", 3), Column("wave maximum", "%", 3))
+    return Table(f"Change against {rows[0][0]}", heads, table, folded=False)
+
+
+def _percent(now: float, before: float) -> float | None:
+    """Change in %; None where one of them is missing or zero."""
+    return float(100.0 * (now - before) / before) if np.isfinite(now * before) and before != 0.0 else None
+
+
+def _timing(runs: Mapping[str, SavedRun]) -> Table:
+    heads = (
+        "run", "model", Column("unknowns"), Column("repeats"), Column("set-up", "s"), Column("wall", "s"),
+        Column("CPU", "s"), Column("speed-up", "×", 3), Column("95 % low", "×", 3), Column("95 % high", "×", 3),
+    )  # fmt: skip
+    rows = []
+    for name, run in runs.items():
+        ratio = run.record.pair.speedup
+        span = (None, None, None) if ratio is None else (ratio.median, *ratio.ci95)
+        for model in (run.record.pair.fem, run.record.pair.wave):
+            seconds = model.seconds
+            times = (None, None, None) if seconds is None else (seconds.setup, seconds.wall, seconds.cpu)
+            unknowns = None if model.result is None else model.result.unknowns
+            rows.append((name, model.name, unknowns, len(model.repeats), *times, *span))
+    return Table("Compute time, medians over the repeats, one thread each", heads, rows, folded=False)
+
+
+def _figures(runs: Mapping[str, SavedRun]) -> list[Block]:
+    """Deflection over the load history and the profile of each layer, a line a run and model; force over depth."""
+    history: dict[str, dict[str, Any]] = {}
+    profiles: dict[str, dict[str, Any]] = {}
+    curves: dict[str, Any] = {}
+    for name, run in runs.items():
+        for label, result in _answers(name, run.record):
+            curves[label] = MM * result.depth, result.force
+            for place, layer in enumerate(result.layers):
+                history.setdefault(layer, {})[label] = result.time, MM * result.top_deflection[:, place]
+                profiles.setdefault(layer, {})[label] = MM * result.profile_radii, MM * result.profile[place]
+    if not curves:
+        return [Paragraph("No model of any run has values.")]
+    radius, deflection = "distance from the tool axis (mm)", "deflection (mm)"
+    over_time = "Deflection of each layer's top face on the tool axis over the load history, press positive."
+    at_peak, pressing = "Deflection at peak load, press downwards.", "Force on the tool over its depth."
+    single = {"force over depth": curves}
+    return [
+        overlay(history, "time (s)", deflection, over_time, "Maximum deformation of every run"),
+        overlay(profiles, radius, deflection, at_peak, "Profiles of every run", downwards=True),
+        overlay(single, "depth (mm)", "force (N)", pressing, "Force and depth"),
+    ]
+
+
+def _answers(name: str, record: RunRecord) -> list[tuple[str, ModelResult]]:
+    """Each model's values with the label of its line."""
+    models = (record.pair.fem, record.pair.wave)
+    return [(f"{name}, {each.name}", each.result) for each in models if each.result is not None]

@@ -1,0 +1,41 @@
+"""Which strain the layered wave takes by itself, and what it says where it falls back."""
+
+import numpy as np
+import pytest
+
+from benchmark.files import load_scenario
+from benchmark.models import Drive, ModelResult, prepare, scenario_drive
+
+SHORT = {"load.observations": "4"}
+FALLEN = "without the layers' finite strain"
+
+
+def pressed(settings: dict[str, str]) -> ModelResult:
+    scenario = load_scenario("skin-5N", {**SHORT, **settings})
+    return prepare("wave", scenario).run(scenario_drive(scenario))
+
+
+@pytest.mark.parametrize(("kinematics", "same_as"), [("finite", "corrected"), ("linear", "linear")])
+def test_it_takes_the_strain_of_the_finite_elements(kinematics: str, same_as: str) -> None:
+    automatic = pressed({"fem.kinematics": kinematics})
+    stated = pressed({"fem.kinematics": kinematics, "wave.large_press": same_as})
+    np.testing.assert_array_equal(automatic.depth, stated.depth)
+    assert automatic.notes == stated.notes
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [{"load.peak": "12 N"}, {"tool.contact": "rigid_frictionless", "tool.edge_radius": "0.5 mm"}],
+    ids=["too deep", "contact"],
+)
+def test_beyond_the_correction_it_falls_back_to_small_strain_and_says_so(settings: dict[str, str]) -> None:
+    fallen, linear = pressed(settings), pressed({**settings, "wave.large_press": "linear"})
+    np.testing.assert_array_equal(fallen.depth, linear.depth)
+    assert fallen.notes["model"] == linear.notes["model"]
+    assert FALLEN in fallen.warnings[0]
+
+
+def test_a_history_that_goes_deeper_than_the_scenario_falls_back_too() -> None:
+    scenario = load_scenario("skin-5N", SHORT)
+    result = prepare("wave", scenario).run(Drive("force", np.array([1.0, 2.0]), np.array([1.0, 12.0])))
+    assert FALLEN in " ".join(result.warnings)

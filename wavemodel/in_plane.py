@@ -1,0 +1,86 @@
+"""In-plane displacement of the faces, u_h = U grad S / k, from the vector modes directly.
+
+The modes of the window give the smooth part, exact layered elasticity of the endless specimen the sharp rest, as they
+do for the deflection (see `wavemodel.remainder`).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import j1
+
+from wavemodel.arrays import FloatArray
+from wavemodel.errors import NotCoveredError
+from wavemodel.layers.compliance import FaceStiffness, every_face, exact_faces, quadratic_faces
+from wavemodel.layers.laminate import Laminate
+from wavemodel.loads.uniform import UniformPressure
+from wavemodel.press import Press
+from wavemodel.remainder import Remainder
+
+
+@dataclass(frozen=True)
+class InPlane:
+    """One face's in-plane displacement under a unit force on the tool.
+
+    Attributes
+    ----------
+    press
+        The set-up.
+    face
+        0 for the surface, 1.. for the interfaces, L for the lowest face.
+    """
+
+    press: Press
+    face: int
+
+    def per_force(self, points: FloatArray) -> FloatArray:
+        """(P, 2) displacement along x and y, m/N, at points (P, 2) in m from the tool axis, inside the window."""
+        out = self._smooth(points)
+        rest = self.press.field.rest
+        if rest is not None:
+            distance = np.hypot(points[:, 0], points[:, 1])
+            out += self._sharp(rest, distance)[:, None] * points / np.maximum(distance, 1e-300)[:, None]
+        return out
+
+    def _smooth(self, points: FloatArray) -> FloatArray:
+        """Sum over the modes: U / k times the gradient of the sines."""
+        press, domain = self.press, self.press.field.domain
+        amplitude = self._along(domain.wavenumber, press.modal_stack, quadratic_faces, press.load) * press.share
+        modes = domain.spread(amplitude / domain.wavenumber) * press.field.share
+        (sine_x, slope_x), (sine_y, slope_y) = (domain.waves(points[:, axis], axis) for axis in (0, 1))
+        along_x = np.einsum("pm,pm->p", slope_x @ modes, sine_y)
+        along_y = np.einsum("pm,pm->p", sine_x @ modes, slope_y)
+        return np.stack([along_x, along_y], axis=1)
+
+    def _sharp(self, rest: Remainder, distance: FloatArray) -> FloatArray:
+        """(P,) outward, m/N: minus the integral of U J_1(k r), and nothing beyond its reach."""
+        press, coefficients = self.press, self.press.field.traction.coefficients
+        k = rest.spectrum.wavenumber
+        load = np.einsum("nji,j->ni", rest.load, coefficients)
+        lowest = np.maximum(k, press.field.domain.lowest)
+        answer = self._along(lowest, press.stack, exact_faces, load) * rest.share
+        near = distance < rest.reach
+        out = np.zeros_like(distance)
+        if self.face == 0:
+            answer = answer - load @ rest.body.matrix[0] / k
+            out[near] -= _half_space(rest, distance[near])
+        out[near] -= (answer * rest.spectrum.weight) @ j1(np.outer(k, distance[near]))
+        return out
+
+    def _along(self, k: FloatArray, stack: Laminate, stiffness: FaceStiffness, load: FloatArray) -> FloatArray:
+        """(K,) amplitude U of the face at wavenumbers (K,) under loads (K, 2)."""
+        node = [*stack.top_of_layer.tolist(), stack.sublayers][self.face]
+        faces = every_face(stack, stiffness(k, stack))[:, node]
+        return np.asarray(np.einsum("kj,kj->k", faces[:, 0], load))
+
+
+def _half_space(rest: Remainder, distance: FloatArray) -> FloatArray:
+    """(P,) int U J_1(k r) of the half-space under a uniform pressure: Weber's and Schafheitlin's in closed form."""
+    if not isinstance(rest.basis, UniformPressure):
+        raise NotCoveredError(
+            "marker motion does not cover the surface under a rigid tool (face 0); the interfaces and the lower face "
+            "are covered"
+        )
+    radius = rest.basis.radius
+    ratio = distance / radius
+    return np.asarray(rest.body.cross / (2.0 * np.pi * radius) * np.minimum(ratio, 1.0 / np.maximum(ratio, 1e-300)))
