@@ -72,6 +72,8 @@ def switched_on(repair: RepairedModel, scenario: Scenario, model: str) -> Switch
 
 def on_its_base(repair: RepairedModel, scenario: Scenario) -> Scenario:
     """The scenario with the wave's elastic law that the effects were found on top of."""
+    if repair.large_press == "corrected" and scenario.wave.large_press == "auto":
+        return scenario
     wave = scenario.wave.model_copy(update={"large_press": repair.large_press})
     return scenario.model_copy(update={"wave": wave})
 

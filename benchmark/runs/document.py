@@ -32,8 +32,8 @@ def results_document(record: RunRecord) -> dict[str, Any]:
             "repeats": ratio.repeats if ratio else 0,
         },
     }
-    if record.repair is not None:
-        document["effects"] = list(record.repair.slugs)
+    if record.effects:
+        document["effects"] = list(record.effects)
     if record.measured is not None:
         document["trials"] = {
             "session": record.measured.session.name,

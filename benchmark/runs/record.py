@@ -38,7 +38,9 @@ class RunRecord:
     seed
         Of every random draw.
     repair
-        The model file whose effects are switched on; None without.
+        The model file whose effects are switched on; None without, and in a run that was read back.
+    effects
+        Their slugs.
     """
 
     name: str
@@ -51,6 +53,7 @@ class RunRecord:
     warnings: tuple[str, ...]
     seed: int
     repair: RepairedModel | None = None
+    effects: tuple[str, ...] = ()
 
     @property
     def layers(self) -> tuple[str, ...]:

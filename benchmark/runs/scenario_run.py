@@ -84,4 +84,5 @@ def run_scenario(
         warnings=gather_warnings(scenario, pair, said),
         seed=options.seed,
         repair=own.repair,
+        effects=() if own.repair is None else own.repair.slugs,
     )

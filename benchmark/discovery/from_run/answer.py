@@ -80,7 +80,7 @@ def repair_run(
         seed=seed,
         layers=answer.layers,
         labels=_labels(answer),
-        large_press=run.scenario.wave.large_press,
+        large_press=run.large_press,
     )
 
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +18,7 @@ from bench_hw.tables.source import read_source, text_columns
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
 from benchmark.models import read_reference
+from benchmark.models.wave_layered import STRAINS
 
 Array = NDArray[np.float64]
 TABLE = Path("tables") / "max_deformation.csv"
@@ -38,6 +41,8 @@ class FinishedRun:
         SHA-256 over table and scenario.
     effects : tuple of str
         Effects that the run's wave model already had.
+    large_press : str
+        Its elastic law: "linear" or "corrected".
     """
 
     name: str
@@ -48,6 +53,7 @@ class FinishedRun:
     wave: Array
     fingerprint: str
     effects: tuple[str, ...]
+    large_press: str
 
     @property
     def layers(self) -> tuple[str, ...]:
@@ -91,7 +97,17 @@ def read_run(folder: Path) -> FinishedRun:
         wave=wave,
         fingerprint=digest,
         effects=tuple(document.get("effects", ())),
+        large_press=_large_press(scenario, document),
     )
+
+
+def _large_press(scenario: Scenario, document: Mapping[str, Any]) -> str:
+    """What the wave model took; under "auto" its notes say it."""
+    chosen = scenario.wave.large_press
+    if chosen != "auto":
+        return chosen
+    notes = document.get("models", {}).get("wave", {}).get("notes", {})
+    return "corrected" if STRAINS["corrected"] in str(notes.get("model", "")) else "linear"
 
 
 def _wave(path: Path, shape: tuple[int, ...]) -> Array:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from benchmark.model_file import RepairedModel
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.deformation_section import deformation_section
 from benchmark.runs.report.measured_section import fit_section, measured_section, session_notices
@@ -108,19 +106,19 @@ def _key_figures(record: RunRecord) -> tuple[KeyFigure, ...]:
 def _notices(record: RunRecord, trials: TrialsPart | None) -> tuple[Notice, ...]:
     """What must be known before any figure: origin of the data, circularity, warnings."""
     notices = [] if trials is None else list(session_notices(trials.synthetic))
-    if record.repair is not None:
-        notices.append(Notice("assumption", _effects_words(record.repair)))
+    if record.effects:
+        notices.append(Notice("assumption", _effects_words(record.effects)))
     if record.warnings:
         notices.append(Notice("warning", "Read these before you quote a figure.", record.warnings))
     return tuple(notices)
 
 
-def _effects_words(repair: RepairedModel) -> str:
-    """Which effects of which model file are on."""
-    names = ", ".join(slug.replace("_", " ") for slug in repair.slugs) or "none"
+def _effects_words(effects: Sequence[str]) -> str:
+    """Which effects of a model file are on."""
+    names = ", ".join(slug.replace("_", " ") for slug in effects)
     return (
-        f"Effects of {Path(repair.name).name} are switched on: {names}. Under Method stands which model took which; "
-        "warnings say what a model left out."
+        f"Effects of model.toml are switched on: {names}. Under Method stands which model took which; warnings say "
+        "what a model left out."
     )
 
 

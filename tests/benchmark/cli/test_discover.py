@@ -11,7 +11,7 @@ from benchmark.discovery.carrying_out import DiscoverRequest, carry_out
 from benchmark.sessions import SHIPPED
 
 PHANTOM = SHIPPED / "phantom"
-COARSE = ("--set", "fem.mesh=coarse", "--set", "load.observations=20")
+COARSE = ("--set", "fem.mesh=coarse", "--set", "load.observations=20", "--set", "wave.large_press=linear")
 
 
 @pytest.fixture(scope="module")
