@@ -5,14 +5,22 @@ PY     := $(VENV)/bin/python
 RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
-.PHONY: help run test test-slow lint types imports check lock clean
+BENCHES := bench-wave bench-peers bench-liver bench-vision bench-gate bench-discovery
+.PHONY: help run test test-slow $(BENCHES) lint types imports check docs lock clean
 
 help:
-	@echo "make run        measured phantom trials and the 5 N skin press to two reports"
-	@echo "make test       the tests (under 10 minutes on 2 cores)"
-	@echo "make test-slow  the long checks"
-	@echo "make check      lint, types and import rules"
-	@echo "make lock       pin the dependencies anew"
+	@echo "make run              measured phantom trials and the 5 N skin press to two reports"
+	@echo "make test             the tests (under 10 minutes on 2 cores)"
+	@echo "make test-slow        the long checks"
+	@echo "make check            lint, types and import rules"
+	@echo "make docs             the documentation as a site in build/site"
+	@echo "make bench-wave       microseconds a frame of the wave beside its rivals, each with its error"
+	@echo "make bench-peers      the same problems through FElupe and CalculiX, where they are installed"
+	@echo "make bench-liver      a synthetic liver from its STL file to a pressed VTU"
+	@echo "make bench-vision     frames a second of the tracker, and its memory on a long video"
+	@echo "make bench-gate       the regression gate on trial: false alarms and power (hours at full length)"
+	@echo "make bench-discovery  the discovery on 150 sessions with hidden effects (hours)"
+	@echo "make lock             pin the dependencies anew"
 
 $(PY):
 	$(PYTHON) -c 'import sys; sys.exit("tissuebench needs Python 3.11 or newer, this is " + sys.version.split()[0]) if sys.version_info < (3, 11) else None'
@@ -36,6 +44,15 @@ test: $(DEV_STAMP)
 test-slow: $(DEV_STAMP)
 	$(PY) -m pytest -n 2 -m slow
 
+bench-peers: $(DEV_STAMP)
+	$(PY) -m benchmarks.peers
+
+bench-liver: $(RUN_STAMP)
+	$(PY) -m benchmarks.liver results/liver
+# The table goes to benchmarks/discovery; the same command goes on where it was stopped.
+bench-discovery: $(RUN_STAMP)
+	$(PY) -m benchmark blind --suite first --out benchmarks/discovery
+
 lint: $(DEV_STAMP)
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/ruff format --check .
@@ -48,12 +65,25 @@ imports: $(DEV_STAMP)
 
 check: lint types imports
 
+docs: $(DEV_STAMP)
+	$(PY) -m benchmark.files.reference > docs/reference-files.md
+	$(PY) -m mkdocs build --quiet
+
+# GATE_RUNS=3 for a short one.
+GATE_RUNS ?= 20
+bench-gate: $(DEV_STAMP)
+	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS)
+	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS) --off 0.01 --values
+
 # Needs uv (`pip install uv`). Only names and versions are written, no addresses.
 lock:
 	uv pip compile --universal --python-version 3.11 --no-header --no-annotate --no-emit-index-url \
 		--output-file requirements.lock pyproject.toml
 	uv pip compile --universal --python-version 3.11 --no-header --no-annotate --no-emit-index-url \
 		--extra dev --extra peers --output-file requirements-dev.lock pyproject.toml
+
+bench-wave: $(RUN_STAMP)
+	$(PY) -m benchmarks.wave
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info

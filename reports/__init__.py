@@ -6,6 +6,7 @@ dataclasses of `reports.blocks` come in, strings and files go out. Figures live 
 
 from reports.atomic import whole_folder, write_bytes, write_json, write_text
 from reports.blocks import (
+    Animation,
     Block,
     Bullets,
     Column,
@@ -20,6 +21,7 @@ from reports.blocks import (
     Notice,
     Panel,
     Paragraph,
+    Picture,
     Section,
     Subsection,
     Table,
@@ -29,6 +31,7 @@ from reports.page import Page, render_page, write_page
 from reports.tables import csv_text, write_csv
 
 __all__ = [
+    "Animation",
     "Block",
     "Bullets",
     "Column",
@@ -44,6 +47,7 @@ __all__ = [
     "Page",
     "Panel",
     "Paragraph",
+    "Picture",
     "Section",
     "Subsection",
     "Table",

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from reports import formatting, palette, svg
-from reports.blocks import Column, Download, Figure, Table
+from reports.blocks import Column, Download, Figure, Picture, Table
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -41,10 +41,14 @@ def environment() -> Environment:
 
 
 def _embedded_panels(figure: Figure, number: int) -> Iterator[Markup]:
-    """Yield the pictures of a figure as inline SVG."""
+    """Yield the pictures of a figure as inline SVG, or as an image whose data is in the page."""
     from markupsafe import Markup
 
     for position, panel in enumerate(figure.panels):
+        if isinstance(panel, Picture):
+            data = base64.b64encode(panel.png).decode("ascii")
+            yield Markup('<img src="data:image/png;base64,{}" alt="{}">').format(data, panel.alt)
+            continue
         title = panel.title or figure.title or f"Figure {number}"
         # embed() has parsed the SVG, refused anything active and escaped every text in it.
         yield Markup(svg.embed(panel.svg, f"f{number}-{position}-", title, panel.alt))

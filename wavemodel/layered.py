@@ -176,7 +176,8 @@ class LayeredWave:
             If the history is not usable.
         """
         load = checked_load(control, time, value)
-        method = self._method(load)
+        added = ringing(load, self.first_frequency, self.damping)
+        method = self._method(load, added)
         history = integrate(load, self._modal_system) if method == "exact" else self._static_run(load)
         return WaveSolution(
             time=load.time,
@@ -185,7 +186,7 @@ class LayeredWave:
             layer_names=tuple(layer.name for layer in self.layers),
             top_deflection=history.top_deflection,
             integrator=method,
-            warnings=notices.notices(self.press, history, method, ringing(load, self.first_frequency, self.damping)),
+            warnings=notices.notices(self.press, history, method, added),
             _press=self.press,
             _history=history,
         )
@@ -205,10 +206,10 @@ class LayeredWave:
     def _modal_system(self) -> ModalSystem:
         return modal_system(self.press, self.tool.rigid, self.damping, one_series(self.relaxation))
 
-    def _method(self, load: Load) -> str:
+    def _method(self, load: Load, added: float) -> str:
         if self.integrator != "auto":
             return self.integrator
-        slow = load.control == "depth" or ringing(load, self.first_frequency, self.damping) <= SLOW
+        slow = load.control == "depth" or added <= SLOW
         slow = slow or shared(self.relaxation) is None or self.options is not None or self.law.large is not None
         return "quasi_static" if slow else "exact"
 

@@ -26,6 +26,11 @@ Model = Annotated[Path | None, typer.Option("--model", help="Switch on the effec
 Effects = Annotated[Path | None, typer.Option("--effects", help="Effects of your own that the model file names.")]
 Repeats = Annotated[int, typer.Option("--repeats", min=3, help="Timed repeats of each model.")]
 
+Refine = Annotated[
+    bool,
+    typer.Option("--refine", help="Coarser and finer runs too: numerical uncertainty, growth of time."),
+]
+
 
 def register(app: typer.Typer) -> None:
     """Add the verb to the command line."""
@@ -45,6 +50,7 @@ def run(
     settings: Set = None,
     fields: Fields = "peak",
     repeats: Repeats = 3,
+    refine: Refine = False,
     seed: Seed = 0,
     json: Json = False,
     quiet: Quiet = False,
@@ -63,5 +69,5 @@ def run(
     request = RunRequest(
         scenario, trials, specimen, parse_settings(settings), out, wave, reference, tuple(tissue or ()), model, effects
     )
-    options = RunOptions(every_field=fields == "all", repeats=repeats, seed=seed)
+    options = RunOptions(every_field=fields == "all", repeats=repeats, refine=refine, seed=seed)
     return show_runs(carry_out(request, options, console), console, as_json=json)

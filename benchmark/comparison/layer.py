@@ -6,13 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from benchmark.comparison.area_metric import AreaMetric, area_metric
 from benchmark.comparison.bland_altman import BlandAltman, bland_altman
 from benchmark.comparison.concordance import Concordance, concordance
 from benchmark.comparison.equivalence import Equivalence, paired_equivalence
 from benchmark.comparison.normal_fit import NormalFit, normal_fit, overlap
 from benchmark.comparison.paired import PairedT, paired_t_test
 from benchmark.comparison.percent_error import PercentError, percent_error
-from benchmark.comparison.power import PassingRange, passing_scale_errors
+from benchmark.comparison.power import PassingRange, passing_scale_errors, t_test_power
 from benchmark.comparison.result import Result, Row, plain
 from benchmark.comparison.samples import aligned
 from benchmark.comparison.t_test import TwoSampleT, pooled_t_test, welch_t_test
@@ -23,7 +24,10 @@ UNCOVERED = "fewer than three steps that both models reached: nothing to compare
 
 @dataclass(frozen=True)
 class PairStatistics(Result):
-    """The tests between two models on the steps that both reached."""
+    """The tests between two models on the steps that both reached.
+
+    `power` is that of the pooled t-test against a scale error as large as the equivalence margin.
+    """
 
     pooled: TwoSampleT
     welch: TwoSampleT
@@ -32,7 +36,9 @@ class PairStatistics(Result):
     bland_altman: BlandAltman
     concordance: Concordance
     passing: PassingRange
+    power: float
     overlap: float
+    area: AreaMetric
 
 
 @dataclass(frozen=True)
@@ -64,7 +70,7 @@ class LayerComparison(Result):
         found = self.statistics
         return {
             "t_pooled": found.pooled.rows(),
-            "t_pooled_power": found.passing.rows(),
+            "t_pooled_power": [*found.passing.rows(), ("power at the margin", None, None, found.power)],
             "t_welch": found.welch.rows(),
             "paired": found.paired.rows(),
             "tost": found.equivalence.rows(),
@@ -72,6 +78,7 @@ class LayerComparison(Result):
             "concordance": found.concordance.rows(),
             "percent_error": self.percent.rows(),
             "normal_overlap": [("overlap", None, None, found.overlap)],
+            "area_metric": found.area.rows(),
         }
 
     def summary(self) -> dict[str, Any]:
@@ -123,6 +130,8 @@ def compare_layer(
         bland_altman(first, second),
         concordance(first, second),
         passing_scale_errors(first[both]),
+        t_test_power(first[both], margin_fraction),
         overlap(normal_fit(first[both]), normal_fit(second[both])),
+        area_metric(first[both], second[both]),
     )
     return LayerComparison(layer, percent, fits[0], fits[1], statistics)

@@ -7,11 +7,13 @@ from benchmark.comparison.power import PassingRange
 from benchmark.comparison.t_test import TwoSampleT
 
 
-def describe_t_test(test: TwoSampleT, passing: PassingRange) -> str:
-    """One paragraph on the pooled t-test, with the scale errors it lets pass."""
+def describe_t_test(test: TwoSampleT, passing: PassingRange, power: float | None = None) -> str:
+    """One paragraph on the pooled t-test, with the scale errors it lets pass and its `power` at the margin."""
     if math.isnan(test.p_value):
         return f"The two-sample t-test has no outcome: {test.note}."
     reach = f"It lets pass any scale error from {_percent(passing.low)} to {_percent(passing.high)}."
+    if power is not None:
+        reach += f" Its power to see a scale error as large as the equivalence margin is {100.0 * power:.3g} %."
     numbers = f"t = {test.t:.4g}, df = {test.df:.4g}, p = {test.p_value:.4g}, t critical = {test.t_critical:.6f}"
     if test.rejects:
         return f"The two-sample t-test rejects the hypothesis of one common mean ({numbers}). {reach}"

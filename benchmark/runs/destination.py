@@ -23,7 +23,7 @@ def destination(out: Path | None, name: str) -> Path:
         `out` is a file, or a folder with something else in it.
     """
     if out is None:
-        return _fresh(Path("results"), f"{file_name(name)}-{datetime.now():%Y%m%d-%H%M%S}")
+        return fresh(name)
     if out.exists() and not out.is_dir():
         raise InputError(f"--out {out} is a file; it must be a folder that is new, empty, or an earlier result")
     if out.is_dir() and any(out.iterdir()) and not any((out / file).is_file() for file in RESULT_FILES):
@@ -32,6 +32,11 @@ def destination(out: Path | None, name: str) -> Path:
             "it must be a folder that is new, empty, or an earlier result"
         )
     return out
+
+
+def fresh(name: str) -> Path:
+    """Return `results/NAME-DATE-TIME`, which does not exist yet."""
+    return _fresh(Path("results"), f"{file_name(name)}-{datetime.now():%Y%m%d-%H%M%S}")
 
 
 def _fresh(parent: Path, name: str) -> Path:

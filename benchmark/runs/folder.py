@@ -10,6 +10,7 @@ from benchmark.model_file import model_toml
 from benchmark.runs.document import results_document
 from benchmark.runs.environment import describe_environment
 from benchmark.runs.fields import write_fields
+from benchmark.runs.pressed import pressed_picture
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report import TrialsPart, run_page
 from benchmark.runs.tables import run_tables
@@ -57,7 +58,8 @@ def write_run(record: RunRecord, folder: Path) -> RunOutcome:
     document, environment = results_document(record), describe_environment(seed=record.seed)
     tables = run_tables(record)
     texts = {name: csv_text(columns, where=name) for name, columns in tables.items()}
-    page = run_page(record, environment, texts, None if record.measured is None else TrialsPart.of(record.measured))
+    trials = None if record.measured is None else TrialsPart.of(record.measured)
+    page = run_page(record, environment, texts, trials, tables, pressed_picture(record))
     with whole_folder(folder) as new:
         for name, text in texts.items():
             write_text(new / "tables" / name, text)

@@ -15,10 +15,13 @@ class RunOptions:
         Write the fields of each step instead of the peak's and the last one's.
     repeats
         Timed repeats of each model, at least 3.
+    refine
+        Run both models on coarser and finer levels as well.
     seed
         Of every random draw.
     """
 
     every_field: bool = False
     repeats: int = 3
+    refine: bool = False
     seed: int = 0

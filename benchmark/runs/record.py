@@ -12,6 +12,7 @@ from benchmark.files import Scenario, scenario_notes
 from benchmark.model_file import RepairedModel
 from benchmark.models import Array, ModelResult
 from benchmark.runs.measured import MeasuredComparison
+from benchmark.runs.refinement import Level
 from benchmark.side_by_side import SideBySide
 
 
@@ -41,6 +42,8 @@ class RunRecord:
         The model file whose effects are switched on; None without, and in a run that was read back.
     effects
         Their slugs.
+    levels
+        Coarser and finer runs; empty where none were asked for.
     """
 
     name: str
@@ -54,6 +57,7 @@ class RunRecord:
     seed: int
     repair: RepairedModel | None = None
     effects: tuple[str, ...] = ()
+    levels: tuple[Level, ...] = ()
 
     @property
     def layers(self) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from benchmark.runs.listener import Listener
 from benchmark.runs.measured import MeasuredComparison
 from benchmark.runs.options import RunOptions
 from benchmark.runs.record import RunRecord, compare_layers, deflections, gather_warnings
+from benchmark.runs.refinement import refine
 from benchmark.side_by_side import NAMES, run_side_by_side
 
 
@@ -65,6 +66,7 @@ def run_scenario(
             on_progress=on_progress,
             own=own,
         )
+    levels = refine(scenario, pair, listener) if options.refine else ()
     layers = len(scenario.tissue.layers)
     fem, wave = (deflections(run.result, drive.time.size, layers) for run in (pair.fem, pair.wave))
     said = list(warnings)
@@ -85,4 +87,5 @@ def run_scenario(
         seed=options.seed,
         repair=own.repair,
         effects=() if own.repair is None else own.repair.slugs,
+        levels=levels,
     )

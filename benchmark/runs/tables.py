@@ -12,6 +12,7 @@ from benchmark.fitting import parameter_columns
 from benchmark.models import Array, ModelResult
 from benchmark.runs.measured import MeasuredComparison
 from benchmark.runs.record import RunRecord
+from benchmark.runs.validation import refinement_columns, validation_columns
 from benchmark.side_by_side import SideBySide
 
 Columns = dict[str, Any]
@@ -31,6 +32,11 @@ def run_tables(record: RunRecord) -> dict[str, Columns]:
     if record.measured is not None:
         tables["fitted_parameters.csv"] = parameter_columns(record.measured.fit.parameters)
         tables["measured.csv"] = measured(record.measured)
+    checked = validation_columns(record, record.levels)
+    if checked is not None:
+        tables["validation.csv"] = checked
+    if record.levels:
+        tables["refinement.csv"] = refinement_columns(record.levels)
     return tables
 
 

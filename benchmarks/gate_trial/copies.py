@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -15,6 +16,7 @@ from typing import Any
 from benchmarks.gate_trial.faults import Fault
 
 PRODUCT = Path(__file__).resolve().parents[2]
+GATE = Path("benchmark/gate/default.toml")
 PACKAGES = ("benchmark", "fem", "wavemodel", "bench_hw", "reports")
 AUTHOR = ("-c", "user.name=gate trial", "-c", "user.email=gate-trial@localhost")
 
@@ -50,6 +52,15 @@ def make_faulty(folder: Path, good: Path, fault: Fault) -> Path:
     shutil.copytree(good, folder)
     fault.put_into(folder)
     return folder
+
+
+def values_gate(tree: Path) -> Path:
+    """Write the gate of the product in `tree` without what it times, and return its path."""
+    text = (tree / GATE).read_text(encoding="utf-8")
+    kept = [part for part in re.split(r"(?m)^(?=\[)", text) if not part.startswith("[[timed]]")]
+    path = (tree / GATE).with_name("values.toml")
+    path.write_text("".join(kept), encoding="utf-8")
+    return path
 
 
 def run_check(name: str, tree: Path, work: Path, *options: str) -> Check:

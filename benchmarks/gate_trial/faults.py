@@ -56,7 +56,8 @@ def _off(self, *arguments, **keywords):
 
     result = _run(self, *arguments, **keywords)
     deflection = result.top_deflection.copy()
-    deflection[:, {layer}] *= {factor}
+    if -deflection.shape[1] <= {layer} < deflection.shape[1]:
+        deflection[:, {layer}] *= {factor}
     return replace(result, top_deflection=deflection)
 
 

@@ -12,7 +12,8 @@ import argparse
 import os
 
 from benchmarks.peers.bars import Bar, bars
-from benchmarks.peers.cases import CASES, Case
+from benchmarks.peers.case import Case
+from benchmarks.peers.cases import CASES
 from benchmarks.peers.comparison import Compared, compare
 from benchmarks.peers.running import programs, run_in_turn
 

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.peers.cases import LAYERS, POISSON, Case
-from fem.assembly import SOLID_ELEMENTS
+from benchmarks.peers.case import LAYERS, POISSON, Case
 
 # CalculiX wants an axisymmetric model's axis along y, and forces of the whole circumference.
 QUAD8 = [0, 1, 2, 3, 4, 5, 6, 7]
@@ -19,7 +18,7 @@ QUAD8 = [0, 1, 2, 3, 4, 5, 6, 7]
 def write_input(case: Case, path: Path) -> None:
     """Input file of a case."""
     linear = case.kind == "linear"
-    order = SOLID_ELEMENTS["hex20"].vtk_order if linear else np.array(QUAD8)
+    order = case.vtk_order if linear else np.array(QUAD8)
     elements = case.elements[order].T + 1
     used = np.unique(elements) - 1
     lines = ["*NODE, NSET=ALL"]

@@ -1,74 +1,23 @@
-"""The problems the finite-element programs are compared on: meshes and loads as plain arrays in one file each.
-
-Not part of the product. Every program gets the same nodes, elements, supports and nodal forces.
-"""
+"""The problems the finite-element programs are compared on, meshed by this project's solver."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
 from functools import partial
-from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
 
 import fem
+from benchmarks.peers.case import LAYERS, POISSON, Case
 from fem.assembly import SOLID_ELEMENTS
 from fem.contact.solid import uniform_pressure
 from fem.contact.uniform_pressure import UniformPressure
 from fem.layout import lay_out
 from fem.mesh import DiscGrid, Feature, Sizing, build_block, graded_line
 
-LAYERS = ((1.0e-4, 1.0e6), (1.5e-3, 1.0e5), (8.0e-3, 1.0e4))  # thickness in m, Young's modulus in Pa
-POISSON = 0.48
 TOOL_RADIUS = 5.0e-3
 BORDER = 30.0e-3
-
-
-@dataclass(frozen=True)
-class Case:
-    """One problem.
-
-    Attributes
-    ----------
-    kind
-        "linear" (hex20, three dimensions) or "hyperelastic" (9-node axisymmetric).
-    nodes, elements
-        Positions (N, dim) in m and nodes (n, E) in scikit-fem's order.
-    layer
-        Layer of each element (E,).
-    fixed
-        Displacements (dim, N) that are zero.
-    load
-        Vertical nodal forces (N,) in N at the end of the ramp.
-    steps
-        Load steps.
-    """
-
-    kind: str
-    nodes: np.ndarray
-    elements: np.ndarray
-    layer: np.ndarray
-    fixed: np.ndarray
-    load: np.ndarray
-    steps: int
-
-    @property
-    def unknowns(self) -> int:
-        """Displacements that are not fixed."""
-        return int((~self.fixed).sum())
-
-    def save(self, path: Path) -> None:
-        """Write the arrays."""
-        np.savez(path, **asdict(self))
-
-
-def load_case(path: Path) -> Case:
-    """Read what :meth:`Case.save` wrote."""
-    with np.load(path) as data:
-        values = {name: data[name] for name in data.files}
-    return Case(**{**values, "kind": str(values["kind"]), "steps": int(values["steps"])})
 
 
 def block_case(density: float) -> Case:
@@ -84,7 +33,7 @@ def block_case(density: float) -> Case:
     held = mesh.base | mesh.border
     fixed = np.stack((held | mesh.mirror_x, held | mesh.mirror_y, held))
     load = 0.25 * uniform_pressure(mesh, TOOL_RADIUS).load
-    return Case("linear", mesh.nodes, mesh.elements, mesh.layer, fixed, load, 1)
+    return Case("linear", mesh.nodes, mesh.elements, SOLID_ELEMENTS["hex20"].vtk_order, mesh.layer, fixed, load, 1)
 
 
 def axisymmetric_case(steps: int = 50, force: float = 2.5) -> Case:
@@ -99,7 +48,16 @@ def axisymmetric_case(steps: int = 50, force: float = 2.5) -> Case:
     mesh = lay_out(problem)
     held = mesh.base | mesh.border
     load = force * UniformPressure().conditions(mesh, problem).load
-    return Case("hyperelastic", mesh.nodes, mesh.elements, mesh.layer, np.stack((held | mesh.axis, held)), load, steps)
+    return Case(
+        "hyperelastic",
+        mesh.nodes,
+        mesh.elements,
+        np.arange(9),
+        mesh.layer,
+        np.stack((held | mesh.axis, held)),
+        load,
+        steps,
+    )
 
 
 CASES: Mapping[str, Callable[[], Case]] = MappingProxyType(

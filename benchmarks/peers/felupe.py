@@ -10,8 +10,7 @@ import felupe
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from benchmarks.peers.cases import LAYERS, POISSON, Case, load_case
-from fem.assembly import SOLID_ELEMENTS
+from benchmarks.peers.case import LAYERS, POISSON, Case, load_case
 
 try:
     from pypardiso import spsolve as direct
@@ -21,7 +20,7 @@ except ImportError:
 
 def solid(case: Case) -> tuple[felupe.FieldContainer, felupe.SolidBody]:
     """hex20 with 8 Gauss points, linear elastic."""
-    cells = case.elements[SOLID_ELEMENTS["hex20"].vtk_order].T
+    cells = case.elements[case.vtk_order].T
     mesh = felupe.Mesh(case.nodes, cells, "hexahedron20")
     region = felupe.RegionQuadraticHexahedron(mesh, quadrature=felupe.GaussLegendre(order=1, dim=3))
     field = felupe.FieldContainer([felupe.Field(region, dim=3)])

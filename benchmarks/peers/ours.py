@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import fem
-from benchmarks.peers.cases import LAYERS, POISSON, Case, load_case
+from benchmarks.peers.case import LAYERS, POISSON, Case, load_case
 from fem.assembly import System, build_scatter, element_laws, gauss_geometry, number_unknowns, solid_geometry
 from fem.linear_run import unit_state
 from fem.linear_solver import make_solver

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.peers import calculix
-from benchmarks.peers.cases import Case
+from benchmarks.peers.case import Case
 
 ROOT = Path(__file__).parents[2]
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")

@@ -7,7 +7,9 @@ Flat punch: F = 2 E a w / (1 - nu^2) (the same chapter).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -18,6 +20,9 @@ from fem.model import Model
 from fem.prepare import prepare
 from fem.problem import Layer, Problem, Support, Tool
 from fem.verification.case import Case, Quantity
+
+Geometry: TypeAlias = Literal["axisymmetric", "block"]
+Compute: TypeAlias = Callable[[float, Geometry, float], tuple[Quantity, ...]]
 
 YOUNGS_MODULUS, RADIUS, PRESSURE, INDENTATION = 200e6, 0.15, 1.1e6, 1e-3
 DEPTHS = (0.0, 0.1, 0.15, 0.3, 1.0)
@@ -41,27 +46,33 @@ def settlement(depth: FloatArray, poisson_ratio: float) -> FloatArray:
     return out
 
 
-def disc(poisson_ratio: float) -> tuple[Quantity, ...]:
+def disc(
+    poisson_ratio: float, geometry: Geometry = "axisymmetric", allowed: float = ALLOWED_PERCENT
+) -> tuple[Quantity, ...]:
     """Deflection on the axis at all depths, each the top of a layer of the same material."""
-    model = half_space("uniform_pressure", poisson_ratio, (*np.diff(DEPTHS).tolist(), np.inf))
+    model = half_space("uniform_pressure", poisson_ratio, (*np.diff(DEPTHS).tolist(), np.inf), geometry)
     solution = model.run(Load("force", np.ones(1), np.array([PRESSURE * np.pi * RADIUS**2])))
     exact = settlement(np.array(DEPTHS), poisson_ratio)
     return tuple(
-        Quantity(f"z_{1e3 * depth:g}mm", 1e3 * reference, 1e3 * ours, "mm", ALLOWED_PERCENT, model.unknowns)
+        Quantity(f"z_{1e3 * depth:g}mm", 1e3 * reference, 1e3 * ours, "mm", allowed, model.unknowns)
         for depth, reference, ours in zip(DEPTHS, exact.tolist(), solution.top_deflection[0].tolist(), strict=True)
     )
 
 
-def punch(poisson_ratio: float) -> tuple[Quantity, ...]:
+def punch(
+    poisson_ratio: float, geometry: Geometry = "axisymmetric", allowed: float = ALLOWED_PERCENT
+) -> tuple[Quantity, ...]:
     """Force of a punch pressed 1 mm deep."""
-    model = half_space("rigid_frictionless", poisson_ratio, (np.inf,))
+    model = half_space("rigid_frictionless", poisson_ratio, (np.inf,), geometry)
     force = float(model.run(Load("depth", np.ones(1), np.array([INDENTATION]))).force[0])
     exact = 2.0 * YOUNGS_MODULUS * RADIUS * INDENTATION / (1.0 - poisson_ratio**2)
-    return (Quantity("", 1e-3 * exact, 1e-3 * force, "kN", ALLOWED_PERCENT, model.unknowns),)
+    return (Quantity("", 1e-3 * exact, 1e-3 * force, "kN", allowed, model.unknowns),)
 
 
-def half_space(contact: str, poisson_ratio: float, thickness: tuple[float, ...]) -> Model:
+def half_space(
+    contact: str, poisson_ratio: float, thickness: tuple[float, ...], geometry: Geometry = "axisymmetric"
+) -> Model:
     """Model of layers of one material, the last endless, under a tool."""
     material = LinearElastic(YOUNGS_MODULUS, poisson_ratio)
     layers = tuple(Layer(f"layer {n}", t, 1800.0, material) for n, t in enumerate(thickness))
-    return prepare(Problem(layers, Tool(RADIUS, contact), Support("half_space"), "linear"))
+    return prepare(Problem(layers, Tool(RADIUS, contact), Support("half_space"), "linear", geometry=geometry))

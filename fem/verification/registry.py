@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from fem.verification import (
+    block,
     cook,
     cylinder,
     half_space,
@@ -15,6 +16,7 @@ from fem.verification import (
     manufactured,
     patch,
     press,
+    solid_patch,
 )
 from fem.verification.case import Case
 
@@ -29,6 +31,8 @@ FAMILIES: tuple[Callable[[], tuple[Case, ...]], ...] = (
     cook.cases,
     le1.cases,
     press.cases,
+    solid_patch.cases,
+    block.cases,
 )
 
 

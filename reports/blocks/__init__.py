@@ -4,9 +4,10 @@ A block type is a dataclass here and a template of its own in `templates/blocks/
 of it. How blocks become HTML is in `reports.page`, `reports.rendering` and the templates.
 """
 
+from reports.blocks.animation import Animation
 from reports.blocks.base import Block, Section, Subsection
 from reports.blocks.facts import Fact, Facts, KeyFigure, KeyFigures
-from reports.blocks.figure import Figure, Panel
+from reports.blocks.figure import Figure, Panel, Picture
 from reports.blocks.table import Column, Download, Downloads, Table
 from reports.blocks.text import NOTICES, Bullets, Listing, Notice, Paragraph
 from reports.blocks.verdict import VERDICTS, Verdict
@@ -14,6 +15,7 @@ from reports.blocks.verdict import VERDICTS, Verdict
 __all__ = [
     "NOTICES",
     "VERDICTS",
+    "Animation",
     "Block",
     "Bullets",
     "Column",
@@ -28,6 +30,7 @@ __all__ = [
     "Notice",
     "Panel",
     "Paragraph",
+    "Picture",
     "Section",
     "Subsection",
     "Table",

@@ -19,6 +19,15 @@ class Panel:
 
 
 @dataclass(frozen=True)
+class Picture:
+    """One picture of a figure that no lines can draw: a PNG file's bytes and what it shows, in words."""
+
+    png: bytes
+    alt: str
+    title: str = ""
+
+
+@dataclass(frozen=True)
 class Figure(Block):
     """One or several pictures with a common caption.
 
@@ -34,7 +43,7 @@ class Figure(Block):
 
     template: ClassVar[str] = "figure"
     counter: ClassVar[str] = "Figure"
-    panels: Sequence[Panel]
+    panels: Sequence[Panel | Picture]
     caption: str
     title: str = ""
 

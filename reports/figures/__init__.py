@@ -1,6 +1,6 @@
 """Figures of a report, a subject a file: plain arrays in the units of the border (mm, N, s) to inline SVG.
 
-Every function returns a `reports.blocks.Figure` with caption and a description in words.
+Every function returns a `reports.blocks.Figure` with caption and a description in words; `moving_surface` a GIF.
 """
 
 from reports.figures.fitted_parameters import FittedParameter, fitted_parameters
@@ -10,6 +10,7 @@ from reports.figures.layer_stack import layer_stack
 from reports.figures.load_history import load_history
 from reports.figures.max_deformation import max_deformation
 from reports.figures.measured import measured
+from reports.figures.moving_surface import moving_surface
 from reports.figures.normal_fit import Normal, normal_fit
 from reports.figures.pair import Pair
 from reports.figures.profile import profile
@@ -37,6 +38,7 @@ __all__ = [
     "load_history",
     "max_deformation",
     "measured",
+    "moving_surface",
     "normal_fit",
     "profile",
     "ranking",

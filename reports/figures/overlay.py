@@ -10,7 +10,7 @@ import numpy as np
 
 from reports.blocks import Figure, Panel
 from reports.figures.arrays import Floats, column
-from reports.figures.style import SMALL, LineStyle, draw, heading, zero_line
+from reports.figures.style import SMALL, WIDE, LineStyle, draw, heading, zero_line
 from reports.formatting import format_number, shortened
 from reports.palette import PALETTE
 
@@ -62,8 +62,9 @@ def overlay(
         _Panel(name, place if len(panels) > 1 else None, _checked(lines), looks, (x_label, y_label), downwards)
         for place, (name, lines) in enumerate(panels.items())
     ]
-    height = 290 + 18 * len(names)
-    return Figure([Panel(draw(each.paint, SMALL, height), each.words(), each.name) for each in drawn], caption, title)
+    width, height = (SMALL, 290) if len(drawn) > 1 else (WIDE, 350)
+    height += 21 * len(names)
+    return Figure([Panel(draw(each.paint, width, height), each.words(), each.name) for each in drawn], caption, title)
 
 
 def _checked(lines: Mapping[str, Line]) -> dict[str, tuple[Floats, Floats]]:

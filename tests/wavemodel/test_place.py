@@ -10,7 +10,7 @@ PLACE = (7e-3, -4e-3)
 
 @pytest.mark.parametrize("contact", ["uniform_pressure", "rigid_bonded"])
 def test_an_off_centre_press_is_the_centred_one_shifted(skin, contact):
-    """Far from the border: within what it costs."""
+    """Far from the border: within what it costs, which is more for the motion in plane."""
     time, force, x = np.ones(1), np.array([0.1]), np.array([-9e-3, 0.0, 5e-3, 12e-3])
     answers, moved = [], []
     for place in ((0.0, 0.0), PLACE):
@@ -23,7 +23,7 @@ def test_an_off_centre_press_is_the_centred_one_shifted(skin, contact):
         moved.append(marker_motion(solution, np.stack([x, x], axis=1), face=1))
     peak = answers[0].max()
     np.testing.assert_allclose(answers[1] / peak, answers[0] / peak, atol=5e-4)
-    np.testing.assert_allclose(moved[1] / peak, moved[0] / peak, atol=5e-4)
+    np.testing.assert_allclose(moved[1] / peak, moved[0] / peak, atol=3e-3)
 
 
 def test_a_place_on_an_axis_is_the_mirror_image_of_its_opposite(skin):

@@ -5,6 +5,7 @@ one below each rate 1 / tau_j (and with eta one above the fastest); each adds a 
 all positive (B. Gross, Mathematical Structure of the Theories of Viscoelasticity, 1953).
 """
 
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -29,6 +30,7 @@ def relaxation(series: Prony, retardation: float = 0.0) -> LagSum:
     return LagSum(1.0, -strength, 1.0 / rate, retardation)
 
 
+@lru_cache(maxsize=256)
 def creep(series: Prony, retardation: float = 0.0) -> LagSum:
     """Depth over initial compliance, driven by force: the inverse of `relaxation`."""
     roots = np.array(_rates(series, retardation))

@@ -35,7 +35,7 @@ def page_again(folder: Path, out: Path | None) -> ReportOutcome:
         The folder is no result of `run`; see `read_run`.
     """
     run = read_run(folder)
-    page = run_page(run.record, run.environment, run.tables, run.trials)
+    page = run_page(run.record, run.environment, run.tables, run.trials, run.columns)
     if out is None:
         write_page(folder / "report.html", page)
         return ReportOutcome(folder, page.verdict.headline, run.document)

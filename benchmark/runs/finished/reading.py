@@ -17,6 +17,7 @@ from benchmark.runs.document import SCHEMA
 from benchmark.runs.finished.tables import MM, SavedTables, Table
 from benchmark.runs.finished.trials import saved_trials
 from benchmark.runs.record import RunRecord, compare_layers
+from benchmark.runs.report.run_page import REFINEMENT, VALIDATION
 from benchmark.runs.report.trials_part import TrialsPart
 from benchmark.side_by_side import NAMES, ModelRun, Seconds, SideBySide, speedup
 
@@ -43,6 +44,8 @@ class SavedRun:
         The text of each table by file name.
     trials
         Measured trials, where there were any.
+    columns
+        Of `validation.csv` and `refinement.csv`, where there are any.
     """
 
     folder: Path
@@ -51,6 +54,7 @@ class SavedRun:
     environment: dict[str, Any]
     tables: dict[str, str]
     trials: TrialsPart | None
+    columns: dict[str, dict[str, list[Any]]]
 
 
 def read_run(folder: Path) -> SavedRun:
@@ -72,7 +76,8 @@ def read_run(folder: Path) -> SavedRun:
             f"{folder}: its files do not belong together ({type(error).__name__}: {error}); needed: the untouched "
             "result of a run"
         ) from None
-    return SavedRun(folder, record, document, environment, tables.texts(), trials)
+    columns = {name: tables.read(name).plain() for name in (VALIDATION, REFINEMENT) if tables.has(name)}
+    return SavedRun(folder, record, document, environment, tables.texts(), trials, columns)
 
 
 def _document(folder: Path, name: str) -> dict[str, Any]:

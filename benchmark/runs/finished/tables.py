@@ -44,6 +44,22 @@ class Table:
         except ValueError as error:
             raise InputError(f"{self.path}, column {name}: {error}; allowed: numbers and empty cells") from None
 
+    def plain(self) -> dict[str, list[int | float | str | None]]:
+        """All columns, each cell as the number or text it is."""
+        return {name: [_plain(cell) for cell in cells] for name, cells in self.columns.items()}
+
+
+def _plain(cell: str) -> int | float | str | None:
+    """A cell as the number or text it is."""
+    if not cell:
+        return None
+    for kind in (int, float):
+        try:
+            return kind(cell)
+        except ValueError:
+            continue
+    return cell
+
 
 class SavedTables:
     """The folder `tables` of a run."""

@@ -15,8 +15,8 @@ from reports.figures.max_deformation import max_deformation
 from reports.figures.profile import profile
 
 
-def deformation_section(record: RunRecord) -> Section:
-    """Return the section on maximum deformations and profiles."""
+def deformation_section(record: RunRecord, picture: Block | None = None) -> Section:
+    """Return the section on maximum deformations and profiles, with a picture of the pressed tissue."""
     fem, wave = record.pair.fem.result, record.pair.wave.result
     blocks: list[Block] = [_table(record)]
     steps = np.arange(1, record.time.size + 1)
@@ -52,6 +52,8 @@ def deformation_section(record: RunRecord) -> Section:
         )
     if fem is not None and fem.time.size:
         blocks.append(_force_depth(record))
+    if picture is not None:
+        blocks.append(picture)
     return Section("Deformation", blocks)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 from benchmark.runs.record import RunRecord
@@ -13,10 +14,13 @@ from benchmark.runs.report.scenario_section import scenario_section
 from benchmark.runs.report.statistics_section import statistics_section
 from benchmark.runs.report.timing_section import timing_section
 from benchmark.runs.report.trials_part import TrialsPart
-from benchmark.runs.report.values import peak_errors
+from benchmark.runs.report.validation_section import Columns, growth_section, validation_section
+from benchmark.runs.report.values import pair_names, peak_errors
 from benchmark.runs.report.verdict import run_verdict
-from reports import Download, Fact, KeyFigure, Notice, Page, Section
+from reports import Block, Download, Fact, KeyFigure, Notice, Page, Section
 
+VALIDATION, REFINEMENT = "validation.csv", "refinement.csv"
+NO_COLUMNS: Mapping[str, Columns] = MappingProxyType({})
 LARGEST_COPY = 600_000
 """Characters of a table that is still copied into the page."""
 
@@ -29,11 +33,18 @@ DESCRIPTIONS = {
     "timing.csv": "every timed repeat",
     "fitted_parameters.csv": "fitted and fixed parameters with intervals",
     "measured.csv": "every trial beside both models",
+    VALIDATION: "errors beside their uncertainties",
+    REFINEMENT: "coarser and finer runs, their values and their cost",
 }
 
 
 def run_page(
-    record: RunRecord, environment: Mapping[str, Any], tables: Mapping[str, str], trials: TrialsPart | None = None
+    record: RunRecord,
+    environment: Mapping[str, Any],
+    tables: Mapping[str, str],
+    trials: TrialsPart | None = None,
+    columns: Mapping[str, Columns] = NO_COLUMNS,
+    picture: Block | None = None,
 ) -> Page:
     """Return the page of a run.
 
@@ -47,6 +58,10 @@ def run_page(
         The text of each table in the result folder by file name.
     trials
         Measured trials, where there are any.
+    columns
+        Of `validation.csv` and `refinement.csv`, where there are any.
+    picture
+        Of the pressed tissue, or why there is none.
     """
     sections: list[Section] = []
     if trials is not None:
@@ -54,8 +69,15 @@ def run_page(
         sections.append(fit_section(trials.parameters, trials.notes))
     sections += [scenario_section(record)]
     if record.results:
-        sections += [deformation_section(record), statistics_section(record)]
-    sections += [timing_section(record), method_section(record, environment)]
+        sections += [deformation_section(record, picture), statistics_section(record)]
+    if record.scenario.wave.model == "published":
+        sections.append(_published())
+    if VALIDATION in columns:
+        sections.append(validation_section(columns[VALIDATION]))
+    sections.append(timing_section(record))
+    if REFINEMENT in columns:
+        sections.append(growth_section(columns[REFINEMENT], pair_names(record)))
+    sections.append(method_section(record, environment))
     return Page(
         title=record.name,
         subtitle=_subtitle(record, trials),
@@ -67,6 +89,12 @@ def run_page(
         downloads=_downloads(tables),
         footer=f"tissuebench {environment['packages']['tissuebench']}",
     )
+
+
+def _published() -> Section:
+    from benchmark.runs.report.published_section import published_section
+
+    return published_section()
 
 
 def _subtitle(record: RunRecord, trials: TrialsPart | None) -> str:

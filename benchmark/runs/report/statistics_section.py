@@ -43,7 +43,7 @@ def _layer(comparison: LayerComparison, record: RunRecord) -> Subsection:
     return Subsection(
         comparison.layer,
         (
-            Paragraph(describe_t_test(found.pooled, found.passing)),
+            Paragraph(describe_t_test(found.pooled, found.passing, found.power)),
             Paragraph(describe_equivalence(found.equivalence)),
             Table(
                 f"Statistics of {comparison.layer}, deformations in mm (Table 2 of the article is test t_pooled)",

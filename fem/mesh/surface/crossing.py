@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from fem.arrays import BoolArray, FloatArray
 from fem.mesh.surface.model import Surface
@@ -16,6 +15,8 @@ def crossing_triangles(surface: Surface) -> FloatArray | None:
 
     Only triangles without a common corner are looked at: neighbours meet at their edge.
     """
+    from scipy.spatial import cKDTree  # loaded here: it doubles the start of runs that have no surface
+
     corners = surface.corners
     centre = corners.mean(axis=1)
     reach = np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1)

@@ -49,6 +49,27 @@ def test_a_session_run_compares_measured_with_both_models(benchmark_cli, tmp_pat
     deformation = pd.read_csv(tmp_path / "r/tables/max_deformation.csv")
     assert deformation.force_N.max() == pytest.approx(peaks.median(), rel=0.02)
     assert document["trials"]["count"] == 10
+    check_validation(tmp_path / "r/tables/validation.csv", measured)
+    assert benchmark_cli("report", tmp_path / "r", "--out", tmp_path / "again").code == 0
+    again = (tmp_path / "again/report.html").read_text()
+    for text in ("Synthetic data", "Circular comparison", document["trials"]["headline"][1:], "Fitted parameters"):
+        assert text in again
+    assert again.count("<figure") == page.count("<figure")
+
+
+def check_validation(path: Path, measured: pd.DataFrame) -> None:
+    """E, u_D and the area metric of the peak forces, against the table of every row."""
+    peaks = measured.loc[measured.groupby("trial").force_N.idxmax()]
+    told = pd.read_csv(path, keep_default_na=False)
+    circular = told[(told.simulation == "fem") & told.protocol.str.contains("circular")].set_index("measure").value
+    residual = peaks.fem_force_N - peaks.force_N
+    assert float(circular["E"]) == pytest.approx(residual.mean(), rel=1e-9)
+    assert float(circular["u_D"]) == pytest.approx(residual.std() / np.sqrt(10), rel=1e-9)
+    area = np.abs(np.sort(peaks.fem_force_N) - np.sort(peaks.force_N)).mean()
+    assert float(circular["area"]) == pytest.approx(area, rel=1e-9)
+    assert circular["not assessed"] == "u_num"
+    held_out = told[told.protocol.str.contains("prediction")].set_index("measure").value
+    assert abs(float(held_out["E"])) < 0.05 * peaks.force_N.mean()
 
 
 def test_several_layers_are_not_told_apart(benchmark_cli, tmp_path: Path) -> None:

@@ -2,12 +2,14 @@
 
 import ast
 import time
+import tomllib
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
 from benchmark.gate.measurement import PRODUCT
+from benchmarks.gate_trial.copies import GATE, values_gate
 from benchmarks.gate_trial.faults import HOWS, Fault, deflections, slowdowns
 from benchmarks.gate_trial.summary import summary
 
@@ -31,6 +33,17 @@ def _names(fault: Fault) -> set[str]:
     attributes = [node for node in targets if isinstance(node, ast.Attribute)]
     plain = {node.id for node in targets if isinstance(node, ast.Name) and not node.id.startswith("_")}
     return plain | {node.attr for node in attributes} | {node.value.id for node in attributes}
+
+
+def test_the_gate_of_values_alone_times_nothing(tmp_path: Path) -> None:
+    (tmp_path / GATE).parent.mkdir(parents=True)
+    (tmp_path / GATE).write_text((PRODUCT / GATE).read_text())
+    whole, values = (tomllib.loads(path.read_text()) for path in (PRODUCT / GATE, values_gate(tmp_path)))
+    assert "timed" in whole
+    assert "timed" not in values
+    assert {key: values[key] for key in ("cases", "tolerances", "timing")} == {
+        key: whole[key] for key in ("cases", "tolerances", "timing")
+    }
 
 
 def spin(seconds: float) -> None:

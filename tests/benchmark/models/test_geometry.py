@@ -128,6 +128,16 @@ def test_a_position_that_has_no_effect_is_said() -> None:
     assert "tool.position has no effect" in note
 
 
+def test_the_resolved_scenario_reads_again(
+    body: Callable[..., Scenario], ball: pyvista.PolyData, tmp_path: Path
+) -> None:
+    scenario = body(ball)
+    (tmp_path / "elsewhere").mkdir()
+    resolved = tmp_path / "elsewhere" / "scenario.toml"
+    resolved.write_text(scenario.to_toml())
+    assert load_scenario(resolved) == scenario
+
+
 def test_the_wave_has_no_body_from_a_surface(body: Callable[..., Scenario], ball: pyvista.PolyData) -> None:
     with pytest.raises(UncoveredError, match="surface file"):
         prepare("wave", body(ball))

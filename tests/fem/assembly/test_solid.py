@@ -3,59 +3,13 @@
 import numpy as np
 import pytest
 import scipy.sparse as sp
-import skfem
 
 import fem
-from fem.assembly import SOLID_ELEMENTS, System, build_scatter, element_laws, number_unknowns, solid_geometry
-from fem.linear_solver import make_solver
-from fem.mesh import SolidMesh
-from fem.mesh.surface.specimen import quadratic
+from fem.assembly import SOLID_ELEMENTS, solid_geometry
+from fem.verification.cube import cube, solve_linear
+from fem.verification.cube import equations as equations_of
 
 ELEMENTS = ("hex27", "hex20", "tet10")
-
-
-def cube(element, n, bend=0.0):
-    """Unit cube [-1, 0] in z of n elements a side, nodes moved smoothly by `bend`."""
-    lines = [np.linspace(0, 1, n + 1)] * 2 + [np.linspace(-1, 0, n + 1)]
-    if element == "tet10":
-        mesh = skfem.MeshTet.init_tensor(*lines)
-        corners = mesh.t.T.copy()
-        edges = mesh.p.T[corners[:, 1:]] - mesh.p.T[corners[:, :1]]
-        turned = np.linalg.det(edges) < 0
-        corners[turned] = corners[turned][:, [0, 2, 1, 3]]
-        nodes, elements = quadratic(mesh.p.T, corners)
-    else:
-        mesh = skfem.MeshHex.init_tensor(*lines)
-        basis = skfem.Basis(mesh, SOLID_ELEMENTS[element].shapes, intorder=1)
-        nodes, elements = basis.doflocs * [[1], [1], [-1]] - [[0], [0], [1]], basis.element_dofs.astype(np.int64)
-        nodes = nodes.T.copy()  # mirrored: scikit-fem's grids are left-handed
-    x, y, z = nodes.T
-    wave = np.sin(np.pi * x) * np.sin(np.pi * y) * np.sin(np.pi * z)
-    nodes = nodes + bend * np.stack((wave, wave, -wave), axis=1)
-    outside = (np.abs(np.stack((x, 1 - x, y, 1 - y, z, 1 + z))) < 1e-12).any(axis=0)
-    nobody = np.zeros(len(nodes), bool)
-    sets = {"mirror_x": nobody, "mirror_y": nobody, "top": nobody, "base": outside, "border": outside}
-    layer = np.zeros(elements.shape[1], dtype=np.int64)
-    rest = {"interfaces": (np.array([0]),), "top_elements": np.array([0])}
-    return SolidMesh(nodes, elements, element, layer, (0.0, 0.0), 1, **sets, **rest)
-
-
-def system(mesh, material, fixed, stabilisation=1.0):
-    numbering = number_unknowns(fixed, np.zeros(len(mesh.nodes), bool))
-    laws = element_laws((material,), mesh.layer)
-    return System(solid_geometry(mesh), laws, numbering, build_scatter(mesh.elements, numbering), stabilisation)
-
-
-def solve_with(equations, load):
-    """Unknowns in small strain under a load (n,) and the prescribed displacements."""
-    rest = equations.plain.evaluate(*equations.plain.rest())
-    solver = make_solver("superlu", equations.scatter.indptr, equations.scatter.indices)
-    solver.factorise(equations.plain.tangent(rest))
-    y = np.zeros(len(load))
-    for _ in range(3):
-        missing = load - equations.scatter.vector(equations.linear_force(rest, y))
-        y = y + solver.solve(missing[:, None])[:, 0]
-    return y
 
 
 @pytest.mark.parametrize("name", ELEMENTS)
@@ -87,8 +41,8 @@ def test_patch_a_linear_displacement_is_exact(name):
     gradient = np.array([[0.1, 0.2, -0.1], [0.05, -0.2, 0.3], [0.1, 0.1, 0.15]])
     exact = gradient @ mesh.nodes.T
     outside = np.tile(mesh.base, (3, 1))
-    equations = system(mesh, fem.LinearElastic(1.0, 0.3), outside).displaced(mesh.elements, exact * mesh.base)
-    found = equations.numbering.expand(solve_with(equations, np.zeros(equations.numbering.count)))
+    equations = equations_of(mesh, fem.LinearElastic(1.0, 0.3), outside).displaced(mesh.elements, exact * mesh.base)
+    found = equations.numbering.expand(solve_linear(equations, np.zeros(equations.numbering.count)))
     np.testing.assert_allclose(found, exact, atol=1e-10)
 
 
@@ -97,7 +51,7 @@ def test_a_rigid_turn_gives_no_force(name):
     mesh = cube(name, 1)
     angle = 0.7
     turn = np.array([[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]])
-    equations = system(mesh, fem.NeoHookean(1.0, 0.49), np.zeros((3, len(mesh.nodes)), bool))
+    equations = equations_of(mesh, fem.NeoHookean(1.0, 0.49), np.zeros((3, len(mesh.nodes)), bool))
     y = np.zeros(equations.numbering.count)
     y[equations.numbering.unknown] = (turn - np.eye(3)) @ mesh.nodes.T
     state = equations.evaluate(y, equations.rest()[1])
@@ -107,7 +61,7 @@ def test_a_rigid_turn_gives_no_force(name):
 @pytest.mark.parametrize("name", ELEMENTS)
 def test_the_tangent_is_the_difference_quotient_of_the_residual(name):
     mesh = cube(name, 1)
-    equations = system(mesh, fem.NeoHookean(1.0, 0.45), np.tile(mesh.nodes[:, 2] == -1, (3, 1)))
+    equations = equations_of(mesh, fem.NeoHookean(1.0, 0.45), np.tile(mesh.nodes[:, 2] == -1, (3, 1)))
     rng = np.random.default_rng(5)
     y, dy = 0.05 * rng.normal(size=(2, equations.numbering.count))
     pressure = equations.rest()[1]
@@ -135,7 +89,9 @@ def swirl_error(name, n, nu):
     x, y, z = mesh.nodes.T
     exact = np.stack((np.sin(2 * y), np.sin(2 * z), np.sin(2 * x)))
     material = fem.LinearElastic(1.0, nu)
-    equations = system(mesh, material, np.tile(mesh.base, (3, 1)), 0.0).displaced(mesh.elements, exact * mesh.base)
+    equations = equations_of(mesh, material, np.tile(mesh.base, (3, 1)), 0.0).displaced(
+        mesh.elements, exact * mesh.base
+    )
     geometry, element = equations.geometry, SOLID_ELEMENTS[name]
     value, _ = element.tabulate(element.quadrature()[0])
     at = [value @ c[mesh.elements] for c in mesh.nodes.T]
@@ -143,7 +99,7 @@ def swirl_error(name, n, nu):
     H[1], H[5], H[6] = (2 * np.cos(2 * c) for c in (at[1], at[2], at[0]))
     stress = material.shear_modulus * (H + H[[0, 3, 6, 1, 4, 7, 2, 5, 8]])
     load = equations.scatter.vector(geometry.forces(stress * geometry.weight))
-    u = equations.element_displacement(solve_with(equations, load))
+    u = equations.element_displacement(solve_linear(equations, load))
     nodes = len(mesh.elements)
     fields = [np.sin(2 * at[1]), np.sin(2 * at[2]), np.sin(2 * at[0])]
     off = [value @ u[i * nodes : (i + 1) * nodes] - field for i, field in enumerate(fields)]

@@ -1,0 +1,148 @@
+"""A blind case: which effect is hidden in which session, drawn from a seed and from nothing else."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from benchmark.blind.body import Body, Shape
+from benchmark.blind.cells import TrueCells, true_cells
+from benchmark.blind.hidden import CATALOGUE, OUTSIDE, Hidden
+from benchmark.blind.motion import Plan
+from benchmark.blind.scene import Noise, Scene
+from benchmark.blind.simulate import Grid
+from benchmark.blind.specimens import SHEETS, SKINS
+from benchmark.blind.strength import Base, base_of, scaled_to, strength
+
+Kind = Literal["effect", "null", "pair", "outside"]
+Layout = Literal["two_conditions", "one_condition", "force_only"]
+
+FULL_SEED_CYCLE = 5
+"""Of each five seeds three have two conditions and markers, one has no markers, and one has a single condition."""
+
+
+@dataclass(frozen=True)
+class CaseName:
+    """What makes a case.
+
+    Attributes
+    ----------
+    kind : str
+        "effect", "null", "pair" or "outside".
+    slug : str
+        Of the effect; two with a + between for a pair; "" for a null.
+    seed : int
+    strength : float
+        D of each effect, in standard deviations of the trial mean.
+    """
+
+    kind: Kind
+    slug: str
+    seed: int
+    strength: float = 20.0
+
+    @property
+    def text(self) -> str:
+        """Unique among the cases."""
+        return f"{self.kind}:{self.slug or '-'}:{self.seed}:D{self.strength:g}"
+
+    @property
+    def slugs(self) -> tuple[str, ...]:
+        """Of the hidden effects."""
+        return tuple(self.slug.split("+")) if self.slug else ()
+
+    @property
+    def alias(self) -> str:
+        """What a session may be called without giving anything away."""
+        return "blind-" + hashlib.sha256(self.text.encode()).hexdigest()[:12]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A case ready to be written: scene, hidden effects at their strength, and where they show."""
+
+    name: CaseName
+    scene: Scene
+    effects: tuple[Hidden, ...]
+    cells: TrueCells
+    strength: float
+    gain_scatter: float
+    bad_trial: str
+
+
+def make_case(name: CaseName) -> Case:
+    """Draw a case; the same name gives the same case.
+
+    Raises
+    ------
+    ValueError
+        When an effect cannot be as strong as wanted.
+    """
+    rng = generator(name, "case")
+    scene = draw_scene(name, rng)
+    base = base_of(scene)
+    effects = tuple(_hide(scene, base, slug, name, rng) for slug in name.slugs)
+    together = strength(scene, base, effects) if effects else 0.0
+    bad = str(rng.choice(["", "", "", "", "spike", "dropout", "shaky"]))
+    gain_scatter = float(rng.choice([0.02, 0.03, 0.05, 0.1]))
+    return Case(name, scene, effects, true_cells(scene, base, effects), together, gain_scatter, bad)
+
+
+def generator(name: CaseName, purpose: str) -> np.random.Generator:
+    """A random generator of one case and one purpose."""
+    digest = hashlib.sha256(f"{name.text} {purpose}".encode()).digest()
+    return np.random.default_rng(int.from_bytes(digest[:8], "big"))
+
+
+def layout(name: CaseName) -> Layout:
+    """Conditions and channels of a case; effects that only a camera sees keep it."""
+    place = name.seed % FULL_SEED_CYCLE
+    if place == 4:
+        return "one_condition"
+    seen_by_camera = any((CATALOGUE | OUTSIDE)[slug].only_markers for slug in name.slugs)
+    return "force_only" if place == 3 and not seen_by_camera else "two_conditions"
+
+
+def draw_scene(name: CaseName, rng: np.random.Generator) -> Scene:
+    """Body, protocol and noise of a case."""
+    chosen = layout(name)
+    specimens = SKINS if chosen == "force_only" else SHEETS
+    specimen = specimens[int(rng.integers(len(specimens)))]
+    body = Body(specimen, _shape(rng, wrong=name.kind != "null" or name.seed % 2 == 1))
+    plans = _plans(rng, single=chosen == "one_condition")
+    peak = float(body.force(np.array([max(plan.depth for plan in plans)]))[0])
+    return Scene(
+        body=body,
+        plans=plans,
+        repeats=10 if chosen == "one_condition" else 5,
+        grid=Grid() if specimen.has_markers else None,
+        rate=float(rng.choice([100.0, 125.0, 200.0])),
+        frame_rate=30.0,
+        force_noise=Noise(peak * float(rng.uniform(0.005, 0.02)), float(rng.uniform(0.5, 0.95))),
+        marker_noise=Noise(float(rng.uniform(0.005e-3, 0.02e-3)), float(rng.uniform(0.5, 0.95))),
+    )
+
+
+def _shape(rng: np.random.Generator, *, wrong: bool) -> Shape:
+    """A modulus that nobody knows, and a shape that is not the told one where `wrong`."""
+    modulus = float(np.exp(rng.normal(0.0, 0.25)))
+    radius, exponent, width = (rng.uniform(-1.0, 1.0, 3) * (0.1, 0.05, 0.05)).tolist()
+    return Shape(modulus, 1.0 + radius, exponent, 1.0 + width) if wrong else Shape(modulus)
+
+
+def _plans(rng: np.random.Generator, *, single: bool) -> tuple[Plan, ...]:
+    """A slow shallow and a fast deep condition, or one between them."""
+    shallow, deep = float(rng.uniform(1.7e-3, 2.2e-3)), float(rng.uniform(2.8e-3, 3.4e-3))
+    slow, fast = float(rng.uniform(0.8e-3, 1.2e-3)), float(rng.uniform(4e-3, 6e-3))
+    hold, rest = float(rng.uniform(4.0, 7.0)), float(rng.uniform(4.0, 7.0))
+    if single:
+        return (Plan("press", deep, 2.0 * slow, hold, rest),)
+    return Plan("slow", shallow, slow, hold, rest), Plan("fast", deep, fast, hold, rest)
+
+
+def _hide(scene: Scene, base: Base, slug: str, name: CaseName, rng: np.random.Generator) -> Hidden:
+    effect = (CATALOGUE | OUTSIDE)[slug].draw(scene.scale, rng)
+    return scaled_to(scene, base, effect, name.strength)

@@ -1,0 +1,100 @@
+"""The folder of a blind run: its settings, the journal while it runs, the tables once all cases are finished."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+from benchmark.blind.judging import Judged
+from benchmark.blind.rows import Row, confusion, table, verdicts
+from benchmark.errors import InputError
+from reports import write_csv, write_json, write_text
+
+SCHEMA = 1
+SETTINGS, JOURNAL, DOCUMENT = "settings.json", "cases.jsonl", "blind.json"
+
+
+def open_folder(path: Path, settings: dict[str, Any]) -> Path:
+    """Take a new or empty folder, or one of a blind run: a stopped one goes on, a finished one is redone.
+
+    Returns
+    -------
+    Path
+        Of the journal.
+
+    Raises
+    ------
+    InputError
+        The folder holds something else, or a stopped run with other settings.
+    """
+    if path.exists() and not path.is_dir():
+        raise InputError(f"--out {path} is a file; it must be a folder that is new, empty, or of a blind run")
+    there = _settings_in(path)
+    if there is None and path.is_dir() and any(path.iterdir()):
+        raise InputError(f"--out {path} holds files that are no blind run; it must be a folder that is new or empty")
+    if (path / JOURNAL).exists() and there != settings:
+        raise InputError(
+            f"--out {path} holds a stopped blind run with other settings ({there}); repeat that command to go on with "
+            "it, or give another folder"
+        )
+    write_json(path / SETTINGS, settings)
+    return path / JOURNAL
+
+
+def _settings_in(path: Path) -> dict[str, Any] | None:
+    try:
+        table: dict[str, Any] = json.loads((path / SETTINGS).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return table
+
+
+def finish(path: Path, settings: dict[str, Any], cases: Sequence[Judged]) -> dict[str, Any]:
+    """Write blind.json, cases.csv, confusion.csv and table.md, and end the journal; returns the document."""
+    rows = table(cases)
+    result = document(settings, rows, cases)
+    write_csv(path / "cases.csv", {each.name: [getattr(case, each.name) for case in cases] for each in fields(Judged)})
+    pairs = [(truth, said, n) for truth, names in confusion(cases).items() for said, n in names.most_common()]
+    write_csv(
+        path / "confusion.csv",
+        {name: [pair[number] for pair in pairs] for number, name in enumerate(("truth", "said_first", "cases"))},
+    )
+    write_text(path / "table.md", f"# Blind trials (synthetic), suite {settings['suite']}\n\n{text_table(rows)}\n")
+    write_json(path / DOCUMENT, result)
+    (path / JOURNAL).unlink(missing_ok=True)
+    return result
+
+
+def document(settings: dict[str, Any], rows: Sequence[Row], cases: Sequence[Judged]) -> dict[str, Any]:
+    """What `--json` prints."""
+    return {
+        "schema": SCHEMA,
+        "synthetic": True,
+        **settings,
+        "rows": [asdict(row) for row in rows],
+        "verdicts": dict(verdicts(cases)),
+        "confusion": {truth: dict(names) for truth, names in confusion(cases).items()},
+    }
+
+
+def text_table(rows: Sequence[Row]) -> str:
+    """The rows as a Markdown table."""
+    lines = ["| measure | value | 95 % | cases | bar | passed |", "|---|---|---|---|---|---|"]
+    for row in rows:
+        passed = "" if row.passed is None else "yes" if row.passed else "no"
+        low, high = row.ci95
+        lines.append(f"| {row.measure} | {row.value:.3g} | {low:.3g} to {high:.3g} | {row.n} | {row.bar} | {passed} |")
+    return "\n".join(lines)
+
+
+def confusion_text(cases: Sequence[Judged]) -> str:
+    """A line for each truth that was taken for something else."""
+    lines = []
+    for truth, names in sorted(confusion(cases).items()):
+        others = [f"{said} {n}" for said, n in names.most_common() if said != truth]
+        if others:
+            lines.append(f"  {truth}: {', '.join(others)}")
+    return "\n".join(lines)

@@ -1,0 +1,107 @@
+"""A blind session before its noise: body, conditions, noise levels and the places of its signals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from benchmark.blind.arrays import Array, Flags
+from benchmark.blind.body import Body
+from benchmark.blind.hidden import Hidden, Scale
+from benchmark.blind.motion import Motion, Plan, motion, phases
+from benchmark.blind.simulate import Grid, Signals, simulate
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Of one channel: standard deviation (N or m) and correlation from sample to sample."""
+
+    std: float
+    memory: float
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What a session measures and how well.
+
+    Attributes
+    ----------
+    body : Body
+    plans : tuple of Plan
+        One a condition.
+    repeats : int
+        Trials of each condition.
+    grid : Grid or None
+    rate, frame_rate : float
+        Hz.
+    force_noise, marker_noise : Noise
+    """
+
+    body: Body
+    plans: tuple[Plan, ...]
+    repeats: int
+    grid: Grid | None
+    rate: float
+    frame_rate: float
+    force_noise: Noise
+    marker_noise: Noise
+
+    @property
+    def scale(self) -> Scale:
+        """Sizes by which effects choose theirs."""
+        depths = [plan.depth for plan in self.plans]
+        deep = max(depths)
+        force = float(self.body.force(np.array([deep]))[0])
+        speed = max(plan.speed for plan in self.plans)
+        return Scale(min(depths), deep, force, speed, self.body.specimen.tool_radius)
+
+    def motion(self, plan: Plan, delay: float = 0.0) -> Motion:
+        """The nominal motion of a condition."""
+        return motion(plan, self.rate, self.frame_rate, delay=delay)
+
+    def mean(self, plan: Plan, effects: Sequence[Hidden], delay: float = 0.0) -> Signals:
+        """A condition's mean trial; with `delay` the specimen follows its reported depth that much later, s."""
+        return simulate(self.body, self.grid, self.motion(plan, delay), effects)
+
+    def with_body(self, body: Body) -> Scene:
+        """The same session with another body."""
+        return replace(self, body=body)
+
+
+@dataclass(frozen=True, eq=False)
+class Whitened:
+    """A condition's signal in units of its noise: force (n,), x and y (f, markers) or None."""
+
+    force: Array
+    x: Array | None
+    y: Array | None
+
+    def stacked(self) -> Array:
+        """All in one vector."""
+        parts = [self.force, *(part.ravel() for part in (self.x, self.y) if part is not None)]
+        return np.concatenate(parts)
+
+
+def whiten(scene: Scene, signals: Signals) -> Whitened:
+    """Divide the correlation and the size of the noise out of a signal."""
+    x = None if signals.x is None else _white(signals.x, scene.marker_noise)
+    y = None if signals.y is None else _white(signals.y, scene.marker_noise)
+    return Whitened(_white(signals.force, scene.force_noise), x, y)
+
+
+def _white(signal: Array, noise: Noise) -> Array:
+    """First-order autoregressive whitening along the first axis."""
+    rest = np.sqrt(1.0 - noise.memory**2)
+    out: Array = (signal - noise.memory * np.concatenate([signal[:1], signal[:-1]])) / rest
+    out[0] = signal[0]
+    out /= noise.std
+    return out
+
+
+def frame_phases(moved: Motion) -> dict[str, Flags]:
+    """The phases of a motion at its frames."""
+    of_samples = phases(moved.time, moved.depth)
+    nearest = np.clip(np.searchsorted(moved.time, moved.frames), 0, moved.time.size - 1)
+    return {name: rows[nearest] for name, rows in of_samples.items()}

@@ -1,0 +1,147 @@
+"""The specimens that blind sessions press: what is told of them, and the press that the FEM makes of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+import fem
+from benchmark.blind.arrays import Array
+
+HOLE_RADIUS = 30e-3
+DEEPEST = 5e-3
+RADIUS_FACTORS = (0.9, 1.0, 1.1)
+STEPS = 25
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A layer: m, kg/m3, Pa."""
+
+    name: str
+    thickness: float
+    density: float
+    youngs_modulus: float
+    poisson_ratio: float
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """What the session file says of specimen and tool.
+
+    Attributes
+    ----------
+    name : str
+    layers : tuple of Layer
+        From the surface down.
+    support : str
+        "hole" (of `HOLE_RADIUS`; its lower face carries markers) or "bonded" (no markers).
+    tool_radius : float
+        m.
+    """
+
+    name: str
+    layers: tuple[Layer, ...]
+    support: str
+    tool_radius: float
+
+    @property
+    def has_markers(self) -> bool:
+        """Whether a camera sees its lower face."""
+        return self.support == "hole"
+
+
+@dataclass(frozen=True, eq=False)
+class PressTable:
+    """Presses with three tool radii by the FEM.
+
+    Attributes
+    ----------
+    depth : (k,) m
+        From 0.
+    force : (3, k) N
+        A row for each of `RADIUS_FACTORS`.
+    radius : (m,) m
+        On the lower face, from the axis.
+    outward, sinking : (3, k, m) m
+        Displacement of the lower face away from the axis, and along the press; zeros without a free lower face.
+    """
+
+    depth: Array
+    force: Array
+    radius: Array
+    outward: Array
+    sinking: Array
+
+
+def _sheet(name: str, thickness: float, youngs_modulus: float, tool_radius: float) -> Specimen:
+    return Specimen(name, (Layer("silicone", thickness, 1100.0, youngs_modulus, 0.49),), "hole", tool_radius)
+
+
+def _skin(name: str, dermis: float, fat: float, tool_radius: float) -> Specimen:
+    layers = (
+        Layer("epidermis", 0.1e-3, 1150.0, 1.5e6, 0.48),
+        Layer("dermis", 1.5e-3, 1116.0, dermis, 0.48),
+        Layer("fat", 10e-3, 971.0, fat, 0.48),
+    )
+    return Specimen(name, layers, "bonded", tool_radius)
+
+
+SHEETS = (
+    _sheet("sheet_soft", 4.0e-3, 180e3, 5.0e-3),
+    _sheet("sheet_thick", 5.0e-3, 250e3, 6.0e-3),
+    _sheet("sheet_thin", 3.5e-3, 400e3, 4.5e-3),
+)
+SKINS = (_skin("skin_stiff", 0.8e6, 50e3, 5.0e-3), _skin("skin_soft", 0.3e6, 25e3, 4.0e-3))
+
+
+@lru_cache(maxsize=8)
+def press_table(specimen: Specimen) -> PressTable:
+    """Press the specimen with the told tool radius, and with one 10 % smaller and larger; about a second."""
+    presses = [_press(specimen, factor * specimen.tool_radius) for factor in RADIUS_FACTORS]
+    depth, radius = _depths(), np.linspace(0.0, 0.9 * HOLE_RADIUS, 28)
+    faces = [_lower_face(press, radius) for press in presses] if specimen.has_markers else None
+    empty = np.zeros((len(RADIUS_FACTORS), depth.size, radius.size))
+    return PressTable(
+        depth=depth,
+        force=np.stack([np.append(0.0, press.force) for press in presses]),
+        radius=radius,
+        outward=empty if faces is None else np.stack([face[0] for face in faces]),
+        sinking=empty if faces is None else np.stack([face[1] for face in faces]),
+    )
+
+
+def _depths() -> Array:
+    return np.linspace(0.0, DEEPEST, STEPS + 1)
+
+
+def _press(specimen: Specimen, radius: float) -> fem.Solution:
+    layers = tuple(
+        fem.Layer(each.name, each.thickness, each.density, fem.NeoHookean(each.youngs_modulus, each.poisson_ratio))
+        for each in specimen.layers
+    )
+    problem = fem.Problem(
+        layers=layers,
+        tool=fem.Tool(radius, "rigid_bonded"),
+        support=fem.Support(specimen.support, HOLE_RADIUS if specimen.support == "hole" else None),
+        kinematics="finite",
+        discretisation=fem.Discretisation("coarse"),
+    )
+    solution = fem.prepare(problem).run(fem.Load("depth", np.arange(1.0, STEPS + 1), _depths()[1:]))
+    if not solution.complete:
+        raise fem.FemError(f"blind specimen {specimen.name}: {solution.failure}")
+    return solution
+
+
+def _lower_face(press: fem.Solution, radius: Array) -> tuple[Array, Array]:
+    """Outward motion and sinking (k, m) of the lower face at reference radii (m,)."""
+    nodes = press.mesh.nodes
+    face = np.flatnonzero(np.isclose(nodes[:, 1], nodes[:, 1].min()))
+    face = face[np.argsort(nodes[face, 0])]
+    moved = press.displacement[:, face, :]
+    rest = np.zeros((1, radius.size))
+    outward = np.stack([np.interp(radius, nodes[face, 0], row) for row in moved[:, :, 0]])
+    sinking = np.stack([np.interp(radius, nodes[face, 0], -row) for row in moved[:, :, 1]])
+    return np.concatenate([rest, outward]), np.concatenate([rest, sinking])

@@ -1,0 +1,142 @@
+"""How strong a hidden effect is: its whitened norm over all trials after the base model has explained what it can.
+
+Base parameters and nuisances, each projected off by its derivative: tool radius, exponent of force over depth and
+width of the lower face's field for the session; gain, zero and time shift for each trial.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from benchmark.blind.arrays import Array
+from benchmark.blind.hidden import Hidden
+from benchmark.blind.motion import Plan
+from benchmark.blind.scene import Scene, Whitened, whiten
+from benchmark.blind.simulate import Signals
+
+SHAPE_STEPS = {"radius": 0.01, "exponent": 0.01, "width": 0.01}
+DELAY_STEP = 5e-3
+TOLERANCE = 0.003
+
+
+@dataclass(frozen=True, eq=False)
+class Base:
+    """The base model's mean trials and their whitened tangents.
+
+    Attributes
+    ----------
+    means : tuple of Signals
+        One a condition, without effects.
+    tangents : (samples of all conditions, parameters)
+        Whitened, each condition's rows times the root of its repeats.
+    """
+
+    means: tuple[Signals, ...]
+    tangents: Array
+
+
+def base_of(scene: Scene) -> Base:
+    """Simulate the base and its derivatives."""
+    means = tuple(scene.mean(plan, ()) for plan in scene.plans)
+    columns = [_session_column(scene, means, name, step) for name, step in SHAPE_STEPS.items()]
+    for number, (plan, mean) in enumerate(zip(scene.plans, means, strict=True)):
+        columns += [_placed(scene, means, number, each) for each in _trial_tangents(scene, plan, mean)]
+    return Base(means, np.stack(columns, axis=1))
+
+
+def leftover(scene: Scene, base: Base, effects: Sequence[Hidden]) -> tuple[Whitened, ...]:
+    """What the base cannot explain of the effects, whitened, times the root of the repeats; one a condition."""
+    changes = [
+        whiten(scene, _minus(scene.mean(plan, effects), mean))
+        for plan, mean in zip(scene.plans, base.means, strict=True)
+    ]
+    whole = _weight(scene) * np.concatenate([change.stacked() for change in changes])
+    scaled = base.tangents / np.linalg.norm(base.tangents, axis=0).clip(1e-30)
+    rest = whole - scaled @ np.linalg.lstsq(scaled, whole, rcond=1e-9)[0]
+    return tuple(_split(rest, changes))
+
+
+def strength(scene: Scene, base: Base, effects: Sequence[Hidden]) -> float:
+    """D: the norm of what the base cannot explain, in standard deviations of the trial mean."""
+    rest = leftover(scene, base, effects)
+    return float(np.sqrt(sum(np.sum(each.stacked() ** 2) for each in rest)))
+
+
+def scaled_to(scene: Scene, base: Base, effect: Hidden, wanted: float) -> Hidden:
+    """The effect with the amplitude at which D is `wanted`.
+
+    Raises
+    ------
+    ValueError
+        When not even its largest amplitude is that strong.
+    """
+    low, high = 0.0, 1e-3
+    while strength(scene, base, [effect.of_size(high)]) < wanted:
+        if high >= effect.largest:
+            raise ValueError(f"{effect.slug}: D = {wanted:g} is out of reach at amplitude {high:g}")
+        low, high = high, min(4.0 * high, effect.largest)
+
+    def missing(amplitude: float) -> float:
+        return strength(scene, base, [effect.of_size(amplitude)]) - wanted
+
+    return effect.of_size(float(brentq(missing, low, high, xtol=1e-9, rtol=TOLERANCE)))
+
+
+def _session_column(scene: Scene, means: Sequence[Signals], name: str, step: float) -> Array:
+    """Derivative of all conditions by a parameter of the body's shape."""
+    shape = scene.body.shape
+    shifted = scene.with_body(replace(scene.body, shape=replace(shape, **{name: getattr(shape, name) + step})))
+    parts = [
+        whiten(scene, _minus(shifted.mean(plan, ()), mean)).stacked()
+        for plan, mean in zip(scene.plans, means, strict=True)
+    ]
+    return _weight(scene) * np.concatenate(parts)
+
+
+def _trial_tangents(scene: Scene, plan: Plan, mean: Signals) -> list[Signals]:
+    """Derivatives of one trial by its gain, zero and time shift."""
+    still_x = None if mean.x is None else np.zeros_like(mean.x)
+    still_y = None if mean.y is None else np.zeros_like(mean.y)
+    return [
+        Signals(mean.force, still_x, still_y),
+        Signals(np.full_like(mean.force, abs(mean.force).max()), still_x, still_y),
+        _minus(scene.mean(plan, (), DELAY_STEP), mean),
+    ]
+
+
+def _placed(scene: Scene, means: Sequence[Signals], number: int, tangent: Signals) -> Array:
+    """A tangent of one condition among zeros for the others."""
+    parts = [
+        whiten(scene, tangent).stacked() if row == number else np.zeros(_size(mean)) for row, mean in enumerate(means)
+    ]
+    return _weight(scene) * np.concatenate(parts)
+
+
+def _split(rest: Array, changes: Sequence[Whitened]) -> list[Whitened]:
+    out = []
+    for change in changes:
+        force, rest = rest[: change.force.size], rest[change.force.size :]
+        x = y = None
+        if change.x is not None and change.y is not None:
+            x, rest = rest[: change.x.size].reshape(change.x.shape), rest[change.x.size :]
+            y, rest = rest[: change.y.size].reshape(change.y.shape), rest[change.y.size :]
+        out.append(Whitened(force, x, y))
+    return out
+
+
+def _minus(first: Signals, second: Signals) -> Signals:
+    x = None if first.x is None or second.x is None else first.x - second.x
+    y = None if first.y is None or second.y is None else first.y - second.y
+    return Signals(first.force - second.force, x, y)
+
+
+def _size(signals: Signals) -> int:
+    return signals.force.size + sum(part.size for part in (signals.x, signals.y) if part is not None)
+
+
+def _weight(scene: Scene) -> float:
+    return float(np.sqrt(scene.repeats))

@@ -1,0 +1,128 @@
+"""Blind cases as session folders: specimen, trials and markers as files, labelled synthetic."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from benchmark.blind.case import Case, CaseName, generator, make_case
+from benchmark.blind.motion import Motion, motion
+from benchmark.blind.noise import dropout, remembered, spike
+from benchmark.blind.simulate import Signals, simulate
+from benchmark.blind.specimens import HOLE_RADIUS, Specimen
+from reports import write_text
+
+ZERO_SCATTER = 0.005
+DELAY_SCATTER = 8e-3
+DEPTH_SCATTER = 0.01
+MAKER = "computed by the blind trials' generator, not measured"
+
+
+def case(name: CaseName, parent: Path) -> tuple[Path, Case]:
+    """Make a case and write its session.
+
+    Parameters
+    ----------
+    name : CaseName
+    parent : Path
+        Where the session's folder goes; its name gives nothing away.
+
+    Returns
+    -------
+    (Path, Case)
+        The folder, and the truth, which is in no file of it.
+    """
+    made = make_case(name)
+    return write_case(made, parent / name.alias), made
+
+
+def write_case(made: Case, folder: Path) -> Path:
+    """Write a case's session into `folder`."""
+    rng = generator(made.name, "trials")
+    folder.mkdir(parents=True, exist_ok=True)
+    plans = [plan for plan in made.scene.plans for _ in range(made.scene.repeats)]
+    bad = int(rng.integers(len(plans)))
+    text = _head(made)
+    for number, plan in enumerate(plans, start=1):
+        moved = motion(
+            plan, made.scene.rate, made.scene.frame_rate, depth_factor=1.0 + DEPTH_SCATTER * rng.uniform(-1.0, 1.0)
+        )
+        text += f'\n[[trials]]\nfile = "trial_{number:03d}.csv"\ncondition = "{plan.name}"\n'
+        fault = made.bad_trial if number - 1 == bad else ""
+        text += _write_trial(made, moved, folder, number, fault, rng)
+    write_text(folder / "session.toml", text)
+    write_text(folder / "specimen.toml", specimen_text(made.scene.body.specimen))
+    return folder
+
+
+def _write_trial(made: Case, moved: Motion, folder: Path, number: int, fault: str, rng: np.random.Generator) -> str:
+    """Write one trial's files; returns what the session file says of its markers."""
+    scene, peak = made.scene, made.scene.scale.force
+    effects = [effect.in_trial(rng) for effect in made.effects]
+    late = Motion(
+        moved.plan,
+        moved.time,
+        np.interp(moved.time - rng.normal(0.0, DELAY_SCATTER), moved.time, moved.depth),
+        moved.frames,
+    )
+    signals = simulate(scene.body, scene.grid, late, effects, float(np.exp(rng.normal(0.0, made.gain_scatter))))
+    loudness = 4.0 if fault == "shaky" else 1.0
+    force = signals.force + loudness * remembered(scene.force_noise, signals.force.shape, rng)
+    force += peak * ZERO_SCATTER * rng.normal()
+    if fault == "spike":
+        force += spike(moved.time, 0.3 * peak, rng)
+    rows = dropout(moved.time, rng) if fault == "dropout" else np.arange(moved.time.size)
+    columns = {"time_s": moved.time[rows], "depth_mm": 1e3 * moved.depth[rows], "force_N": force[rows]}
+    pd.DataFrame(columns).round({"time_s": 5, "depth_mm": 4, "force_N": 6}).to_csv(
+        folder / f"trial_{number:03d}.csv", index=False
+    )
+    if signals.x is None or signals.y is None:
+        return ""
+    _write_markers(made, moved, signals, folder / f"markers_{number:03d}.csv", rng)
+    return f'markers = "markers_{number:03d}.csv"\n'
+
+
+def _write_markers(made: Case, moved: Motion, signals: Signals, path: Path, rng: np.random.Generator) -> None:
+    assert signals.x is not None
+    assert signals.y is not None
+    frames, markers = signals.x.shape
+    x = signals.x + remembered(made.scene.marker_noise, signals.x.shape, rng)
+    y = signals.y + remembered(made.scene.marker_noise, signals.y.shape, rng)
+    columns = {
+        "time_s": np.round(np.repeat(moved.frames, markers), 5),
+        "marker": np.tile(np.arange(markers), frames),
+        "x_mm": np.round(1e3 * x.ravel(), 5),
+        "y_mm": np.round(1e3 * y.ravel(), 5),
+    }
+    pd.DataFrame(columns).to_csv(path, index=False)
+
+
+def _head(made: Case) -> str:
+    """The session file down to its trials."""
+    specimen, grid = made.scene.body.specimen, made.scene.grid
+    hole = f'hole_radius = "{1e3 * HOLE_RADIUS:g} mm"\n' if specimen.support == "hole" else ""
+    text = (
+        f'schema = 1\nname = "{made.name.alias}"\nspecimen = "specimen.toml"\nsynthetic = true  # {MAKER}\n\n'
+        f'[tool]\nradius = "{1e3 * specimen.tool_radius:g} mm"\ncontact = "rigid_bonded"\n\n'
+        f'[support]\nkind = "{specimen.support}"\n{hole}\n[drive]\nchannel = "depth"\n'
+    )
+    if grid is None:
+        return text
+    return text + (
+        f"\n[camera]\nmarker_rows = {grid.rows}\nmarker_columns = {grid.columns}\n"
+        f'marker_spacing = "{1e3 * grid.spacing:g} mm"\n'
+    )
+
+
+def specimen_text(specimen: Specimen) -> str:
+    """The tissue file of what is told of a specimen; its moduli are not the true ones."""
+    text = f'schema = 1\nname = "{specimen.name}"\ncitation = "Synthetic: {MAKER}."\n'
+    for layer in specimen.layers:
+        text += (
+            f'\n[[layers]]\nname = "{layer.name}"\nthickness = "{1e3 * layer.thickness:g} mm"\n'
+            f'density = "{layer.density:g} kg/m^3"\nyoungs_modulus = "{1e-3 * layer.youngs_modulus:g} kPa"\n'
+            f"poisson_ratio = {layer.poisson_ratio:g}\n"
+        )
+    return text

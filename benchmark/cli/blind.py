@@ -1,0 +1,75 @@
+"""`benchmark blind`: the discovery on sessions with hidden effects."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from benchmark.cli.options import Debug, Json, Out, Quiet, Seed
+
+if TYPE_CHECKING:
+    from benchmark.blind.judging import Judged
+
+Suite = Annotated[str, typer.Option("--suite", help="small | first | medium | full.")]
+Cases = Annotated[str, typer.Option("--cases", metavar="SLUG,...", help="Only these effects, pairs, or null.")]
+Workers = Annotated[int, typer.Option("--workers", min=1, help="Processes.")]
+Named = Annotated[
+    str,
+    typer.Option(
+        "--discoverer", metavar="MODULE:FUNCTION", help="Another discovery, called with a session and a seed."
+    ),
+]
+
+
+def register(app: typer.Typer) -> None:
+    """Add the verb to the command line."""
+    app.command("blind", help=blind.__doc__)(blind)
+
+
+def blind(
+    suite: Suite = "small",
+    cases: Cases = "",
+    out: Out = None,
+    seed: Seed = 0,
+    workers: Workers = 2,
+    discoverer: Named = "benchmark.discovery:discover",
+    json: Json = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> int:
+    """Hide effects in synthetic sessions and count how often the discovery finds and names them.
+
+    Writes table.md, cases.csv, confusion.csv and blind.json. The same command goes on where it was stopped. Exit code
+    0 whatever it finds.
+    """
+    from benchmark.blind.discoverer import load_discoverer
+    from benchmark.blind.folder import confusion_text, finish, open_folder, text_table
+    from benchmark.blind.rows import table
+    from benchmark.blind.running import run_cases
+    from benchmark.blind.suites import chosen
+    from benchmark.blind.suites import suite as cases_of
+    from benchmark.cli.console import Console
+    from benchmark.cli.show import print_json
+    from benchmark.runs.destination import fresh
+
+    console = Console(quiet=quiet)
+    slugs = tuple(each.strip() for each in cases.split(",") if each.strip())
+    names = chosen(cases_of(suite, seed), slugs)
+    settings = {"suite": suite, "seed": seed, "cases": list(slugs), "discoverer": discoverer}
+    folder = fresh("blind") if out is None else out
+    load_discoverer(discoverer)
+    journal = open_folder(folder, settings)
+    with console.progress(f"blind trials, suite {suite} (synthetic)") as advance:
+
+        def on_case(done: int, total: int, last: Judged | None) -> None:
+            remark = "" if last is None else f"{last.truth or 'null'}: {last.verdict} {last.said}"
+            advance("cases", done, total, remark)
+
+        judged = run_cases(names, discoverer, journal, workers, on_case)
+    result = finish(folder, settings, judged)
+    if json:
+        print_json({**result, "out": str(folder)})
+    else:
+        print(f"{text_table(table(judged))}\n\ntaken for something else:\n{confusion_text(judged)}\n  tables: {folder}")
+    return 0

@@ -1,0 +1,135 @@
+"""`validation.csv`: errors against their uncertainties (ASME V&V 20), and the area metric of measured trials."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from benchmark.comparison import (
+    Validation,
+    area_metric,
+    input_uncertainty,
+    replicate_uncertainty,
+)
+from benchmark.models import Array
+from benchmark.runs.measured import MeasuredComparison, TrialPrediction
+from benchmark.runs.record import RunRecord
+from benchmark.runs.refinement import ORDER, Level, convergence
+from benchmark.side_by_side import ModelRun
+
+Columns = dict[str, list[Any]]
+Row = tuple[str, str, str, str, float | str | None, str]
+NAMES = ("quantity", "protocol", "simulation", "measure", "value", "unit")
+LEVELS = (
+    "model", "refined", "level", "unknowns", "load_steps", "setup_s", "wall_s", "cpu_s", "wall_per_step_ms", "layer",
+    "max_mm",
+)  # fmt: skip
+MM = 1e3
+
+
+def refinement_columns(levels: tuple[Level, ...]) -> Columns:
+    """Columns of `refinement.csv`: one row a run and layer."""
+    rows = [
+        (
+            each.model,
+            each.refined,
+            each.level,
+            each.result.unknowns,
+            each.result.time.size,
+            each.seconds.setup,
+            each.seconds.wall,
+            each.seconds.cpu,
+            1e3 * each.seconds.wall / each.result.time.size,
+            layer,
+            float(MM * each.result.max_deformation()[place]),
+        )
+        for each in levels
+        for place, layer in enumerate(each.result.layers)
+    ]
+    return {name: [row[place] for row in rows] for place, name in enumerate(LEVELS)}
+
+
+def validation_columns(record: RunRecord, levels: tuple[Level, ...]) -> Columns | None:
+    """Columns of `validation.csv`; None where there is neither a refinement nor a trial."""
+    rows: list[Row] = []
+    if levels:
+        rows += list(_numerical(record, levels))
+    if record.measured is not None:
+        rows += list(_measured(record, record.measured, levels))
+    return {name: [row[place] for row in rows] for place, name in enumerate(NAMES)} if rows else None
+
+
+def numerical_uncertainty(levels: tuple[Level, ...], model: str, layer: int) -> float | None:
+    """u_num (m) of a layer's largest deflection: every refinement of the model in squares; None without one."""
+    found = [convergence(levels, model, refined, layer) for refined in ORDER]
+    parts = [each.uncertainty for each in found if each is not None]
+    return math.hypot(*parts) if parts else None
+
+
+def _numerical(record: RunRecord, levels: tuple[Level, ...]) -> Iterator[Row]:
+    """Each layer's maximum: what every refinement tells, and wave against FEM beside the numerical uncertainties."""
+    runs = (record.pair.fem, record.pair.wave)
+    for place, layer in enumerate(record.layers):
+        quantity = f"maximum of {layer}"
+        for run in runs:
+            for refined in ORDER:
+                found = convergence(levels, run.model, refined, place)
+                if found is not None:
+                    kind = "observed order" if found.observed else "assumed order"
+                    yield quantity, "verification", run.key, f"{refined}: {kind}", found.order, ""
+                    yield quantity, "verification", run.key, f"{refined}: extrapolated", MM * found.extrapolated, "mm"
+                    yield quantity, "verification", run.key, f"{refined}: u_num", MM * found.uncertainty, "mm"
+        own = [numerical_uncertainty(levels, run.model, place) for run in runs]
+        fem, wave = (None if run.result is None else float(run.result.max_deformation()[place]) for run in runs)
+        if fem is not None and wave is not None and all(each is not None for each in own):
+            both = math.hypot(*(each or 0.0 for each in own))
+            check = Validation(MM * wave, MM * fem, MM * both, None, None)
+            yield from _told(quantity, "prediction, code to code", runs[1].key, check, "mm")
+
+
+def _measured(record: RunRecord, measured: MeasuredComparison, levels: tuple[Level, ...]) -> Iterator[Row]:
+    """Peak force of the trials: each model's against the measured, at the instant of the trial's own peak."""
+    trials, stiffness = measured.trials, measured.fit.stiffness
+    peaks = [int(trial.force.argmax()) for trial in trials]
+    data = np.array([trial.force[at] for trial, at in zip(trials, peaks, strict=True)])
+    for protocol, run, answers in _answers(record, trials):
+        if any(each is None for each in answers):
+            continue
+        model = np.array([each[at] for each, at in zip(answers, peaks, strict=True) if each is not None])
+        if not np.isfinite(model).all():
+            continue
+        force = float(model.mean())
+        inputs = input_uncertainty(force / stiffness.value, (stiffness.ci95_low, stiffness.ci95_high))
+        scatter = replicate_uncertainty([float(each) for each in data - model])
+        numerical = _relative_numerical(run, levels)
+        share = None if numerical is None else numerical * force
+        found = Validation(force, float(data.mean()), share, inputs, scatter)
+        yield from _told("peak force", protocol, run.key, found, "N")
+        for measure, _, _, value in area_metric(data, model).rows():
+            yield "peak force", protocol, run.key, measure, value, "N"
+
+
+def _relative_numerical(run: ModelRun, levels: tuple[Level, ...]) -> float | None:
+    """u_num of a force as a fraction of it: that of the surface's largest deflection."""
+    found = numerical_uncertainty(levels, run.model, 0)
+    largest = 0.0 if run.result is None else abs(float(run.result.max_deformation()[0]))
+    return None if found is None or largest == 0.0 else found / largest
+
+
+def _answers(
+    record: RunRecord, trials: tuple[TrialPrediction, ...]
+) -> Iterator[tuple[str, ModelRun, list[Array | None]]]:
+    """Protocol, model and forces of each: fitted to these trials (circular), and held out where it exists."""
+    fem, wave = record.pair.fem, record.pair.wave
+    yield "fitted to these trials (circular)", fem, [trial.fem_force for trial in trials]
+    yield "prediction, stiffness of the other trials", fem, [trial.held_out_force for trial in trials]
+    yield "fitted to these trials (circular)", wave, [trial.wave_force for trial in trials]
+
+
+def _told(quantity: str, protocol: str, name: str, found: Validation, unit: str) -> Iterator[Row]:
+    for measure, _, _, value in found.rows():
+        yield quantity, protocol, name, measure, value, unit
+    yield quantity, protocol, name, "not assessed", ", ".join(found.missing) or "none", ""

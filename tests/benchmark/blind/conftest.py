@@ -1,0 +1,47 @@
+"""Answers and cases for the blind trials' tests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from benchmark.blind.case import Case, CaseName, make_case
+from benchmark.discovery.result import ChannelGap, Discovery, NamedEffect, Place
+
+
+def an_answer(
+    verdict: str,
+    effects: dict[str, tuple[str, ...]],
+    where: tuple[tuple[str, str], ...] = (),
+    gap: tuple[tuple[str, str, float | None], ...] = (),
+) -> Discovery:
+    return Discovery(
+        verdict=verdict,
+        statement="",
+        p=0.01,
+        effects=tuple(NamedEffect(slug, 0.9, alike, ()) for slug, alike in effects.items()),
+        where=tuple(Place(channel, phase, "slow", 1, (0.0, 1e-3), 0.1, 1.0, 0.01) for channel, phase in where),
+        contrasts=(),
+        gap=tuple(ChannelGap(channel, 2.0, 1.0, 0.5, closed, None, held) for channel, held, closed in gap),
+        smallest_visible={},
+        candidates=(),
+        base=(),
+        remains=(),
+        warnings=(),
+        traces=(),
+        conditions=("slow", "fast"),
+        channels=("force_z",),
+        trials=(),
+        seconds=1.0,
+    )
+
+
+@pytest.fixture
+def answer() -> Callable[..., Discovery]:
+    return an_answer
+
+
+@pytest.fixture(scope="session")
+def saturation() -> Case:
+    return make_case(CaseName("effect", "force_saturation", 0))

@@ -1,0 +1,95 @@
+"""The verb and its runner with a stub in the discovery's place: resumed, tables written, errors said."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from benchmark.blind.suites import chosen, suite
+from benchmark.cli.app import main
+from benchmark.errors import InputError
+
+STUB = '''
+from pathlib import Path
+from benchmark.discovery.result import Discovery, NamedEffect
+
+def always(session, *, seed):
+    """Answers adhesion, and raises for sessions without markers."""
+    with Path({log!r}).open("a") as log:
+        log.write(session.name + "\\n")
+    if session.camera is None:
+        raise ValueError("no camera")
+    effects = (NamedEffect("adhesion", 1.0, (), ()),)
+    return Discovery("named", "", 0.01, effects, (), (), (), {{}}, (), (), (), (), (), (), (), (), 1.0)
+'''
+
+
+@pytest.fixture
+def stub(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    log = tmp_path / "calls.txt"
+    (tmp_path / "stub_for_blind.py").write_text(STUB.format(log=str(log)))
+    monkeypatch.syspath_prepend(str(tmp_path))
+    return log
+
+
+def test_suites() -> None:
+    first = suite("first")
+    assert len(first) == 22 * 5 + 40
+    assert len({case.text for case in suite("full")}) == len(suite("full"))
+    assert {case.slug for case in chosen(first, ("adhesion", "null"))} == {"adhesion", ""}
+    with pytest.raises(InputError, match="allowed: small, first"):
+        suite("huge")
+    with pytest.raises(InputError, match="adhesio"):
+        chosen(first, ("adhesio",))
+
+
+def test_the_verb_counts_resumes_and_redoes(stub: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    command = ["blind", "--cases", "adhesion,dry_friction", "--discoverer", "stub_for_blind:always", "--out", str(out)]
+    command += ["--workers", "1", "--quiet", "--json", "--seed", "3"]  # seed 3: no markers where the force shows it
+    assert main(command) == 0
+    document = json.loads(capsys.readouterr().out)
+    rows = {row["measure"]: row for row in document["rows"]}
+    assert document["synthetic"] is True
+    assert rows["cases with an error"]["value"] == 1.0
+    assert {path.name for path in out.iterdir()} == {
+        "settings.json",
+        "blind.json",
+        "cases.csv",
+        "confusion.csv",
+        "table.md",
+    }
+    assert len(stub.read_text().splitlines()) == 2
+
+    from benchmark.blind.judging import Judged
+    from benchmark.blind.running import run_cases
+
+    journal = tmp_path / "cases.jsonl"
+    names = chosen(suite("small"), ("adhesion", "camera_latency"))
+    first = run_cases(names[:1], "stub_for_blind:always", journal, 1, lambda *_: None)
+    told: list[tuple[int, int, Judged | None]] = []
+    both = run_cases(names, "stub_for_blind:always", journal, 1, lambda *news: told.append(news))
+    assert len(stub.read_text().splitlines()) == 4
+    assert both[0] == first[0]
+    assert [news[0] for news in told] == [1, 2]
+    assert {case.truth: case.said for case in both} == {"adhesion": "adhesion", "camera_latency": "adhesion"}
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "said"),
+    [
+        ("--suite", "huge", "no such suite"),
+        ("--discoverer", "benchmark.discovery:nothing_there", "module:function"),
+        ("--cases", "nothing", "no case of this suite"),
+    ],
+)
+def test_what_cannot_be_used_is_said(option, value, said, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    assert main(["blind", option, value, "--out", str(out)]) == 2
+    assert said in capsys.readouterr().err.replace("\n", " ")
+    assert not out.exists()
+
+
+def test_a_foreign_folder_is_refused(stub: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["blind", "--discoverer", "stub_for_blind:always", "--out", str(tmp_path)]) == 2
+    assert "no blind run" in capsys.readouterr().err.replace("\n", " ")

@@ -1,0 +1,48 @@
+"""Session folders of blind cases: readable, labelled, the same from the same seed, and they give nothing away."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmark.blind.case import CaseName
+from benchmark.blind.writing import case
+from benchmark.files.session_loading import load_session
+
+
+@pytest.fixture(scope="module")
+def sheet(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return case(CaseName("null", "", 0, 0.0), tmp_path_factory.mktemp("blind"))[0]
+
+
+def test_a_null_session_is_read_without_a_warning(sheet: Path) -> None:
+    session = load_session(sheet)
+    assert session.synthetic
+    assert session.warnings == ()
+    assert session.conditions == ("slow", "fast")
+    assert len(session.trials) == 10
+    assert session.camera is not None
+    markers = session.trials[0].markers
+    assert markers is not None
+    assert set(markers.marker) == set(range(18))
+
+
+def test_the_resting_grid_is_the_nominal_one(sheet: Path) -> None:
+    markers = load_session(sheet).trials[0].markers
+    assert markers is not None
+    rest = [np.mean(markers.x[(markers.marker == number) & (markers.time < 0.8)]) for number in (0, 5, 17)]
+    assert rest == pytest.approx([-15e-3, 15e-3, 15e-3], abs=0.03e-3)
+
+
+def test_a_force_only_session(tmp_path: Path) -> None:
+    folder, made = case(CaseName("effect", "dry_friction", 3), tmp_path)
+    session = load_session(folder)
+    assert session.camera is None
+    assert [layer.name for layer in session.specimen.layers] == ["epidermis", "dermis", "fat"]
+    assert "friction" not in "".join(path.read_text() + path.name for path in folder.glob("*.toml"))
+    assert made.name.alias == folder.name
+
+
+def test_the_same_name_gives_the_same_files(sheet: Path, tmp_path: Path) -> None:
+    again, _ = case(CaseName("null", "", 0, 0.0), tmp_path)
+    assert load_session(again).fingerprint == load_session(sheet).fingerprint

@@ -1,0 +1,98 @@
+"""`benchmark report` on finished runs: the page made again, runs side by side."""
+
+import json
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from benchmark.cli.app import main
+
+SMALL = ("--set", "fem.mesh=coarse", "--set", "load.observations=6", "--set", "load.peak=1 N", "--quiet")
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    folder = tmp_path_factory.mktemp("runs")
+    assert main(["run", "skin-5N", *SMALL, "--out", str(folder / "first")]) == 0
+    stiff = ("--set", "dermis.youngs_modulus=2 MPa", "--set", "support.kind=half_space")
+    assert main(["run", "skin-5N", *SMALL, *stiff, "--out", str(folder / "second")]) == 0
+    return folder / "first", folder / "second"
+
+
+def test_the_page_of_a_run_is_made_again_letter_by_letter(benchmark_cli, runs, tmp_path: Path) -> None:
+    for folder in runs:
+        before = (folder / "report.html").read_text()
+        assert benchmark_cli("report", folder, "--out", tmp_path / folder.name).code == 0
+        assert (tmp_path / folder.name / "report.html").read_text() == before
+        (folder / "report.html").unlink()
+        assert benchmark_cli("report", folder).code == 0
+        assert (folder / "report.html").read_text() == before
+
+
+def test_side_by_side_names_what_changed(benchmark_cli, runs, tmp_path: Path) -> None:
+    called = benchmark_cli("report", *runs, "--out", tmp_path / "both", "--json")
+    assert called.code == 0
+    document = json.loads(called.out)
+    changed = pd.read_csv(tmp_path / "both/tables/parameters.csv").set_index("parameter")
+    assert dict(changed.loc["dermis.youngs_modulus"]) == {"first": "960 kPa", "second": "2 MPa"}
+    assert dict(changed.loc["support.kind"]) == {"first": "bonded", "second": "half_space"}
+    assert set(changed.index) == {"dermis.youngs_modulus", "support.kind"}
+    table = pd.read_csv(tmp_path / "both/tables/runs.csv").set_index(["run", "layer"])
+    for folder in runs:
+        largest = pd.read_csv(folder / "tables/max_deformation.csv").groupby("layer")[["fem_mm", "wave_mm"]].max()
+        for layer, row in largest.iterrows():
+            found = table.loc[(folder.name, layer)]
+            assert found.fem_max_mm == pytest.approx(row.fem_mm, rel=1e-12)
+            assert found.wave_max_mm == pytest.approx(row.wave_mm, rel=1e-12, nan_ok=True)
+    assert [each["name"] for each in document["runs"]] == ["first", "second"]
+    page = (tmp_path / "both/report.html").read_text()
+    assert "2 parameters of the scenario differ." in page
+    for text in ("first, FEM", "first, wave model", "second, FEM", "Change against first"):
+        assert text in page
+    assert "second, wave model" not in page
+
+
+def test_a_stopped_run_keeps_its_failure(benchmark_cli, tmp_path: Path) -> None:
+    soft = [f"{layer}.youngs_modulus=10 kPa" for layer in ("epidermis", "dermis", "subcutaneous_fat")]
+    settings = [text for each in soft for text in ("--set", each)]
+    out = tmp_path / "r"
+    called = benchmark_cli(
+        "run",
+        "skin-5N",
+        "--set",
+        "fem.mesh=coarse",
+        "--set",
+        "load.observations=20",
+        *settings,
+        "--out",
+        out,
+        "--quiet",
+    )
+    assert called.code == 4
+    before = (out / "report.html").read_text()
+    assert benchmark_cli("report", out).code == 0
+    assert (out / "report.html").read_text() == before
+
+
+@pytest.mark.parametrize("what", ["missing", "not a run", "broken table"])
+def test_what_is_no_run_is_refused_and_left_alone(benchmark_cli, tmp_path: Path, runs, what: str) -> None:
+    folder = tmp_path / "r"
+    if what == "not a run":
+        folder.mkdir()
+        (folder / "results.json").write_text('{"schema": 1}')
+    if what == "broken table":
+        (folder / "tables").mkdir(parents=True)
+        for source in [*runs[0].glob("*.json"), runs[0] / "scenario.toml", *runs[0].glob("tables/*.csv")]:
+            (folder / source.relative_to(runs[0])).write_text(source.read_text())
+        (folder / "tables/timing.csv").write_text("model,repeat,setup_s,wall_s,cpu_s\nfem,1,soon,1,1\n")
+    called = benchmark_cli("report", folder)
+    assert called.code == 2
+    assert str(folder) in called.err.replace("\n", "")
+    assert not (folder / "report.html").exists()
+
+
+def test_a_run_beside_itself_is_refused(benchmark_cli, runs) -> None:
+    called = benchmark_cli("report", runs[0], runs[0])
+    assert called.code == 2
+    assert "give each one once" in called.err

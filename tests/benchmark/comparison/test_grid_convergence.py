@@ -1,0 +1,43 @@
+"""Richardson and the grid convergence index on series whose limit is known."""
+
+import pytest
+
+from benchmark.comparison import ComparisonError, grid_convergence
+
+
+@pytest.mark.parametrize("sizes", [(1.0, 2.0, 4.0), (1.0, 1.5, 2.7)])
+@pytest.mark.parametrize("order", [1.0, 1.7, 2.0])
+def test_the_order_and_the_limit_of_a_power_law(sizes: tuple[float, ...], order: float) -> None:
+    values = [3.0 + 0.01 * size**order for size in sizes]
+    found = grid_convergence(values, sizes)
+    assert found.observed
+    assert found.order == pytest.approx(order, rel=1e-9)
+    assert found.extrapolated == pytest.approx(3.0, rel=1e-12)
+    assert found.index == pytest.approx(1.25 * 0.01, rel=1e-9)
+    assert found.uncertainty == pytest.approx(1.25 * 0.01 / 1.15, rel=1e-9)
+    middle = grid_convergence(values, sizes, judged=1)
+    assert middle.index == pytest.approx(1.25 * 0.01 * sizes[1] ** order, rel=1e-9)
+
+
+def test_the_printed_example_of_celik() -> None:
+    # J. Fluids Eng. 130:078001, table 1: p = 1.53, extrapolated 6.1685, index 2.2 % of the value
+    found = grid_convergence((6.063, 5.972, 5.863), (1.0, 1.5, 1.5 * 1.333))
+    assert found.order == pytest.approx(1.53, abs=0.01)
+    assert found.extrapolated == pytest.approx(6.1685, abs=5e-4)
+    assert 100.0 * found.index / found.value == pytest.approx(2.2, abs=0.05)
+
+
+def test_oscillating_values_and_two_grids_take_the_cautious_factor() -> None:
+    found = grid_convergence((1.00, 1.02, 0.99), (1.0, 2.0, 4.0))
+    assert not found.observed
+    assert found.index >= 3.0 * 0.5 * 0.03
+    two = grid_convergence((1.0, 1.04), (1.0, 2.0), formal_order=1.0)
+    assert two.extrapolated == pytest.approx(0.96)
+    assert two.index == pytest.approx(3.0 * 0.04)
+    assert grid_convergence((1.0, 1.0), (1.0, 2.0)).uncertainty == 0.0
+
+
+def test_what_cannot_be_judged_is_refused() -> None:
+    for values, sizes in (((1.0,), (1.0,)), ((1.0, 2.0), (2.0, 1.0)), ((1.0, float("nan")), (1.0, 2.0))):
+        with pytest.raises(ComparisonError):
+            grid_convergence(values, sizes)

@@ -1,0 +1,20 @@
+"""The file reference is the schemas', and the one in docs/ is current."""
+
+from pathlib import Path
+
+from benchmark.files.reference import reference
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+def test_the_page_in_docs_is_current() -> None:
+    page = (ROOT / "docs/reference-files.md").read_text()
+    assert page == reference(), "make it anew: python -m benchmark.files.reference > docs/reference-files.md"
+
+
+def test_every_key_has_its_bounds_default_and_words() -> None:
+    page = reference()
+    assert "## Scenario: tool\n" in page
+    assert "| `poisson_ratio` | 0 to 0.49999 (at 0.5 the material has no finite bulk modulus) | needed |" in page
+    assert '| `mesh` | `"coarse"`, `"default"`, `"fine"` | `"default"` |' in page
+    assert "## session.toml: trials" in page

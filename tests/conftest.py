@@ -1,0 +1,6 @@
+"""What all tests share: drawn examples are never timed, since the machine may be busy."""
+
+from hypothesis import settings
+
+settings.register_profile("untimed", deadline=None)
+settings.load_profile("untimed")
