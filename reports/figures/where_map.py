@@ -121,12 +121,26 @@ class _Map:
         cycles = self._cycles(cell)
         width = _FIELD / len(cycles)
         left = self.columns.index(cell.column) - 0.5 * _FIELD + cycles.index(cell.cycle) * width
+        sharing = self._sharing(cell)
+        width /= len(sharing)
+        left += width * next(place for place, each in enumerate(sharing) if each is cell)
         deepest = max(max(each.depth_mm) for each in self.cells) or 1.0
         low, high = (min(max(end, 0.0), deepest) / deepest for end in cell.depth_mm)
         height = max(_FIELD * (high - low), 0.1)
         bottom = self.rows.index(cell.row) + 0.5 * _FIELD - _FIELD * low
         top = max(bottom - height, self.rows.index(cell.row) - 0.5 * _FIELD)
         return left, width, top, height
+
+    def _sharing(self, cell: Disagreement) -> list[Disagreement]:
+        """The cells at the same depths of the same field and cycle, which stand side by side."""
+        key = (cell.row, cell.column, cell.cycle)
+        low, high = cell.depth_mm
+        return [
+            each
+            for each in self.cells
+            if (each.row, each.column, each.cycle) == key
+            and (each is cell or (each.depth_mm[0] < high and low < each.depth_mm[1]))
+        ]
 
     def _cycles(self, cell: Disagreement) -> list[int]:
         return sorted({each.cycle for each in self.cells if each.column == cell.column})
