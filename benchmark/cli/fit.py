@@ -11,6 +11,8 @@ from benchmark.cli.options import Debug, Json, Out, Quiet, Seed, Set, parse_sett
 
 SessionFolder = Annotated[Path, typer.Argument(help="A trial session: a folder of CSV files.")]
 Specimen = Annotated[str | None, typer.Option("--specimen", help="Tissue of the trials: a name or a TOML file.")]
+Model = Annotated[Path | None, typer.Option("--model", help="Switch on the effects of a model file of discover.")]
+Effects = Annotated[Path | None, typer.Option("--effects", help="Effects of your own that the model file names.")]
 
 
 def register(app: typer.Typer) -> None:
@@ -21,6 +23,8 @@ def register(app: typer.Typer) -> None:
 def fit(
     session: SessionFolder,
     specimen: Specimen = None,
+    model: Model = None,
+    effects: Effects = None,
     out: Out = None,
     settings: Set = None,
     seed: Seed = 0,
@@ -37,7 +41,9 @@ def fit(
     from benchmark.runs import fit_to_folder
 
     console = Console(quiet=quiet)
-    outcome = fit_to_folder(session, specimen, parse_settings(settings), out, seed=seed, listener=console)
+    outcome = fit_to_folder(
+        session, specimen, parse_settings(settings), out, seed=seed, listener=console, model=model, effects=effects
+    )
     for warning in outcome.warnings:
         console.say(f"  warning: {warning}")
     if json:

@@ -22,6 +22,8 @@ Reference = Annotated[
     Path | None,
     typer.Option("--reference", help="Your own FEA in the FEM's place: a CSV file like max_deformation.csv."),
 ]
+Model = Annotated[Path | None, typer.Option("--model", help="Switch on the effects of a model file of discover.")]
+Effects = Annotated[Path | None, typer.Option("--effects", help="Effects of your own that the model file names.")]
 Repeats = Annotated[int, typer.Option("--repeats", min=3, help="Timed repeats of each model.")]
 
 Refine = Annotated[
@@ -42,6 +44,8 @@ def run(
     tissue: Tissue = None,
     wave: Wave = None,
     reference: Reference = None,
+    model: Model = None,
+    effects: Effects = None,
     out: Out = None,
     settings: Set = None,
     fields: Fields = "peak",
@@ -63,7 +67,7 @@ def run(
 
     console = Console(quiet=quiet)
     request = RunRequest(
-        scenario, trials, specimen, parse_settings(settings), out, wave, reference, tuple(tissue or ())
+        scenario, trials, specimen, parse_settings(settings), out, wave, reference, tuple(tissue or ()), model, effects
     )
     options = RunOptions(every_field=fields == "all", repeats=repeats, refine=refine, seed=seed)
     return show_runs(carry_out(request, options, console), console, as_json=json)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from benchmark.files import Scenario
+from benchmark.model_file import RepairedModel
 from benchmark.models.result import Drive, PreparedModel
 from benchmark.models.user_file import UserFile
 
 
-def prepare(model: str, scenario: Scenario, *, every_field: bool = False, own: UserFile | None = None) -> PreparedModel:
+def prepare(
+    model: str, scenario: Scenario, *, every_field: bool = False, own: UserFile | RepairedModel | None = None
+) -> PreparedModel:
     """Set a model up for a scenario.
 
     Parameters
@@ -19,7 +22,7 @@ def prepare(model: str, scenario: Scenario, *, every_field: bool = False, own: U
     every_field
         Keep the fields of each step instead of the peak's and the last one's (FEM).
     own
-        A user's own model in the wave's place.
+        A user's own model in the wave's place, or a model file whose effects are switched on.
 
     Raises
     ------
@@ -28,6 +31,11 @@ def prepare(model: str, scenario: Scenario, *, every_field: bool = False, own: U
     InputError
         The scenario is at fault.
     """
+    if isinstance(own, RepairedModel):
+        from benchmark.models.repaired import RepairedPress, on_its_base, switched_on
+
+        base = prepare(model, on_its_base(own, scenario), every_field=every_field)
+        return RepairedPress(base, switched_on(own, scenario, model))
     if model == "fem":
         from benchmark.models.fem_model import FemModel
 

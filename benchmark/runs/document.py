@@ -32,6 +32,8 @@ def results_document(record: RunRecord) -> dict[str, Any]:
             "repeats": ratio.repeats if ratio else 0,
         },
     }
+    if record.effects:
+        document["effects"] = list(record.effects)
     if record.measured is not None:
         document["trials"] = {
             "session": record.measured.session.name,

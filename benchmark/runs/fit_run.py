@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from benchmark.errors import InputError
 from benchmark.fitting import parameter_columns
+from benchmark.models.repaired import load_repair
 from benchmark.runs.destination import destination
 from benchmark.runs.environment import describe_environment
 from benchmark.runs.listener import Listener
@@ -34,8 +36,12 @@ def fit_to_folder(
     *,
     seed: int,
     listener: Listener,
+    model: Path | None = None,
+    effects: Path | None = None,
 ) -> FitOutcome:
     """Fit a session and write fit.json, fitted_parameters.csv and report.html.
+
+    With a `model` file its effects are in the fit; `effects` is the user's own file that it may name.
 
     Raises
     ------
@@ -44,7 +50,10 @@ def fit_to_folder(
     OSError
         Where the file system refuses; `out` is then as it was.
     """
-    found = fit_trials(path, specimen, settings, listener)
+    if effects is not None and model is None:
+        raise InputError("--effects brings effects that a model file names: give --model with it")
+    repair = None if model is None else load_repair(model, effects)
+    found = fit_trials(path, specimen, settings, listener, repair=repair)
     session, fit, warnings = found.session, found.fit, found.warnings
     sheet = None if found.filmed is None else found.filmed.sheet
     document = {
@@ -53,6 +62,7 @@ def fit_to_folder(
         "session": {"name": session.name, "fingerprint": session.fingerprint, "synthetic": session.synthetic},
         "specimen": session.specimen.name,
         "warnings": list(warnings),
+        **({} if repair is None else {"effects": list(repair.slugs)}),
     }
     page = fit_page(session, fit, warnings, describe_environment(seed=seed), sheet)
     folder = destination(out, f"{session.name}-fit")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from benchmark.model_file import model_toml
 from benchmark.runs.document import results_document
 from benchmark.runs.environment import describe_environment
 from benchmark.runs.fields import write_fields
@@ -65,6 +66,8 @@ def write_run(record: RunRecord, folder: Path) -> RunOutcome:
         write_json(new / "results.json", document)
         write_json(new / "environment.json", environment)
         write_text(new / "scenario.toml", record.scenario.to_toml())
+        if record.repair is not None:
+            write_text(new / "model.toml", model_toml(record.repair))
         fem = record.pair.fem.result
         write_fields(new / "fields", fem.fields if fem is not None else ())
         write_page(new / "report.html", page)

@@ -9,6 +9,7 @@ import numpy as np
 
 from benchmark.comparison import LayerComparison, compare_layer
 from benchmark.files import Scenario, scenario_notes
+from benchmark.model_file import RepairedModel
 from benchmark.models import Array, ModelResult
 from benchmark.runs.measured import MeasuredComparison
 from benchmark.runs.refinement import Level
@@ -37,6 +38,10 @@ class RunRecord:
         What the reader must know, one sentence each.
     seed
         Of every random draw.
+    repair
+        The model file whose effects are switched on; None without, and in a run that was read back.
+    effects
+        Their slugs.
     levels
         Coarser and finer runs; empty where none were asked for.
     """
@@ -50,6 +55,8 @@ class RunRecord:
     measured: MeasuredComparison | None
     warnings: tuple[str, ...]
     seed: int
+    repair: RepairedModel | None = None
+    effects: tuple[str, ...] = ()
     levels: tuple[Level, ...] = ()
 
     @property

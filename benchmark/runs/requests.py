@@ -9,6 +9,7 @@ from pathlib import Path
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
 from benchmark.models import NOTHING, Own, read_reference, read_user_file
+from benchmark.models.repaired import load_repair
 from benchmark.runs.destination import destination
 from benchmark.runs.folder import RunOutcome, write_run
 from benchmark.runs.listener import Listener
@@ -34,6 +35,8 @@ class RunRequest:
     wave: Path | None = None
     reference: Path | None = None
     tissues: Sequence[str] = ()
+    model: Path | None = None
+    effects: Path | None = None
 
 
 def carry_out(request: RunRequest, options: RunOptions, listener: Listener) -> list[RunOutcome]:
@@ -70,6 +73,12 @@ def _check_together(request: RunRequest) -> None:
         raise InputError("--reference and --tissue belong to a SCENARIO: a session's press and specimen are its own")
     if request.tissues and "tissue" in (request.settings or {}):
         raise InputError("--tissue and --set tissue=... name the same thing: give one of them")
+    if request.model is not None and request.wave is not None:
+        raise InputError("--model and --wave exclude each other: a model file repairs the wave model of the harness")
+    if request.effects is not None and request.model is None:
+        raise InputError("--effects brings effects that a model file names: give --model with it")
+    if request.model is not None and request.trials is None and request.scenario is None:
+        raise InputError("--model needs a SCENARIO or --trials, so that it is clear what it is tried on")
     if request.reference is not None and len(request.tissues) > 1:
         raise InputError("--reference is the FEA of one tissue: give one --tissue with it, or none")
 
@@ -77,9 +86,11 @@ def _check_together(request: RunRequest) -> None:
 def _own(request: RunRequest, scenario: Scenario | None = None) -> Own:
     """What the user puts in the place of our models."""
     wave = None if request.wave is None else read_user_file(request.wave)
-    if request.reference is None or scenario is None:
-        return NOTHING if wave is None else Own(wave)
-    return Own(wave, read_reference(request.reference, scenario))
+    repair = None if request.model is None else load_repair(request.model, request.effects)
+    reference = None
+    if request.reference is not None and scenario is not None:
+        reference = read_reference(request.reference, scenario)
+    return NOTHING if wave is None and reference is None and repair is None else Own(wave, reference, repair)
 
 
 def _shipped(request: RunRequest, options: RunOptions, listener: Listener) -> list[RunOutcome]:

@@ -85,5 +85,7 @@ def run_scenario(
         measured=measured,
         warnings=gather_warnings(scenario, pair, said),
         seed=options.seed,
+        repair=own.repair,
+        effects=() if own.repair is None else own.repair.slugs,
         levels=levels,
     )

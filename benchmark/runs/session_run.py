@@ -29,7 +29,9 @@ from benchmark.fitting.sheet_law import Sheet
 from benchmark.fitting.sheet_parameters import sheet_parameters
 from benchmark.fitting.sheet_session import held_out_state
 from benchmark.fitting.sheet_trial import SheetTrial
+from benchmark.model_file import RepairedModel
 from benchmark.models import NOTHING, Array, Drive, Own, PreparedModel, UncoveredError, prepare
+from benchmark.models.repaired import effects_of, on_its_base
 from benchmark.runs.base_curve import Setup, base_curves, setup_scenario
 from benchmark.runs.film_tables import Motion, motions_of
 from benchmark.runs.filming import Films, session_films
@@ -37,6 +39,7 @@ from benchmark.runs.listener import Listener
 from benchmark.runs.measured import FilmedSession, MeasuredComparison, TrialPrediction
 from benchmark.runs.options import RunOptions
 from benchmark.runs.record import RunRecord
+from benchmark.runs.repaired_fit import fit_repaired, wave_force
 from benchmark.runs.report.measured_section import fit_headline
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.sheets import session_sheets
@@ -66,6 +69,8 @@ class FittedSession:
         What the markers tell; None without any.
     sheets
         Each filmed trial with its model, by condition and name.
+    added
+        By condition and trial: (n,) N that the effects of a model file add to the elastic force; empty without one.
     """
 
     session: Session
@@ -74,6 +79,7 @@ class FittedSession:
     warnings: tuple[str, ...]
     filmed: FilmedSession | None = None
     sheets: Mapping[Key, tuple[FilmedTrial, Sheet]] = field(default_factory=dict)
+    added: Mapping[Key, Array] = field(default_factory=dict)
 
     @property
     def stiffness_factor(self) -> float:
@@ -83,9 +89,17 @@ class FittedSession:
 
 
 def fit_trials(
-    path: Path, specimen: str | None, settings: Mapping[str, str], listener: Listener, *, films: bool = True
+    path: Path,
+    specimen: str | None,
+    settings: Mapping[str, str],
+    listener: Listener,
+    *,
+    films: bool = True,
+    repair: RepairedModel | None = None,
 ) -> FittedSession:
-    """Read a session and fit its specimen to all trials; with `films`, to their markers, too.
+    """Read a session and fit its specimen to all trials.
+
+    With `films` to their markers, too; with the effects of a model file (`repair`) to their force alone.
 
     Raises
     ------
@@ -99,6 +113,8 @@ def fit_trials(
     listener.say(f"{session.name}: fitting {len(session.trials)} trials")
     try:
         trials = tuple(_trial_data(trial, base.curves[trial.tool, trial.support]) for trial in session.trials)
+        if repair is not None:
+            return _fitted_with(repair, session, trials, base.warnings)
         fit = fit_session(trials, session.specimen.layers)
     except FittingError as error:
         raise InputError(f"session {session.folder}: {error}") from None
@@ -146,6 +162,19 @@ def _placed(model: Sheet, own: SheetTrial) -> Placed:
     return true_displacements
 
 
+def _fitted_with(
+    repair: RepairedModel, session: Session, trials: tuple[TrialData, ...], said: tuple[str, ...]
+) -> FittedSession:
+    """The fit with the effects of a model file; raises FittingError."""
+    names = ", ".join(repair.slugs) or "no effect"
+    made = fit_repaired(session, trials, repair)
+    warnings = [f"fitted with {names} of {repair.name} switched on, to the force alone"]
+    if not made.settled:
+        warnings.append("the stiffness did not come to rest with the effects in the fit: take it with care")
+    everything = (*session.warnings, *said, *made.fit.warnings, *warnings)
+    return FittedSession(session, made.fit, trials, everything, added=made.added)
+
+
 def run_session(
     path: Path,
     specimen: str | None,
@@ -158,7 +187,7 @@ def run_session(
 
     The fit is that of the finite elements, whatever `own` model stands in the wave's place.
     """
-    found = fit_trials(path, specimen, settings, listener)
+    found = fit_trials(path, specimen, settings, listener, repair=own.repair)
     session, fit = found.session, found.fit
     fitted = scaled_tissue(session.specimen, found.stiffness_factor, f"{session.specimen.name}, fitted")
     scenario = session_scenario(session, fitted, fit)
@@ -196,7 +225,7 @@ def _predictions(found: FittedSession, tissue: Tissue, own: Own) -> tuple[tuple[
     setups = [(trial.tool, trial.support) for trial in found.session.trials]
     waves = {setup: _wave(found.session, tissue, setup, own) for setup in dict.fromkeys(setups)}
     answers = [
-        (trial, _wave_force(trial, found.fit, waves[setup]))
+        (trial, _wave_force(trial, found, waves[setup], own))
         for setup, trial in zip(setups, found.trials, strict=True)
         if trial.key in kept
     ]
@@ -208,8 +237,11 @@ def _predictions(found: FittedSession, tissue: Tissue, own: Own) -> tuple[tuple[
 
 def _wave(session: Session, tissue: Tissue, setup: Setup, own: Own) -> PreparedModel | str:
     """The wave model of the fitted specimen, or why it does not cover it."""
+    scenario = setup_scenario(session, tissue, setup)
     try:
-        return prepare("wave", setup_scenario(session, tissue, setup), own=own.wave)
+        if own.repair is not None:
+            return prepare("wave", on_its_base(own.repair, scenario))
+        return prepare("wave", scenario, own=own.wave)
     except UncoveredError as error:
         return str(error)
 
@@ -233,21 +265,25 @@ def _fem_forces(trial: TrialData, found: FittedSession) -> tuple[Array, Array | 
     fit, sheet = found.fit, None if found.filmed is None else found.filmed.sheet
     own = None if sheet is None else sheet.trial(trial.key)
     if sheet is None or own is None:
-        return predict(fit, trial), predict(fit, trial, leave_one_out=True) if len(fit.trials) > 1 else None
+        added = found.added.get(trial.key, np.zeros(trial.rows))
+        others = predict(fit, trial, leave_one_out=True) + added if len(fit.trials) > 1 else None
+        return predict(fit, trial) + added, others
     film, model = found.sheets[trial.key]
     pooled = replace(own.state, log_stiffness=math.log(sheet.stiffness.value), relaxation=sheet.relaxation)
-    others = held_out_state(own, sheet.trials, sheet.relaxation) if len(sheet.trials) > 1 else None
-    return sheet_force(film, model, pooled), None if others is None else sheet_force(film, model, others)
+    state = held_out_state(own, sheet.trials, sheet.relaxation) if len(sheet.trials) > 1 else None
+    return sheet_force(film, model, pooled), None if state is None else sheet_force(film, model, state)
 
 
-def _wave_force(trial: TrialData, fit: SessionFit, wave: PreparedModel | str) -> Array | str:
+def _wave_force(trial: TrialData, found: FittedSession, wave: PreparedModel | str, own: Own) -> Array | str:
     """Force (n,) N of the wave model at the trial's depth below its contact, zero in the air; or why there is none."""
     if isinstance(wave, str):
         return wave
-    own = fit.trial(trial.name, trial.condition)
-    below = np.maximum(trial.depth - own.onset, 0.0)
+    fitted = found.fit.trial(trial.name, trial.condition)
+    below = np.maximum(trial.depth - fitted.onset, 0.0)
     drive = Drive("depth", trial.time - trial.time[0] + float(np.diff(trial.time)[0]), below)
     try:
-        return wave.run(drive).force + own.zero
+        if own.repair is not None:
+            return wave_force(found.session, trial, fitted.onset, wave, effects_of(own.repair)) + fitted.zero
+        return wave.run(drive).force + fitted.zero
     except UncoveredError as error:
         return str(error)

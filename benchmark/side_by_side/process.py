@@ -10,6 +10,7 @@ from types import TracebackType
 
 from benchmark.errors import InputError, SolverError
 from benchmark.files import Scenario
+from benchmark.model_file import RepairedModel
 from benchmark.models import UserFile
 from benchmark.side_by_side.messages import Answer, Crashed, Message, RunCommand
 from benchmark.side_by_side.worker import Job, serve
@@ -45,7 +46,7 @@ class ModelProcess:
         *,
         every_field: bool = False,
         core: int | None = None,
-        own: UserFile | None = None,
+        own: UserFile | RepairedModel | None = None,
     ):
         context = multiprocessing.get_context("spawn")
         self.model = model

@@ -119,9 +119,8 @@ def run_side_by_side(
 
 
 def _process(model: str, scenario: Scenario, every_field: bool, core: int | None, own: Own) -> ModelProcess:
-    """The process of one model, which may be the user's in the wave's place."""
-    users = own.wave if model == "wave" else None
-    return ModelProcess(model, scenario, every_field=every_field, core=core, own=users)
+    """The process of one model, which may be the user's in the wave's place, or have effects switched on."""
+    return ModelProcess(model, scenario, every_field=every_field, core=core, own=own.place(model))
 
 
 def _together(processes: list[ModelProcess], on_progress: OnProgress) -> dict[str, Answer]:

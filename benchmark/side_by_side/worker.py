@@ -11,18 +11,19 @@ from multiprocessing.connection import Connection
 
 from benchmark.errors import InputError
 from benchmark.files import Scenario
+from benchmark.model_file import RepairedModel
 from benchmark.models import StepProgress, UncoveredError, UserFile, prepare, scenario_drive, silent
 from benchmark.side_by_side.messages import Answer, Crashed, Declined, Finished, RunCommand, Seconds
 
 
 @dataclass(frozen=True)
 class Job:
-    """What a process is for: a model's place, the scenario, whether each field is kept, a user's own model."""
+    """What a process is for: a model's place, the scenario, whether fields are kept, and what a user puts there."""
 
     model: str
     scenario: Scenario
     every_field: bool = False
-    own: UserFile | None = None
+    own: UserFile | RepairedModel | None = None
 
 
 def serve(connection: Connection, job: Job, core: int | None) -> None:

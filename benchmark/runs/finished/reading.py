@@ -113,6 +113,7 @@ def _record(scenario: Scenario, document: dict[str, Any], tables: SavedTables, s
         measured=None,
         warnings=tuple(document["warnings"]),
         seed=seed,
+        effects=tuple(document.get("effects", ())),
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
@@ -138,9 +138,20 @@ def _key_figures(record: RunRecord) -> tuple[KeyFigure, ...]:
 def _notices(record: RunRecord, trials: TrialsPart | None) -> tuple[Notice, ...]:
     """What must be known before any figure: origin of the data, circularity, warnings."""
     notices = [] if trials is None else list(session_notices(trials.synthetic))
+    if record.effects:
+        notices.append(Notice("assumption", _effects_words(record.effects)))
     if record.warnings:
         notices.append(Notice("warning", "Read these before you quote a figure.", record.warnings))
     return tuple(notices)
+
+
+def _effects_words(effects: Sequence[str]) -> str:
+    """Which effects of a model file are on."""
+    names = ", ".join(slug.replace("_", " ") for slug in effects)
+    return (
+        f"Effects of model.toml are switched on: {names}. Under Method stands which model took which; warnings say "
+        "what a model left out."
+    )
 
 
 def _downloads(tables: Mapping[str, str]) -> tuple[Download, ...]:

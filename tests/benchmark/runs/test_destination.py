@@ -15,7 +15,7 @@ def test_default_is_a_fresh_dated_folder(tmp_path: Path, monkeypatch: pytest.Mon
     assert destination(None, "skin 5/N <b>") != first
 
 
-@pytest.mark.parametrize("marker", ["results.json", "fit.json"])
+@pytest.mark.parametrize("marker", ["results.json", "fit.json", "discovery.json"])
 def test_an_earlier_result_may_be_replaced(tmp_path: Path, marker: str) -> None:
     (tmp_path / marker).touch()
     (tmp_path / "report.html").touch()

@@ -1,0 +1,124 @@
+"""Fitting one candidate: starts screened by one step each, the promising one refined."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from benchmark.discovery.fit import Fit, White, fit
+from benchmark.discovery.model import Model, nuisance_precision
+from benchmark.discovery.problem import Problem
+from benchmark.discovery.result import Array
+from benchmark.effects import Effect
+from benchmark.effects.term import Values
+
+REFINED = 2
+"""Starts that are refined."""
+WORTH = 0.7
+"""A second start is refined where it promises at least this share of the first."""
+SCALES = (0.1, 10.0)
+"""A screened start's amplitude is scaled within this range."""
+
+
+def fit_candidate(base: Fit, effect: Effect, most: int = 10, known: tuple[Array, Array] | None = None) -> Fit:
+    """Fit `base` with one more effect.
+
+    Parameters
+    ----------
+    base
+        Model fitted without it.
+    effect
+        To add.
+    most
+        Steps of the refinement.
+    known
+        Vector and trial nuisances of this fit from before, which are then only looked up.
+    """
+    model = Model(base.model.problem, (*base.model.effects, effect))
+    if known is not None and known[0].shape == (model.size,) and known[1].shape == base.nuisance.shape:
+        return fit(model, known[0], known[1], most=0)
+    starts = screened(base, model, effect)
+    close = [start for won, start in starts[:REFINED] if won > WORTH * starts[0][0] or won == starts[0][0]]
+    fits = [fit(model, start, base.nuisance, base.columns, most) for start in close]
+    return min(fits, key=lambda each: each.objective)
+
+
+def screened(base: Fit, model: Model, effect: Effect) -> list[tuple[float, Array]]:
+    """Starts (p,) of the vector with what one step would gain from them, best first."""
+    problem = base.model.problem
+    white = White(problem)
+    known = base.model.values(base.vector)
+    plain = base.model.signals(base.vector, base.nuisance)
+    residuals = white.residuals(plain)
+    projections = _projections(base)
+    ranked: list[tuple[float, Array]] = []
+    for values in _starts(problem, effect):
+        start = model.vector(base.vector[: base.model.shape_count], {**known, effect.slug: values})
+        signals = model.signals(start, base.nuisance)
+        moved = [white.flat(i, signals[i] - plain[i]) for i in range(len(plain))]
+        overlap, size = _projected(projections, residuals, moved)
+        if size <= 0.0:
+            continue
+        scale = float(np.clip(overlap / size, *SCALES))
+        won = scale * overlap - 0.5 * scale**2 * size
+        ranked.append((won, _scaled(model, start, effect, values, scale, known)))
+    ranked.sort(key=lambda pair: -pair[0])
+    if not ranked:
+        first = effect.first_values(problem.study.conditions[0].around)[0]
+        return [(0.0, model.vector(base.vector[: base.model.shape_count], {**known, effect.slug: first}))]
+    return ranked
+
+
+def _scaled(
+    model: Model, start: Array, effect: Effect, values: Values, scale: float, known: Mapping[str, Values]
+) -> Array:
+    parameter = next(p for p in effect.card.parameters if p.name == effect.amplitude)
+    if parameter.logarithmic:
+        return start
+    changed = dict(values)
+    changed[effect.amplitude] = float(np.clip(values[effect.amplitude] * scale, parameter.low, parameter.high))
+    return model.vector(start[: model.shape_count], {**known, effect.slug: changed})
+
+
+def _starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
+    """Starts for all conditions, and with the other sign where the amplitude may have it."""
+    deepest = max((c.around for c in problem.study.conditions), key=lambda around: around.peak_depth)
+    quickest = min((c.around for c in problem.study.conditions), key=lambda around: around.duration)
+    found: list[dict[str, float]] = []
+    for around in (deepest, quickest) if deepest is not quickest else (deepest,):
+        found += [dict(each) for each in effect.first_values(around) if each not in found]
+    parameter = next(p for p in effect.card.parameters if p.name == effect.amplitude)
+    if parameter.low < 0.0 and not parameter.logarithmic:
+        found += [{**each, effect.amplitude: -each[effect.amplitude]} for each in found]
+    return found
+
+
+def _projections(base: Fit) -> tuple[list[tuple[Array, Array, Array]], Array]:
+    """For each trial its columns with the solved nuisances, and the normal matrix of the base's vector."""
+    problem = base.model.problem
+    weight = nuisance_precision(problem)
+    parts, matrix = [], np.diag(base.precision).astype(float)
+    for j, n in zip(base.columns.vector, base.columns.nuisance, strict=True):
+        inner = np.asarray(np.linalg.inv(n.T @ n + np.diag(weight)))
+        parts.append((j, n, inner))
+        side = n.T @ j
+        matrix += j.T @ j - side.T @ inner @ side
+    return parts, np.asarray(matrix)
+
+
+def _projected(
+    projections: tuple[list[tuple[Array, Array, Array]], Array], residuals: Sequence[Array], moved: Sequence[Array]
+) -> tuple[float, float]:
+    """Overlap of what an effect moves with the residual, and its own size, both off the base and the nuisances."""
+    parts, matrix = projections
+    overlap = size = 0.0
+    on_base, of_residual = np.zeros(len(matrix)), np.zeros(len(matrix))
+    for (j, n, inner), residual, move in zip(parts, residuals, moved, strict=True):
+        held = move - n @ (inner @ (n.T @ move))
+        overlap += float(held @ residual)
+        size += float(held @ move)
+        on_base += j.T @ held
+        of_residual += j.T @ (residual - n @ (inner @ (n.T @ residual)))
+    solved = np.linalg.solve(matrix, np.column_stack([on_base, of_residual]))
+    return overlap - float(on_base @ solved[:, 1]), size - float(on_base @ solved[:, 0])

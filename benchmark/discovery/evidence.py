@@ -1,0 +1,82 @@
+"""What held-out trials and conditions say for a model against another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmark.discovery.fit import Fit
+from benchmark.discovery.noise import whitener
+from benchmark.discovery.result import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Gain:
+    """Held-out log density of each trial (R,) less another model's, with mean, standard error and z."""
+
+    each: Array
+    mean: float
+    error: float
+    z: float
+
+
+def held_out(fitted: Fit) -> Array:
+    """(R,) log density of each trial under the fit to the others."""
+    count = len(fitted.model.problem.trials)
+    out = np.empty(count)
+    for index in range(count):
+        left = np.zeros(count, dtype=bool)
+        left[index] = True
+        out[index] = fitted.log_density(fitted.without(left))[index]
+    return out
+
+
+def held_out_conditions(fitted: Fit) -> Array:
+    """(R,) log density of each trial under the fit to the other conditions, to first order."""
+    conditions = np.array([trial.condition for trial in fitted.model.problem.trials])
+    out = np.empty(conditions.size)
+    for number in np.unique(conditions):
+        left = conditions == number
+        out[left] = fitted.log_density(fitted.without(left))[left]
+    return out
+
+
+def gain(fitted: Array, other: Array, conditions: Array) -> Gain:
+    """Paired gain of held-out densities (R,) over another model's; the error from the scatter within conditions."""
+    each = fitted - other
+    spread, freedom = 0.0, 0
+    for number in np.unique(conditions):
+        mine = each[conditions == number]
+        spread += float(((mine - mine.mean()) ** 2).sum())
+        freedom += mine.size - 1
+    if freedom < 1:
+        spread, freedom = float(((each - each.mean()) ** 2).sum()), max(each.size - 1, 1)
+    error = np.sqrt(spread / freedom / each.size)
+    mean = float(each.mean())
+    floor = 1e-9 + 0.02 * abs(mean)
+    return Gain(each, mean, float(error), mean / max(float(error), floor))
+
+
+def effective_size(fitted: Fit) -> float:
+    """Independent samples that tell as much as all rows of all signals."""
+    problem = fitted.model.problem
+    total = 0.0
+    for trial in problem.trials:
+        for signal, memory in enumerate(problem.noise.memory):
+            count = trial.count[:, signal]
+            if (count > 0.0).any():
+                total += float(np.sum(whitener(count, memory)(np.ones(count.size)) ** 2))
+    return max(total, float(len(problem.trials)))
+
+
+def informed(fitted: Fit) -> float:
+    """Parameters of the effects that the data tell of, in number: those only priors hold do not count."""
+    first = fitted.model.shape_count
+    shares = 1.0 - np.diag(fitted.covariance) * fitted.precision
+    return float(np.clip(shares[first:], 0.0, 1.0).sum())
+
+
+def delta_bic(fitted: Fit, other: Fit, samples: float) -> float:
+    """BIC of a model less another's: negative speaks for it."""
+    return 2.0 * (fitted.objective - other.objective) + (informed(fitted) - informed(other)) * float(np.log(samples))

@@ -1,0 +1,115 @@
+"""How much of the gap closed on held-out data, channel by channel, with the replicates' pure error as the floor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from benchmark.discovery.calibrate import pure_errors
+from benchmark.discovery.fit import Fit, fit, settled
+from benchmark.discovery.model import Model
+from benchmark.discovery.result import Array, ChannelGap
+from benchmark.discovery.settings import Settings
+
+
+@dataclass(frozen=True, eq=False)
+class HeldOut:
+    """Residuals (n, C) of each trial by a fit that has not seen it, before and after; `kind` as in `ChannelGap`."""
+
+    before: list[Array]
+    after: list[Array]
+    kind: str
+
+
+def held_out_residuals(base: Fit, chosen: Fit) -> HeldOut:
+    """Fit without each condition (or, with one, without each trial) and settle only gain, zero and shift there."""
+    groups = np.array([trial.condition for trial in base.model.problem.trials])
+    if np.unique(groups).size > 1:
+        parts, kind = [groups == number for number in np.unique(groups)], "condition"
+    else:
+        parts, kind = [np.arange(groups.size) == k for k in range(groups.size)], "trial"
+    before = _residuals(base, parts, kind)
+    after = before if chosen is base else _residuals(chosen, parts, kind)
+    return HeldOut(before, after, kind)
+
+
+def _residuals(fitted: Fit, parts: list[np.ndarray], kind: str) -> list[Array]:
+    problem = fitted.model.problem
+    out: list[Array] = [np.zeros(0)] * len(problem.trials)
+    for left in parts:
+        vector = _without_condition(fitted, left) if kind == "condition" else fitted.without(left)
+        state = settled(fitted.model, vector, fitted.nuisance)
+        signals = fitted.model.signals(vector, state, np.flatnonzero(left).tolist())
+        for index, signal in zip(np.flatnonzero(left), signals, strict=True):
+            out[index] = problem.trials[index].signals - signal
+    return out
+
+
+def _without_condition(fitted: Fit, left: np.ndarray) -> Array:
+    problem = fitted.model.problem
+    hidden = {problem.trials[i].condition for i in np.flatnonzero(left)}
+    masks = tuple(
+        np.full(c.signals.shape[1:], number not in hidden) for number, c in enumerate(problem.study.conditions)
+    )
+    model = Model(replace(problem, mask=masks), fitted.model.effects)
+    return fit(model, fitted.vector, fitted.nuisance, most=5).vector
+
+
+def gaps(base: Fit, held: HeldOut, settings: Settings) -> tuple[ChannelGap, ...]:
+    """The gap in each channel."""
+    problem = base.model.problem
+    floors = pure_errors(base)
+    before, after, floor = (_squares(base, rows) for rows in (held.before, held.after, floors))
+    channels = problem.study.channels
+    groups = np.array([trial.condition for trial in problem.trials])
+    generator = np.random.default_rng(settings.seed)
+    draws = [_draw(groups, generator) for _ in range(settings.bootstraps)]
+    out = []
+    for channel in dict.fromkeys(channels):
+        mine = [k for k, other in enumerate(channels) if other == channel]
+        b, a, f = (table[:, mine].mean(axis=1) for table in (before, after, floor))
+        f = np.where(np.isfinite(f), f, np.nanmedian(f) if np.isfinite(f).any() else 0.0)
+        closed = _closed(b.mean(), a.mean(), f.mean())
+        resampled = [_closed(b[d].mean(), a[d].mean(), f[d].mean()) for d in draws] if closed is not None else []
+        kept = [value for value in resampled if value is not None]
+        ends = np.quantile(kept, [0.025, 0.975]).tolist() if kept else None
+        one, two, least = (float(np.sqrt(values.mean())) for values in (b, a, f))
+        interval = None if ends is None else (ends[0], ends[1])
+        out.append(ChannelGap(channel, one, two, least, closed, interval, held.kind))
+    return tuple(out)
+
+
+def _draw(groups: Array, generator: np.random.Generator) -> Array:
+    parts = [np.flatnonzero(groups == number) for number in np.unique(groups)]
+    return np.concatenate([generator.choice(part, part.size) for part in parts])
+
+
+def _squares(base: Fit, rows: list[Array]) -> Array:
+    """(R, C) mean squares of each trial, rows weighted by their samples."""
+    out = []
+    for trial, residual in zip(base.model.problem.trials, rows, strict=True):
+        weight = trial.count
+        total = np.maximum(weight.sum(axis=0), 1e-12)
+        out.append(np.sum(weight * residual**2, axis=0) / total)
+    return np.array(out)
+
+
+LEAST_GAP = 0.05
+"""Where the base leaves less than this share above the floor there is nothing to close."""
+
+
+def _closed(before: float, after: float, floor: float) -> float | None:
+    open_before = before - floor
+    if open_before <= LEAST_GAP * floor:
+        return None
+    return float(min((before - after) / open_before, 1.0))
+
+
+def closed_overall(base: Fit, held: HeldOut) -> float | None:
+    """The gap closed in all channels together, each in units of its noise."""
+    floor = _squares(base, pure_errors(base))
+    known = np.where(np.isfinite(floor), floor, np.nanmedian(floor, axis=0))
+    unit = np.maximum(known.mean(axis=0), 1e-300)
+    before, after = (float((_squares(base, rows) / unit).mean()) for rows in (held.before, held.after))
+    return _closed(before, after, float((known / unit).mean()))

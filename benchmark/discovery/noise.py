@@ -1,0 +1,73 @@
+"""Noise with memory on rows that are means of raw samples, and the transform that whitens it.
+
+Raw samples are taken as first-order autoregressive; the variance of a mean and its covariance with the next mean
+follow in closed form (G. E. P. Box and G. M. Jenkins, Time Series Analysis, section 2.1), and rows further apart are
+taken as a Markov chain.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmark.discovery.result import Array
+
+MEMORIES = (0.0, 0.2, 0.4, 0.6, 0.75, 0.85, 0.92, 0.96, 0.98, 0.99, 0.995, 0.998)
+"""Correlations of neighbouring raw samples that are tried."""
+MISSING = 1e6
+"""Variance of a row without a sample, in those of a sample."""
+
+
+@dataclass(frozen=True, eq=False)
+class Whitener:
+    """z_k = (e_k - back_k e_(k-1)) / scale_k for noise of unit standard deviation a raw sample; (n,) each."""
+
+    back: Array
+    scale: Array
+
+    def __call__(self, rows: Array) -> Array:
+        """(n, ...) rows to white ones."""
+        back, scale = (a.reshape(-1, *[1] * (rows.ndim - 1)) for a in (self.back, self.scale))
+        before = np.concatenate([np.zeros_like(rows[:1]), rows[:-1]])
+        return np.asarray((rows - back * before) / scale)
+
+
+def whitener(count: Array, memory: float) -> Whitener:
+    """For rows that hold `count` (n,) raw samples, neighbours correlated by `memory`."""
+    held = np.maximum(count, 1.0)
+    if memory > 0.0:
+        fade = memory**held
+        variance = (1.0 + memory) / (1.0 - memory) / held - 2.0 * memory * (1.0 - fade) / (held * (1.0 - memory)) ** 2
+        joint = memory * (1.0 - fade[1:]) * (1.0 - fade[:-1]) / (1.0 - memory) ** 2 / (held[1:] * held[:-1])
+    else:
+        variance, joint = 1.0 / held, np.zeros(held.size - 1)
+    thin = (count > 0.0) & (count < 1.0)
+    variance = np.where(thin, variance / np.maximum(count, 1e-3), variance)
+    empty = count <= 0.0
+    variance = np.where(empty, MISSING, variance)
+    joint = np.where(empty[1:] | empty[:-1], 0.0, joint)
+    share = np.clip(joint / np.sqrt(variance[1:] * variance[:-1]), 0.0, 0.9999)
+    back = np.concatenate([[0.0], share * np.sqrt(variance[1:] / variance[:-1])])
+    scale = np.sqrt(variance * np.concatenate([[1.0], 1.0 - share**2]))
+    return Whitener(back, scale)
+
+
+def fit_memory(errors: Array, counts: Array) -> float:
+    """The memory of noise by maximum likelihood from errors (R, n), each trial with a scale of its own."""
+    best, chosen = np.inf, 0.0
+    for memory in MEMORIES:
+        total = 0.0
+        for error, count in zip(errors, counts, strict=True):
+            use = whitener(count, memory)
+            white = use(error)
+            total += error.size * np.log(np.mean(white**2) + 1e-300) + 2.0 * np.log(use.scale).sum()
+        if total < best:
+            best, chosen = total, memory
+    return chosen
+
+
+def scales(errors: Array, counts: Array, memory: float) -> Array:
+    """(R,) standard deviation of a raw sample in each trial."""
+    pairs = zip(errors, counts, strict=True)
+    return np.array([np.sqrt(np.mean(whitener(count, memory)(error) ** 2)) for error, count in pairs])

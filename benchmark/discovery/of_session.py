@@ -1,0 +1,77 @@
+"""A session's discovery with its origin, resumable, its progress told."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+from benchmark.discovery.base_law import base_law
+from benchmark.discovery.carrying_out import DiscoverRequest
+from benchmark.discovery.fem_base import fem_base
+from benchmark.discovery.planning import propose
+from benchmark.discovery.record import DiscoveryRecord
+from benchmark.discovery.settings import Settings
+from benchmark.discovery.workflow import Findings, findings
+from benchmark.effects import SLUGS, Effect
+from benchmark.files import Session, load_session
+from benchmark.runs.destination import file_name
+from benchmark.runs.listener import Listener
+
+STAGES = {
+    "prepare": "read and align the trials",
+    "detect": "is there a disagreement",
+    "verify": "what the effect closes",
+}
+
+
+def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listener: Listener) -> DiscoveryRecord:
+    """Find what the model of a session lacks.
+
+    Fits are kept beside the result folder until it is complete, so that an interrupted discovery goes on.
+
+    Raises
+    ------
+    InputError
+        The session cannot be used.
+    """
+    session = load_session(request.paths[0], request.settings, request.specimen)
+    own = tuple(effect for effect in effects if effect.slug not in SLUGS)
+    store = store_folder(request.out, session, request.model)
+    found = _found(session, request, own, listener, store)
+    shutil.rmtree(store, ignore_errors=True)
+    warnings = tuple(dict.fromkeys((*session.warnings, *found.discovery.warnings)))
+    return DiscoveryRecord(
+        name=session.name,
+        source="session",
+        fingerprint=session.fingerprint,
+        synthetic=session.synthetic,
+        tissue=session.specimen.name,
+        model=request.model,
+        found=replace(found.discovery, warnings=warnings),
+        cards={effect.slug: (effect.richer or effect).card for effect in effects},
+        seed=request.seed,
+        proposal=propose(found),
+        large_press="corrected",
+    )
+
+
+def store_folder(out: Path | None, session: Session, model: str) -> Path:
+    """Where the fits of an unfinished discovery are kept: beside the result, the same for the same session."""
+    if out is not None:
+        return out.parent / f".{out.name}-{model}.unfinished"
+    return Path("results") / f".{file_name(session.name)}-{session.fingerprint[:12]}-{model}.unfinished"
+
+
+def _found(
+    session: Session, request: DiscoverRequest, own: tuple[Effect, ...], listener: Listener, store: Path
+) -> Findings:
+    base_of = fem_base(session) if request.model == "fem" else base_law
+    settings = Settings(seed=request.seed)
+    with listener.progress(f"{session.name}: what the model lacks") as advance:
+
+        def on_stage(stage: str, done: int, total: int, best: str) -> None:
+            remark = f"best so far {best.replace('_', ' ')}" if best else ""
+            advance(STAGES.get(stage, stage), done, max(total, 1), remark)
+
+        return findings(session, settings=settings, effects=own, listener=on_stage, store=store, base_of=base_of)

@@ -1,0 +1,142 @@
+"""The short menu of experiments: protocols of motion that differ from a session's own in one thing each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+AIR = -2e-3
+APPROACH_SPEED = 1e-3
+FASTEST = 20e-3
+SLOWEST = 0.05e-3
+LONG = 60.0
+CYCLES = 3
+DEEPER = 1.5
+SHARE = 0.6
+"""Of the specimen's thickness, beyond which no press is proposed."""
+
+
+@dataclass(frozen=True)
+class Usual:
+    """A session's own press: depth m, speed m/s, hold s, and the thickness of the specimen on its base, m.
+
+    The thickness is endless over a hole, where a sheet is pressed deeper than it is thick.
+    """
+
+    depth: float
+    speed: float
+    hold: float
+    thickness: float
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """An entry of the menu.
+
+    Attributes
+    ----------
+    name : str
+    words : str
+        What to do, a sentence.
+    segments : tuple of mapping
+        Of the protocol, quantities as text.
+    setup : mapping
+        What a person does first; empty for nothing.
+    setup_minutes : float
+        How long that takes.
+    """
+
+    name: str
+    words: str
+    segments: tuple[Mapping[str, Any], ...]
+    setup: Mapping[str, Any] = field(default_factory=dict)
+    setup_minutes: float = 0.0
+
+    def table(self) -> dict[str, Any]:
+        """The protocol file as a table."""
+        setup = {"setup": dict(self.setup)} if self.setup else {}
+        return {
+            "schema": 1,
+            "name": f"next experiment, {self.name}",
+            "description": self.words,
+            **setup,
+            "segments": [dict(segment) for segment in self.segments],
+        }
+
+
+def same_again(usual: Usual) -> Experiment:
+    """The session's own press, against which the others are weighed."""
+    return Experiment("same again", "Press as before.", _press(usual.depth, usual.speed, usual.hold))
+
+
+def menu(usual: Usual) -> tuple[Experiment, ...]:
+    """What can be done with the tool in place, each with one thing changed."""
+    depth, speed, hold = usual.depth, usual.speed, usual.hold
+    deep = max(min(DEEPER * depth, SHARE * usual.thickness), depth)
+    fast, slow = min(5.0 * speed, FASTEST), max(0.1 * speed, SLOWEST)
+    entries = [
+        Experiment("longer hold", f"Press as before and hold for {LONG:g} s.", _press(depth, speed, LONG)),
+        Experiment("slower", f"Press at {1e3 * slow:.3g} mm/s.", _press(depth, slow, hold)),
+        Experiment("faster", f"Press at {1e3 * fast:.3g} mm/s.", _press(depth, fast, hold)),
+        Experiment("cycles", f"Press {CYCLES} times in a row.", _cycled(depth, speed)),
+        Experiment(
+            "rest in air",
+            f"Press, rest {LONG:g} s in air, and press again.",
+            (*_press(depth, speed, hold), _wait("rest", LONG), *_press(depth, speed, hold)[1:]),
+        ),
+    ]
+    if deep > 1.05 * depth:
+        entries.insert(1, Experiment("deeper", f"Press to {1e3 * deep:.3g} mm.", _press(deep, speed, hold)))
+    return tuple(entries)
+
+
+def rigid_block(force: float) -> Experiment:
+    """A press of the rig against itself."""
+    steps = (
+        _approach(),
+        {"kind": "move", "force": f"{force:.3g} N", "speed": "0.2 mm/s"},
+        _wait("hold", 2.0),
+        _retract(2e-3),
+    )
+    words = f"Put a rigid block in the specimen's place and press to {force:.3g} N: what gives way is the rig."
+    return Experiment("rigid block", words, steps, {"specimen": "a rigid block (steel or aluminium)"}, 10.0)
+
+
+def ruler_image() -> Experiment:
+    """A picture of known lengths."""
+    words = "Lay a ruler or a printed grid in the plane of the markers and take a picture, then press nothing."
+    steps = (_retract(2e-3), _wait("rest", 5.0))
+    return Experiment("ruler image", words, steps, {"image": "a ruler in the plane of the markers"}, 5.0)
+
+
+def _press(depth: float, speed: float, hold: float) -> tuple[Mapping[str, Any], ...]:
+    moved = ({"kind": "move", "depth": _mm(depth), "speed": _pace(speed)},)
+    held = (_wait("hold", hold),) if hold > 0.0 else ()
+    back = ({"kind": "move", "depth": "0 mm", "speed": _pace(speed)},)
+    return (_approach(), *moved, *held, *back, _retract(max(speed, 1e-3)))
+
+
+def _cycled(depth: float, speed: float) -> tuple[Mapping[str, Any], ...]:
+    cycle = {"kind": "cycle", "depth": ["0 mm", _mm(depth)], "speed": _pace(speed), "count": CYCLES}
+    return (_approach(), cycle, _retract(max(speed, 1e-3)))
+
+
+def _approach() -> Mapping[str, Any]:
+    return {"kind": "approach", "touch_force": "0.05 N", "speed": _pace(APPROACH_SPEED), "max_depth": "15 mm"}
+
+
+def _retract(speed: float) -> Mapping[str, Any]:
+    return {"kind": "retract", "depth": _mm(AIR), "speed": _pace(speed)}
+
+
+def _wait(kind: str, duration: float) -> Mapping[str, Any]:
+    return {"kind": kind, "duration": f"{duration:.4g} s"}
+
+
+def _mm(length: float) -> str:
+    return f"{1e3 * length:.4g} mm"
+
+
+def _pace(speed: float) -> str:
+    return f"{1e3 * speed:.4g} mm/s"

@@ -1,0 +1,249 @@
+"""From a session to a study: what can be used, aligned row by row, and what a reader must know of it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.discovery.layout import layout
+from benchmark.discovery.reading import (
+    RawTrial,
+    acceleration,
+    bin_means,
+    bin_sizes,
+    fractions,
+    marker_rows,
+    resting_grid,
+)
+from benchmark.discovery.result import Array
+from benchmark.discovery.segments import Segment, segments
+from benchmark.discovery.stages import stages
+from benchmark.discovery.study import ConditionData, Layout, Study
+from benchmark.effects import Surroundings
+from benchmark.errors import InputError
+from benchmark.files import Session, Trial
+
+LEAST_TRIALS = 3
+ENOUGH_TRIALS = 6
+MOST_RAW = 4000
+LEAST_TRAVEL = 1e-6
+SPREAD = 3.0
+"""Peak depths and speeds of the trials of one condition lie within this factor."""
+SAME_TIME = 0.05
+LEAST_BINS = 10
+
+Pieces: TypeAlias = tuple[Segment, ...]
+
+
+def prepare(session: Session, rows: int) -> Study:
+    """Align the trials of each condition.
+
+    Parameters
+    ----------
+    session
+        As loaded.
+    rows
+        About how many rows a trial is reduced to.
+
+    Raises
+    ------
+    InputError
+        Fewer than three trials, a trial without motion or force, or trials of different protocols in a condition.
+    """
+    if len(session.trials) < LEAST_TRIALS:
+        raise InputError(
+            f"session {session.name}: {len(session.trials)} trial(s); at least {LEAST_TRIALS} are needed to tell a "
+            f"disagreement from chance, and {ENOUGH_TRIALS} to show it at the 5 % level."
+        )
+    warnings = list(session.warnings)
+    if len(session.trials) < ENOUGH_TRIALS:
+        warnings.append(
+            f"{len(session.trials)} trials: sign flips of so few cannot reach the 5 % level, so nothing can be shown"
+        )
+    raw = [_raw(session, trial, warnings) for trial in session.trials]
+    groups = [[r for r in raw if r.trial.condition == name] for name in session.conditions]
+    kept = [_same_protocol(session, group, warnings) for group in groups]
+    camera = session.camera
+    seen = _seen(kept)
+    grid = None
+    if camera is not None and seen is not None:
+        positions = np.array([r.markers for group in kept for r in group if r.markers is not None][:1])
+        nominal = resting_grid(camera, positions)
+        grid = layout(nominal[seen], camera.marker_spacing)
+        if not seen.all():
+            warnings.append(f"{int((~seen).sum())} markers were not seen often enough and are left out")
+    order = {id(trial): number for number, trial in enumerate(session.trials)}
+    conditions = tuple(
+        _condition(session, group, grid, seen, np.array([order[id(r.trial)] for r in group]), rows)
+        for group in kept
+        if group
+    )
+    interval = float(np.median([np.median(np.diff(r.time)) for r in raw]))
+    return Study(conditions, grid, camera.distance if camera else None, interval, tuple(warnings))
+
+
+def _raw(session: Session, trial: Trial, warnings: list[str]) -> RawTrial:
+    table = trial.table
+    place = f"session {session.name}, trial {trial.name}"
+    if float(np.ptp(table.depth)) < LEAST_TRAVEL:
+        raise InputError(f"{place}: no motion, depth_mm stays at {1e3 * table.depth[0]:.4g}; the tool must press.")
+    if float(np.ptp(table.force)) <= 0.0:
+        raise InputError(f"{place}: force_N does not change; depth without force tells nothing of the tissue.")
+    if table.depth.max() <= 0.0:
+        raise InputError(f"{place}: depth_mm never rises above 0, so the tool never presses.")
+    time, depth, force = _decimated(table.time, table.depth, table.force)
+    interval = np.diff(time)
+    if interval.max() > 5.0 * np.median(interval):
+        warnings.append(f"trial {trial.name}: a gap of {interval.max():.3g} s between rows; nothing is filled in")
+    pieces = tuple(segments(time, depth))
+    if not any(piece.kind == "press" for piece in pieces):
+        raise InputError(f"{place}: the depth never rises by a tenth of its range; a press is needed.")
+    markers = marker_rows(trial, session.camera, time) if session.camera is not None else None
+    return RawTrial(trial, time, depth, force, acceleration(time, depth), markers[0] if markers else None, pieces)
+
+
+def _decimated(*columns: Array) -> list[Array]:
+    block = -(-columns[0].size // MOST_RAW)
+    if block == 1:
+        return [np.asarray(column, dtype=float) for column in columns]
+    whole = columns[0].size // block * block
+    return [np.asarray(column[:whole].reshape(-1, block).mean(axis=1)) for column in columns]
+
+
+def _kinds(raw: RawTrial) -> tuple[str, ...]:
+    return tuple(piece.kind for piece in raw.pieces)
+
+
+def _same_protocol(session: Session, group: Sequence[RawTrial], warnings: list[str]) -> list[RawTrial]:
+    """Trials with the motion of most, their segments alike."""
+    usual = Counter(_kinds(raw) for raw in group).most_common(1)[0][0]
+    model = next(raw for raw in group if _kinds(raw) == usual)
+    fitted = [raw if _kinds(raw) == usual else _timed_like(raw, model) for raw in group]
+    kept = [raw for raw in fitted if raw is not None]
+    name = group[0].trial.condition
+    odd = [raw.trial.name for raw, one in zip(group, fitted, strict=True) if one is None]
+    peaks = np.array([raw.depth.max() for raw in kept])
+    speeds = np.array([_speed(raw) for raw in kept])
+    wide = max(peaks.max() / peaks.min(), speeds.max() / speeds.min()) > SPREAD
+    if len(odd) > 0.25 * len(group) or wide:
+        raise InputError(
+            f"session {session.name}, condition {name}: trials of different protocols ({len(group)} trials; peak depth "
+            f"{1e3 * peaks.min():.3g} to {1e3 * peaks.max():.3g} mm, speed {1e3 * speeds.min():.3g} to "
+            f"{1e3 * speeds.max():.3g} mm/s); give each protocol a condition of its own."
+        )
+    if odd:
+        warnings.append(f"condition {name}: left out for another motion than the others': {', '.join(odd)}")
+    return kept
+
+
+def _speed(raw: RawTrial) -> float:
+    piece = next(piece for piece in raw.pieces if piece.kind == "press")
+    last = min(piece.last, raw.time.size - 1)
+    return float(abs(raw.depth[last] - raw.depth[piece.first]) / max(raw.time[last] - raw.time[piece.first], 1e-9))
+
+
+def _timed_like(raw: RawTrial, model: RawTrial) -> RawTrial | None:
+    """A trial with the segments of another by their times, if its motion is the same within 5 %."""
+    duration, other = np.ptp(raw.time), np.ptp(model.time)
+    if abs(duration / other - 1.0) > SAME_TIME:
+        return None
+    shown = np.interp(model.time - model.time[0], raw.time - raw.time[0], raw.depth)
+    if np.abs(shown - model.depth).max() > 0.2 * np.ptp(model.depth):
+        return None
+    stamps = [model.time[piece.first] - model.time[0] for piece in model.pieces]
+    edges = [int(np.searchsorted(raw.time - raw.time[0], stamp - 1e-9)) for stamp in stamps] + [raw.time.size]
+    pieces = [
+        replace(piece, first=first, last=last)
+        for piece, first, last in zip(model.pieces, edges[:-1], edges[1:], strict=True)
+    ]
+    return replace(raw, pieces=tuple(pieces)) if all(p.last > p.first for p in pieces) else None
+
+
+def _seen(groups: Sequence[Sequence[RawTrial]]) -> NDArray[np.bool_] | None:
+    """Markers (m,) that all trials with markers saw; None without any."""
+    each = [np.isfinite(raw.markers[0, :, 0]) for group in groups for raw in group if raw.markers is not None]
+    if not each:
+        return None
+    seen = np.all(each, axis=0)
+    return seen if seen.sum() >= 4 else None
+
+
+def _condition(
+    session: Session,
+    group: Sequence[RawTrial],
+    grid: Layout | None,
+    seen: NDArray[np.bool_] | None,
+    numbers: NDArray[np.int64],
+    rows: int,
+) -> ConditionData:
+    plan = _plan(group, rows)
+    tables, counts = zip(*(_binned(raw, plan, grid, seen) for raw in group), strict=True)
+    data = np.array(tables)
+    first = group[0].trial
+    time = data[..., 0] - data[:, :1, 0]
+    depth = data[..., 1]
+    kinds = np.concatenate([[piece] * (edges.size - 1) for piece, edges in plan]).astype(int)
+    stage = stages(group[0].pieces, kinds, np.median(depth, axis=0))
+    around = Surroundings(
+        tool_radius=first.tool.radius,
+        thickness=_finite(session.specimen.thickness),
+        peak_depth=float(depth.max()),
+        peak_force=float(np.median(np.ptp(data[..., 3], axis=1))),
+        duration=float(time[:, -1].max()),
+        spacing=session.camera.marker_spacing if session.camera and grid is not None else 0.0,
+        markers=None if grid is None else grid.rest,
+    )
+    return ConditionData(
+        first.condition,
+        first.tool,
+        first.support,
+        tuple(raw.trial.name for raw in group),
+        numbers,
+        time,
+        depth,
+        data[..., 2],
+        data[..., 3:],
+        np.array(counts),
+        *stage,
+        around,
+    )
+
+
+def _finite(thickness: float) -> float:
+    return thickness if np.isfinite(thickness) else 0.05
+
+
+def _plan(group: Sequence[RawTrial], rows: int) -> list[tuple[int, Array]]:
+    """For each segment its number and the edges (0 to 1) of its bins, the same for all trials."""
+    lengths = np.median([[piece.last - piece.first for piece in raw.pieces] for raw in group], axis=0)
+    share = np.sqrt(lengths) / np.sqrt(lengths).sum()
+    return [
+        (number, fractions(bin_sizes(max(int(length), 1), max(LEAST_BINS, int(rows * part)))))
+        for number, (length, part) in enumerate(zip(lengths, share, strict=True))
+    ]
+
+
+def _binned(
+    raw: RawTrial, plan: Sequence[tuple[int, Array]], grid: Layout | None, seen: NDArray[np.bool_] | None
+) -> tuple[Array, Array]:
+    """Rows (n, 3 + C): time, depth, acceleration, signals; and raw rows (n,) in each."""
+    columns = [raw.time, raw.depth, raw.acceleration, raw.force]
+    if grid is not None:
+        missing = np.full((raw.time.size, len(grid.names)), np.nan)
+        signals = missing if raw.markers is None else grid.signals(raw.markers[:, seen])
+        columns += list(signals.T)
+    table = np.column_stack(columns)
+    parts = [bin_means(table, raw.pieces[k].first, raw.pieces[k].last, edges) for k, edges in plan]
+    rows, counts = np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])
+    return _rising(rows), counts
+
+
+def _rising(rows: Array) -> Array:
+    """Times that rise, where bins without rows repeat one."""
+    rows[:, 0] = np.maximum.accumulate(rows[:, 0] + 1e-9 * np.arange(len(rows)))
+    return rows

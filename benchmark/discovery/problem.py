@@ -1,0 +1,110 @@
+"""A session's data with the base of each condition, the noise and the priors: all that a fit needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from benchmark.discovery.base_law import BaseLaw
+from benchmark.discovery.noise import Whitener, whitener
+from benchmark.discovery.result import Array
+from benchmark.discovery.simulator import Shape
+from benchmark.discovery.study import ConditionData, Study
+from benchmark.effects import Motion
+
+SHAPE_PRIOR = Shape(3.0, 0.05, 0.025, 0.01, 0.01, 0.025, 0.025, 0.02)
+"""Standard deviations of the base's nuisances (modulus: no bound in practice)."""
+MARKER_SHAPES = ("width", "marker_exponent", "marker_size")
+OFFSETS = ("x", "y", "tangential")
+"""Marker combinations with a zero of their own in each trial."""
+
+
+@dataclass(frozen=True)
+class TrialPrior:
+    """Standard deviations over trials: of log gain, force zero (N), time shift (s) and marker zeros (m)."""
+
+    gain: float
+    zero: float
+    shift: float
+    offset: float
+
+
+@dataclass(frozen=True, eq=False)
+class TrialRef:
+    """One trial of the study: where it is and what it measured; signals (n, C)."""
+
+    condition: int
+    row: int
+    number: int
+    name: str
+    motion: Motion
+    signals: Array
+    count: Array
+
+
+@dataclass(frozen=True, eq=False)
+class NoiseModel:
+    """Memory (C,) of each signal and the raw samples' scale (trials, C)."""
+
+    memory: tuple[float, ...]
+    scale: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What is fitted.
+
+    Attributes
+    ----------
+    study : Study
+    laws : tuple of BaseLaw
+        One a condition.
+    noise : NoiseModel
+    prior : TrialPrior
+    trials : tuple of TrialRef
+        All trials, condition by condition.
+    mask : tuple of (n, C) bool arrays or None
+        Cells that count, by condition; None: all.
+    """
+
+    study: Study
+    laws: tuple[BaseLaw, ...]
+    noise: NoiseModel
+    prior: TrialPrior
+    trials: tuple[TrialRef, ...]
+    mask: tuple[np.ndarray, ...] | None = None
+
+    @property
+    def shapes(self) -> tuple[str, ...]:
+        """Names of the base's nuisances in use."""
+        names = tuple(item.name for item in fields(Shape))
+        moving = self.study.layout is not None and any(law.outward is not None for law in self.laws)
+        return names if moving else tuple(name for name in names if name not in MARKER_SHAPES)
+
+    def whiteners(self, index: int) -> list[Whitener]:
+        """One a signal for a trial, its scale included."""
+        trial = self.trials[index]
+        out = []
+        for signal, memory in enumerate(self.noise.memory):
+            use = whitener(trial.count[:, signal], memory)
+            out.append(Whitener(use.back, use.scale * self.noise.scale[index, signal]))
+        return out
+
+
+def trial_refs(study: Study) -> tuple[TrialRef, ...]:
+    """All trials of a study; cells without a value count no samples and are set to zero."""
+    out = []
+    for number, condition in enumerate(study.conditions):
+        for row in range(condition.size):
+            signals = condition.signals[row]
+            count = np.where(np.isfinite(signals), condition.count[row][:, None], 0.0)
+            motion = Motion(condition.time[row], condition.depth[row], condition.acceleration[row])
+            known = np.nan_to_num(signals)
+            out.append(TrialRef(number, row, int(condition.numbers[row]), condition.trials[row], motion, known, count))
+    return tuple(out)
+
+
+def condition_of(problem: Problem, index: int) -> ConditionData:
+    """The condition of a trial."""
+    return problem.study.conditions[problem.trials[index].condition]

@@ -1,0 +1,29 @@
+"""A quick look at all effects: what each could gain in one step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from benchmark.discovery.candidate_fit import screened
+from benchmark.discovery.fit import Fit
+from benchmark.discovery.model import Model
+from benchmark.effects import Effect
+
+
+@dataclass(frozen=True, eq=False)
+class Screened:
+    """An effect and what one step towards it gains, in log density over all trials."""
+
+    effect: Effect
+    won: float
+
+
+def screen(current: Fit, effects: Sequence[Effect]) -> tuple[Screened, ...]:
+    """Effects by what one step gains, best first."""
+    out = []
+    for effect in effects:
+        model = Model(current.model.problem, (*current.model.effects, effect))
+        ranked = screened(current, model, effect)
+        out.append(Screened(effect, ranked[0][0] if ranked else 0.0))
+    return tuple(sorted(out, key=lambda each: -each.won))

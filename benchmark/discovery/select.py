@@ -1,0 +1,242 @@
+"""Which effects: forward, then backward, then swaps, judged on held-out trials and held-out conditions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from benchmark.discovery.evidence import Gain, delta_bic, effective_size, gain, held_out, held_out_conditions
+from benchmark.discovery.fit import Fit
+from benchmark.discovery.model import Model
+from benchmark.discovery.pool import Pool
+from benchmark.discovery.result import Array
+from benchmark.discovery.screen import Screened, screen
+from benchmark.discovery.settings import Settings
+from benchmark.effects import Effect
+
+REFINED = 7
+"""Candidates that are refined in the first round; fewer later on."""
+LATER = 5
+WORTH = 0.12
+"""A further effect must gain at least this share of what the first gained: less is the first one's form."""
+SURE_BIC = -6.0
+CLOSE = 0.03
+"""A rival whose gain lacks no more than this share of the best one's counts as a look-alike."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scored:
+    """A candidate with its evidence against the model it adds to."""
+
+    fit: Fit
+    slug: str
+    gain: Gain
+    transfer: Gain | None
+    delta_bic: float
+
+    @property
+    def slugs(self) -> tuple[str, ...]:
+        """Effects of the candidate."""
+        return tuple(effect.slug for effect in self.fit.model.effects)
+
+
+@dataclass(frozen=True, eq=False)
+class Selection:
+    """The chosen fit (the base's where nothing was accepted), its steps and its look-alikes.
+
+    `first` are the candidates of the first round, best first, refined or only screened (`screened`); `lookalikes`
+    and `rivals` are by the slug of a chosen effect.
+    """
+
+    base: Fit
+    chosen: Fit
+    steps: tuple[Scored, ...]
+    candidates: tuple[Scored, ...]
+    screened: tuple[Screened, ...]
+    lookalikes: dict[str, tuple[str, ...]]
+    rivals: dict[str, tuple[Fit, ...]]
+
+
+def select(base: Fit, effects: Sequence[Effect], settings: Settings, work: Pool) -> Selection:
+    """Choose effects."""
+    current = base
+    steps: list[Scored] = []
+    all_scored: list[Scored] = []
+    first_screen: tuple[Screened, ...] = ()
+    rounds: list[list[Scored]] = []
+    for number in range(1, settings.most_effects + 1):
+        taken = {effect.slug for effect in current.model.effects}
+        rest = [effect for effect in effects if effect.slug not in taken and usable(base, effect)]
+        ranked = screen(current, rest)
+        if number == 1:
+            first_screen = ranked
+        promising = _promising(ranked, REFINED if number == 1 else LATER)
+        scored = score(current, work.fits(f"round {number}", [(current, s.effect) for s in promising]))
+        scored = _enriched(current, scored, work)
+        rounds.append(scored)
+        all_scored += scored
+        best = next((s for s in scored if _accepted(s, steps, settings)), None)
+        if best is None:
+            break
+        steps.append(best)
+        current = best.fit
+    current = _pruned(base, current, settings, work)
+    current = _swapped(base, current, rounds, work)
+    lookalikes, rivals = _lookalikes(base, current, rounds, settings, work)
+    return Selection(base, current, tuple(steps), tuple(all_scored), first_screen, lookalikes, rivals)
+
+
+def usable(base: Fit, effect: Effect) -> bool:
+    """Whether the session's channels can show an effect."""
+    return not effect.needs_markers or base.model.problem.study.layout is not None
+
+
+def conditions(fitted: Fit) -> Array:
+    """(R,) number of each trial's condition."""
+    return np.array([trial.condition for trial in fitted.model.problem.trials])
+
+
+def score(current: Fit, fits: Sequence[Fit]) -> list[Scored]:
+    """Candidates by their held-out gain over `current`, best first."""
+    groups = conditions(current)
+    before, samples = held_out(current), effective_size(current)
+    several = np.unique(groups).size > 1
+    before_conditions = held_out_conditions(current) if several else None
+    out = []
+    for made in fits:
+        transfer = gain(held_out_conditions(made), before_conditions, groups) if before_conditions is not None else None
+        slug = made.model.effects[-1].slug
+        out.append(
+            Scored(made, slug, gain(held_out(made), before, groups), transfer, delta_bic(made, current, samples))
+        )
+    return sorted(out, key=lambda each: -each.gain.mean)
+
+
+def _promising(ranked: Sequence[Screened], count: int) -> list[Screened]:
+    top = ranked[0].won if ranked else 0.0
+    return [s for k, s in enumerate(ranked[:count]) if k < 2 or s.won > 0.02 * top]
+
+
+def _accepted(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:
+    worth = not steps or scored.gain.mean >= WORTH * steps[0].gain.mean
+    return worth and scored.gain.z >= settings.accept_z and scored.delta_bic < SURE_BIC
+
+
+def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
+    """Memory effects near the top with one more term, where BIC prefers it."""
+    if not scored:
+        return scored
+    top = scored[0].gain.mean
+    wanted = [s for s in scored[:3] if s.fit.model.effects[-1].richer is not None and s.gain.mean > 0.5 * top]
+    wanted = [s for s in wanted if s.gain.z >= 2.0]
+    jobs = [(current, s.fit.model.effects[-1].richer) for s in wanted]
+    richer = work.fits("second terms", [(fit, effect) for fit, effect in jobs if effect is not None])
+    better = {s.slug: s for s in score(current, richer)}
+    chosen = []
+    for s in scored:
+        other = better.get(s.slug)
+        chosen.append(other if other is not None and other.delta_bic < s.delta_bic + SURE_BIC else s)
+    return sorted(chosen, key=lambda each: -each.gain.mean)
+
+
+def _rebuilt(base: Fit, effects: Sequence[Effect], work: Pool, stage: str) -> Fit:
+    """Fit the base with several effects, one after the other."""
+    current = base
+    for effect in effects:
+        current = work.fits(stage, [(current, effect)])[0]
+    return current
+
+
+def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> Fit:
+    """Drop what the others make superfluous."""
+    while len(current.model.effects) > 1:
+        groups, now = conditions(current), held_out(current)
+        trials = []
+        for effect in current.model.effects[:-1]:
+            kept = [other for other in current.model.effects if other is not effect]
+            trials.append((effect, _rebuilt(base, kept, work, "backward")))
+        needless = [
+            less
+            for _, less in trials
+            if gain(now, held_out(less), groups).z < settings.accept_z or less.objective <= current.objective
+        ]
+        if not needless:
+            return current
+        current = min(needless, key=lambda each: each.objective)
+    return current
+
+
+def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], work: Pool) -> Fit:
+    """With two effects or more, put the best rivals in the place of each and keep what gains."""
+    if len(current.model.effects) < 2 or not rounds:
+        return current
+    taken = {effect.slug for effect in current.model.effects}
+    rivals = [s.fit.model.effects[-1] for s in rounds[0] if s.slug not in taken][:2]
+    best, density = current, float(held_out(current).sum())
+    for effect in current.model.effects:
+        others = [other for other in current.model.effects if other is not effect]
+        under = _rebuilt(base, others, work, "swaps")
+        for made in work.fits("swaps", [(under, rival) for rival in rivals]):
+            if float(held_out(made).sum()) > density:
+                best, density = made, float(held_out(made).sum())
+    return best
+
+
+def _lookalikes(
+    base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], settings: Settings, work: Pool
+) -> tuple[dict[str, tuple[str, ...]], dict[str, tuple[Fit, ...]]]:
+    """For each chosen effect the slugs that do as well in its place, and their fits."""
+    names: dict[str, tuple[str, ...]] = {}
+    fits: dict[str, tuple[Fit, ...]] = {}
+    chosen = current.model.effects
+    taken = {effect.slug for effect in chosen}
+    groups, now, before = conditions(current), held_out(current), held_out(base)
+    total = float((now - before).mean())
+    for effect in chosen:
+        others = [other for other in chosen if other is not effect]
+        if others:
+            under = _rebuilt(base, others, work, "look-alikes")
+            near = [s.fit.model.effects[-1] for s in rounds[0] if s.slug not in taken][:3]
+            made = work.fits("look-alikes", [(under, rival) for rival in near])
+        else:
+            made = [s.fit for s in rounds[0] if s.slug not in taken]
+        alike = []
+        for rival in made:
+            lead = gain(now, held_out(rival), groups)
+            if lead.mean < settings.lookalike_z * lead.error or lead.mean < CLOSE * total:
+                alike.append((lead.mean, rival))
+        alike.sort(key=lambda pair: pair[0])
+        names[effect.slug] = tuple(rival.model.effects[-1].slug for _, rival in alike)
+        fits[effect.slug] = tuple(rival for _, rival in alike)
+    return names, fits
+
+
+def constant(fitted: Fit) -> bool | None:
+    """Whether the effects' parameters agree between conditions, each told from its own trials; None with one.
+
+    Each condition's own estimate is one step from the joint fit; parameters agree where they differ by less than three
+    standard errors or a fifth of their value (0.4 in the logarithm).
+    """
+    groups = conditions(fitted)
+    if np.unique(groups).size < 2 or not fitted.model.effects:
+        return None
+    first = fitted.model.shape_count
+    agree = True
+    for number in np.unique(groups):
+        own = fitted.without(groups != number)[first:]
+        matrix = fitted.blocks.matrix[groups == number].sum(axis=0) + np.diag(fitted.precision)
+        error = np.sqrt(np.diag(np.linalg.pinv(matrix, hermitian=True)))[first:]
+        low, high = fitted.model.bounds
+        for k, (_, parameter) in enumerate(fitted.model.parameters):
+            moved = abs(own[k] - fitted.vector[first + k])
+            size = 0.7 if parameter.logarithmic else 0.35 * abs(fitted.vector[first + k])
+            at_edge = own[k] <= low[first + k] or own[k] >= high[first + k]
+            agree &= bool(moved < max(3.0 * error[k], size) or (at_edge and moved < 3.0 * error[k]))
+    return agree
+
+
+def refit_model(fitted: Fit, **changes: object) -> Model:
+    """The model of a fit on a changed problem."""
+    return Model(replace(fitted.model.problem, **changes), fitted.model.effects)  # type: ignore[arg-type]

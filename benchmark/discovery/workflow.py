@@ -1,0 +1,178 @@
+"""The whole way: a session to what its model lacks."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from benchmark.discovery.answer import base_estimates, candidates, named_effects, remains, transfers
+from benchmark.discovery.base_law import BaseLaws, base_law
+from benchmark.discovery.calibrate import Calibrated, calibrate
+from benchmark.discovery.contrasts import contrasts
+from benchmark.discovery.detect import Detection, detect, places, smallest_visible, unexplained
+from benchmark.discovery.gap import HeldOut, closed_overall, gaps, held_out_residuals
+from benchmark.discovery.pool import Listener, fingerprint, pool, silent
+from benchmark.discovery.preparing import ENOUGH_TRIALS, prepare
+from benchmark.discovery.result import Discovery
+from benchmark.discovery.select import Selection, select
+from benchmark.discovery.settings import Settings
+from benchmark.discovery.traces import traces
+from benchmark.discovery.verdict import Facts, statement, verdict
+from benchmark.effects import Effect, catalogue
+from benchmark.files import Session
+
+DEFAULT = Settings()
+VERSION = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Findings:
+    """The answer with the fits behind it.
+
+    Attributes
+    ----------
+    discovery : Discovery
+        Plain results.
+    calibrated : Calibrated
+        The base's fit, with noise and priors.
+    selection : Selection
+        The chosen fit, its look-alikes and their fits.
+    """
+
+    discovery: Discovery
+    calibrated: Calibrated
+    selection: Selection
+
+
+def discover(
+    session: Session,
+    *,
+    settings: Settings = DEFAULT,
+    effects: Sequence[Effect] = (),
+    listener: Listener = silent,
+    store: Path | None = None,
+) -> Discovery:
+    """Find what the model of a session lacks; see `findings`."""
+    return findings(session, settings=settings, effects=effects, listener=listener, store=store).discovery
+
+
+def findings(
+    session: Session,
+    *,
+    settings: Settings = DEFAULT,
+    effects: Sequence[Effect] = (),
+    listener: Listener = silent,
+    store: Path | None = None,
+    base_of: BaseLaws = base_law,
+) -> Findings:
+    """Find what the model of a session lacks, and keep the fits.
+
+    Parameters
+    ----------
+    session
+        Measured trials.
+    settings
+        The same for all sessions unless a user says otherwise.
+    effects
+        Own effects beside the catalogue (`benchmark.effects.load_effects`).
+    listener
+        Told of stage, done, total and the best candidate so far.
+    store
+        Folder for fits as they come, from which an interrupted discovery goes on.
+    base_of
+        The elastic base of a set-up; the wave models' by default.
+
+    Raises
+    ------
+    InputError
+        The session cannot be used: too few trials, no motion, no force, or mixed protocols.
+    """
+    began = time.perf_counter()
+    listener("prepare", 0, 1, "")
+    study = prepare(session, settings.rows)
+    calibrated = calibrate(session, study, base_of)
+    base = calibrated.base
+    listener("detect", 0, 1, "")
+    before = detect(base, settings)
+    known = (*catalogue(), *effects)
+    key = fingerprint(VERSION, session.fingerprint, settings, [each.card for each in effects])
+    with pool(settings.workers, store, key, effects, listener) as work:
+        selection = select(base, known, settings, work)
+    listener("verify", 0, 1, "")
+    after = detect(selection.chosen, settings) if selection.chosen is not base else before
+    held = held_out_residuals(base, selection.chosen)
+    discovery = _discovery(session, settings, calibrated, selection, (before, after), held, known, began)
+    return Findings(discovery, calibrated, selection)
+
+
+def _discovery(
+    session: Session,
+    settings: Settings,
+    calibrated: Calibrated,
+    selection: Selection,
+    detections: tuple[Detection, Detection],
+    held: HeldOut,
+    known: Sequence[Effect],
+    began: float,
+) -> Discovery:
+    base, chosen = selection.base, selection.chosen
+    before, after = detections
+    facts = _facts(selection, before, after, known, settings)
+    word = verdict(facts)
+    problem = base.model.problem
+    study = problem.study
+    overall = closed_overall(base, held)
+    slugs = tuple(effect.slug for effect in chosen.model.effects)
+    shown = places(base, before, settings.level)
+    silent_answer = word == "no_discrepancy"
+    return Discovery(
+        verdict=word,
+        statement=statement(word, facts),
+        p=before.p,
+        effects=() if silent_answer else named_effects(selection),
+        where=shown,
+        contrasts=contrasts(base, before, settings),
+        gap=gaps(base, held, settings),
+        smallest_visible=smallest_visible(base, before),
+        candidates=candidates(selection, {slugs: overall} if slugs else {}),
+        base=base_estimates(chosen),
+        remains=remains(chosen, after, settings.level) if not silent_answer else (),
+        warnings=(*study.warnings, *calibrated.warnings, *_remarks(before)),
+        traces=traces(base, held),
+        conditions=session.conditions,
+        channels=tuple(dict.fromkeys(study.channels)),
+        trials=tuple(trial.name for trial in problem.trials),
+        seconds=time.perf_counter() - began,
+    )
+
+
+def _facts(
+    selection: Selection, before: Detection, after: Detection, known: Sequence[Effect], settings: Settings
+) -> Facts:
+    by_slug = {effect.slug: effect for effect in known}
+    chosen = selection.chosen.model.effects
+    alike = {slug for slugs in selection.lookalikes.values() for slug in slugs}
+    open_before = unexplained(before)
+    left = unexplained(after) / open_before if open_before > 0.0 else 0.0
+    return Facts(
+        p=before.p,
+        enough=len(selection.base.model.problem.trials) >= ENOUGH_TRIALS,
+        effects=tuple(chosen),
+        lookalikes=tuple(by_slug[slug] for slug in sorted(alike)),
+        left=max(left, 0.0),
+        p_after=after.p,
+        transfers=transfers(selection),
+        level=settings.level,
+    )
+
+
+def _remarks(before: Detection) -> tuple[str, ...]:
+    """Whether the trials can be exchanged."""
+    if before.trend.size and abs(before.trend).max() > 6.0:
+        return (
+            "residuals change with the trial number: the trials are not exchangeable (softening, set or drift from "
+            "trial to trial)",
+        )
+    return ()

@@ -1,0 +1,60 @@
+"""Interface slip: layers slide over each other beyond a shear limit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from benchmark.effects.effect import Card
+from benchmark.effects.parameter import linear, logarithmic
+from benchmark.effects.term import Effect, Press, Spread, Surroundings, Values
+
+CARD = Card(
+    slug="interface_slip",
+    acts_on="body",
+    sentence="Layers slide over each other beyond a shear limit: the lower face is carried along less than it should.",
+    equation="F = (1 - s) f + y, y follows s f within +-s F_s; markers move with (1 - q) + q y / (s f)",
+    source="W. D. Iwan 1966, J Appl Mech 33:893 (Jenkin element)",
+    parameters=(
+        logarithmic("limit", "N", 1e-4, 1e3, "force at which the interface begins to slide"),
+        linear("force_share", "", 0.0, 1.0, "share of the stiffness that goes through the interface"),
+        linear("marker_share", "", 0.0, 1.0, "share of the markers' motion that goes through the interface"),
+    ),
+)
+
+
+def _body(values: Values, around: Surroundings) -> Mapping[str, Any]:
+    from wavemodel.physics import InterfaceSlip
+
+    return {"slip": InterfaceSlip(values["limit"], values["force_share"])}
+
+
+def _spread(values: Values, spread: Spread, press: Press, around: Surroundings) -> Spread:
+    from wavemodel.integrators.scan import bounded_sum
+
+    push = _bare(press.elastic, values["force_share"], values["limit"])
+    limit = np.where(press.touching, values["limit"], 0.0)
+    carried = bounded_sum(np.diff(push, prepend=0.0), limit)
+    passed = np.divide(carried, push, out=np.ones_like(push), where=np.abs(push) > 1e-9 * around.peak_force)
+    share = values["marker_share"]
+    return replace(spread, passed=spread.passed * (1.0 - share + share * np.clip(passed, -1.0, 1.0)))
+
+
+def _bare(elastic: np.ndarray, share: float, limit: float) -> np.ndarray:
+    """Elastic force (n,) N before the slip took its share: as F = (1 - s) f + s y while y stays at the limit."""
+    if share >= 0.95:
+        return elastic
+    sliding = np.abs(elastic) > limit
+    return np.where(sliding, (elastic - np.sign(elastic) * share * limit) / (1.0 - share), elastic)
+
+
+def _starts(around: Surroundings) -> tuple[dict[str, float], ...]:
+    levels = (0.15, 0.5)
+    marked = 0.3 if around.markers is not None else 0.0
+    return tuple({"limit": r * around.peak_force, "force_share": 0.1, "marker_share": marked} for r in levels)
+
+
+EFFECT = Effect(CARD, "marker_share", body=_body, spread=_spread, starts=_starts)

@@ -1,0 +1,56 @@
+"""Viscoelastic relaxation: fading memory."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from benchmark.effects.effect import Card
+from benchmark.effects.parameter import linear, logarithmic
+from benchmark.effects.term import Effect, Surroundings, Values
+
+LARGEST = 0.97
+"""Share of the stiffness that may fade in all."""
+
+
+def _card(terms: int) -> Card:
+    parameters = []
+    for term in range(1, terms + 1):
+        parameters.append(linear(f"g_{term}", "", 0.0, 0.95, f"share of the stiffness that fades with tau_{term}"))
+        parameters.append(logarithmic(f"tau_{term}", "s", 0.01, 1e3, f"relaxation time {term}"))
+    return Card(
+        slug="viscoelastic_relaxation",
+        acts_on="body",
+        sentence="The tissue's stiffness fades with time: the force decays in a hold, and fast presses are stiffer.",
+        equation="F(t) = int G(t - t') df(t'), G = 1 - sum_j g_j (1 - exp(-t / tau_j))",
+        source="Y. C. Fung, Biomechanics: Mechanical Properties of Living Tissues, section 7.6",
+        parameters=tuple(parameters),
+    )
+
+
+def _body(values: Values, around: Surroundings) -> Mapping[str, Any]:
+    from wavemodel import Prony
+
+    count = len(values) // 2
+    terms = [(values[f"g_{term}"], values[f"tau_{term}"]) for term in range(1, count + 1)]
+    kept = [(g, tau) for g, tau in terms if g > 0.0]
+    if not kept:
+        return {}
+    if len(kept) == 2 and kept[0][1] == kept[1][1]:
+        kept = [(kept[0][0] + kept[1][0], kept[0][1])]
+    total = sum(g for g, _ in kept)
+    scale = min(1.0, LARGEST / total)
+    return {"relaxation": Prony(tuple(g * scale for g, _ in kept), tuple(tau for _, tau in kept))}
+
+
+def _starts(around: Surroundings) -> tuple[dict[str, float], ...]:
+    return tuple({"g_1": 0.2, "tau_1": max(share * around.duration, 0.02)} for share in (0.01, 0.05, 0.2))
+
+
+def _two_starts(around: Surroundings) -> tuple[dict[str, float], ...]:
+    slow = 0.2 * around.duration
+    return tuple({"g_1": 0.15, "tau_1": max(share * slow, 0.02), "g_2": 0.15, "tau_2": slow} for share in (0.02, 0.1))
+
+
+TWO = Effect(_card(2), "g_1", body=_body, starts=_two_starts)
+EFFECT = Effect(_card(1), "g_1", body=_body, starts=_starts, richer=TWO)

@@ -1,0 +1,85 @@
+"""`benchmark discover` on finished runs, on unusable input, and with an algorithm put in for a session."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from benchmark.discovery.carrying_out import DiscoverRequest, carry_out
+from benchmark.sessions import SHIPPED
+
+PHANTOM = SHIPPED / "phantom"
+COARSE = ("--set", "fem.mesh=coarse", "--set", "load.observations=20", "--set", "wave.large_press=linear")
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small skin press, run once."""
+    from benchmark.cli.app import main
+
+    out = tmp_path_factory.mktemp("run") / "press"
+    assert main(["run", "skin-5N", *COARSE, "--out", str(out), "--quiet"]) == 0
+    return out
+
+
+def test_a_run_ends_in_stiffening_and_the_model_file_repairs_it(benchmark_cli, finished: Path, tmp_path: Path) -> None:
+    called = benchmark_cli("discover", finished, "--out", tmp_path / "d", "--json", "--quiet")
+    assert called.code == 0, called.err
+    document = json.loads(called.out)
+    assert document["verdict"] == "conditional"
+    assert [effect["name"] for effect in document["effects"]] == ["strain_stiffening"]
+    assert document["gap"]["force_z"]["closed"] > 0.95
+    assert set(document["layers"]) == {"epidermis", "dermis", "subcutaneous_fat"}
+
+    model = tmp_path / "d/model.toml"
+    called = benchmark_cli("run", "skin-5N", *COARSE, "--model", model, "--out", tmp_path / "after", "--quiet")
+    assert called.code == 0, called.err
+    errors = [
+        pd.read_csv(folder / "tables/max_deformation.csv").percent_error.abs().max()
+        for folder in (finished, tmp_path / "after")
+    ]
+    assert errors[0] > 20.0
+    assert errors[1] < 5.0
+    assert json.loads((tmp_path / "after/results.json").read_text())["effects"] == ["strain_stiffening"]
+    assert (tmp_path / "after/model.toml").is_file()
+    assert "strain stiffening" in (tmp_path / "after/report.html").read_text()
+
+
+def test_unusable_input_is_exit_2_and_leaves_nothing(benchmark_cli, finished: Path, tmp_path: Path) -> None:
+    out = ("--out", tmp_path / "d", "--quiet")
+    few = tmp_path / "few"
+    few.mkdir()
+    for source in sorted(PHANTOM.glob("trial_00[1-2].csv")):
+        shutil.copy(source, few)
+    cases = [
+        (("discover", tmp_path / "nowhere"), "nowhere"),
+        (("discover", few), "at least 3"),
+        (("discover", PHANTOM, PHANTOM), "one session"),
+        (("discover", finished, PHANTOM), "is none"),
+        (("discover", finished, "--model", "fem"), "leave it out"),
+        (("discover", finished, "--set", "a=b"), "belong to a session"),
+        (("discover", PHANTOM, "--effects", tmp_path / "no.py"), "no such effects file"),
+        (("run", "--model", tmp_path / "m.toml"), "needs a SCENARIO"),
+        (("run", "skin-5N", "--model", tmp_path / "m.toml"), "no such model file"),
+        (("fit", PHANTOM, "--effects", tmp_path / "e.py"), "--model"),
+    ]
+    for arguments, words in cases:
+        called = benchmark_cli(*arguments, *out)
+        assert called.code == 2, arguments
+        assert words in " ".join(called.err.split()), arguments
+        assert not (tmp_path / "d").exists()
+
+
+def test_a_folder_that_is_no_result_is_refused_before_the_work(tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").touch()
+
+    def never(*_: object):
+        raise AssertionError("the work began")
+
+    from benchmark.cli.console import Console
+    from benchmark.errors import InputError
+
+    with pytest.raises(InputError, match="not a result"):
+        carry_out(DiscoverRequest([PHANTOM], out=tmp_path), never, Console(quiet=True))

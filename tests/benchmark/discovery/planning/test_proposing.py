@@ -1,0 +1,55 @@
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from benchmark.discovery.planning.proposing import _calibrations, _distinct, usual_press
+from benchmark.discovery.result import PHASES
+from benchmark.effects import Surroundings
+
+
+def _condition(kind: str) -> SimpleNamespace:
+    time = np.linspace(0.0, 10.0, 101)
+    depth = np.interp(time, [0.0, 2.0, 8.0, 10.0], [0.0, 2e-3, 2e-3, 0.0])
+    phase = np.select(
+        [time < 2.0, time < 8.0], [PHASES.index("load"), PHASES.index("hold")], PHASES.index("unload_high")
+    )
+    around = Surroundings(5e-3, 4e-3, 2e-3, 3.0, 10.0)
+    return SimpleNamespace(
+        time=np.tile(time, (3, 1)), depth=np.tile(depth, (3, 1)), phase=phase, cycle=np.ones(101, dtype=int),
+        around=around, support=SimpleNamespace(kind=kind),
+    )  # fmt: skip
+
+
+def _rival(*slugs: str, **values: dict[str, float]) -> SimpleNamespace:
+    return SimpleNamespace(slugs=slugs, values=values)
+
+
+def test_the_usual_press_is_read_off_the_trials() -> None:
+    usual = usual_press(_condition("bonded"))
+    assert usual.depth == pytest.approx(2e-3)
+    assert usual.speed == pytest.approx(1e-3, rel=0.02)
+    assert usual.hold == pytest.approx(6.0, abs=0.2)
+    assert usual.thickness == 4e-3
+    assert usual_press(_condition("hole")).thickness == np.inf
+
+
+def test_a_rigid_block_is_for_a_rig_that_gives_way() -> None:
+    relaxing = _rival("viscoelastic_relaxation")
+    giving = _rival("machine_compliance", machine_compliance={"compliance": 1e-4})
+    ((experiment, size),) = _calibrations(giving, relaxing, _condition("bonded"))
+    assert experiment.name == "rigid block"
+    assert size == pytest.approx(1e-4 * 3.0 / 0.02e-3)
+    assert _calibrations(relaxing, relaxing, _condition("bonded")) == []
+
+
+def test_a_ruler_is_for_a_wrong_scale() -> None:
+    scaled = _rival("marker_scale_error", marker_scale_error={"error": 0.02})
+    ((experiment, size),) = _calibrations(_rival("interface_slip"), scaled, _condition("bonded"))
+    assert experiment.name == "ruler image"
+    assert size == pytest.approx(10.0)
+
+
+def test_rivals_are_called_by_what_they_do_not_share() -> None:
+    first, second = _rival("a", "b"), _rival("a", "c")
+    assert (_distinct(first, second), _distinct(second, first)) == ("b", "c")
