@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from benchmark.discovery.files import DiscoveryOutcome, write_discovery
-from benchmark.discovery.from_run import is_run, read_run, repair_run
+from benchmark.discovery.from_run import at_small_strain, is_run, read_run, repair_run
 from benchmark.discovery.record import DiscoveryRecord
 from benchmark.effects import Effect, catalogue, load_effects
 from benchmark.errors import InputError
@@ -72,5 +72,5 @@ def _of_runs(request: DiscoverRequest, effects: tuple[Effect, ...], listener: Li
         raise InputError("--model fem: in a finished run the FEM is what the wave model is held against; leave it out")
     if request.settings or request.specimen is not None:
         raise InputError("--set and --specimen belong to a session: a finished run has its scenario in it")
-    runs = [read_run(path) for path in request.paths]
+    runs = [at_small_strain(read_run(path)) for path in request.paths]
     return repair_run(runs[0], runs[1] if len(runs) > 1 else None, effects, request.seed, listener)

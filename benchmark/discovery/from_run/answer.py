@@ -229,6 +229,11 @@ class _Answer:
         if self.fitted.run.effects:
             had = ", ".join(self.fitted.run.effects)
             said.append(f"the run's wave model already had {had}: what is found comes on top of it")
+        if self.fitted.run.restarted:
+            said.append(
+                "the run's wave model follows finite strain by itself (wave.large_press = auto); the repair begins "
+                "with the wave of small strain, and 'before' is that one"
+            )
         return tuple(said)
 
     def traces(self) -> tuple[Trace, ...]:

@@ -43,6 +43,8 @@ class FinishedRun:
         Effects that the run's wave model already had.
     large_press : str
         Its elastic law: "linear" or "corrected".
+    restarted : bool
+        Whether `wave` was computed anew, in small strain.
     """
 
     name: str
@@ -54,6 +56,7 @@ class FinishedRun:
     fingerprint: str
     effects: tuple[str, ...]
     large_press: str
+    restarted: bool = False
 
     @property
     def layers(self) -> tuple[str, ...]:

@@ -51,7 +51,7 @@ def test_unusable_input_is_exit_2_and_leaves_nothing(benchmark_cli, finished: Pa
     out = ("--out", tmp_path / "d", "--quiet")
     few = tmp_path / "few"
     few.mkdir()
-    for source in sorted(PHANTOM.glob("trial_00[1-2].csv")):
+    for source in sorted(PHANTOM.glob("press_0[2-3].csv")):
         shutil.copy(source, few)
     cases = [
         (("discover", tmp_path / "nowhere"), "nowhere"),
