@@ -109,7 +109,7 @@ def make_trial(sheet: SheetTable, trial: TrueTrial, scratch: Path, folder: Path)
     """
     specimen = TabulatedSpecimen(sheet, RELAXATION, trial.gain, trial.axis, GRID)
     order = CaptureOrder(
-        load_protocol(trial.protocol), _rig(trial), scratch, condition=trial.condition, fast=True, seed=trial.seed
+        load_protocol(_protocol(trial)), _rig(trial), scratch, condition=trial.condition, fast=True, seed=trial.seed
     )
     outcome = capture(order, Silent(), specimen=specimen)
     if outcome.fault is not None:
@@ -121,6 +121,12 @@ def make_trial(sheet: SheetTable, trial: TrueTrial, scratch: Path, folder: Path)
         return
     write_trial_csv(folder / f"{trial.name}.csv", replace(read_trial_mcap(captured), extra={}, extra_units={}))
     track(TrackOrder(str(captured), scratch / "camera.toml", folder / f"{trial.name}_markers.csv"))
+
+
+def _protocol(trial: TrueTrial) -> str:
+    """The protocol's file beside this one, or the name of one that ships with the bench."""
+    path = Path(__file__).with_name(f"{trial.protocol}.toml")
+    return str(path) if path.is_file() else trial.protocol
 
 
 def _rig(trial: TrueTrial) -> LoadedRig:

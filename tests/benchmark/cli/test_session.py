@@ -67,7 +67,9 @@ def test_a_session_run_compares_measured_with_both_models(benchmark_cli, tmp_pat
     again = (tmp_path / "again/report.html").read_text()
     for text in ("Synthetic data", "Circular comparison", document["trials"]["headline"][1:], "Fitted parameters"):
         assert text in again
-    assert again.count("<figure") == page.count("<figure")
+    films = 2 * 3  # a picture, the motion and the circle of each film: they are not in the folder's files
+    rendered = page.count("<strong>Pressed tissue.") - again.count("<strong>Pressed tissue.")
+    assert again.count("<figure") == page.count("<figure") - films - rendered
 
 
 def check_validation(path: Path, measured: pd.DataFrame) -> None:
@@ -77,7 +79,7 @@ def check_validation(path: Path, measured: pd.DataFrame) -> None:
     circular = told[(told.simulation == "fem") & told.protocol.str.contains("circular")].set_index("measure").value
     residual = peaks.fem_force_N - peaks.force_N
     assert float(circular["E"]) == pytest.approx(residual.mean(), rel=1e-9)
-    assert float(circular["u_D"]) == pytest.approx(residual.std() / np.sqrt(10), rel=1e-9)
+    assert float(circular["u_D"]) == pytest.approx(residual.std() / np.sqrt(13), rel=1e-9)
     area = np.abs(np.sort(peaks.fem_force_N) - np.sort(peaks.force_N)).mean()
     assert float(circular["area"]) == pytest.approx(area, rel=1e-9)
     assert circular["not assessed"] == "u_num"
