@@ -14,6 +14,7 @@ from fem.load import Load
 from fem.materials import Fibre, FibreReinforced, Gent, LinearElastic, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from fem.prepare import prepare
 from fem.problem import Discretisation, Layer, Problem, Support, Tool
+from fem.relaxation import PronyTerm
 from fem.solution import Failure, Solution, StepReport
 from fem.surface_file import read_surface
 
@@ -32,6 +33,7 @@ __all__ = [
     "NeoHookean",
     "Ogden",
     "Problem",
+    "PronyTerm",
     "Solution",
     "StepReport",
     "Support",

@@ -23,7 +23,7 @@ from fem.mesh import AnyMesh
 from fem.problem import Problem
 from fem.solving import State
 
-FORMAT = "fem checkpoint 1"
+FORMAT = "fem checkpoint 2"
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,8 @@ class Progress:
         Which of the states each accepted step is, (n,).
     values
         Load value (k,) in N or m of each state.
+    times
+        Time (k,) in s of each state.
     states
         The states in the order in which they were found, the one before the first step included.
     """
@@ -47,6 +49,7 @@ class Progress:
     strains: FloatArray
     steps: IntArray
     values: FloatArray
+    times: FloatArray
     states: tuple[State, ...]
 
 

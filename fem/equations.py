@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fem.arrays import BoolArray, FloatArray
-from fem.assembly import ElementGeometry, System, build_scatter, element_laws, number_unknowns
+from fem.assembly import ElementGeometry, Numbering, System, build_scatter, element_laws, number_unknowns
+from fem.components import Components
 from fem.contact import Conditions
+from fem.contact.punch import Punch
+from fem.contact.touching import STIFFNESS, Contact
+from fem.contact_system import ContactSystem
 from fem.linear_solver import make_solver
 from fem.mesh import AnyMesh
 from fem.problem import Problem
@@ -37,14 +43,52 @@ def set_up(
         See :func:`fem.prepare`.
     """
     numbering = number_unknowns(fixed, conditions.tied)
-    laws = element_laws(tuple(layer.material for layer in problem.layers), mesh.layer)
+    if conditions.punch is not None and conditions.area is not None:
+        kinds = 1 if conditions.punch.friction == 0.0 else 2
+        numbering = replace(numbering, count=numbering.count + 1 + kinds * int(np.sum(conditions.area > 0.0)))
+    laws = element_laws(
+        tuple(layer.material for layer in problem.layers),
+        mesh.layer,
+        tuple(layer.relaxation for layer in problem.layers),
+        _pretension(problem, geometry.components),
+    )
     scatter = build_scatter(mesh.elements, numbering)
+    if conditions.punch is not None and conditions.area is not None:
+        contact = _contact(problem, mesh, numbering, conditions.punch, conditions.area)
+        touched = ContactSystem(geometry, laws, numbering, scatter, _stabilisation(problem), contact)
+        solver = make_solver(linear_solver, touched.scatter.indptr, touched.scatter.indices)
+        tool = int(contact.unknowns[2, 0])
+        return Equilibrium(touched, solver, -np.eye(1, numbering.count, tool)[0], tool)
     solver = make_solver(linear_solver, scatter.indptr, scatter.indices)
     nodal = np.zeros(fixed.shape)
     nodal[-1] = conditions.load
     load: FloatArray = numbering.reduce(nodal)
     probe = int(numbering.unknown[-1, mesh.interfaces[0][0]])
-    return Equilibrium(System(geometry, laws, numbering, scatter, _stabilisation(problem)), solver, load, probe)
+    system = System(geometry, laws, numbering, scatter, _stabilisation(problem))
+    return Equilibrium(system, solver, load, probe)
+
+
+def _contact(problem: Problem, mesh: AnyMesh, numbering: Numbering, punch: Punch, area: FloatArray) -> Contact:
+    nodes = np.flatnonzero(area > 0.0)
+    stiffness = STIFFNESS * problem.layers[0].material.shear_modulus / punch.radius
+    kinds = 1 if punch.friction == 0.0 else 2
+    multipliers = numbering.count + np.arange(-kinds * len(nodes), 0).reshape(kinds, -1)
+    tool = np.full((1, len(nodes)), multipliers[0, 0] - 1)
+    place: FloatArray = mesh.nodes[nodes].T.copy()
+    unknowns = np.concatenate((numbering.unknown[:, nodes], tool, multipliers))
+    gap = punch.gap(*place)
+    anchor = place[0] if gap is None else gap.path
+    return Contact(punch, place, stiffness * area[nodes], unknowns, anchor, np.zeros(len(nodes)))
+
+
+def _pretension(problem: Problem, components: Components) -> FloatArray | None:
+    """In-plane stress (components, 1, 1) in Pa; the last axis is the normal of the layers."""
+    if problem.pretension == 0.0:
+        return None
+    in_plane = components.identity.copy()
+    in_plane[components.normal[-1]] = 0.0
+    out: FloatArray = problem.pretension * in_plane.reshape(-1, 1, 1)
+    return out
 
 
 def _stabilisation(problem: Problem) -> float:

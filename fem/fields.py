@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -82,11 +83,18 @@ class FieldRecovery:
     point_modulus: FloatArray
     finite: bool
 
+    @cached_property
+    def _middles(self) -> Geometry:
+        return point_geometry(self.mesh, self.gauss, MIDDLES)
+
+    def deformation(self, displacement: FloatArray) -> Deformation:
+        """Deformation at the cells' middles of nodal displacements (N, 2)."""
+        u = displacement[self.mesh.elements].transpose(2, 0, 1).reshape(18, -1)
+        return Deformation(AXISYMMETRIC, self._middles.gradient(u))
+
     def fields(self, displacement: FloatArray, pressure: FloatArray) -> Fields:
         """Fields of nodal displacements (N, 2) and pressure coefficients (3, E)."""
-        geometry = point_geometry(self.mesh, self.gauss, MIDDLES)
-        u = displacement[self.mesh.elements].transpose(2, 0, 1).reshape(18, -1)
-        deformation = Deformation(AXISYMMETRIC, geometry.gradient(u))
+        geometry, deformation = self._middles, self.deformation(displacement)
         mean_stress = np.einsum("ie,iqe->qe", pressure, geometry.pressure)
         stress, measure, ratio = stresses(self.laws, deformation, mean_stress, self.point_modulus, self.finite)
         nodes, moved = np.zeros((len(displacement), 3)), np.zeros((len(displacement), 3))
@@ -138,10 +146,9 @@ def _linear(
     laws: ElementLaws, deformation: Deformation, mean_stress: FloatArray, point_modulus: FloatArray
 ) -> _Measures:
     small, components = deformation.small_strain, deformation.components
-    moduli = components.unpack(laws.tangent(Deformation(components, np.zeros_like(small))))
     change = small[components.normal].sum(axis=0)
     mean = mean_stress + point_modulus * change
-    stress = np.einsum("kmqe,mqe->kqe", moduli, small) + mean * deformation.identity
+    stress = laws.small_stress(deformation) + mean * deformation.identity
     return stress, small, 1.0 + change
 
 

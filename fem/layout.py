@@ -92,9 +92,10 @@ class _Layout:
         return np.concatenate((left[:-1], np.linspace(inner, outer, 2 * count + 1)[:-1], right))
 
     def _radial(self, position: float, size: float) -> Sizing:
-        edge = Feature(position, size, RADIAL_GROWTH, self.extent.far)
+        places = [position + (share - 1.0) * self.radius for share in self.resolution.gather]
+        edges = [Feature(place, size, RADIAL_GROWTH, self.extent.far) for place in places]
         under = (self.radius, self.resolution.under * self.radius)
-        return Sizing((edge, *self.extent.radial), (under,))
+        return Sizing((*edges, *self.extent.radial), (under,))
 
     def _vertical(self, position: float, size: float) -> Sizing:
         return Sizing((Feature(position, size, VERTICAL_GROWTH, self.extent.far), *self.extent.vertical))

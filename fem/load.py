@@ -16,7 +16,9 @@ Control = Literal["force", "depth"]
 
 @dataclass(frozen=True)
 class Load:
-    """A history of prescribed force or depth; the state before the first step is unloaded, at rest.
+    """A history of prescribed force or depth; the state before the first step is unloaded, at rest, at time zero.
+
+    Between the steps the prescribed value changes linearly. A first step at time zero is a sudden press.
 
     Attributes
     ----------
@@ -54,6 +56,11 @@ class Load:
             raise FemError(f"load.time[{k}] = {time[k]:g} s after {time[k - 1]:g} s: time must increase")
         object.__setattr__(self, "time", time)
         object.__setattr__(self, "value", value)
+
+    @property
+    def start(self) -> float:
+        """Time in s of the state at rest: zero, or the first step's if that is not after zero (a sudden press)."""
+        return min(0.0, float(self.time[0]))
 
     @property
     def unit(self) -> str:

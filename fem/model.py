@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fem.checkpoint import Checkpoint, fingerprint
+from fem.contact_system import ContactSystem
 from fem.fields import FieldRecovery
 from fem.linear_run import run_linear
 from fem.load import Load
@@ -20,6 +21,11 @@ from fem.solving import Equilibrium, NewtonSettings
 from fem.threads import suited_threads
 
 PULLING = "the load history pulls (negative values): the contact is tied to the surface and cannot lift off"
+
+LIFTING = (
+    "the load history pulls (negative values): the tool comes off once it pulls more than its adhesion force; a depth "
+    "is then reached without force, a prescribed pull is not"
+)
 
 
 @dataclass(frozen=True)
@@ -88,12 +94,18 @@ class Model:
             If the checkpoint cannot be written, is damaged, or is of another problem, mesh or load history.
         """
         record = Record(self.mesh, self.equilibrium, self.recovery, self._names())
-        warnings = self.warnings + ((PULLING,) if load.value.min() < 0.0 else ())
+        warnings = self.warnings + ((self._pulling,) if load.value.min() < 0.0 else ())
         with suited_threads(self.unknowns):
             if self.problem.kinematics == "linear":
                 return run_linear(record, load, warnings, on_step)
             kept = Checkpoint(Path(checkpoint), fingerprint(self.problem, self.mesh, load)) if checkpoint else None
             return run_nonlinear(record, load, self.newton, warnings, on_step, kept)
+
+    @property
+    def _pulling(self) -> str:
+        """What a history that pulls must know of this contact."""
+        touches = isinstance(self.equilibrium.system, ContactSystem)
+        return LIFTING if touches else PULLING
 
     def _names(self) -> tuple[str, ...]:
         return tuple(layer.name for layer in self.problem.layers)

@@ -6,12 +6,13 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fem.assembly import System
 from fem.checkpoint import Checkpoint, Progress
-from fem.linear_run import unit_state
 from fem.load import Load
 from fem.record import Record, largest_strain, reaction
+from fem.small_strain import unit_state
 from fem.solution import Failure, Solution, StepReport
-from fem.solving import Advance, Equilibrium, NewtonSettings, Stepper, settle
+from fem.solving import Equilibrium, NewtonSettings, State, Stepper, settle
 
 LEAST_SHARE_OF_PEAK = 1e-3
 
@@ -57,13 +58,13 @@ def run_nonlinear(
     if reason:
         failure = Failure(1, float(load.time[0]), load.control, 0.0, float(load.value[0]), reason)
         return record.solution(failure, warnings)
-    stepper = Stepper(problem, load.control, scale, settings, start)
+    stepper = Stepper(problem, load.control, scale, settings, start, load.start)
     first = 0 if checkpoint is None else _resume(record, stepper, checkpoint)
     for n, (time, value) in list(enumerate(zip(load.time.tolist(), load.value.tolist(), strict=True)))[first:]:
-        advance = stepper.advance(value)
+        advance = stepper.advance(value, time)
         if advance.reason:
             return record.solution(Failure(n + 1, time, load.control, advance.value, value, advance.reason), warnings)
-        _keep(record, time, advance)
+        _keep(record, stepper.problem.system, time, advance.state)
         if checkpoint is not None:
             checkpoint.write(_progress(record, stepper))
         if on_step is not None:
@@ -90,8 +91,7 @@ def force_scale(problem: Equilibrium, load: Load) -> float:
     return largest / problem.depth(unit_state(problem)[0].y)
 
 
-def _keep(record: Record, time: float, advance: Advance) -> None:
-    system, state = record.equilibrium.system, advance.state
+def _keep(record: Record, system: System, time: float, state: State) -> None:
     evaluation = system.evaluate(state.y, state.pressure)
     if evaluation is None:
         raise ArithmeticError("an accepted state cannot be evaluated")
@@ -105,7 +105,7 @@ def _resume(record: Record, stepper: Stepper, checkpoint: Checkpoint) -> int:
         return 0
     for n, time, reached, strain in zip(found.steps, found.time, found.reactions, found.strains, strict=True):
         record.add(float(time), found.states[n], float(reached), float(strain))
-    stepper.resume(found.values, found.states)
+    stepper.resume(found.values, found.times, found.states)
     return len(found.steps)
 
 
@@ -118,5 +118,6 @@ def _progress(record: Record, stepper: Stepper) -> Progress:
         strains=np.array(record.strains),
         steps=np.array([place[id(state)] for state in record.states]),
         values=known.values,
+        times=stepper.times,
         states=known.states,
     )

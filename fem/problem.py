@@ -13,6 +13,7 @@ from fem.checks import require_one_of, require_positive
 from fem.errors import FemError
 from fem.fibre_symmetry import require_fibre_symmetry
 from fem.materials import Material
+from fem.relaxation import PronyTerm, require_something_left
 
 if TYPE_CHECKING:
     from fem.mesh.surface.model import Surface
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
 CONTACTS = ("uniform_pressure", "rigid_bonded", "rigid_frictionless", "rigid_frictional")
 SUPPORTS = ("bonded", "hole", "half_space")
 GEOMETRIES = ("axisymmetric", "block", "surface")
+TOUCHING = ("rigid_frictionless", "rigid_frictional")
+LARGEST_FRICTION, LARGEST_ADHESION = 10.0, 1e3  # adhesion in N
+LARGEST_PRETENSION = 1e8  # Pa
 LARGEST_TILT = math.radians(30.0)
 
 
@@ -36,18 +40,23 @@ class Layer:
     density
         In kg/m3, above 0. The quasi-static solver does not need it.
     material
-        A law of :mod:`fem.materials`.
+        A law of :mod:`fem.materials`; its moduli are those of a sudden press.
+    relaxation
+        Prony terms by which the isochoric stress fades; their fractions add up to less than 1.
     """
 
     name: str
     thickness: float
     density: float
     material: Material
+    relaxation: tuple[PronyTerm, ...] = ()
 
     def __post_init__(self) -> None:
         if self.thickness != math.inf:
             require_positive(f"layer {self.name!r}: thickness", self.thickness, "m")
         require_positive(f"layer {self.name!r}: density", self.density, "kg/m3")
+        object.__setattr__(self, "relaxation", tuple(self.relaxation))
+        require_something_left(self.relaxation, f"layer {self.name!r}: relaxation")
 
 
 @dataclass(frozen=True)
@@ -67,6 +76,11 @@ class Tool:
     tilt
         Angle in rad of the tool's axis from the vertical in the x-z plane, its upper end towards +x, at most
         30 degrees. The tool presses and moves vertically.
+    friction_coefficient
+        Coulomb's, 0 to 10; needed by "rigid_frictional".
+    adhesion_force
+        Pull in N, 0 to 1e3, that the flat face of a rounded punch holds before it lets go; for the contacts
+        "rigid_frictionless" and "rigid_frictional" in finite strain.
     """
 
     radius: float
@@ -74,6 +88,8 @@ class Tool:
     edge_radius: float | None = None
     position: tuple[float, float] = (0.0, 0.0)
     tilt: float = 0.0
+    friction_coefficient: float | None = None
+    adhesion_force: float = 0.0
 
     def __post_init__(self) -> None:
         require_positive("tool.radius", self.radius, "m")
@@ -85,6 +101,18 @@ class Tool:
                     f"tool.edge_radius = {self.edge_radius:g} m: must be at most tool.radius = {self.radius:g} m"
                 )
         self._require_place()
+        self._require_surface()
+
+    def _require_surface(self) -> None:
+        friction = self.friction_coefficient
+        if self.contact == "rigid_frictional" and friction is None:
+            raise FemError("tool.friction_coefficient is missing: contact 'rigid_frictional' needs it, from 0 to 10")
+        if friction is not None and not 0.0 <= friction <= LARGEST_FRICTION:
+            raise FemError(f"tool.friction_coefficient = {friction:g}: must be from 0 to {LARGEST_FRICTION:g}")
+        if not 0.0 <= self.adhesion_force <= LARGEST_ADHESION:
+            raise FemError(f"tool.adhesion_force = {self.adhesion_force:g} N: must be from 0 to {LARGEST_ADHESION:g} N")
+        if self.adhesion_force > 0.0 and self.contact not in TOUCHING:
+            raise FemError(f"tool.adhesion_force: not with contact {self.contact!r}, only {', '.join(TOUCHING)}")
 
     def _require_place(self) -> None:
         x, y = self.position
@@ -163,6 +191,9 @@ class Problem:
     geometry
         "axisymmetric"; "block": three dimensions, a square block of half side `discretisation.radius`; or
         "surface": the body inside `surface`, whose layers count inwards from it, the last one filling the rest.
+    pretension
+        Tensile stress in Pa in the plane of all layers before the press, 0 to 1e8, the same in all directions; the
+        layers' moduli are those of small motions from there. Not with geometry = "surface".
     surface
         The body's surface, for that geometry only (see :func:`fem.read_surface`).
 
@@ -179,6 +210,7 @@ class Problem:
     discretisation: Discretisation = field(default_factory=Discretisation)
     geometry: Literal["axisymmetric", "block", "surface"] = "axisymmetric"
     surface: Surface | None = None
+    pretension: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "layers", tuple(self.layers))
@@ -193,6 +225,7 @@ class Problem:
         self._require_finite_thickness()
         self._require_finite_strain_laws()
         require_fibre_symmetry({layer.name: layer.material for layer in self.layers}, self.geometry)
+        self._require_pretension()
         self._require_room()
         self._require_three_dimensions()
 
@@ -212,6 +245,12 @@ class Problem:
                     f"layer {layer.name!r}: material {type(layer.material).__name__} is for kinematics = 'linear' "
                     "only; kinematics = 'finite' needs a hyperelastic law such as NeoHookean"
                 )
+
+    def _require_pretension(self) -> None:
+        if not 0.0 <= self.pretension <= LARGEST_PRETENSION:
+            raise FemError(f"pretension = {self.pretension:g} Pa: must be from 0 to {LARGEST_PRETENSION:g} Pa")
+        if self.pretension > 0.0 and self.geometry == "surface":
+            raise FemError("pretension: a body of geometry = 'surface' has no plane to lie in; leave it out")
 
     def _require_room(self) -> None:
         radius, hole = self.discretisation.radius, self.support.hole_radius

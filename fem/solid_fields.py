@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -37,11 +38,18 @@ class SolidFieldRecovery:
     point_modulus: FloatArray
     finite: bool
 
+    @cached_property
+    def _middle(self) -> SolidGeometry:
+        return solid_middle(self.mesh, self.gauss)
+
+    def deformation(self, displacement: FloatArray) -> Deformation:
+        """Deformation at the elements' middles of nodal displacements (N, 3)."""
+        u = displacement[self.mesh.elements].transpose(2, 0, 1).reshape(-1, self.mesh.elements.shape[1])
+        return Deformation(self._middle.components, self._middle.gradient(u))
+
     def fields(self, displacement: FloatArray, pressure: FloatArray) -> Fields:
         """Fields of nodal displacements (N, 3) and pressure coefficients (p, E); one quadratic cell an element."""
-        geometry = solid_middle(self.mesh, self.gauss)
-        u = displacement[self.mesh.elements].transpose(2, 0, 1).reshape(-1, self.mesh.elements.shape[1])
-        deformation = Deformation(geometry.components, geometry.gradient(u))
+        geometry, deformation = self._middle, self.deformation(displacement)
         mean_stress = np.einsum("ie,iqe->qe", pressure, geometry.pressure)
         stress, measure, ratio = stresses(self.laws, deformation, mean_stress, self.point_modulus, self.finite)
         element = SOLID_ELEMENTS[self.mesh.element]

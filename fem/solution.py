@@ -174,7 +174,12 @@ class Solution:
         FemError
             If there is no such step.
         """
-        return self.recovery.fields(self._displacement_at(step), self.pressure[step])
+        from fem.replay import remembering
+
+        displacement = self._displacement_at(step)
+        end = range(len(self.time))[step] + 1
+        recovery = remembering(self.recovery, self.time[:end], self.displacement[:end])
+        return recovery.fields(displacement, self.pressure[step])
 
     def _displacement_at(self, step: int) -> FloatArray:
         count = len(self.time)

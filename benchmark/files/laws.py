@@ -118,9 +118,10 @@ class Fibre(FileModel):
     """One fibre family of Holzapfel, Gasser and Ogden in the plane of the layer.
 
     W = k1 / (2 k2) (exp(k2 E^2) - 1), E = dispersion (I1 - 3) + (1 - 3 dispersion) (I4 - 1); `angle` from the x axis.
+    Without an angle the fibres spread evenly over the plane, I4 the mean over its directions.
     """
 
-    angle: Angle = 0.0
+    angle: Angle | None = None
     k1: Pressure
     k2: Annotated[float, Number("above 0, at most 1e4", Bounds(0.0, 1e4, above=True))]
     dispersion: Annotated[float, Number("0 (aligned) to 1/3 (isotropic)", Bounds(0.0, 0.33333333333333337))] = 0.0

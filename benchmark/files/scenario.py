@@ -58,10 +58,11 @@ class Scenario(FileModel):
 
     def _check_tool(self) -> None:
         tool = self.tool
-        if tool.contact == "rigid_frictionless" and self.fem.kinematics == "finite" and tool.edge_radius is None:
+        touches = tool.contact in ("rigid_frictionless", "rigid_frictional")
+        if touches and self.fem.kinematics == "finite" and tool.edge_radius is None:
+            other = ', or set fem.kinematics to "linear"' if tool.contact == "rigid_frictionless" else ""
             raise problem(
-                "a rigid_frictionless tool in finite strain needs a rounded edge; give a length such as "
-                '"0.5 mm", or set fem.kinematics to "linear"',
+                f'a {tool.contact} tool in finite strain needs a rounded edge; give a length such as "0.5 mm"{other}',
                 key="tool.edge_radius",
             )
         if tool.contact == "rigid_frictional" and self.physics.friction_coefficient is None:

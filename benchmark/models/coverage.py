@@ -1,6 +1,8 @@
-"""What both models of this version leave out: refused where it would change the answer, said where it fades."""
+"""What models of this version leave out: refused, because it would change the answer."""
 
 from __future__ import annotations
+
+from collections.abc import Collection
 
 from benchmark.files import Scenario
 from benchmark.models.result import UncoveredError
@@ -9,20 +11,30 @@ FRICTION = "friction_coefficient"
 """Belongs to a rigid_frictional tool, which each model refuses by itself, and has no effect on any other."""
 
 
-def refuse_options(scenario: Scenario) -> None:
-    """Refuse what neither model has.
+def refuse_options(scenario: Scenario, has: Collection[str] = (), fibres: bool = False) -> None:
+    """Refuse what a model does not have.
+
+    Parameters
+    ----------
+    scenario
+        Resolved scenario.
+    has
+        Options of the body that the model has.
+    fibres
+        Whether it has fibres.
 
     Raises
     ------
     UncoveredError
         For options of the body, or fibres.
     """
-    options = [name for name, value in dict(scenario.physics).items() if value is not None and name != FRICTION]
-    if options:
-        raise UncoveredError(f"the option physics.{options[0]} is not part of this model")
-    fibres = [layer.name for layer in scenario.tissue.layers if layer.fibre is not None]
-    if fibres:
-        raise UncoveredError(f"the layer {fibres[0]} has fibres, which this model does not have")
+    given = [name for name, value in dict(scenario.physics).items() if value is not None]
+    lacking = [name for name in given if name not in (FRICTION, *has)]
+    if lacking:
+        raise UncoveredError(f"the option physics.{lacking[0]} is not part of this model")
+    names = [layer.name for layer in scenario.tissue.layers if layer.fibre is not None]
+    if names and not fibres:
+        raise UncoveredError(f"the layer {names[0]} has fibres, which this model does not have")
 
 
 def refuse_solid(scenario: Scenario) -> None:

@@ -6,8 +6,9 @@ import numpy as np
 
 import fem
 from benchmark.errors import InputError
-from benchmark.files import Layer, Scenario
-from benchmark.models.coverage import refuse_options, relaxation_warnings
+from benchmark.files import Scenario
+from benchmark.models.coverage import refuse_options
+from benchmark.models.fem_layers import fem_layer
 from benchmark.models.radii import profile_radii
 from benchmark.models.result import (
     Drive,
@@ -20,6 +21,8 @@ from benchmark.models.result import (
     UncoveredError,
     silent,
 )
+
+OPTIONS = ("pretension", "adhesion_force")
 
 
 class FemModel:
@@ -34,7 +37,7 @@ class FemModel:
     """
 
     def __init__(self, scenario: Scenario, *, every_field: bool = False):
-        refuse_options(scenario)
+        refuse_options(scenario, OPTIONS, fibres=True)
         self._scenario = scenario
         self._every_field = every_field
         _refuse_contact(scenario)
@@ -75,7 +78,7 @@ class FemModel:
             peak_step=peak,
             unknowns=self._model.unknowns,
             notes=self._notes(),
-            warnings=(*relaxation_warnings(self._scenario), *solution.warnings),
+            warnings=solution.warnings,
             failure=_failure(solution, load),
             fields=tuple(_snapshot(solution, step) for step in self._field_steps(peak, steps)),
         )
@@ -100,12 +103,13 @@ class FemModel:
 def _refuse_contact(scenario: Scenario) -> None:
     """Refuse contacts that this solver does not have."""
     tool, finite = scenario.tool, scenario.fem.kinematics == "finite"
-    if tool.contact == "rigid_frictional":
-        raise UncoveredError("the contact rigid_frictional is not part of this solver")
-    if tool.contact == "rigid_frictionless" and finite:
-        raise UncoveredError(
-            "a rigid_frictionless tool in finite strain is not part of this solver; linear kinematics is"
-        )
+    touches = tool.contact in ("rigid_frictionless", "rigid_frictional")
+    if tool.contact == "rigid_frictional" and not finite:
+        raise UncoveredError("the contact rigid_frictional is part of finite strain only")
+    if touches and finite and scenario.fem.geometry != "axisymmetric":
+        raise UncoveredError(f"a {tool.contact} tool that touches is part of the axisymmetric geometry only")
+    if scenario.physics.adhesion_force is not None and not (touches and finite):
+        raise UncoveredError("adhesion_force is part of rigid_frictionless and rigid_frictional tools in finite strain")
     if tool.contact == "rigid_bonded" and tool.edge_radius is not None:
         raise UncoveredError("a rigid_bonded tool with a rounded edge is not part of this solver; a sharp edge is")
 
@@ -122,8 +126,16 @@ def _problem(scenario: Scenario) -> fem.Problem:
     if options.surface is not None and options.surface_unit is not None:
         surface = fem.read_surface(options.surface, options.surface_unit)
     return fem.Problem(
-        layers=tuple(_layer(layer, options.kinematics) for layer in scenario.tissue.layers),
-        tool=fem.Tool(tool.radius, tool.contact, tool.edge_radius, position, tool.tilt),
+        layers=tuple(fem_layer(layer, options.kinematics) for layer in scenario.tissue.layers),
+        tool=fem.Tool(
+            tool.radius,
+            tool.contact,
+            tool.edge_radius,
+            position,
+            tool.tilt,
+            scenario.physics.friction_coefficient,
+            scenario.physics.adhesion_force or 0.0,
+        ),
         support=fem.Support(
             scenario.support.kind, scenario.support.hole_radius if scenario.support.kind == "hole" else None
         ),
@@ -131,21 +143,8 @@ def _problem(scenario: Scenario) -> fem.Problem:
         discretisation=fem.Discretisation(options.mesh, options.radius),
         geometry=options.geometry,
         surface=surface,
+        pretension=scenario.physics.pretension or 0.0,
     )
-
-
-def _layer(layer: Layer, kinematics: str) -> fem.Layer:
-    """A layer with its law: linear elastic in small strain, neo-Hookean otherwise."""
-    if kinematics == "linear":
-        material: fem.Material = fem.LinearElastic(layer.youngs_modulus, layer.poisson_ratio)
-        return fem.Layer(layer.name, layer.thickness, layer.density, material)
-    if layer.hyperelastic.law != "neo_hookean":
-        raise UncoveredError(
-            f"the layer {layer.name} follows the law {layer.hyperelastic.law}; this solver has neo_hookean"
-        )
-    shear = layer.hyperelastic.shear_modulus
-    youngs = layer.youngs_modulus if shear is None else 2 * shear * (1 + layer.poisson_ratio)
-    return fem.Layer(layer.name, layer.thickness, layer.density, fem.NeoHookean(youngs, layer.poisson_ratio))
 
 
 def _failure(solution: fem.Solution, load: fem.Load) -> RunFailure | None:

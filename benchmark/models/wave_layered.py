@@ -51,6 +51,7 @@ def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) ->
         modes=scenario.wave.modes,
         relaxation=wave_relaxation(scenario),
         large_press=large_press,
+        pretension=scenario.physics.pretension,
     )
     if to_peak:
         peak = np.array([scenario.load.peak])

@@ -27,7 +27,8 @@ class WaveModel:
     """
 
     def __init__(self, scenario: Scenario):
-        refuse_options(scenario)
+        layered = scenario.support.kind != "hole" and scenario.wave.model == "layered"
+        refuse_options(scenario, ("pretension",) if layered else ())
         refuse_solid(scenario)
         self._scenario = scenario
         try:

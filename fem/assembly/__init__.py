@@ -3,6 +3,7 @@
 from fem.assembly.element_geometry import ElementGeometry
 from fem.assembly.geometry import Geometry, gauss_geometry, point_geometry
 from fem.assembly.laws import ElementLaws, element_laws
+from fem.assembly.memory import Memory, Prony, prony_of
 from fem.assembly.scatter import Numbering, Scatter, build_scatter, number_unknowns
 from fem.assembly.solid_element import SOLID_ELEMENTS, SolidElement
 from fem.assembly.solid_geometry import SolidGeometry, solid_geometry, solid_middle
@@ -14,7 +15,9 @@ __all__ = [
     "ElementLaws",
     "Evaluation",
     "Geometry",
+    "Memory",
     "Numbering",
+    "Prony",
     "Scatter",
     "SolidElement",
     "SolidGeometry",
@@ -24,6 +27,7 @@ __all__ = [
     "gauss_geometry",
     "number_unknowns",
     "point_geometry",
+    "prony_of",
     "solid_geometry",
     "solid_middle",
 ]

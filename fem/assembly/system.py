@@ -20,6 +20,7 @@ import numpy as np
 from fem.arrays import FloatArray, IntArray
 from fem.assembly.element_geometry import ELEMENTS_AT_ONCE, ElementGeometry
 from fem.assembly.laws import ElementLaws
+from fem.assembly.memory import Memory
 from fem.assembly.scatter import Numbering, Scatter, packed_positions
 from fem.deformation import Deformation
 
@@ -99,6 +100,42 @@ class System:
         self.point_modulus = at_points
         self._field_modulus = laws.bulk_modulus - at_points
         self._prescribed: FloatArray | None = None
+        shape = (len(geometry.components.positions), *geometry.weight.shape)
+        self.memory = None if laws.prony is None else Memory.of_rest(laws.prony, shape)
+        self._duration = 0.0
+
+    @property
+    def remembers(self) -> bool:
+        """Whether a state depends on the states before it."""
+        return self.memory is not None
+
+    def advanced(self, duration: float) -> System:
+        """The equations of a step that takes `duration` s from the last accepted state."""
+        if self.memory is None:
+            return self
+        other = copy.copy(self)
+        other._duration, other.laws = duration, self.laws.relaxing(*self.memory.ahead(duration))
+        return other
+
+    def accepted(self, y: FloatArray) -> System:
+        """The equations after a step that ends at unknowns y (n,); evaluated there they give its forces."""
+        if self.memory is None:
+            return self
+        deformation = Deformation(self.geometry.components, self.geometry.gradient(self.element_displacement(y)))
+        other = copy.copy(self)
+        other.memory = self.memory.after(self._duration, self.laws.second_stress(deformation))
+        return other.advanced(0.0)
+
+    def corrected(self, y: FloatArray, press: float) -> System | None:
+        """The equations that fit a state with unknowns y (n,) and a press in N; None if these do."""
+        del y, press
+        return None
+
+    def with_laws(self, laws: ElementLaws) -> System:
+        """The same equations with other laws of the same moduli at rest."""
+        other = copy.copy(self)
+        other.laws = laws
+        return other
 
     def displaced(self, elements: IntArray, prescribed: FloatArray) -> System:
         """The same equations with displacements (components, N) in m on top of the unknowns', elements (nodes, E)."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from fem.arrays import BoolArray, FloatArray
+from fem.contact.punch import Punch
 from fem.mesh import Mesh
 from fem.problem import Problem
 
@@ -21,12 +22,18 @@ class Conditions:
     tied
         Nodes (N,) that share one vertical displacement, the tool's.
     load
-        Nodal forces (N,) in z of a press of 1 N; they add up to -1 exactly.
+        Nodal forces (N,) in z of a press of 1 N; they add up to -1 exactly, or are 0 where a punch touches.
+    punch
+        A rigid punch that presses by touching, or None.
+    area
+        Area (N,) in m2 of the nodes that may touch it, 0 at others; needed with a punch.
     """
 
     held: BoolArray
     tied: BoolArray
     load: FloatArray
+    punch: Punch | None = None
+    area: FloatArray | None = None
 
 
 @dataclass(frozen=True)
@@ -41,11 +48,14 @@ class Resolution:
         Largest element size under the tool.
     fan
         Whether the material turns round the edge, so that a fan of elements is needed there.
+    gather
+        Where the element size at the edge is wanted, in tool radii.
     """
 
     edge: float
     under: float
     fan: bool = False
+    gather: tuple[float, ...] = (1.0,)
 
 
 SMALL_STRAIN = Resolution(edge=1.0 / 200.0, under=1.0 / 3.0)

@@ -44,20 +44,9 @@ class RigidFrictionless:
     """Uniform vertical displacement and no shear under the tool, in linear kinematics only."""
 
     def check(self, problem: Problem) -> tuple[str, ...]:
-        """Finite strain needs real contact with a rounded edge."""
-        edge = problem.tool.edge_radius
-        if problem.kinematics == "linear":
-            ignored = "tool.edge_radius has no effect on the contact 'rigid_frictionless' in linear kinematics"
-            return () if edge is None else (ignored,)
-        if edge is None:
-            raise FemError(
-                "tool.edge_radius is missing: contact 'rigid_frictionless' with kinematics = 'finite' needs "
-                "a rounded edge (a sharp tied edge loses stability); give edge_radius or use kinematics = 'linear'"
-            )
-        raise FemError(
-            f"tool.edge_radius = {edge:g} m: contact 'rigid_frictionless' with kinematics = 'finite' "
-            "is not available; use 'rigid_bonded', 'uniform_pressure' or kinematics = 'linear'"
-        )
+        """An edge radius means nothing here."""
+        ignored = "tool.edge_radius has no effect on the contact 'rigid_frictionless' in linear kinematics"
+        return () if problem.tool.edge_radius is None else (ignored,)
 
     def resolution(self, problem: Problem) -> Resolution:
         """Linear kinematics only."""

@@ -41,11 +41,8 @@ class KnownStates:
     def predict(self, value: float, order: int = ORDER) -> State:
         """State at a load value, of at most the given order."""
         chosen = self._choose(value, order + 1)
-        weights = _lagrange(np.array([self._values[n] for n in chosen]), value)
-        states = [self._states[n] for n in chosen]
-        y = np.tensordot(weights, [s.y for s in states], axes=1)
-        pressure = np.tensordot(weights, [s.pressure for s in states], axes=1)
-        return State(y, pressure, float(weights @ [s.force for s in states]))
+        weights = lagrange(np.array([self._values[n] for n in chosen]), value)
+        return combined(weights, [self._states[n] for n in chosen])
 
     def _choose(self, value: float, most: int) -> list[int]:
         """Nearest known states, far enough from each other for the distance to the value."""
@@ -61,7 +58,15 @@ class KnownStates:
         return chosen
 
 
-def _lagrange(points: FloatArray, at: float) -> FloatArray:
+def combined(weights: FloatArray, states: list[State]) -> State:
+    """Sum of states (n) times weights (n,)."""
+    y = np.tensordot(weights, [s.y for s in states], axes=1)
+    pressure = np.tensordot(weights, [s.pressure for s in states], axes=1)
+    return State(y, pressure, float(weights @ [s.force for s in states]))
+
+
+def lagrange(points: FloatArray, at: float) -> FloatArray:
+    """Weights (n,) of values at different points (n,) in the polynomial through them, at one place."""
     weights = np.ones(len(points))
     for i, p in enumerate(points):
         for j, other in enumerate(points):

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
+import numpy as np
+
 from fem.arrays import FloatArray
+from fem.assembly import System
 from fem.solving.equilibrium import Equilibrium
 from fem.solving.newton import NewtonSettings, solve_newton
 from fem.solving.predictor import KnownStates
-from fem.solving.state import State
+from fem.solving.recent import RecentStates
+from fem.solving.state import NewtonResult, State
 
 SMALLEST_PART = 2.0**-8
 MOST_PARTS = 400
+MOST_CORRECTIONS = 60
 
 
 @dataclass(frozen=True)
@@ -54,6 +59,8 @@ class Stepper:
         Limits of each Newton run.
     start
         State without force to start from; None for rest.
+    time
+        Time in s of the start; matters to equations with a memory only.
     """
 
     def __init__(
@@ -63,6 +70,7 @@ class Stepper:
         force_scale: float,
         settings: NewtonSettings,
         start: State | None = None,
+        time: float = 0.0,
     ) -> None:
         self._problem = problem
         self._control: Literal["force", "depth"] = control
@@ -70,38 +78,76 @@ class Stepper:
         self._settings = settings
         self._state = State(*problem.system.rest(), 0.0) if start is None else start
         self._value = 0.0 if control == "force" else problem.depth(self._state.y)
+        self._time = time
+        self._times = [time]
         self._known = KnownStates(self._value, self._state)
+        self._recent = RecentStates(self._value, self._time, self._state) if problem.system.remembers else None
 
     @property
     def known(self) -> KnownStates:
         """All states of equilibrium found so far."""
         return self._known
 
-    def resume(self, values: FloatArray, states: Sequence[State]) -> None:
-        """Go on from the last of known states, each with its load value (k,) in N or m."""
-        self._value, self._state = float(values[-1]), states[-1]
-        self._known = KnownStates(float(values[0]), states[0])
-        for value, state in zip(values[1:].tolist(), states[1:], strict=True):
-            self._known.add(value, state)
+    @property
+    def times(self) -> FloatArray:
+        """Their times (k,) in s."""
+        return np.array(self._times)
 
-    def advance(self, target: float) -> Advance:
-        """Go to the load value `target`, halving the way as often as needed."""
+    def resume(self, values: FloatArray, times: FloatArray, states: Sequence[State]) -> None:
+        """Go on from known states, each with its load value (k,) in N or m and its time (k,) in s, the start first."""
+        for value, time, state in zip(values[1:].tolist(), times[1:].tolist(), states[1:], strict=True):
+            system = self._problem.system.advanced(time - self._time)
+            self._accept(state, value, time, system.corrected(state.y, state.force) or system)
+
+    @property
+    def problem(self) -> Equilibrium:
+        """The equations, which remember the states up to the last one."""
+        return self._problem
+
+    def advance(self, target: float, time: float | None = None) -> Advance:
+        """Go to the load value `target` at a time in s (None: at once), halving the way as often as needed."""
         start, iterations, cuts = self._value, 0, 0
-        way = part = target - start
+        began, way = self._time, target - start
+        duration = 0.0 if time is None else time - began
+        share, part = 0.0, 1.0
         for _ in range(MOST_PARTS):
-            value = target if abs(part) >= abs(target - self._value) else self._value + part
-            guess = self._known.predict(value)
-            result = solve_newton(self._problem, guess, self._control, value, self._force_scale, self._settings)
+            last = part >= 1.0 - share
+            value = target if last else start + (share + part) * way
+            end = began + duration * (1.0 if last else share + part)
+            result, system = self._solve(value, end)
             iterations += result.iterations
             if result.success:
-                self._state, self._value = result.state, value
-                self._known.add(value, result.state)
-                if value == target:
+                self._accept(result.state, value, end, system)
+                if last:
                     return Advance(self._state, value, iterations, cuts)
+                share += part
                 part *= 2.0
             else:
                 part *= 0.5
                 cuts += 1
-                if abs(part) <= SMALLEST_PART * abs(way):
+                if part <= SMALLEST_PART:
                     return Advance(self._state, self._value, iterations, cuts, result.reason)
         return Advance(self._state, self._value, iterations, cuts, f"more than {MOST_PARTS} parts of one step")
+
+    def _solve(self, value: float, time: float) -> tuple[NewtonResult, System]:
+        """Newton's result at a load value and a time, and the equations that fit it."""
+        system = self._problem.system.advanced(time - self._time)
+        guess = self._known.predict(value) if self._recent is None else self._recent.predict(value, time)
+        iterations = 0
+        for _ in range(MOST_CORRECTIONS):
+            ahead = replace(self._problem, system=system)
+            result = solve_newton(ahead, guess, self._control, value, self._force_scale, self._settings)
+            iterations += result.iterations
+            other = system.corrected(result.state.y, result.state.force) if result.success else None
+            if other is None:
+                return replace(result, iterations=iterations), system
+            system, guess = other, result.state
+        return NewtonResult(guess, iterations, f"friction does not settle in {MOST_CORRECTIONS} rounds"), system
+
+    def _accept(self, state: State, value: float, time: float, system: System) -> None:
+        self._problem = replace(self._problem, system=system.accepted(state.y))
+        self._state, self._value, self._time = state, value, time
+        self._times.append(time)
+        self._known.add(value, state)
+        if self._recent is not None:
+            self._recent.add(value, time, state)

@@ -29,6 +29,7 @@ from fem.deformation import Deformation
 from fem.linear_solver import make_solver
 from fem.materials import Material
 from fem.mesh import Mesh
+from fem.relaxation import PronyTerm
 from fem.solving import Equilibrium, NewtonSettings, State, Stepper
 from fem.solving.newton import solve_newton
 
@@ -54,6 +55,8 @@ class Body:
         Nodes (N,) that share one vertical displacement.
     stabilisation
         See :class:`fem.assembly.System`.
+    relaxation
+        Prony terms of the material.
     """
 
     mesh: Mesh
@@ -61,6 +64,7 @@ class Body:
     fixed: BoolArray
     tied: BoolArray
     stabilisation: float = 0.0
+    relaxation: tuple[PronyTerm, ...] = ()
 
     @cached_property
     def numbering(self) -> Numbering:
@@ -80,7 +84,7 @@ class Body:
     @cached_property
     def system(self) -> System:
         """Residual and tangent."""
-        laws = element_laws((self.material,), self.mesh.layer)
+        laws = element_laws((self.material,), self.mesh.layer, (self.relaxation,))
         return System(self.geometry, laws, self.numbering, self.scatter, self.stabilisation)
 
     @property

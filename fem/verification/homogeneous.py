@@ -7,13 +7,14 @@ Simple shear F = I + g e_z x e_x: J = 1, I1 = 3 + g^2, P = mu (F - I1/3 F^-T).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 from scipy.optimize import brentq
 
 from fem.arrays import FloatArray
-from fem.materials import NeoHookean
+from fem.materials import Material, NeoHookean
 from fem.solving import NewtonSettings, Stepper
 from fem.verification.body import Body, free_of_ties, worst
 from fem.verification.case import Case, Quantity
@@ -52,16 +53,39 @@ def principal_stress(material: NeoHookean, radial: float, axial: float) -> tuple
 
 def uniaxial(poisson_ratio: float, stretch: float, stabilisation: float = 1.0) -> tuple[Quantity, ...]:
     """Cylinder between frictionless plates: axial nominal stress and radial stretch at an axial stretch."""
-    mesh, material = distorted_square(COUNT, SEED), NeoHookean(YOUNGS_MODULUS, poisson_ratio)
+    material = NeoHookean(YOUNGS_MODULUS, poisson_ratio)
+    return pressed(material, partial(principal_stress, material), stretch, stabilisation)
+
+
+def pressed(
+    material: Material,
+    principal: Callable[[float, float], tuple[float, float]],
+    stretch: float,
+    stabilisation: float,
+) -> tuple[Quantity, ...]:
+    """Axial nominal stress and radial stretch of a cylinder between frictionless plates.
+
+    Parameters
+    ----------
+    material
+        Its material.
+    principal
+        Nominal stresses in Pa, radial and axial, of a radial and an axial stretch, in closed form.
+    stretch
+        Axial stretch.
+    stabilisation
+        See :class:`fem.assembly.System`.
+    """
+    mesh = distorted_square(COUNT, SEED)
     body = Body(mesh, material, np.stack((mesh.axis, mesh.base)), mesh.top, stabilisation)
     probe = int(body.numbering.unknown[1, mesh.interfaces[0][0]])
     load = np.zeros(body.numbering.count)
     load[probe] = -1.0
     stepper = Stepper(body.equilibrium(load, probe), "depth", 1e-3 * YOUNGS_MODULUS, NewtonSettings())
     state = stepper.advance(1.0 - stretch).state
-    exact = float(brentq(lambda a: principal_stress(material, a, stretch)[0], 0.2, 5.0, xtol=1e-15))
+    exact = float(brentq(lambda a: principal(a, stretch)[0], 0.2, 5.0, xtol=1e-15))
     unknowns, found = body.numbering.count, 1.0 + body.gradient(state.y)[2]
-    stress = principal_stress(material, exact, stretch)[1]
+    stress = principal(exact, stretch)[1]
     return (
         Quantity("nominal_stress", 1e-3 * stress, -1e-3 * state.force / np.pi, "kPa", ALLOWED_PERCENT, unknowns),
         Quantity("lateral_stretch", exact, worst(found, exact), "", ALLOWED_PERCENT, unknowns),

@@ -125,3 +125,19 @@ def test_a_linear_run_needs_none(tmp_path):
     solution = fem.prepare(replace(skin(), kinematics="linear")).run(LOAD, checkpoint=tmp_path / "run.npz")
     assert solution.complete
     assert not (tmp_path / "run.npz").exists()
+
+
+@pytest.mark.parametrize(("contact", "tolerance"), [("rigid_bonded", 1e-12), ("rigid_frictional", 1e-4)])
+def test_a_body_with_a_memory_goes_on(tmp_path, contact, tolerance):
+    """Relaxation and friction remember; a resumed friction limit fits to the limit's own tolerance."""
+    plain = skin()
+    layers = tuple(replace(layer, relaxation=(fem.PronyTerm(0.4, 2.0),)) for layer in plain.layers)
+    touches = contact == "rigid_frictional"
+    tool = fem.Tool(5e-3, contact, 1e-3 if touches else None, friction_coefficient=0.3 if touches else None)
+    problem = replace(plain, layers=layers, tool=tool)
+    whole, path = fem.prepare(problem).run(LOAD), tmp_path / "run.npz"
+    assert whole.complete
+    with pytest.raises(StoppedError):
+        fem.prepare(problem).run(LOAD, stop_at(4), path)
+    resumed = fem.prepare(problem).run(LOAD, None, path)
+    np.testing.assert_allclose(resumed.depth, whole.depth, rtol=tolerance)

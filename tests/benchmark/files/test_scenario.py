@@ -40,10 +40,12 @@ def test_a_frictionless_tool_needs_an_edge_in_finite_strain_only():
     assert scenario(tool=smooth.model_copy(update={"edge_radius": 5e-4})).tool.edge_radius == 5e-4
 
 
-def test_a_frictional_tool_needs_a_coefficient():
-    rough = Tool(radius=5e-3, contact="rigid_frictional")
+def test_a_frictional_tool_needs_a_coefficient_and_in_finite_strain_an_edge():
+    sharp, friction = Tool(radius=5e-3, contact="rigid_frictional"), Physics(friction_coefficient=0.3)
+    rough = sharp.model_copy(update={"edge_radius": 5e-4})
     assert key_of(tool=rough) == "physics.friction_coefficient"
-    assert scenario(tool=rough, physics=Physics(friction_coefficient=0.3)).tool == rough
+    assert key_of(tool=sharp, physics=friction) == "tool.edge_radius"
+    assert scenario(tool=rough, physics=friction).tool == rough
 
 
 def test_the_tool_fits_the_hole():

@@ -4,8 +4,12 @@ import pytest
 from benchmark.files import load_scenario
 from benchmark.models import UncoveredError, prepare, scenario_drive
 
+FIBRE = '{ k1 = "10 kPa", k2 = 1.0 }'
+
 OUTSIDE = {
-    "option of the body": ({"physics.pretension": "20 kPa"}, "pretension", ("fem", "wave")),
+    "option of the body": ({"physics.floor_depth": "6 mm"}, "floor_depth", ("fem", "wave")),
+    "fibres": ({"dermis.fibre": FIBRE}, "fibres", ("wave",)),
+    "fibres in small strain": ({"dermis.fibre": FIBRE, "fem.kinematics": "linear"}, "fibres", ("fem",)),
     "tilted tool": ({"tool.tilt": "3 deg"}, "tilted", ("wave",)),
     "off the hole's centre": (
         {"support.kind": "hole", "support.hole_radius": "30 mm", "tool.position": '["5 mm", "0 mm"]'},
@@ -13,7 +17,7 @@ OUTSIDE = {
         ("wave",),
     ),
     "friction": (
-        {"tool.contact": "rigid_frictional", "physics.friction_coefficient": "0.3"},
+        {"tool.contact": "rigid_frictional", "physics.friction_coefficient": "0.3", "fem.kinematics": "linear"},
         "friction",
         ("fem", "wave"),
     ),

