@@ -12,6 +12,7 @@ from benchmark.runs.measured import MeasuredComparison
 from benchmark.runs.options import RunOptions
 from benchmark.runs.record import RunRecord, compare_layers, deflections, gather_warnings
 from benchmark.runs.refinement import refine
+from benchmark.runs.small_strain import beside_small_strain
 from benchmark.side_by_side import NAMES, run_side_by_side
 
 
@@ -66,6 +67,8 @@ def run_scenario(
             on_progress=on_progress,
             own=own,
         )
+    if own.wave is None and own.repair is None:
+        pair = beside_small_strain(scenario, pair, drive)
     levels = refine(scenario, pair, listener) if options.refine else ()
     layers = len(scenario.tissue.layers)
     fem, wave = (deflections(run.result, drive.time.size, layers) for run in (pair.fem, pair.wave))

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from benchmark.discovery.from_run.reading import FinishedRun
-from benchmark.models import Drive, prepare
+from benchmark.models import Drive
+from benchmark.models.small_strain import in_small_strain, small_strain_deflection
 
 
 def at_small_strain(run: FinishedRun) -> FinishedRun:
@@ -13,10 +14,7 @@ def at_small_strain(run: FinishedRun) -> FinishedRun:
 
     A wave whose large press was asked for, or that has effects of a model file, stays as it is.
     """
-    chosen = run.scenario.wave
-    if chosen.large_press != "auto" or run.large_press != "corrected" or run.effects:
+    if run.scenario.wave.large_press != "auto" or run.large_press != "corrected" or run.effects:
         return run
-    wave = chosen.model_copy(update={"large_press": "linear"})
-    scenario = run.scenario.model_copy(update={"wave": wave})
-    linear = prepare("wave", scenario).run(Drive("force", run.time, run.force))
-    return replace(run, wave=linear.top_deflection, scenario=scenario, large_press="linear", restarted=True)
+    wave = small_strain_deflection(run.scenario, Drive("force", run.time, run.force))
+    return replace(run, wave=wave, scenario=in_small_strain(run.scenario), large_press="linear", restarted=True)

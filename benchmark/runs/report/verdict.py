@@ -5,6 +5,7 @@ from __future__ import annotations
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.measured_section import sentence
 from benchmark.runs.report.values import peak_errors
+from benchmark.runs.small_strain import NOTE
 from reports import Verdict
 
 
@@ -39,9 +40,11 @@ def _agreement(record: RunRecord, fit: str | None) -> Verdict:
     if record.pair.speedup is not None:
         ratio = record.pair.speedup
         points.append(
-            f"the {wave} follows the load history {ratio.median:.3g} times as fast "
+            f"the {wave} follows the load history {ratio.median:,.0f} times as fast "
             f"(95 % {ratio.ci95[0]:.3g} to {ratio.ci95[1]:.3g}, {ratio.repeats} interleaved repeats, one thread each)"
         )
+    result = record.pair.wave.result
+    points.extend([result.notes[NOTE]] if result is not None and NOTE in result.notes else [])
     points.extend([] if fit is None else [fit])
     if len(shown) == len(record.comparisons):
         headline = sentence(f"{wave} and {fem} are equivalent within {margin} in every layer's maximum deformation")

@@ -1,0 +1,40 @@
+"""What the wave of small strain would have said, beside a run that took finite strain."""
+
+import re
+
+import pytest
+
+from benchmark.cli.console import Console
+from benchmark.files import load_scenario
+from benchmark.models import NOTHING, scenario_drive
+from benchmark.runs.options import RunOptions
+from benchmark.runs.report.verdict import run_verdict
+from benchmark.runs.scenario_run import run_scenario
+from benchmark.runs.small_strain import NOTE, beside_small_strain
+
+QUICK = {"fem.mesh": "coarse", "load.observations": "10"}
+OPTIONS = RunOptions(repeats=3)
+QUIET = Console(quiet=True)
+
+
+def test_a_deep_press_says_how_far_small_strain_is_off():
+    record = run_scenario(load_scenario("skin-5N", QUICK), OPTIONS, QUIET)
+    assert record.pair.wave.result is not None
+    note = record.pair.wave.result.notes[NOTE]
+    errors = [float(value) for value in re.findall(r"([+-][0-9.]+) %", note)]
+    assert len(errors) == 3
+    assert all(15.0 < error < 40.0 for error in errors)
+    assert note in run_verdict(record).points
+    linear = run_scenario(load_scenario("skin-5N", QUICK | {"wave.large_press": "linear"}), OPTIONS, QUIET)
+    fem, wave = linear.pair.fem.result, linear.pair.wave.result
+    assert fem is not None
+    assert wave is not None
+    assert errors[0] == pytest.approx(100 * (wave.top_deflection[4, 0] / fem.top_deflection[4, 0] - 1), abs=0.06)
+    assert beside_small_strain(linear.scenario, linear.pair, scenario_drive(linear.scenario)) is linear.pair
+
+
+def test_small_strain_finite_elements_need_no_note():
+    scenario = load_scenario("skin-5N", QUICK | {"fem.kinematics": "linear"})
+    record = run_scenario(scenario, OPTIONS, QUIET, own=NOTHING)
+    assert record.pair.wave.result is not None
+    assert NOTE not in record.pair.wave.result.notes
