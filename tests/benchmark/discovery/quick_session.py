@@ -7,7 +7,6 @@ blind trials are what says something of the method.
 import numpy as np
 
 PEAK = 3e-3
-STIFFNESS = 400.0
 
 TISSUE = """\
 schema = 1
@@ -39,8 +38,9 @@ def law(depth):
     """The wave model's force over depth of the layer."""
     from wavemodel import DiscTool, LayeredWave, WaveLayer
 
-    wave = LayeredWave([WaveLayer("layer", 12e-3, 1100.0, 30e3, 0.47)], DiscTool(5e-3, "rigid_bonded"))
-    return np.maximum(depth, 0.0) / wave.law.compliance
+    layers = [WaveLayer("layer", 12e-3, 1100.0, 30e3, 0.47)]
+    wave = LayeredWave(layers, DiscTool(5e-3, "rigid_bonded"), large_press="corrected")
+    return wave.law(np.maximum(depth, 0.0))
 
 
 def memory_noise(rng, size, scale, memory=0.6):

@@ -22,8 +22,12 @@ def relaxing(time, depth, elastic):
     from wavemodel import Prony
     from wavemodel.physics import Physics, QuasiStaticPress
 
-    stiffness = elastic.max() / depth.max()
-    press = QuasiStaticPress(lambda d: stiffness * d, Physics(relaxation=Prony((0.12,), (0.8,))))
+    order = np.argsort(depth)
+
+    def law(wanted):
+        return np.interp(wanted, depth[order], elastic[order])
+
+    press = QuasiStaticPress(law, Physics(relaxation=Prony((0.12,), (0.8,))))
     return press.force(time + 1e-3, depth)
 
 
