@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from benchmark.discovery.expected import Rival, expected, rivals
+    from benchmark.discovery.expectation import Rival, expected, rivals
     from benchmark.discovery.result import Discovery
     from benchmark.discovery.settings import Settings
     from benchmark.discovery.workflow import Findings, discover, findings
@@ -17,12 +17,12 @@ __all__ = ["Discovery", "Findings", "Rival", "Settings", "discover", "expected",
 _HOMES = {
     "Discovery": "result",
     "Findings": "workflow",
-    "Rival": "expected",
+    "Rival": "expectation",
     "Settings": "settings",
     "discover": "workflow",
-    "expected": "expected",
+    "expected": "expectation",
     "findings": "workflow",
-    "rivals": "expected",
+    "rivals": "expectation",
 }
 
 

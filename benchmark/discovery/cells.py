@@ -128,8 +128,8 @@ def flip_test(table: CellTable, flips: int, seed: int) -> FlipTest:
     means = table.means
     signals = np.array([(cell.signal, min(cell.rows), len(cell.rows)) for cell in table.cells])
     signs = _signs(means.shape[1], flips, seed)
-    t, error = _statistic(means, signals)
-    largest = np.array([np.abs(_statistic(means * sign, signals)[0]).max() for sign in signs])
+    t, error = (column[0] for column in _statistics(means, signals, np.ones((1, means.shape[1]))))
+    largest = np.abs(_statistics(means, signals, signs)[0]).max(axis=1)
     p = (1.0 + (largest[:, None] >= np.abs(t)[None] - 1e-9).sum(axis=0)) / (1.0 + len(signs))
     if means.shape[1] <= ALL_FLIPS:
         p = (largest[:, None] >= np.abs(t)[None] - 1e-9).mean(axis=0)
@@ -143,15 +143,17 @@ def _signs(trials: int, flips: int, seed: int) -> Array:
     return np.asarray(np.random.default_rng(seed).choice((1.0, -1.0), size=(flips, trials)))
 
 
-def _statistic(means: Array, groups: Array) -> tuple[Array, Array]:
-    """(K,) t and standard errors."""
+def _statistics(means: Array, groups: Array, signs: Array) -> tuple[Array, Array]:
+    """(S, K) t and standard errors after each of S flips (S, R)."""
     count = np.isfinite(means).sum(axis=1)
-    mean = np.nansum(means, axis=1) / count
-    spread = np.nansum((means - mean[:, None]) ** 2, axis=1) / np.maximum(count - 1, 1)
+    known = np.nan_to_num(means)
+    mean = signs @ known.T / count
+    spread = ((known**2).sum(axis=1) - count * mean**2) / np.maximum(count - 1, 1)
+    spread = np.maximum(spread, 1e-12 * (known**2).sum(axis=1) / count)
     pooled = np.empty_like(spread)
     for group in np.unique(groups, axis=0):
         mine = (groups == group).all(axis=1)
-        pooled[mine] = np.median(spread[mine])
+        pooled[:, mine] = np.median(spread[:, mine], axis=1, keepdims=True)
     shrunk = (STEADY * pooled + (count - 1) * spread) / (STEADY + count - 1)
     error = np.sqrt(shrunk / count)
     return mean / np.maximum(error, 1e-300), error

@@ -93,7 +93,7 @@ def places(fitted: Fit, detection: Detection, level: float) -> tuple[Place, ...]
             cycle=cell.cycle,
             depth=(float(depth.min()), float(depth.max())),
             size=size,
-            percent_of_signal=100.0 * abs(size) / ranges[cell.signal],
+            percent_of_signal=float(100.0 * abs(size) / ranges[cell.signal]),
             p=float(test.p[k]),
         )
         key = (place.channel, place.phase, place.condition, place.cycle, cell.part)

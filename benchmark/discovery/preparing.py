@@ -33,9 +33,11 @@ ENOUGH_TRIALS = 6
 MOST_RAW = 4000
 LEAST_TRAVEL = 1e-6
 SPREAD = 3.0
-"""Peak depths and speeds of the trials of one condition lie within this factor."""
+"""Speeds of the trials of one condition lie within this factor, and so do peak depths or else peak forces."""
 SAME_TIME = 0.05
 LEAST_BINS = 10
+MOST_IN_ALL, LEAST_IN_TRIAL = 2400, 40
+"""Rows of all trials together, and of a trial where there are very many."""
 
 Pieces: TypeAlias = tuple[Segment, ...]
 
@@ -65,6 +67,7 @@ def prepare(session: Session, rows: int) -> Study:
         warnings.append(
             f"{len(session.trials)} trials: sign flips of so few cannot reach the 5 % level, so nothing can be shown"
         )
+    rows = min(rows, max(LEAST_IN_TRIAL, MOST_IN_ALL // len(session.trials)))
     raw = [_raw(session, trial, warnings) for trial in session.trials]
     groups = [[r for r in raw if r.trial.condition == name] for name in session.conditions]
     kept = [_same_protocol(session, group, warnings) for group in groups]
@@ -119,8 +122,18 @@ def _kinds(raw: RawTrial) -> tuple[str, ...]:
     return tuple(piece.kind for piece in raw.pieces)
 
 
+def _without_first_rest(raw: RawTrial) -> RawTrial:
+    """A trial whose first rest counts to what follows it."""
+    pieces = raw.pieces
+    if len(pieces) < 2 or pieces[0].kind != "rest":
+        return raw
+    return replace(raw, pieces=(replace(pieces[1], first=0), *pieces[2:]))
+
+
 def _same_protocol(session: Session, group: Sequence[RawTrial], warnings: list[str]) -> list[RawTrial]:
     """Trials with the motion of most, their segments alike."""
+    if len({_kinds(raw) for raw in group}) > 1:
+        group = [_without_first_rest(raw) for raw in group]
     usual = Counter(_kinds(raw) for raw in group).most_common(1)[0][0]
     model = next(raw for raw in group if _kinds(raw) == usual)
     fitted = [raw if _kinds(raw) == usual else _timed_like(raw, model) for raw in group]
@@ -129,7 +142,9 @@ def _same_protocol(session: Session, group: Sequence[RawTrial], warnings: list[s
     odd = [raw.trial.name for raw, one in zip(group, fitted, strict=True) if one is None]
     peaks = np.array([raw.depth.max() for raw in kept])
     speeds = np.array([_speed(raw) for raw in kept])
-    wide = max(peaks.max() / peaks.min(), speeds.max() / speeds.min()) > SPREAD
+    forces = np.array([np.ptp(raw.force) for raw in kept])
+    deep = min(peaks.max() / peaks.min(), forces.max() / forces.min()) > SPREAD
+    wide = deep or speeds.max() / speeds.min() > SPREAD
     if len(odd) > 0.25 * len(group) or wide:
         raise InputError(
             f"session {session.name}, condition {name}: trials of different protocols ({len(group)} trials; peak depth "

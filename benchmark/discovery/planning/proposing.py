@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from benchmark.discovery.expected import Rival, expected, rivals
+from benchmark.discovery.expectation import Rival, expected, rivals
 from benchmark.discovery.planning.menu import Experiment, Usual, menu, rigid_block, ruler_image, same_again
 from benchmark.discovery.planning.protocol import minutes, motion, protocol_toml
 from benchmark.discovery.planning.separation import separation

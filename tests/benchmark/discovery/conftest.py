@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import importlib.util
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -149,3 +152,27 @@ def empty(record: DiscoveryRecord) -> DiscoveryRecord:
         warnings=(),
     )
     return replace(record, found=nothing, synthetic=False)
+
+
+_PATH = Path(__file__).with_name("quick_session.py")
+_SPEC = importlib.util.spec_from_file_location("discovery_quick_session", _PATH)
+quick = importlib.util.module_from_spec(_SPEC)
+sys.modules["discovery_quick_session"] = quick
+_SPEC.loader.exec_module(quick)
+
+
+@pytest.fixture(scope="session")
+def quick_session():
+    """The maker of quick synthetic sessions."""
+    return quick
+
+
+@pytest.fixture
+def session_of(tmp_path):
+    """A loaded quick session."""
+    from benchmark.files import load_session
+
+    def make(**options):
+        return load_session(quick.write_session(tmp_path / "session", **options))
+
+    return make

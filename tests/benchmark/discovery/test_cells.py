@@ -1,0 +1,54 @@
+"""The sign-flip test of whole trials keeps its level."""
+
+import numpy as np
+import pytest
+
+from benchmark.discovery.cells import Cell, CellTable, flip_test
+
+TRIALS, CELLS = 8, 24
+
+
+def table(means):
+    rows = {0: np.ones(2, dtype=bool)}
+    return CellTable(tuple(Cell(k % 6, 1, 0, k % 3, rows) for k in range(len(means))), means)
+
+
+def null_means(rng):
+    """Cells of one trial resemble each other, and trials scatter differently."""
+    shared = rng.standard_t(4, TRIALS) * rng.uniform(0.5, 2.0, TRIALS)
+    return 0.7 * shared[None] * rng.normal(1.0, 0.4, (CELLS, 1)) + rng.standard_t(4, (CELLS, TRIALS))
+
+
+def alarm_rate(sessions, seed):
+    rng = np.random.default_rng(seed)
+    return np.mean([flip_test(table(null_means(rng)), 0, 0).p_any < 0.05 for _ in range(sessions)])
+
+
+def test_false_alarms_are_few():
+    assert 0.0 < alarm_rate(150, 1) < 0.1
+
+
+@pytest.mark.slow
+def test_false_alarms_stay_at_their_level():
+    assert 0.03 <= alarm_rate(1500, 2) <= 0.07
+
+
+def test_a_shift_in_one_cell_is_found_there():
+    rng = np.random.default_rng(5)
+    means = null_means(rng)
+    means[7] += 8.0
+    test = flip_test(table(means), 0, 0)
+    assert test.p_any < 0.05
+    assert np.argmin(test.p) == 7
+
+
+def test_few_trials_cannot_reach_the_level():
+    rng = np.random.default_rng(6)
+    means = 10.0 + rng.normal(size=(CELLS, 5))
+    assert flip_test(table(means), 0, 0).p_any == pytest.approx(1 / 16)
+
+
+def test_many_trials_draw_their_signs_by_seed():
+    means = np.random.default_rng(7).normal(size=(4, 20))
+    one, two = (flip_test(table(means), 500, 3) for _ in range(2))
+    assert one.p == pytest.approx(two.p)

@@ -1,0 +1,45 @@
+"""The whole way on quick sessions, in few rows. Circular where an effect has the catalogue's own form."""
+
+import numpy as np
+import pytest
+
+from benchmark.discovery import Settings, expected, findings, rivals
+from benchmark.discovery.result import CHANNELS, PHASES, VERDICTS
+
+SETTINGS = Settings(rows=90, workers=1, bootstraps=40, most_effects=1)
+
+
+def damped(time, depth, elastic):
+    return elastic + 0.04 * np.gradient(elastic, time)
+
+
+@pytest.mark.slow
+def test_damping_is_named_and_its_gap_closes(session_of, tmp_path):
+    said = []
+    session = session_of(force=damped, noise=0.003, trials=4)
+    store = tmp_path / "store"
+    found = findings(session, settings=SETTINGS, listener=lambda *words: said.append(words), store=store)
+    answer = found.discovery
+    assert answer.verdict in VERDICTS
+    assert "viscous_damping" in {slug for e in answer.effects for slug in (e.slug, *e.lookalikes)}
+    assert all(place.channel in CHANNELS and place.phase in PHASES for place in answer.where)
+    (gap,) = answer.gap
+    assert gap.held_out == "condition"
+    assert gap.closed > 0.6
+    assert said[0][0] == "prepare"
+    assert len(list(store.glob("*.json"))) > 3
+    again = findings(session, settings=SETTINGS, store=store).discovery
+    assert [e.slug for e in again.effects] == [e.slug for e in answer.effects]
+    first = rivals(found)[0]
+    trial = found.calibrated.problem.trials[0]
+    made = expected(first, answer.conditions[0], trial.motion.time, trial.motion.depth)
+    assert made.names == ("force_z",)
+    assert made.signals.shape == (trial.motion.time.size, 1)
+
+
+@pytest.mark.slow
+def test_few_trials_name_nothing(session_of):
+    found = findings(session_of(force=damped, trials=2), settings=SETTINGS)
+    assert found.discovery.verdict == "no_discrepancy"
+    assert found.discovery.effects == ()
+    assert "too few trials" in found.discovery.statement
