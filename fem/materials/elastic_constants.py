@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from fem.checks import require_positive
 from fem.errors import FemError
@@ -41,3 +42,42 @@ def shear_modulus(youngs_modulus: float, poisson_ratio: float) -> float:
 def bulk_modulus(youngs_modulus: float, poisson_ratio: float) -> float:
     """Bulk modulus E / (3 (1 - 2 nu)) in Pa."""
     return youngs_modulus / (3.0 * (1.0 - 2.0 * poisson_ratio))
+
+
+@dataclass(frozen=True)
+class IsotropicSolid:
+    """What laws of two elastic constants share.
+
+    Attributes
+    ----------
+    youngs_modulus
+        Young's modulus at rest in Pa, above 0.
+    poisson_ratio
+        Poisson's ratio at rest, above -1 and at most 0.4999.
+
+    Raises
+    ------
+    FemError
+        If a constant is outside its range.
+    """
+
+    youngs_modulus: float
+    poisson_ratio: float
+
+    def __post_init__(self) -> None:
+        require_elastic_constants(self.youngs_modulus, self.poisson_ratio)
+
+    @property
+    def shear_modulus(self) -> float:
+        """Shear modulus at rest in Pa."""
+        return shear_modulus(self.youngs_modulus, self.poisson_ratio)
+
+    @property
+    def bulk_modulus(self) -> float:
+        """Bulk modulus in Pa."""
+        return bulk_modulus(self.youngs_modulus, self.poisson_ratio)
+
+    @property
+    def parameters(self) -> tuple[float, ...]:
+        """The shear modulus in Pa."""
+        return (self.shear_modulus,)

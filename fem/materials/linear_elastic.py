@@ -12,7 +12,7 @@ import numpy as np
 
 from fem.arrays import FloatArray
 from fem.deformation import Deformation
-from fem.materials import elastic_constants
+from fem.materials.elastic_constants import IsotropicSolid
 from fem.materials.law import IsochoricLaw
 
 
@@ -44,47 +44,13 @@ class HookeLaw:
 
 
 @dataclass(frozen=True)
-class LinearElastic:
-    """Isotropic linear elastic solid.
-
-    Attributes
-    ----------
-    youngs_modulus
-        Young's modulus in Pa, above 0.
-    poisson_ratio
-        Poisson's ratio, above -1 and at most 0.4999.
-
-    Raises
-    ------
-    FemError
-        If a constant is outside its range.
-    """
-
-    youngs_modulus: float
-    poisson_ratio: float
-
-    def __post_init__(self) -> None:
-        elastic_constants.require_elastic_constants(self.youngs_modulus, self.poisson_ratio)
-
-    @property
-    def shear_modulus(self) -> float:
-        """Shear modulus in Pa."""
-        return elastic_constants.shear_modulus(self.youngs_modulus, self.poisson_ratio)
-
-    @property
-    def bulk_modulus(self) -> float:
-        """Bulk modulus in Pa."""
-        return elastic_constants.bulk_modulus(self.youngs_modulus, self.poisson_ratio)
+class LinearElastic(IsotropicSolid):
+    """Isotropic linear elastic solid: Young's modulus in Pa and Poisson's ratio, both at rest; see `IsotropicSolid`."""
 
     @property
     def law(self) -> IsochoricLaw:
         """The deviatoric law."""
         return HookeLaw()
-
-    @property
-    def parameters(self) -> tuple[float, ...]:
-        """The shear modulus in Pa."""
-        return (self.shear_modulus,)
 
     @property
     def finite_strain(self) -> bool:

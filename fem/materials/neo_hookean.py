@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from fem.arrays import FloatArray
 from fem.deformation import Deformation
-from fem.materials import elastic_constants
+from fem.materials.elastic_constants import IsotropicSolid
 from fem.materials.invariants import first_curvature, first_gradient
 from fem.materials.law import IsochoricLaw
 
@@ -36,47 +36,13 @@ class NeoHookeanLaw:
 
 
 @dataclass(frozen=True)
-class NeoHookean:
-    """Neo-Hookean solid from its constants at rest.
-
-    Attributes
-    ----------
-    youngs_modulus
-        Young's modulus at rest in Pa, above 0.
-    poisson_ratio
-        Poisson's ratio at rest, above -1 and at most 0.4999.
-
-    Raises
-    ------
-    FemError
-        If a constant is outside its range.
-    """
-
-    youngs_modulus: float
-    poisson_ratio: float
-
-    def __post_init__(self) -> None:
-        elastic_constants.require_elastic_constants(self.youngs_modulus, self.poisson_ratio)
-
-    @property
-    def shear_modulus(self) -> float:
-        """Shear modulus at rest in Pa."""
-        return elastic_constants.shear_modulus(self.youngs_modulus, self.poisson_ratio)
-
-    @property
-    def bulk_modulus(self) -> float:
-        """Bulk modulus in Pa."""
-        return elastic_constants.bulk_modulus(self.youngs_modulus, self.poisson_ratio)
+class NeoHookean(IsotropicSolid):
+    """Neo-Hookean solid from Young's modulus in Pa and Poisson's ratio, both at rest; see `IsotropicSolid`."""
 
     @property
     def law(self) -> IsochoricLaw:
         """The isochoric law."""
         return NeoHookeanLaw()
-
-    @property
-    def parameters(self) -> tuple[float, ...]:
-        """The shear modulus in Pa."""
-        return (self.shear_modulus,)
 
     @property
     def finite_strain(self) -> bool:
