@@ -8,7 +8,9 @@ from pathlib import Path
 
 from benchmark.errors import InputError
 
-RESULT_FILES = ("results.json", "fit.json", "discovery.json", "verification.json", "report.json")
+RESULT_FILES = (
+    "results.json", "fit.json", "discovery.json", "verification.json", "report.json", "reproduce.json",
+)  # fmt: skip
 
 
 def destination(out: Path | None, name: str) -> Path:

@@ -38,9 +38,19 @@ def table_one() -> tuple[Recomputed, ...]:
     by_equation = float(corrected.coefficient[0, 0]) / MILLI
     by_slip = float(as_printed.coefficient[0, 0]) / MILLI
     rows = (
-        ("c, root of c^2 (eq. 1)", printed.SPEED, root, "holds only for an unrounded c^2 of 85.555 to 85.556"),
+        (
+            "c, root of c^2 (eq. 1)",
+            printed.SPEED,
+            root,
+            "the printed c is the root of a c^2 of 85.555 to 85.556, which rounds to 85.56",
+        ),
         ("lambda_11 (eq. 3)", printed.FREQUENCY, float(as_printed.frequency[0, 0]), "c in m/s over a in mm: rad/ms"),
-        ("B_11 (eq. 3 with eqs. 4 to 6)", printed.COEFFICIENT, by_equation, "the equations as they stand give this"),
+        (
+            "B_11 (eq. 3 with eqs. 4 to 6)",
+            printed.COEFFICIENT,
+            by_equation,
+            "the equations as they stand give this; the next line says what gives the printed number",
+        ),
         (
             "B_11 with sin(n pi y / b) written as sin(pi x / a)",
             printed.COEFFICIENT,

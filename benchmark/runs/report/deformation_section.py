@@ -9,7 +9,7 @@ from benchmark.models import Array
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.values import MM, fem_mm, pair_names, peak_errors, profile_mm, wave_mm
 from benchmark.runs.tables import percent_errors
-from reports import Block, Column, Download, Notice, Section, Table
+from reports import Block, Column, Download, Figure, Notice, Section, Table
 from reports.figures.force_depth import force_depth
 from reports.figures.max_deformation import max_deformation
 from reports.figures.profile import profile
@@ -19,17 +19,7 @@ def deformation_section(record: RunRecord, picture: Block | None = None) -> Sect
     """Return the section on maximum deformations and profiles, with a picture of the pressed tissue."""
     fem, wave = record.pair.fem.result, record.pair.wave.result
     blocks: list[Block] = [_table(record)]
-    steps = np.arange(1, record.time.size + 1)
-    blocks.append(
-        max_deformation(
-            record.layers,
-            steps,
-            fem_mm(record),
-            wave_mm(record),
-            None if wave is None else percent_errors(record),
-            pair=pair_names(record),
-        )
-    )
+    blocks.append(layer_deformations(record))
     blocks.append(
         Notice(
             "finding",
@@ -55,6 +45,18 @@ def deformation_section(record: RunRecord, picture: Block | None = None) -> Sect
     if picture is not None:
         blocks.append(picture)
     return Section("Deformation", blocks)
+
+
+def layer_deformations(record: RunRecord) -> Figure:
+    """Return each layer's deflection over the load steps, both models, and the error (Fig. 12)."""
+    return max_deformation(
+        record.layers,
+        np.arange(1, record.time.size + 1),
+        fem_mm(record),
+        wave_mm(record),
+        None if record.pair.wave.result is None else percent_errors(record),
+        pair=pair_names(record),
+    )
 
 
 def _table(record: RunRecord) -> Table:

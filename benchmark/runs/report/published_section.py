@@ -18,7 +18,7 @@ PROTOCOL = (
 
 def published_section() -> Section:
     """Return the section of a run whose wave model is `published`."""
-    blocks = [Paragraph(PROTOCOL), *(_animation(variant) for variant in LABELS), _table()]
+    blocks = [Paragraph(PROTOCOL), *(published_animation(variant) for variant in LABELS), _table()]
     return Section("The published membrane", blocks)
 
 
@@ -31,7 +31,8 @@ def published_frames(variant: str) -> tuple[np.ndarray, list[np.ndarray]]:
     return 1e3 * side, [-1e3 * wave.deflection(side, side, time) for time in times.tolist()]
 
 
-def _animation(variant: str) -> Figure:
+def published_animation(variant: str) -> Figure:
+    """Return eq. (7) of a variant as a moving picture (Fig. 11)."""
     side, frames = published_frames(variant)
     peak = -float(min(frame.min() for frame in frames))
     period = 4e3 * 0.5 * np.pi / PublishedWave(variant).frequency[0, 0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from benchmark.comparison import LayerComparison, describe_equivalence, describe_t_test, statistics_columns
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.values import fem_mm, pair_names, wave_mm
-from reports import Block, Column, Download, Paragraph, Section, Subsection, Table
+from reports import Block, Column, Download, Figure, Paragraph, Section, Subsection, Table
 from reports.figures.normal_fit import Normal, normal_fit
 
 INTRODUCTION = (
@@ -21,7 +21,7 @@ def statistics_section(record: RunRecord) -> Section:
     blocks.extend(_layer(comparison, record) for comparison in record.comparisons if comparison.statistics is not None)
     if not any(comparison.statistics for comparison in record.comparisons):
         blocks.append(Paragraph("There is nothing to test: one of the models has no values here."))
-    figure = _normal_fits(record)
+    figure = normal_fits(record)
     if figure is not None:
         blocks.append(figure)
     return Section("Statistics", blocks)
@@ -57,7 +57,7 @@ def _layer(comparison: LayerComparison, record: RunRecord) -> Subsection:
     )
 
 
-def _normal_fits(record: RunRecord) -> Block | None:
+def normal_fits(record: RunRecord) -> Figure | None:
     """Fig. 13: None where the FEM has no fit."""
     fem = [comparison.fem_fit for comparison in record.comparisons]
     wave = [comparison.wave_fit for comparison in record.comparisons]

@@ -1,0 +1,74 @@
+"""The whole of `reproduce`: run, compare, write."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from benchmark.reproduce.equations import equation_items
+from benchmark.reproduce.evidence import Evidence, gather
+from benchmark.reproduce.item import Item
+from benchmark.reproduce.page import ITEMS, reproduce_page
+from benchmark.reproduce.table import columns, document
+from benchmark.reproduce.table_one import table_one_items
+from benchmark.reproduce.table_two import table_two_items
+from benchmark.reproduce.text import text_items
+from benchmark.runs.destination import destination
+from benchmark.runs.environment import describe_environment
+from benchmark.runs.listener import Listener
+from reports import csv_text, whole_folder, write_json, write_page, write_text
+
+
+@dataclass(frozen=True)
+class Reproduced:
+    """A finished reproduction on disk: its folder, its items, and the content of `reproduce.json`."""
+
+    folder: Path
+    items: tuple[Item, ...]
+    document: dict[str, Any]
+
+    @property
+    def report(self) -> Path:
+        """The page."""
+        return self.folder / "report.html"
+
+
+def reproduce(out: Path | None, listener: Listener) -> Reproduced:
+    """Recompute the article's numbers, redraw its figures, and write both.
+
+    Parameters
+    ----------
+    out
+        Folder of the result; `results/reproduce-DATE-TIME` by default.
+    listener
+        Told of progress.
+
+    Raises
+    ------
+    InputError
+        `out` holds something else; nothing is run then.
+    OSError
+        Where the file system refuses; the folder is then as it was.
+    """
+    folder = destination(out, "reproduce")
+    evidence = gather(listener)
+    items = all_items(evidence)
+    text = csv_text(columns(items), where=ITEMS)
+    page = reproduce_page(items, evidence, describe_environment(seed=0), text)
+    found = document(items)
+    with whole_folder(folder) as new:
+        write_text(new / ITEMS, text)
+        write_json(new / "reproduce.json", found)
+        write_page(new / "report.html", page)
+    return Reproduced(folder, items, found)
+
+
+def all_items(evidence: Evidence) -> tuple[Item, ...]:
+    """Return every item in the order of the article."""
+    return (
+        *table_one_items(evidence.chain),
+        *equation_items(),
+        *table_two_items(evidence.table_2),
+        *text_items(evidence),
+    )
