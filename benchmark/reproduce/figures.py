@@ -18,6 +18,7 @@ from reports.figures.marker_circle import Ring, marker_circle
 from reports.figures.markers import circle_radius, marker_motion
 
 MM = 1e3
+PREDICTED = "Skin under 5 N (scenario skin-5N); the wave model predicts, nothing of the FEM is fed in."
 FILTER = "A moving average over the last ten frames was taken, as in the article."
 
 
@@ -29,7 +30,7 @@ def redrawn(evidence: Evidence) -> Mapping[int, tuple[Figure, ...]]:
         8: (*_still(chain), _overlay(chain)),
         10: (_growth(chain),),
         11: tuple(_titled(published_animation(variant), f"Eq. (7), {label}") for variant, label in LABELS.items()),
-        12: (_titled(layer_deformations(evidence.press), "Maximum displacements"),),
+        12: (_titled(layer_deformations(evidence.press), "Maximum displacements", PREDICTED),),
         13: _normals(evidence.press),
     }
 
@@ -77,4 +78,4 @@ def _growth(chain: Chain) -> Figure:
 
 def _normals(record: RunRecord) -> tuple[Figure, ...]:
     figure = normal_fits(record)
-    return () if figure is None else (_titled(figure, "Normal distributions"),)
+    return () if figure is None else (_titled(figure, "Normal distributions", PREDICTED),)

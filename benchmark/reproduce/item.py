@@ -8,10 +8,13 @@ from typing import Any
 
 import numpy as np
 
-PRINT = "the article's other numbers"
-SESSION = "the synthetic session"
-RUN = "press to 5 N, computed"
-BASES = (PRINT, SESSION, RUN)
+PRINT, SESSION, RUN = "print", "session", "5 N run"
+BASES = {
+    PRINT: "the article's other printed numbers",
+    SESSION: "the shipped session of trials, which are synthetic",
+    RUN: "FEM and wave model run here under 5 N",
+}
+"""What an item can be recomputed from, in words."""
 
 
 @dataclass(frozen=True)

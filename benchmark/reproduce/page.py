@@ -9,10 +9,10 @@ from benchmark.comparison import describe_equivalence, describe_t_test
 from benchmark.reproduce.evidence import Evidence
 from benchmark.reproduce.figures import redrawn
 from benchmark.reproduce.item import Item
-from benchmark.reproduce.table import by_basis, headline, numbers
+from benchmark.reproduce.table import NO_BREAK, by_basis, headline, numbers
+from benchmark.reproduce.table_two import surface_test
 from reports import (
     Block,
-    Column,
     Download,
     Fact,
     Figure,
@@ -26,9 +26,12 @@ from reports import (
 )
 
 ITEMS = "tables/items.csv"
+SAME = "as above"
 AGREES = (
     "A number agrees if the recomputed one rounds to it at its last printed digit, every input taken as it is printed. "
-    "Where the rounding of the inputs alone explains a difference, the reason says so."
+    'Where the rounding of the inputs alone explains a difference, the reason says so. The column "from" names what a '
+    "value was recomputed from: print, the article's other numbers; session, the shipped synthetic trials; 5 N run, "
+    "FEM and wave model run here."
 )
 GROUPS = {
     "Table 1 and equations (5) and (6)": "Table 1",
@@ -37,8 +40,8 @@ GROUPS = {
     "Numbers of the text": "Section",
 }
 SYNTHETIC = (
-    "The trials behind Figures 7, 8 and 10 and behind every line marked as the synthetic session were computed, not "
-    "measured: another specimen than the article's. They show that the chain works."
+    "The trials behind Figures 7, 8 and 10 and behind every line from the session were computed, not measured: "
+    "they are of another specimen than the article's. They show that the chain works."
 )
 CIRCULAR = (
     "The article's comparison feeds the FEM's maximum into eq. (8) and reads it off eq. (7). Its lines are marked "
@@ -84,7 +87,7 @@ def reproduce_page(items: Sequence[Item], evidence: Evidence, environment: Mappi
         notices=[
             *notices,
             Notice("circular", CIRCULAR),
-            *([Notice("warning", "Of the models:", warnings)] if warnings else []),
+            *([Notice("warning", "What the models say of the press to 5 N.", warnings)] if warnings else []),
         ],
         sections=[*sections, Section("Figures", _figures(evidence))],
         downloads=(
@@ -104,19 +107,15 @@ def _part(title: str, items: Sequence[Item], evidence: Evidence) -> list[Block]:
 
 
 def _table(title: str, items: Sequence[Item]) -> Table:
-    columns = ("item", "printed", "recomputed", "difference", Column("unit"), "agrees", "from", "reason")
-    rows = [
-        (
-            item.item.partition(": ")[2] if title in ("Table 2", "Numbers of the text") else item.item,
-            *numbers(item),
-            item.unit,
-            "yes" if item.agrees else "no",
-            item.basis,
-            item.reason,
-        )
-        for item in items
-    ]
-    return Table(f"{title}: printed and recomputed", columns, rows, folded=False)
+    columns = ("item", "printed", "recomputed", "difference", "unit", "agrees", "from", "reason")
+    rows = []
+    before = ""
+    for item in items:
+        name = item.item.removeprefix("Table 1: ").removeprefix("Table 2: ")
+        reason = SAME if item.reason == before else item.reason
+        before = item.reason
+        rows.append((name, *numbers(item), item.unit, item.agrees, item.basis.replace(" ", NO_BREAK), reason))
+    return Table(f"{title} of the article, printed and recomputed", columns, rows, folded=False)
 
 
 def _tests(evidence: Evidence) -> list[Block]:
@@ -125,7 +124,7 @@ def _tests(evidence: Evidence) -> list[Block]:
     if found is None:
         return []
     return [
-        Paragraph(describe_t_test(found.pooled, found.passing, found.power)),
+        Paragraph(describe_t_test(surface_test(evidence.table_2), found.passing, found.power)),
         Paragraph(describe_equivalence(found.equivalence)),
     ]
 
@@ -147,7 +146,7 @@ def _findings(items: Sequence[Item]) -> list[str]:
 
 
 def _said(item: Item) -> str:
-    return "no value" if item.recomputed is None else numbers(item)[1]
+    return "no value" if item.recomputed is None else f"{numbers(item)[1]}{NO_BREAK}{item.unit}".rstrip()
 
 
 TOLD = (

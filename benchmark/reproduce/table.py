@@ -9,6 +9,8 @@ from benchmark.reproduce.item import BASES, Item
 from reports.formatting import format_number
 
 SCHEMA = 1
+ROUND_OFF = 1e-12
+NO_BREAK = "\N{NO-BREAK SPACE}"
 HEADINGS = ("item", "printed", "recomputed", "agrees")
 
 
@@ -32,9 +34,9 @@ def headline(items: Sequence[Item]) -> str:
 def by_basis(items: Sequence[Item]) -> list[str]:
     """Say for each basis how many agree."""
     lines = []
-    for basis in BASES:
+    for basis, words in BASES.items():
         group = [item for item in items if item.basis == basis]
-        lines.append(f"From {basis}: {sum(item.agrees for item in group)} of {len(group)} agree")
+        lines.append(f"From {words} ({basis}): {sum(item.agrees for item in group)} of {len(group)} agree")
     return lines
 
 
@@ -50,8 +52,11 @@ def numbers(item: Item) -> tuple[str, str, str]:
     nothing = float("nan")
     recomputed = nothing if item.recomputed is None else item.recomputed
     difference = nothing if item.difference is None else item.difference
-    return (
+    rounding = ROUND_OFF * max(abs(item.printed), abs(recomputed))
+    shown = (
         format_number(item.printed, 7, trim=True),
         format_number(recomputed, 7, trim=True),
-        format_number(difference, 3, trim=True),
+        format_number(0.0 if abs(difference) <= rounding else difference, 3, trim=True),
     )
+    first, second, third = (text.replace(" ", NO_BREAK) for text in shown)
+    return first, second, third

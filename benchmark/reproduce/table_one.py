@@ -13,7 +13,7 @@ from wavemodel.published import PublishedWave, printed, table_one
 
 MODES = 15
 UNITS = ("mm/frame²", "mm/frame", "mm")
-POWERS = ("x²", "x", "1")
+POWERS = ("coefficient of x²", "coefficient of x", "constant")
 
 
 def table_one_items(chain: Chain) -> tuple[Item, ...]:
@@ -36,12 +36,12 @@ def _parabola(label: str, name: str, parabola: printed.Parabola, chain: Chain) -
     reason = (
         f"measured on the article's phantom, whose trials are not published; this is the mean over {chain.trials} "
         f"{specimen}trials in the same way, in which markers on opposite sides of the tool cancel; the printed vertex "
-        f"lies at {vertex:.0f}: a fit over frame numbers, used as if they were mm"
+        f"lies at {vertex:.0f}, so it is a fit over frame numbers, used as if they were mm"
     )
     values = (parabola.second, parabola.first, parabola.constant)
     return [
         compare(
-            f"Table 1: {label}, coefficient of {POWERS[place]}",
+            f"Table 1: {label}, {POWERS[place]}",
             value,
             chain.variables.get(f"published.{name}_{2 - place}"),
             reason,

@@ -19,9 +19,19 @@ DEGREES = 2 * int(printed.OBSERVATIONS) - 2
 
 def table_two_items(record: RunRecord) -> tuple[Item, ...]:
     """Return the items, with the surface of the scenario `paper` where a model is needed."""
-    fem, wave = (-MM * record.deflections(each)[:, 0] for each in (record.pair.fem.result, record.pair.wave.result))
-    test = pooled_t_test(fem, wave)
-    return (*_moments(test, fem, record.load), *observation_items(), *test_numbers(), *_predicted(test))
+    test = surface_test(record)
+    return (*_moments(test, _surface(record)[0], record.load), *observation_items(), *test_numbers(), *_predicted(test))
+
+
+def surface_test(record: RunRecord) -> TwoSampleT:
+    """Return the test of Table 2 on the surface of a run, in mm, down negative as there."""
+    return pooled_t_test(*_surface(record))
+
+
+def _surface(record: RunRecord) -> tuple[Array, Array]:
+    """FEM and wave model, (n,) mm each, down negative."""
+    fem, wave = (-MM * record.deflections(run.result)[:, 0] for run in (record.pair.fem, record.pair.wave))
+    return fem, wave
 
 
 def _moments(test: TwoSampleT, fem: Array, load: Array) -> list[Item]:
@@ -44,7 +54,7 @@ def _moments(test: TwoSampleT, fem: Array, load: Array) -> list[Item]:
         compare(
             "Table 2: mean, wave equation, fed (circular)", printed.MEAN_WAVE, _replayed(fem).mean(), fed, "mm", RUN
         ),
-        compare("Table 2: variance, FEA", printed.VARIANCE_FEM, test.fem.variance, "as its mean", "mm²", RUN),
+        compare("Table 2: variance, FEA", printed.VARIANCE_FEM, test.fem.variance, "of the same FEM run", "mm²", RUN),
         compare(
             "Table 2: variance, FEA, of a load triangle",
             printed.VARIANCE_FEM,
@@ -56,7 +66,7 @@ def _moments(test: TwoSampleT, fem: Array, load: Array) -> list[Item]:
             "Table 2: variance, wave equation, predicted",
             printed.VARIANCE_WAVE,
             test.wave.variance,
-            "as its mean: twice its per cent from the FEM",
+            "of the same prediction; a variance goes with the square, so it is off by twice the per cent of the mean",
             "mm²",
             RUN,
         ),
@@ -99,8 +109,8 @@ def test_numbers() -> list[Item]:
     difference = printed.MEAN_FEM - printed.MEAN_WAVE
     needed = printed.T * error
     why_t = (
-        f"with the printed variances; the printed t needs a difference of means of {needed:.3e}, inside the "
-        "rounding of the means (0 to 2e-5)"
+        f"with the printed variances; the printed t needs a difference of means of {1e5 * needed:.3f} × 10⁻⁵ mm, "
+        "inside the rounding of the means (0 to 2 × 10⁻⁵ mm)"
     )
     chosen = "a choice: it is what makes this the test of equal means"
     p_value = 2.0 * scipy.stats.t.sf(printed.T, DEGREES)
@@ -117,7 +127,7 @@ def test_numbers() -> list[Item]:
             "Table 2: t Stat, from the printed p",
             printed.T,
             scipy.stats.t.isf(0.5 * printed.P_VALUE, DEGREES),
-            f"with {DEGREES} degrees of freedom",
+            f"from the printed p, with {DEGREES} degrees of freedom",
         ),
         compare("Table 2: t Stat, from the printed means", printed.T, difference / error, why_t),
         compare(
@@ -127,7 +137,7 @@ def test_numbers() -> list[Item]:
 
 
 def _predicted(test: TwoSampleT) -> list[Item]:
-    reason = "FEM against a wave that predicts; that it does not reject shows no agreement, as the range below says"
+    reason = "FEM against a wave that predicts; that the test does not reject shows no agreement"
     return [
         compare("Table 2: t Stat, predicted", printed.T, test.t, reason, basis=RUN),
         compare("Table 2: P(T<=t) two-tail, predicted", printed.P_VALUE, test.p_value, reason, basis=RUN),

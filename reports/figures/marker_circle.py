@@ -30,7 +30,7 @@ class Ring:
 
 
 def marker_circle(trial: str, places_mm: Any, chosen: Sequence[int], star: int, rest: Ring, largest: Ring) -> Figure:
-    """Draw the centres of all markers, a star at the one under the tool, and two circles.
+    """Draw the centres of all markers, a star at the one nearest to the tool, and two circles.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def marker_circle(trial: str, places_mm: Any, chosen: Sequence[int], star: int, 
     chosen
         Numbers of the markers that the circles go through.
     star
-        Number of the marker under the tool.
+        Number of the marker nearest to the tool axis.
     rest, largest
         The circle at rest and the largest one.
 
@@ -67,10 +67,10 @@ def marker_circle(trial: str, places_mm: Any, chosen: Sequence[int], star: int, 
     sizes = " and ".join(f"{format_number(ring.radius, 4)} mm {ring.name}" for ring in (rest, largest))
     caption = (
         f"Centres of the {len(places)} markers of {trial} where the circle through the {len(chosen)} around the tool "
-        f"is largest; the star is the marker under the tool. Its radius is {sizes}."
+        f"is largest; the star is the marker nearest to the tool axis. Its radius is {sizes}."
     )
     words = f"A grid of {len(places)} points; circles of {sizes} around the starred one."
-    return Figure.of(draw(paint, height=430), caption, words, "The circle around the tool")
+    return Figure.of(draw(paint, height=370), caption, words, "The circle around the tool")
 
 
 def _points(axes: Axes, places: Floats, chosen: Sequence[int], star: int) -> None:
@@ -78,4 +78,4 @@ def _points(axes: Axes, places: Floats, chosen: Sequence[int], star: int) -> Non
     around = [number for number in chosen if number != star]
     axes.plot(*places[others].T, "o", color=MUTED, markersize=5, fillstyle="none", label="other markers")
     axes.plot(*places[around].T, TRIAL.marker, color=INK, markersize=5, label="markers of the circle")
-    axes.plot(*places[star], "*", color=INK, markersize=13, label="marker under the tool")
+    axes.plot(*places[star], "*", color=INK, markersize=13, label="marker nearest to the tool")

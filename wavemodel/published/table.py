@@ -49,7 +49,7 @@ def table_one() -> tuple[Recomputed, ...]:
             "B_11 (eq. 3 with eqs. 4 to 6)",
             printed.COEFFICIENT,
             by_equation,
-            "the equations as they stand give this; the next line says what gives the printed number",
+            "the equations as they stand; the printed number follows if sin(n pi y / b) is written as sin(pi x / a)",
         ),
         (
             "B_11 with sin(n pi y / b) written as sin(pi x / a)",
