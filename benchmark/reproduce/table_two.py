@@ -20,7 +20,7 @@ DEGREES = 2 * int(printed.OBSERVATIONS) - 2
 def table_two_items(record: RunRecord) -> tuple[Item, ...]:
     """Return the items, with the surface of the scenario `paper` where a model is needed."""
     test = surface_test(record)
-    return (*_moments(test, _surface(record)[0], record.load), *observation_items(), *test_numbers(), *_predicted(test))
+    return (*_moments(test, _surface(record)[0]), *observation_items(), *test_numbers(), *_predicted(test))
 
 
 def surface_test(record: RunRecord) -> TwoSampleT:
@@ -34,8 +34,7 @@ def _surface(record: RunRecord) -> tuple[Array, Array]:
     return fem, wave
 
 
-def _moments(test: TwoSampleT, fem: Array, load: Array) -> list[Item]:
-    shape = load / np.abs(load).max()
+def _moments(test: TwoSampleT, fem: Array) -> list[Item]:
     scaled = (
         f"the scenario paper by finite elements, whose moduli are scaled to a peak of {abs(fem).max():.5f} mm: that of "
         "a triangle with the printed mean, so the mean is circular"
@@ -58,7 +57,7 @@ def _moments(test: TwoSampleT, fem: Array, load: Array) -> list[Item]:
         compare(
             "Table 2: variance, FEA, of a load triangle",
             printed.VARIANCE_FEM,
-            variance_of_triangle(shape, printed.MEAN_FEM),
+            variance_of_triangle(printed.MEAN_FEM),
             triangle,
             "mm²",
         ),
@@ -73,15 +72,17 @@ def _moments(test: TwoSampleT, fem: Array, load: Array) -> list[Item]:
         compare(
             "Table 2: variance, wave equation, of a load triangle",
             printed.VARIANCE_WAVE,
-            variance_of_triangle(shape, printed.MEAN_WAVE),
+            variance_of_triangle(printed.MEAN_WAVE),
             triangle,
             "mm²",
         ),
     ]
 
 
-def variance_of_triangle(shape: Array, mean: float) -> float:
-    """Variance (n - 1) of a multiple of `shape` (n,) that has this mean."""
+def variance_of_triangle(mean: float) -> float:
+    """Variance (n - 1) of a load triangle over the printed observations that has this mean."""
+    half = 0.5 * printed.OBSERVATIONS
+    shape = 1.0 - np.abs(np.arange(1.0, printed.OBSERVATIONS + 1.0) / half - 1.0)
     return float(np.var(shape, ddof=1) * (mean / shape.mean()) ** 2)
 
 

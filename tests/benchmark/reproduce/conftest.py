@@ -8,7 +8,6 @@ from benchmark.cli.console import Console
 from benchmark.files import load_scenario, load_session
 from benchmark.reproduce.evidence import Chain, Evidence, follow_chain
 from benchmark.runs.options import RunOptions
-from benchmark.runs.report import published_section
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.sessions import SHIPPED
 
@@ -32,11 +31,3 @@ def evidence(chain: Chain) -> Evidence:
         )
     )
     return Evidence(chain, table_2, press)
-
-
-@pytest.fixture(scope="package", autouse=True)
-def short_animations():
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(published_section, "FRAMES", 2)
-        patch.setattr(published_section, "VERTICES", 5)
-        yield

@@ -9,13 +9,17 @@ import pytest
 from benchmark.cli.app import main
 from benchmark.reproduce import carrying_out, page
 from benchmark.reproduce.figures import redrawn
+from benchmark.runs.report import published_section
 
 KEYS = {"item", "printed", "recomputed", "agrees", "reason"}
 
 
 @pytest.fixture(scope="module")
 def figures(evidence):
-    return redrawn(evidence)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(published_section, "FRAMES", 2)
+        patch.setattr(published_section, "VERTICES", 5)
+        return redrawn(evidence)
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import pytest
 from scipy.special import betainc
 
 from benchmark.reproduce.item import RUN
-from benchmark.reproduce.table_two import table_two_items, variance_of_triangle
+from benchmark.reproduce.table_two import table_two_items
 from benchmark.reproduce.text import text_items
 
 TRIANGLE = [min(k, 100 - k) / 50 for k in range(1, 101)]
@@ -31,7 +31,6 @@ def test_variances_are_those_of_a_triangle(table) -> None:
         assert item.recomputed == pytest.approx(statistics.variance([2 * mean * each for each in TRIANGLE]), rel=1e-9)
         assert item.recomputed == pytest.approx(printed, abs=5e-8)
         assert item.agrees
-    assert variance_of_triangle(np.array([1.0, 3.0]), 1.0) == pytest.approx(0.5)
 
 
 def test_numbers_of_the_test(table) -> None:
