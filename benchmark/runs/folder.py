@@ -10,7 +10,7 @@ from benchmark.model_file import model_toml
 from benchmark.runs.document import results_document
 from benchmark.runs.environment import describe_environment
 from benchmark.runs.fields import write_fields
-from benchmark.runs.pressed import pressed_picture
+from benchmark.runs.pressed import draw, pressed_picture, write_drawn
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report import TrialsPart, run_page
 from benchmark.runs.tables import run_tables
@@ -59,7 +59,8 @@ def write_run(record: RunRecord, folder: Path) -> RunOutcome:
     tables = run_tables(record)
     texts = {name: csv_text(columns, where=name) for name, columns in tables.items()}
     trials = None if record.measured is None else TrialsPart.of(record.measured)
-    page = run_page(record, environment, texts, trials, tables, pressed_picture(record))
+    drawn = draw(record)
+    page = run_page(record, environment, texts, trials, tables, pressed_picture(record, drawn))
     with whole_folder(folder) as new:
         for name, text in texts.items():
             write_text(new / "tables" / name, text)
@@ -70,5 +71,6 @@ def write_run(record: RunRecord, folder: Path) -> RunOutcome:
             write_text(new / "model.toml", model_toml(record.repair))
         fem = record.pair.fem.result
         write_fields(new / "fields", fem.fields if fem is not None else ())
+        write_drawn(new, drawn)
         write_page(new / "report.html", page)
     return RunOutcome(folder, document, page.verdict.headline, record.complete, record.warnings)

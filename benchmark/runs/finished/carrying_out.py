@@ -13,6 +13,7 @@ from benchmark.runs.environment import describe_environment
 from benchmark.runs.finished.changes import changed_parameters, result_columns
 from benchmark.runs.finished.page import compare_page
 from benchmark.runs.finished.reading import SavedRun, read_run
+from benchmark.runs.pressed import pressed_picture, read_drawn, write_drawn
 from benchmark.runs.report import run_page
 from reports import csv_text, whole_folder, write_json, write_page, write_text
 
@@ -35,7 +36,9 @@ def page_again(folder: Path, out: Path | None) -> ReportOutcome:
         The folder is no result of `run`; see `read_run`.
     """
     run = read_run(folder)
-    page = run_page(run.record, run.environment, run.tables, run.trials, run.columns)
+    drawn = read_drawn(folder)
+    picture = pressed_picture(run.record, drawn)
+    page = run_page(run.record, run.environment, run.tables, run.trials, run.columns, picture)
     if out is None:
         write_page(folder / "report.html", page)
         return ReportOutcome(folder, page.verdict.headline, run.document)
@@ -45,6 +48,7 @@ def page_again(folder: Path, out: Path | None) -> ReportOutcome:
             write_text(new / "tables" / name, text)
         for name in ("results.json", "environment.json", "scenario.toml"):
             write_text(new / name, (folder / name).read_text(encoding="utf-8"))
+        write_drawn(new, drawn)
         write_page(new / "report.html", page)
     return ReportOutcome(target, page.verdict.headline, run.document)
 

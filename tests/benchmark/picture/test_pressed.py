@@ -8,11 +8,11 @@ import pytest
 
 from benchmark.files import load_scenario
 from benchmark.models import FieldSnapshot, prepare, scenario_drive
-from benchmark.picture import PACKAGES, draw_pressed
+from benchmark.picture import PACKAGES, Drawn, draw_pressed
 from benchmark.runs import pressed
 from reports import Figure, Paragraph
 
-PNG = b"\x89PNG\r\n"
+PNG = b"\x89PNG\r\n\x1a\n"
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +52,8 @@ def test_a_missing_driver_names_the_packages(snapshot: FieldSnapshot, monkeypatc
         return subprocess.CompletedProcess(command, -11, "", "cannot open libEGL.so\n")
 
     monkeypatch.setattr("benchmark.picture.pressed.subprocess.run", failing)
-    block = pressed.pressed_picture(Record(snapshot))
+    record = Record(snapshot)
+    block = pressed.pressed_picture(record, pressed.draw(record))
     assert isinstance(block, Paragraph)
     for word in ("exit code -11", "libEGL.so", *PACKAGES.split(), "fields/step_0002.vtu"):
         assert word in block.text
@@ -64,13 +65,21 @@ def test_the_report_has_the_picture_in_it(snapshot: FieldSnapshot, monkeypatch: 
         return subprocess.CompletedProcess(command, 0, "", "")
 
     monkeypatch.setattr("benchmark.picture.pressed.subprocess.run", drawing)
-    block = pressed.pressed_picture(Record(snapshot))
+    record = Record(snapshot)
+    block = pressed.pressed_picture(record, pressed.draw(record))
     assert isinstance(block, Figure)
-    assert block.panels[0].png == PNG
+    assert block.panels[0].data == PNG
     assert "without magnification" in block.caption
 
 
 def test_without_fields_there_is_none(snapshot: FieldSnapshot) -> None:
     record = Record(snapshot)
     record.pair.fem.result = None
-    assert pressed.pressed_picture(record) is None
+    assert pressed.draw(record) is None
+    assert pressed.pressed_picture(record, None) is None
+
+
+@pytest.mark.parametrize("drawn", [Drawn(PNG), Drawn(b"", "no driver"), None])
+def test_it_is_kept_in_the_result_folder(drawn: Drawn | None, tmp_path: Path) -> None:
+    pressed.write_drawn(tmp_path, drawn)
+    assert pressed.read_drawn(tmp_path) == drawn
