@@ -121,7 +121,8 @@ def _read_motion(trial: str, path: Path) -> MotionPart:
         _, *lines = csv.reader(stream)
     table = np.array([[float(cell) if cell else np.nan for cell in line] for line in lines])
     leading = len(_LEADING)
-    return MotionPart(trial, *table[:, :leading].T, table[:, leading:].reshape(len(table), -1, 2))
+    time, depth, nine, ring = table[:, :leading].T
+    return MotionPart(trial, time, depth, nine, ring, table[:, leading:].reshape(len(table), -1, 2))
 
 
 def _motion(motion: Motion, comparison: MeasuredComparison) -> MotionPart:
