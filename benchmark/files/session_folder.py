@@ -15,6 +15,8 @@ from benchmark.files.sources import Source, is_file
 
 SESSION_FILE = "session.toml"
 TRIAL_SUFFIXES = (".csv", ".mcap")
+MARKERS = "_markers.csv"
+"""In a folder without a session file, NAME_markers.csv holds the marker tracks of the trial NAME."""
 
 
 def session_table(path: Path) -> tuple[dict[str, Any], Source]:
@@ -40,6 +42,8 @@ def session_table(path: Path) -> tuple[dict[str, Any], Source]:
             return read_file(path, "session")
         if path.suffix.lower() not in TRIAL_SUFFIXES:
             raise InputError(f"{path}: this is no trial; allowed: a session's folder, its session.toml, .csv, .mcap.")
+        if _of_trial(path):
+            raise InputError(f"{path}: by its name this holds marker tracks; allowed: the trial, or its folder.")
         entry = {"file": path.name, "condition": path.stem}
         return _made(path.stem, [entry]), Source(str(path), "", path.parent)
     try:
@@ -105,19 +109,34 @@ def _made(name: str, trials: list[dict[str, str]]) -> dict[str, Any]:
 
 def _entries(folder: Path, name: str) -> list[dict[str, str]]:
     """The trials of a folder without a session file: its own, and those of each sub-folder as a condition."""
-    found = [{"file": file.name, "condition": name} for file in _trial_files(folder)]
+    found = [{**files, "condition": name} for files in _trial_files(folder)]
     for sub in sorted((each for each in folder.iterdir() if each.is_dir()), key=_natural):
         if not sub.name.startswith("."):
-            files = _trial_files(sub)
-            found += [{"file": f"{sub.name}/{file.name}", "condition": sub.name} for file in files]
+            named = ({key: f"{sub.name}/{file}" for key, file in files.items()} for files in _trial_files(sub))
+            found += [{**files, "condition": sub.name} for files in named]
     if not found:
         raise InputError(f"{folder}: there is neither a {SESSION_FILE} nor a trial (.csv, .mcap) in this folder.")
     return found
 
 
-def _trial_files(folder: Path) -> list[Path]:
+def _trial_files(folder: Path) -> list[dict[str, str]]:
+    """The names of each trial's `file`, and of its `markers` where it has any."""
     files = (file for file in folder.iterdir() if file.suffix.lower() in TRIAL_SUFFIXES and not file.is_dir())
-    return sorted((file for file in files if not file.name.startswith(".")), key=_natural)
+    shown = sorted((file for file in files if not file.name.startswith(".")), key=_natural)
+    markers = {_of_trial(file): file.name for file in shown if _of_trial(file)}
+    trials = [file for file in shown if not _of_trial(file)]
+    for stem in markers.keys() - {file.stem for file in trials}:
+        raise InputError(
+            f"{folder / markers[stem]}: marker tracks of a trial that is not there; allowed: beside {stem}.csv or "
+            f"{stem}.mcap, or named in a {SESSION_FILE}."
+        )
+    tracks = ({"markers": markers[file.stem]} if file.stem in markers else {} for file in trials)
+    return [{"file": file.name, **named} for file, named in zip(trials, tracks, strict=True)]
+
+
+def _of_trial(file: Path) -> str:
+    """The stem of the trial whose marker tracks a file holds by its name; empty for a trial."""
+    return file.name[: -len(MARKERS)] if file.name.lower().endswith(MARKERS) else ""
 
 
 def _natural(path: Path) -> list[tuple[int, int | str]]:

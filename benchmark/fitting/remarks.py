@@ -23,6 +23,11 @@ def fit_warnings(trials: Sequence[TrialFit], pooled: PooledStiffness) -> list[st
     return [text for text in (_time(trials), _misfit(trials), _scatter(trials, pooled), _few(pooled)) if text]
 
 
+def elastic_only(trials: Sequence[TrialFit]) -> tuple[str, ...]:
+    """Those of the warnings that hold for a fit with an elastic law alone, not for one with relaxation."""
+    return tuple(text for text in (_time(trials), _misfit(trials)) if text)
+
+
 def fit_notes(trials: Sequence[TrialFit], pooled: PooledStiffness, joint: JointFit | None) -> list[str]:
     """Sentences on how the numbers came about."""
     notes = [f"stiffness factor: {pooled.method}"]

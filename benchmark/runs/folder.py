@@ -13,6 +13,7 @@ from benchmark.runs.fields import write_fields
 from benchmark.runs.pressed import draw, pressed_picture, write_drawn
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report import TrialsPart, run_page
+from benchmark.runs.report.film_part import write_film
 from benchmark.runs.tables import run_tables
 from reports import csv_text, whole_folder, write_json, write_page, write_text
 
@@ -64,6 +65,8 @@ def write_run(record: RunRecord, folder: Path) -> RunOutcome:
     with whole_folder(folder) as new:
         for name, text in texts.items():
             write_text(new / "tables" / name, text)
+        if trials is not None and trials.markers is not None:
+            write_film(new / "markers", trials.markers)
         write_json(new / "results.json", document)
         write_json(new / "environment.json", environment)
         write_text(new / "scenario.toml", record.scenario.to_toml())

@@ -25,6 +25,8 @@ from benchmark.fitting import (
     sheet_force,
 )
 from benchmark.fitting.film import FilmedTrial
+from benchmark.fitting.relaxation import NONE, relaxed
+from benchmark.fitting.remarks import elastic_only
 from benchmark.fitting.sheet_law import Sheet
 from benchmark.fitting.sheet_parameters import sheet_parameters
 from benchmark.fitting.sheet_session import held_out_state
@@ -147,7 +149,9 @@ def _with_films(found: FittedSession, films: Films, listener: Listener) -> Fitte
     )
     fit = replace(found.fit, notes=notes, parameters=(*rows, *table_one(session, motions, placed)))
     filmed = FilmedSession(motions, films.tracked, sheet)
-    warnings = (*found.warnings, *films.warnings, *said)
+    elastic = () if sheet is None or sheet.relaxation == NONE else elastic_only(found.fit.trials)
+    fit = replace(fit, warnings=tuple(text for text in fit.warnings if text not in elastic))
+    warnings = (*(text for text in found.warnings if text not in elastic), *films.warnings, *said)
     return replace(found, fit=fit, filmed=filmed, sheets=pairs, warnings=warnings)
 
 
@@ -275,15 +279,27 @@ def _fem_forces(trial: TrialData, found: FittedSession) -> tuple[Array, Array | 
 
 
 def _wave_force(trial: TrialData, found: FittedSession, wave: PreparedModel | str, own: Own) -> Array | str:
-    """Force (n,) N of the wave model at the trial's depth below its contact, zero in the air; or why there is none."""
+    """Force (n,) N of the wave model at the trial's depth below its contact, zero in the air; or why there is none.
+
+    Of a filmed trial with contact, zero and relaxation of the fit of force and markers, as the finite elements'.
+    """
     if isinstance(wave, str):
         return wave
-    fitted = found.fit.trial(trial.name, trial.condition)
-    below = np.maximum(trial.depth - fitted.onset, 0.0)
-    drive = Drive("depth", trial.time - trial.time[0] + float(np.diff(trial.time)[0]), below)
+    fitted, sheet = found.fit.trial(trial.name, trial.condition), None if found.filmed is None else found.filmed.sheet
+    joint = None if sheet is None else sheet.trial(trial.key)
     try:
         if own.repair is not None:
             return wave_force(found.session, trial, fitted.onset, wave, effects_of(own.repair)) + fitted.zero
-        return wave.run(drive).force + fitted.zero
+        if sheet is None or joint is None:
+            return wave.run(_drive(trial, fitted.onset)).force + fitted.zero
+        elastic = wave.run(_drive(trial, joint.state.onset)).force
+        pressing = np.maximum(relaxed(trial.time, elastic, sheet.relaxation), 0.0)
+        return np.asarray(joint.state.zero + np.where(trial.depth > joint.state.onset, pressing, 0.0))
     except UncoveredError as error:
         return str(error)
+
+
+def _drive(trial: TrialData, onset: float) -> Drive:
+    """A trial's depth below contact as a drive, none in the air."""
+    below = np.maximum(trial.depth - onset, 0.0)
+    return Drive("depth", trial.time - trial.time[0] + float(np.diff(trial.time)[0]), below)

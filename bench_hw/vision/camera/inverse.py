@@ -50,7 +50,9 @@ def undistort(points: FloatArray, coefficients: Coefficients) -> FloatArray:
     return found.reshape(np.shape(points))
 
 
-def undistort_near(points: FloatArray, coefficients: Coefficients, start: FloatArray, steps: int = 3) -> FloatArray:
+def undistort_near(
+    points: FloatArray, coefficients: Coefficients, start: FloatArray, steps: int = 3, small: float = 1e-5
+) -> FloatArray:
     """Invert `distort` close to inverses that are known; fast, without the check of the near side.
 
     Parameters
@@ -61,6 +63,8 @@ def undistort_near(points: FloatArray, coefficients: Coefficients, start: FloatA
         k1, k2, p1, p2, k3.
     steps : int
         Newton steps; each squares the error.
+    small : float
+        Bound on the last step, whose square about is the error that is left.
 
     Returns
     -------
@@ -71,7 +75,7 @@ def undistort_near(points: FloatArray, coefficients: Coefficients, start: FloatA
     for _ in range(steps):
         step, _ = _newton_step(found, points, coefficients)
         found = found + step
-    found[~(np.abs(step).max(axis=-1) < 1e-5)] = np.nan
+    found[~(np.abs(step) < small).all(axis=-1)] = np.nan
     return found
 
 

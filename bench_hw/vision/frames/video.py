@@ -14,6 +14,8 @@ from bench_hw.vision.frames.decoding import to_grey
 from bench_hw.vision.frames.model import Frame
 
 _RATES = (0.01, 100_000.0)
+_GREY = cv2.VideoWriter.fourcc(*"Y800")
+"""FFmpeg's pixels of one byte of grey: they need no way through colour and back."""
 
 
 class VideoFrames:
@@ -103,4 +105,6 @@ class VideoFrames:
                 f"{self._path}: no video that can be read (cut, empty or of another kind); "
                 "allowed: what OpenCV's FFmpeg reads, such as .avi, .mkv, .mp4"
             )
+        if int(video.get(cv2.CAP_PROP_CODEC_PIXEL_FORMAT)) == _GREY:
+            video.set(cv2.CAP_PROP_CONVERT_RGB, 0)
         return video

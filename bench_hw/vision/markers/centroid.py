@@ -39,5 +39,26 @@ def area_centroids(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray
     return centroids, 0.5 * np.abs(twice)
 
 
+def fan_centroids(radius: FloatArray, directions: FloatArray) -> FloatArray:
+    """Give the centroids of polygons whose corners lie on rays at even angles, from where the rays begin.
+
+    Parameters
+    ----------
+    radius : ndarray, shape (m, n)
+        Distances of the corners.
+    directions : ndarray, shape (2, n)
+        Cosine and sine of the rays' angles.
+
+    Returns
+    -------
+    ndarray, shape (m, 2)
+        NaN for a polygon without area.
+    """
+    product = radius * _next(radius)
+    before = np.concatenate([product[:, -1:], product[:, :-1]], axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray((product + before) * radius @ directions.T / (3.0 * product.sum(axis=1))[:, None])
+
+
 def _next(values: FloatArray) -> FloatArray:
     return np.concatenate([values[:, 1:], values[:, :1]], axis=1)

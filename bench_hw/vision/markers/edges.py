@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bench_hw.vision.markers.model import FloatArray
+from bench_hw.vision.markers.model import FloatArray, IntArray
 from bench_hw.vision.markers.rays import Float32Array, RayFan
+
+Level = TypeVar("Level", np.float32, np.float64)
 
 RAY_CONTRAST = 0.5
 """A ray counts where ink and paper differ by this share of what is usual for its marker..."""
@@ -61,19 +64,16 @@ def find_edges(profiles: Float32Array, fan: RayFan, tilt: FloatArray) -> Edges:
     tilt : ndarray, shape (m, 2)
         Known tilt of the middle level (as in `Edges`), so that uneven light does not shift the marker.
     """
-    ink = profiles[:, :, : fan.ink].mean(axis=2)
-    paper = profiles[:, :, -fan.paper :].mean(axis=2)
-    usual_ink, usual_paper = np.median(ink, axis=1), np.median(paper, axis=1)
+    filtered = profiles @ fan.filters
+    ink, paper = filtered[:, :, -2], filtered[:, :, -1]
+    usual_ink, usual_paper = _medians(ink), _medians(paper)
     contrast = (usual_paper - usual_ink).astype(np.float64)
-    middle = 0.5 * (usual_paper + usual_ink)[:, None] + (tilt @ fan.directions).astype(np.float32)
-    above = profiles @ fan.smoothing - middle[:, :, None]
-    crossing = (above[:, :, :-1] < 0.0) & (above[:, :, 1:] >= 0.0)
-    at = crossing.argmax(axis=2)
-    before = np.take_along_axis(above, at[:, :, None], axis=2)[:, :, 0].astype(np.float64)
-    after = np.take_along_axis(above, at[:, :, None] + 1, axis=2)[:, :, 0].astype(np.float64)
+    slant = tilt @ fan.directions
+    middle = 0.5 * (usual_paper + usual_ink)[:, None] + slant.astype(np.float32)
+    at, before, after = _crossing(filtered, middle)
     there = (before < 0.0) & (after >= 0.0) & (contrast > 0.0)[:, None]
-    strange = _strangeness(paper, tilt, fan)
-    spread = 1.4826 * np.median(strange, axis=1)
+    strange = _strangeness(paper - slant)
+    spread = 1.4826 * _medians(strange)
     there &= strange < np.maximum(STRANGE_PAPER * contrast, _SPREADS * spread)[:, None]
     there &= paper - ink > RAY_CONTRAST * contrast[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -86,13 +86,31 @@ def find_edges(profiles: Float32Array, fan: RayFan, tilt: FloatArray) -> Edges:
     return Edges(np.where(there, radius, 0.0), there, contrast, seen_tilt, tilt_std, noise)
 
 
-def _strangeness(paper: Float32Array, tilt: FloatArray, fan: RayFan) -> FloatArray:
-    """How far paper (m, rays) is from what it is around the marker, apart from uneven light, grey levels."""
-    left = paper - tilt @ fan.directions
-    return np.asarray(np.abs(left - np.median(left, axis=1, keepdims=True)))
+def _crossing(filtered: Float32Array, middle: Float32Array) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Where smoothed profiles (m, rays, smooth + 2) first pass the middle level (m, rays), and by how much.
+
+    The sample before, and how far it and the next one are above the level; (m, rays) each.
+    """
+    below = filtered[:, :, :-2] < middle[:, :, None]
+    at = (below[:, :, :-1] > below[:, :, 1:]).argmax(axis=2)
+    place = at + np.arange(0, filtered.size, filtered.shape[2]).reshape(at.shape)
+    before, after = (filtered.take(place + ahead).astype(np.float64) - middle for ahead in (0, 1))
+    return at, before, after
+
+
+def _strangeness(paper: FloatArray) -> FloatArray:
+    """How far paper (m, rays), uneven light taken off, is from what it is around the marker, grey levels."""
+    return np.asarray(np.abs(paper - _medians(paper)[:, None]))
+
+
+def _medians(values: NDArray[Level]) -> NDArray[Level]:
+    """Medians over an even number of rays, (m, rays) to (m,)."""
+    half = values.shape[1] // 2
+    parted = np.partition(values, (half - 1, half), axis=1)
+    return np.asarray((parted[:, half - 1] + parted[:, half]) / 2, dtype=values.dtype)
 
 
 def _dimming(ink: Float32Array, paper: Float32Array, fan: RayFan) -> FloatArray:
     """From a tilt of the paper where it is sampled to that of the middle level at the edge."""
-    inwards = fan.marker_radius / float(fan.radii[-fan.paper :].mean())
+    inwards = fan.marker_radius / fan.paper_radius
     return np.asarray(inwards * 0.5 * (1.0 + ink / np.maximum(paper, 1.0)), dtype=np.float64)

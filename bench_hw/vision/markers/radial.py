@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from bench_hw.vision.camera.distortion import jacobian
 from bench_hw.vision.camera.inverse import undistort, undistort_near
 from bench_hw.vision.camera.model import Camera
-from bench_hw.vision.markers.centroid import area_centroids
+from bench_hw.vision.markers.centroid import area_centroids, fan_centroids
 from bench_hw.vision.markers.edges import Edges, find_edges
 from bench_hw.vision.markers.look import Look
 from bench_hw.vision.markers.model import FloatArray, Grid, IntArray, Picture
@@ -31,6 +31,8 @@ _PASSES = 3
 _HALF_SHARE = 0.375
 _WHOLE_SHARE = 0.98
 _LEARNING = 0.05
+_LAST_STEP = 3e-4
+"""Where a Newton step from the linear guess stops: less than 1e-4 pixel is left of it."""
 _OTHER_LIGHT, _SURE = 0.02, 4.0
 """A change of the tilt of light beyond this share of the contrast, and so many standard deviations, is real."""
 _SLACK, _MORE_SLACK, _MOST_SLACK = 0.03, 0.003, 0.1
@@ -115,9 +117,8 @@ class MarkerEdges:
         outlines = compare(edges, self._outline[which], self._basis, self._slack[which], self._noise[which])
         if len(which) == len(self._outline):
             outlines = taken_anew(edges, outlines, self._outline, self._basis)
-        offsets = outlines.radius[:, None, :] * self._fan.directions
-        centroids, _ = area_centroids(offsets[:, 0], offsets[:, 1])
-        return Look(middles, edges, outlines, middles + np.nan_to_num(centroids))
+        offsets = fan_centroids(outlines.radius, self._fan.directions)
+        return Look(middles, edges, outlines, middles + np.nan_to_num(offsets))
 
     def _undistorted(self, look: Look, which: IntArray) -> tuple[FloatArray, FloatArray]:
         """The centroids of the undistorted outlines (k, 2), normalised, and radii of equal area, pixels."""
@@ -133,14 +134,14 @@ class MarkerEdges:
             guess = np.empty_like(edges)
             guess[..., 0] = inverse[:, None, 0] + scale * (slope.yy[:, None] * left - slope.xy[:, None] * up)
             guess[..., 1] = inverse[:, None, 1] + scale * (slope.xx[:, None] * up - slope.xy[:, None] * left)
-            edges = undistort_near(edges, camera.distortion, guess, steps=2)
+            edges = undistort_near(edges, camera.distortion, guess, steps=1, small=_LAST_STEP)
         centroids, areas = area_centroids(edges[..., 0], edges[..., 1])
         return centroids, np.sqrt(areas * camera.focal[0] * camera.focal[1] / np.pi)
 
     def _inverse_of(self, middles: FloatArray, which: IntArray) -> FloatArray:
         """Invert the distortion near where each marker was before; with the full search where that fails."""
         coefficients = self._camera.distortion
-        inverse = undistort_near(middles, coefficients, self._inverse[which])
+        inverse = undistort_near(middles, coefficients, self._inverse[which], steps=2)
         lost = ~np.isfinite(inverse).all(axis=1)
         if lost.any():
             inverse[lost] = undistort(middles[lost], coefficients)

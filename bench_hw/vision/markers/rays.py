@@ -32,23 +32,23 @@ class RayFan:
         Cosine and sine of the rays' angles, evenly spread.
     radii : ndarray, shape (samples,)
         Evenly spaced distances from the middle, pixels.
-    smoothing : ndarray, shape (samples, smooth)
-        Takes profiles to smoothed profiles: a Gaussian about as wide as an edge is blurred. The smoothed profile
-        of a symmetric edge crosses half its height where the edge is, whatever the blur, and no other linear
-        filter of the same reach finds it with less noise (it is the matched one).
+    filters : ndarray, shape (samples, smooth + 2)
+        Takes profiles to smoothed profiles, and in the last two columns to the mean of the ink and of the paper.
+        Smoothed by a Gaussian about as wide as an edge is blurred: the smoothed profile of a symmetric edge crosses
+        half its height where the edge is, whatever the blur, and no other linear filter of the same reach finds it
+        with less noise (it is the matched one).
     smooth_radii : ndarray, shape (smooth,)
         Distances of the smoothed samples, pixels.
-    ink, paper : int
-        How many samples at the inner end are ink, and how many at the outer end are paper.
+    paper_radius : float
+        Mean distance of the samples of the paper, pixels.
     """
 
     marker_radius: float
     directions: FloatArray
     radii: FloatArray
-    smoothing: Float32Array
+    filters: Float32Array
     smooth_radii: FloatArray
-    ink: int
-    paper: int
+    paper_radius: float
 
     @property
     def step(self) -> float:
@@ -67,17 +67,19 @@ def ray_fan(radius: float, spacing: float) -> RayFan:
     width = max(_SMOOTHING, step)
     half = int(np.ceil(2.5 * width / step))
     kernel = np.exp(-0.5 * (np.arange(-half, half + 1) * step / width) ** 2)
-    smoothing = np.zeros((len(radii), len(radii) - 2 * half), np.float32)
-    for column in range(smoothing.shape[1]):
-        smoothing[column : column + 2 * half + 1, column] = kernel / kernel.sum()
+    smooth = len(radii) - 2 * half
+    ink, paper = max(1, int(np.count_nonzero(radii <= _INK_UP_TO * radius))), max(2, round(_OUTER_WIDTH / step))
+    filters = np.zeros((len(radii), smooth + 2), np.float32)
+    for column in range(smooth):
+        filters[column : column + 2 * half + 1, column] = kernel / kernel.sum()
+    filters[:ink, smooth], filters[-paper:, smooth + 1] = 1.0 / ink, 1.0 / paper
     return RayFan(
         marker_radius=radius,
         directions=np.stack([np.cos(angle), np.sin(angle)]),
         radii=radii,
-        smoothing=smoothing,
+        filters=filters,
         smooth_radii=radii[half : len(radii) - half],
-        ink=max(1, int(np.count_nonzero(radii <= _INK_UP_TO * radius))),
-        paper=max(2, round(_OUTER_WIDTH / step)),
+        paper_radius=float(radii[-paper:].mean()),
     )
 
 
@@ -98,17 +100,17 @@ def sample(grey: Picture, centres: FloatArray, fan: RayFan) -> Float32Array:
     ndarray of float32, shape (m, rays, samples)
         Grey levels between pixels by bilinear interpolation; black outside the picture.
     """
-    offsets = (fan.directions[:, :, None] * fan.radii).reshape(2, -1)
-    x, y = ((centres[:, axis, None] + offsets[axis]).astype(np.float32) for axis in (0, 1))
-    columns, rows = _window(x, grey.shape[1]), _window(y, grey.shape[0])
+    offsets = (fan.directions[:, :, None] * fan.radii).reshape(2, -1).astype(np.float32)
+    reach = float(fan.radii[-1])
+    columns, rows = (_window(centres[:, axis], reach, grey.shape[1 - axis]) for axis in (0, 1))
     part = grey[rows[0] : rows[1], columns[0] : columns[1]].astype(np.float32)
-    x -= np.float32(columns[0])
-    y -= np.float32(rows[0])
+    middles = (centres - (columns[0], rows[0])).astype(np.float32)
+    x, y = (middles[:, axis, None] + offsets[axis] for axis in (0, 1))
     values = cv2.remap(part, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT)
     return np.asarray(values, dtype=np.float32).reshape(len(centres), -1, len(fan.radii))
 
 
-def _window(positions: Float32Array, size: int) -> tuple[int, int]:
+def _window(middles: FloatArray, reach: float, size: int) -> tuple[int, int]:
     """The part of the picture that is needed, a pixel wider than the samples, at least one pixel."""
-    first = int(np.clip(np.floor(positions.min()) - 1, 0, size - 1))
-    return first, int(np.clip(np.ceil(positions.max()) + 2, first + 1, size))
+    first = int(np.clip(np.floor(middles.min() - reach) - 1, 0, size - 1))
+    return first, int(np.clip(np.ceil(middles.max() + reach) + 2, first + 1, size))

@@ -70,8 +70,8 @@ def read_run(folder: Path) -> SavedRun:
     tables = SavedTables(folder)
     try:
         record = _record(scenario, document, tables, int(environment["seed"]))
-        trials = saved_trials(document, tables) if "trials" in document else None
-    except (KeyError, ValueError, TypeError) as error:
+        trials = saved_trials(document, tables, folder / "markers") if "trials" in document else None
+    except (KeyError, ValueError, TypeError, OSError) as error:
         raise InputError(
             f"{folder}: its files do not belong together ({type(error).__name__}: {error}); needed: the untouched "
             "result of a run"

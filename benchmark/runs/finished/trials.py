@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,12 +10,13 @@ import numpy as np
 from benchmark.fitting import FittedParameter
 from benchmark.runs.finished.tables import MM, SavedTables, Table
 from benchmark.runs.measured import TrialPrediction
+from benchmark.runs.report.film_part import read_film
 from benchmark.runs.report.trials_part import TrialsPart
 
 NUMBERS = ("value", "ci95_low", "ci95_high")
 
 
-def saved_trials(document: dict[str, Any], tables: SavedTables) -> TrialsPart:
+def saved_trials(document: dict[str, Any], tables: SavedTables, markers: Path) -> TrialsPart:
     """Return the trials of a run; the forces held out are in no table, so they are not there.
 
     Parameters
@@ -23,6 +25,8 @@ def saved_trials(document: dict[str, Any], tables: SavedTables) -> TrialsPart:
         Content of `results.json`.
     tables
         Of the run.
+    markers
+        The folder of what is shown of films, which need not be there.
 
     Raises
     ------
@@ -36,6 +40,7 @@ def saved_trials(document: dict[str, Any], tables: SavedTables) -> TrialsPart:
         headline=str(told["headline"]),
         parameters=_parameters(tables.read("fitted_parameters.csv")),
         notes=tuple(told["notes"]),
+        markers=read_film(markers),
     )
 
 

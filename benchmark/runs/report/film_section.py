@@ -2,34 +2,27 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from benchmark.fitting import SheetFit
-from benchmark.runs.film_tables import Motion
-from benchmark.runs.filming import Tracked
-from benchmark.runs.measured import FilmedSession, MeasuredComparison
+from benchmark.runs.measured import MeasuredComparison
+from benchmark.runs.report.film_part import FilmPart, MotionPart, Row, StillPart
 from benchmark.runs.report.measured_section import fit_headline
-from benchmark.runs.report.values import MM
 from reports import Block, Column, Download, Figure, Paragraph, Section, Table
 from reports.figures.markers import circle_radius, marker_motion
 
-SHOWN = 2
-"""Films that are shown; the tables have all."""
 
-
-def film_section(comparison: MeasuredComparison, filmed: FilmedSession) -> Section:
+def film_section(part: FilmPart) -> Section:
     """Return the section on the markers of a session."""
-    synthetic = comparison.session.synthetic
-    blocks: list[Block] = [Paragraph(_what(filmed))]
-    for tracked in filmed.tracked[:SHOWN]:
-        blocks += _still(tracked, synthetic)
-    names = [tracked.trial for tracked in filmed.tracked] or [motion.trial for motion in filmed.motions]
-    for motion in [each for each in filmed.motions if each.trial in names][:SHOWN]:
-        blocks += _motion(motion, comparison)
-    if filmed.sheet is not None:
-        blocks += [_trials(filmed.sheet)]
+    blocks: list[Block] = [Paragraph(_what(part))]
+    for tracked in part.tracked:
+        blocks += _still(tracked, part.synthetic)
+    for motion in part.motions:
+        blocks += _motion(motion, part.synthetic)
+    if part.rows is not None:
+        blocks += [_trials(part.rows)]
     return Section("Markers", blocks)
 
 
@@ -54,15 +47,15 @@ def measured_headline(comparison: MeasuredComparison) -> str:
     return fit_headline(comparison.fit) if sheet is None else sheet_headline(sheet)
 
 
-def _what(filmed: FilmedSession) -> str:
-    tracked = ", ".join(f"{each.trial} ({each.frames} pictures)" for each in filmed.tracked)
-    text = f"{len(filmed.motions)} trials have markers."
+def _what(part: FilmPart) -> str:
+    tracked = ", ".join(f"{each.trial} ({each.frames} pictures)" for each in part.tracked)
+    text = f"{part.count} trials have markers."
     if tracked:
         text += f" Tracked in this run, from the pictures in the trial's file: {tracked}."
     return text
 
 
-def _still(tracked: Tracked, synthetic: bool) -> list[Block]:
+def _still(tracked: StillPart, synthetic: bool) -> list[Block]:
     if tracked.still is None:
         return []
     caption = (
@@ -74,19 +67,15 @@ def _still(tracked: Tracked, synthetic: bool) -> list[Block]:
     return [Figure.of_picture(tracked.still, caption, alt, "Tracked markers")]
 
 
-def _motion(motion: Motion, comparison: MeasuredComparison) -> list[Block]:
-    name = f"{motion.trial} (synthetic)" if comparison.session.synthetic else motion.trial
-    blocks: list[Block] = [marker_motion(name, motion.time, MM * motion.moved)]
-    if motion.block is not None:
-        table = next(trial.table for trial in comparison.session.trials if trial.name == motion.trial)
-        depth = MM * np.interp(motion.time, table.time, table.depth)
-        radii = (MM * motion.radius_nine, MM * motion.radius_ring)
-        blocks.append(circle_radius(name, motion.time, *radii, depth))
+def _motion(motion: MotionPart, synthetic: bool) -> list[Block]:
+    name = f"{motion.trial} (synthetic)" if synthetic else motion.trial
+    blocks: list[Block] = [marker_motion(name, motion.time, motion.moved)]
+    if np.isfinite(motion.radius_ring).any():
+        blocks.append(circle_radius(name, motion.time, motion.radius_nine, motion.radius_ring, motion.depth))
     return blocks
 
 
-def _trials(sheet: SheetFit) -> Table:
-    held_out = {(each.condition, each.name): each for each in sheet.held_out}
+def _trials(rows: Sequence[Row]) -> Table:
     columns = (
         "trial",
         "condition",
@@ -97,21 +86,6 @@ def _trials(sheet: SheetFit) -> Table:
         Column("force", "% of peak", 3),
         Column("markers", "mm", 3),
     )
-    rows = []
-    for trial in sheet.trials:
-        out = held_out.get((trial.condition, trial.name))
-        state = trial.state
-        rows.append(
-            (
-                trial.name,
-                trial.condition,
-                math.exp(state.log_stiffness),
-                MM * state.onset,
-                *(MM * each for each in state.axis),
-                None if out is None else out.force_percent,
-                None if out is None else out.marker_mm,
-            )
-        )
     return Table(
         "Each trial fitted by force and markers; the last two columns: root mean square error when it is held out, "
         "predicted with the stiffness of the other trials and its own contact, zero and axis",

@@ -8,6 +8,7 @@ from typing import Any
 
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.deformation_section import deformation_section
+from benchmark.runs.report.film_section import film_section
 from benchmark.runs.report.measured_section import fit_section, measured_section, session_notices
 from benchmark.runs.report.method_section import method_section
 from benchmark.runs.report.scenario_section import scenario_section
@@ -70,7 +71,7 @@ def run_page(
     if trials is not None:
         sections.append(measured_section(trials.trials, trials.synthetic, record.pair))
         sections.append(fit_section(trials.parameters, trials.notes))
-        sections += [] if trials.markers is None else [trials.markers]
+        sections += [] if trials.markers is None else [film_section(trials.markers)]
     sections += [scenario_section(record)]
     if record.results:
         sections += [deformation_section(record, picture), statistics_section(record)]

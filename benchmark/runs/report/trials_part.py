@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from benchmark.fitting import FittedParameter
 from benchmark.runs.measured import MeasuredComparison, TrialPrediction
-from benchmark.runs.report.film_section import film_section, measured_headline
-from reports import Section
+from benchmark.runs.report.film_part import FilmPart, film_part
+from benchmark.runs.report.film_section import measured_headline
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class TrialsPart:
     parameters, notes
         Of the fit.
     markers
-        What the films of the trials show; None without any, and in a page made again from files.
+        What the films of the trials show; None without any.
     """
 
     trials: Sequence[TrialPrediction]
@@ -34,12 +34,12 @@ class TrialsPart:
     headline: str
     parameters: Sequence[FittedParameter]
     notes: Sequence[str]
-    markers: Section | None = None
+    markers: FilmPart | None = None
 
     @classmethod
     def of(cls, measured: MeasuredComparison) -> TrialsPart:
         """Return the part of a run at hand."""
         fit = measured.fit
-        markers = None if measured.filmed is None else film_section(measured, measured.filmed)
+        markers = None if measured.filmed is None else film_part(measured, measured.filmed)
         headline, synthetic = measured_headline(measured), measured.session.synthetic
         return cls(measured.trials, synthetic, headline, fit.parameters, fit.notes, markers)

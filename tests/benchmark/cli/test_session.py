@@ -43,7 +43,13 @@ def test_a_session_run_compares_measured_with_both_models(benchmark_cli, tmp_pat
     assert measured.trial.nunique() == 13
     residual = measured.force_N - measured.fem_force_N
     assert np.sqrt((residual**2).mean()) < 0.03 * measured.force_N.max()
+    of_wave = (measured.force_N - measured.wave_force_N)[measured.condition == "rich"]
+    assert np.sqrt((of_wave**2).mean()) < 0.025 * measured.force_N[measured.condition == "rich"].max()
     page = (tmp_path / "r/report.html").read_text()
+    assert "cannot follow" not in page
+    assert {path.name for path in (tmp_path / "r/markers").iterdir()} == {
+        "markers.json", "still_0.png", "still_1.png", "motion_0.csv", "motion_1.csv",
+    }  # fmt: skip
     assert "Synthetic data" in page
     assert "Circular comparison" in page
     assert "Tracked markers" in page

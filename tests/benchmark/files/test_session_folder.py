@@ -33,6 +33,24 @@ def test_sub_folders_are_conditions(tmp_path, write_trial):
     assert entries(tmp_path / "s") == [("top.csv", "s"), ("fast/a.csv", "fast"), ("slow/a.csv", "slow")]
 
 
+def test_marker_tracks_belong_to_the_trial_of_the_same_name(tmp_path, write_trial):
+    for name in ("a.csv", "a_markers.csv", "b.csv", "slow/c_10.csv", "slow/c_10_markers.csv"):
+        write_trial(tmp_path / "s" / name)
+    assert session_table(tmp_path / "s")[0]["trials"] == [
+        {"file": "a.csv", "markers": "a_markers.csv", "condition": "s"},
+        {"file": "b.csv", "condition": "s"},
+        {"file": "slow/c_10.csv", "markers": "slow/c_10_markers.csv", "condition": "slow"},
+    ]
+
+
+def test_marker_tracks_without_their_trial_are_refused(tmp_path, write_trial):
+    alone = write_trial(tmp_path / "s" / "a_markers.csv")
+    write_trial(tmp_path / "s" / "b.csv")
+    for path in (tmp_path / "s", alone):
+        with pytest.raises(InputError, match="marker tracks"):
+            session_table(path)
+
+
 def test_native_trials_count(tmp_path):
     (tmp_path / "s").mkdir()
     for name in ("a.mcap", "b.mcap.part"):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from benchmark.fitting import fit_session
+from benchmark.fitting.remarks import elastic_only
 
 EFFECTS = re.compile(r"relax|viscoel|prony|creep|poro|mullins|softening|friction", re.IGNORECASE)
 
@@ -15,6 +16,13 @@ def test_a_fading_force_is_time_dependence_without_a_name(fading_trial, silicone
     assert "while the depth is held" in text
     assert "leaves more than 10 % of the peak" in text
     assert not EFFECTS.search(text + " ".join(fit.notes))
+
+
+def test_what_a_fit_with_relaxation_need_not_say(fading_trial, silicone):
+    fit = fit_session([fading_trial(g=0.6, seed=n, name=str(n)) for n in range(2)], [silicone])
+    elastic = elastic_only(fit.trials)
+    assert set(elastic) < set(fit.warnings)
+    assert [text for text in fit.warnings if text not in elastic] == ["stiffness from two trials: its interval is wide"]
 
 
 def test_elastic_trials_have_no_warning(session, silicone):

@@ -67,4 +67,4 @@ def test_rays_stay_clear_of_the_neighbours(radius, spacing):
     fan = ray_fan(radius, spacing)
     assert fan.radii[-1] + radius < spacing or fan.radii[-1] <= radius + 2.5
     assert fan.radii[0] < radius < fan.smooth_radii[-1]
-    assert np.allclose(fan.smoothing.sum(axis=0), 1.0, atol=1e-6)
+    assert np.allclose(fan.filters.sum(axis=0), 1.0, atol=1e-6)
