@@ -14,8 +14,7 @@ from wavemodel.integrators.history import History
 from wavemodel.integrators.load import Load
 from wavemodel.integrators.quasi_static import StaticBody, quasi_static
 from wavemodel.physics.body import Physics
-from wavemodel.physics.force_driven import drive_by_force
-from wavemodel.physics.quasi_static_press import QuasiStaticPress
+from wavemodel.physics.force_driven import driven
 from wavemodel.press import Press
 
 
@@ -44,11 +43,7 @@ def options_run(load: Load, press: Press, law: ElasticLaw, physics: Physics) -> 
     WaveError
         If the press goes beyond the law's range, or pulls more than the tissue holds.
     """
-    tool = QuasiStaticPress(law, physics)
-    if load.control == "force":
-        trace = drive_by_force(tool, load.time, load.value, 0.1 * press.stack.height)
-    else:
-        trace = tool.trace(load.time, load.value)
+    trace = driven(load, law, physics, 0.1 * press.stack.height)
     elastic = law(trace.surface)
 
     def amplitude(step: int) -> FloatArray:

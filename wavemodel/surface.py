@@ -4,8 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg.blas import dgemm
 
-from wavemodel.arrays import FloatArray
+from wavemodel.arrays import FloatArray, IntArray
 from wavemodel.errors import WaveError
 from wavemodel.field import Field, Snapshot
 from wavemodel.large_press.law import LargePress
@@ -26,11 +27,11 @@ class Surface:
     sines_x, sines_y
         (P, M) and (M, Q) tables.
     remainder
-        (L, P, Q) deflection that the static remainder adds per force, m/N.
+        (P L, Q) deflection that the static remainder adds per force, m/N.
     fading
-        (B, L, P, Q) that of each field of the remainder, where layers creep each in its own way; else of none.
+        (B, P L, Q) that of each field of the remainder, where layers creep each in its own way; else of none.
     large
-        (B, L, P, Q) what each field of a large-press correction adds, m; of none without one.
+        (B, P L, Q) what each field of a large-press correction adds, m; of none without one.
     """
 
     field: Field
@@ -44,34 +45,68 @@ class Surface:
     def frame(self, state: Snapshot) -> FloatArray:
         """(L, P, Q) deflection of each layer's top face, m, downwards."""
         memory = self._memory
-        memory.padded[:, :-1] = state.amplitude
-        np.take(memory.padded, self.field.domain.pair_index, axis=1, out=memory.modal, mode="clip")
-        np.multiply(memory.modal, self.field.share, out=memory.modal)
-        np.matmul(self.sines_x, memory.modal, out=memory.half)
-        np.matmul(memory.half, self.sines_y, out=memory.out)
-        if self.field.rest is not None:
-            scalar = np.ndim(state.remainder) == 0
-            if scalar:
-                np.multiply(self.remainder, state.remainder, out=memory.rest)
+        np.take(state.amplitude.ravel(), memory.place, out=memory.modal, mode="clip")
+        np.multiply(memory.modal, memory.share, out=memory.modal)
+        np.dot(self.sines_x, memory.modal, out=memory.half)
+        beside = self.field.rest is not None
+        if beside:
+            if isinstance(state.remainder, np.ndarray) and state.remainder.ndim:
+                np.dot(state.remainder, self.fading.reshape(self.fading.shape[0], -1), out=memory.out.reshape(-1))
             else:
-                np.dot(state.remainder, self.fading.reshape(self.fading.shape[0], -1), out=memory.rest.reshape(-1))
-            np.add(memory.out, memory.rest, out=memory.out)
+                np.multiply(self.remainder, state.remainder, out=memory.out)
+        # Column-major BLAS sees everything transposed: out' = Sy' half' + out', in one pass over the result.
+        dgemm(1.0, self.sines_y.T, memory.rows.T, float(beside), memory.out.T, overwrite_c=1)
         if self.field.large is not None:
             weights = self.field.large.weights_at(state.elastic)
             np.dot(weights, self.large.reshape(weights.size, -1), out=memory.rest.reshape(-1))
             np.add(memory.out, memory.rest, out=memory.out)
-        return memory.out
+        return memory.faces
 
 
 @dataclass(frozen=True)
 class _Memory:
-    """Work arrays: amplitudes with a nought for modes not carried, modes, half-way sums, result, remainder."""
+    """Work arrays and where things go in them.
 
-    padded: FloatArray
+    Attributes
+    ----------
+    place, share
+        (M, L M) where in the amplitudes each mode of each layer is, and its share; nought where it is not carried.
+    modal
+        (M, L M) amplitudes of the modes.
+    half, rows
+        (P, L M) half-way sums, and the same memory as (P L, M).
+    out, faces
+        (P L, Q) result, and the same memory as (L, P, Q).
+    rest
+        (P L, Q) what a large press adds.
+    """
+
+    place: IntArray
+    share: FloatArray
     modal: FloatArray
     half: FloatArray
+    rows: FloatArray
     out: FloatArray
+    faces: FloatArray
     rest: FloatArray
+
+
+def _memory(field: Field, layers: int, shape: tuple[int, int]) -> _Memory:
+    index, kept = field.domain.pair_index, field.domain.wavenumber.size
+    count, carried = index.shape[0], index < kept
+    place = np.arange(layers)[:, None] * kept + np.minimum(index, kept - 1)[:, None, :]
+    share = np.broadcast_to((field.share * carried)[:, None, :], place.shape)
+    half, out = np.empty((shape[0], layers * count)), np.empty((shape[0] * layers, shape[1]))
+    return _Memory(
+        np.ascontiguousarray(place.reshape(count, -1)),
+        np.ascontiguousarray(share.reshape(count, -1)),
+        np.empty((count, layers * count)),
+        half,
+        half.reshape(-1, count),
+        out,
+        out.reshape(shape[0], layers, shape[1]).transpose(1, 0, 2),
+        np.empty_like(out) if field.large is not None else np.empty((0, 0)),
+    )
 
 
 def surface(field: Field, x: FloatArray, y: FloatArray, layers: int) -> Surface:
@@ -90,30 +125,23 @@ def surface(field: Field, x: FloatArray, y: FloatArray, layers: int) -> Surface:
                 f"surface: {name} reaches {np.abs(position).max() * 1e3:g} mm from the tool axis, outside the "
                 f"window of {side * 1e3:g} mm (half of it to each side{place})"
             )
-    count, kept = field.domain.order.size, field.domain.wavenumber.size
-    memory = _Memory(
-        np.zeros((layers, kept + 1)),
-        np.empty((layers, count, count)),
-        np.empty((layers, x.size, count)),
-        np.empty((layers, x.size, y.size)),
-        np.empty((layers, x.size, y.size)),
-    )
     distance = np.hypot(x[:, None], y)
     return Surface(
         field,
         field.domain.sines(x),
         np.ascontiguousarray(field.domain.sines(y, axis=1).T),
         _remainder(field, distance, lambda radius: field.remainder(radius, layers)[None])[0],
-        _remainder(field, distance, field.remainders) if field.fading else np.empty((0, layers, 0, 0)),
-        _large(field.large, distance) if field.large else np.empty((0, layers, 0, 0)),
-        memory,
+        _remainder(field, distance, field.remainders) if field.fading else np.empty((0, 0, 0)),
+        _large(field.large, distance) if field.large else np.empty((0, 0, 0)),
+        _memory(field, layers, (x.size, y.size)),
     )
 
 
 def _remainder(field: Field, distance: FloatArray, deflection: Callable[[FloatArray], FloatArray]) -> FloatArray:
-    """(B, L, P, Q) by interpolation between radii that crowd towards the tool's edge."""
+    """(B, P L, Q) by interpolation between radii that crowd towards the tool's edge."""
     if field.rest is None:
-        return np.zeros((*deflection(np.zeros(1)).shape[:2], *distance.shape))
+        fields, layers = deflection(np.zeros(1)).shape[:2]
+        return np.zeros((fields, layers * distance.shape[0], distance.shape[1]))
     edge, reach = field.traction.basis.radius, field.rest.reach
     turn = np.linspace(0.0, 1.0, REMAINDER_RADII)
     radius = np.concatenate([edge * np.sin(0.5 * np.pi * turn), edge + (reach - edge) * turn[1:] ** 2])
@@ -121,12 +149,12 @@ def _remainder(field: Field, distance: FloatArray, deflection: Callable[[FloatAr
 
 
 def _large(correction: LargePress, distance: FloatArray) -> FloatArray:
-    """(B, L, P, Q) by interpolation between many radii."""
+    """(B, P L, Q) by interpolation between many radii."""
     radius = np.linspace(0.0, float(distance.max()), LARGE_RADII)
     return _spread(correction.at_radius(radius), radius, distance)
 
 
 def _spread(values: FloatArray, radius: FloatArray, distance: FloatArray) -> FloatArray:
-    """From (B, L, R) at radii to (B, L, P, Q) at distances."""
-    rows = [np.interp(distance, radius, row, right=0.0) for row in values.reshape(-1, radius.size)]
-    return np.stack(rows).reshape(*values.shape[:2], *distance.shape)
+    """From (B, L, R) at radii to (B, P L, Q) at distances (P, Q)."""
+    rows = [[np.interp(distance, radius, row, right=0.0) for row in field] for field in values]
+    return np.stack([np.stack(field, axis=1) for field in rows]).reshape(len(rows), -1, distance.shape[1])

@@ -10,8 +10,9 @@ from typing import Any, Final
 from benchmark.errors import InputError
 from benchmark.files.base import FileModel
 from benchmark.files.load import Load
-from benchmark.files.options import Comparison, FemOptions, Physics, WaveOptions
+from benchmark.files.options import Comparison, FemOptions, WaveOptions
 from benchmark.files.overrides import layer_path, parsed_value, put_in, unknown_key
+from benchmark.files.physics import Physics
 from benchmark.files.problems import check_schema, known_keys, validated
 from benchmark.files.registry import find
 from benchmark.files.scenario import Scenario

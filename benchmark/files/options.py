@@ -1,4 +1,4 @@
-"""The optional sections of a scenario: physics, comparison, and what the two solvers are told."""
+"""The optional sections of a scenario besides `[physics]`: comparison, and what the two solvers are told."""
 
 from __future__ import annotations
 
@@ -11,47 +11,16 @@ from benchmark.files.base import FileModel
 from benchmark.files.quantities import (
     AutoLength,
     Bounds,
-    Length,
     Margin,
     Number,
-    Pressure,
-    SmallForce,
     problem,
 )
 from benchmark.files.sources import folder_of, is_file
 
-FrictionCoefficient = Annotated[float, Number("0 to 10", Bounds(0.0, 10.0))]
 Modes = Annotated[
     int | None,
     Number('1 to 4096 modes each way (a whole number), or "auto"', Bounds(1, 4096), whole=True, automatic=True),
 ]
-
-
-class Physics(FileModel):
-    """Options of the body, each off where it is not given.
-
-    Attributes
-    ----------
-    pretension : float or None
-        In-plane tensile stress before the press, Pa.
-    interface_shear_limit : float or None
-        Shear stress at which layers begin to slide on each other, Pa.
-    clamp_shear_limit : float or None
-        Shear stress at which the clamped rim of a sheet over a hole begins to slide, Pa.
-    friction_coefficient : float or None
-        Between tool and tissue; needed by a `rigid_frictional` tool.
-    adhesion_force : float or None
-        Pull with which the tissue holds the tool before it lets go, N.
-    floor_depth : float or None
-        Deflection of the lower face at which it meets a stiff floor, m.
-    """
-
-    pretension: Pressure | None = None
-    interface_shear_limit: Pressure | None = None
-    clamp_shear_limit: Pressure | None = None
-    friction_coefficient: FrictionCoefficient | None = None
-    adhesion_force: SmallForce | None = None
-    floor_depth: Length | None = None
 
 
 class Comparison(FileModel):

@@ -10,7 +10,8 @@ from pydantic import Field, model_validator
 from benchmark.files.base import FileModel, Name, Schema
 from benchmark.files.load import Load
 from benchmark.files.load_history import LoadHistory, load_history
-from benchmark.files.options import Comparison, FemOptions, Physics, WaveOptions
+from benchmark.files.options import Comparison, FemOptions, WaveOptions
+from benchmark.files.physics import Physics
 from benchmark.files.quantities import problem
 from benchmark.files.tissue import Tissue
 from benchmark.files.tool import Support, Tool, check_hole

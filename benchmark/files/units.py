@@ -60,9 +60,11 @@ SPEED = Dimension("speed", "m/s", (("m/s", 1.0), ("mm/s", 0.0)), "2 mm/s")
 DENSITY = Dimension("density", "kg/m^3", (("kg/m^3", 0.0),), "1100 kg/m^3")
 ANGLE = Dimension("angle", "radian", (("deg", 0.0),), "30 deg")
 FREQUENCY = Dimension("frequency", "1/s", (("Hz", 0.0),), "30 Hz")
+STIFFNESS = Dimension("stiffness", "N/m", (("N/mm", 1.0), ("N/m", 0.0)), "20 N/mm")
+DIFFUSIVITY = Dimension("diffusivity", "m^2/s", (("mm^2/s", 0.0),), "0.5 mm^2/s")
 FRACTION = Dimension("fraction", "", (("%", 0.0),), "2 %")
 
-DIMENSIONS = (LENGTH, PRESSURE, FORCE, DURATION, SPEED, DENSITY, ANGLE, FREQUENCY, FRACTION)
+DIMENSIONS = (LENGTH, PRESSURE, FORCE, DURATION, SPEED, DENSITY, ANGLE, FREQUENCY, STIFFNESS, DIFFUSIVITY, FRACTION)
 
 
 class QuantityError(ValueError):

@@ -10,6 +10,12 @@ from benchmark.models.result import UncoveredError
 FRICTION = "friction_coefficient"
 """Belongs to a rigid_frictional tool, which each model refuses by itself, and has no effect on any other."""
 
+REASONS = {
+    "interface_shear_limit": "no model of this version has it; slip_force and slip_share are the wave's",
+    "clamp_shear_limit": "no model of this version has it",
+}
+"""Why an option is in no model."""
+
 
 def refuse_options(scenario: Scenario, has: Collection[str] = (), fibres: bool = False) -> None:
     """Refuse what a model does not have.
@@ -31,7 +37,8 @@ def refuse_options(scenario: Scenario, has: Collection[str] = (), fibres: bool =
     given = [name for name, value in dict(scenario.physics).items() if value is not None]
     lacking = [name for name in given if name not in (FRICTION, *has)]
     if lacking:
-        raise UncoveredError(f"the option physics.{lacking[0]} is not part of this model")
+        reason = REASONS.get(lacking[0], f"it has {', '.join(has) or 'none'}")
+        raise UncoveredError(f"the option physics.{lacking[0]} is not part of this model: {reason}")
     names = [layer.name for layer in scenario.tissue.layers if layer.fibre is not None]
     if names and not fibres:
         raise UncoveredError(f"the layer {names[0]} has fibres, which this model does not have")
@@ -54,8 +61,8 @@ def refuse_solid(scenario: Scenario) -> None:
 
 
 def relaxation_warnings(scenario: Scenario) -> tuple[str, ...]:
-    """Say which layers relax in their file and are elastic here."""
+    """Say which layers of a sheet relax in their file, each in its own way, and are elastic here."""
     names = [layer.name for layer in scenario.tissue.layers if layer.relaxation]
     if not names:
         return ()
-    return (f"relaxation of {', '.join(names)} is left out: the layers are elastic with their initial moduli",)
+    return (f"relaxation of {', '.join(names)} is left out: over a hole the wave needs one series for all layers",)

@@ -32,8 +32,9 @@ def prepare(
         The scenario is at fault.
     """
     if isinstance(own, RepairedModel):
-        from benchmark.models.repaired import RepairedPress, on_its_base, switched_on
+        from benchmark.models.repaired import RepairedPress, on_its_base, refuse_options_twice, switched_on
 
+        refuse_options_twice(own, scenario)
         base = prepare(model, on_its_base(own, scenario), every_field=every_field)
         return RepairedPress(base, switched_on(own, scenario, model))
     if model == "fem":

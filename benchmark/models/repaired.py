@@ -18,6 +18,7 @@ from benchmark.effects import Effect, Surroundings, catalogue, load_effects
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel, read_model
 from benchmark.models.result import Array, Drive, ModelResult, OnStep, PreparedModel, UncoveredError, silent
+from benchmark.models.wave_physics import given
 from wavemodel import WaveError
 from wavemodel.physics import Physics, QuasiStaticPress
 from wavemodel.physics.force_driven import drive_by_force
@@ -76,6 +77,16 @@ def on_its_base(repair: RepairedModel, scenario: Scenario) -> Scenario:
         return scenario
     wave = scenario.wave.model_copy(update={"large_press": repair.large_press})
     return scenario.model_copy(update={"wave": wave})
+
+
+def refuse_options_twice(repair: RepairedModel, scenario: Scenario) -> None:
+    """Refuse options of the body in the scenario beside effects of a model file; raises UncoveredError."""
+    names = given(scenario)
+    if names and repair.effects:
+        raise UncoveredError(
+            f"the scenario's physics.{names[0]} cannot act beside the effects of a model file: its effects act on an "
+            "elastic body; leave one of them out"
+        )
 
 
 def effects_of(repair: RepairedModel) -> tuple[tuple[Effect, Mapping[str, float]], ...]:

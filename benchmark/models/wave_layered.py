@@ -9,6 +9,7 @@ import numpy as np
 from benchmark.files import Scenario
 from benchmark.models.result import Drive, UncoveredError
 from benchmark.models.wave_parts import PreparedWave, Solution, law_warnings, wave_layers, wave_relaxation, wave_tool
+from benchmark.models.wave_physics import wave_physics
 from wavemodel import LayeredWave, WaveError
 
 STRAINS = {"linear": "small strain", "corrected": "finite strain of the layers"}
@@ -52,6 +53,7 @@ def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) ->
         relaxation=wave_relaxation(scenario),
         large_press=large_press,
         pretension=scenario.physics.pretension,
+        physics=wave_physics(scenario),
     )
     if to_peak:
         peak = np.array([scenario.load.peak])

@@ -11,6 +11,7 @@ from benchmark.models.radii import profile_radii
 from benchmark.models.result import Drive, ModelResult, OnStep, Reading, StepProgress, UncoveredError, silent
 from benchmark.models.wave_layered import layered_wave
 from benchmark.models.wave_parts import PreparedWave, Solution
+from benchmark.models.wave_physics import OPTIONS
 from benchmark.models.wave_plate import plate_wave
 from wavemodel import NotCoveredError, WaveError
 
@@ -27,8 +28,7 @@ class WaveModel:
     """
 
     def __init__(self, scenario: Scenario):
-        layered = scenario.support.kind != "hole" and scenario.wave.model == "layered"
-        refuse_options(scenario, ("pretension",) if layered else ())
+        refuse_options(scenario, ("pretension", *OPTIONS))
         refuse_solid(scenario)
         self._scenario = scenario
         try:

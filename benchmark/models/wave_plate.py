@@ -7,8 +7,9 @@ import numpy as np
 from benchmark.files import Scenario
 from benchmark.models.coverage import relaxation_warnings
 from benchmark.models.result import UncoveredError
-from benchmark.models.wave_parts import PreparedWave, law_warnings, wave_layers, wave_tool
-from wavemodel import PlateWave, WaveError
+from benchmark.models.wave_parts import PreparedWave, law_warnings, wave_layers, wave_relaxation, wave_tool
+from benchmark.models.wave_physics import wave_physics
+from wavemodel import PlateWave, Prony, WaveError
 
 MODEL = "sheet over a hole, finite deflection with its local tension"
 CALIBRATED = (
@@ -32,12 +33,17 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
     hole, load, options = scenario.support.hole_radius, scenario.load, scenario.wave
     by_depth = load.control == "depth"
     explicit = options.model == "plate"
+    series, warnings = _sheet_series(scenario)
+    stress = scenario.physics.pretension or 0.0
     wave = PlateWave(
         wave_layers(scenario),
         wave_tool(scenario),
         scenario.support.kind,
         hole,
         options.modes if explicit else None,
+        pretension=stress * sum(layer.thickness for layer in scenario.tissue.layers),
+        relaxation=series,
+        physics=wave_physics(scenario),
         reach=FIRST_REACH * hole if hole is not None else None,
     )
     peak = np.array([abs(load.peak)])
@@ -53,8 +59,18 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
             "window": f"the hole, {1e3 * wave.window:.4g} mm wide",
             "modes": f"{wave.modes} radial functions each",
         },
-        warnings=(*relaxation_warnings(scenario), *law_warnings(scenario), *_ignored(scenario)),
+        warnings=(*warnings, *law_warnings(scenario), *_ignored(scenario)),
     )
+
+
+def _sheet_series(scenario: Scenario) -> tuple[Prony | None, tuple[str, ...]]:
+    """The relaxation that all layers share, or a warning that layers which differ are elastic."""
+    series = wave_relaxation(scenario)
+    if series is None:
+        return None, ()
+    if all(one == series[0] for one in series):
+        return series[0], ()
+    return None, relaxation_warnings(scenario)
 
 
 def _ignored(scenario: Scenario) -> tuple[str, ...]:

@@ -35,32 +35,33 @@ class Fading:
             raise WaveError(f"retardation = {retardation:g} s is not allowed: finite and not negative")
         self._strength, self._rate = series.ordered
         self._eta, count = retardation, self._strength.size
-        self._state = np.zeros((contacts, count + 1))  # y_j, then e
-        self._keep, self._first, self._last = (np.zeros(count) for _ in range(3))
-        self._free, self._next, self._dt = np.zeros((count + 1, count + 1)), np.zeros(count + 1), 0.0
+        # y_j, then e, as plain numbers: a series has a few terms, which arrays would only slow down.
+        self._state = [[0.0] * (count + 1) for _ in range(contacts)]
+        self._steps: list[tuple[float, float, float]] = []
+        self._free, self._dt = np.zeros((count + 1, count + 1)), 0.0
 
     def held(self, contact: int, elastic: float, dt: float) -> float:
         """Force after a frame in which the elastic force went to a value, N."""
         self._prepare(dt)
-        state, before = self._state[contact], float(self._state[contact, -1])
-        lags = state[:-1]
-        lags *= self._keep
-        for j in range(lags.size):
-            lags[j] += self._first[j] * before + self._last[j] * elastic
+        state = self._state[contact]
+        before, force = state[-1], elastic
+        for j, (keep, first, last) in enumerate(self._steps):
+            lag = keep * state[j] + first * before + last * elastic
+            state[j] = lag
+            force -= lag
         state[-1] = elastic
-        return elastic - float(lags.sum()) + self._eta * (elastic - before) / dt
+        return force + self._eta * (elastic - before) / dt
 
     def free(self, contact: int, dt: float) -> float:
         """Elastic force after a frame without a force on the surface, N."""
         self._prepare(dt)
         state = self._state[contact]
-        np.dot(self._free, state, out=self._next)
-        state[:] = self._next
-        return float(state[-1])
+        state[:] = (self._free @ state).tolist()
+        return state[-1]
 
     def forget(self, contact: int) -> None:
         """Back to the untouched tissue."""
-        self._state[contact] = 0.0
+        self._state[contact] = [0.0] * len(self._state[contact])
 
     def _prepare(self, dt: float) -> None:
         if dt == self._dt:
@@ -68,11 +69,8 @@ class Fading:
         ratio = self._rate * dt
         keep = np.exp(-ratio)
         mean = -np.expm1(-ratio) / ratio
-        self._keep[:], self._first[:], self._last[:] = (
-            keep,
-            self._strength * (mean - keep),
-            self._strength * (1.0 - mean),
-        )
+        parts = keep, self._strength * (mean - keep), self._strength * (1.0 - mean)
+        self._steps = list(zip(*(part.tolist() for part in parts), strict=True))
         self._free[:] = self._released(dt)
         self._dt = dt
 

@@ -7,12 +7,21 @@ from scipy.optimize import brentq
 
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import WaveError
-from wavemodel.integrators.load import checked_load
-from wavemodel.physics.quasi_static_press import PressState, QuasiStaticPress, Trace, joined
+from wavemodel.integrators.load import Load, checked_load
+from wavemodel.physics.body import Physics
+from wavemodel.physics.quasi_static_press import ForceLaw, PressState, QuasiStaticPress, Trace, joined
 
 WIDENINGS = 60
 EXACT = 1e-13
 """Of the force, and of the depth (relatively), to which a step is solved."""
+
+
+def driven(load: Load, law: ForceLaw, physics: Physics, scale: float) -> Trace:
+    """Go through a load history, of force or depth, on an elastic law with options; see `drive_by_force`."""
+    press = QuasiStaticPress(law, physics)
+    if load.control == "force":
+        return drive_by_force(press, load.time, load.value, scale)
+    return press.trace(load.time, load.value)
 
 
 def drive_by_force(press: QuasiStaticPress, time: FloatArray, force: FloatArray, scale: float) -> Trace:

@@ -12,11 +12,14 @@ import numpy as np
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import WaveError, require_positive
 from wavemodel.integrators.damping import Damping
-from wavemodel.integrators.load import checked_load
+from wavemodel.integrators.load import Load, checked_load
+from wavemodel.integrators.prony import Prony
+from wavemodel.physics.body import Physics
 from wavemodel.plate.carrier import carrier
 from wavemodel.plate.checks import checked_count, checked_hole, checked_tension
 from wavemodel.plate.history import PlateHistory, Statics
 from wavemodel.plate.law import plate_law
+from wavemodel.plate.memory import fading_run, memory_of, options_run
 from wavemodel.plate.prepared import PreparedLaw
 from wavemodel.plate.sheet import sheet
 from wavemodel.plate.solution import PlateSolution
@@ -58,6 +61,10 @@ class PlateWave:
         With inertia: proportional to mass and stiffness; none by default.
     tool_mass
         With inertia: of a rigid tool, kg.
+    relaxation
+        Fading memory of the whole sheet, without inertia; E is then the initial modulus. None: elastic.
+    physics
+        Options of the body beyond elasticity, without inertia; all off by default (see `Physics`).
 
     Raises
     ------
@@ -81,6 +88,8 @@ class PlateWave:
         integrator: str = "quasi_static",
         damping: Damping | None = None,
         tool_mass: float = 0.0,
+        relaxation: Prony | None = None,
+        physics: Physics | None = None,
     ) -> None:
         self.layers, self.tool, self.hole_radius = tuple(layers), tool, checked_hole(tool, support, hole_radius)
         self.modes, self.integrator = checked_count(modes), integrator
@@ -94,6 +103,7 @@ class PlateWave:
         law = plate_law(self.layers, tool, sheet(self.layers, tool, hole, self.modes, pretension))
         self.unknowns: int = law.sheet.unknowns
         self._damping = damping or Damping()
+        self._options, self._series = memory_of(relaxation, physics, integrator), relaxation
         self._moving = UniformTension(carrier(law.sheet, tool_mass), law.faces, law.dent)
         self._statics: Statics = self._moving
         if self.tension == "local":
@@ -169,8 +179,7 @@ class PlateWave:
             If the history is not usable or the sheet has no equilibrium under it.
         """
         load = checked_load(control, time, value)
-        moving = self.integrator == "mid_point"
-        history = self._moving.move(load, self._damping) if moving else self._statics.run(load)
+        history = self._history(load)
         return PlateSolution(
             time=load.time,
             force=history.force,
@@ -183,6 +192,15 @@ class PlateWave:
             _hole=self.hole_radius,
             _faces=history.faces,
         )
+
+    def _history(self, load: Load) -> PlateHistory:
+        if self.integrator == "mid_point":
+            return self._moving.move(load, self._damping)
+        if self._options is not None:
+            return options_run(load, self._statics, self._options, 0.1 * self.hole_radius)
+        if self._series is not None:
+            return fading_run(load, self._statics, self._series)
+        return self._statics.run(load)
 
     def _warnings(self, history: PlateHistory) -> tuple[str, ...]:
         deepest = float(np.abs(history.depth).max())

@@ -10,6 +10,8 @@ from wavemodel.plate.law import PlateLaw
 
 MARGIN, LARGEST_GROWTH = 1.05, 6.0
 """Of what is prescribed, where it is not what is wanted."""
+ROUNDING = 1e-9
+"""So little beyond the last equilibrium the curve goes on by itself."""
 
 
 class PreparedLaw:
@@ -60,7 +62,7 @@ class PreparedLaw:
 
     def _extend(self, control: str, wanted: float) -> None:
         """Find equilibria up to a depth (m) or force (N) that is wanted."""
-        while self._curve.reach[control == "force"] < wanted:
+        while self._curve.reach[control == "force"] < (1.0 - ROUNDING) * wanted:
             given = self._rigid == (control == "depth")
             self._law = self._law.extended(wanted if given else self._beyond(control, wanted))
             self._curve = self._law.curve()

@@ -1,7 +1,8 @@
 import pytest
 from pydantic import ValidationError
 
-from benchmark.files.options import Comparison, FemOptions, Physics, WaveOptions
+from benchmark.files.options import Comparison, FemOptions, WaveOptions
+from benchmark.files.physics import Physics
 from benchmark.files.quantities import FROM_FILE
 
 
@@ -26,11 +27,38 @@ def test_physics_is_off_unless_given():
         {"interface_shear_limit": 5},
         {"clamp_shear_limit": "5 mm"},
         {"gravity": "9.81 m/s^2"},
+        {"floor_stiffness": "5 N/mm"},
+        {"floor_depth": "5 mm", "floor_stiffness": "5 kPa"},
+        {"friction_force": "10 mN"},
+        {"friction_length": "1 um"},
+        {"softening": 1.0},
+        {"softening_width": 0.5},
+        {"permanent_set": 0.1, "permanent_set_onset": 1e-3},
+        {"stiffening_linear": -1},
+        {"drainage_share": 0.1, "drainage_diffusivity": "1 mm"},
+        {"slip_force": "0 N", "slip_share": 0.5},
+        {"slip_share": 0.5},
+        {"damping_time": 0.1},
     ],
 )
 def test_physics_is_checked_for_name_unit_and_bounds(table):
     with pytest.raises(ValidationError):
         read(Physics, **table)
+
+
+def test_options_of_the_body_come_with_their_units():
+    given = read(
+        Physics,
+        floor_depth="6 mm",
+        floor_stiffness="20 N/mm",
+        friction_force="10 mN",
+        friction_length="10 um",
+        drainage_share=0.2,
+        drainage_diffusivity="0.5 mm^2/s",
+        damping_time="10 ms",
+    )
+    assert (given.floor_stiffness, given.friction_force, given.friction_length) == (2e4, 0.01, 1e-5)
+    assert (given.drainage_diffusivity, given.damping_time) == (5e-7, 0.01)
 
 
 def test_the_margin_is_two_percent():

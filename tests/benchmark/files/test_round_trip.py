@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from benchmark.files import Layer, Scenario, Source, Support, Tissue, Tool, scenario_from_table, tissue_from_table
 from benchmark.files.laws import Fibre, Gent, MooneyRivlin, NeoHookean, Ogden, OgdenTerm, PronyTerm, Yeoh
 from benchmark.files.load import Load
-from benchmark.files.options import Comparison, FemOptions, Physics, WaveOptions
+from benchmark.files.options import Comparison, FemOptions, WaveOptions
+from benchmark.files.physics import Physics
 
 names = st.text(min_size=1, max_size=30).filter(lambda text: text.isprintable() and text.strip())
 moduli = st.floats(0.01, 1e12)
@@ -81,7 +82,11 @@ physics = st.builds(
     clamp_shear_limit=maybe(moduli),
     friction_coefficient=maybe(st.floats(0, 10)),
     adhesion_force=maybe(st.floats(0, 1e3)),
-    floor_depth=maybe(lengths),
+    floor_depth=lengths,
+    floor_stiffness=maybe(st.floats(1e-3, 1e8)),
+    damping_time=maybe(st.floats(1e-6, 1e7)),
+    drainage_share=st.floats(0, 0.99),
+    drainage_diffusivity=st.floats(1e-15, 1),
 )
 scenarios = st.builds(
     Scenario,

@@ -4,7 +4,8 @@ import pytest
 from pydantic import ValidationError
 
 from benchmark.files.load import Load
-from benchmark.files.options import FemOptions, Physics, WaveOptions
+from benchmark.files.options import FemOptions, WaveOptions
+from benchmark.files.physics import Physics
 from benchmark.files.scenario import Scenario
 from benchmark.files.tissue import Layer, Tissue
 from benchmark.files.tool import Support, Tool

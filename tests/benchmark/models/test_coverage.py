@@ -7,7 +7,8 @@ from benchmark.models import UncoveredError, prepare, scenario_drive
 FIBRE = '{ k1 = "10 kPa", k2 = 1.0 }'
 
 OUTSIDE = {
-    "option of the body": ({"physics.floor_depth": "6 mm"}, "floor_depth", ("fem", "wave")),
+    "option of the body": ({"physics.floor_depth": "6 mm"}, "floor_depth", ("fem",)),
+    "clamp": ({"physics.clamp_shear_limit": "6 kPa"}, "clamp_shear_limit", ("fem", "wave")),
     "fibres": ({"dermis.fibre": FIBRE}, "fibres", ("wave",)),
     "fibres in small strain": ({"dermis.fibre": FIBRE, "fem.kinematics": "linear"}, "fibres", ("fem",)),
     "tilted tool": ({"tool.tilt": "3 deg"}, "tilted", ("wave",)),
