@@ -117,7 +117,7 @@ class Side:
 
 
 def _environment(tree: Path, *, temporary: bool) -> dict[str, str]:
-    """One thread in every library, memory that is kept, the same order of sets, and the packages of `tree` before others.
+    """One thread in every library, kept memory, the same order of sets, and the packages of `tree` first.
 
     A tree that is where packages are installed is found anyway, and must not go before the standard library.
     Code of a temporary tree is compiled once for all its processes, whatever the caller wants for other folders.
