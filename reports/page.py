@@ -15,12 +15,14 @@ from reports.blocks import (
     Download,
     Downloads,
     Fact,
+    Figure,
     KeyFigure,
     Notice,
     Section,
     Subsection,
     Verdict,
 )
+from reports.live import scripts
 from reports.rendering import environment
 
 
@@ -97,6 +99,13 @@ class _Numbering:
         return Placed(block, f"{block.counter.lower()}-{number}", number)
 
 
+def _is_live(block: Block) -> bool:
+    """Whether a block has anything to zoom or turn."""
+    if isinstance(block, Subsection):
+        return any(_is_live(each) for each in block.blocks)
+    return isinstance(block, Figure) and block.is_live
+
+
 def render_page(page: Page) -> str:
     """Return a page as one HTML5 file that fetches nothing.
 
@@ -117,7 +126,8 @@ def render_page(page: Page) -> str:
         (f"section-{position}", section.title, numbering.place(section.blocks, f"section-{position}"))
         for position, section in enumerate(sections, 1)
     ]
-    html = environment().get_template("page.html.j2").render(page=page, sections=placed)
+    live = scripts() if any(_is_live(block) for section in sections for block in section.blocks) else None
+    html = environment().get_template("page.html.j2").render(page=page, sections=placed, scripts=live)
     return html if html.endswith("\n") else html + "\n"
 
 

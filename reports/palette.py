@@ -53,10 +53,22 @@ def stylesheet() -> str:
 
 def css_variable(colour: str) -> str | None:
     """Return `var(--name, #rrggbb)` for a light shade of the palette, None for any other colour."""
+    known = any(shade.light == colour.lower() for shade in PALETTE.values())
+    return f"var(--{name_of(colour)}, {colour.lower()})" if known else None
+
+
+def name_of(colour: str) -> str:
+    """Return the name of a light shade of the palette.
+
+    Raises
+    ------
+    ValueError
+        For any other colour.
+    """
     for name, shade in PALETTE.items():
         if shade.light == colour.lower():
-            return f"var(--{name}, {shade.light})"
-    return None
+            return name
+    raise ValueError(f"the colour {colour} is not in the palette")
 
 
 def contrast(first: str, second: str) -> float:

@@ -10,7 +10,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from reports import formatting, palette, svg
-from reports.blocks import Column, Download, Figure, Picture, Table
+from reports.blocks import Column, Download, Figure, Live, Picture, Table
+from reports.live import embedded_json
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -40,17 +41,25 @@ def environment() -> Environment:
     return templates
 
 
-def _embedded_panels(figure: Figure, number: int) -> Iterator[Markup]:
-    """Yield the pictures of a figure as inline SVG, or as an image whose data is in the page."""
+def _embedded_panels(figure: Figure, number: int) -> Iterator[tuple[Markup, Markup | None]]:
+    """Yield the pictures of a figure, as inline SVG or as an image whose data is in the page, and live data as JSON."""
     from markupsafe import Markup
 
     for position, panel in enumerate(figure.panels):
         if isinstance(panel, Picture):
-            yield Markup('<img src="{}" alt="{}">').format(panel.address, panel.alt)
+            yield Markup('<img src="{}" alt="{}">').format(panel.address, panel.alt), None
             continue
         title = panel.title or figure.title or f"Figure {number}"
         # embed() has parsed the SVG, refused anything active and escaped every text in it.
-        yield Markup(svg.embed(panel.svg, f"f{number}-{position}-", title, panel.alt))
+        drawing = Markup(svg.embed(panel.svg, f"f{number}-{position}-", title, panel.alt))
+        yield drawing, _data(panel.live, panel.title if len(figure.panels) > 1 else "")
+
+
+def _data(live: Live | None, title: str) -> Markup | None:
+    """Return live data for a script element."""
+    from markupsafe import Markup
+
+    return None if live is None else Markup(embedded_json(live, title))
 
 
 def _table_grid(table: Table) -> dict[str, Any]:

@@ -14,7 +14,9 @@ Ratios = Mapping[str, Sequence[float]]
 """Log ratios of the processes, by timed quantity."""
 
 CLEARANCE = 0.04
-"""Measuring ends before the most rounds only where every estimate is this far (logarithm) below its limit."""
+"""Measuring ends before the most rounds only where every estimate is this far (logarithm) from its limit."""
+DECISIVE = 6
+"""Rounds before anything is called slower, as long as the gate file allows as many."""
 
 
 @dataclass(frozen=True)
@@ -102,10 +104,10 @@ class Judge:
         return tuple(self._row(each, now[each.name], base[each.name]) for each in self.timed)
 
     def clear(self, now: Ratios, base: Ratios) -> bool:
-        """Whether every quantity is far below its limit, so that more rounds would change nothing."""
-        return all(
-            self._change(now[each.name], base[each.name]).estimate < self.limit(each) - CLEARANCE for each in self.timed
-        )
+        """Whether every quantity is far from its limit, so that more rounds would change nothing."""
+        beyond = [self._change(now[each.name], base[each.name]).estimate - self.limit(each) for each in self.timed]
+        rounds = min(len(now[each.name]) for each in self.timed)
+        return all(far < -CLEARANCE or (far > CLEARANCE and rounds >= DECISIVE) for far in beyond)
 
     def _change(self, now: Sequence[float], base: Sequence[float]) -> Change:
         return change(now, base, paired=self.paired, seed=self.seed)

@@ -10,6 +10,8 @@ from benchmark.runs.report.film_section import measured_headline
 from benchmark.side_by_side import ModelRun
 
 SCHEMA = 1
+FITTED = "circular"
+"""Of both models beside the trials that their stiffness was fitted to; `protocol` is that of FEM beside wave model."""
 
 
 def results_document(record: RunRecord) -> dict[str, Any]:
@@ -40,6 +42,7 @@ def results_document(record: RunRecord) -> dict[str, Any]:
             "synthetic": record.measured.session.synthetic,
             "fingerprint": record.measured.session.fingerprint,
             "count": len(record.measured.trials),
+            "protocol": FITTED,
             "headline": measured_headline(record.measured),
             "notes": list(record.measured.fit.notes),
         }

@@ -7,6 +7,7 @@ of it. How blocks become HTML is in `reports.page`, `reports.rendering` and the 
 from reports.blocks.base import Block, Section, Subsection
 from reports.blocks.facts import Fact, Facts, KeyFigure, KeyFigures
 from reports.blocks.figure import Figure, Panel, Picture
+from reports.blocks.live import Live, LiveAxes, LiveBody, LiveFace, LiveLine, LivePlot
 from reports.blocks.table import Column, Download, Downloads, Table
 from reports.blocks.text import NOTICES, Bullets, Listing, Notice, Paragraph
 from reports.blocks.verdict import VERDICTS, Verdict
@@ -25,6 +26,12 @@ __all__ = [
     "KeyFigure",
     "KeyFigures",
     "Listing",
+    "Live",
+    "LiveAxes",
+    "LiveBody",
+    "LiveFace",
+    "LiveLine",
+    "LivePlot",
     "Notice",
     "Panel",
     "Paragraph",

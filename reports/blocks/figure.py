@@ -8,15 +8,17 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from reports.blocks.base import Block
+from reports.blocks.live import Live
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One picture of a figure: an SVG document and what it shows, in words."""
+    """One picture of a figure: an SVG document, what it shows in words, and what it becomes where JavaScript runs."""
 
     svg: str
     alt: str
     title: str = ""
+    live: Live | None = None
 
 
 SIGNATURES = {b"\x89PNG\r\n\x1a\n": "image/png", b"GIF87a": "image/gif", b"GIF89a": "image/gif"}
@@ -67,10 +69,15 @@ class Figure(Block):
     caption: str
     title: str = ""
 
+    @property
+    def is_live(self) -> bool:
+        """Whether any picture of it can be zoomed or turned."""
+        return any(isinstance(panel, Panel) and panel.live is not None for panel in self.panels)
+
     @classmethod
-    def of(cls, svg: str, caption: str, alt: str, title: str = "") -> Figure:
+    def of(cls, svg: str, caption: str, alt: str, title: str = "", live: Live | None = None) -> Figure:
         """Return a figure of a single drawing."""
-        return cls(panels=(Panel(svg, alt, title),), caption=caption, title=title)
+        return cls(panels=(Panel(svg, alt, title, live),), caption=caption, title=title)
 
     @classmethod
     def of_picture(cls, data: bytes, caption: str, alt: str, title: str = "") -> Figure:

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from reports.blocks import Figure
+from reports.blocks import Figure, LiveAxes, LivePlot
 from reports.figures.arrays import Floats, column, last_value, peak, thinned
+from reports.figures.live_lines import live_line
 from reports.figures.marks import model_line, planned_line, stop_mark
 from reports.figures.pair import DEFAULT, Pair
 from reports.figures.style import WIDE, Stroke, draw, legend_above
@@ -62,10 +63,12 @@ def force_depth(
         axes.set(xlabel="depth (mm)", ylabel="force (N)")
         legend_above(axes)
 
+    lines = [live_line(stroke.label, *curve, stroke.colour, stroke.line) for curve, stroke in curves]
+    live = LivePlot("depth (mm)", (LiveAxes("force (N)", lines),))
     caption = f"Force on the tool over its depth: {pair.caption(len(curves) > 1)}."
     caption += f" The {pair.fem.name} run stopped at {format_number(reached, 3)} N." if missed else ""
     words = "; ".join(_words(curve, stroke) for curve, stroke in curves) + "."
-    return Figure.of(draw(paint, WIDE, 350), caption, words, "Force over depth")
+    return Figure.of(draw(paint, WIDE, 350), caption, words, "Force over depth", live)
 
 
 def _curve(name: str, depth_mm: Any, force_N: Any) -> Curve:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from reports.blocks import Figure, Panel
+from reports.blocks import Figure, LiveAxes, LiveLine, LivePlot, Panel
 from reports.figures.arrays import (
     Floats,
     column,
@@ -19,6 +19,7 @@ from reports.figures.arrays import (
     shared_limits,
     stopped_at,
 )
+from reports.figures.live_lines import model_lines
 from reports.figures.marks import model_line
 from reports.figures.pair import DEFAULT, Pair
 from reports.figures.style import INK, SMALL, draw, heading, legend_above, zero_line
@@ -86,7 +87,7 @@ def max_deformation(
         for place, name in enumerate(layer_names)
     ]
     height = 290 if error is None else 380
-    panels = [Panel(draw(layer.paint, SMALL, height), layer.words(), layer.name) for layer in layers]
+    panels = [Panel(draw(layer.paint, SMALL, height), layer.words(), layer.name, layer.live()) for layer in layers]
     caption = _caption(pair, wave is not None, error is not None, scale is not None)
     return Figure(panels, caption, "Maximum deformation")
 
@@ -127,6 +128,13 @@ class _Layer:
         axes.plot(self.x, error, color=INK, linewidth=1.2)
         axes.set_ylim(*(self.error_scale or (None, None)))
         axes.set_ylabel("error (%)")
+
+    def live(self) -> LivePlot:
+        """The same lines, to zoom."""
+        axes = [LiveAxes("deflection (mm)", model_lines(self.pair, self.x, self.fem, self.wave))]
+        if self.error is not None:
+            axes.append(LiveAxes("error (%)", (LiveLine("error, %", self.x, self.error, "ink"),)))
+        return LivePlot(self.x_label, axes)
 
     def words(self) -> str:
         """Say what the panel shows."""

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from reports.blocks import Figure, Panel
+from reports.blocks import Figure, LiveAxes, LivePlot, Panel
 from reports.figures.arrays import Floats, column
+from reports.figures.live_lines import live_line
 from reports.figures.style import SMALL, WIDE, LineStyle, draw, heading, zero_line
 from reports.formatting import format_number, shortened
 from reports.palette import PALETTE
@@ -64,7 +65,8 @@ def overlay(
     ]
     width, height = (SMALL, 290) if len(drawn) > 1 else (WIDE, 350)
     height += 21 * len(names)
-    return Figure([Panel(draw(each.paint, width, height), each.words(), each.name) for each in drawn], caption, title)
+    pictures = [Panel(draw(each.paint, width, height), each.words(), each.name, each.live()) for each in drawn]
+    return Figure(pictures, caption, title)
 
 
 def _checked(lines: Mapping[str, Line]) -> dict[str, tuple[Floats, Floats]]:
@@ -98,6 +100,11 @@ class _Panel:
         axes.set(xlabel=self.labels[0], ylabel=self.labels[1])
         heading(axes, self.name, self.place)
         drawing.legend(loc="outside lower left", ncols=1)
+
+    def live(self) -> LivePlot:
+        """The same lines, to zoom."""
+        lines = [live_line(name, x, y, *self.looks[name]) for name, (x, y) in self.lines.items()]
+        return LivePlot(self.labels[0], (LiveAxes(self.labels[1], lines, self.downwards),))
 
     def words(self) -> str:
         """Say what the panel shows."""

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from reports.blocks import Figure, Panel
+from reports.blocks import Figure, LiveAxes, LivePlot, Panel
 from reports.figures.arrays import Floats, column, layer_of, matrix, optional_matrix, peak, shared_limits
+from reports.figures.live_lines import model_lines
 from reports.figures.marks import edge_line, model_line
 from reports.figures.pair import DEFAULT, Pair
 from reports.figures.style import SMALL, draw, heading, legend_above, zero_line
@@ -60,7 +61,7 @@ def profile(
         _Layer(name, place, radius, fem[place], layer_of(columns, place), tool_radius_mm, scale, pair)
         for place, name in enumerate(layer_names)
     ]
-    panels = [Panel(draw(layer.paint, SMALL, 290), layer.words(), layer.name) for layer in layers]
+    panels = [Panel(draw(layer.paint, SMALL, 290), layer.words(), layer.name, layer.live()) for layer in layers]
     return Figure(panels, _caption(pair, wave is not None, scale is not None), "Profiles at peak load")
 
 
@@ -92,6 +93,13 @@ class _Layer:
         axes.set(xlabel="distance from the tool axis (mm)", ylabel="deflection (mm)")
         heading(axes, self.name, self.place, room=24)
         legend_above(axes)
+
+    def live(self) -> LivePlot:
+        """The same dent, to zoom."""
+        lines = model_lines(self.pair, self.radius, self.fem, self.wave)
+        marks = [] if self.tool_radius is None else [(self.tool_radius, "tool edge")]
+        axes = LiveAxes("deflection (mm)", lines, downwards=True)
+        return LivePlot("distance from the tool axis (mm)", (axes,), marks)
 
     def words(self) -> str:
         """Say what the panel shows."""

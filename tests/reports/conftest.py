@@ -25,9 +25,11 @@ from reports import (
 )
 from reports.figures.growth import growth
 from reports.figures.overlay import overlay
+from reports.figures.pressed_layers import pressed_layers
 
 LAYERS = ("epidermis", "dermis", "subcutaneous fat")
 TOOL_RADIUS = 5.0
+RADIUS = np.linspace(0, 20, 40)
 
 
 def triangle(steps: int = 100, peak: float = 5.0) -> tuple[np.ndarray, np.ndarray]:
@@ -96,6 +98,15 @@ def single_figures() -> dict[str, object]:
     fem, wave = deflections(force)
     generator = np.random.default_rng(1)
     return {
+        "pressed_layers": pressed_layers(
+            LAYERS,
+            [0.0, 0.1, 1.7],
+            11.7,
+            RADIUS,
+            np.outer(fem.max(0), 1 / (1 + (RADIUS / 6.5) ** 2) ** 1.5),
+            np.where(RADIUS < 15, np.outer(wave.max(0), 1 / (1 + (RADIUS / 6.5) ** 2) ** 1.5), np.nan),
+            TOOL_RADIUS,
+        ),
         "force_depth": figures.force_depth(fem[:, 0], force, wave[:, 0], force),
         "load_history": figures.load_history(step / 10, force, "force", fem[:, 0], wave[:, 0]),
         "timing": figures.timing(
@@ -198,6 +209,7 @@ def comparison_blocks(every: dict[str, object], file: Download) -> list[object]:
             ],
         ),
         every["force_depth"],
+        every["pressed_layers"],
     ]
 
 

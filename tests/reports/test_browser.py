@@ -1,19 +1,22 @@
 """The page with everything on it in headless Chromium, with and without JavaScript, light, dark and narrow."""
 
 import shutil
+from pathlib import Path
+from urllib.parse import urlparse
 
 import pytest
 
-from reports import write_page
+from reports import Panel, write_page
 
 CHROMIUM = shutil.which("chromium")
 FLAGS = [
     "--no-sandbox",
-    "--disable-gpu",
     "--disable-background-networking",
     "--disable-component-update",
     "--disable-sync",
     "--no-first-run",
+    "--enable-unsafe-swiftshader",
+    "--use-angle=swiftshader",
 ]
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs the program chromium to open the page in")
@@ -42,7 +45,7 @@ def visit(browser, address):
         page = contexts[-1].new_page()
         page.seen, page.said = [], []
         page.on("request", lambda request: page.seen.append(request.url))
-        page.on("console", lambda message: page.said.append(message.text))
+        page.on("console", lambda message: page.said.append(message.text) if message.type == "error" else None)
         page.on("pageerror", lambda error: page.said.append(str(error)))
         page.goto(address)
         return page
@@ -58,9 +61,92 @@ def test_the_page_opens_without_a_word_or_a_request(visit, address, javascript, 
     assert page.said == []
     assert page.seen == [address]
     panels = sum(len(figure.panels) for figure in every_figure.values())
-    boxes = [item.bounding_box() for item in page.locator("figure svg").all()]
+    assert page.locator(".panel").count() == panels
+    assert not javascript or enlivened(page) == live_panels(every_figure)
+    shown = ".panel.alive > .live, .panel:not(.alive) svg:not(.main-svg)"
+    boxes = [item.bounding_box() for item in page.locator(shown).all()]
     assert len(boxes) == panels
     assert all(box and box["width"] > 200 and box["height"] > 100 for box in boxes)
+    assert page.said == []
+    assert page.seen == [address]
+
+
+def test_the_page_is_light_enough_to_send(address):
+    assert Path(urlparse(address).path).stat().st_size < 8e6
+
+
+def live_panels(figures):
+    return sum(
+        isinstance(panel, Panel) and panel.live is not None for each in figures.values() for panel in each.panels
+    )
+
+
+def enlivened(page):
+    """Scroll every picture into sight, wait for what takes its place, and count it."""
+    for panel in page.locator(".panel[data-live]").all():
+        panel.scroll_into_view_if_needed()
+        panel.locator(".swap").wait_for(state="attached", timeout=60_000)
+    return page.locator(".panel.alive .live.js-plotly-plot").count()
+
+
+def test_a_plot_follows_the_theme_and_gives_way_to_its_drawing(visit):
+    page = visit(color_scheme="dark")
+    panel = page.locator(".panel[data-live]").first
+    panel.scroll_into_view_if_needed()
+    panel.locator(".swap").wait_for(timeout=60_000)
+    stroke = "() => document.querySelector('.live .scatterlayer path.js-line').style.stroke"
+    assert page.evaluate(stroke) == "rgb(109, 179, 255)"
+    page.emulate_media(color_scheme="light")
+    for _ in range(100):
+        if page.evaluate(stroke) == "rgb(11, 95, 174)":
+            break
+        page.wait_for_timeout(100)
+    assert page.evaluate(stroke) == "rgb(11, 95, 174)"
+    panel.locator(".swap").click()
+    assert panel.locator(".drawing svg").is_visible()
+    assert not panel.locator(".live").is_visible()
+
+
+@pytest.mark.slow
+def test_a_plot_can_be_zoomed(visit):
+    page = visit(viewport={"width": 1280, "height": 900})
+    panel = page.locator(".panel[data-live]").first
+    panel.scroll_into_view_if_needed()
+    panel.locator(".swap").wait_for(timeout=60_000)
+    span = "() => [...document.querySelector('.live')._fullLayout.xaxis.range]"
+    before = page.evaluate(span)
+    box = panel.locator(".nsewdrag").first.bounding_box()
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.3 * box["height"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.7 * box["height"], steps=5)
+    page.mouse.up()
+    after = page.evaluate(span)
+    assert before[0] < after[0] < after[1] < before[1]
+
+
+@pytest.mark.slow
+def test_a_body_turns_by_the_arrow_keys(visit):
+    page = visit(viewport={"width": 1280, "height": 900})
+    panel = page.locator("figure:has-text('Pressed layers') .panel").first
+    panel.scroll_into_view_if_needed()
+    panel.locator(".swap").wait_for(state="attached", timeout=60_000)
+    place = panel.locator(".live")
+    place.focus()
+    eye = "place => place._fullLayout.scene._scene.getCamera().eye.x"
+    before = place.evaluate(eye)
+    page.keyboard.press("ArrowLeft")
+    page.wait_for_timeout(300)
+    assert abs(place.evaluate(eye) - before) > 0.05
+
+
+def test_on_paper_the_drawings_stand_for_the_plots(visit):
+    page = visit()
+    panel = page.locator(".panel[data-live]").first
+    panel.scroll_into_view_if_needed()
+    panel.locator(".swap").wait_for(timeout=60_000)
+    page.emulate_media(media="print")
+    assert panel.locator(".drawing svg").is_visible()
+    assert not panel.locator(".live").is_visible()
 
 
 @pytest.mark.parametrize("width", [400, 760, 1280])
@@ -74,7 +160,7 @@ def test_figures_follow_the_readers_theme(visit):
     for scheme in ("light", "dark"):
         page = visit(color_scheme=scheme)
         strokes[scheme] = page.evaluate(
-            "() => getComputedStyle(document.querySelector('figure svg path[style*=\"--fem\"]')).stroke"
+            "() => getComputedStyle(document.querySelector('.drawing svg path[style*=\"--fem\"]')).stroke"
         )
     assert strokes == {"light": "rgb(11, 95, 174)", "dark": "rgb(109, 179, 255)"}
 
@@ -102,9 +188,9 @@ def test_the_first_key_reaches_the_link_past_the_head(visit):
 
 
 def test_no_text_of_a_figure_leaves_its_picture(visit):
-    page = visit(viewport={"width": 1280, "height": 900})
+    page = visit(viewport={"width": 1280, "height": 900}, java_script_enabled=True)
     outside = page.evaluate(
-        """() => [...document.querySelectorAll('figure svg text')].filter(text => {
+        """() => [...document.querySelectorAll('svg:not(.main-svg) text')].filter(text => {
             const box = text.getBoundingClientRect(), svg = text.closest('svg').getBoundingClientRect();
             return box.left < svg.left - 1 || box.right > svg.right + 1
                 || box.top < svg.top - 1 || box.bottom > svg.bottom + 1;

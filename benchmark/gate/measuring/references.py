@@ -79,7 +79,34 @@ def calls() -> Work:
     return work
 
 
-REFERENCES: Mapping[str, Callable[[], Work]] = MappingProxyType({"dense": dense, "elements": elements, "calls": calls})
+def batched() -> Work:
+    """Stream over arrays of a few hundred kilobytes, gather rows, contract and sum sparsely, as an assembly does."""
+    from scipy.sparse import csr_array
+
+    generator = np.random.default_rng(SEED)
+    points, weight, packed = generator.random((5, 5, 9, 168)), generator.random((2, 2, 9, 168)), (171, 3, 168)
+    few, rows = generator.random((18, 3, 168)), generator.integers(0, 18, (2, 171))
+    table, pairs = generator.random((171, 135)), np.triu_indices(5)
+    entries = 171 * 168
+    total = csr_array((np.ones(entries), generator.permutation(entries), np.linspace(0, entries, 20001).astype(int)))
+
+    def work() -> None:
+        out = np.empty_like(points)
+        for k in range(4):
+            out[k] = points[k] * weight[0, k % 2] + points[k + 1] * weight[1, k % 2]
+        out[4] = points[4] * weight[0, 0]
+        moved = np.swapaxes(out, 0, 1)[pairs]
+        moved += (weight[0, 0] * points[0])[pairs[0]] * points[1][pairs[1]]
+        stiff = table @ moved.reshape(135, 168)
+        stiff += np.einsum("pie,pie->pe", (few * weight[0, 0, 0])[rows[0]].reshape(packed), few[rows[1]])
+        total @ stiff.ravel()
+
+    return work
+
+
+REFERENCES: Mapping[str, Callable[[], Work]] = MappingProxyType(
+    {"dense": dense, "elements": elements, "calls": calls, "batched": batched}
+)
 """The references by the names that a gate file calls them."""
 
 CALLS = 3

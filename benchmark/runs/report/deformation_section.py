@@ -7,6 +7,7 @@ import numpy as np
 from benchmark.comparison import LayerComparison, ProfileError, profile_error
 from benchmark.models import Array
 from benchmark.runs.record import RunRecord
+from benchmark.runs.report.pressed_block import pressed_block
 from benchmark.runs.report.values import MM, fem_mm, pair_names, peak_errors, profile_mm, wave_mm
 from benchmark.runs.tables import percent_errors
 from reports import Block, Column, Download, Figure, Notice, Section, Table
@@ -42,6 +43,9 @@ def deformation_section(record: RunRecord, picture: Block | None = None) -> Sect
         )
     if fem is not None and fem.time.size:
         blocks.append(_force_depth(record))
+    layers = pressed_block(record)
+    if layers is not None:
+        blocks.append(layers)
     if picture is not None:
         blocks.append(picture)
     return Section("Deformation", blocks)

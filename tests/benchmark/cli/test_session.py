@@ -68,6 +68,7 @@ def test_a_session_run_compares_measured_with_both_models(benchmark_cli, tmp_pat
     deformation = pd.read_csv(tmp_path / "r/tables/max_deformation.csv")
     assert deformation.force_N.max() == pytest.approx(peaks.median(), rel=0.02)
     assert document["trials"]["count"] == 13
+    assert (document["protocol"], document["trials"]["protocol"]) == ("prediction", "circular")
     check_validation(tmp_path / "r/tables/validation.csv", measured)
     assert benchmark_cli("report", tmp_path / "r", "--out", tmp_path / "again").code == 0
     again = (tmp_path / "again/report.html").read_text()

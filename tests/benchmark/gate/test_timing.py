@@ -49,6 +49,13 @@ def test_measuring_may_end_only_where_all_is_far_below_the_limit() -> None:
     assert not judge().clear({**BASE, "frame": slower(0.3)["frame"]}, BASE)
 
 
+def test_a_clear_slowdown_ends_it_after_six_processes() -> None:
+    longer, base = ({name: list(values[:1]) * 6 for name, values in each.items()} for each in (slower(0.3), BASE))
+    assert judge().clear({**base, "frame": longer["frame"]}, base)
+    near = {name: list(values[:1]) * 6 for name, values in slower(0.13).items()}
+    assert not judge().clear({**base, "frame": near["frame"]}, base)
+
+
 def test_the_row_of_the_document() -> None:
     row = judge().rows(slower(0.25), BASE)[0].to_dict()
     assert {"quantity", "baseline_ratio", "now_ratio", "ci95", "allowed", "passed"} <= set(row)
