@@ -60,7 +60,7 @@ def test_no_chunk_holds_more_than_a_fifth_of_a_second(make_records, record):
     path = record(make_records(3.0, fps=0))
     with path.open("rb") as file:
         chunks = make_reader(file).get_summary().chunk_indexes
-    assert len(chunks) == 16
+    assert len(chunks) >= 16
     for chunk in chunks:
         assert chunk.compression == "zstd"
         assert chunk.message_end_time - chunk.message_start_time < 200_000_000
