@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import pytest
 
 from benchmark.cli.app import main
+from benchmark.picture import Drawn
 
 
 @dataclass(frozen=True)
@@ -25,3 +26,9 @@ def benchmark_cli(capfd: pytest.CaptureFixture[str]) -> Callable[..., Called]:
         return Called(code, out, err)
 
     return call
+
+
+@pytest.fixture(autouse=True)
+def no_drawing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The pressed tissue's picture takes seconds and has tests of its own."""
+    monkeypatch.setattr("benchmark.runs.pressed.draw_pressed", lambda *_: Drawn(b"", "left out of this test"))

@@ -8,7 +8,7 @@ import pytest
 
 from benchmark.sessions import SHIPPED
 
-SMALL = ("--set", "fem.mesh=coarse", "--set", "load.observations=8", "--quiet")
+SMALL = ("--set", "fem.mesh=coarse", "--set", "load.observations=8", "--set", "wave.large_press=linear", "--quiet")
 EXAMPLE = Path(__file__).parents[3] / "examples" / "own_model.py"
 NAME = "layer-by-layer squeeze"
 
@@ -30,6 +30,7 @@ def test_the_example_stands_in_the_waves_place(benchmark_cli, tmp_path: Path) ->
     assert "wave model" not in page.lower()
 
 
+@pytest.mark.slow
 def test_measured_trials_drive_it_through_its_press(benchmark_cli, tmp_path: Path) -> None:
     model = tmp_path / "springs.py"
     model.write_text(
@@ -45,6 +46,7 @@ def test_measured_trials_drive_it_through_its_press(benchmark_cli, tmp_path: Pat
     assert "springs residual, rms" in (out / "report.html").read_text()
 
 
+@pytest.mark.slow
 def test_a_press_that_declines_leaves_the_measured_column_empty(benchmark_cli, tmp_path: Path) -> None:
     out = tmp_path / "r"
     trials = ("--trials", SHIPPED / "phantom", *SMALL[:2])
@@ -133,6 +135,7 @@ def test_what_does_not_go_together_is_refused(benchmark_cli, arguments, words) -
     assert all(word in called.err for word in words), called.err
 
 
+@pytest.mark.slow
 def test_tissues_are_set_side_by_side(benchmark_cli, tmp_path: Path) -> None:
     tissues = ("skin_forearm", "skin_traction")
     options = [word for tissue in tissues for word in ("--tissue", tissue)]

@@ -8,6 +8,7 @@ import pytest
 SMALL = ("--set", "fem.mesh=coarse", "--set", "load.observations=4", "--set", "load.peak=1 N")
 
 
+@pytest.mark.slow
 def test_levels_uncertainties_and_their_page(benchmark_cli, tmp_path: Path) -> None:
     out = tmp_path / "r"
     assert benchmark_cli("run", "skin-5N", *SMALL, "--refine", "--out", out, "--quiet").code == 0

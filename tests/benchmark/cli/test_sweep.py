@@ -41,6 +41,7 @@ def test_a_grid_leaves_a_row_a_point_and_a_report(benchmark_cli, tmp_path: Path)
     assert "https://" not in page
 
 
+@pytest.mark.slow
 def test_a_point_is_the_run_of_its_values(benchmark_cli, tmp_path: Path) -> None:
     vary = ("--vary", "dermis.youngs_modulus=100 kPa,200 kPa")
     assert benchmark_cli("sweep", "skin-5N", *SMALL, *vary, "--out", tmp_path / "s", "--quiet").code == 0
