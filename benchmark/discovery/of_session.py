@@ -35,12 +35,15 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
     InputError
         The session cannot be used.
     """
-    session = load_session(request.paths[0], request.settings, request.specimen)
+    from benchmark.runs.filming import with_markers
+
+    loaded = load_session(request.paths[0], request.settings, request.specimen)
+    session, said = with_markers(loaded, listener)
     own = tuple(effect for effect in effects if effect.slug not in SLUGS)
     store = store_folder(request.out, session, request.model)
     found = _found(session, request, own, listener, store)
     shutil.rmtree(store, ignore_errors=True)
-    warnings = tuple(dict.fromkeys((*session.warnings, *found.discovery.warnings)))
+    warnings = tuple(dict.fromkeys((*session.warnings, *said, *found.discovery.warnings)))
     return DiscoveryRecord(
         name=session.name,
         source="session",
