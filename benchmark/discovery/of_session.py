@@ -35,10 +35,8 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
     InputError
         The session cannot be used.
     """
-    from benchmark.runs.filming import with_markers
-
     loaded = load_session(request.paths[0], request.settings, request.specimen)
-    session, said = with_markers(loaded, listener)
+    session, said = _with_films(loaded, listener)
     own = tuple(effect for effect in effects if effect.slug not in SLUGS)
     store = store_folder(request.out, session, request.model)
     found = _found(session, request, own, listener, store)
@@ -57,6 +55,14 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
         proposal=propose(found),
         large_press="corrected",
     )
+
+
+def _with_films(session: Session, listener: Listener) -> tuple[Session, tuple[str, ...]]:
+    if session.camera is None:
+        return session, ()
+    from benchmark.runs.filming import with_markers
+
+    return with_markers(session, listener)
 
 
 def store_folder(out: Path | None, session: Session, model: str) -> Path:
