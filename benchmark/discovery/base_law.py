@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -95,11 +96,17 @@ def _bonded(tissue: Tissue, tool: Tool, depth: float) -> BaseLaw:
     return BaseLaw(grid, force, (wider - force) / STEP, np.array([0.0, 1.0]))
 
 
-def _layered_force(tissue: Tissue, tool: Tool, radius: float, grid: Array) -> Array:
-    """Force (k,) of a large press as far as its range goes, then on with the growth over the linear law."""
+@lru_cache(maxsize=16)
+def _layered_wave(layers: tuple[Any, ...], radius: float, contact: str) -> Any:
+    """The wave of a large press, which takes seconds to set up: once for all conditions with the same tool."""
     from wavemodel import DiscTool, LayeredWave
 
-    wave = LayeredWave(_layers(tissue), DiscTool(radius, _contact(tool)), large_press="corrected")
+    return LayeredWave(list(layers), DiscTool(radius, contact), large_press="corrected")
+
+
+def _layered_force(tissue: Tissue, tool: Tool, radius: float, grid: Array) -> Array:
+    """Force (k,) of a large press as far as its range goes, then on with the growth over the linear law."""
+    wave = _layered_wave(tuple(_layers(tissue)), radius, _contact(tool))
     linear = grid / wave.law.compliance
     reach = 0.999 * wave.law.large.deepest if wave.law.large is not None else grid[-1]
     inside = grid <= reach

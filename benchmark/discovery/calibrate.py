@@ -183,6 +183,11 @@ def _spread(values: Array) -> float:
     return float(np.std(values, ddof=1)) if values.size > 1 else 0.0
 
 
+def _size(values: Array) -> float:
+    """Root mean square: what all trials share, such as a late sensor, is no less likely than what they do not."""
+    return float(np.sqrt(np.mean(values**2)))
+
+
 def _spreads(fitted: Fit, scale: Array) -> TrialPrior:
     state = fitted.nuisance
     noise = float(np.median(scale[:, 0]))
@@ -190,7 +195,7 @@ def _spreads(fitted: Fit, scale: Array) -> TrialPrior:
     floor = float(np.median(scale[:, 1:])) if scale.shape[1] > 1 else 1.0
     return TrialPrior(
         gain=max(_spread(state[:, 0]), 3e-3),
-        zero=max(_spread(state[:, 1]), 0.2 * noise, 1e-9),
-        shift=max(_spread(state[:, 2]), 0.05 * fitted.model.problem.study.raw_interval, 1e-4),
+        zero=max(_size(state[:, 1]), 0.2 * noise, 1e-9),
+        shift=max(_size(state[:, 2]), 0.05 * fitted.model.problem.study.raw_interval, 1e-4),
         offset=max(offset, 0.3 * floor, 1e-9),
     )

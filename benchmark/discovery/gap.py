@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from benchmark.discovery.calibrate import pure_errors
 from benchmark.discovery.fit import Fit, fit, settled
 from benchmark.discovery.model import Model
+from benchmark.discovery.problem import only
 from benchmark.discovery.result import Array, ChannelGap
 from benchmark.discovery.settings import Settings
 
@@ -35,25 +36,24 @@ def held_out_residuals(base: Fit, chosen: Fit) -> HeldOut:
 
 
 def _residuals(fitted: Fit, parts: list[np.ndarray], kind: str) -> list[Array]:
+    """Each part's trials alone are simulated with what the others gave."""
     problem = fitted.model.problem
     out: list[Array] = [np.zeros(0)] * len(problem.trials)
     for left in parts:
         vector = _without_condition(fitted, left) if kind == "condition" else fitted.without(left)
-        state = settled(fitted.model, vector, fitted.nuisance)
-        signals = fitted.model.signals(vector, state, np.flatnonzero(left).tolist())
-        for index, signal in zip(np.flatnonzero(left), signals, strict=True):
+        mine = np.flatnonzero(left)
+        model = Model(only(problem, mine.tolist()), fitted.model.effects)
+        state = settled(model, vector, fitted.nuisance[mine])
+        for index, signal in zip(mine, model.signals(vector, state), strict=True):
             out[index] = problem.trials[index].signals - signal
     return out
 
 
 def _without_condition(fitted: Fit, left: np.ndarray) -> Array:
-    problem = fitted.model.problem
-    hidden = {problem.trials[i].condition for i in np.flatnonzero(left)}
-    masks = tuple(
-        np.full(c.signals.shape[1:], number not in hidden) for number, c in enumerate(problem.study.conditions)
-    )
-    model = Model(replace(problem, mask=masks), fitted.model.effects)
-    return fit(model, fitted.vector, fitted.nuisance, most=5).vector
+    """The vector fitted to the trials of the other conditions."""
+    kept = np.flatnonzero(~left)
+    model = Model(only(fitted.model.problem, kept.tolist()), fitted.model.effects)
+    return fit(model, fitted.vector, fitted.nuisance[kept], most=5).vector
 
 
 def gaps(base: Fit, held: HeldOut, settings: Settings) -> tuple[ChannelGap, ...]:

@@ -35,12 +35,13 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
     InputError
         The session cannot be used.
     """
-    session = load_session(request.paths[0], request.settings, request.specimen)
+    loaded = load_session(request.paths[0], request.settings, request.specimen)
+    session, said = _with_films(loaded, listener)
     own = tuple(effect for effect in effects if effect.slug not in SLUGS)
     store = store_folder(request.out, session, request.model)
     found = _found(session, request, own, listener, store)
     shutil.rmtree(store, ignore_errors=True)
-    warnings = tuple(dict.fromkeys((*session.warnings, *found.discovery.warnings)))
+    warnings = tuple(dict.fromkeys((*session.warnings, *said, *found.discovery.warnings)))
     return DiscoveryRecord(
         name=session.name,
         source="session",
@@ -54,6 +55,14 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
         proposal=propose(found),
         large_press="corrected",
     )
+
+
+def _with_films(session: Session, listener: Listener) -> tuple[Session, tuple[str, ...]]:
+    if session.camera is None:
+        return session, ()
+    from benchmark.runs.filming import with_markers
+
+    return with_markers(session, listener)
 
 
 def store_folder(out: Path | None, session: Session, model: str) -> Path:

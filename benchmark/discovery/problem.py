@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -103,6 +104,12 @@ def trial_refs(study: Study) -> tuple[TrialRef, ...]:
             known = np.nan_to_num(signals)
             out.append(TrialRef(number, row, int(condition.numbers[row]), condition.trials[row], motion, known, count))
     return tuple(out)
+
+
+def only(problem: Problem, trials: Sequence[int]) -> Problem:
+    """The problem of some of its trials, whose nuisances are then in the same order."""
+    noise = NoiseModel(problem.noise.memory, problem.noise.scale[list(trials)])
+    return replace(problem, trials=tuple(problem.trials[i] for i in trials), noise=noise)
 
 
 def condition_of(problem: Problem, index: int) -> ConditionData:

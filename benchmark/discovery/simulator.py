@@ -107,9 +107,10 @@ class Body:
 
     def trace(self, depth: Array) -> Any:
         """The press as `wavemodel.physics` gives it."""
-        from wavemodel.physics import QuasiStaticPress
+        from wavemodel.physics.quasi_static_press import QuasiStaticPress
 
-        return QuasiStaticPress(self._law, self.physics).trace(self.time, depth)
+        press = QuasiStaticPress(self._law, self.physics)
+        return press.follow(np.diff(self.time, prepend=0.0), depth, press.rest())[0]
 
     def _law(self, depth: Array) -> Array:
         return self.bent.push(depth, self.gain)
@@ -171,7 +172,7 @@ class Simulator:
         return readings
 
     def _physics(self, values: Mapping[str, Values]) -> Any:
-        from wavemodel.physics import Physics
+        from wavemodel.physics.body import Physics
 
         options: dict[str, Any] = {}
         for effect in self.effects:

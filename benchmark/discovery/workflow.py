@@ -12,10 +12,12 @@ from benchmark.discovery.base_law import BaseLaws, base_law
 from benchmark.discovery.calibrate import Calibrated, calibrate
 from benchmark.discovery.contrasts import contrasts
 from benchmark.discovery.detect import Detection, detect, places, smallest_visible, unexplained
+from benchmark.discovery.fit import Fit
 from benchmark.discovery.gap import HeldOut, closed_overall, gaps, held_out_residuals
 from benchmark.discovery.pool import Listener, fingerprint, pool, silent
 from benchmark.discovery.preparing import ENOUGH_TRIALS, prepare
 from benchmark.discovery.result import Discovery
+from benchmark.discovery.sampling import compared, on_all, on_some, remark
 from benchmark.discovery.select import Selection, select
 from benchmark.discovery.settings import Settings
 from benchmark.discovery.traces import traces
@@ -99,11 +101,12 @@ def findings(
     known = (*catalogue(), *effects)
     key = fingerprint(VERSION, session.fingerprint, settings, [each.card for each in effects])
     with pool(settings.workers, store, key, effects, listener) as work:
-        selection = select(base, known, settings, work)
+        selection = select(on_some(base, compared(base)), known, settings, work)
     listener("verify", 0, 1, "")
-    after = detect(selection.chosen, settings) if selection.chosen is not base else before
-    held = held_out_residuals(base, selection.chosen)
-    discovery = _discovery(session, settings, calibrated, selection, (before, after), held, known, began)
+    chosen = on_all(base, selection.chosen)
+    after = detect(chosen, settings) if chosen is not base else before
+    held = held_out_residuals(base, chosen)
+    discovery = _discovery(session, settings, calibrated, selection, chosen, (before, after), held, known, began)
     return Findings(discovery, calibrated, selection)
 
 
@@ -112,17 +115,19 @@ def _discovery(
     settings: Settings,
     calibrated: Calibrated,
     selection: Selection,
+    chosen: Fit,
     detections: tuple[Detection, Detection],
     held: HeldOut,
     known: Sequence[Effect],
     began: float,
 ) -> Discovery:
-    base, chosen = selection.base, selection.chosen
+    base = calibrated.base
     before, after = detections
     facts = _facts(selection, before, after, known, settings)
     word = verdict(facts)
     problem = base.model.problem
     study = problem.study
+    few = remark(len(selection.base.model.problem.trials), len(problem.trials))
     overall = closed_overall(base, held)
     slugs = tuple(effect.slug for effect in chosen.model.effects)
     shown = places(base, before, settings.level)
@@ -139,7 +144,7 @@ def _discovery(
         candidates=candidates(selection, {slugs: overall} if slugs else {}),
         base=base_estimates(chosen),
         remains=remains(chosen, after, settings.level) if not silent_answer else (),
-        warnings=(*study.warnings, *calibrated.warnings, *_remarks(before)),
+        warnings=(*study.warnings, *calibrated.warnings, *_remarks(before), *few),
         traces=traces(base, held),
         conditions=session.conditions,
         channels=tuple(dict.fromkeys(study.channels)),

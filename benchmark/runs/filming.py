@@ -98,6 +98,25 @@ def session_films(session: Session, listener: Listener) -> Films:
     return Films(films, tuple(tracked), view, (*warnings, *(said if films else ())))
 
 
+def with_markers(session: Session, listener: Listener) -> tuple[Session, tuple[str, ...]]:
+    """The session with the markers of its films, tracked now, in the trials; and what to say of them.
+
+    Raises
+    ------
+    InputError
+        A camera file or film that cannot be used.
+    """
+    if session.camera is None:
+        return session, ()
+    layout = Layout(session.camera.marker_rows, session.camera.marker_columns)
+    trials: list[Trial] = []
+    warnings: list[str] = []
+    for trial, found in zip(session.trials, _sources(session, layout, listener), strict=True):
+        trials.append(trial if found is None else replace(trial, markers=found[0]))
+        warnings += () if found is None else found[2]
+    return replace(session, trials=tuple(trials)), tuple(warnings)
+
+
 def _sources(session: Session, layout: Layout, listener: Listener) -> Iterator[Found | None]:
     for trial in session.trials:
         if trial.markers is not None:

@@ -10,7 +10,7 @@ import pytest
 from benchmark.errors import InputError
 from benchmark.files import load_session
 from benchmark.runs.film_tables import circles, marker_fits, motions_of
-from benchmark.runs.filming import session_films
+from benchmark.runs.filming import session_films, with_markers
 from benchmark.runs.table_one import table_one
 from benchmark.sessions import SHIPPED
 
@@ -82,6 +82,16 @@ def test_pictures_in_a_trial_are_tracked_and_tables_are_read(session) -> None:
     rows = {row.name: row for row in table_one(loaded, motions, {})}
     assert 18.0 < rows["published.a"].value < 20.0
     assert "sound.a" not in rows
+
+
+def test_a_filmed_trial_gets_its_markers_and_a_table_stays(session) -> None:
+    loaded = session()
+    assert loaded.trials[0].markers is None
+    made, said = with_markers(loaded, Quiet())
+    assert np.unique(made.trials[0].markers.marker).size == loaded.camera.marker_rows * loaded.camera.marker_columns
+    assert made.trials[1].markers is loaded.trials[1].markers
+    assert made.fingerprint == loaded.fingerprint
+    assert all(isinstance(text, str) for text in said)
 
 
 def test_a_trial_without_a_camera_file_is_not_tracked(session) -> None:
