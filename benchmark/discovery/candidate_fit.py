@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -39,34 +40,46 @@ def fit_candidate(base: Fit, effect: Effect, most: int = 10, known: tuple[Array,
     if known is not None and known[0].shape == (model.size,) and known[1].shape == base.nuisance.shape:
         return fit(model, known[0], known[1], most=0)
     starts = screened(base, model, effect)
-    close = [start for won, start in starts[:REFINED] if won > WORTH * starts[0][0] or won == starts[0][0]]
+    close = [one.vector for one in starts[:REFINED] if one.won > WORTH * starts[0].won or one is starts[0]]
     fits = [fit(model, start, base.nuisance, base.columns, most) for start in close]
     return min(fits, key=lambda each: each.objective)
 
 
-def screened(base: Fit, model: Model, effect: Effect) -> list[tuple[float, Array]]:
-    """Starts (p,) of the vector with what one step would gain from them, best first."""
+@dataclass(frozen=True, eq=False)
+class Start:
+    """A start (p,) of the vector, what one step would gain from it, and the residual along it in each trial (R,)."""
+
+    won: float
+    vector: Array
+    along: Array
+
+
+def screened(base: Fit, model: Model, effect: Effect) -> list[Start]:
+    """Starts with what one step would gain from them, best first."""
     problem = base.model.problem
     white = White(problem)
     known = base.model.values(base.vector)
     plain = base.model.signals(base.vector, base.nuisance)
     residuals = white.residuals(plain)
     projections = _projections(base)
-    ranked: list[tuple[float, Array]] = []
+    ranked: list[Start] = []
     for values in _starts(problem, effect):
         start = model.vector(base.vector[: base.model.shape_count], {**known, effect.slug: values})
         signals = model.signals(start, base.nuisance)
         moved = [white.flat(i, signals[i] - plain[i]) for i in range(len(plain))]
-        overlap, size = _projected(projections, residuals, moved)
+        overlaps, sizes = _projected(projections, residuals, moved)
+        overlap, size = float(overlaps.sum()), float(sizes.sum())
         if size <= 0.0:
             continue
         scale = float(np.clip(overlap / size, *SCALES))
         won = scale * overlap - 0.5 * scale**2 * size
-        ranked.append((won, _scaled(model, start, effect, values, scale, known)))
-    ranked.sort(key=lambda pair: -pair[0])
+        along = overlaps / np.sqrt(size / len(plain))
+        ranked.append(Start(won, _scaled(model, start, effect, values, scale, known), along))
+    ranked.sort(key=lambda each: -each.won)
     if not ranked:
         first = effect.first_values(problem.study.conditions[0].around)[0]
-        return [(0.0, model.vector(base.vector[: base.model.shape_count], {**known, effect.slug: first}))]
+        start = model.vector(base.vector[: base.model.shape_count], {**known, effect.slug: first})
+        return [Start(0.0, start, np.zeros(len(plain)))]
     return ranked
 
 
@@ -109,16 +122,16 @@ def _projections(base: Fit) -> tuple[list[tuple[Array, Array, Array]], Array]:
 
 def _projected(
     projections: tuple[list[tuple[Array, Array, Array]], Array], residuals: Sequence[Array], moved: Sequence[Array]
-) -> tuple[float, float]:
-    """Overlap of what an effect moves with the residual, and its own size, both off the base and the nuisances."""
+) -> tuple[Array, Array]:
+    """Overlap (R,) of what an effect moves with the residual, and its own size (R,), off base and nuisances."""
     parts, matrix = projections
-    overlap = size = 0.0
-    on_base, of_residual = np.zeros(len(matrix)), np.zeros(len(matrix))
-    for (j, n, inner), residual, move in zip(parts, residuals, moved, strict=True):
-        held = move - n @ (inner @ (n.T @ move))
-        overlap += float(held @ residual)
-        size += float(held @ move)
-        on_base += j.T @ held
-        of_residual += j.T @ (residual - n @ (inner @ (n.T @ residual)))
-    solved = np.linalg.solve(matrix, np.column_stack([on_base, of_residual]))
-    return overlap - float(on_base @ solved[:, 1]), size - float(on_base @ solved[:, 0])
+    held = [move - n @ (inner @ (n.T @ move)) for (_, n, inner), move in zip(parts, moved, strict=True)]
+    on_base = sum((j.T @ h for (j, _, _), h in zip(parts, held, strict=True)), np.zeros(len(matrix)))
+    amount = np.linalg.solve(matrix, on_base)
+    overlaps, sizes = [], []
+    for (j, n, inner), residual, move, own in zip(parts, residuals, moved, held, strict=True):
+        side = j @ amount
+        rest = own - (side - n @ (inner @ (n.T @ side)))
+        overlaps.append(float(rest @ residual))
+        sizes.append(float(rest @ move))
+    return np.array(overlaps), np.array(sizes)

@@ -33,15 +33,28 @@ class Cell:
 
 @dataclass(frozen=True, eq=False)
 class CellTable:
-    """Means of cells: `means` (K, R), NaN for trials of other conditions; `cells` (K,)."""
+    """Means of cells.
+
+    Attributes
+    ----------
+    cells : (K,)
+    means : (K, R)
+        NaN for trials of other conditions.
+    groups : (R,) or None
+        Condition of each trial; None: all in one.
+    matched : (M, R) or None
+        Further numbers a trial that share in the test, from one side: the residual along each effect's direction.
+    """
 
     cells: tuple[Cell, ...]
     means: Array
+    groups: np.ndarray | None = None
+    matched: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class FlipTest:
-    """Result: t (K,) of each cell, family-wise p (K,) and the |t| (K,) that would have reached the level, and p."""
+    """Result: t, family-wise p and standard error (K,) of each cell, the |t| that reaches 5 %, and p of anything."""
 
     t: Array
     p: Array
@@ -116,44 +129,69 @@ def cell_means(problem: Problem, residuals: list[Array], cells: tuple[Cell, ...]
             if rows is not None:
                 weight = trial.count[rows, cell.signal]
                 means[k, i] = np.sum(residuals[i][rows, cell.signal] * weight) / max(weight.sum(), 1e-12)
-    return CellTable(cells, means)
+    return CellTable(cells, means, np.array([trial.condition for trial in problem.trials]))
 
 
 def flip_test(table: CellTable, flips: int, seed: int) -> FlipTest:
     """Family-wise p of each cell's mean over trials.
 
-    The statistic is t with a variance that is shrunk to the median of the signal's cells; its largest value over all
-    cells is compared with those after flipping the signs of whole trials, which under no disagreement changes nothing.
+    The statistic is the root of the sum over conditions of squared t, signed by the sum of the means, with the variance
+    within conditions, shrunk to the median of like cells. Its largest value over all cells (and matched numbers) is
+    compared with those after flipping the signs of whole trials, which under no disagreement changes nothing.
     """
-    means = table.means
-    signals = np.array([(cell.signal, min(cell.rows), len(cell.rows)) for cell in table.cells])
-    signs = _signs(means.shape[1], flips, seed)
-    t, error = (column[0] for column in _statistics(means, signals, np.ones((1, means.shape[1]))))
-    largest = np.abs(_statistics(means, signals, signs)[0]).max(axis=1)
-    p = (1.0 + (largest[:, None] >= np.abs(t)[None] - 1e-9).sum(axis=0)) / (1.0 + len(signs))
-    if means.shape[1] <= ALL_FLIPS:
-        p = (largest[:, None] >= np.abs(t)[None] - 1e-9).mean(axis=0)
-    return FlipTest(t, p, float(np.quantile(largest, 0.95, method="higher")), error, float(p.min()))
+    means = table.means if table.matched is None else np.vstack([table.means, table.matched])
+    count = means.shape[1]
+    one_sided = np.arange(len(means)) >= len(table.cells)
+    kinds = [(cell.signal, min(cell.rows), len(cell.rows)) for cell in table.cells]
+    kinds += [(-1, 0, 0)] * (len(means) - len(kinds))
+    groups = np.zeros(count, dtype=int) if table.groups is None else table.groups
+    weights = _members(groups)
+    signs = _signs(count, flips, seed)
+    t, error = (column[0] for column in _statistics(means, np.array(kinds), np.ones((1, count)), weights))
+    flipped = _statistics(means, np.array(kinds), signs, weights)[0]
+    largest = np.where(one_sided, flipped, np.abs(flipped)).max(axis=1)
+    shown = np.where(one_sided, t, np.abs(t))
+    p = (1.0 + (largest[:, None] >= shown[None] - 1e-9).sum(axis=0)) / (1.0 + len(signs))
+    if count <= ALL_FLIPS:
+        p = (largest[:, None] >= shown[None] - 1e-9).mean(axis=0)
+    size = len(table.cells)
+    return FlipTest(
+        t[:size], p[:size], float(np.quantile(largest, 0.95, method="higher")), error[:size], float(p.min())
+    )
+
+
+def _members(groups: np.ndarray) -> Array:
+    """(G, R) membership of trials in conditions; one group where no condition has replicates."""
+    names, counts = np.unique(groups, return_counts=True)
+    if counts.max() < 2:
+        return np.ones((1, groups.size))
+    return np.asarray(groups[None] == names[:, None], dtype=float)
 
 
 def _signs(trials: int, flips: int, seed: int) -> Array:
     if trials <= ALL_FLIPS:
-        half = np.array(list(itertools.product((1.0, -1.0), repeat=trials - 1)))
-        return np.hstack([np.ones((len(half), 1)), half])
+        return np.array(list(itertools.product((1.0, -1.0), repeat=trials)))
     return np.asarray(np.random.default_rng(seed).choice((1.0, -1.0), size=(flips, trials)))
 
 
-def _statistics(means: Array, groups: Array, signs: Array) -> tuple[Array, Array]:
-    """(S, K) t and standard errors after each of S flips (S, R)."""
-    count = np.isfinite(means).sum(axis=1)
+def _statistics(means: Array, kinds: Array, signs: Array, members: Array) -> tuple[Array, Array]:
+    """(S, K) statistics and standard errors after each of S flips (S, R), with trials in groups (G, R)."""
+    finite = np.isfinite(means)
     known = np.nan_to_num(means)
-    mean = signs @ known.T / count
-    spread = ((known**2).sum(axis=1) - count * mean**2) / np.maximum(count - 1, 1)
-    spread = np.maximum(spread, 1e-12 * (known**2).sum(axis=1) / count)
+    total, explained, signed = (known**2).sum(axis=1), 0.0, 0.0
+    freedom = np.zeros(len(means))
+    for member in members:
+        count = finite @ member
+        sums = (signs * member) @ known.T
+        explained = explained + sums**2 / np.maximum(count, 1.0)
+        signed = signed + sums
+        freedom += np.maximum(count - 1.0, 0.0)
+    spread = (total - explained) / np.maximum(freedom, 1.0)
+    spread = np.maximum(spread, 1e-12 * total / np.maximum(finite.sum(axis=1), 1))
     pooled = np.empty_like(spread)
-    for group in np.unique(groups, axis=0):
-        mine = (groups == group).all(axis=1)
+    for kind in np.unique(kinds, axis=0):
+        mine = (kinds == kind).all(axis=1)
         pooled[:, mine] = np.median(spread[:, mine], axis=1, keepdims=True)
-    shrunk = (STEADY * pooled + (count - 1) * spread) / (STEADY + count - 1)
-    error = np.sqrt(shrunk / count)
-    return mean / np.maximum(error, 1e-300), error
+    shrunk = (STEADY * pooled + freedom * spread) / (STEADY + freedom)
+    t = np.sign(signed) * np.sqrt(explained / np.maximum(shrunk, 1e-300))
+    return t, np.sqrt(shrunk / np.maximum(finite.sum(axis=1), 1))

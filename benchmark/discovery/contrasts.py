@@ -32,7 +32,7 @@ def contrasts(fitted: Fit, detection: Detection, settings: Settings) -> tuple[Co
         return ()
     out = []
     for question, channel, row in found:
-        small = CellTable(table.cells[:1], row[None])
+        small = CellTable(table.cells[:1], row[None], table.groups)
         test = flip_test(small, settings.flips, settings.seed)
         out.append(Contrast(question, channel, float(row.mean()), min(1.0, float(test.p[0]) * len(found))))
     return tuple(sorted(out, key=lambda each: each.p))

@@ -19,28 +19,35 @@ MOST_CELLS = 0.6
 
 @dataclass(frozen=True, eq=False)
 class Detection:
-    """Cells and their test, on the fit that used the clean cells, and p before that refit."""
+    """Cells and their test, on the fit that used the clean cells.
+
+    `p` is of anything before that refit, matched directions included, `p_cells` that of the cells alone.
+    """
 
     table: CellTable
     test: FlipTest
     p: float
+    p_cells: float
     trend: Array
 
 
-def detect(fitted: Fit, settings: Settings) -> Detection:
-    """Test the residuals of a fit."""
-    first = _tested(fitted, settings)
+def detect(fitted: Fit, settings: Settings, matched: Array | None = None) -> Detection:
+    """Test the residuals of a fit; `matched` (M, R) are further numbers a trial that share in the test."""
+    first = _tested(fitted, settings, matched=matched)
     p = first[1].p_any
-    flagged = first[1].p < settings.level
-    last = first
+    cells_only = flip_test(replace(first[0], matched=None), settings.flips, settings.seed)
+    flagged = cells_only.p < settings.level
+    last = (replace(first[0], matched=None), cells_only)
     if flagged.any() and flagged.mean() < MOST_CELLS:
         last = _tested(_refitted(fitted, first[0], flagged), settings, full=fitted)
-    return Detection(*last, p=p, trend=_trend(fitted, first[0]))
+    return Detection(*last, p=p, p_cells=cells_only.p_any, trend=_trend(fitted, first[0]))
 
 
-def _tested(fitted: Fit, settings: Settings, full: Fit | None = None) -> tuple[CellTable, FlipTest]:
+def _tested(
+    fitted: Fit, settings: Settings, full: Fit | None = None, matched: Array | None = None
+) -> tuple[CellTable, FlipTest]:
     problem = (full or fitted).model.problem
-    table = cell_means(problem, projected_residuals(fitted), cells_of(problem))
+    table = replace(cell_means(problem, projected_residuals(fitted), cells_of(problem)), matched=matched)
     return table, flip_test(table, settings.flips, settings.seed)
 
 
@@ -58,19 +65,31 @@ def _refitted(fitted: Fit, table: CellTable, flagged: NDArray[np.bool_]) -> Fit:
 
 
 def _trend(fitted: Fit, table: CellTable) -> Array:
-    """(K,) t of the slope of each cell's mean over the trial number."""
-    numbers = np.array([trial.number for trial in fitted.model.problem.trials], dtype=float)
+    """(K,) t of the slope of each cell's mean over the trial number, within conditions."""
+    problem = fitted.model.problem
+    numbers = np.array([trial.number for trial in problem.trials], dtype=float)
+    groups = np.array([trial.condition for trial in problem.trials])
     out = np.zeros(len(table.cells))
     for k, row in enumerate(table.means):
         known = np.isfinite(row)
-        if known.sum() < 4:
+        freedom = int(known.sum()) - np.unique(groups[known]).size - 1
+        if freedom < 2:
             continue
-        x = numbers[known] - numbers[known].mean()
-        y = row[known] - row[known].mean()
+        x, y = _centred(numbers[known], groups[known]), _centred(row[known], groups[known])
+        if not x.any():
+            continue
         slope = float(x @ y) / float(x @ x)
         rest = y - slope * x
-        error = np.sqrt(float(rest @ rest) / (known.sum() - 2) / float(x @ x))
+        error = np.sqrt(float(rest @ rest) / freedom / float(x @ x))
         out[k] = slope / max(error, 1e-300)
+    return out
+
+
+def _centred(values: Array, groups: NDArray[np.int64]) -> Array:
+    """Values (n,) less the mean of their group, so that conditions measured in blocks give no slope."""
+    out = values.copy()
+    for group in np.unique(groups):
+        out[groups == group] -= values[groups == group].mean()
     return out
 
 
@@ -134,6 +153,5 @@ def smallest_visible(fitted: Fit, detection: Detection) -> dict[str, float]:
 
 def unexplained(detection: Detection) -> float:
     """What the cells' means hold beyond chance, in squared standard errors."""
-    means = detection.table.means
-    count = np.isfinite(means).sum(axis=1)
-    return float(np.sum(detection.test.t**2) - count.size)
+    free = sum(len(cell.rows) for cell in detection.table.cells)
+    return float(np.sum(detection.test.t**2) - free)

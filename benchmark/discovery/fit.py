@@ -83,7 +83,7 @@ class Fit:
         """(p,) of the fit without some trials (mask (R,)), to first order, within the bounds."""
         matrix = self.blocks.matrix[~trials].sum(axis=0) + np.diag(self.precision)
         slope = self.blocks.slope[~trials].sum(axis=0) - self.precision * (self.vector - self.prior_mean)
-        step = np.linalg.solve(matrix + 1e-9 * np.diag(np.diag(matrix)), slope)
+        step = _bounded(matrix, slope, self.vector, 1e-9, self.model.bounds)
         return np.clip(self.vector + step, *self.model.bounds)
 
     def log_density(self, vector: Array) -> Array:
@@ -270,19 +270,20 @@ def _step(
 
 
 def _bounded(matrix: Array, slope: Array, vector: Array, damping: float, bounds: tuple[Array, Array]) -> Array:
-    """Damped step; what would leave the bounds from their edge stays."""
+    """Damped step within the bounds: what would leave them stops at their edge, and the others make up for it."""
+    low, high = bounds[0] - vector, bounds[1] - vector
+    damped = matrix + np.diag(damping * np.maximum(np.diag(matrix), 1e-12))
     free = np.ones(vector.size, dtype=bool)
     step = np.zeros(vector.size)
     for _ in range(vector.size):
         if not free.any():
             return step
-        inner = matrix[np.ix_(free, free)]
-        scale = np.maximum(np.diag(inner), 1e-12)
-        step = np.zeros(vector.size)
-        step[free] = np.linalg.solve(inner + np.diag(damping * scale), slope[free])
-        out = free & (((vector <= bounds[0]) & (step < 0.0)) | ((vector >= bounds[1]) & (step > 0.0)))
+        pull = slope[free] - matrix[np.ix_(free, ~free)] @ step[~free]
+        step[free] = np.linalg.solve(damped[np.ix_(free, free)], pull)
+        out = free & ((step < low) | (step > high))
         if not out.any():
             return step
+        step[out] = np.clip(step, low, high)[out]
         free &= ~out
     return step
 

@@ -14,8 +14,11 @@ from benchmark.discovery.simulator import Shape
 from benchmark.discovery.study import ConditionData, Study
 from benchmark.effects import Motion
 
-SHAPE_PRIOR = Shape(3.0, 0.05, 0.025, 0.01, 0.01, 0.025, 0.025, 0.02)
-"""Standard deviations of the base's nuisances (modulus: no bound in practice)."""
+SHAPE_PRIOR = Shape(3.0, 0.05, 0.025, 0.006, 0.006, 0.025, 0.008, 0.012)
+"""Standard deviations of the base's nuisances (modulus: no bound in practice).
+
+Exponent and size of the marker field, and the two bends of the force, are as far as the wave models are from the FEM.
+"""
 MARKER_SHAPES = ("width", "marker_exponent", "marker_size")
 OFFSETS = ("x", "y", "tangential")
 """Marker combinations with a zero of their own in each trial."""

@@ -59,19 +59,21 @@ class Selection:
     rivals: dict[str, tuple[Fit, ...]]
 
 
-def select(base: Fit, effects: Sequence[Effect], settings: Settings, work: Pool) -> Selection:
-    """Choose effects."""
+def select(
+    base: Fit, effects: Sequence[Effect], settings: Settings, work: Pool, first_screen: tuple[Screened, ...] = ()
+) -> Selection:
+    """Choose effects; `first_screen` is that of the base, where it is known."""
     current = base
     steps: list[Scored] = []
     all_scored: list[Scored] = []
-    first_screen: tuple[Screened, ...] = ()
     rounds: list[list[Scored]] = []
     for number in range(1, settings.most_effects + 1):
         taken = {effect.slug for effect in current.model.effects}
         rest = [effect for effect in effects if effect.slug not in taken and usable(base, effect)]
-        ranked = screen(current, rest)
-        if number == 1:
-            first_screen = ranked
+        if not rest:
+            break
+        ranked = first_screen if number == 1 and first_screen else screen(current, rest)
+        first_screen = first_screen or ranked
         promising = _promising(ranked, REFINED if number == 1 else LATER)
         scored = score(current, work.fits(f"round {number}", [(current, s.effect) for s in promising]))
         scored = _enriched(current, scored, work)

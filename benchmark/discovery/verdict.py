@@ -19,7 +19,9 @@ class Facts:
     Attributes
     ----------
     p : float
-        Of any disagreement.
+        Of any disagreement, along the effects' directions too.
+    p_cells : float
+        Of any disagreement in the cells, which is what speaks where no effect does.
     enough : bool
         Whether there are trials enough for the test to reach its level.
     effects : tuple of Effect
@@ -36,6 +38,7 @@ class Facts:
     """
 
     p: float
+    p_cells: float
     enough: bool
     effects: tuple[Effect, ...]
     lookalikes: tuple[Effect, ...]
@@ -47,8 +50,10 @@ class Facts:
 
 def verdict(facts: Facts) -> str:
     """One of the seven verdicts."""
-    if not facts.effects or not facts.enough:
-        return "outside_catalogue" if facts.enough and facts.p < facts.level else "no_discrepancy"
+    if not facts.enough or facts.p >= facts.level:
+        return "no_discrepancy"
+    if not facts.effects:
+        return "outside_catalogue" if facts.p_cells < facts.level else "no_discrepancy"
     if facts.left > LEFT and facts.p_after < facts.level:
         return "outside_catalogue"
     if facts.lookalikes:
@@ -86,7 +91,7 @@ def statement(word: str, facts: Facts) -> str:
 def _nothing(facts: Facts) -> str:
     if not facts.enough:
         return "There are too few trials to show a disagreement at the 5 % level; nothing is named."
-    return f"No disagreement beyond the base model's own uncertainty is visible (p = {facts.p:.2g})."
+    return f"No disagreement beyond the base model's own uncertainty is visible (p = {facts.p_cells:.2g})."
 
 
 def _outside(names: str) -> str:

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from benchmark.discovery.answer import base_estimates, candidates, named_effects, remains, transfers
 from benchmark.discovery.base_law import BaseLaws, base_law
 from benchmark.discovery.calibrate import Calibrated, calibrate
@@ -18,7 +20,8 @@ from benchmark.discovery.pool import Listener, fingerprint, pool, silent
 from benchmark.discovery.preparing import ENOUGH_TRIALS, prepare
 from benchmark.discovery.result import Discovery
 from benchmark.discovery.sampling import compared, on_all, on_some, remark
-from benchmark.discovery.select import Selection, select
+from benchmark.discovery.screen import screen
+from benchmark.discovery.select import Selection, select, usable
 from benchmark.discovery.settings import Settings
 from benchmark.discovery.traces import traces
 from benchmark.discovery.verdict import Facts, statement, verdict
@@ -97,11 +100,14 @@ def findings(
     calibrated = calibrate(session, study, base_of)
     base = calibrated.base
     listener("detect", 0, 1, "")
-    before = detect(base, settings)
     known = (*catalogue(), *effects)
+    screened = screen(base, [effect for effect in known if usable(base, effect)])
+    before = detect(base, settings, np.vstack([one.along for one in screened]))
     key = fingerprint(VERSION, session.fingerprint, settings, [each.card for each in effects])
     with pool(settings.workers, store, key, effects, listener) as work:
-        selection = select(on_some(base, compared(base)), known, settings, work)
+        some = on_some(base, compared(base))
+        searched = known if before.p < settings.level else ()
+        selection = select(some, searched, settings, work, screened if some is base else ())
     listener("verify", 0, 1, "")
     chosen = on_all(base, selection.chosen)
     after = detect(chosen, settings) if chosen is not base else before
@@ -135,7 +141,7 @@ def _discovery(
     return Discovery(
         verdict=word,
         statement=statement(word, facts),
-        p=before.p,
+        p=before.p_cells if silent_answer else before.p,
         effects=() if silent_answer else named_effects(selection),
         where=shown,
         contrasts=contrasts(base, before, settings),
@@ -163,6 +169,7 @@ def _facts(
     left = unexplained(after) / open_before if open_before > 0.0 else 0.0
     return Facts(
         p=before.p,
+        p_cells=before.p_cells,
         enough=len(selection.base.model.problem.trials) >= ENOUGH_TRIALS,
         effects=tuple(chosen),
         lookalikes=tuple(by_slug[slug] for slug in sorted(alike)),

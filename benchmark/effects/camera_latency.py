@@ -16,7 +16,7 @@ CARD = Card(
     sentence="Frames carry the wrong time: the markers move later than force and depth say.",
     equation="x(t) -> x(t - latency)",
     source="time stamps at the arrival of a frame",
-    parameters=(linear("latency", "s", -1.0, 2.0, "of the frames against the force", 0.02),),
+    parameters=(linear("latency", "s", 0.0, 2.0, "of the frames against the force", 0.02),),
 )
 
 

@@ -12,7 +12,7 @@ CARD = Card(
     sentence="The tool travels freely before it touches: zero depth is not where contact begins.",
     equation="d -> d - gap",
     source="offset of the actuator's zero; K. L. Johnson, Contact Mechanics, chapter 1",
-    parameters=(linear("gap", "m", -0.01, 0.02, "free travel; negative where contact comes early"),),
+    parameters=(linear("gap", "m", 0.0, 0.02, "free travel"),),
 )
 
 
@@ -21,7 +21,7 @@ def _drive(values: Values, motion: Motion, answer: Answer) -> Array:
 
 
 def _starts(around: Surroundings) -> tuple[dict[str, float], ...]:
-    return {"gap": 0.02 * around.peak_depth}, {"gap": -0.02 * around.peak_depth}
+    return ({"gap": 0.02 * around.peak_depth},)
 
 
 EFFECT = Effect(CARD, "gap", drive=_drive, starts=_starts)

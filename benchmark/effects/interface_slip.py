@@ -16,12 +16,14 @@ CARD = Card(
     slug="interface_slip",
     acts_on="body",
     sentence="Layers slide over each other beyond a shear limit: the lower face is carried along less than it should.",
-    equation="F = (1 - s) f + y, y follows s f within +-s F_s; markers move with (1 - q) + q y / (s f)",
+    equation="F = (1 - s) f + y, y follows s f within +-s F_s; markers move with (1 - q) + q y / (s f); "
+    "a share of y may slide back without friction, y = +-s F_s beyond the limit",
     source="W. D. Iwan 1966, J Appl Mech 33:893 (Jenkin element)",
     parameters=(
         logarithmic("limit", "N", 1e-4, 1e3, "force at which the interface begins to slide"),
         linear("force_share", "", 0.0, 1.0, "share of the stiffness that goes through the interface"),
         linear("marker_share", "", 0.0, 1.0, "share of the markers' motion that goes through the interface"),
+        linear("return_share", "", 0.0, 1.0, "share of the markers' slip that goes back at once when the press eases"),
     ),
 )
 
@@ -37,7 +39,9 @@ def _spread(values: Values, spread: Spread, press: Press, around: Surroundings) 
 
     push = _bare(press.elastic, values["force_share"], values["limit"])
     limit = np.where(press.touching, values["limit"], 0.0)
-    carried = bounded_sum(np.diff(push, prepend=0.0), limit)
+    at_once = values["return_share"]
+    held = bounded_sum(np.diff(push, prepend=0.0), limit)
+    carried = (1.0 - at_once) * held + at_once * np.clip(push, -limit, limit)
     passed = np.divide(carried, push, out=np.ones_like(push), where=np.abs(push) > 1e-9 * around.peak_force)
     share = values["marker_share"]
     return replace(spread, passed=spread.passed * (1.0 - share + share * np.clip(passed, -1.0, 1.0)))
@@ -52,9 +56,13 @@ def _bare(elastic: np.ndarray, share: float, limit: float) -> np.ndarray:
 
 
 def _starts(around: Surroundings) -> tuple[dict[str, float], ...]:
-    levels = (0.15, 0.5)
-    marked = 0.3 if around.markers is not None else 0.0
-    return tuple({"limit": r * around.peak_force, "force_share": 0.1, "marker_share": marked} for r in levels)
+    marked = around.markers is not None
+    kinds = ((0.0, 0.3, 0.0), (0.0, 0.3, 1.0), (0.1, 0.3, 0.5)) if marked else ((0.1, 0.0, 0.0),)
+    names = ("force_share", "marker_share", "return_share")
+    levels = (0.2, 0.45)
+    return tuple(
+        {"limit": r * around.peak_force, **dict(zip(names, kind, strict=True))} for r in levels for kind in kinds
+    )
 
 
 EFFECT = Effect(CARD, "marker_share", body=_body, spread=_spread, starts=_starts)

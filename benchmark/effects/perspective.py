@@ -14,7 +14,7 @@ CARD = Card(
     sentence="The lower face comes nearer to the camera as it is pressed, which magnifies the markers' radius.",
     equation="x -> x / (1 - w / distance), w the face's motion towards the camera",
     source="pinhole camera; R. Hartley and A. Zisserman, Multiple View Geometry, chapter 6",
-    parameters=(linear("nearness", "1/m", -50.0, 50.0, "one over the distance from camera to face", 1.0),),
+    parameters=(linear("nearness", "1/m", 0.0, 50.0, "one over the distance from camera to face", 1.0),),
 )
 
 

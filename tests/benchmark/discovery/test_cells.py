@@ -52,3 +52,22 @@ def test_many_trials_draw_their_signs_by_seed():
     means = np.random.default_rng(7).normal(size=(4, 20))
     one, two = (flip_test(table(means), 500, 3) for _ in range(2))
     assert one.p == pytest.approx(two.p)
+
+
+def test_conditions_that_disagree_in_size_do_not_hide_each_other():
+    rng = np.random.default_rng(8)
+    means = rng.normal(size=(CELLS, 10))
+    groups = np.repeat([0, 1], 5)
+    means[3] += np.where(groups == 0, 2.0, 14.0)
+    base = table(means)
+    test = flip_test(CellTable(base.cells, means, groups), 0, 0)
+    assert np.argmin(test.p) == 3
+    assert test.p[3] < 0.01
+
+
+def test_matched_numbers_count_from_one_side():
+    rng = np.random.default_rng(9)
+    base = table(rng.normal(size=(CELLS, 10)))
+    along = 6.0 + rng.normal(size=(3, 10))
+    found = {sign: flip_test(CellTable(base.cells, base.means, None, sign * along), 0, 0).p_any for sign in (1, -1)}
+    assert found[1] < 0.01 < 0.05 < found[-1]

@@ -12,6 +12,7 @@ DRIFT = BY_SLUG["force_drift"]
 def facts(**changes):
     plain = {
         "p": 0.001,
+        "p_cells": 0.01,
         "enough": True,
         "effects": (RELAXATION,),
         "lookalikes": (),
@@ -25,7 +26,7 @@ def facts(**changes):
 
 CASES = {
     "named": {},
-    "no_discrepancy": {"effects": (), "p": 0.4},
+    "no_discrepancy": {"effects": (), "p": 0.4, "p_cells": 0.4},
     "outside_catalogue": {"left": 0.5, "p_after": 0.002},
     "lookalikes": {"lookalikes": (DRAINAGE,)},
     "instrument_first": {"lookalikes": (DRIFT,)},

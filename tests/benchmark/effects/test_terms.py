@@ -150,7 +150,7 @@ def test_pretension_adds_its_stiffness():
 
 
 def test_slip_can_show_in_the_markers_alone():
-    made = readings(MOTION, interface_slip={"limit": 0.5, "force_share": 0.0, "marker_share": 1.0})
+    made = readings(MOTION, interface_slip={"limit": 0.5, "force_share": 0.0, "marker_share": 1.0, "return_share": 0.0})
     assert made.force == pytest.approx(PLAIN.force)
     assert made.markers[DEEP[0], 0, 0] - 6e-3 == pytest.approx(0.5 * 0.1 * PEAK, rel=1e-6)
 
@@ -171,9 +171,17 @@ def test_friction_changes_sign_on_reversal():
 
 
 def test_adhesion_pulls_before_it_lets_go():
-    made = readings(MOTION, adhesion={"pull_off": 0.1})
+    made = readings(MOTION, adhesion={"tear": 0.0, "reach": 1e-3, "pull_off": 0.1})
     assert made.force.min() == pytest.approx(-0.1, abs=0.01)
     assert made.force[MOTION.depth < -0.6e-3] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_tearing_bond_pulls_as_far_as_it_reaches():
+    made = readings(MOTION, adhesion={"tear": 0.1, "reach": 0.5e-3, "pull_off": 0.0})
+    extra = made.force - PLAIN.force
+    assert -0.1 <= extra.min() < -0.05
+    assert extra[MOTION.depth >= 0.0] == pytest.approx(0.0)
+    assert extra[MOTION.depth < -0.5e-3] == pytest.approx(0.0)
 
 
 def test_gap_shifts_the_depth():
