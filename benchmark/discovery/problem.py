@@ -17,7 +17,7 @@ from benchmark.effects import Motion
 SHAPE_PRIOR = Shape(3.0, 0.05, 0.025, 0.006, 0.006, 0.025, 0.008, 0.012)
 """Standard deviations of the base's nuisances (modulus: no bound in practice).
 
-Exponent and size of the marker field, and the two bends of the force, are as far as the wave models are from the FEM.
+The two bends and the exponent and size of the marker field follow fits to blind nulls 0 to 2 (`docs/blind.md`).
 """
 MARKER_SHAPES = ("width", "marker_exponent", "marker_size")
 OFFSETS = ("x", "y", "tangential")
