@@ -14,8 +14,8 @@ RESOLUTION, MOST_MODES = 16.0, 256
 """Largest wavenumber times the tool's radius, and the most modes."""
 BORDER = 0.75
 """Radius of the disc over the side of the window, which just lets the linear field die away."""
-REACH = 0.4
-"""The path goes to this depth, in heights of the stack."""
+REACH, DEEP = 0.4, 0.75
+"""The path goes to this depth, in heights of the stack; the second on demand."""
 VERIFIED = 0.3
 """Compared with finite-strain FEM up to here, on four skins. Under a pressure on 2 to 8 mm of radius the maxima are
 within 1.1 % and the profiles within 1.1 % of peak at every load; under a bonded rigid tool within 1.7 % and 2.7 %. A
@@ -23,8 +23,15 @@ radius of 1 mm presses up to 4.4 % off."""
 FEWEST_LEVELS = 4
 
 
-def correction(press: Press, tool: DiscTool) -> LargePress:
+def correction(press: Press, tool: DiscTool, *, deep: bool = False) -> LargePress:
     """Set up the correction of a press.
+
+    Parameters
+    ----------
+    press, tool
+        What is pressed.
+    deep
+        Follow it to `DEEP`, and let the law go on from where the path ends, along its tangent, to the stack's height.
 
     Raises
     ------
@@ -46,11 +53,12 @@ def correction(press: Press, tool: DiscTool) -> LargePress:
     limit = min(RESOLUTION / tool.radius, 3.1 * MOST_MODES / border)
     body = ModalBody(disc_modes(border, limit), thickness_of(press.stack))
     equilibrium = Equilibrium(body, contact_of(press, body))
-    path = follow(equilibrium, press.stack.height, REACH * press.stack.height)
+    height = press.stack.height
+    path = follow(equilibrium, height, (DEEP if deep else REACH) * height)
     if path.force.size < FEWEST_LEVELS:
         raise WaveError("large press: no equilibrium was found beyond a small load")
     radius = tool.radius if tool.rigid else 0.0
-    return large_press(path, body.modes.wavenumber, press.compliance, radius)
+    return large_press(path, body.modes.wavenumber, press.compliance, radius, height if deep else 0.0)
 
 
 def contact_of(press: Press, body: ModalBody) -> Contact:

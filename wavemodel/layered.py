@@ -77,8 +77,9 @@ class LayeredWave:
         (see `static_correction`) takes their mean.
     large_press
         "linear", or "corrected": the elastic answer is that of a neo-Hookean stack with these moduli under finite
-        strain, worked out once in the wave's own modes (see `wavemodel.large_press`); no inertia. Series that differ
-        between layers then fade what the correction adds by the linear body's creep.
+        strain, worked out once in the wave's own modes (see `wavemodel.large_press`) to 0.4 of the stack; no inertia.
+        "deep": the same to 0.75 of the stack, and from where that ends along the law's tangent, which a warning
+        marks. Series that differ between layers then fade what the correction adds by the linear body's creep.
     physics
         Options of the body beyond elasticity, all off by default (see `Physics`); no inertia. Damping by stiffness and
         a shared relaxation take part; series that differ do not.

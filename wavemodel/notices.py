@@ -37,7 +37,7 @@ def _strain(press: Press, history: History) -> Iterator[str]:
             yield (
                 f"layered wave: the deepest press, {deepest * 1e3:.3g} mm, is {100 * deepest / height:.3g} % of the "
                 f"{height * 1e3:.3g} mm stack, outside the range that the large-press correction is verified in "
-                f"({100 * VERIFIED:.0f} %)"
+                f"({100 * VERIFIED:.0f} %){_continued(press, deepest)}"
             )
     elif deepest > SMALL_STRAIN * height:
         yield (
@@ -45,6 +45,13 @@ def _strain(press: Press, history: History) -> Iterator[str]:
             f"{height * 1e3:.3g} mm stack; this wave is linear, for small strain (up to about "
             f"{100 * SMALL_STRAIN:.0f} %)"
         )
+
+
+def _continued(press: Press, deepest: float) -> str:
+    large = press.field.large
+    if large is None or deepest <= large.followed:
+        return ""
+    return f", and from {large.followed * 1e3:.3g} mm on, its last equilibrium, the law goes straight along its tangent"
 
 
 def _sublayers(press: Press) -> Iterator[str]:

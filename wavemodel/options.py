@@ -13,7 +13,7 @@ from wavemodel.physics.damping import ViscousDamping
 from wavemodel.press import Press
 from wavemodel.specimen import DiscTool
 
-LARGE_PRESS = ("linear", "corrected")
+LARGE_PRESS = ("linear", "corrected", "deep")
 
 
 def options_of(physics: Physics | None, series: tuple[Prony, ...], damping: Damping, integrator: str) -> Physics | None:
@@ -51,7 +51,7 @@ def large_press_of(word: str, press: Press, tool: DiscTool, integrator: str) -> 
     Raises
     ------
     WaveError
-        If the word is neither "linear" nor "corrected".
+        If the word is not one of `LARGE_PRESS`.
     NotCoveredError
         With inertia, or where the correction does not cover tool or support.
     """
@@ -60,7 +60,7 @@ def large_press_of(word: str, press: Press, tool: DiscTool, integrator: str) -> 
     if word == "linear":
         return None
     _without_inertia("the large-press correction", integrator)
-    return correction(press, tool)
+    return correction(press, tool, deep=word == "deep")
 
 
 def _without_inertia(what: str, integrator: str) -> None:

@@ -90,7 +90,8 @@ class WaveOptions(FileModel):
         Side of the square window, m; None follows tool and stack.
     large_press : str
         linear (small strain at any depth) | corrected (the layers' finite strain in the same modes) | auto (corrected
-        where the finite elements are in finite strain and the correction reaches, else linear with a warning).
+        where the finite elements are in finite strain, however deep, and linear with a warning where that has no
+        answer).
     """
 
     model: Literal["layered", "published", "plate"] = "layered"

@@ -42,7 +42,7 @@ class FemModel:
         self._every_field = every_field
         _refuse_contact(scenario)
         try:
-            self._model = fem.prepare(_problem(scenario))
+            self._model = fem.prepare(problem_of(scenario))
         except fem.FemError as error:
             raise InputError(f"scenario {scenario.name}: {error}") from None
 
@@ -114,7 +114,7 @@ def _refuse_contact(scenario: Scenario) -> None:
         raise UncoveredError("a rigid_bonded tool with a rounded edge is not part of this solver; a sharp edge is")
 
 
-def _problem(scenario: Scenario) -> fem.Problem:
+def problem_of(scenario: Scenario) -> fem.Problem:
     """The scenario in the solver's terms.
 
     A laterally endless specimen is the same everywhere, so that its axisymmetric model needs no position.

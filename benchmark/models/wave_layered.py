@@ -10,16 +10,21 @@ from benchmark.files import Scenario
 from benchmark.models.result import Drive, UncoveredError
 from benchmark.models.wave_parts import PreparedWave, Solution, law_warnings, wave_layers, wave_relaxation, wave_tool
 from benchmark.models.wave_physics import wave_physics
-from wavemodel import LayeredWave, WaveError
+from wavemodel import LayeredWave, NotCoveredError, WaveError
 
-STRAINS = {"linear": "small strain", "corrected": "finite strain of the layers"}
+STRAINS = {
+    "linear": "small strain",
+    "corrected": "finite strain of the layers",
+    "deep": "finite strain of the layers, followed deep",
+}
 
 
 def layered_wave(scenario: Scenario) -> PreparedWave:
     """Set up the layered wave.
 
-    With `large_press = "auto"` it follows the finite strain of the layers where the finite elements do, and falls back
-    to small strain, with a warning, where the correction covers neither tool nor depth.
+    With `large_press = "auto"` it follows the finite strain of the layers where the finite elements do, deep where the
+    press is, and falls back to small strain, with a warning, where the correction does not cover the tool or the press
+    would go through the stack.
 
     Raises
     ------
@@ -36,10 +41,20 @@ def layered_wave(scenario: Scenario) -> PreparedWave:
     if scenario.fem.kinematics == "linear":
         return _prepared(scenario, "linear")
     try:
-        return _falling_back(scenario, _prepared(scenario, "corrected", to_peak=True))
+        return _falling_back(scenario, _to_peak(scenario))
     except WaveError as error:
         linear = _prepared(scenario, "linear")
         return replace(linear, warnings=(*linear.warnings, _fell_back(error)))
+
+
+def _to_peak(scenario: Scenario) -> PreparedWave:
+    """The corrected wave, followed deep where the scenario's peak is beyond its usual range."""
+    try:
+        return _prepared(scenario, "corrected", to_peak=True)
+    except NotCoveredError:
+        raise
+    except WaveError:
+        return _prepared(scenario, "deep", to_peak=True)
 
 
 def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) -> PreparedWave:
@@ -66,16 +81,22 @@ def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) ->
             "window": f"{1e3 * wave.window:.4g} mm",
             "modes": f"m, n = 1..{wave.modes}",
         },
-        warnings=law_warnings(scenario) if large_press == "corrected" else (),
+        warnings=() if large_press == "linear" else law_warnings(scenario),
     )
 
 
 def _falling_back(scenario: Scenario, corrected: PreparedWave) -> PreparedWave:
-    """A corrected wave that answers histories beyond its range in small strain, and says so."""
+    """A corrected wave that answers histories beyond its range followed deep, or in small strain, and says so."""
 
     def follow(drive: Drive) -> Solution:
         try:
             return corrected.follow(drive)
+        except WaveError:
+            return deeper(drive)
+
+    def deeper(drive: Drive) -> Solution:
+        try:
+            return _prepared(scenario, "deep").follow(drive)
         except WaveError as error:
             solution = _prepared(scenario, "linear").follow(drive)
             return solution.warned(_fell_back(error))

@@ -46,6 +46,31 @@ def test_shipped_skin_is_predicted_at_every_load(stored, tissue, radius, contact
     assert not solution.warnings
 
 
+@pytest.mark.parametrize("tissue", ["skin_forearm", "skin_mri_indentation", "skin_porcine_fat", "skin_traction"])
+def test_followed_deep_it_is_right_far_beyond_its_range(stored, tissue):
+    """To 0.74 of the stack: maxima and profiles within 1 % of peak; it still says that it is outside its range."""
+    levels = [level for level in stored["deep"] if level["tissue"] == tissue]
+    wave = LayeredWave([WaveLayer(*one) for one in stored["tissues"][tissue]], DiscTool(0.005), large_press="deep")
+    solution = wave.run("force", np.arange(1.0, 4.0), np.array([level["force"] for level in levels]))
+    for step, level in enumerate(levels):
+        fem = np.array(level["deflection"])
+        found = solution.profile(step, np.array(stored["radii"]) * 0.005)
+        np.testing.assert_allclose(solution.depth[step], level["depth"], rtol=0.01)
+        np.testing.assert_allclose(found / fem[:, :1], fem / fem[:, :1], atol=0.01)
+    assert "outside the range" in solution.warnings[0]
+    assert "tangent" not in solution.warnings[0]
+
+
+def test_where_its_path_ends_it_goes_on_along_the_tangent_and_says_so(skin):
+    wave = LayeredWave(skin(), DiscTool(5e-3), large_press="deep")
+    height, end = wave.press.stack.height, wave.law.large.followed
+    assert 0.74 * height < end < height
+    solution = wave.run("depth", np.array([1.0, 2.0]), np.array([end, 0.95 * height]))
+    assert "its last equilibrium, the law goes straight" in solution.warnings[0]
+    with pytest.raises(WaveError, match="beyond the range"):
+        wave.run("depth", np.array([1.0]), np.array([1.01 * height]))
+
+
 def test_the_linear_wave_is_far_off_where_the_correction_is_not(stored):
     """What is corrected: about a quarter of the deflection at a depth of 0.3 heights."""
     press = stored["presses"][0]

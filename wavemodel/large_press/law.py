@@ -22,7 +22,7 @@ SLACK = 1.0 + 1e-12
 
 @dataclass(frozen=True)
 class LargePress:
-    """Nonlinear less linear answer of a stack to a tool, from no load to the last level of a path.
+    """Nonlinear less linear answer of a stack to a tool, from no load to the last level of a path, or on from there.
 
     Without load or under a pull it adds nothing. Nothing in it is calibrated (`calibrated_on` is empty).
 
@@ -40,6 +40,8 @@ class LargePress:
         (B,) what each field adds to the depth, m.
     rigid_radius
         Of a rigid face under which the surface has the tool's depth, m; zero under a pressure.
+    deepest
+        End of the range, m: the last level, or beyond it, where the law goes on straight along its tangent.
     """
 
     wavenumber: FloatArray
@@ -49,14 +51,30 @@ class LargePress:
     fields: FloatArray
     depths: FloatArray
     rigid_radius: float
+    deepest: float
     _weights: CubicSpline
 
     calibrated_on = ()
 
     @property
-    def deepest(self) -> float:
-        """End of the range, m."""
+    def followed(self) -> float:
+        """Depth of the last level of the path, m."""
         return float(self.depth[-1])
+
+    @cached_property
+    def _tangent(self) -> FloatArray:
+        """(B,) change of the weights per force at the last level, 1/N."""
+        return np.asarray(self._weights(self.force[-1], 1))
+
+    @cached_property
+    def _last_compliance(self) -> float:
+        """Of the last level, m/N."""
+        return self.compliance + float(self._tangent @ self.depths)
+
+    @cached_property
+    def strongest(self) -> float:
+        """Elastic force at the end of the range, N."""
+        return float(self.force[-1]) + max(self.deepest - self.followed, 0.0) / self._last_compliance
 
     def weights_at(self, force: float) -> FloatArray:
         """(B,) of the fields at one elastic force, N: the same as `weights`, in a few microseconds.
@@ -67,10 +85,10 @@ class LargePress:
             If the force is beyond the range.
         """
         levels, table = self._levels, self._weights.c
-        if not force <= levels[-1] * SLACK:
-            self.weights(np.array(force))
+        if not force <= levels[-1]:
+            return self.weights(np.array(force))
         level = min(max(bisect_right(levels, force) - 1, 0), len(levels) - 2)
-        ahead = min(max(force, 0.0), levels[-1]) - levels[level]
+        ahead = max(force, 0.0) - levels[level]
         third, second, first, here = table[:, level]
         return np.asarray(((third * ahead + second) * ahead + first) * ahead + here)
 
@@ -87,12 +105,13 @@ class LargePress:
             If a force is beyond the range.
         """
         force = np.asarray(force, dtype=np.float64)
-        if np.any(force > self.force[-1] * SLACK):
+        if np.any(force > self.strongest * SLACK):
             raise WaveError(
                 f"large press: an elastic force of {force.max():g} N is beyond the range of this tool and stack, "
-                f"{self.force[-1]:.4g} N ({1e3 * self.deepest:.4g} mm)"
+                f"{self.strongest:.4g} N ({1e3 * self.deepest:.4g} mm)"
             )
-        return np.asarray(self._weights(np.clip(force, 0.0, self.force[-1])))
+        beyond = np.maximum(force - self.force[-1], 0.0)
+        return np.asarray(self._weights(np.clip(force, 0.0, self.force[-1])) + beyond[..., None] * self._tangent)
 
     def depth_at(self, force: FloatArray) -> FloatArray:
         """(...) depth of the elastic body under forces (...), m."""
@@ -112,7 +131,7 @@ class LargePress:
                 f"large press: a depth of {1e3 * depth.max():.4g} mm is beyond the range of this tool and stack, "
                 f"{1e3 * self.deepest:.4g} mm"
             )
-        wanted = np.clip(depth, 0.0, self.deepest)
+        wanted = np.clip(depth, 0.0, self.followed)
         low = np.clip(np.searchsorted(self.depth, wanted, side="right") - 1, 0, self.force.size - 2)
         bottom, top = self.force[low], self.force[low + 1]
         force = np.interp(wanted, self.depth, self.force)
@@ -124,6 +143,7 @@ class LargePress:
             bottom, top = np.where(excess < 0.0, force, bottom), np.where(excess > 0.0, force, top)
             ahead = force - excess / np.where(slope > 0.0, slope, np.inf)
             force = np.where((ahead > bottom) & (ahead < top), ahead, 0.5 * (bottom + top))
+        force = force + np.maximum(depth - self.followed, 0.0) / self._last_compliance
         return np.where(depth < 0.0, depth / self.compliance, force)
 
     @cached_property
@@ -139,7 +159,9 @@ class LargePress:
         return out
 
 
-def large_press(path: PressPath, wavenumber: FloatArray, compliance: float, rigid_radius: float) -> LargePress:
+def large_press(
+    path: PressPath, wavenumber: FloatArray, compliance: float, rigid_radius: float, deepest: float = 0.0
+) -> LargePress:
     """Fields and their weights from a path.
 
     Parameters
@@ -152,6 +174,8 @@ def large_press(path: PressPath, wavenumber: FloatArray, compliance: float, rigi
         Depth per force of the linear wave, m/N.
     rigid_radius
         Of a rigid face, m; zero under a pressure.
+    deepest
+        How deep the law goes on along its tangent, m; no deeper than the path unless it is more.
     """
     added = path.deflection - path.force[:, None, None] * path.linear_deflection
     deeper = path.depth - path.force * path.linear_depth
@@ -164,4 +188,5 @@ def large_press(path: PressPath, wavenumber: FloatArray, compliance: float, rigi
     fields = right[:kept, :-1].reshape(kept, *path.linear_deflection.shape)
     depths = np.ascontiguousarray(right[:kept, -1])
     depth = compliance * path.force + courses @ depths
-    return LargePress(wavenumber, path.force, depth, compliance, fields, depths, rigid_radius, spline)
+    deepest = max(deepest, float(depth[-1]))
+    return LargePress(wavenumber, path.force, depth, compliance, fields, depths, rigid_radius, deepest, spline)

@@ -25,8 +25,8 @@ def test_it_takes_the_strain_of_the_finite_elements(kinematics: str, same_as: st
 
 @pytest.mark.parametrize(
     "settings",
-    [{"load.peak": "12 N"}, {"tool.contact": "rigid_frictionless", "tool.edge_radius": "0.5 mm"}],
-    ids=["too deep", "contact"],
+    [{"load.peak": "60 N"}, {"tool.contact": "rigid_frictionless", "tool.edge_radius": "0.5 mm"}],
+    ids=["through the stack", "contact"],
 )
 def test_beyond_the_correction_it_falls_back_to_small_strain_and_says_so(settings: dict[str, str]) -> None:
     fallen, linear = pressed(settings), pressed({**settings, "wave.large_press": "linear"})
@@ -37,5 +37,18 @@ def test_beyond_the_correction_it_falls_back_to_small_strain_and_says_so(setting
 
 def test_a_history_that_goes_deeper_than_the_scenario_falls_back_too() -> None:
     scenario = load_scenario("skin-5N", SHORT)
-    result = prepare("wave", scenario).run(Drive("force", np.array([1.0, 2.0]), np.array([1.0, 12.0])))
+    result = prepare("wave", scenario).run(Drive("force", np.array([1.0, 2.0]), np.array([1.0, 60.0])))
     assert FALLEN in " ".join(result.warnings)
+
+
+def test_a_press_beyond_the_usual_range_is_followed_deep() -> None:
+    """To 0.56 of the stack within 1 % of the finite elements, where the small-strain wave is 70 % off."""
+    deep = {"load.peak": "12 N", "load.observations": "10", "fem.mesh": "coarse"}
+    scenario = load_scenario("skin-5N", deep)
+    drive = Drive("force", np.arange(1.0, 6.0), np.linspace(2.4, 12.0, 5))
+    found, truth = (prepare(model, scenario).run(drive) for model in ("wave", "fem"))
+    np.testing.assert_allclose(found.depth, truth.depth, rtol=0.01)
+    assert "followed deep" in found.notes["model"]
+    assert FALLEN not in " ".join(found.warnings)
+    later = prepare("wave", load_scenario("skin-5N", SHORT)).run(drive)
+    np.testing.assert_allclose(later.depth, found.depth, rtol=1e-12)

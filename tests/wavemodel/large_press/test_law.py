@@ -6,9 +6,18 @@ from wavemodel import DiscTool, LayeredWave, WaveError
 DEPTH = np.linspace(0.0, 4.0e-3, 60)
 
 
+def law_of(skin, word):
+    return LayeredWave(skin(), DiscTool(5e-3), large_press=word).law.large
+
+
 @pytest.fixture(scope="module")
 def law(skin):
-    return LayeredWave(skin(), DiscTool(5e-3), large_press="corrected").press.field.large
+    return law_of(skin, "corrected")
+
+
+@pytest.fixture(scope="module")
+def deep(skin):
+    return law_of(skin, "deep")
 
 
 def test_force_and_depth_are_inverse(law):
@@ -35,9 +44,27 @@ def test_nothing_in_it_is_calibrated(law):
     assert law.calibrated_on == ()
 
 
-def test_refuses_what_is_beyond_the_range(law):
+def test_followed_deep_it_is_the_same_law_where_both_are(law, deep):
+    np.testing.assert_allclose(deep.force_at(DEPTH), law.force_at(DEPTH), rtol=1e-4, atol=1e-12)
+
+
+def test_beyond_its_path_the_law_is_a_smooth_straight_line(deep):
+    end, deepest = deep.followed, deep.deepest
+    depth = np.linspace(end, deepest, 5)
+    force = deep.force_at(depth)
+    np.testing.assert_allclose(np.diff(force), np.diff(force)[0], rtol=1e-9)
+    np.testing.assert_allclose(deep.depth_at(force), depth, rtol=1e-12)
+    np.testing.assert_allclose([deep.weights_at(f) for f in force.tolist()], deep.weights(force), atol=1e-15)
+    before = (deep.force[-1] - deep.force_at(np.array(end - 1e-6))) / 1e-6
+    assert (force[1] - force[0]) / (depth[1] - depth[0]) == pytest.approx(before, rel=1e-3)
+    assert force[-1] == pytest.approx(deep.strongest)
+
+
+@pytest.mark.parametrize("followed", ["law", "deep"])
+def test_refuses_what_is_beyond_the_range(request, followed):
+    law = request.getfixturevalue(followed)
     with pytest.raises(WaveError, match="beyond the range"):
         law.force_at(np.array([1e-3, 1.001 * law.deepest]))
     for call in (law.weights, law.weights_at):
         with pytest.raises(WaveError, match="beyond the range"):
-            call(1.001 * law.force[-1])
+            call(1.001 * law.strongest)
