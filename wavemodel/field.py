@@ -1,12 +1,11 @@
 """The deflection in space: from amplitudes of the modes and the static remainder to numbers at points."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.domains.rectangle import Rectangle
+from wavemodel.domains.domain import Domain
 from wavemodel.errors import WaveError
 from wavemodel.large_press.law import LargePress
 from wavemodel.loads.traction import Traction
@@ -52,20 +51,11 @@ class Field:
         Correction of a large press, or None.
     """
 
-    domain: Rectangle
+    domain: Domain
     traction: Traction
     rest: Remainder | None
     fading: tuple[Remainder, ...] = ()
     large: LargePress | None = None
-
-    @cached_property
-    def share(self) -> FloatArray:
-        """(M, M) share of each mode in a centred unit load, 1/m2."""
-        return self.domain.participation()
-
-    def modal(self, amplitude: FloatArray) -> FloatArray:
-        """(L, M, M) deflection of each mode, m: amplitudes (L, K)."""
-        return self.domain.spread(amplitude) * self.share
 
     def remainder(self, radius: FloatArray, layers: int) -> FloatArray:
         """(L, R) deflection that the remainder adds per force at radii (R,), m/N."""
@@ -94,10 +84,10 @@ class Field:
         """
         if not np.all(radius >= 0.0):
             raise WaveError("profile: a radius that is negative or not a number is not allowed")
-        inside = self.domain.inside(radius, axis=0)
+        points = np.stack([radius, np.zeros_like(radius)], axis=1)
+        inside = self.domain.holds(points)
         out = np.full((state.amplitude.shape[0], radius.size), np.nan)
-        line = self.modal(state.amplitude) @ self.domain.sines(np.zeros(1), axis=1)[0]
-        out[:, inside] = line @ self.domain.sines(radius[inside]).T
+        out[:, inside] = self.domain.at(state.amplitude, points[inside])
         out[:, inside] += self._sharp(state, radius[inside], out.shape[0])
         if self.large is not None:
             weights = self.large.weights_at(state.elastic)

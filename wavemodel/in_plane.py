@@ -43,14 +43,10 @@ class InPlane:
         return out
 
     def _smooth(self, points: FloatArray) -> FloatArray:
-        """Sum over the modes: U / k times the gradient of the sines."""
+        """Sum over the modes: U / k times their gradient."""
         press, domain = self.press, self.press.field.domain
         amplitude = self._along(domain.wavenumber, press.modal_stack, quadratic_faces, press.load) * press.share
-        modes = domain.spread(amplitude / domain.wavenumber) * press.field.share
-        (sine_x, slope_x), (sine_y, slope_y) = (domain.waves(points[:, axis], axis) for axis in (0, 1))
-        along_x = np.einsum("pm,pm->p", slope_x @ modes, sine_y)
-        along_y = np.einsum("pm,pm->p", sine_x @ modes, slope_y)
-        return np.stack([along_x, along_y], axis=1)
+        return domain.gradient(amplitude / domain.wavenumber, points)
 
     def _sharp(self, rest: Remainder, distance: FloatArray) -> FloatArray:
         """(P,) outward, m/N: minus the integral of U J_1(k r), and nothing beyond its reach."""

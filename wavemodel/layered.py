@@ -1,8 +1,8 @@
 """The layered vector wave: a disc pressed on a stack of elastic layers, closed form in space and time.
 
 Each layer is an elastic wave equation in (u, v, w), quadratic through the thickness of its sub-layers, on a window of
-sine modes round the tool. Nothing is calibrated: the answer follows from thickness, density, E and nu alone. It is
-linear, small strain, unless a large-press correction or options of the body are asked for.
+sine or Bessel modes round the tool. Nothing is calibrated: the answer follows from thickness, density, E and nu alone.
+It is linear, small strain, unless a large-press correction or options of the body are asked for.
 """
 
 from collections.abc import Sequence
@@ -52,11 +52,16 @@ class LayeredWave:
     support
         "bonded", or "free" (nothing under the lower face, the window's border simply supported).
     window
-        Side of the square window, m. None: so wide that the border costs at most 0.1 % of the peak in it.
+        Side of the square window, or diameter of the round one, m. None: so wide that the border costs at most 0.1 % of
+        the peak in it.
+    domain
+        "rectangle" with sines, or "disc" with Bessel modes: N of them for a tool in its middle, all directions for one
+        off it.
     place
         (x, y) of the tool from the middle of the window, m. Off the middle even modes take part too.
     modes
-        N, for m, n = 1..N. None: as many as carry the smooth part of the load, k a up to 12.
+        N, for m, n = 1..N, or N along a radius of the disc. None: as many as carry the smooth part of the load, k a up
+        to 12.
     sublayers
         Number of equal sub-layers in each layer. None: as many as it takes for 0.05 % of each layer's peak.
     static_correction
@@ -109,6 +114,7 @@ class LayeredWave:
         window: float | None = None,
         modes: int | None = None,
         *,
+        domain: str = "rectangle",
         place: tuple[float, float] = (0.0, 0.0),
         sublayers: Sequence[int] | None = None,
         static_correction: bool | None = None,
@@ -122,7 +128,9 @@ class LayeredWave:
         if integrator not in INTEGRATORS:
             raise WaveError(f"integrator = {integrator!r} is not allowed: one of {', '.join(INTEGRATORS)}")
         counts = None if sublayers is None else tuple(sublayers)
-        settings = Settings(window, modes, counts, static_correction, in_plane_stress(pretension, len(layers)), place)
+        settings = Settings(
+            window, modes, counts, static_correction, in_plane_stress(pretension, len(layers)), place, domain
+        )
         self.layers, self.tool = tuple(layers), tool
         self.integrator, self.damping = integrator, damping or Damping()
         self.relaxation = series_of(relaxation, len(self.layers))
@@ -140,12 +148,12 @@ class LayeredWave:
 
     @property
     def window(self) -> float:
-        """Side of the square window, m."""
+        """Side of the square window, or diameter of the round one, m."""
         return self.press.field.domain.width
 
     @property
     def modes(self) -> int:
-        """N: the modes are m, n = 1..N."""
+        """N: the modes are m, n = 1..N, or as many along a radius of the disc."""
         return self.press.field.domain.modes
 
     @property
@@ -156,7 +164,7 @@ class LayeredWave:
 
     @property
     def unknowns(self) -> int:
-        """Pairs (m, n) carried, times the unknowns through the thickness."""
+        """Modes carried, times the unknowns through the thickness."""
         return self.press.field.domain.pairs * self.press.stack.unknowns_per_mode
 
     def run(self, control: str, time: FloatArray, value: FloatArray) -> WaveSolution:

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.domains.rectangle import Rectangle
+from wavemodel.domains.domain import Domain
 from wavemodel.layers.compliance import Compliance, compliance
 from wavemodel.layers.laminate import Laminate
 from wavemodel.loads.rigid import solve_contact
@@ -35,7 +35,7 @@ class Parts:
         Answer to what they leave out; None where they carry all.
     """
 
-    domain: Rectangle
+    domain: Domain
     basis: TractionBasis
     modal: Compliance
     load: FloatArray
@@ -59,7 +59,7 @@ class Parts:
         return solve_contact(self.basis, self.flexibility) if rigid else Traction(self.basis, np.ones(1))
 
 
-def parts(stack: Laminate, domain: Rectangle, basis: TractionBasis, taper: Taper, rest: Remainder | None) -> Parts:
+def parts(stack: Laminate, domain: Domain, basis: TractionBasis, taper: Taper, rest: Remainder | None) -> Parts:
     """Evaluate a stack on a window for the tractions of a tool."""
     k = domain.wavenumber
     return Parts(domain, basis, compliance(k, stack), basis.transform(k), taper.modes(k), rest)

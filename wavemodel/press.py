@@ -7,7 +7,7 @@ import numpy as np
 
 from wavemodel import automatic, subdivision
 from wavemodel.arrays import FloatArray
-from wavemodel.domains.rectangle import Rectangle
+from wavemodel.domains.domain import Domain
 from wavemodel.errors import WaveError
 from wavemodel.field import Field
 from wavemodel.layers.laminate import Laminate, laminate
@@ -20,6 +20,7 @@ from wavemodel.remainder import remainder
 from wavemodel.settings import Settings
 from wavemodel.specimen import DiscTool, WaveLayer
 from wavemodel.taper import Taper
+from wavemodel.window import window_of
 
 
 @dataclass(frozen=True)
@@ -91,36 +92,21 @@ def prepare(layers: Sequence[WaveLayer], tool: DiscTool, base: str, settings: Se
     return _assemble(stack, modal, (mistake, border), parts(modal, domain, basis, taper, rest), tool.rigid)
 
 
-def _seen_by_modes(stack: Laminate, domain: Rectangle, stress: InPlaneStress | None) -> Laminate:
+def _seen_by_modes(stack: Laminate, domain: Domain, stress: InPlaneStress | None) -> Laminate:
     if stress is None or not stress.directed:
         return stack
     counts = np.diff(stack.top_of_layer, append=stack.sublayers)
     return replace(stack, tension=np.repeat(stress.along(domain.direction), counts, axis=1))
 
 
-def _window(whole: Laminate, tool: DiscTool, settings: Settings) -> tuple[Rectangle, Taper]:
+def _window(whole: Laminate, tool: DiscTool, settings: Settings) -> tuple[Domain, Taper]:
     if settings.window is None and whole.base == "free":
         raise WaveError("window: needed with a free lower face, where an endless specimen has nothing to rest on")
     side = automatic.window(whole, tool.radius) if settings.window is None else settings.window
-    if tool.radius >= 0.5 * side:
-        raise WaveError(
-            f"window = {side * 1e3:g} mm is not allowed with a tool of {tool.radius * 1e3:g} mm radius: "
-            "it must be wider than the tool"
-        )
-    furthest = max(map(abs, settings.place))
-    if furthest + tool.radius > 0.5 * side:
-        raise WaveError(
-            f"place = {furthest * 1e3:g} mm from the middle is not allowed: the tool of {tool.radius * 1e3:g} mm "
-            f"radius must be inside the window of {side * 1e3:g} mm"
-        )
-    count = automatic.modes(side, tool.radius) if settings.modes is None else settings.modes
-    taper = Taper(count * np.pi / side, settings.corrected)
-    directed = settings.pretension is not None and settings.pretension.directed
-    cutoff = taper.limit if taper.active else np.inf
-    return Rectangle(side, side, count, cutoff=cutoff, directed=directed, place=settings.place), taper
+    return window_of(settings, tool.radius, side)
 
 
-def _yardstick(whole: Laminate, tool: DiscTool, taper: Taper, domain: Rectangle) -> subdivision.Yardstick:
+def _yardstick(whole: Laminate, tool: DiscTool, taper: Taper, domain: Domain) -> subdivision.Yardstick:
     """Sub-layers under a rigid tool are chosen by the traction of a flat punch on a half-space."""
     basis = punch_tractions(tool.radius, tool.contact, 1) if tool.rigid else UniformPressure(tool.radius)
     return subdivision.yardstick(whole, Traction(basis, basis.net_force), taper, domain.lowest)

@@ -11,8 +11,8 @@ from functools import cached_property
 import numpy as np
 
 from wavemodel.arrays import FloatArray
+from wavemodel.domains.domain import Domain
 from wavemodel.domains.endless import Endless, endless
-from wavemodel.domains.rectangle import Rectangle
 from wavemodel.layers.compliance import compliance, exact_faces
 from wavemodel.layers.laminate import Laminate
 from wavemodel.loads.half_space import HalfSpace
@@ -95,7 +95,7 @@ def work(load: FloatArray, faces: FloatArray, weight: FloatArray) -> FloatArray:
     return np.asarray(np.tensordot(load, moved, axes=([0, 2], [0, 2])))
 
 
-def remainder(laminate: Laminate, basis: TractionBasis, taper: Taper, window: Rectangle) -> Remainder:
+def remainder(laminate: Laminate, basis: TractionBasis, taper: Taper, window: Domain) -> Remainder:
     """Set up the remainder of a tool on a stack.
 
     Parameters
@@ -109,7 +109,7 @@ def remainder(laminate: Laminate, basis: TractionBasis, taper: Taper, window: Re
     window
         What the modes span; no wavenumber below its first belongs to the remainder, and nothing beyond its corners.
     """
-    reach = min(basis.radius + taper.locality, 0.75 * max(window.width, window.height))
+    reach = min(basis.radius + taper.locality, 0.75 * window.width)
     limit = max(1.2 * taper.limit, min(SHARPEST / basis.radius, DEEPEST / float(laminate.thickness[0])))
     spectrum = endless(limit, reach + basis.radius)
     k = spectrum.wavenumber

@@ -6,6 +6,7 @@ from math import isfinite
 from wavemodel.errors import WaveError, require_positive
 from wavemodel.physics.in_plane_stress import InPlaneStress
 
+DOMAINS = ("rectangle", "disc")
 FEWEST_FOR_CORRECTION = 8
 """With fewer modes the smooth part of a load, which the modes carry, would be next to nothing."""
 
@@ -17,22 +18,25 @@ class Settings:
     Attributes
     ----------
     window
-        Side of the square window, m.
+        Side of the square window, or diameter of the round one, m.
     modes
-        N: m, n = 1..N.
+        N: m, n = 1..N, or as many along a radius of the disc.
     sublayers
         Number of equal sub-layers in each layer.
     static_correction
         Whether what the modes leave out of the load is answered statically. None: from 8 modes up.
     place
         (x, y) of the tool from the middle of the window, m.
+    domain
+        One of `DOMAINS`.
     pretension
         In-plane stress of the layers before the press; None: none.
 
     Raises
     ------
     WaveError
-        If the window is not positive, a count is below one, or there are too few modes for the correction.
+        If the domain is unknown, the window is not positive, a count is below one, or there are too few modes for the
+        correction.
     """
 
     window: float | None = None
@@ -41,8 +45,11 @@ class Settings:
     static_correction: bool | None = None
     pretension: InPlaneStress | None = None
     place: tuple[float, float] = (0.0, 0.0)
+    domain: str = "rectangle"
 
     def __post_init__(self) -> None:
+        if self.domain not in DOMAINS:
+            raise WaveError(f"domain = {self.domain!r} is not allowed: one of {', '.join(DOMAINS)}")
         if self.window is not None:
             require_positive("window", self.window, "m")
         if len(self.place) != 2 or not all(map(isfinite, self.place)):

@@ -83,7 +83,7 @@ class WaveSolution:
             See `marker_motion`.
         """
         domain = self._press.field.domain
-        inside = domain.inside(points[:, 0], axis=0) & domain.inside(points[:, 1], axis=1)
+        inside = domain.holds(points)
         out = np.where(inside[:, None], 0.0, np.nan) * np.ones(2)
         if face == len(self.layer_names) and self._press.stack.base == "bonded":
             return out

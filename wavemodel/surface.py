@@ -1,13 +1,12 @@
-"""One frame of the deflected faces on a grid of vertices: U = Sx A Sy' per layer, from tables made beforehand."""
+"""One frame of the deflected faces on a grid of vertices, from tables made beforehand."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.blas import dgemm
 
-from wavemodel.arrays import FloatArray, IntArray
-from wavemodel.errors import WaveError
+from wavemodel.arrays import FloatArray
+from wavemodel.domains.domain import Tables
 from wavemodel.field import Field, Snapshot
 from wavemodel.large_press.law import LargePress
 
@@ -24,8 +23,8 @@ class Surface:
     ----------
     field
         The model's synthesis.
-    sines_x, sines_y
-        (P, M) and (M, Q) tables.
+    modes
+        Tables of the modes.
     remainder
         (P L, Q) deflection that the static remainder adds per force, m/N.
     fading
@@ -35,8 +34,7 @@ class Surface:
     """
 
     field: Field
-    sines_x: FloatArray
-    sines_y: FloatArray
+    modes: Tables
     remainder: FloatArray
     fading: FloatArray
     large: FloatArray
@@ -45,17 +43,13 @@ class Surface:
     def frame(self, state: Snapshot) -> FloatArray:
         """(L, P, Q) deflection of each layer's top face, m, downwards."""
         memory = self._memory
-        np.take(state.amplitude.ravel(), memory.place, out=memory.modal, mode="clip")
-        np.multiply(memory.modal, memory.share, out=memory.modal)
-        np.dot(self.sines_x, memory.modal, out=memory.half)
         beside = self.field.rest is not None
         if beside:
             if isinstance(state.remainder, np.ndarray) and state.remainder.ndim:
                 np.dot(state.remainder, self.fading.reshape(self.fading.shape[0], -1), out=memory.out.reshape(-1))
             else:
                 np.multiply(self.remainder, state.remainder, out=memory.out)
-        # Column-major BLAS sees everything transposed: out' = Sy' half' + out', in one pass over the result.
-        dgemm(1.0, self.sines_y.T, memory.rows.T, float(beside), memory.out.T, overwrite_c=1)
+        self.modes.write(state.amplitude, memory.out, add=beside)
         if self.field.large is not None:
             weights = self.field.large.weights_at(state.elastic)
             np.dot(weights, self.large.reshape(weights.size, -1), out=memory.rest.reshape(-1))
@@ -65,44 +59,24 @@ class Surface:
 
 @dataclass(frozen=True)
 class _Memory:
-    """Work arrays and where things go in them.
+    """Where a frame goes.
 
     Attributes
     ----------
-    place, share
-        (M, L M) where in the amplitudes each mode of each layer is, and its share; nought where it is not carried.
-    modal
-        (M, L M) amplitudes of the modes.
-    half, rows
-        (P, L M) half-way sums, and the same memory as (P L, M).
     out, faces
         (P L, Q) result, and the same memory as (L, P, Q).
     rest
         (P L, Q) what a large press adds.
     """
 
-    place: IntArray
-    share: FloatArray
-    modal: FloatArray
-    half: FloatArray
-    rows: FloatArray
     out: FloatArray
     faces: FloatArray
     rest: FloatArray
 
 
 def _memory(field: Field, layers: int, shape: tuple[int, int]) -> _Memory:
-    index, kept = field.domain.pair_index, field.domain.wavenumber.size
-    count, carried = index.shape[0], index < kept
-    place = np.arange(layers)[:, None] * kept + np.minimum(index, kept - 1)[:, None, :]
-    share = np.broadcast_to((field.share * carried)[:, None, :], place.shape)
-    half, out = np.empty((shape[0], layers * count)), np.empty((shape[0] * layers, shape[1]))
+    out = np.empty((shape[0] * layers, shape[1]))
     return _Memory(
-        np.ascontiguousarray(place.reshape(count, -1)),
-        np.ascontiguousarray(share.reshape(count, -1)),
-        np.empty((count, layers * count)),
-        half,
-        half.reshape(-1, count),
         out,
         out.reshape(shape[0], layers, shape[1]).transpose(1, 0, 2),
         np.empty_like(out) if field.large is not None else np.empty((0, 0)),
@@ -117,19 +91,11 @@ def surface(field: Field, x: FloatArray, y: FloatArray, layers: int) -> Surface:
     WaveError
         If a vertex lies outside the window.
     """
-    domain = field.domain
-    for axis, name, position, side in ((0, "x", x, domain.width), (1, "y", y, domain.height)):
-        if not domain.inside(position, axis).all():
-            place = f" of a point {-domain.place[axis] * 1e3:g} mm from it" if any(domain.place) else ""
-            raise WaveError(
-                f"surface: {name} reaches {np.abs(position).max() * 1e3:g} mm from the tool axis, outside the "
-                f"window of {side * 1e3:g} mm (half of it to each side{place})"
-            )
+    modes = field.domain.tables(x, y, layers)
     distance = np.hypot(x[:, None], y)
     return Surface(
         field,
-        field.domain.sines(x),
-        np.ascontiguousarray(field.domain.sines(y, axis=1).T),
+        modes,
         _remainder(field, distance, lambda radius: field.remainder(radius, layers)[None])[0],
         _remainder(field, distance, field.remainders) if field.fading else np.empty((0, 0, 0)),
         _large(field.large, distance) if field.large else np.empty((0, 0, 0)),

@@ -24,7 +24,7 @@ def layered_body(wave: LayeredWave, grid: Grid) -> RoundBody:
     grid
         Vertices that the patch will move.
     """
-    large, reach = wave.law.large, 0.5 * wave.window - max(map(abs, wave.press.field.domain.place))
+    large, reach = wave.law.large, wave.press.field.domain.reach
     radii = radii_of(reach)
     unit = replace(wave.press.field, large=None).along_x(wave.static_state(1.0), radii)[None]
     fields = unit if large is None else np.concatenate([unit, large.at_radius(radii)])

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from wavemodel.arrays import BoolArray, FloatArray, IntArray
+from wavemodel.domains.sine_tables import SineTables, sine_tables
 from wavemodel.errors import WaveError, require_positive
 
 
@@ -116,9 +117,17 @@ class Rectangle:
         phase = np.outer((position + self.place[axis]) / side + 0.5, self.order * np.pi)
         return np.sin(phase), np.cos(phase) * (self.order * np.pi / side)
 
-    def inside(self, position: FloatArray, axis: int) -> BoolArray:
-        """(P,) whether positions from the load's place are in the window."""
+    def _inside(self, position: FloatArray, axis: int) -> BoolArray:
         return np.asarray(np.abs(position + self.place[axis]) <= 0.5 * (self.width, self.height)[axis])
+
+    def holds(self, points: FloatArray) -> BoolArray:
+        """(P,) whether points (P, 2) from the load's place, m, are in the window."""
+        return self._inside(points[:, 0], axis=0) & self._inside(points[:, 1], axis=1)
+
+    @property
+    def reach(self) -> float:
+        """From the place to the nearest point of the border, m."""
+        return min(0.5 * self.width - abs(self.place[0]), 0.5 * self.height - abs(self.place[1]))
 
     def spread(self, amplitude: FloatArray) -> FloatArray:
         """Give every pair (m, n) the amplitude of its wavenumber: (..., K) to (..., M, M)."""
@@ -132,9 +141,46 @@ class Rectangle:
         return share * (4.0 / (self.width * self.height))
 
     @cached_property
+    def share(self) -> FloatArray:
+        """(M, M) share of each mode in a unit load at the place, 1/m2."""
+        return self.participation()
+
+    def at(self, amplitude: FloatArray, points: FloatArray) -> FloatArray:
+        """(L, P) field of amplitudes (L, K) under a unit load, at points (P, 2) from the place, m."""
+        modes = self.spread(amplitude) * self.share
+        along_y = self.sines(points[:, 1], axis=1)
+        return np.asarray(np.einsum("lpn,pn->lp", self.sines(points[:, 0]) @ modes, along_y))
+
+    def gradient(self, amplitude: FloatArray, points: FloatArray) -> FloatArray:
+        """(P, 2) slope along x and y of the field of amplitudes (K,), at points (P, 2) from the place, m."""
+        modes = self.spread(amplitude) * self.share
+        (sine_x, slope_x), (sine_y, slope_y) = (self.waves(points[:, axis], axis) for axis in (0, 1))
+        along_x = np.einsum("pm,pm->p", slope_x @ modes, sine_y)
+        along_y = np.einsum("pm,pm->p", sine_x @ modes, slope_y)
+        return np.stack([along_x, along_y], axis=1)
+
+    def tables(self, x: FloatArray, y: FloatArray, layers: int) -> SineTables:
+        """Tables for vertices at all pairs of x (P,) and y (Q,) from the place, m.
+
+        Raises
+        ------
+        WaveError
+            If a vertex lies outside the window.
+        """
+        for axis, name, position, side in ((0, "x", x, self.width), (1, "y", y, self.height)):
+            if not self._inside(position, axis).all():
+                place = f" of a point {-self.place[axis] * 1e3:g} mm from it" if any(self.place) else ""
+                raise WaveError(
+                    f"surface: {name} reaches {np.abs(position).max() * 1e3:g} mm from the tool axis, outside the "
+                    f"window of {side * 1e3:g} mm (half of it to each side{place})"
+                )
+        sines = self.sines(x), self.sines(y, axis=1)
+        return sine_tables(sines, self.pair_index, self.wavenumber.size, self.share, layers)
+
+    @cached_property
     def axis_weight(self) -> FloatArray:
         """(K,) in 1/m2: a field with amplitudes A(k) under a centred unit load has the value A . weight there."""
-        table, index = self.participation(), self._distinct[1]
-        weight = table * np.outer(self.sines(np.zeros(1))[0], self.sines(np.zeros(1), axis=1)[0])
+        index = self._distinct[1]
+        weight = self.share * np.outer(self.sines(np.zeros(1))[0], self.sines(np.zeros(1), axis=1)[0])
         kept = self.wavenumber.size
         return np.asarray(np.bincount(index.ravel(), weight.ravel(), kept + 1)[:kept], dtype=np.float64)
