@@ -18,12 +18,15 @@ def modal_system(press: Press, rigid: bool, damping: Damping, series: Prony = NO
     """
     modes = vibration(press.field.domain.wavenumber, press.modal_stack)
     drive = np.einsum("kdc,kc->kd", modes.surface, press.load)
-    deflection = np.einsum("kld,kd,k->lkd", modes.deflection, drive, press.share)
+    deflection, outward = (
+        np.einsum("kld,kd,k->lkd", faces, drive, press.share) for faces in (modes.deflection, modes.outward)
+    )
     weight = press.field.domain.axis_weight
     watched = drive**2 * press.share[:, None] if rigid else deflection[0]
     return ModalSystem(
         frequency=modes.frequency,
         deflection=deflection,
+        outward=outward,
         axis_weight=weight,
         depth=watched * weight[:, None],
         remainder_depth=press.remainder_depth,

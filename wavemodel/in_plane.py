@@ -33,20 +33,23 @@ class InPlane:
     press: Press
     face: int
 
-    def per_force(self, points: FloatArray) -> FloatArray:
-        """(P, 2) displacement along x and y, m/N, at points (P, 2) in m from the tool axis, inside the window."""
-        out = self._smooth(points)
-        rest = self.press.field.rest
-        if rest is not None:
-            distance = np.hypot(points[:, 0], points[:, 1])
-            out += self._sharp(rest, distance)[:, None] * points / np.maximum(distance, 1e-300)[:, None]
-        return out
+    def amplitude(self) -> FloatArray:
+        """(K,) of the modes at rest under a unit force, m3/N."""
+        press = self.press
+        k = press.field.domain.wavenumber
+        return self._along(k, press.modal_stack, quadratic_faces, press.load) * press.share
 
-    def _smooth(self, points: FloatArray) -> FloatArray:
-        """Sum over the modes: U / k times their gradient."""
-        press, domain = self.press, self.press.field.domain
-        amplitude = self._along(domain.wavenumber, press.modal_stack, quadratic_faces, press.load) * press.share
+    def smooth(self, amplitude: FloatArray, points: FloatArray) -> FloatArray:
+        """(P, 2) displacement along x and y of modes of amplitudes (K,), at points (P, 2): U / k times their slope."""
+        domain = self.press.field.domain
         return domain.gradient(amplitude / domain.wavenumber, points)
+
+    def sharp(self, points: FloatArray) -> FloatArray:
+        """(P, 2) displacement along x and y of the sharp rest under a unit force, m/N."""
+        rest = self.press.field.rest
+        distance = np.hypot(points[:, 0], points[:, 1])
+        outward = np.zeros_like(distance) if rest is None else self._sharp(rest, distance)
+        return away(outward, points)
 
     def _sharp(self, rest: Remainder, distance: FloatArray) -> FloatArray:
         """(P,) outward, m/N: minus the integral of U J_1(k r), and nothing beyond its reach."""
@@ -68,6 +71,12 @@ class InPlane:
         node = [*stack.top_of_layer.tolist(), stack.sublayers][self.face]
         faces = every_face(stack, stiffness(k, stack))[:, node]
         return np.asarray(np.einsum("kj,kj->k", faces[:, 0], load))
+
+
+def away(outward: FloatArray, points: FloatArray) -> FloatArray:
+    """(P, 2) along x and y of what moves points (P, 2) away from the tool's axis by (P,)."""
+    distance = np.hypot(points[:, 0], points[:, 1])
+    return np.asarray((outward / np.maximum(distance, 1e-300))[:, None] * points)
 
 
 def _half_space(rest: Remainder, distance: FloatArray) -> FloatArray:

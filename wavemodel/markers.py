@@ -52,8 +52,7 @@ def marker_motion(solution: Moving, points: FloatArray, step: int = -1, face: in
     Raises
     ------
     NotCoveredError
-        With inertia in a layered wave, with its large-press correction, with layers that relax each in its own way, or
-        at the surface under a rigid tool.
+        In a layered wave with layers that relax each in its own way, or at the surface under a rigid tool.
     WaveError
         If points, step or face are not usable.
     """

@@ -7,7 +7,7 @@ import numpy as np
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import NotCoveredError
 from wavemodel.field import Snapshot
-from wavemodel.in_plane import InPlane
+from wavemodel.in_plane import InPlane, away
 from wavemodel.integrators.history import History
 from wavemodel.press import Press
 
@@ -88,12 +88,16 @@ class WaveSolution:
         if face == len(self.layer_names) and self._press.stack.base == "bonded":
             return out
         force = self._history.static_force[step]
-        for reason, met in (
-            ("inertia: use the integrator 'quasi_static'", self.integrator == "exact"),
-            ("layers that relax each in its own way", force.size > 1),
-            ("a large-press correction", self._press.field.large is not None),
-        ):
-            if met:
-                raise NotCoveredError(f"marker motion of the layered wave does not cover {reason}")
-        out[inside] = force[0] * InPlane(self._press, face).per_force(points[inside])
+        if force.size > 1:
+            raise NotCoveredError(
+                "marker motion of the layered wave does not cover layers that relax each in its own way"
+            )
+        plane, places = InPlane(self._press, face), points[inside]
+        moving = self._history.outward
+        amplitude = force[0] * plane.amplitude() if moving is None else moving(step)[face]
+        out[inside] = plane.smooth(amplitude, places) + force[0] * plane.sharp(places)
+        if self._press.field.large is not None and self._history.elastic is not None:
+            elastic = float(self._history.elastic[step])
+            distance = np.hypot(places[:, 0], places[:, 1])
+            out[inside] += away(self._press.field.large.outward(elastic, face, distance), places)
         return out

@@ -34,6 +34,8 @@ class ModalSystem:
         (K, d) angular, rad/s.
     deflection
         (L, K, d) amplitude of each layer's top face per state, m3/N.
+    outward
+        (L + 1, K, d) amplitude in plane of each layer's top face and of the lowest one per state, m3/N.
     axis_weight
         (K,) in 1/m2: amplitudes times it sum to the deflection on the axis.
     depth
@@ -52,6 +54,7 @@ class ModalSystem:
 
     frequency: FloatArray
     deflection: FloatArray
+    outward: FloatArray
     axis_weight: FloatArray
     depth: FloatArray
     remainder_depth: float
@@ -83,7 +86,17 @@ def integrate(load: Load, system: ModalSystem) -> History:
         force[step], depth[step], static[step] = march.force, march.depth, march.static
         amplitude[step] = march.amplitude
     top = amplitude @ system.axis_weight + np.outer(static, system.remainder_axis)
-    return History(force, depth, top, static[:, None], amplitude.__getitem__)
+    return History(
+        force, depth, top, static[:, None], amplitude.__getitem__, outward=lambda step: _outward(load, system, step)
+    )
+
+
+def _outward(load: Load, system: ModalSystem, last: int) -> FloatArray:
+    """(L + 1, K) amplitudes in plane after a step: the run is gone through again, for its states are not kept."""
+    march = _March(system)
+    for duration, value in zip(load.durations[: last + 1].tolist(), load.value[: last + 1].tolist(), strict=True):
+        _advance(march, duration, value, load.control == "depth")
+    return march.outward
 
 
 def _advance(march: "_March", duration: float, value: float, by_depth: bool) -> None:
@@ -142,6 +155,11 @@ class _March:
     def amplitude(self) -> FloatArray:
         state = self.motion.displacement.reshape(self.system.frequency.shape)
         return np.asarray(np.einsum("lkd,kd->lk", self.system.deflection, state))
+
+    @property
+    def outward(self) -> FloatArray:
+        state = self.motion.displacement.reshape(self.system.frequency.shape)
+        return np.asarray(np.einsum("lkd,kd->lk", self.system.outward, state))
 
     @property
     def static_compliance(self) -> float:

@@ -22,6 +22,9 @@ class History:
         Step to (L, K): amplitudes of the top faces by wavenumber.
     elastic
         (n,) elastic forces that a large-press correction is read at, N; None where the body is linear.
+    outward
+        With inertia, step to (L + 1, K): amplitudes in plane of the top faces and the lowest one; None where they
+        follow from the force.
     """
 
     force: FloatArray
@@ -30,3 +33,4 @@ class History:
     static_force: FloatArray
     amplitude: Callable[[int], FloatArray]
     elastic: FloatArray | None = None
+    outward: Callable[[int], FloatArray] | None = None

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.special import j0
+from scipy.special import j0, j1
 
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import WaveError
@@ -53,6 +53,7 @@ class LargePress:
     rigid_radius: float
     deepest: float
     _weights: CubicSpline
+    _sideways: CubicSpline
 
     calibrated_on = ()
 
@@ -105,13 +106,16 @@ class LargePress:
             If a force is beyond the range.
         """
         force = np.asarray(force, dtype=np.float64)
+        self._require_within(force)
+        beyond = np.maximum(force - self.force[-1], 0.0)
+        return np.asarray(self._weights(np.clip(force, 0.0, self.force[-1])) + beyond[..., None] * self._tangent)
+
+    def _require_within(self, force: FloatArray) -> None:
         if np.any(force > self.strongest * SLACK):
             raise WaveError(
                 f"large press: an elastic force of {force.max():g} N is beyond the range of this tool and stack, "
                 f"{self.strongest:.4g} N ({1e3 * self.deepest:.4g} mm)"
             )
-        beyond = np.maximum(force - self.force[-1], 0.0)
-        return np.asarray(self._weights(np.clip(force, 0.0, self.force[-1])) + beyond[..., None] * self._tangent)
 
     def depth_at(self, force: FloatArray) -> FloatArray:
         """(...) depth of the elastic body under forces (...), m."""
@@ -145,6 +149,19 @@ class LargePress:
             force = np.where((ahead > bottom) & (ahead < top), ahead, 0.5 * (bottom + top))
         force = force + np.maximum(depth - self.followed, 0.0) / self._last_compliance
         return np.where(depth < 0.0, depth / self.compliance, force)
+
+    def outward(self, force: float, face: int, radius: FloatArray) -> FloatArray:
+        """(R,) what it adds to the motion away from the axis at radii (R,) of a layer's top face, m.
+
+        Raises
+        ------
+        WaveError
+            If the force, N, is beyond the range.
+        """
+        self._require_within(np.array(force))
+        last = float(self.force[-1])
+        amplitude = self._sideways(min(max(force, 0.0), last)) + max(force - last, 0.0) * self._sideways(last, 1)
+        return np.asarray(-(amplitude[face] @ j1(np.outer(self.wavenumber, radius))))
 
     @cached_property
     def axis(self) -> FloatArray:
@@ -189,4 +206,9 @@ def large_press(
     depths = np.ascontiguousarray(right[:kept, -1])
     depth = compliance * path.force + courses @ depths
     deepest = max(deepest, float(depth[-1]))
-    return LargePress(wavenumber, path.force, depth, compliance, fields, depths, rigid_radius, deepest, spline)
+    sideways = path.outward - path.force[:, None, None] * path.linear_outward
+    rest = (1, np.zeros(path.linear_outward.shape))
+    return LargePress(
+        wavenumber, path.force, depth, compliance, fields, depths, rigid_radius, deepest, spline,
+        CubicSpline(path.force, sideways, bc_type=(rest, "not-a-knot")),
+    )  # fmt: skip

@@ -28,15 +28,19 @@ class PressPath:
         (M,) in N and m, rising.
     deflection
         (M, L, N) amplitudes of the layers' top faces, m.
-    linear_depth, linear_deflection
+    outward
+        (M, L, N) amplitudes in plane of the layers' top faces, m.
+    linear_depth, linear_deflection, linear_outward
         The same per force by the linear body: m/N, and (L, N) in m/N.
     """
 
     force: FloatArray
     depth: FloatArray
     deflection: FloatArray
+    outward: FloatArray
     linear_depth: float
     linear_deflection: FloatArray
+    linear_outward: FloatArray
 
 
 def follow(equilibrium: Equilibrium, height: float, reach: float) -> PressPath:
@@ -70,9 +74,17 @@ def follow(equilibrium: Equilibrium, height: float, reach: float) -> PressPath:
         forces.append(force)
         depths.append(depth)
         states.append(state)
-    tops = equilibrium.body.nodes + equilibrium.body.thickness.top
-    deflection = np.stack([state[:, tops].T for state in states])
-    return PressPath(np.array(forces), np.array(depths), deflection, compliance, linear[:, tops].T)
+    tops, nodes = equilibrium.body.thickness.top, equilibrium.body.nodes
+    outward, deflection = (np.stack([state[:, tops + shift].T for state in states]) for shift in (0, nodes))
+    return PressPath(
+        force=np.array(forces),
+        depth=np.array(depths),
+        deflection=deflection,
+        outward=outward,
+        linear_depth=compliance,
+        linear_deflection=linear[:, tops + nodes].T,
+        linear_outward=linear[:, tops].T,
+    )
 
 
 def _start(

@@ -25,11 +25,14 @@ class Vibration:
         (n, d, 2) U and W of the surface in each shape (of unit strain energy: phi' K phi = 1).
     deflection
         (n, L, d) W of each layer's top face in each shape.
+    outward
+        (n, L + 1, d) U of each layer's top face and of the lowest one.
     """
 
     frequency: FloatArray
     surface: FloatArray
     deflection: FloatArray
+    outward: FloatArray
 
 
 def assemble(blocks: FloatArray, base: str) -> FloatArray:
@@ -58,4 +61,12 @@ def vibration(wavenumber: FloatArray, laminate: Laminate) -> Vibration:
         frequency=1.0 / np.sqrt(np.maximum(square, floor)),
         surface=np.swapaxes(shapes[:, :2], -1, -2),
         deflection=shapes[:, 4 * laminate.top_of_layer + 1],
+        outward=_outward(shapes, laminate),
     )
+
+
+def _outward(shapes: FloatArray, laminate: Laminate) -> FloatArray:
+    """(n, L + 1, d) of shapes (n, unknowns, d); the lowest face of a bonded stack does not move."""
+    tops = shapes[:, 4 * laminate.top_of_layer]
+    lowest = np.zeros_like(shapes[:, :1]) if laminate.base == "bonded" else shapes[:, 4 * laminate.sublayers :][:, :1]
+    return np.concatenate([tops, lowest], axis=1)
