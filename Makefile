@@ -5,7 +5,7 @@ PY     := $(VENV)/bin/python
 RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
-BENCHES := bench-wave bench-tissues bench-peers bench-liver bench-vision bench-gate bench-discovery
+BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-gate bench-discovery
 .PHONY: help run test test-slow $(BENCHES) lint types imports check docs lock clean
 
 help:
@@ -15,7 +15,7 @@ help:
 	@echo "make check            lint, types and import rules"
 	@echo "make docs             the documentation as a site in build/site"
 	@echo "make bench-wave       microseconds a frame of the wave beside its rivals, each with its error"
-	@echo "make bench-tissues    the wave in finite strain against the finite elements, tissue by tissue"
+	@echo "make bench-accuracy   the wave's errors against the finite elements, small and finite strain"
 	@echo "make bench-peers      the same problems through FElupe and CalculiX, where they are installed"
 	@echo "make bench-liver      a synthetic liver from its STL file to a pressed VTU"
 	@echo "make bench-vision     frames a second of the tracker, and its memory on a long video"
@@ -64,7 +64,8 @@ docs: $(DEV_STAMP)
 bench-wave: $(RUN_STAMP)
 	$(PY) -m benchmarks.wave
 
-bench-tissues: $(RUN_STAMP)
+bench-accuracy: $(RUN_STAMP)
+	$(PY) -m benchmarks.wave.linear
 	$(PY) -m benchmarks.wave.tissues
 
 bench-peers: $(DEV_STAMP)
