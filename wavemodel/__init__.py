@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from wavemodel.plate.model import PlateWave
     from wavemodel.plate.solution import PlateSolution
     from wavemodel.published.membrane import PublishedWave
+    from wavemodel.shear_limit import ShearLimit
     from wavemodel.solution import WaveSolution
     from wavemodel.specimen import DiscTool, WaveLayer
 
@@ -34,6 +35,7 @@ __all__ = [
     "Prony",
     "PublishedWave",
     "QuasiStaticPress",
+    "ShearLimit",
     "WaveError",
     "WaveLayer",
     "WaveSolution",
@@ -52,6 +54,7 @@ _HOMES = {
     "InPlaneStress": "wavemodel.physics.in_plane_stress",
     "Physics": "wavemodel.physics.body",
     "QuasiStaticPress": "wavemodel.physics.quasi_static_press",
+    "ShearLimit": "wavemodel.shear_limit",
     "WaveError": "wavemodel.errors",
     "WaveLayer": "wavemodel.specimen",
     "WaveSolution": "wavemodel.solution",

@@ -25,11 +25,12 @@ from wavemodel.integrators.prony import Prony
 from wavemodel.integrators.quasi_static import StaticBody, quasi_static
 from wavemodel.layers.laminate import BASES
 from wavemodel.memory import one_series, series_of, shared, static_body
-from wavemodel.options import large_press_of, options_of
+from wavemodel.options import large_press_of, options_of, with_slip
 from wavemodel.physics.body import Physics
 from wavemodel.physics.in_plane_stress import InPlaneStress, in_plane_stress
 from wavemodel.press import Press, prepare
 from wavemodel.settings import Settings
+from wavemodel.shear_limit import ShearLimit
 from wavemodel.solution import WaveSolution
 from wavemodel.specimen import DiscTool, WaveLayer
 from wavemodel.static_runs import large_press_run, options_run
@@ -88,6 +89,9 @@ class LayeredWave:
     physics
         Options of the body beyond elasticity, all off by default (see `Physics`); no inertia. Damping by stiffness and
         a shared relaxation take part; series that differ do not.
+    slip
+        A `ShearLimit`: an interface, or the clamp of the lowest face, that is bonded up to a shear stress and then
+        slides at it; no inertia. None: bonded for good.
 
     Attributes
     ----------
@@ -124,6 +128,7 @@ class LayeredWave:
         pretension: float | Sequence[float] | InPlaneStress | None = None,
         large_press: str = "linear",
         physics: Physics | None = None,
+        slip: ShearLimit | None = None,
     ) -> None:
         if integrator not in INTEGRATORS:
             raise WaveError(f"integrator = {integrator!r} is not allowed: one of {', '.join(INTEGRATORS)}")
@@ -139,7 +144,7 @@ class LayeredWave:
         self.press: Press
         self.body, self.press = static_body(elastic, self.layers, tool.rigid, self.relaxation, self.damping)
         self.first_frequency: float = first_frequency(self.press)
-        self.options = options_of(physics, self.relaxation, self.damping, integrator)
+        self.options = options_of(with_slip(physics, slip, self.press), self.relaxation, self.damping, integrator)
         large = large_press_of(large_press, self.press, tool, integrator)
         self.press = replace(self.press, field=replace(self.press.field, large=large))
         self.law = ElasticLaw(self.press.compliance, large)

@@ -11,6 +11,7 @@ from wavemodel.memory import shared
 from wavemodel.physics.body import Physics
 from wavemodel.physics.damping import ViscousDamping
 from wavemodel.press import Press
+from wavemodel.shear_limit import ShearLimit, interface_slip
 from wavemodel.specimen import DiscTool
 
 LARGE_PRESS = ("linear", "corrected", "deep")
@@ -43,6 +44,23 @@ def options_of(physics: Physics | None, series: tuple[Prony, ...], damping: Damp
     if damping.stiffness_time:
         physics = replace(physics, damping=ViscousDamping(damping.stiffness_time))
     return physics
+
+
+def with_slip(physics: Physics | None, slip: ShearLimit | None, press: Press) -> Physics | None:
+    """The options of a body with an interface that slides.
+
+    Raises
+    ------
+    NotCoveredError
+        With a free lower face.
+    WaveError
+        If the stack has no such interface, or slip is given twice.
+    """
+    if slip is None:
+        return physics
+    if physics is not None and physics.slip is not None:
+        raise WaveError("slip is given twice, to the wave and in its physics: give one of them")
+    return replace(physics or Physics(), slip=interface_slip(press, slip))
 
 
 def large_press_of(word: str, press: Press, tool: DiscTool, integrator: str) -> LargePress | None:
