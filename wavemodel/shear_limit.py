@@ -19,10 +19,8 @@ from wavemodel.layers.sliding import shear_on, sliding_surface
 from wavemodel.loads.rigid import solve_contact
 from wavemodel.physics.slip import InterfaceSlip
 from wavemodel.press import Press
-from wavemodel.remainder import DEEPEST, SHARPEST, work
+from wavemodel.remainder import DEEPEST, work
 
-SHORTEST_DEPTH = 12.0
-"""Nothing of a wavenumber times the depth of the interface above this comes to it."""
 RADII, NEAR = 400, 3.0
 """Where the largest stress is looked for: so many radii, and as many round the tool's edge, to `NEAR` depths away."""
 
@@ -33,10 +31,11 @@ class ShearLimit:
 
     Attributes
     ----------
-    face
-        1 to L - 1 for the interface below so many layers, L for the clamp of the lowest face.
     stress
         In Pa, above 0.
+    face
+        1 to L - 1 for the interface below so many layers, L for the clamp of the lowest face. None: of the interfaces
+        between layers the one that slides first.
 
     Raises
     ------
@@ -44,11 +43,11 @@ class ShearLimit:
         If the face is no interface or the stress is not positive.
     """
 
-    face: int
     stress: float
+    face: int | None = None
 
     def __post_init__(self) -> None:
-        if self.face < 1:
+        if self.face is not None and self.face < 1:
             raise WaveError(f"slip: face = {self.face} is not allowed: 1 for the first interface, 2, .. to the lowest")
         require_positive("slip: stress", self.stress, "Pa")
 
@@ -67,16 +66,23 @@ def interface_slip(press: Press, limit: ShearLimit) -> InterfaceSlip:
     if stack.base != "bonded":
         raise NotCoveredError("the layered wave does not cover slip with a free lower face: a bonded base is covered")
     nodes = [*stack.top_of_layer.tolist(), stack.sublayers]
-    if limit.face >= len(nodes):
+    chosen = nodes[1:-1] if limit.face is None else nodes[limit.face : limit.face + 1]
+    if not chosen:
         raise WaveError(
-            f"slip: face = {limit.face} is not allowed: 1 to {len(nodes) - 1}, the lowest face of the stack"
+            "slip: a single layer has no interface; its lowest face is face = 1"
+            if limit.face is None
+            else f"slip: face = {limit.face} is not allowed: 1 to {len(nodes) - 1}, the lowest face of the stack"
         )
-    node = nodes[limit.face]
+    return min((_slip_of(press, limit.stress, node) for node in chosen), key=lambda slip: slip.limit)
+
+
+def _slip_of(press: Press, stress: float, node: int) -> InterfaceSlip:
+    stack = press.stack
     depth = float(stack.thickness[:node].sum())
     radius = press.field.traction.basis.radius
-    line = endless(min(SHORTEST_DEPTH / depth, max(SHARPEST / radius, DEEPEST / depth)), 4.0 * (radius + stack.height))
+    line = endless(DEEPEST / depth, 4.0 * (radius + stack.height))
     share = 1.0 - press.compliance / _sliding_compliance(press, line, node)
-    return InterfaceSlip.at_shear(limit.stress, _largest_shear(press, line, node), share)
+    return InterfaceSlip.at_shear(stress, _largest_shear(press, line, node), share)
 
 
 def _seen(press: Press, line: Endless) -> tuple[Laminate, FloatArray, FloatArray]:

@@ -50,7 +50,7 @@ class Physics(FileModel):
     pretension : float or None
         In-plane tensile stress before the press, Pa.
     interface_shear_limit : float or None
-        Shear stress at which layers begin to slide on each other, Pa; no model of this version has it, see slip_force.
+        Shear stress at which layers begin to slide on each other, Pa: the interface that comes to it first.
     clamp_shear_limit : float or None
         Shear stress at which the clamped rim of a sheet over a hole begins to slide, Pa; no model of this version has
         it.

@@ -11,7 +11,7 @@ FRICTION = "friction_coefficient"
 """Belongs to a rigid_frictional tool, which each model refuses by itself, and has no effect on any other."""
 
 REASONS = {
-    "interface_shear_limit": "no model of this version has it; slip_force and slip_share are the wave's",
+    "interface_shear_limit": "the layered wave on a base has it",
     "clamp_shear_limit": "no model of this version has it",
 }
 """Why an option is in no model."""

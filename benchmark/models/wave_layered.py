@@ -9,7 +9,7 @@ import numpy as np
 from benchmark.files import Scenario
 from benchmark.models.result import Drive, UncoveredError
 from benchmark.models.wave_parts import PreparedWave, Solution, law_warnings, wave_layers, wave_relaxation, wave_tool
-from benchmark.models.wave_physics import wave_physics
+from benchmark.models.wave_physics import wave_physics, wave_slip
 from wavemodel import LayeredWave, NotCoveredError, WaveError
 
 STRAINS = {
@@ -69,6 +69,7 @@ def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) ->
         large_press=large_press,
         pretension=scenario.physics.pretension,
         physics=wave_physics(scenario),
+        slip=wave_slip(scenario),
     )
     if to_peak:
         peak = np.array([scenario.load.peak])

@@ -11,7 +11,7 @@ from benchmark.models.radii import profile_radii
 from benchmark.models.result import Drive, ModelResult, OnStep, Reading, StepProgress, UncoveredError, silent
 from benchmark.models.wave_layered import layered_wave
 from benchmark.models.wave_parts import PreparedWave, Solution
-from benchmark.models.wave_physics import OPTIONS
+from benchmark.models.wave_physics import OPTIONS, SHEAR_LIMIT
 from benchmark.models.wave_plate import plate_wave
 from wavemodel import NotCoveredError, WaveError
 
@@ -28,7 +28,7 @@ class WaveModel:
     """
 
     def __init__(self, scenario: Scenario):
-        refuse_options(scenario, ("pretension", *OPTIONS))
+        refuse_options(scenario, ("pretension", *(() if _is_sheet(scenario) else (SHEAR_LIMIT,)), *OPTIONS))
         refuse_solid(scenario)
         self._scenario = scenario
         try:
@@ -85,5 +85,8 @@ def _prepare(scenario: Scenario) -> PreparedWave:
         raise UncoveredError(
             "the wave model published does not predict a scenario: it returns the depth it is fed; layered and plate do"
         )
-    over_hole = scenario.support.kind == "hole"
-    return plate_wave(scenario) if model == "plate" or over_hole else layered_wave(scenario)
+    return plate_wave(scenario) if _is_sheet(scenario) else layered_wave(scenario)
+
+
+def _is_sheet(scenario: Scenario) -> bool:
+    return scenario.wave.model == "plate" or scenario.support.kind == "hole"

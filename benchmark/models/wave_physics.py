@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from benchmark.files import Scenario
+from wavemodel import ShearLimit
 from wavemodel.physics import (
     Adhesion,
     DryFriction,
@@ -41,9 +42,13 @@ OPTIONS = (
 """What acts on top of the elastic law of any wave; pretension is part of the wave itself."""
 
 
+SHEAR_LIMIT = "interface_shear_limit"
+"""Of the layered wave only."""
+
+
 def given(scenario: Scenario) -> tuple[str, ...]:
     """Which of the options the scenario has."""
-    return tuple(name for name in OPTIONS if getattr(scenario.physics, name) is not None)
+    return tuple(name for name in (SHEAR_LIMIT, *OPTIONS) if getattr(scenario.physics, name) is not None)
 
 
 def wave_physics(scenario: Scenario) -> Physics | None:
@@ -54,7 +59,7 @@ def wave_physics(scenario: Scenario) -> Physics | None:
     wavemodel.WaveError
         For a value that the wave does not take.
     """
-    if not given(scenario):
+    if not set(given(scenario)) - {SHEAR_LIMIT}:
         return None
     body = scenario.physics
     return Physics(
@@ -76,6 +81,18 @@ def wave_physics(scenario: Scenario) -> Physics | None:
         else DryFriction(body.friction_force, body.friction_length),
         adhesion=None if body.adhesion_force is None else Adhesion(body.adhesion_force),
     )
+
+
+def wave_slip(scenario: Scenario) -> ShearLimit | None:
+    """Return the shear stress at which layers begin to slide; None where they are bonded for good.
+
+    Raises
+    ------
+    wavemodel.WaveError
+        If it is not positive.
+    """
+    limit = scenario.physics.interface_shear_limit
+    return None if limit is None else ShearLimit(limit)
 
 
 def _stiffening(scenario: Scenario) -> StrainStiffening | None:

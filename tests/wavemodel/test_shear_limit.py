@@ -12,7 +12,7 @@ TRIANGLE = 1e-3 * np.minimum(TIME, 41.0 - TIME) / 20.0
 
 
 def slipping(layers, face, stress=1.0, contact="uniform_pressure", **options):
-    return LayeredWave(layers, DiscTool(5e-3, contact), slip=ShearLimit(face, stress), **options)
+    return LayeredWave(layers, DiscTool(5e-3, contact), slip=ShearLimit(stress, face), **options)
 
 
 @pytest.mark.parametrize("face", [1, 2, 3])
@@ -89,6 +89,13 @@ def test_force_and_depth_control_agree_beside_other_options(skin, options):
 def test_refuses_what_is_no_interface(skin, face, stress, word):
     with pytest.raises(WaveError, match=word):
         slipping(skin(), face, stress)
+
+
+def test_without_a_face_the_interface_that_slides_first_does(skin):
+    first = min((slipping(skin(), face).options.slip for face in (1, 2)), key=lambda slip: slip.limit)
+    assert slipping(skin(), None).options.slip == first
+    with pytest.raises(WaveError, match="single layer"):
+        slipping(skin()[2:], None)
 
 
 def test_says_what_it_does_not_cover(skin):

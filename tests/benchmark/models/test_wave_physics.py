@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from benchmark.errors import InputError
 from benchmark.files import load_scenario
 from benchmark.models import Drive, UncoveredError, prepare
 
@@ -76,11 +77,26 @@ def test_the_fem_says_what_it_lacks():
         prepare("fem", scenario)
 
 
-def test_a_shear_limit_is_named_as_missing_everywhere():
-    scenario = load_scenario("skin-5N", {"physics.interface_shear_limit": "5 kPa"})
-    for model in ("fem", "wave"):
-        with pytest.raises(UncoveredError, match="slip_force"):
+@pytest.mark.parametrize("strain", [LINEAR, {}])
+def test_a_shear_limit_lets_layers_slide_from_a_force_on(strain):
+    """Bonded below it, softer beyond it by a share that follows from the layers."""
+    plain = pressed(strain).force
+    found = pressed({**strain, "physics.interface_shear_limit": "2 kPa"}).force
+    lost = 1.0 - found[:10] / plain[:10]
+    np.testing.assert_allclose(lost[:2], 0.0, atol=1e-9)
+    assert 0.03 < lost[9] < 0.06
+    beyond = np.diff(found[5:10]) / np.diff(plain[5:10])
+    np.testing.assert_allclose(beyond, beyond[0], rtol=1e-9)
+    assert beyond[0] < 1.0 - lost[9]
+
+
+def test_a_shear_limit_belongs_to_the_layered_wave():
+    for model, settings in (("fem", {}), ("wave", HOLE)):
+        scenario = load_scenario("skin-5N", {"physics.interface_shear_limit": "5 kPa", **settings})
+        with pytest.raises(UncoveredError, match="the layered wave on a base has it"):
             prepare(model, scenario)
+    with pytest.raises(InputError, match="slip is given twice"):
+        pressed({"physics.interface_shear_limit": "5 kPa", "physics.slip_force": "1 N", "physics.slip_share": "0.5"})
 
 
 SHEET = load_scenario("phantom").tissue.layers[0].name
