@@ -64,7 +64,6 @@ def ringing(load: Load, frequency: float, damping: Damping) -> float:
     if peak == 0.0:
         return 0.0
     time, value = load.line
-    later = np.interp(time + 1.0 / frequency, time, value) - value
-    earlier = value - np.interp(time - 1.0 / frequency, time, value)
-    change = float(max(np.abs(later).max(), np.abs(earlier).max()))
+    beside = np.interp(np.array([[1.0], [-1.0]]) / frequency + time, time, value)
+    change = float(np.abs(beside - value).max())
     return (1.0 + damping.mass_rate / (2.0 * np.pi * frequency)) * change / (2.0 * np.pi * peak)

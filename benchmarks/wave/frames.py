@@ -17,6 +17,8 @@ from wavemodel.control import Grid, InteractiveTissue, layered_body
 from wavemodel.control.fading import Fading
 
 COUNTS, MODES, WINDOW = (25, 100, 512), (8, 16, 32), 60e-3
+DISC, DISC_MODES = 90e-3, 24
+"""Diameter that holds the corners of the vertices, m, and modes of the round window."""
 Make = Callable[[], Callable[[float], np.ndarray]]
 SERIES, DT = Prony((0.3,), (0.5,)), 1e-3
 
@@ -45,6 +47,7 @@ def rows(exact: Reference) -> Iterator[Row]:
 def _ways(count: int, x: np.ndarray, exact: Reference) -> Iterator[tuple[str, Make]]:
     for modes in MODES:
         yield f"layered wave, {modes} modes, viscoelastic", partial(_wave, x, modes)
+    yield f"layered wave, disc of {DISC_MODES} modes, viscoelastic", partial(_wave, x, DISC_MODES, "disc", DISC)
     yield "the same under an interactive tool", partial(_interactive, count)
     for whole, name in ((True, "dense FEM compliance"), (False, "dense FEM compliance, tool in its place")):
         if rivals.fits_in_memory(count, whole):
@@ -63,9 +66,11 @@ def _row(count: int, way: str, make: Make, truth: np.ndarray) -> Row:
     return Row(count, way, times, tuple(errors(found, truth[: len(found)]).tolist()), setup)
 
 
-def _wave(x: np.ndarray, modes: int) -> Callable[[float], np.ndarray]:
+def _wave(
+    x: np.ndarray, modes: int, domain: str = "rectangle", window: float = WINDOW
+) -> Callable[[float], np.ndarray]:
     """A frame: one step of the fading memory, the amplitudes, the synthesis of three layers."""
-    wave = LayeredWave(wave_layers(), DiscTool(RADIUS), window=WINDOW, modes=modes)
+    wave = LayeredWave(wave_layers(), DiscTool(RADIUS), window=window, modes=modes, domain=domain)
     surface, fading = wave.surface(x, x), Fading(1, SERIES, 0.0)
 
     def frame(elastic: float) -> np.ndarray:

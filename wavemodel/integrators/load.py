@@ -31,7 +31,10 @@ class Load:
     @property
     def durations(self) -> FloatArray:
         """(n,) of the steps, s; the first is zero where the history starts at or before zero."""
-        return np.diff(self.time, prepend=min(0.0, float(self.time[0])))
+        out = np.empty_like(self.time)
+        out[0] = self.time[0] - min(0.0, float(self.time[0]))
+        np.subtract(self.time[1:], self.time[:-1], out=out[1:])
+        return out
 
     @property
     def line(self) -> tuple[FloatArray, FloatArray]:
@@ -56,17 +59,17 @@ def checked_load(control: str, time: FloatArray, value: FloatArray) -> Load:
     """
     if control not in ("force", "depth"):
         raise WaveError(f"control = {control!r} is not allowed: 'force' or 'depth'")
-    instants, values = np.asarray(time, dtype=np.float64), np.asarray(value, dtype=np.float64)
+    instants, values = np.array(time, dtype=np.float64), np.array(value, dtype=np.float64)
     if instants.ndim != 1 or instants.shape != values.shape or instants.size == 0:
         raise WaveError(
             f"load: time has shape {instants.shape} and value {values.shape}; both must be one-dimensional, "
             "of one length of at least 1"
         )
     for name, array in (("time", instants), ("value", values)):
-        if not np.all(np.isfinite(array)):
+        if not np.isfinite(array).all():
             at = int(np.flatnonzero(~np.isfinite(array))[0])
             raise WaveError(f"load: {name}[{at}] = {array[at]} is not allowed: only finite numbers are")
-    if np.any(np.diff(instants) <= 0.0):
-        at = int(np.flatnonzero(np.diff(instants) <= 0.0)[0]) + 1
+    if not (rises := instants[1:] > instants[:-1]).all():
+        at = int(np.flatnonzero(~rises)[0]) + 1
         raise WaveError(f"load: time[{at}] = {instants[at]:g} s is not above the one before it; time must rise")
     return Load(cast(ControlKind, control), instants, values)

@@ -61,6 +61,8 @@ class SharedBody:
         by_force = load.control == "force"
         law = (creep if by_force else relaxation)(self.series, self.retardation)
         driven = load.value if by_force else load.value / self.compliance
+        if not self.series.strength and self.retardation == 0.0:
+            return driven[:, None], driven, driven * self.compliance
         answer, _ = law.follow(load.durations, driven, law.rest(load.initial(driven)))
         course, force = (answer, driven) if by_force else (driven, answer)
         return course[:, None], force, course * self.compliance

@@ -35,3 +35,11 @@ def test_a_history_from_zero_on_starts_in_its_first_state(start):
 def test_refuses_what_is_no_history(control, time, value, message):
     with pytest.raises(WaveError, match=message):
         checked_load(control, time, value)
+
+
+def test_keeps_its_own_copy_of_what_it_was_given():
+    time, value = np.array([1.0, 2.0]), np.array([1.0, 2.0])
+    load = checked_load("force", time, value)
+    time[:], value[:] = 7.0, 9.0
+    np.testing.assert_array_equal(load.time, [1.0, 2.0])
+    np.testing.assert_array_equal(load.value, [1.0, 2.0])
