@@ -120,6 +120,17 @@ def test_a_deep_press_says_that_it_was_not_verified(silicone):
     assert "53.3 %" in warning
 
 
+@pytest.mark.parametrize(("contact", "thickness"), [("rigid_bonded", 6.5e-3), ("uniform_pressure", 4.5e-3)])
+def test_a_thick_sheet_and_a_deep_pressure_say_that_they_were_not_verified(silicone, contact, thickness):
+    tool, depth = DiscTool(5e-3, contact), np.array([1e-3])
+    for layers, expected in ((silicone(), 0), (silicone(thickness), 1)):
+        found = PlateWave(layers, tool, hole_radius=30e-3, reach=2e-3).run("depth", np.ones(1), depth).warnings
+        assert len(found) == expected
+    assert f"its thickness, {1e3 * thickness:g} mm" in found[0]
+    deep = PlateWave(silicone(), tool, hole_radius=30e-3, reach=2e-3).run("depth", np.ones(1), np.array([9.5e-3]))
+    assert len(deep.warnings) == (contact == "uniform_pressure")
+
+
 def test_motion_follows_the_first_frequency(silicone):
     """A light step of force rings about its static depth with the first period."""
     plate = PlateWave(
