@@ -25,6 +25,7 @@ def cases() -> tuple[Case, ...]:
     return (
         *punches,
         Case(f"wave_layered/{STACK}", layered.SOURCE, interfaces),
+        Case(f"wave_disc/{STACK}", layered.SOURCE, partial(interfaces, "disc")),
         Case("wave_creep/held", VOIGT.format(load="held"), partial(creep, held)),
         Case("wave_creep/ramp", VOIGT.format(load="ramped"), partial(creep, ramped)),
     )
@@ -38,9 +39,9 @@ def punch(ratio: float) -> tuple[Quantity, ...]:
     return (Quantity("", hayes.KAPPA[ratio], hayes.kappa(force), "", STATIC_PERCENT, wave.unknowns),)
 
 
-def interfaces() -> tuple[Quantity, ...]:
+def interfaces(domain: str = "rectangle") -> tuple[Quantity, ...]:
     """Deflection on the axis at the surface and at each interface of skin on a rigid base."""
-    wave = _skin(Damping(), "quasi_static")
+    wave = _skin(Damping(), "quasi_static", domain)
     force = layered.PRESSURE * np.pi * layered.RADIUS**2
     found = wave.run("force", np.ones(1), np.array([force])).top_deflection[0]
     exact = axis_deflection(layered.STACKS[STACK], layered.RADIUS, layered.PRESSURE)
@@ -70,8 +71,8 @@ def creep(load: Callable[[Array], tuple[Array, Array]]) -> tuple[Quantity, ...]:
     return (Quantity("", 1e3 * float(reference[worst]), 1e3 * float(found[worst]), "mm", CREEP_PERCENT, wave.unknowns),)
 
 
-def _skin(damping: Damping, integrator: str) -> LayeredWave:
+def _skin(damping: Damping, integrator: str, domain: str = "rectangle") -> LayeredWave:
     stack = layered.STACKS[STACK]
     rows = zip(stack.thickness.tolist(), stack.youngs_modulus.tolist(), stack.poisson_ratio.tolist(), strict=True)
     layers = [WaveLayer(f"layer {n}", t, DENSITY, modulus, nu) for n, (t, modulus, nu) in enumerate(rows)]
-    return LayeredWave(layers, DiscTool(layered.RADIUS), integrator=integrator, damping=damping)
+    return LayeredWave(layers, DiscTool(layered.RADIUS), domain=domain, integrator=integrator, damping=damping)
