@@ -14,6 +14,8 @@ from wavemodel.large_press.path import PressPath
 
 NEGLECTED = 1e-4
 """Fields that add less than this share of the largest are left out."""
+LEAST = 0.02
+"""The law ends at the level from which on its depth per force rises by less than this share of the initial one."""
 REFINEMENTS = 50
 CLOSE = 1e-14
 SLACK = 1.0 + 1e-12
@@ -64,8 +66,15 @@ class LargePress:
 
     @cached_property
     def _tangent(self) -> FloatArray:
-        """(B,) change of the weights per force at the last level, 1/N."""
-        return np.asarray(self._weights(self.force[-1], 1))
+        """(B,) change of the weights per force at the last level, 1/N.
+
+        Near a largest force the levels crowd, and the spline may turn back at its end: then that of the last two.
+        """
+        along = np.asarray(self._weights(self.force[-1], 1))
+        if self.compliance + float(along @ self.depths) > 0.0:
+            return along
+        before, after = self._weights(self.force[-2:])
+        return np.asarray((after - before) / (self.force[-1] - self.force[-2]))
 
     @cached_property
     def _last_compliance(self) -> float:
@@ -176,6 +185,13 @@ class LargePress:
         return out
 
 
+def _rising_levels(path: PressPath, compliance: float) -> int:
+    """How many levels, from the first, go deeper with the force."""
+    depth = path.depth + path.force * (compliance - path.linear_depth)
+    stuck = np.diff(depth) < LEAST * compliance * np.diff(path.force)
+    return int(np.argmax(stuck)) + 1 if stuck.any() else path.force.size
+
+
 def large_press(
     path: PressPath, wavenumber: FloatArray, compliance: float, rigid_radius: float, deepest: float = 0.0
 ) -> LargePress:
@@ -194,6 +210,7 @@ def large_press(
     deepest
         How deep the law goes on along its tangent, m; no deeper than the path unless it is more.
     """
+    path = path.first(_rising_levels(path, compliance))
     added = path.deflection - path.force[:, None, None] * path.linear_deflection
     deeper = path.depth - path.force * path.linear_depth
     table = np.concatenate([added.reshape(path.force.size, -1), deeper[:, None]], axis=1)

@@ -1,6 +1,6 @@
 """The path of a large press: states of equilibrium from no load to a depth."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -41,6 +41,11 @@ class PressPath:
     linear_depth: float
     linear_deflection: FloatArray
     linear_outward: FloatArray
+
+    def first(self, levels: int) -> "PressPath":
+        """Return its first levels."""
+        kept = {name: getattr(self, name)[:levels] for name in ("force", "depth", "deflection", "outward")}
+        return replace(self, **kept)
 
 
 def follow(equilibrium: Equilibrium, height: float, reach: float) -> PressPath:

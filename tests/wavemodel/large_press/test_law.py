@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from wavemodel import DiscTool, LayeredWave, WaveError
+from wavemodel import DiscTool, LayeredWave, WaveError, WaveLayer
 
 DEPTH = np.linspace(0.0, 4.0e-3, 60)
 
@@ -58,6 +58,17 @@ def test_beyond_its_path_the_law_is_a_smooth_straight_line(deep):
     before = (deep.force[-1] - deep.force_at(np.array(end - 1e-6))) / 1e-6
     assert (force[1] - force[0]) / (depth[1] - depth[0]) == pytest.approx(before, rel=1e-3)
     assert force[-1] == pytest.approx(deep.strongest)
+
+
+def test_past_a_largest_force_the_law_still_rises():
+    """A pressure on a thin stiff sheet: its path ends at 0.14 of the thickness, where the spline turns back."""
+    sheet = WaveLayer("silicone", 4e-3, 1100.0, 4e5, 0.49)
+    law = LayeredWave([sheet], DiscTool(5e-3), large_press="deep").law.large
+    assert law.followed < 0.2 * 4e-3 < law.deepest
+    force = law.force_at(np.linspace(0.0, law.deepest, 50))
+    assert np.all(np.diff(force) > 0.0)
+    assert law.strongest == pytest.approx(force[-1])
+    assert law.strongest > law.force[-1]
 
 
 @pytest.mark.parametrize("followed", ["law", "deep"])
