@@ -1,4 +1,4 @@
-"""The set-up of a model by its geometry."""
+"""The set-up of a model by its geometry; what three dimensions need is loaded with the first such model."""
 
 from __future__ import annotations
 
@@ -10,11 +10,8 @@ from fem.equations import set_up
 from fem.errors import FemError
 from fem.fields import FieldRecovery
 from fem.layout import lay_out
-from fem.layout_block import lay_out_block
-from fem.layout_surface import lay_out_surface
 from fem.model import Model
 from fem.problem import Problem
-from fem.setup_solid import solid_model
 from fem.solving import NewtonSettings
 from fem.supports import SUPPORT_MODELS
 
@@ -28,12 +25,20 @@ def build_model(problem: Problem, linear_solver: str) -> Model:
             f"available are {', '.join(sorted(CONTACT_MODELS))}"
         )
     warnings = contact.check(problem)
-    if problem.geometry == "block":
+    if problem.geometry == "axisymmetric":
+        return _axisymmetric_model(problem, linear_solver, warnings)
+    return _solid_model(problem, linear_solver, warnings)
+
+
+def _solid_model(problem: Problem, linear_solver: str, warnings: tuple[str, ...]) -> Model:
+    from fem.layout_block import lay_out_block
+    from fem.layout_surface import lay_out_surface
+    from fem.setup_solid import solid_model
+
+    if problem.surface is None:
         return solid_model(problem, lay_out_block(problem), linear_solver, warnings)
-    if problem.surface is not None:
-        mesh = lay_out_surface(problem, problem.surface)
-        return solid_model(problem, mesh, linear_solver, (*warnings, *mesh.remarks))
-    return _axisymmetric_model(problem, linear_solver, warnings)
+    mesh = lay_out_surface(problem, problem.surface)
+    return solid_model(problem, mesh, linear_solver, (*warnings, *mesh.remarks))
 
 
 def _axisymmetric_model(problem: Problem, linear_solver: str, warnings: tuple[str, ...]) -> Model:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fem.checkpoint import Checkpoint, fingerprint
 from fem.contact_system import ContactSystem
@@ -15,10 +16,12 @@ from fem.mesh import AnyMesh
 from fem.nonlinear_run import run_nonlinear
 from fem.problem import Problem
 from fem.record import Record
-from fem.solid_fields import SolidFieldRecovery
 from fem.solution import Solution, StepReport
 from fem.solving import Equilibrium, NewtonSettings
 from fem.threads import suited_threads
+
+if TYPE_CHECKING:
+    from fem.solid_fields import SolidFieldRecovery
 
 PULLING = "the load history pulls (negative values): the contact is tied to the surface and cannot lift off"
 

@@ -2,8 +2,8 @@
 
 Interpolation or extrapolation over the load through the nearest known states, of second order, or of a higher one as
 long as each further state changes the prediction much less than the one before: high on a smooth path, low where the
-path has a kink. On the way back of a load history the states of the way up are near, so the prediction is good; it is still
-corrected by Newton like any other.
+path has a kink. On the way back of a load history the states of the way up are near, so the prediction is good; it is
+still corrected by Newton like any other.
 """
 
 from __future__ import annotations
