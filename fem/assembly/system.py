@@ -205,10 +205,10 @@ class System:
         components = self.geometry.components
         moduli = self.laws.tangent(state.deformation)
         moduli[components.cofactor_pairs] += state.pressure_at_points * state.deformation.cofactor_derivative
-        k, m = components.pairs
         cofactor = state.deformation.cofactor
-        moduli += (self.point_modulus * cofactor)[k] * cofactor[m]
-        packed = self.geometry.stiffness(moduli * self.geometry.weight)
+        components.add_products(moduli, self.point_modulus * cofactor, cofactor)
+        moduli *= self.geometry.weight
+        packed = self.geometry.stiffness(moduli)
         self._condense(packed, state.coupling)
         return self.scatter.matrix(packed)
 
