@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fem.assembly import gauss_geometry
@@ -14,6 +16,7 @@ from fem.model import Model
 from fem.problem import Problem
 from fem.solving import NewtonSettings
 from fem.supports import SUPPORT_MODELS
+from fem.supports.clamp import clamp_sliding, sliding_nodes
 
 
 def build_model(problem: Problem, linear_solver: str) -> Model:
@@ -45,9 +48,12 @@ def _axisymmetric_model(problem: Problem, linear_solver: str, warnings: tuple[st
     mesh = lay_out(problem)
     conditions = CONTACT_MODELS[problem.tool.contact].conditions(mesh, problem)
     support = SUPPORT_MODELS[problem.support.kind].fixed(mesh, problem)
-    fixed = np.stack((support | mesh.axis | conditions.held, support))
+    radial = (support & ~sliding_nodes(mesh, problem)) | mesh.axis | conditions.held
     geometry = gauss_geometry(mesh)
-    equilibrium = set_up(problem, mesh, geometry, fixed, conditions, linear_solver)
+    equilibrium = set_up(problem, mesh, geometry, np.stack((radial, support)), conditions, linear_solver)
+    sliding = clamp_sliding(mesh, problem, equilibrium.system.numbering)
+    if sliding is not None:
+        equilibrium = replace(equilibrium, system=equilibrium.system.rubbing(sliding))
     system = equilibrium.system
     recovery = FieldRecovery(mesh, system.laws, geometry, system.point_modulus, problem.kinematics == "finite")
     return Model(problem, mesh, equilibrium, recovery, NewtonSettings(), warnings)
