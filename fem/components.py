@@ -96,6 +96,11 @@ class Components(ABC):
             full[..., i, j] = values[k]
         return full
 
+    def add_products(self, packed: FloatArray, A: FloatArray, B: FloatArray) -> None:
+        """Add A[k] B[m] (components, *points) to `packed` (pairs, *points), pair by pair, in place."""
+        for n, (k, m) in enumerate(zip(*self.pairs, strict=True)):
+            packed[n] += A[k] * B[m]
+
     @cached_property
     def row_pairs(self) -> tuple[IntArray, IntArray]:
         """Packed positions of the pairs (i j, i l) of one row, and the component (j, l) of each."""

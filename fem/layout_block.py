@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.assembly import SOLID_ELEMENTS
+from fem.assembly.solid_element import SOLID_ELEMENTS
 from fem.errors import FemError
 from fem.mesh import DiscGrid, Feature, Sizing, SolidMesh, build_block, graded_line
 from fem.problem import Problem

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fem.checkpoint import Checkpoint, fingerprint
 from fem.contact_system import ContactSystem
@@ -15,12 +16,16 @@ from fem.mesh import AnyMesh
 from fem.nonlinear_run import run_nonlinear
 from fem.problem import Problem
 from fem.record import Record
-from fem.solid_fields import SolidFieldRecovery
 from fem.solution import Solution, StepReport
 from fem.solving import Equilibrium, NewtonSettings
 from fem.threads import suited_threads
 
+if TYPE_CHECKING:
+    from fem.solid_fields import SolidFieldRecovery
+
 PULLING = "the load history pulls (negative values): the contact is tied to the surface and cannot lift off"
+
+COARSER = "a coarser mesh, whose elements at the tool's edge fold later, may follow a deeper press"
 
 LIFTING = (
     "the load history pulls (negative values): the tool comes off once it pulls more than its adhesion force; a depth "
@@ -99,7 +104,14 @@ class Model:
             if self.problem.kinematics == "linear":
                 return run_linear(record, load, warnings, on_step)
             kept = Checkpoint(Path(checkpoint), fingerprint(self.problem, self.mesh, load)) if checkpoint else None
-            return run_nonlinear(record, load, self.newton, warnings, on_step, kept)
+            return self._advised(run_nonlinear(record, load, self.newton, warnings, on_step, kept))
+
+    def _advised(self, solution: Solution) -> Solution:
+        """The solution; a press that the mesh could not follow with what may go further."""
+        failure = solution.failure
+        if failure is None or self.problem.discretisation.density == "coarse" or failure.target <= failure.reached:
+            return solution
+        return replace(solution, failure=replace(failure, reason=f"{failure.reason}; {COARSER}"))
 
     @property
     def _pulling(self) -> str:

@@ -15,6 +15,10 @@ from fem.solution import Failure, Solution, StepReport
 from fem.solving import Equilibrium, NewtonSettings, State, Stepper, settle
 
 LEAST_SHARE_OF_PEAK = 1e-3
+SLID = (
+    "the sheet slides on all of the plate, up to the outer border, which holds it: the answer depends on where that "
+    "is; set the radius of the mesh to that of the clamp"
+)
 
 
 def run_nonlinear(
@@ -64,7 +68,10 @@ def run_nonlinear(
         advance = stepper.advance(value, time)
         if advance.reason:
             return record.solution(Failure(n + 1, time, load.control, advance.value, value, advance.reason), warnings)
-        _keep(record, stepper.problem.system, time, advance.state)
+        system = stepper.problem.system
+        _keep(record, system, time, advance.state)
+        if system.sliding is not None and system.sliding.everywhere(advance.state.y) and SLID not in warnings:
+            warnings = (*warnings, SLID)
         if checkpoint is not None:
             checkpoint.write(_progress(record, stepper))
         if on_step is not None:

@@ -24,6 +24,7 @@ GEOMETRIES = ("axisymmetric", "block", "surface")
 TOUCHING = ("rigid_frictionless", "rigid_frictional")
 LARGEST_FRICTION, LARGEST_ADHESION = 10.0, 1e3  # adhesion in N
 LARGEST_PRETENSION = 1e8  # Pa
+LARGEST_SHEAR_LIMIT = 1e12  # Pa
 LARGEST_TILT = math.radians(30.0)
 
 
@@ -133,10 +134,14 @@ class Support:
         or "half_space" (the last layer is endless).
     hole_radius
         In m, above 0; needed for "hole", and only there.
+    clamp_shear_limit
+        For "hole" in finite strain and axial symmetry: shear stress in Pa, 0 to 1e12, per area at rest, at which the
+        lower face slides on the plate; it stays on the plate, and is held at the outer border. None: it does not slide.
     """
 
     kind: str
     hole_radius: float | None = None
+    clamp_shear_limit: float | None = None
 
     def __post_init__(self) -> None:
         require_one_of("support.kind", self.kind, SUPPORTS)
@@ -145,6 +150,16 @@ class Support:
             raise FemError(f"support.hole_radius = {state}: needed for the support 'hole', and only there")
         if self.hole_radius is not None:
             require_positive("support.hole_radius", self.hole_radius, "m")
+        self._require_clamp()
+
+    def _require_clamp(self) -> None:
+        limit = self.clamp_shear_limit
+        if limit is None:
+            return
+        if self.kind != "hole":
+            raise FemError(f"support.clamp_shear_limit: not with the support {self.kind!r}, only with 'hole'")
+        if not 0.0 <= limit <= LARGEST_SHEAR_LIMIT:
+            raise FemError(f"support.clamp_shear_limit = {limit:g} Pa: must be from 0 to {LARGEST_SHEAR_LIMIT:g} Pa")
 
 
 @dataclass(frozen=True)
@@ -227,6 +242,7 @@ class Problem:
         require_fibre_symmetry({layer.name: layer.material for layer in self.layers}, self.geometry)
         self._require_pretension()
         self._require_room()
+        self._require_sliding()
         self._require_three_dimensions()
 
     def _require_finite_thickness(self) -> None:
@@ -259,6 +275,13 @@ class Problem:
             least, why = hole, "support.hole_radius"
         if radius is not None and radius <= least:
             raise FemError(f"discretisation.radius = {radius:g} m: must be above {why} = {least:g} m")
+
+    def _require_sliding(self) -> None:
+        slides = self.support.clamp_shear_limit is not None
+        if slides and (self.kinematics, self.geometry) != ("finite", "axisymmetric"):
+            raise FemError(
+                "support.clamp_shear_limit: only with kinematics = 'finite' and geometry = 'axisymmetric'; leave it out"
+            )
 
     def _require_three_dimensions(self) -> None:
         tool = self.tool

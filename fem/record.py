@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,9 +13,11 @@ from fem.assembly import System
 from fem.deformation import Deformation
 from fem.fields import FieldRecovery
 from fem.mesh import AnyMesh
-from fem.solid_fields import SolidFieldRecovery
 from fem.solution import Failure, Solution
 from fem.solving import Equilibrium, State
+
+if TYPE_CHECKING:
+    from fem.solid_fields import SolidFieldRecovery
 
 
 @dataclass

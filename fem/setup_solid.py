@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.assembly import solid_geometry
+from fem.assembly.solid_geometry import solid_geometry
 from fem.contact.solid import SOLID_CONTACTS
 from fem.equations import set_up
 from fem.errors import FemError

@@ -8,7 +8,9 @@ from functools import cached_property
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.assembly import SOLID_ELEMENTS, ElementLaws, SolidGeometry, solid_middle
+from fem.assembly import ElementLaws
+from fem.assembly.solid_element import SOLID_ELEMENTS
+from fem.assembly.solid_geometry import SolidGeometry, solid_middle
 from fem.deformation import Deformation
 from fem.fields import Fields, stresses
 from fem.mesh import SolidMesh

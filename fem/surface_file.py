@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from fem.mesh import Surface
+    from fem.mesh.surface import Surface
 
 
 def read_surface(path: str | Path, unit: str) -> Surface:
@@ -24,6 +24,6 @@ def read_surface(path: str | Path, unit: str) -> Surface:
     FemError
         If the file cannot be read as a surface or has no triangles.
     """
-    from fem.mesh import read_surface as read
+    from fem.mesh.surface import read_surface as read
 
     return read(path, unit)

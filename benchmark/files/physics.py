@@ -52,8 +52,8 @@ class Physics(FileModel):
     interface_shear_limit : float or None
         Shear stress at which layers begin to slide on each other, Pa: the interface that comes to it first.
     clamp_shear_limit : float or None
-        Shear stress at which the clamped rim of a sheet over a hole begins to slide, Pa; no model of this version has
-        it.
+        Shear stress at which a sheet over a hole begins to slide on the plate round it, Pa; part of the finite
+        elements in finite strain and axial symmetry.
     friction_coefficient : float or None
         Between tool and tissue; needed by a `rigid_frictional` tool.
     adhesion_force : float or None

@@ -12,7 +12,7 @@ FRICTION = "friction_coefficient"
 
 REASONS = {
     "interface_shear_limit": "the layered wave on a base has it",
-    "clamp_shear_limit": "no model of this version has it",
+    "clamp_shear_limit": "only the finite elements have it, for a hole in axial symmetry",
 }
 """Why an option is in no model."""
 

@@ -22,7 +22,7 @@ from benchmark.models.result import (
     silent,
 )
 
-OPTIONS = ("pretension", "adhesion_force")
+OPTIONS = ("pretension", "adhesion_force", "clamp_shear_limit")
 
 
 class FemModel:
@@ -41,6 +41,7 @@ class FemModel:
         self._scenario = scenario
         self._every_field = every_field
         _refuse_contact(scenario)
+        _refuse_clamp(scenario)
         try:
             self._model = fem.prepare(problem_of(scenario))
         except fem.FemError as error:
@@ -114,6 +115,17 @@ def _refuse_contact(scenario: Scenario) -> None:
         raise UncoveredError("a rigid_bonded tool with a rounded edge is not part of this solver; a sharp edge is")
 
 
+def _refuse_clamp(scenario: Scenario) -> None:
+    """Refuse a clamp that slides where this solver has none."""
+    options = scenario.fem
+    if scenario.physics.clamp_shear_limit is None:
+        return
+    if (scenario.support.kind, options.kinematics, options.geometry) != ("hole", "finite", "axisymmetric"):
+        raise UncoveredError(
+            "the option physics.clamp_shear_limit is part of a hole in finite strain and axisymmetric geometry only"
+        )
+
+
 def problem_of(scenario: Scenario) -> fem.Problem:
     """The scenario in the solver's terms.
 
@@ -137,7 +149,9 @@ def problem_of(scenario: Scenario) -> fem.Problem:
             scenario.physics.adhesion_force or 0.0,
         ),
         support=fem.Support(
-            scenario.support.kind, scenario.support.hole_radius if scenario.support.kind == "hole" else None
+            scenario.support.kind,
+            scenario.support.hole_radius if scenario.support.kind == "hole" else None,
+            scenario.physics.clamp_shear_limit,
         ),
         kinematics=options.kinematics,
         discretisation=fem.Discretisation(options.mesh, options.radius),

@@ -10,7 +10,7 @@ import numpy as np
 
 import fem
 from benchmarks.peers.case import LAYERS, POISSON, Case
-from fem.assembly import SOLID_ELEMENTS
+from fem.assembly.solid_element import SOLID_ELEMENTS
 from fem.contact.solid import uniform_pressure
 from fem.contact.uniform_pressure import UniformPressure
 from fem.layout import lay_out

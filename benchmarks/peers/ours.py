@@ -11,30 +11,43 @@ import numpy as np
 
 import fem
 from benchmarks.peers.case import LAYERS, POISSON, Case, load_case
-from fem.assembly import System, build_scatter, element_laws, gauss_geometry, number_unknowns, solid_geometry
-from fem.linear_run import unit_state
+from fem.assembly import (
+    ElementGeometry,
+    System,
+    build_scatter,
+    element_laws,
+    gauss_geometry,
+    number_unknowns,
+)
 from fem.linear_solver import make_solver
 from fem.mesh import Mesh, SolidMesh
 from fem.solving import Equilibrium, NewtonSettings, Stepper
 from fem.threads import suited_threads
 
 
+def hexahedra(case: Case) -> ElementGeometry:
+    """hex20 with 8 Gauss points."""
+    from fem.assembly.solid_geometry import solid_geometry  # the axisymmetric case does without
+
+    sets = (np.zeros(len(case.nodes), dtype=np.bool_),) * 5
+    rows = (np.array([0]),), np.array([0])
+    return solid_geometry(SolidMesh(case.nodes, case.elements, "hex20", case.layer, (0.0, 0.0), 1, *sets, *rows))
+
+
+def quadrilaterals(case: Case) -> ElementGeometry:
+    """Axisymmetric Q2 with one constant pressure."""
+    sets = (np.zeros(len(case.nodes), dtype=np.bool_),) * 4
+    full = gauss_geometry(Mesh(case.nodes, case.elements, case.layer, *sets, (np.array([0]),)))
+    return replace(full, pressure=full.pressure[:1], pressure_transform=full.pressure_transform[:1, :1])
+
+
 def equations(case: Case) -> Equilibrium:
-    """The equations with the peers' elements: hex20 reduced, or Q2 with one constant pressure."""
-    nothing = np.zeros(len(case.nodes), dtype=np.bool_)
-    if case.kind == "linear":
-        law: type = fem.LinearElastic
-        sets = (nothing,) * 5
-        mesh = SolidMesh(
-            case.nodes, case.elements, "hex20", case.layer, (0.0, 0.0), 1, *sets, (np.array([0]),), np.array([0])
-        )
-        geometry = solid_geometry(mesh)
-    else:
-        law = fem.NeoHookean
-        full = gauss_geometry(Mesh(case.nodes, case.elements, case.layer, *(nothing,) * 4, (np.array([0]),)))
-        geometry = replace(full, pressure=full.pressure[:1], pressure_transform=full.pressure_transform[:1, :1])
+    """The equations with the peers' elements."""
+    linear = case.kind == "linear"
+    geometry = hexahedra(case) if linear else quadrilaterals(case)
+    law: type = fem.LinearElastic if linear else fem.NeoHookean
     laws = element_laws(tuple(law(E, POISSON) for _, E in LAYERS), case.layer)
-    numbering = number_unknowns(case.fixed, nothing)
+    numbering = number_unknowns(case.fixed, np.zeros(len(case.nodes), dtype=np.bool_))
     scatter = build_scatter(case.elements, numbering)
     solver = make_solver("auto", scatter.indptr, scatter.indices)
     nodal = np.zeros(case.fixed.shape)
@@ -46,6 +59,8 @@ def solve(case: Case) -> np.ndarray:
     """Nodal displacements (N, dim) in m under the full load."""
     problem = equations(case)
     if case.kind == "linear":
+        from fem.small_strain import unit_state  # the other case does without
+
         return problem.system.numbering.expand(unit_state(problem)[0].y).T
     stepper = Stepper(problem, "force", 1.0, NewtonSettings())
     for step in range(1, case.steps + 1):

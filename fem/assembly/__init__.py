@@ -1,16 +1,13 @@
-"""Discrete equations of mixed elements."""
+"""Discrete equations of mixed elements; those in three dimensions are in the modules with "solid" in their names."""
 
 from fem.assembly.element_geometry import ElementGeometry
 from fem.assembly.geometry import Geometry, gauss_geometry, point_geometry
 from fem.assembly.laws import ElementLaws, element_laws
 from fem.assembly.memory import Memory, Prony, prony_of
 from fem.assembly.scatter import Numbering, Scatter, build_scatter, number_unknowns
-from fem.assembly.solid_element import SOLID_ELEMENTS, SolidElement
-from fem.assembly.solid_geometry import SolidGeometry, solid_geometry, solid_middle
 from fem.assembly.system import Evaluation, System
 
 __all__ = [
-    "SOLID_ELEMENTS",
     "ElementGeometry",
     "ElementLaws",
     "Evaluation",
@@ -19,8 +16,6 @@ __all__ = [
     "Numbering",
     "Prony",
     "Scatter",
-    "SolidElement",
-    "SolidGeometry",
     "System",
     "build_scatter",
     "element_laws",
@@ -28,6 +23,4 @@ __all__ = [
     "number_unknowns",
     "point_geometry",
     "prony_of",
-    "solid_geometry",
-    "solid_middle",
 ]

@@ -15,7 +15,7 @@ import numpy as np
 from fem.arrays import FloatArray
 from fem.components import Components
 
-ELEMENTS_AT_ONCE = 256  # so that the pulled back moduli of a three-dimensional mesh stay small
+ELEMENTS_AT_ONCE = 64  # so that their pulled back moduli stay in the cache
 
 
 class ElementGeometry(ABC):

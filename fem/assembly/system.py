@@ -22,6 +22,7 @@ from fem.assembly.element_geometry import ELEMENTS_AT_ONCE, ElementGeometry
 from fem.assembly.laws import ElementLaws
 from fem.assembly.memory import Memory
 from fem.assembly.scatter import Numbering, Scatter, packed_positions
+from fem.assembly.sliding import Sliding
 from fem.deformation import Deformation
 
 
@@ -44,7 +45,9 @@ class Evaluation:
     element_force
         Nodal forces (18, E) in N with the pressure the volume change asks for.
     residual
-        Their sum on the unknowns (n,).
+        Their sum on the unknowns (n,), with the friction.
+    friction_stiffness
+        Derivative (m,) in N/m of the friction on the unknowns that rub.
     """
 
     deformation: Deformation
@@ -54,6 +57,7 @@ class Evaluation:
     mismatch: FloatArray
     element_force: FloatArray
     residual: FloatArray
+    friction_stiffness: FloatArray
 
     @property
     def consistent_pressure(self) -> FloatArray:
@@ -103,11 +107,12 @@ class System:
         shape = (len(geometry.components.positions), *geometry.weight.shape)
         self.memory = None if laws.prony is None else Memory.of_rest(laws.prony, shape)
         self._duration = 0.0
+        self.sliding: Sliding | None = None
 
     @property
     def remembers(self) -> bool:
         """Whether a state depends on the states before it."""
-        return self.memory is not None
+        return self.memory is not None or self.sliding is not None
 
     def advanced(self, duration: float) -> System:
         """The equations of a step that takes `duration` s from the last accepted state."""
@@ -119,10 +124,11 @@ class System:
 
     def accepted(self, y: FloatArray) -> System:
         """The equations after a step that ends at unknowns y (n,); evaluated there they give its forces."""
+        slid = self if self.sliding is None else self.rubbing(self.sliding.after(y))
         if self.memory is None:
-            return self
+            return slid
         deformation = Deformation(self.geometry.components, self.geometry.gradient(self.element_displacement(y)))
-        other = copy.copy(self)
+        other = copy.copy(slid)
         other.memory = self.memory.after(self._duration, self.laws.second_stress(deformation))
         return other.advanced(0.0)
 
@@ -135,6 +141,12 @@ class System:
         """The same equations with other laws of the same moduli at rest."""
         other = copy.copy(self)
         other.laws = laws
+        return other
+
+    def rubbing(self, sliding: Sliding) -> System:
+        """The same equations with friction on a fixed body."""
+        other = copy.copy(self)
+        other.sliding = sliding
         return other
 
     def displaced(self, elements: IntArray, prescribed: FloatArray) -> System:
@@ -151,10 +163,11 @@ class System:
 
     @property
     def plain(self) -> System:
-        """The same equations without prescribed displacements."""
-        if self._prescribed is None:
+        """The same equations without prescribed displacements and without friction on a fixed body."""
+        if self._prescribed is None and self.sliding is None:
             return self
         other = copy.copy(self)
+        other.sliding = None
         other.numbering, other._prescribed = replace(self.numbering, prescribed=None), None
         return other
 
@@ -195,22 +208,32 @@ class System:
         coupling = self.geometry.coupling(deformation.cofactor * weight)
         stress = self.laws.stress(deformation) + at_points * deformation.cofactor
         force = self.geometry.forces(stress * weight) + np.einsum("nie,ie->ne", coupling, mismatch)
-        residual = self.scatter.vector(force)
+        residual, friction_stiffness = self._with_friction(self.scatter.vector(force), y)
         if not np.isfinite(residual).all():
             return None
-        return Evaluation(deformation, pressure, at_points, coupling, mismatch, force, residual)
+        return Evaluation(deformation, pressure, at_points, coupling, mismatch, force, residual, friction_stiffness)
+
+    def _with_friction(self, residual: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Forces (n,) with the friction at unknowns y (n,), and the friction's derivative (m,)."""
+        if self.sliding is None:
+            return residual, np.zeros(0)
+        residual[self.sliding.unknowns] += self.sliding.force(y)
+        return residual, self.sliding.stiffness(y)
 
     def tangent(self, state: Evaluation) -> FloatArray:
         """Upper triangle (nnz,) of the tangent, the pressure condensed."""
         components = self.geometry.components
         moduli = self.laws.tangent(state.deformation)
         moduli[components.cofactor_pairs] += state.pressure_at_points * state.deformation.cofactor_derivative
-        k, m = components.pairs
         cofactor = state.deformation.cofactor
-        moduli += (self.point_modulus * cofactor)[k] * cofactor[m]
-        packed = self.geometry.stiffness(moduli * self.geometry.weight)
+        components.add_products(moduli, self.point_modulus * cofactor, cofactor)
+        moduli *= self.geometry.weight
+        packed = self.geometry.stiffness(moduli)
         self._condense(packed, state.coupling)
-        return self.scatter.matrix(packed)
+        out = self.scatter.matrix(packed)
+        if self.sliding is not None:
+            out[self.scatter.indptr[self.sliding.unknowns]] += state.friction_stiffness
+        return out
 
     def _condense(self, packed: FloatArray, coupling: FloatArray) -> None:
         """Add what the eliminated pressure does to the packed stiffness."""

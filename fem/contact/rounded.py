@@ -12,6 +12,7 @@ from fem.contact.punch import Punch
 from fem.contact.rigid import RigidFrictionless
 from fem.errors import FemError
 from fem.mesh import Mesh
+from fem.mesh.rows import ring_areas
 from fem.problem import Problem
 
 REACH = 1.5  # radius in tool radii up to which nodes may touch the punch
@@ -85,12 +86,8 @@ def _areas(mesh: Mesh, reach: float) -> FloatArray:
     """Area (N,) in m2 of each node of the top face up to a radius in m, by Simpson's rule; 0 elsewhere."""
     top = mesh.interfaces[0]
     r = mesh.nodes[top, 0]
-    width = (r[2::2] - r[:-2:2]) / 6.0
-    area = np.zeros(len(top))
-    np.add.at(area, np.arange(0, len(top) - 2, 2), width * r[:-2:2])
-    np.add.at(area, np.arange(1, len(top) - 1, 2), 4.0 * width * r[1:-1:2])
-    np.add.at(area, np.arange(2, len(top), 2), width * r[2::2])
+    area = ring_areas(r)
     area[0] = AXIS_SHARE * area[1]
     out = np.zeros(len(mesh.nodes))
-    out[top[r <= reach]] = 2.0 * np.pi * area[r <= reach]
+    out[top[r <= reach]] = area[r <= reach]
     return out

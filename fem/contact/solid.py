@@ -9,9 +9,10 @@ import numpy as np
 import skfem
 
 from fem.arrays import FloatArray
-from fem.assembly import SOLID_ELEMENTS
+from fem.assembly.solid_element import SOLID_ELEMENTS
 from fem.contact.conditions import Conditions
-from fem.mesh import SolidMesh, SurfaceMesh
+from fem.mesh import SolidMesh
+from fem.mesh.surface import SurfaceMesh
 
 INSIDE = 1.0 + 1e-9
 

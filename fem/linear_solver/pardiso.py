@@ -15,6 +15,9 @@ from fem.linear_solver.symmetric import DiagonalScaling, SingularMatrixError, re
 
 REAL_SYMMETRIC_INDEFINITE = -2
 ANALYSE, FACTORISE, SOLVE = 11, 22, 33
+# iparm by its number from 0: own values, METIS, two steps of refinement only where pivots were perturbed, by 1e-8,
+# Bunch-Kaufman pivots. By default refinement takes its two steps every time.
+CONTROLS = {0: 1, 1: 2, 7: 0, 9: 8, 20: 1}
 SMALL = 10_000  # unknowns below which threads wait for each other longer than they work
 
 
@@ -79,6 +82,7 @@ def _new_solver() -> pypardiso.PyPardisoSolver:
     solver = copy.copy(pypardiso.ps)
     solver.pt = np.zeros_like(solver.pt)
     solver.iparm = np.zeros_like(solver.iparm)
+    solver.iparm[list(CONTROLS)] = list(CONTROLS.values())
     solver.set_matrix_type(REAL_SYMMETRIC_INDEFINITE)
     return solver
 

@@ -116,14 +116,13 @@ class FibreLaw:
     def tangent(self, deformation: Deformation, parameters: FloatArray) -> FloatArray:
         """Derivative dP/dF, packed upper triangle (pairs, *points), in Pa."""
         ground, families = self._parts(parameters)
-        k, m = deformation.components.pairs
         out = self.ground.tangent(deformation, ground)
         for k1, k2, *structure in families:
             tensor = _tensor(deformation, structure)
             slope, bend = _slopes(_strain(deformation, tensor), k1, k2)
             gradient = structure_gradient(deformation, tensor)
             out += structure_curvature(deformation, tensor, slope)
-            out += (bend * gradient)[k] * gradient[m]
+            deformation.components.add_products(out, bend * gradient, gradient)
         return out
 
     def _parts(self, parameters: FloatArray) -> tuple[FloatArray, list[FloatArray]]:

@@ -33,8 +33,7 @@ class FirstInvariantLaw(ABC):
     def tangent(self, deformation: Deformation, parameters: FloatArray) -> FloatArray:
         """Derivative dP/dF, packed upper triangle (pairs, *points), in Pa."""
         slope, bend = self.slopes(deformation.isochoric_invariant_change, parameters)
-        k, m = deformation.components.pairs
         gradient = first_gradient(deformation)
         out = first_curvature(deformation, slope)
-        out += (bend * gradient)[k] * gradient[m]
+        deformation.components.add_products(out, bend * gradient, gradient)
         return out

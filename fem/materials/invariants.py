@@ -127,10 +127,9 @@ def add_projection(
     invariant, gradient
         I (*points) and G (components, *points).
     """
-    k, m = d.components.pairs
     share = (0.5 * power) * factor * invariant / d.J
     b = power * factor / d.J
     mixed = ((1.0 + power) * share / d.J) * d.cofactor - b * gradient
-    out += mixed[k] * d.cofactor[m]
-    out -= (b * d.cofactor)[k] * gradient[m]
+    d.components.add_products(out, mixed, d.cofactor)
+    d.components.add_products(out, -b * d.cofactor, gradient)
     out[d.components.cofactor_pairs] -= share * d.cofactor_derivative

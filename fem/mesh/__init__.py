@@ -1,4 +1,4 @@
-"""Graded meshes of layered specimens."""
+"""Graded meshes of layered specimens; those of bodies from a surface are in :mod:`fem.mesh.surface`."""
 
 from typing import TypeAlias
 
@@ -8,7 +8,6 @@ from fem.mesh.grading import Feature, Sizing, graded_line
 from fem.mesh.quads import Mesh
 from fem.mesh.solid import SolidMesh
 from fem.mesh.structured import Fan, build_mesh
-from fem.mesh.surface import MeshQuality, Surface, SurfaceMesh, build_surface_mesh, check_surface, read_surface
 
 AnyMesh: TypeAlias = Mesh | SolidMesh
 
@@ -18,15 +17,9 @@ __all__ = [
     "Fan",
     "Feature",
     "Mesh",
-    "MeshQuality",
     "Sizing",
     "SolidMesh",
-    "Surface",
-    "SurfaceMesh",
     "build_block",
     "build_mesh",
-    "build_surface_mesh",
-    "check_surface",
     "graded_line",
-    "read_surface",
 ]

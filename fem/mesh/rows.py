@@ -7,6 +7,16 @@ import numpy as np
 from fem.arrays import FloatArray
 
 
+def ring_areas(r: FloatArray) -> FloatArray:
+    """Area (m,) in m2 of each node of a row at radii r (m,) in m, corners and mid-sides in turn, by Simpson's rule."""
+    width = (r[2::2] - r[:-2:2]) / 6.0
+    area = np.zeros(len(r))
+    area[:-2:2] += width * r[:-2:2]
+    area[1:-1:2] = 4.0 * width * r[1:-1:2]
+    area[2::2] += width * r[2::2]
+    return 2.0 * np.pi * area
+
+
 def along_row(place: FloatArray, values: FloatArray, r: FloatArray) -> FloatArray:
     """Quadratic interpolation over a row of nodes.
 

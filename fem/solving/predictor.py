@@ -1,8 +1,9 @@
 """Prediction of the next state from known ones.
 
-Lagrange interpolation or extrapolation of second order over the load through the nearest known states. On
-the way back of a load history the states of the way up are near, so the prediction is good; it is still
-corrected by Newton like any other.
+Interpolation or extrapolation over the load through the nearest known states, of second order, or of a higher one as
+long as each further state changes the prediction much less than the one before: high on a smooth path, low where the
+path has a kink. On the way back of a load history the states of the way up are near, so the prediction is good; it is
+still corrected by Newton like any other.
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ import numpy as np
 from fem.arrays import FloatArray
 from fem.solving.state import State
 
-ORDER = 2
+LOWEST_ORDER, HIGHEST_ORDER = 2, 5  # as far as there are states
+SHRINKAGE = 0.5  # of the change by each further state; where it is less, the order rises no further
 LEAST_SPACING = 0.3
 
 
@@ -38,11 +40,11 @@ class KnownStates:
         self._values.append(value)
         self._states.append(state)
 
-    def predict(self, value: float, order: int = ORDER) -> State:
-        """State at a load value, of at most the given order."""
-        chosen = self._choose(value, order + 1)
-        weights = lagrange(np.array([self._values[n] for n in chosen]), value)
-        return combined(weights, [self._states[n] for n in chosen])
+    def predict(self, value: float, highest: int = HIGHEST_ORDER) -> State:
+        """State at a load value, of at most the order `highest`."""
+        chosen = self._choose(value, highest + 1)
+        states = [self._states[n] for n in chosen]
+        return extrapolated(np.array([self._values[n] for n in chosen]), states, value)
 
     def _choose(self, value: float, most: int) -> list[int]:
         """Nearest known states, far enough from each other for the distance to the value."""
@@ -56,6 +58,19 @@ class KnownStates:
             if all(abs(self._values[n] - self._values[m]) > spacing for m in chosen):
                 chosen.append(int(n))
         return chosen
+
+
+def extrapolated(points: FloatArray, states: list[State], at: float) -> State:
+    """Prediction at one place from states at different points (n,), the most important first."""
+    weights = np.zeros((len(points), len(points)))
+    for k in range(len(points)):
+        weights[k, : k + 1] = lagrange(points[: k + 1], at)
+    terms = np.diff(weights, axis=0) @ np.stack([state.y for state in states])
+    sizes = np.linalg.norm(terms, axis=1)
+    order = min(LOWEST_ORDER, len(sizes))
+    while order < len(sizes) and sizes[order] <= SHRINKAGE * sizes[order - 1]:
+        order += 1
+    return combined(weights[order, : order + 1], states[: order + 1])
 
 
 def combined(weights: FloatArray, states: list[State]) -> State:

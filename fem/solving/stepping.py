@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -12,7 +12,7 @@ from fem.arrays import FloatArray
 from fem.assembly import System
 from fem.solving.equilibrium import Equilibrium
 from fem.solving.newton import NewtonSettings, solve_newton
-from fem.solving.predictor import KnownStates
+from fem.solving.predictor import LOWEST_ORDER, KnownStates
 from fem.solving.recent import RecentStates
 from fem.solving.state import NewtonResult, State
 
@@ -131,8 +131,26 @@ class Stepper:
 
     def _solve(self, value: float, time: float) -> tuple[NewtonResult, System]:
         """Newton's result at a load value and a time, and the equations that fit it."""
+        iterations = 0
+        for guess in self._guesses(value, time):
+            result, system = self._settle(guess, value, time)
+            iterations += result.iterations
+            if result.success:
+                break
+        return replace(result, iterations=iterations), system
+
+    def _guesses(self, value: float, time: float) -> Iterator[State]:
+        """Predictions at a load value and a time, the best first."""
+        if self._recent is not None:
+            yield self._recent.predict(value, time)
+            return
+        yield self._known.predict(value)
+        if len(self._times) > LOWEST_ORDER + 1:
+            yield self._known.predict(value, LOWEST_ORDER)
+
+    def _settle(self, guess: State, value: float, time: float) -> tuple[NewtonResult, System]:
+        """Newton's result from a guess, and the equations that fit it."""
         system = self._problem.system.advanced(time - self._time)
-        guess = self._known.predict(value) if self._recent is None else self._recent.predict(value, time)
         iterations = 0
         for _ in range(MOST_CORRECTIONS):
             ahead = replace(self._problem, system=system)

@@ -33,8 +33,12 @@ class Hole:
 
     def fixed(self, mesh: AnyMesh, problem: Problem) -> BoolArray:
         """Lower face outside the hole, rim included, and the outer border."""
-        outside = mesh.specimen_distance >= hole_radius(problem) * (1.0 - 1e-9)
-        return (mesh.base & outside) | mesh.border
+        return on_the_plate(mesh, problem) | mesh.border
+
+
+def on_the_plate(mesh: AnyMesh, problem: Problem) -> BoolArray:
+    """Nodes (N,) of the lower face outside the hole, rim included."""
+    return mesh.base & (mesh.specimen_distance >= hole_radius(problem) * (1.0 - 1e-9))
 
 
 def hole_radius(problem: Problem) -> float:

@@ -6,7 +6,9 @@ import numpy as np
 import skfem
 
 from fem.arrays import BoolArray, FloatArray, IntArray
-from fem.assembly import SOLID_ELEMENTS, System, build_scatter, element_laws, number_unknowns, solid_geometry
+from fem.assembly import System, build_scatter, element_laws, number_unknowns
+from fem.assembly.solid_element import SOLID_ELEMENTS
+from fem.assembly.solid_geometry import solid_geometry
 from fem.linear_solver import make_solver
 from fem.materials import Material
 from fem.mesh import SolidMesh

@@ -1,10 +1,12 @@
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import fem
+from fem.solving import NewtonSettings
 
 CONTACTS = ("uniform_pressure", "rigid_bonded")
 COARSE = fem.Discretisation("coarse")
@@ -112,6 +114,19 @@ def test_a_tissue_too_soft_ends_in_a_report_with_the_steps_reached(ramp):
     assert solution.force[-1] <= solution.failure.reached < solution.failure.target
     assert solution.displacement.shape[0] == solution.top_deflection.shape[0] == reached
     assert str(solution.failure).endswith(solution.failure.reason)
+
+
+def test_a_press_that_a_finer_mesh_cannot_follow_is_told_of_the_coarser_one():
+    few = NewtonSettings(iterations=1)
+    for density, told in (("default", True), ("coarse", False)):
+        problem = fem.Problem(
+            (fem.Layer("jelly", 1e-2, 1000.0, fem.NeoHookean(3e3, 0.49)),),
+            fem.Tool(5e-3, "uniform_pressure"),
+            fem.Support("bonded"),
+            discretisation=fem.Discretisation(density),
+        )
+        failure = replace(fem.prepare(problem), newton=few).run(fem.Load("force", [1.0], [0.5])).failure
+        assert ("a coarser mesh" in failure.reason) is told
 
 
 def test_a_run_that_fails_at_once_is_empty_but_whole():

@@ -10,7 +10,7 @@ import pytest
 import pyvista
 
 import fem
-from fem.mesh import Surface, build_surface_mesh
+from fem.mesh.surface import Surface, build_surface_mesh
 from fem.setup_solid import solid_model
 
 ROOT = Path(__file__).parents[2]

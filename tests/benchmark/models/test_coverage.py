@@ -59,3 +59,14 @@ def test_a_press_beyond_the_corrected_range_is_declined() -> None:
     scenario = load_scenario("skin-5N", {"load.peak": "12 N", "wave.large_press": "corrected"})
     with pytest.raises(UncoveredError, match="mm"):
         prepare("wave", scenario).run(scenario_drive(scenario))
+
+
+def test_a_sheet_that_slides_on_its_plate_is_the_fem_s() -> None:
+    hole = {"support.kind": "hole", "support.hole_radius": "15 mm", "load.observations": "4", "fem.mesh": "coarse"}
+    load = {"load.peak": "1 N", "tissue": "rtv3498_sheet"}
+    sheet = load_scenario("skin-5N", {**hole, **load})
+    loose = load_scenario("skin-5N", {**hole, **load, "physics.clamp_shear_limit": "1 kPa"})
+    held, slid = (prepare("fem", scenario).run(scenario_drive(scenario)).depth for scenario in (sheet, loose))
+    assert slid.max() > 1.001 * held.max()
+    with pytest.raises(UncoveredError, match="clamp_shear_limit"):
+        prepare("wave", loose)

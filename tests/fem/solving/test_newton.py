@@ -51,3 +51,22 @@ def test_a_guess_inside_out_is_a_reason(problem):
     state = rest(problem)
     bad = State(state.y - 1.0, state.pressure, 0.0)
     assert "inside out" in solve_newton(problem, bad, "force", 1.0, 0.0, SETTINGS).reason
+
+
+class Counting:
+    """A linear solver that counts its factorisations."""
+
+    def __init__(self, solver):
+        self.solver, self.count, self.solve = solver, 0, solver.solve
+
+    def factorise(self, data):
+        self.count += 1
+        self.solver.factorise(data)
+
+
+def test_the_last_correction_takes_the_factors_of_the_one_before(problem):
+    close = solve_newton(problem, rest(problem), "force", 0.3, 0.0, SETTINGS).state
+    counting = Counting(problem.solver)
+    result = solve_newton(dataclasses.replace(problem, solver=counting), close, "force", 0.31, 0.0, SETTINGS)
+    assert result.success
+    assert counting.count == result.iterations - 1

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fem.solving.predictor import KnownStates
+from fem.solving.predictor import HIGHEST_ORDER, LOWEST_ORDER, KnownStates
 from fem.solving.state import State
 
 
@@ -41,3 +41,28 @@ def test_nearly_equal_loads_do_not_blow_the_extrapolation_up():
 
 def test_a_known_load_gives_its_state():
     np.testing.assert_array_equal(known([1.0, 2.0, 3.0]).predict(2.0).y, quadratic(2.0).y)
+
+
+def smooth(v):
+    return State(np.array([np.exp(0.3 * v), 1.0]), np.zeros((1, 1)), v)
+
+
+def states_of(path, values):
+    states = KnownStates(values[0], path(values[0]))
+    for v in values[1:]:
+        states.add(v, path(v))
+    return states
+
+
+def test_a_smooth_path_is_predicted_to_a_higher_order():
+    known_states = states_of(smooth, np.arange(8.0))
+    errors = [abs(known_states.predict(8.0, order).y[0] - smooth(8.0).y[0]) for order in (2, 3, 4, 5)]
+    assert errors == sorted(errors, reverse=True)
+    assert errors[-1] < 0.05 * errors[0]
+    np.testing.assert_allclose(known_states.predict(8.0).y, known_states.predict(8.0, HIGHEST_ORDER).y)
+
+
+def test_behind_a_kink_the_order_stays_low():
+    path = lambda v: State(np.array([v + 5.0 * max(v - 5.0, 0.0)]), np.zeros((1, 1)), v)  # noqa: E731
+    states = states_of(path, np.arange(7.0))
+    np.testing.assert_allclose(states.predict(7.0).y, states.predict(7.0, LOWEST_ORDER).y)

@@ -4,6 +4,7 @@ import pytest
 
 import fem
 from fem.solving import NewtonSettings, Stepper
+from fem.solving.predictor import HIGHEST_ORDER, LOWEST_ORDER, KnownStates
 
 SETTINGS = NewtonSettings()
 
@@ -42,3 +43,18 @@ def test_what_cannot_be_reached_keeps_the_last_equilibrium(problem):
     assert advance.reason != ""
     assert advance.value < 3.0
     assert advance.cuts > 5
+
+
+def test_a_prediction_of_high_order_that_fails_is_followed_by_a_plain_one(problem, monkeypatch):
+    stepper = Stepper(problem, "force", 5e-3, SETTINGS)
+    for value in (0.2, 0.4, 0.6, 0.8):
+        stepper.advance(value)
+    plain = KnownStates.predict
+
+    def predict(self, value, highest=HIGHEST_ORDER):
+        guess = plain(self, value, highest)
+        return guess if highest == LOWEST_ORDER else dataclasses.replace(guess, y=guess.y - 1.0)
+
+    monkeypatch.setattr(KnownStates, "predict", predict)
+    advance = stepper.advance(1.0)
+    assert (advance.value, advance.cuts, advance.reason) == (1.0, 0, "")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fem import FemError
-from fem.mesh import Surface, check_surface
+from fem.mesh.surface import Surface, check_surface
 
 
 def test_a_good_surface_stays_as_it_is(ball):

@@ -1,0 +1,123 @@
+"""A sheet over a hole that slides on the plate round it: limits of no and of full friction, set, work and force."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fem
+from fem.deformation import Deformation
+from fem.solving import NewtonSettings, Stepper
+
+SHEET = (
+    fem.Layer("skin", 1.5e-3, 1000.0, fem.NeoHookean(1e5, 0.48)),
+    fem.Layer("fat", 5e-3, 1000.0, fem.NeoHookean(2e4, 0.48)),
+)
+STEPS = np.arange(1, 41)
+PRESS = fem.Load("force", STEPS / 4.0, np.minimum(STEPS, 40 - STEPS) / 20.0)
+
+
+def model(limit, **changes):
+    tool, support = fem.Tool(5e-3, "rigid_bonded"), fem.Support("hole", 15e-3, limit)
+    mesh = fem.Discretisation("coarse")
+    return fem.prepare(replace(fem.Problem(SHEET, tool, support, discretisation=mesh), **changes))
+
+
+def energy(system, y):
+    """Elastic energy in J of the body at unknowns y."""
+    deformation = Deformation(system.geometry.components, system.geometry.gradient(system.element_displacement(y)))
+    (group,), weight, change = system.laws.groups, system.geometry.weight, deformation.volume_change
+    mean = np.einsum("iqe,qe->ie", system.geometry.pressure, weight * change)
+    field = system.laws.bulk_modulus - system.point_modulus
+    at_points = group.law.energy(deformation, group.parameters) + 0.5 * system.point_modulus * change**2
+    return float((weight * at_points).sum() + 0.5 * (field * mean**2).sum())
+
+
+@pytest.fixture(scope="module")
+def sliding():
+    return model(5e3).run(PRESS)
+
+
+@pytest.fixture(scope="module")
+def held():
+    return model(None).run(PRESS)
+
+
+def test_a_high_limit_holds_the_sheet(held):
+    np.testing.assert_allclose(model(1e9).run(PRESS).depth, held.depth, atol=5e-4 * held.depth.max())
+
+
+def test_without_friction_the_plate_is_a_row_of_rollers():
+    free = model(0.0)
+    plain = replace(free.equilibrium, system=free.equilibrium.system.plain)
+    rollers = replace(free, equilibrium=plain)
+    np.testing.assert_allclose(free.run(PRESS).depth, rollers.run(PRESS).depth, atol=1e-9)
+
+
+def test_the_less_it_holds_the_deeper_the_press(held, sliding):
+    assert held.depth.max() < sliding.depth.max() < model(0.0).run(PRESS).depth.max()
+
+
+def test_the_reaction_is_the_force(sliding):
+    assert sliding.complete
+    np.testing.assert_allclose(sliding.reaction, sliding.force, atol=1e-6 * sliding.force.max())
+
+
+def test_only_a_sheet_that_slid_keeps_a_set(held, sliding):
+    assert abs(held.depth[-1]) < 1e-9
+    assert sliding.depth[-1] > 1e-5
+    assert abs(model(0.0).run(PRESS).depth[-1]) < 1e-9
+
+
+def test_what_the_press_loses_in_a_cycle_is_what_the_friction_takes():
+    problem = model(5e3).equilibrium
+    stepper = Stepper(problem, "force", 1e-3, NewtonSettings())
+    lost, depth = 0.0, [0.0]
+    for value in PRESS.value.tolist():
+        before = stepper.problem.system.sliding
+        y = stepper.advance(value).state.y
+        after = stepper.problem.system.sliding
+        assert (np.abs(after.force(y)) <= after.limit * (1.0 + 1e-9)).all()
+        lost += float(after.force(y) @ (after.anchor - before.anchor))
+        depth.append(problem.depth(y))
+    stored = energy(stepper.problem.system, y) + 0.5 * float((after.force(y) ** 2 / after.stick).sum())
+    work = np.trapezoid(np.append(0.0, PRESS.value), depth)
+    assert lost > 1e-5
+    assert work == pytest.approx(lost + stored, rel=5e-3)
+
+
+def test_a_sheet_that_slides_everywhere_says_so(sliding):
+    assert not sliding.warnings
+    (warning,) = model(1.0).run(PRESS).warnings
+    assert "slides on all of the plate" in warning
+
+
+@pytest.mark.parametrize(
+    ("limit", "kind", "kinematics", "message"),
+    [
+        (1e3, "bonded", "finite", "only with 'hole'"),
+        (-1.0, "hole", "finite", "must be from 0"),
+        (float("nan"), "hole", "finite", "must be from 0"),
+        (1e3, "hole", "linear", "only with kinematics = 'finite'"),
+    ],
+)
+def test_what_cannot_slide_is_refused(limit, kind, kinematics, message):
+    def problem():
+        support = fem.Support(kind, 15e-3 if kind == "hole" else None, limit)
+        return fem.Problem(SHEET, fem.Tool(5e-3, "rigid_bonded"), support, kinematics)
+
+    with pytest.raises(fem.FemError, match=message):
+        problem()
+
+
+def test_a_stopped_run_goes_on(sliding, tmp_path):
+    path, short = tmp_path / "run.npz", []
+
+    def stop(step):
+        short.append(step)
+        if len(short) == 30:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        model(5e3).run(PRESS, stop, path)
+    np.testing.assert_allclose(model(5e3).run(PRESS, None, path).depth, sliding.depth, atol=1e-9)
