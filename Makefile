@@ -80,7 +80,7 @@ bench-vision: $(RUN_STAMP)
 # GATE_RUNS=3 for a short one.
 GATE_RUNS ?= 20
 bench-gate: $(DEV_STAMP)
-	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS)
+	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS) --together --only wave.frame fem.assembly fit
 	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS) --off 0.01 --values
 
 # The table goes to benchmarks/discovery; the same command goes on where it was stopped.

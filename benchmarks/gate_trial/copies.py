@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,11 +25,29 @@ AUTHOR = ("-c", "user.name=gate trial", "-c", "user.email=gate-trial@localhost")
 
 @dataclass(frozen=True)
 class Check:
-    """One check: which copy, exit code, wall seconds, and what `check --json` printed (None where it failed)."""
+    """One check of a copy.
+
+    Attributes
+    ----------
+    copy
+        Its name.
+    code
+        Exit code.
+    seconds, cpu_seconds
+        Wall time, and CPU time of all its processes.
+    load
+        Load average of the last minute at its end, its own processes included.
+    document
+        What `check --json` printed; None where it failed.
+    message
+        What it said.
+    """
 
     copy: str
     code: int
     seconds: float
+    cpu_seconds: float
+    load: float
     document: dict[str, Any] | None
     message: str
 
@@ -47,10 +67,11 @@ def make_copy(folder: Path, source: Path = PRODUCT) -> Path:
     return folder
 
 
-def make_faulty(folder: Path, good: Path, fault: Fault) -> Path:
-    """Copy a copy and put a fault into it, uncommitted."""
+def make_faulty(folder: Path, good: Path, faults: Sequence[Fault]) -> Path:
+    """Copy a copy and put faults into it, uncommitted."""
     shutil.copytree(good, folder)
-    fault.put_into(folder)
+    for fault in faults:
+        fault.put_into(folder)
     return folder
 
 
@@ -64,11 +85,24 @@ def values_gate(tree: Path) -> Path:
 
 
 def run_check(name: str, tree: Path, work: Path, *options: str) -> Check:
-    """Run `python -m benchmark check` of the product in `tree`, in the folder `work`."""
+    """Run `python -m benchmark check` of the product in `tree`, in the folder `work`; its code is compiled once."""
     command = [sys.executable, "-m", "benchmark", "check", "--json", "--quiet", *options]
     environment = {**os.environ, "PYTHONPATH": str(tree)}
-    begun = time.perf_counter()
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)
+    begun, spent = time.perf_counter(), _spent()
     done = subprocess.run(command, cwd=work, env=environment, capture_output=True, text=True, check=False)
-    seconds = time.perf_counter() - begun
-    document = json.loads(done.stdout) if done.stdout.strip() else None
-    return Check(name, done.returncode, seconds, document, done.stderr.strip())
+    return Check(
+        copy=name,
+        code=done.returncode,
+        seconds=time.perf_counter() - begun,
+        cpu_seconds=_spent() - spent,
+        load=os.getloadavg()[0],
+        document=json.loads(done.stdout) if done.stdout.strip() else None,
+        message=done.stderr.strip(),
+    )
+
+
+def _spent() -> float:
+    """CPU time of all processes that were started from here and have ended, in s."""
+    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return ended.ru_utime + ended.ru_stime

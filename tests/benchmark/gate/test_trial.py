@@ -1,6 +1,7 @@
 """The trial of the gate (benchmarks/gate_trial): its faults are real, and it counts right."""
 
 import ast
+import json
 import time
 import tomllib
 from pathlib import Path
@@ -9,7 +10,8 @@ from types import SimpleNamespace
 import pytest
 
 from benchmark.gate.measurement import PRODUCT
-from benchmarks.gate_trial.copies import GATE, values_gate
+from benchmarks.gate_trial import __main__ as trial
+from benchmarks.gate_trial.copies import GATE, Check, values_gate
 from benchmarks.gate_trial.faults import HOWS, Fault, deflections, slowdowns
 from benchmarks.gate_trial.summary import summary
 
@@ -83,6 +85,8 @@ def row(copy: str, code: int, failed: tuple[str, ...] = (), now: float = 1.0) ->
         "copy": copy,
         "code": code,
         "seconds": 20.0,
+        "cpu_seconds": 10.0,
+        "load": 3.0,
         "document": document if code in (0, 1) else None,
         "message": "",
     }
@@ -96,6 +100,56 @@ def test_alarms_and_catches_are_counted() -> None:
     lines = summary(rows)
     assert lines[0] == "unchanged: 1 false alarms in 3 checks, 1 ended with another exit code"
     assert lines[1] == "fit: caught in 1 of 3 checks"
-    assert "largest +18.2 %" in lines[2]
-    assert lines[-1] == "a check took 20 s (median), at most 20 s"
+    assert "fit in unchanged: mean +9.5 %, standard deviation 12.9 %, +0.0 % to +20.0 % (allowed 12 %)" in lines
+    assert lines[-1] == (
+        "a check took 20 s (median; 20 to 20 s) and 10 s of CPU (10 to 10 s) at a load average of 3.0 (3.0 to 3.0)"
+    )
     assert summary([]) == []
+
+
+def test_of_a_copy_with_several_faults_each_is_counted_by_itself() -> None:
+    both = "wave.frame + fit"
+    rows = [row(both, 1, ("fit",)), row(both, 1, ("fit", "wave.frame")), row(both, 0)]
+    assert summary(rows)[:2] == ["wave.frame: caught in 1 of 3 checks", "fit: caught in 2 of 3 checks"]
+
+
+def test_a_wrong_value_is_caught_where_no_time_has_its_name() -> None:
+    assert summary([row("WaveModel layer 0 x 1.01", 1), row("WaveModel layer 0 x 1.01", 0)])[0].endswith(
+        "1 of 2 checks"
+    )
+
+
+@pytest.fixture
+def checked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Trials whose checks only take down what they were made in."""
+    made: list[str] = []
+
+    def check(name: str, tree: Path, work: Path, *options: str) -> Check:
+        assert (tree / GATE).is_file()
+        made.append(name)
+        if "--accept" in options:
+            (work / trial.BASELINE).write_text("{}")
+        return Check(**row(name, 0 if name == "unchanged" else 1))
+
+    monkeypatch.setattr(trial, "run_check", check)
+    return made
+
+
+def test_a_trial_goes_on_where_it_was_stopped(tmp_path: Path, checked: list[str], capsys) -> None:
+    log = tmp_path / "trial.jsonl"
+    command = ["--together", "--only", "fit", "wave.frame", "--log", str(log), "--runs"]
+    assert trial.main([*command, "1"]) == 0
+    assert checked == ["accept", "unchanged", "wave.frame + fit"]
+    log.write_text(log.read_text().splitlines(keepends=True)[0])
+    checked.clear()
+    assert trial.main([*command, "2"]) == 0
+    assert checked == ["wave.frame + fit", "unchanged", "wave.frame + fit"]
+    assert [json.loads(line)["copy"] for line in log.read_text().splitlines()] == ["unchanged", "wave.frame + fit"] * 2
+    assert "0 false alarms in 2 checks" in capsys.readouterr().out
+
+
+def test_faults_together_are_all_in_one_copy(tmp_path: Path, checked: list[str]) -> None:
+    trial.main(["--together", "--runs", "1", "--log", str(tmp_path / "trial.jsonl")])
+    tree = tmp_path / "trial.work" / "faulty-0"
+    for fault in slowdowns(0.25, "work"):
+        assert (tree / fault.module).read_text().endswith(fault.code)
