@@ -55,10 +55,11 @@ def _off(self, *arguments, **keywords):
     from dataclasses import replace
 
     result = _run(self, *arguments, **keywords)
-    deflection = result.top_deflection.copy()
-    if -deflection.shape[1] <= {layer} < deflection.shape[1]:
-        deflection[:, {layer}] *= {factor}
-    return replace(result, top_deflection=deflection)
+    deflection = result.{field}.copy()
+    rows = deflection{layers_first}
+    if -len(rows) <= {layer} < len(rows):
+        rows[{layer}] *= {factor}
+    return replace(result, {field}=deflection)
 
 
 {model}.run = _off
@@ -101,12 +102,18 @@ def slowdowns(share: float, how: str) -> list[Fault]:
 
 
 def deflections(factor: float) -> list[Fault]:
-    """One fault for each layer of the gate's FEM and wave scenarios: its deflection times a factor."""
+    """One fault for each gated deflection of FEM and wave, times a factor: layers, and the profile of the surface."""
     models = {"FemModel": "benchmark/models/fem_model.py", "WaveModel": "benchmark/models/wave_model.py"}
+    places = [(f"layer {layer}", "top_deflection", ".T", layer) for layer in (0, -2, -1)]
+    places.append(("surface", "profile", "", 0))
     return [
-        Fault(f"{model} layer {layer} x {factor:g}", module, OFF.format(model=model, layer=layer, factor=factor))
+        Fault(
+            f"{model} {name} x {factor:g}",
+            module,
+            OFF.format(model=model, field=field, layers_first=layers_first, layer=layer, factor=factor),
+        )
         for model, module in models.items()
-        for layer in ("0", "-2", "-1")
+        for name, field, layers_first, layer in places
     ]
 
 
