@@ -20,14 +20,14 @@ citation = ""                       # where the values come from: reports show i
 name = "dermis"                     # one of its own in the file; --set dermis.thickness="2 mm" finds it by this
 thickness = "1.5 mm"                # undeformed
 density = "1100 kg/m^3"
-youngs_modulus = "100 kPa"          # initial: for small strain, before anything relaxes
+youngs_modulus = "500 kPa"          # initial: for small strain, before anything relaxes
 poisson_ratio = 0.48                # 0 to 0.49999; soft tissue is nearly incompressible
 
 [[layers]]
 name = "fat"
 thickness = "10 mm"
 density = "970 kg/m^3"
-youngs_modulus = "20 kPa"
+youngs_modulus = "50 kPa"
 poisson_ratio = 0.48
 # Optional, in any layer (without `hyperelastic` the layer is neo-Hookean with the moduli above):
 # hyperelastic = {{ law = "yeoh", c10 = "3.4 kPa", c20 = "1 kPa" }}
