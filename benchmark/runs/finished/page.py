@@ -65,7 +65,12 @@ def compare_page(
 
 
 def _origin(run: SavedRun) -> str:
-    return f"{run.record.scenario.name} on {run.record.scenario.tissue.name}, made {run.environment['made']}"
+    scenario = run.record.scenario
+    return f"{scenario.name} on {scenario.tissue.name}, {_models(run)}, made {run.environment['made']}"
+
+
+def _models(run: SavedRun) -> str:
+    return f"{run.record.pair.fem.name} and {run.record.pair.wave.name}"
 
 
 def _verdict(runs: Mapping[str, SavedRun], changed: Columns) -> Verdict:
@@ -74,10 +79,18 @@ def _verdict(runs: Mapping[str, SavedRun], changed: Columns) -> Verdict:
         f"{name}: {run_verdict(run.record, None if run.trials is None else run.trials.headline).headline}"
         for name, run in runs.items()
     ]
-    count = sum(not key.endswith(("citation", "name")) for key in changed["parameter"])
-    headline = f"{count} parameter{'' if count == 1 else 's'} of the scenario {'differs' if count == 1 else 'differ'}."
     status = "finding" if all(run.record.complete for run in runs.values()) else "incomplete"
-    return Verdict(status, headline if count else "The scenarios are the same.", points)
+    return Verdict(status, _headline(runs, changed), points)
+
+
+def _headline(runs: Mapping[str, SavedRun], changed: Columns) -> str:
+    """What was not the same: parameters of the scenario, models in the places of FEM and wave."""
+    count = sum(not key.endswith(("citation", "name")) for key in changed["parameter"])
+    other_models = len({_models(run) for run in runs.values()}) > 1
+    if not count:
+        return "The scenarios are the same" + (", the models differ." if other_models else ".")
+    scenarios = f"{count} parameter{'' if count == 1 else 's'} of the scenario {'differs' if count == 1 else 'differ'}"
+    return scenarios + (", and the models do." if other_models else ".")
 
 
 def _notices(runs: Mapping[str, SavedRun]) -> list[Notice]:

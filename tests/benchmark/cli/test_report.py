@@ -53,6 +53,16 @@ def test_side_by_side_names_what_changed(benchmark_cli, runs, tmp_path: Path) ->
     assert "second, wave model" not in page
 
 
+def test_side_by_side_names_other_models(benchmark_cli, runs, tmp_path: Path) -> None:
+    fea = runs[0] / "tables/max_deformation.csv"
+    assert main(["run", "skin-5N", *SMALL, "--reference", str(fea), "--out", str(tmp_path / "mine")]) == 0
+    assert benchmark_cli("report", runs[0], tmp_path / "mine", "--out", tmp_path / "both").code == 0
+    page = (tmp_path / "both/report.html").read_text()
+    assert "The scenarios are the same, the models differ." in page
+    assert "FEM and wave model, made" in page
+    assert "FEA of max_deformation.csv and wave model, made" in page
+
+
 def test_a_stopped_run_keeps_its_failure(benchmark_cli, tmp_path: Path) -> None:
     soft = [f"{layer}.youngs_modulus=10 kPa" for layer in ("epidermis", "dermis", "subcutaneous_fat")]
     settings = [text for each in soft for text in ("--set", each)]
