@@ -1,5 +1,6 @@
 """One face over the finite-element solver, the wave models, and a user's own in their places."""
 
+from benchmark.models.frames import frame_seconds
 from benchmark.models.own import NOTHING, Own
 from benchmark.models.prepare import prepare, scenario_drive
 from benchmark.models.reference import Reference, read_reference
@@ -31,6 +32,7 @@ __all__ = [
     "StepProgress",
     "UncoveredError",
     "UserFile",
+    "frame_seconds",
     "prepare",
     "read_reference",
     "read_user_file",

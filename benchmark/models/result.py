@@ -129,6 +129,9 @@ def silent(_: StepProgress) -> None:
     """Report no progress."""
 
 
+Picture = Callable[[], Array]
+"""Draws a frame: the deflection (L, P, Q) in m of every layer's face at vertices; the next may reuse its memory."""
+
 Reading = Callable[[], ModelResult]
 """What is left once a load history was followed; it is no part of the history's time."""
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from benchmark.files import Scenario
-from benchmark.models.result import Drive, UncoveredError
+from benchmark.models.frames import vertices
+from benchmark.models.result import Drive, Picture, UncoveredError
 from benchmark.models.wave_parts import PreparedWave, Solution, law_warnings, wave_layers, wave_relaxation, wave_tool
 from benchmark.models.wave_physics import wave_physics, wave_slip
 from wavemodel import LayeredWave, NotCoveredError, WaveError
@@ -83,7 +84,16 @@ def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) ->
             "modes": f"m, n = 1..{wave.modes}",
         },
         warnings=() if large_press == "linear" else law_warnings(scenario),
+        picture=lambda drive: _picture(wave, scenario.tool.radius, drive),
     )
+
+
+def _picture(wave: LayeredWave, tool_radius: float, drive: Drive) -> Picture:
+    """What draws the faces at the peak of a load history."""
+    positions = vertices(tool_radius, 0.5 * wave.window)
+    surface = wave.surface(positions, positions)
+    state = wave.run(drive.control, drive.time, drive.value).snapshot(int(np.abs(drive.value).argmax()))
+    return lambda: surface.frame(state)
 
 
 def _falling_back(scenario: Scenario, corrected: PreparedWave) -> PreparedWave:

@@ -8,7 +8,7 @@ from benchmark.errors import InputError
 from benchmark.files import Scenario
 from benchmark.models.coverage import refuse_options, refuse_solid
 from benchmark.models.radii import profile_radii
-from benchmark.models.result import Drive, ModelResult, OnStep, Reading, StepProgress, UncoveredError, silent
+from benchmark.models.result import Drive, ModelResult, OnStep, Picture, Reading, StepProgress, UncoveredError, silent
 from benchmark.models.wave_layered import layered_wave
 from benchmark.models.wave_parts import PreparedWave, Solution
 from benchmark.models.wave_physics import OPTIONS, SHEAR_LIMIT
@@ -55,6 +55,13 @@ class WaveModel:
         except WaveError as error:
             raise UncoveredError(str(error)) from None
         return lambda: self._result(solution, drive, on_step)
+
+    def picture(self, drive: Drive) -> Picture | None:
+        """Make ready to draw the faces at the peak of a load history; None where the wave has no tables for it."""
+        try:
+            return None if self._wave.picture is None else self._wave.picture(drive)
+        except WaveError:
+            return None
 
     def _result(self, solution: Solution, drive: Drive, on_step: OnStep) -> ModelResult:
         """The solution in the harness's terms, with its profile."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from benchmark.files import Layer, Scenario
-from benchmark.models.result import Array, Drive
+from benchmark.models.result import Array, Drive, Picture
 from wavemodel import DiscTool, Prony, WaveLayer
 
 
@@ -67,12 +67,15 @@ class PreparedWave:
         Choices made, by name, as readable text.
     warnings
         What is left out, one sentence each.
+    picture
+        Load history to what draws the faces at its peak, raises as `follow`; None for a wave without such tables.
     """
 
     follow: Callable[[Drive], Solution]
     unknowns: int
     notes: Mapping[str, str]
     warnings: tuple[str, ...] = ()
+    picture: Callable[[Drive], Picture] | None = None
 
 
 def wave_layers(scenario: Scenario) -> list[WaveLayer]:

@@ -63,6 +63,7 @@ def _model(run: ModelRun, record: RunRecord) -> dict[str, Any]:
             name: None if largest is None else float(largest[column]) for column, name in enumerate(record.layers)
         },
         "peak_memory_MB": None if run.peak_memory is None else run.peak_memory / 1e6,
+        "picture_us": None if run.frame is None else 1e6 * run.frame,
         "notes": {} if result is None else dict(result.notes),
         "failure": None if result is None or result.failure is None else str(result.failure),
     }

@@ -28,11 +28,24 @@ class Seconds:
 
 @dataclass(frozen=True)
 class Finished:
-    """A finished execution, complete or stopped early; `peak_memory` of its process in bytes where it is known."""
+    """A finished execution, complete or stopped early.
+
+    Attributes
+    ----------
+    seconds
+        What it took.
+    result
+        None where it was not asked for.
+    peak_memory
+        Of its process in bytes where it is known.
+    frame
+        Wall s of a picture of all faces (`benchmark.models.frames`); None where it was not timed.
+    """
 
     seconds: Seconds
     result: ModelResult | None
     peak_memory: int | None = None
+    frame: float | None = None
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ so that both models meet the same state of the machine.
 from __future__ import annotations
 
 import os
+import statistics
 from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -29,7 +30,7 @@ class ModelRun:
     """One model's part: its result, or why there is none, and its timed repeats.
 
     `model` is its place, `"fem"` or `"wave"`; `own` what the user calls a model put there; `peak_memory` in bytes that
-    of its process, with the libraries it loads.
+    of its process, with the libraries it loads; `frame` the wall s of a picture of all faces, median of the repeats.
     """
 
     model: str
@@ -38,6 +39,7 @@ class ModelRun:
     repeats: tuple[Seconds, ...]
     own: str | None = None
     peak_memory: int | None = None
+    frame: float | None = None
 
     @property
     def name(self) -> str:
@@ -112,8 +114,8 @@ def run_side_by_side(
         first = _together(processes, on_progress)
         timed = [p for p in processes if isinstance(first[p.model], Finished)]
         whole = all(a.result is not None and a.result.complete for a in first.values() if isinstance(a, Finished))
-        seconds = _in_turn(timed, repeats if whole else 0)
-    fem, wave = (_model_run(model, first.get(model), seconds.get(model, []), own) for model in MODELS)
+        repeated = _in_turn(timed, repeats if whole else 0)
+    fem, wave = (_model_run(model, first.get(model), repeated.get(model, []), own) for model in MODELS)
     ratio = speedup(fem.repeats, wave.repeats, seed=seed) if fem.repeats and wave.repeats else None
     return SideBySide(fem, wave, ratio)
 
@@ -141,24 +143,27 @@ def _together(processes: list[ModelProcess], on_progress: OnProgress) -> dict[st
     return answers
 
 
-def _in_turn(processes: list[ModelProcess], repeats: int) -> dict[str, list[Seconds]]:
+def _in_turn(processes: list[ModelProcess], repeats: int) -> dict[str, list[Finished]]:
     """Timed repeats, one model after the other."""
-    seconds: dict[str, list[Seconds]] = {process.model: [] for process in processes}
+    found: dict[str, list[Finished]] = {process.model: [] for process in processes}
     for _ in range(repeats):
         for process in processes:
             process.command(keep_result=False)
             answer = process.answer()
             if isinstance(answer, Finished):
-                seconds[process.model].append(answer.seconds)
-    return seconds
+                found[process.model].append(answer)
+    return found
 
 
-def _model_run(model: str, answer: Answer | None, repeats: list[Seconds], own: Own) -> ModelRun:
+def _model_run(model: str, answer: Answer | None, repeats: list[Finished], own: Own) -> ModelRun:
     """Join the first answer of a model with its timing; without an answer it is the user's reference."""
     name = own.name(model)
     if answer is None:
         return ModelRun(model, own.reference.result if own.reference else None, None, (), name)
     if isinstance(answer, Finished):
-        return ModelRun(model, answer.result, None, tuple(repeats), name, answer.peak_memory)
+        frames = [each.frame for each in repeats if each.frame is not None]
+        frame = statistics.median(frames) if frames else None
+        seconds = tuple(each.seconds for each in repeats)
+        return ModelRun(model, answer.result, None, seconds, name, answer.peak_memory, frame)
     reason = answer.reason if isinstance(answer, Declined) else answer.message
     return ModelRun(model, None, reason, (), name)

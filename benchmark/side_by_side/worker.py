@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection
 from benchmark.errors import InputError
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel
-from benchmark.models import StepProgress, UncoveredError, UserFile, prepare, scenario_drive, silent
+from benchmark.models import StepProgress, UncoveredError, UserFile, frame_seconds, prepare, scenario_drive, silent
 from benchmark.side_by_side.messages import Answer, Crashed, Declined, Finished, RunCommand, Seconds
 
 
@@ -50,7 +50,7 @@ def _execute(connection: Connection, command: RunCommand, job: Job) -> Answer:
 
 
 def _run(connection: Connection, command: RunCommand, job: Job) -> Finished:
-    """Set up, run and time."""
+    """Set up, run and time; a picture is drawn where no result is wanted, so that it runs beside no other model."""
 
     def report(progress: StepProgress) -> None:
         connection.send(progress)
@@ -63,7 +63,9 @@ def _run(connection: Connection, command: RunCommand, job: Job) -> Finished:
     reading = prepared.follow(drive, report if command.keep_result else silent)
     wall, cpu = time.perf_counter() - ready, time.process_time() - cpu_ready
     result = reading() if command.keep_result else None
-    return Finished(Seconds(ready - started, wall, cpu), result, peak_memory())
+    memory = peak_memory()
+    frame = None if command.keep_result else frame_seconds(prepared, drive)
+    return Finished(Seconds(ready - started, wall, cpu), result, memory, frame)
 
 
 def peak_memory() -> int | None:

@@ -119,7 +119,7 @@ def _record(scenario: Scenario, document: dict[str, Any], tables: SavedTables, s
 
 def _model_run(model: str, scenario: Scenario, told: dict[str, Any], tables: SavedTables) -> ModelRun:
     own = None if told["name"] == NAMES[model] else str(told["name"])
-    memory = told.get("peak_memory_MB")
+    memory, picture = told.get("peak_memory_MB"), told.get("picture_us")
     result = _result(model, scenario, told, tables) if told["covers_scenario"] else None
     return ModelRun(
         model=model,
@@ -128,6 +128,7 @@ def _model_run(model: str, scenario: Scenario, told: dict[str, Any], tables: Sav
         repeats=_repeats(tables.read("timing.csv"), own or model),
         own=own,
         peak_memory=None if memory is None else round(1e6 * memory),
+        frame=None if picture is None else 1e-6 * picture,
     )
 
 

@@ -31,6 +31,9 @@ def test_processes_give_what_the_models_give(scenario: Scenario) -> None:
         np.testing.assert_allclose(run.result.top_deflection, own.top_deflection, rtol=1e-9)
         assert len(run.repeats) == 3
         assert all(seconds.wall > 0.0 and seconds.setup > 0.0 for seconds in run.repeats)
+    assert pair.fem.frame is None
+    assert pair.wave.frame is not None
+    assert 0.0 < pair.wave.frame < 0.1
     assert [step.step for step in seen["fem"]] == [1, 2, 3, 4]
     assert pair.speedup is not None
     assert pair.speedup.ci95[0] <= pair.speedup.median <= pair.speedup.ci95[1]
