@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmark.discovery.base_law import BaseLaws, base_law
+from benchmark.discovery.bases.elements import elements_or_wave
+from benchmark.discovery.bases.law import BaseLaws
 from benchmark.discovery.fit import Fit, fit
 from benchmark.discovery.model import Model
 from benchmark.discovery.noise import fit_memory, scales
@@ -32,8 +33,9 @@ class Calibrated:
     warnings: tuple[str, ...]
 
 
-def calibrate(session: Session, study: Study, base_of: BaseLaws = base_law) -> Calibrated:
+def calibrate(session: Session, study: Study, base_of: BaseLaws | None = None) -> Calibrated:
     """Fit the base and estimate noise and spreads, twice over."""
+    base_of = base_of or elements_or_wave(session)
     laws = tuple(base_of(session.specimen, c.tool, c.support, c.around.peak_depth) for c in study.conditions)
     problem = Problem(study, laws, _first_noise(study), _wide(study), trial_refs(study))
     vector, state = _first_guess(problem)
@@ -43,7 +45,8 @@ def calibrate(session: Session, study: Study, base_of: BaseLaws = base_law) -> C
     second = fit(Model(problem, ()), start.vector, _kept_state(start, problem), most=6)
     problem = _estimated(second)[0]
     base = fit(Model(problem, ()), second.vector, _kept_state(second, problem), most=8)
-    return Calibrated(problem, base, tuple(warnings))
+    notes = [law.note for law in laws if law.note]
+    return Calibrated(problem, base, tuple(dict.fromkeys([*notes, *warnings])))
 
 
 def _kept_state(before: Fit, problem: Problem) -> Array:

@@ -18,7 +18,7 @@ REFINED = 2
 """Starts that are refined."""
 WORTH = 0.7
 """A second start is refined where it promises at least this share of the first."""
-SCALES = (0.1, 10.0)
+SCALES = (1e-5, 10.0)
 """A screened start's amplitude is scaled within this range."""
 
 

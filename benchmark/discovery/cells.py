@@ -74,7 +74,7 @@ def cells_of(problem: Problem) -> tuple[Cell, ...]:
             if rows.sum() < LEAST_ROWS:
                 continue
             for signal in range(condition.signals.shape[2]):
-                if np.isfinite(condition.signals[:, rows, signal]).all():
+                if (condition.count[:, rows, signal].sum(axis=1) > 0.0).all():
                     found.setdefault((phase, turn, part, signal), {})[number] = rows
     return tuple(Cell(*key, rows) for key, rows in sorted(found.items(), key=lambda pair: pair[0]))
 

@@ -24,20 +24,25 @@ def grid(camera: Camera) -> Array:
 
 
 def layout(rest: Array, spacing: float) -> Layout:
-    """Combinations for markers at rest positions (m, 2): by ring, tangential, translations and cos 2 theta."""
+    """Combinations for markers at rest positions (m, 2).
+
+    Radial by ring and tangential, translations, the radial part along x and along y (an axis beside the centre), and cos
+    2 theta radially and sin 2 theta tangentially (unlike axes), free of what the rings and translations already hold.
+    """
     radius = np.hypot(rest[:, 0], rest[:, 1])
     outside = radius > CENTRAL * spacing
     unit = np.divide(rest, radius[:, None], out=np.zeros_like(rest), where=outside[:, None])
     around = np.column_stack([-unit[:, 1], unit[:, 0]])
     angle = 2.0 * np.arctan2(rest[:, 1], rest[:, 0])
-    rows: list[tuple[str, str, Array]] = []
-    for number, ring in enumerate(_rings(radius, outside), start=1):
-        rows.append((f"radial_{number}", "marker_radial", unit * ring[:, None] / ring.sum()))
-    rows.append(("tangential", "marker_tangential", around * outside[:, None] / outside.sum()))
-    ones = np.ones(len(rest)) / len(rest)
-    rows.append(("x", "marker_x", np.column_stack([ones, 0.0 * ones])))
-    rows.append(("y", "marker_y", np.column_stack([0.0 * ones, ones])))
-    rows.append(("cos_2", "marker_radial", _free_of_mean(unit * np.cos(angle)[:, None] * outside[:, None], unit)))
+    rings = [unit * ring[:, None] / ring.sum() for ring in _rings(radius, outside)]
+    shifts = [np.tile(axis, (len(rest), 1)) / len(rest) for axis in np.eye(2)]
+    rows = [(f"radial_{number}", "marker_radial", ring) for number, ring in enumerate(rings, start=1)]
+    rows.append(("tangential", "marker_tangential", around / outside.sum()))
+    rows += [(name, f"marker_{name}", shift) for name, shift in zip("xy", shifts, strict=True)]
+    plain = [*rings, *shifts]
+    rows += [(f"radial_{name}", "marker_radial", _free_of(plain, unit * unit[:, k, None])) for k, name in enumerate("xy")]
+    rows.append(("cos_2", "marker_radial", _free_of(plain, unit * np.cos(angle)[:, None])))
+    rows.append(("sin_2", "marker_tangential", _free_of(plain, around * np.sin(angle)[:, None])))
     names, channels, weights = zip(*rows, strict=True)
     return Layout(rest, np.array(weights), tuple(names), tuple(channels))
 
@@ -49,7 +54,8 @@ def _rings(radius: Array, outside: np.ndarray) -> Sequence[Array]:
     return [(outside & (radius >= g[0] - 1e-6) & (radius <= g[-1] + 1e-6)).astype(float) for g in groups]
 
 
-def _free_of_mean(pattern: Array, unit: Array) -> Array:
-    """Pattern (m, 2) without its part along a uniform radial motion, on the scale of a mean."""
-    pattern = pattern - unit * np.sum(pattern * unit) / max(np.sum(unit * unit), 1e-30)
-    return np.asarray(pattern / max(len(pattern), 1))
+def _free_of(others: Sequence[Array], pattern: Array) -> Array:
+    """Pattern (m, 2) without its part in the span of others, on the scale of a mean."""
+    basis = np.array([other.ravel() for other in others]).T
+    rest = pattern.ravel() - basis @ np.linalg.lstsq(basis, pattern.ravel(), rcond=None)[0]
+    return np.asarray(rest.reshape(pattern.shape) / len(pattern))

@@ -125,7 +125,9 @@ class Model:
         simulator, bent = self.simulators[trial.condition], bents[trial.condition]
         gain, zero, shift = np.exp(nuisance[0]), nuisance[1], nuisance[2]
         readings = simulator.readings(bent, values, trial.motion, float(gain), float(shift))
-        return self.as_signals(readings, zero, nuisance[3:])
+        signals = self.as_signals(readings, zero, nuisance[3:])
+        signals[:, 1:] = trial.at_frames(signals[:, 1:])
+        return signals
 
     def as_signals(self, readings: Readings, zero: float, offsets: Array) -> Array:
         """(n, C): force, then marker combinations, with their zeros."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmark.discovery.result import Array
 
@@ -21,36 +22,44 @@ MISSING = 1e6
 
 @dataclass(frozen=True, eq=False)
 class Whitener:
-    """z_k = (e_k - back_k e_(k-1)) / scale_k for noise of unit standard deviation a raw sample; (n,) each."""
+    """z_k = (e_k - back_k e_j) / scale_k for noise of unit standard deviation a raw sample; (n,) each.
+
+    j = `before`_k is the row with samples before row k.
+    """
 
     back: Array
     scale: Array
+    before: NDArray[np.int64]
 
     def __call__(self, rows: Array) -> Array:
         """(n, ...) rows to white ones."""
         back, scale = (a.reshape(-1, *[1] * (rows.ndim - 1)) for a in (self.back, self.scale))
-        before = np.concatenate([np.zeros_like(rows[:1]), rows[:-1]])
-        return np.asarray((rows - back * before) / scale)
+        return np.asarray((rows - back * rows[self.before]) / scale)
 
 
 def whitener(count: Array, memory: float) -> Whitener:
-    """For rows that hold `count` (n,) raw samples, neighbours correlated by `memory`."""
+    """For rows that hold `count` (n,) raw samples, neighbours correlated by `memory`; a row without any says nothing."""
+    some = np.flatnonzero(count > 0.0)
+    back, scale = np.zeros(count.size), np.full(count.size, np.sqrt(MISSING))
+    before = np.arange(count.size)
+    before[some[1:]] = some[:-1]
+    back[some], scale[some] = _chain(count[some], memory)
+    return Whitener(back, scale, before)
+
+
+def _chain(count: Array, memory: float) -> tuple[Array, Array]:
+    """`back` and `scale` of rows that follow one another and hold `count` (n,) samples each."""
     held = np.maximum(count, 1.0)
     if memory > 0.0:
         fade = memory**held
         variance = (1.0 + memory) / (1.0 - memory) / held - 2.0 * memory * (1.0 - fade) / (held * (1.0 - memory)) ** 2
         joint = memory * (1.0 - fade[1:]) * (1.0 - fade[:-1]) / (1.0 - memory) ** 2 / (held[1:] * held[:-1])
     else:
-        variance, joint = 1.0 / held, np.zeros(held.size - 1)
-    thin = (count > 0.0) & (count < 1.0)
-    variance = np.where(thin, variance / np.maximum(count, 1e-3), variance)
-    empty = count <= 0.0
-    variance = np.where(empty, MISSING, variance)
-    joint = np.where(empty[1:] | empty[:-1], 0.0, joint)
+        variance, joint = 1.0 / held, np.zeros(max(held.size - 1, 0))
     share = np.clip(joint / np.sqrt(variance[1:] * variance[:-1]), 0.0, 0.9999)
-    back = np.concatenate([[0.0], share * np.sqrt(variance[1:] / variance[:-1])])
-    scale = np.sqrt(variance * np.concatenate([[1.0], 1.0 - share**2]))
-    return Whitener(back, scale)
+    back = np.concatenate([[0.0], share * np.sqrt(variance[1:] / variance[:-1])])[: count.size]
+    scale = np.sqrt(variance * np.concatenate([[1.0], 1.0 - share**2])[: count.size])
+    return back, scale
 
 
 def fit_memory(errors: Array, counts: Array) -> float:
@@ -60,8 +69,9 @@ def fit_memory(errors: Array, counts: Array) -> float:
         total = 0.0
         for error, count in zip(errors, counts, strict=True):
             use = whitener(count, memory)
-            white = use(error)
-            total += error.size * np.log(np.mean(white**2) + 1e-300) + 2.0 * np.log(use.scale).sum()
+            some = count > 0.0
+            white = use(error)[some]
+            total += white.size * np.log(np.mean(white**2) + 1e-300) + 2.0 * np.log(use.scale[some]).sum()
         if total < best:
             best, chosen = total, memory
     return chosen
@@ -70,4 +80,4 @@ def fit_memory(errors: Array, counts: Array) -> float:
 def scales(errors: Array, counts: Array, memory: float) -> Array:
     """(R,) standard deviation of a raw sample in each trial."""
     pairs = zip(errors, counts, strict=True)
-    return np.array([np.sqrt(np.mean(whitener(count, memory)(error) ** 2)) for error, count in pairs])
+    return np.array([np.sqrt(np.mean(whitener(count, memory)(error)[count > 0.0] ** 2)) for error, count in pairs])

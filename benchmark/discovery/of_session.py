@@ -6,9 +6,8 @@ import shutil
 from dataclasses import replace
 from pathlib import Path
 
-from benchmark.discovery.base_law import base_law
 from benchmark.discovery.carrying_out import DiscoverRequest
-from benchmark.discovery.fem_base import fem_base
+from benchmark.discovery.bases.elements import elements_only
 from benchmark.discovery.planning import propose
 from benchmark.discovery.record import DiscoveryRecord
 from benchmark.discovery.settings import Settings
@@ -75,7 +74,7 @@ def store_folder(out: Path | None, session: Session, model: str) -> Path:
 def _found(
     session: Session, request: DiscoverRequest, own: tuple[Effect, ...], listener: Listener, store: Path
 ) -> Findings:
-    base_of = fem_base(session) if request.model == "fem" else base_law
+    base_of = elements_only(session) if request.model == "fem" else None
     settings = Settings(seed=request.seed)
     with listener.progress(f"{session.name}: what the model lacks") as advance:
 

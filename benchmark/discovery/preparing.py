@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -17,7 +17,8 @@ from benchmark.discovery.reading import (
     bin_means,
     bin_sizes,
     fractions,
-    marker_rows,
+    frame_means,
+    marker_frames,
     resting_grid,
 )
 from benchmark.discovery.result import Array
@@ -36,6 +37,9 @@ SPREAD = 3.0
 """Speeds of the trials of one condition lie within this factor, and so do peak depths or else peak forces."""
 SAME_TIME = 0.05
 LEAST_BINS = 10
+NEAR = (-0.04, 0.08)
+SPAN = 0.008
+"""Bins whose depth comes within `NEAR` (shares of the peak) of contact span no more than `SPAN` of it."""
 MOST_IN_ALL, LEAST_IN_TRIAL = 2400, 40
 """Rows of all trials together, and of a trial where there are very many."""
 
@@ -106,8 +110,9 @@ def _raw(session: Session, trial: Trial, warnings: list[str]) -> RawTrial:
     pieces = tuple(segments(time, depth))
     if not any(piece.kind == "press" for piece in pieces):
         raise InputError(f"{place}: the depth never rises by a tenth of its range; a press is needed.")
-    markers = marker_rows(trial, session.camera, time) if session.camera is not None else None
-    return RawTrial(trial, time, depth, force, acceleration(time, depth), markers[0] if markers else None, pieces)
+    seen = marker_frames(trial, session.camera) if session.camera is not None else None
+    frames, markers = seen if seen is not None else (None, None)
+    return RawTrial(trial, time, depth, force, acceleration(time, depth), frames, markers, pieces)
 
 
 def _decimated(*columns: Array) -> list[Array]:
@@ -197,8 +202,8 @@ def _condition(
     rows: int,
 ) -> ConditionData:
     plan = _plan(group, rows)
-    tables, counts = zip(*(_binned(raw, plan, grid, seen) for raw in group), strict=True)
-    data = np.array(tables)
+    binned = [_binned(raw, plan, grid, seen) for raw in group]
+    data = np.array([one.rows for one in binned])
     first = group[0].trial
     time = data[..., 0] - data[:, :1, 0]
     depth = data[..., 1]
@@ -223,7 +228,8 @@ def _condition(
         depth,
         data[..., 2],
         data[..., 3:],
-        np.array(counts),
+        np.array([one.count for one in binned]),
+        np.array([one.frame_time for one in binned]) - data[:, :1, 0],
         *stage,
         around,
     )
@@ -237,25 +243,60 @@ def _plan(group: Sequence[RawTrial], rows: int) -> list[tuple[int, Array]]:
     """For each segment its number and the edges (0 to 1) of its bins, the same for all trials."""
     lengths = np.median([[piece.last - piece.first for piece in raw.pieces] for raw in group], axis=0)
     share = np.sqrt(lengths) / np.sqrt(lengths).sum()
-    return [
-        (number, fractions(bin_sizes(max(int(length), 1), max(LEAST_BINS, int(rows * part)))))
-        for number, (length, part) in enumerate(zip(lengths, share, strict=True))
-    ]
+    out = []
+    for number, (length, part) in enumerate(zip(lengths, share, strict=True)):
+        edges = fractions(bin_sizes(max(int(length), 1), max(LEAST_BINS, int(rows * part))))
+        out.append((number, _finer_at_contact(edges, group[0], number)))
+    return out
+
+
+def _finer_at_contact(edges: Array, raw: RawTrial, number: int) -> Array:
+    """Edges with bins near zero depth split, since the mean force over a bend is not the force of the mean depth."""
+    piece, peak = raw.pieces[number], float(raw.depth.max())
+    marks = piece.first + edges * (piece.last - 1 - piece.first)
+    depth = np.interp(marks, np.arange(raw.depth.size), raw.depth) / peak
+    parts = []
+    for k, (low, high) in enumerate(zip(depth[:-1], depth[1:], strict=True)):
+        near = min(low, high) < NEAR[1] and max(low, high) > NEAR[0]
+        count = int(np.ceil(abs(high - low) / SPAN)) if near else 1
+        parts.append(np.linspace(edges[k], edges[k + 1], max(count, 1), endpoint=False))
+    return np.concatenate([*parts, edges[-1:]])
+
+
+@dataclass(frozen=True, eq=False)
+class Binned:
+    """Rows (n, 3 + C) of time, depth, acceleration and signals; samples (n, C) in each; mean time (n,) of its frames."""
+
+    rows: Array
+    count: Array
+    frame_time: Array
 
 
 def _binned(
     raw: RawTrial, plan: Sequence[tuple[int, Array]], grid: Layout | None, seen: NDArray[np.bool_] | None
-) -> tuple[Array, Array]:
-    """Rows (n, 3 + C): time, depth, acceleration, signals; and raw rows (n,) in each."""
-    columns = [raw.time, raw.depth, raw.acceleration, raw.force]
-    if grid is not None:
-        missing = np.full((raw.time.size, len(grid.names)), np.nan)
-        signals = missing if raw.markers is None else grid.signals(raw.markers[:, seen])
-        columns += list(signals.T)
-    table = np.column_stack(columns)
+) -> Binned:
+    table = np.column_stack([raw.time, raw.depth, raw.acceleration, raw.force])
     parts = [bin_means(table, raw.pieces[k].first, raw.pieces[k].last, edges) for k, edges in plan]
-    rows, counts = np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])
-    return _rising(rows), counts
+    rows, samples = _rising(np.concatenate([p[0] for p in parts])), np.concatenate([p[1] for p in parts])
+    if grid is None:
+        return Binned(rows, samples[:, None], rows[:, 0])
+    missing = np.full((samples.size, len(grid.names)), np.nan)
+    if raw.markers is None or raw.frames is None:
+        nothing = np.zeros_like(missing)
+        return Binned(np.hstack([rows, missing]), np.column_stack([samples, nothing]), rows[:, 0])
+    signals, frames, moment = frame_means(raw.frames, grid.signals(raw.markers[:, seen]), _edges(raw, plan))
+    return Binned(np.hstack([rows, signals]), np.column_stack([samples, *[frames] * len(grid.names)]), moment)
+
+
+def _edges(raw: RawTrial, plan: Sequence[tuple[int, Array]]) -> Array:
+    """Times between the bins of all segments, which follow one another, halfway between raw rows."""
+    halfway = 0.5 * (raw.time[1:] + raw.time[:-1])
+    borders = np.concatenate([[2 * raw.time[0] - halfway[0]], halfway, [2 * raw.time[-1] - halfway[-1]]])
+    marks = [np.array([raw.pieces[plan[0][0]].first])]
+    for number, edges in plan:
+        piece = raw.pieces[number]
+        marks.append(piece.first + np.round(edges[1:] * (piece.last - piece.first)).astype(int))
+    return np.asarray(borders[np.concatenate(marks)])
 
 
 def _rising(rows: Array) -> Array:

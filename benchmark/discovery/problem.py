@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from benchmark.discovery.base_law import BaseLaw
+from benchmark.discovery.bases.law import BaseLaw
 from benchmark.discovery.noise import Whitener, whitener
 from benchmark.discovery.result import Array
 from benchmark.discovery.simulator import Shape
@@ -36,7 +37,11 @@ class TrialPrior:
 
 @dataclass(frozen=True, eq=False)
 class TrialRef:
-    """One trial of the study: where it is and what it measured; signals (n, C)."""
+    """One trial of the study: where it is and what it measured; signals and samples in them (n, C).
+
+    Frames are of other instants than the rows of force: `frame_row` (n,) and `frame_share` (n,) place them in time
+    between two rows.
+    """
 
     condition: int
     row: int
@@ -45,6 +50,13 @@ class TrialRef:
     motion: Motion
     signals: Array
     count: Array
+    frame_row: NDArray[np.int64]
+    frame_share: Array
+
+    def at_frames(self, rows: Array) -> Array:
+        """Values (n, ...) at the rows' times taken to the frames' times."""
+        share = self.frame_share.reshape(-1, *[1] * (rows.ndim - 1))
+        return np.asarray(rows[self.frame_row] * (1.0 - share) + rows[self.frame_row + 1] * share)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +104,7 @@ class Problem:
         out = []
         for signal, memory in enumerate(self.noise.memory):
             use = whitener(trial.count[:, signal], memory)
-            out.append(Whitener(use.back, use.scale * self.noise.scale[index, signal]))
+            out.append(replace(use, scale=use.scale * self.noise.scale[index, signal]))
         return out
 
 
@@ -102,11 +114,18 @@ def trial_refs(study: Study) -> tuple[TrialRef, ...]:
     for number, condition in enumerate(study.conditions):
         for row in range(condition.size):
             signals = condition.signals[row]
-            count = np.where(np.isfinite(signals), condition.count[row][:, None], 0.0)
+            count = np.where(np.isfinite(signals), condition.count[row], 0.0)
             motion = Motion(condition.time[row], condition.depth[row], condition.acceleration[row])
             known = np.nan_to_num(signals)
-            out.append(TrialRef(number, row, int(condition.numbers[row]), condition.trials[row], motion, known, count))
+            place = (number, row, int(condition.numbers[row]), condition.trials[row])
+            out.append(TrialRef(*place, motion, known, count, *_between(motion.time, condition.frame_time[row])))
     return tuple(out)
+
+
+def _between(time: Array, frames: Array) -> tuple[NDArray[np.int64], Array]:
+    """Where times (n,) lie between rows: the row before and the share of the way to the next."""
+    row = np.clip(np.searchsorted(time, frames) - 1, 0, time.size - 2)
+    return row, np.clip((frames - time[row]) / (time[row + 1] - time[row]), 0.0, 1.0)
 
 
 def only(problem: Problem, trials: Sequence[int]) -> Problem:

@@ -18,9 +18,9 @@ SEEN = 0.5
 
 @dataclass(frozen=True, eq=False)
 class RawTrial:
-    """One trial as measured, its repeated rates taken out: (n,) arrays; markers (n, m, 2) on the same instants.
+    """One trial as measured, its repeated rates taken out: (n,) arrays; markers (f, m, 2) at the frames (f,) s.
 
-    `markers` are interpolated to the rows in time; NaN outside the frames.
+    A marker that a frame missed is interpolated in time; one that was hardly seen is NaN.
     """
 
     trial: Trial
@@ -28,6 +28,7 @@ class RawTrial:
     depth: Array
     force: Array
     acceleration: Array
+    frames: Array | None
     markers: Array | None
     pieces: tuple[Segment, ...]
 
@@ -85,8 +86,8 @@ def acceleration(time: Array, depth: Array) -> Array:
     return np.asarray(savgol_filter(depth, 5, 2, deriv=2, delta=step, mode="nearest"))
 
 
-def marker_rows(trial: Trial, camera: Camera, time: Array) -> tuple[Array, Array] | None:
-    """Positions (n, m, 2) at `time` (n,) of the grid's markers, and which (m,) were seen often enough."""
+def marker_frames(trial: Trial, camera: Camera) -> tuple[Array, Array] | None:
+    """Times (f,) of a trial's frames and positions (f, m, 2) of the grid's markers in them."""
     table = trial.markers
     if table is None:
         return None
@@ -94,18 +95,33 @@ def marker_rows(trial: Trial, camera: Camera, time: Array) -> tuple[Array, Array
     numbers = np.unique(table.marker)
     base = int(numbers.min()) if numbers.size == count else int(0 not in numbers)
     index = table.marker - base
-    out = np.full((time.size, count, 2), np.nan)
-    frames = np.unique(table.time).size
+    frames = np.unique(table.time)
+    out = np.full((frames.size, count, 2), np.nan)
     for number in range(count):
         mine = (index == number) & np.isfinite(table.x) & np.isfinite(table.y)
-        if mine.sum() < max(SEEN * frames, 2):
+        if mine.sum() < max(SEEN * frames.size, 2):
             continue
         stamps = table.time[mine]
         order = np.argsort(stamps)
         for axis, values in enumerate((table.x[mine], table.y[mine])):
-            out[:, number, axis] = np.interp(time, stamps[order], values[order])
-    seen = np.isfinite(out[0, :, 0])
-    return out, np.asarray(seen)
+            out[:, number, axis] = np.interp(frames, stamps[order], values[order])
+    return frames, out
+
+
+def frame_means(frames: Array, signals: Array, edges: Array) -> tuple[Array, Array, Array]:
+    """Signals (f, c) of frames in bins of time: means (k, c), number of frames (k,) and their mean time (k,).
+
+    `edges` (k + 1,) s; a bin without frames has NaN, and its middle as its time.
+    """
+    marks = np.searchsorted(frames, edges)
+    counts = np.diff(marks).astype(float)
+    table = np.column_stack([frames, signals])
+    sums = np.concatenate([np.zeros((1, table.shape[1])), np.cumsum(table, axis=0)])
+    means = (sums[marks[1:]] - sums[marks[:-1]]) / np.maximum(counts, 1.0)[:, None]
+    empty = counts == 0.0
+    means[empty] = np.nan
+    means[empty, 0] = 0.5 * (edges[1:] + edges[:-1])[empty]
+    return means[:, 1:], counts, means[:, 0]
 
 
 def resting_grid(camera: Camera, positions: Array) -> Array:

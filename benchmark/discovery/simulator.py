@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmark.discovery.base_law import BaseLaw
+from benchmark.discovery.bases.law import BaseLaw
 from benchmark.discovery.result import Array
 from benchmark.effects import Effect, Motion, Press, Readings, Spread, Surroundings
 from benchmark.effects.term import Values
@@ -59,7 +59,8 @@ class Bent:
         x = np.clip(law.depth / self.deep, 0.0, None)
         inside = np.minimum(x, 1.0)
         second, third = 6 * inside**2 - 6 * inside + 1, 20 * inside**3 - 30 * inside**2 + 12 * inside - 1
-        force = law.force + shape.radius * law.force_by_radius
+        first, second_order = law.force_by_radius
+        force = law.force + shape.radius * first + shape.radius**2 * second_order
         bent = force * (1.0 + shape.bend * second + shape.turn * third) * np.maximum(x, 1e-4) ** shape.exponent
         return np.asarray(np.exp(shape.modulus) * np.maximum(bent, 0.0))
 
@@ -198,7 +199,7 @@ def lower_face(bent: Bent, spread: Spread, rest: Array) -> tuple[Array, Array]:
     """Positions (n, m, 2) and sinking (n, m) of markers at rest positions (m, 2), m."""
     law, shape = bent.law, bent.shape
     rows, count = spread.depth.size, len(rest)
-    if law.outward is None or law.sink is None or law.outward_by_radius is None:
+    if law.outward is None or law.sink is None:
         return np.broadcast_to(rest, (rows, count, 2)).copy(), np.zeros((rows, count))
     x, y = (rest - np.asarray(spread.centre)).T
     root = np.sqrt(spread.ratio)
@@ -208,7 +209,8 @@ def lower_face(bent: Bent, spread: Spread, rest: Array) -> tuple[Array, Array]:
     along = np.column_stack([x / root / safe, y * root / safe])
     out = _field(bent, law.outward, spread.depth, read)
     if shape.radius:
-        out = out + shape.radius * _field(bent, law.outward_by_radius, spread.depth, read)
+        for order, pair in enumerate(law.outward_by_radius, start=1):
+            out = out + shape.radius**order * _field(bent, pair, spread.depth, read)
     moved = (1.0 + shape.marker_size) * spread.passed[:, None] * out
     return rest + moved[..., None] * along, _field(bent, law.sink, spread.depth, read)
 

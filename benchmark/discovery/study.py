@@ -45,8 +45,10 @@ class ConditionData:
         s, m, m/s2.
     signals : (R, n, C)
         Force in N, then marker combinations in m; NaN where nothing was measured.
-    count : (R, n)
-        Raw rows in each row.
+    count : (R, n, C)
+        Samples in each row and signal: raw rows, frames.
+    frame_time : (R, n)
+        Mean time of the frames in each row, s.
     phase, cycle, part : (n,)
         Index in PHASES, number of the press, and a half (0 or 1) of a phase.
     around : Surroundings
@@ -62,6 +64,7 @@ class ConditionData:
     acceleration: Array
     signals: Array
     count: Array
+    frame_time: Array
     phase: NDArray[np.int64]
     cycle: NDArray[np.int64]
     part: NDArray[np.int64]

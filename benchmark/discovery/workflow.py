@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmark.discovery.answer import base_estimates, candidates, named_effects, remains, transfers
-from benchmark.discovery.base_law import BaseLaws, base_law
+from benchmark.discovery.bases.law import BaseLaws
 from benchmark.discovery.calibrate import Calibrated, calibrate
 from benchmark.discovery.contrasts import contrasts
 from benchmark.discovery.detect import Detection, detect, places, smallest_visible, unexplained
@@ -70,7 +70,7 @@ def findings(
     effects: Sequence[Effect] = (),
     listener: Listener = silent,
     store: Path | None = None,
-    base_of: BaseLaws = base_law,
+    base_of: BaseLaws | None = None,
 ) -> Findings:
     """Find what the model of a session lacks, and keep the fits.
 
@@ -87,7 +87,7 @@ def findings(
     store
         Folder for fits as they come, from which an interrupted discovery goes on.
     base_of
-        The elastic base of a set-up; the wave models' by default.
+        The elastic base of a set-up; by default the finite elements', or the wave's where they do not cover it.
 
     Raises
     ------

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmark.discovery.base_law import BaseLaw
+from benchmark.discovery.bases.law import BaseLaw
 from benchmark.discovery.simulator import Shape, Simulator
 from benchmark.effects import SLUGS, Motion, Surroundings, catalogue
 
