@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 import fem
 from benchmark.blind.arrays import Array
@@ -14,6 +15,8 @@ HOLE_RADIUS = 30e-3
 DEEPEST = 5e-3
 RADIUS_FACTORS = (0.9, 1.0, 1.1)
 STEPS = 25
+SECOND_SHARE = 0.2
+"""Share of the shear modulus in the second Mooney-Rivlin constant, which no session tells of."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +102,7 @@ SKINS = (_skin("skin_stiff", 0.8e6, 50e3, 5.0e-3), _skin("skin_soft", 0.3e6, 25e
 
 @lru_cache(maxsize=8)
 def press_table(specimen: Specimen) -> PressTable:
-    """Press the specimen with the told tool radius, and with one 10 % smaller and larger; about a second."""
+    """Press the specimen with the told tool radius, and with one 10 % smaller and larger; some seconds."""
     presses = [_press(specimen, factor * specimen.tool_radius) for factor in RADIUS_FACTORS]
     depth, radius = _depths(), np.linspace(0.0, 0.9 * HOLE_RADIUS, 28)
     faces = [_lower_face(press, radius) for press in presses] if specimen.has_markers else None
@@ -119,20 +122,25 @@ def _depths() -> Array:
 
 def _press(specimen: Specimen, radius: float) -> fem.Solution:
     layers = tuple(
-        fem.Layer(each.name, each.thickness, each.density, fem.NeoHookean(each.youngs_modulus, each.poisson_ratio))
-        for each in specimen.layers
+        fem.Layer(each.name, each.thickness, each.density, _silicone(each)) for each in specimen.layers
     )
     problem = fem.Problem(
         layers=layers,
         tool=fem.Tool(radius, "rigid_bonded"),
         support=fem.Support(specimen.support, HOLE_RADIUS if specimen.support == "hole" else None),
         kinematics="finite",
-        discretisation=fem.Discretisation("coarse"),
+        discretisation=fem.Discretisation("fine" if specimen.has_markers else "default"),
     )
     solution = fem.prepare(problem).run(fem.Load("depth", np.arange(1.0, STEPS + 1), _depths()[1:]))
     if not solution.complete:
         raise fem.FemError(f"blind specimen {specimen.name}: {solution.failure}")
     return solution
+
+
+def _silicone(layer: Layer) -> fem.Material:
+    """A Mooney-Rivlin law of the layer's moduli, where the session tells of the moduli alone."""
+    shear = 0.5 * layer.youngs_modulus / (1.0 + layer.poisson_ratio)
+    return fem.MooneyRivlin(0.5 * (1.0 - SECOND_SHARE) * shear, 0.5 * SECOND_SHARE * shear, layer.poisson_ratio)
 
 
 def _lower_face(press: fem.Solution, radius: Array) -> tuple[Array, Array]:
@@ -142,6 +150,6 @@ def _lower_face(press: fem.Solution, radius: Array) -> tuple[Array, Array]:
     face = face[np.argsort(nodes[face, 0])]
     moved = press.displacement[:, face, :]
     rest = np.zeros((1, radius.size))
-    outward = np.stack([np.interp(radius, nodes[face, 0], row) for row in moved[:, :, 0]])
-    sinking = np.stack([np.interp(radius, nodes[face, 0], -row) for row in moved[:, :, 1]])
+    outward = CubicSpline(nodes[face, 0], moved[:, :, 0], axis=1)(radius)
+    sinking = CubicSpline(nodes[face, 0], -moved[:, :, 1], axis=1)(radius)
     return np.concatenate([rest, outward]), np.concatenate([rest, sinking])

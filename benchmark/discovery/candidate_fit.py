@@ -67,8 +67,8 @@ def screened(base: Fit, model: Model, effect: Effect) -> list[Start]:
         start = model.vector(base.vector[: base.model.shape_count], {**known, effect.slug: values})
         signals = model.signals(start, base.nuisance)
         moved = [white.flat(i, signals[i] - plain[i]) for i in range(len(plain))]
-        overlaps, sizes = _projected(projections, residuals, moved)
-        overlap, size = float(overlaps.sum()), float(sizes.sum())
+        overlaps, sizes, pull = _projected(base, projections, residuals, moved)
+        overlap, size = float(overlaps.sum()) + pull, float(sizes.sum())
         if size <= 0.0:
             continue
         scale = float(np.clip(overlap / size, *SCALES))
@@ -121,17 +121,27 @@ def _projections(base: Fit) -> tuple[list[tuple[Array, Array, Array]], Array]:
 
 
 def _projected(
-    projections: tuple[list[tuple[Array, Array, Array]], Array], residuals: Sequence[Array], moved: Sequence[Array]
-) -> tuple[Array, Array]:
-    """Overlap (R,) of what an effect moves with the residual, and its own size (R,), off base and nuisances."""
+    base: Fit,
+    projections: tuple[list[tuple[Array, Array, Array]], Array],
+    residuals: Sequence[Array],
+    moved: Sequence[Array],
+) -> tuple[Array, Array, float]:
+    """Overlap (R,) of what an effect moves with the residual, and its own size (R,), off base and nuisances.
+
+    The third is what their priors add to the overlap: a base that is bent against its priors to follow the data pulls
+    towards the effect that would let it go.
+    """
     parts, matrix = projections
+    weight = nuisance_precision(base.model.problem)
     held = [move - n @ (inner @ (n.T @ move)) for (_, n, inner), move in zip(parts, moved, strict=True)]
     on_base = sum((j.T @ h for (j, _, _), h in zip(parts, held, strict=True)), np.zeros(len(matrix)))
     amount = np.linalg.solve(matrix, on_base)
     overlaps, sizes = [], []
-    for (j, n, inner), residual, move, own in zip(parts, residuals, moved, held, strict=True):
+    pull = float(amount @ (base.precision * (base.vector - base.prior_mean)))
+    for index, (j, n, inner) in enumerate(parts):
         side = j @ amount
-        rest = own - (side - n @ (inner @ (n.T @ side)))
-        overlaps.append(float(rest @ residual))
-        sizes.append(float(rest @ move))
-    return np.array(overlaps), np.array(sizes)
+        rest = held[index] - (side - n @ (inner @ (n.T @ side)))
+        overlaps.append(float(rest @ residuals[index]))
+        sizes.append(float(rest @ moved[index]))
+        pull += float((n.T @ (moved[index] - side)) @ inner @ (weight * base.nuisance[index]))
+    return np.array(overlaps), np.array(sizes), pull

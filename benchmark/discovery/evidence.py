@@ -21,25 +21,32 @@ class Gain:
     z: float
 
 
+def strain(fitted: Fit) -> float:
+    """What the base's shape costs under its priors, in log density: it may bend to the data, but not for nothing."""
+    first = fitted.model.shape_count
+    moved = (fitted.vector - fitted.prior_mean)[:first]
+    return 0.5 * float(np.sum(fitted.precision[:first] * moved**2))
+
+
 def held_out(fitted: Fit) -> Array:
-    """(R,) log density of each trial under the fit to the others."""
+    """(R,) log density of each trial under the fit to the others, less its share of the base's strain."""
     count = len(fitted.model.problem.trials)
     out = np.empty(count)
     for index in range(count):
         left = np.zeros(count, dtype=bool)
         left[index] = True
         out[index] = fitted.log_density(fitted.without(left))[index]
-    return out
+    return out - strain(fitted) / count
 
 
 def held_out_conditions(fitted: Fit) -> Array:
-    """(R,) log density of each trial under the fit to the other conditions, to first order."""
+    """(R,) log density of each trial under the fit to the other conditions, to first order; strain as in `held_out`."""
     conditions = np.array([trial.condition for trial in fitted.model.problem.trials])
     out = np.empty(conditions.size)
     for number in np.unique(conditions):
         left = conditions == number
         out[left] = fitted.log_density(fitted.without(left))[left]
-    return out
+    return out - strain(fitted) / conditions.size
 
 
 def gain(fitted: Array, other: Array, conditions: Array) -> Gain:

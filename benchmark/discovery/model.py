@@ -14,7 +14,8 @@ from benchmark.discovery.simulator import Bent, Shape, Simulator, ordered
 from benchmark.effects import Effect, EffectParameter, Readings, catalogue
 from benchmark.effects.term import Values
 
-EDGE = 1e-9
+FAR_RADIUS = 0.25
+"""Relative change of the tool's radius up to which the base's second order serves."""
 LOG_PRIOR = 2.5
 """Standard deviation of a logarithmic parameter round its start."""
 
@@ -57,8 +58,9 @@ class Model:
     @cached_property
     def bounds(self) -> tuple[Array, Array]:
         """Lower and upper bounds of the vector."""
-        low = [-np.inf] * self.shape_count + [_inner(p, p.low) for _, p in self.parameters]
-        high = [np.inf] * self.shape_count + [_inner(p, p.high) for _, p in self.parameters]
+        reach = [FAR_RADIUS if name == "radius" else np.inf for name in self.problem.shapes]
+        low = [-far for far in reach] + [_inner(p, p.low) for _, p in self.parameters]
+        high = reach + [_inner(p, p.high) for _, p in self.parameters]
         return np.array(low), np.array(high)
 
     @cached_property
