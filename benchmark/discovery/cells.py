@@ -140,24 +140,35 @@ def flip_test(table: CellTable, flips: int, seed: int) -> FlipTest:
     compared with those after flipping the signs of whole trials, which under no disagreement changes nothing.
     """
     means = table.means if table.matched is None else np.vstack([table.means, table.matched])
-    count = means.shape[1]
-    one_sided = np.arange(len(means)) >= len(table.cells)
     kinds = [(cell.signal, min(cell.rows), len(cell.rows)) for cell in table.cells]
     kinds += [(-1, 0, 0)] * (len(means) - len(kinds))
-    groups = np.zeros(count, dtype=int) if table.groups is None else table.groups
-    weights = _members(groups)
-    signs = _signs(count, flips, seed)
-    t, error = (column[0] for column in _statistics(means, np.array(kinds), np.ones((1, count)), weights))
-    flipped = _statistics(means, np.array(kinds), signs, weights)[0]
-    largest = np.where(one_sided, flipped, np.abs(flipped)).max(axis=1)
-    shown = np.where(one_sided, t, np.abs(t))
-    p = (1.0 + (largest[:, None] >= shown[None] - 1e-9).sum(axis=0)) / (1.0 + len(signs))
-    if count <= ALL_FLIPS:
-        p = (largest[:, None] >= shown[None] - 1e-9).mean(axis=0)
+    groups = np.zeros(means.shape[1], dtype=int) if table.groups is None else table.groups
+    sided = np.arange(len(means)) >= len(table.cells)
+    t, error, p, largest = _flipped(means, np.array(kinds), sided, groups, (flips, seed))
     size = len(table.cells)
-    return FlipTest(
-        t[:size], p[:size], float(np.quantile(largest, 0.95, method="higher")), error[:size], float(p.min())
-    )
+    critical = float(np.quantile(largest, 0.95, method="higher"))
+    return FlipTest(t[:size], p[:size], critical, error[:size], float(p.min()))
+
+
+def one_sided(rows: Array, groups: np.ndarray, flips: int, seed: int) -> Array:
+    """(K,) family-wise p that numbers (K, R), one a trial, lie above zero in the mean."""
+    kinds = np.tile([-1, 0, 0], (len(rows), 1))
+    return _flipped(rows, kinds, np.ones(len(rows), dtype=bool), groups, (flips, seed))[2]
+
+
+def _flipped(
+    means: Array, kinds: Array, sided: np.ndarray, groups: np.ndarray, draw: tuple[int, int]
+) -> tuple[Array, Array, Array, Array]:
+    """t, standard error and family-wise p (K,) of means (K, R), and the largest statistic of each flip (S,)."""
+    count = means.shape[1]
+    weights, signs = _members(groups), _signs(count, *draw)
+    t, error = (column[0] for column in _statistics(means, kinds, np.ones((1, count)), weights))
+    flipped = _statistics(means, kinds, signs, weights)[0]
+    largest = np.where(sided, flipped, np.abs(flipped)).max(axis=1)
+    shown = np.where(sided, t, np.abs(t))
+    above = largest[:, None] >= shown[None] - 1e-9
+    p = above.mean(axis=0) if count <= ALL_FLIPS else (1.0 + above.sum(axis=0)) / (1.0 + len(signs))
+    return t, error, p, largest
 
 
 def _members(groups: np.ndarray) -> Array:

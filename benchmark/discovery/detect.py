@@ -14,6 +14,8 @@ from benchmark.discovery.model import Model
 from benchmark.discovery.result import PHASES, Array, Place
 from benchmark.discovery.settings import Settings
 
+SHARES = (0.7, 0.15, 0.15)
+"""Of the level: sign flips of cells and matched numbers, strain of the base, held-out gain of an effect."""
 MOST_CELLS = 0.6
 """Where more than this share of the cells is flagged there is nothing clean to refit on."""
 
@@ -41,8 +43,12 @@ def detect(fitted: Fit, settings: Settings, matched: Array | None = None) -> Det
     last = (replace(first[0], matched=None), cells_only)
     if flagged.any() and flagged.mean() < MOST_CELLS:
         last = _tested(_refitted(fitted, first[0], flagged), settings, full=fitted)
-    either = min(1.0, 2.0 * min(first[1].p_any, strained(fitted)))
-    return Detection(*last, p=either, p_cells=cells_only.p_any, trend=_trend(fitted, first[0]))
+    return Detection(*last, p=combined(first[1].p_any, strained(fitted)), p_cells=cells_only.p_any, trend=_trend(fitted, first[0]))
+
+
+def combined(*values: float) -> float:
+    """p of anything, of several tests that share the level as `SHARES` say."""
+    return float(min(1.0, *(value / share for value, share in zip(values, SHARES, strict=False))))
 
 
 def strained(fitted: Fit) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -217,6 +218,7 @@ def _condition(
         duration=float(time[:, -1].max()),
         spacing=session.camera.marker_spacing if session.camera and grid is not None else 0.0,
         markers=None if grid is None else grid.rest,
+        hole_radius=float(first.support.hole_radius) if first.support.kind == "hole" else math.inf,
     )
     return ConditionData(
         first.condition,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.stats import t as t_distribution
 
 from benchmark.discovery.evidence import Gain, delta_bic, effective_size, gain, held_out, held_out_conditions
 from benchmark.discovery.fit import Fit
@@ -88,6 +89,16 @@ def select(
     current = _swapped(base, current, rounds, work)
     lookalikes, rivals = _lookalikes(base, current, rounds, settings, work)
     return Selection(base, current, tuple(steps), tuple(all_scored), first_screen, lookalikes, rivals)
+
+
+def first_gain(selection: Selection) -> float:
+    """p of the first accepted effect's held-out gain, by Student's t over trials, for all candidates of its round."""
+    if not selection.steps:
+        return 1.0
+    step = selection.steps[0]
+    freedom = max(step.gain.each.size - np.unique(conditions(selection.base)).size, 1)
+    tried = sum(1 for scored in selection.candidates if len(scored.slugs) == 1)
+    return float(min(1.0, tried * t_distribution.sf(step.gain.z, freedom)))
 
 
 def usable(base: Fit, effect: Effect) -> bool:

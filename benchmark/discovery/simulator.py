@@ -212,6 +212,8 @@ def lower_face(bent: Bent, spread: Spread, rest: Array) -> tuple[Array, Array]:
         for order, pair in enumerate(law.outward_by_radius, start=1):
             out = out + shape.radius**order * _field(bent, pair, spread.depth, read)
     moved = (1.0 + shape.marker_size) * spread.passed[:, None] * out
+    if spread.dent is not None:
+        moved = moved + spread.dent[0][:, None] / np.maximum(radius, spread.dent[1])
     return rest + moved[..., None] * along, _field(bent, law.sink, spread.depth, read)
 
 

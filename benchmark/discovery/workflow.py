@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,15 +13,16 @@ from benchmark.discovery.answer import base_estimates, candidates, named_effects
 from benchmark.discovery.bases.law import BaseLaws
 from benchmark.discovery.calibrate import Calibrated, calibrate
 from benchmark.discovery.contrasts import contrasts
-from benchmark.discovery.detect import Detection, detect, places, smallest_visible, unexplained
+from benchmark.discovery.detect import SHARES, Detection, combined, detect, places, smallest_visible, unexplained
 from benchmark.discovery.fit import Fit
 from benchmark.discovery.gap import HeldOut, closed_overall, gaps, held_out_residuals
 from benchmark.discovery.pool import Listener, fingerprint, pool, silent
 from benchmark.discovery.preparing import ENOUGH_TRIALS, prepare
-from benchmark.discovery.result import Discovery
+from benchmark.discovery.result import Discovery, Place
 from benchmark.discovery.sampling import compared, on_all, on_some, remark
 from benchmark.discovery.screen import screen
-from benchmark.discovery.select import Selection, select, usable
+from benchmark.discovery.select import Selection, first_gain, select, usable
+from benchmark.discovery.shown import places_of
 from benchmark.discovery.settings import Settings
 from benchmark.discovery.traces import traces
 from benchmark.discovery.verdict import Facts, statement, verdict
@@ -29,7 +30,9 @@ from benchmark.effects import Effect, catalogue
 from benchmark.files import Session
 
 DEFAULT = Settings()
-VERSION = 1
+VERSION = 2
+SURE = 15.0
+"""Effects are searched for, whatever the test says, where one step towards one gains so much log density."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,8 +109,9 @@ def findings(
     key = fingerprint(VERSION, session.fingerprint, settings, [each.card for each in effects])
     with pool(settings.workers, store, key, effects, listener) as work:
         some = on_some(base, compared(base))
-        searched = known if before.p < settings.level else ()
+        searched = known if before.p < settings.level or screened[0].won > SURE else ()
         selection = select(some, searched, settings, work, screened if some is base else ())
+    before = replace(before, p=combined(before.p * SHARES[0], 1.0, first_gain(selection)))
     listener("verify", 0, 1, "")
     chosen = on_all(base, selection.chosen)
     after = detect(chosen, settings) if chosen is not base else before
@@ -136,8 +140,10 @@ def _discovery(
     few = remark(len(selection.base.model.problem.trials), len(problem.trials))
     overall = closed_overall(base, held)
     slugs = tuple(effect.slug for effect in chosen.model.effects)
-    shown = places(base, before, settings.level)
     silent_answer = word == "no_discrepancy"
+    shown = places(base, before, settings.level)
+    if chosen is not base and not silent_answer:
+        shown = _joined(places_of(base, chosen, settings), shown)
     return Discovery(
         verdict=word,
         statement=statement(word, facts),
@@ -157,6 +163,12 @@ def _discovery(
         trials=tuple(trial.name for trial in problem.trials),
         seconds=time.perf_counter() - began,
     )
+
+
+def _joined(first: tuple[Place, ...], then: tuple[Place, ...]) -> tuple[Place, ...]:
+    """Places of both, those of a channel and phase that the first has not dropped from the second."""
+    have = {(place.channel, place.phase) for place in first}
+    return (*first, *(place for place in then if (place.channel, place.phase) not in have))
 
 
 def _facts(

@@ -6,6 +6,7 @@ effect is plain functions for the places where it acts; any number compose, in t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Protocol, TypeAlias
@@ -33,6 +34,8 @@ class Surroundings:
         Of the longest trial, s.
     markers : (m, 2) array or None
         Resting positions of the markers by the nominal grid, m.
+    hole_radius : float
+        Of the support, m; infinite without a hole.
     """
 
     tool_radius: float
@@ -42,6 +45,7 @@ class Surroundings:
     duration: float
     spacing: float = 0.0
     markers: Array | None = None
+    hole_radius: float = math.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,12 +95,16 @@ class Spread:
         Of the tool axis from the grid's nominal centre, m.
     ratio : float
         Tension along x over tension along y.
+    dent : ((n,) array, float) or None
+        A dent that falls with the logarithm of the radius from an inner radius on: its outward motion times the
+        radius, m^2, and that inner radius, m.
     """
 
     depth: Array
     passed: Array
     centre: tuple[float, float] = (0.0, 0.0)
     ratio: float = 1.0
+    dent: tuple[Array, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)

