@@ -121,9 +121,7 @@ def _depths() -> Array:
 
 
 def _press(specimen: Specimen, radius: float) -> fem.Solution:
-    layers = tuple(
-        fem.Layer(each.name, each.thickness, each.density, _silicone(each)) for each in specimen.layers
-    )
+    layers = tuple(fem.Layer(each.name, each.thickness, each.density, _silicone(each)) for each in specimen.layers)
     problem = fem.Problem(
         layers=layers,
         tool=fem.Tool(radius, "rigid_bonded"),

@@ -32,7 +32,7 @@ def confidence(selection: Selection, slug: str) -> float:
     weights = 0.0
     for rival in selection.rivals.get(slug, ()):
         lead = gain(now, held_out(rival), groups)
-        weights += float(np.exp(-0.5 * max(lead.mean / max(lead.error, 1e-12), 0.0) ** 2))
+        weights += float(np.exp(-0.5 * max(lead.z, 0.0) ** 2))
     return 1.0 / (1.0 + weights)
 
 

@@ -43,11 +43,12 @@ def detect(fitted: Fit, settings: Settings, matched: Array | None = None) -> Det
     last = (replace(first[0], matched=None), cells_only)
     if flagged.any() and flagged.mean() < MOST_CELLS:
         last = _tested(_refitted(fitted, first[0], flagged), settings, full=fitted)
-    return Detection(*last, p=combined(first[1].p_any, strained(fitted)), p_cells=cells_only.p_any, trend=_trend(fitted, first[0]))
+    p = combined(first[1].p_any, strained(fitted))
+    return Detection(*last, p=p, p_cells=cells_only.p_any, trend=_trend(fitted, first[0]))
 
 
 def combined(*values: float) -> float:
-    """p of anything, of several tests that share the level as `SHARES` say."""
+    """Least p of several tests that share the level as `SHARES` say."""
     return float(min(1.0, *(value / share for value, share in zip(values, SHARES, strict=False))))
 
 

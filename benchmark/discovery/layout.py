@@ -26,8 +26,8 @@ def grid(camera: Camera) -> Array:
 def layout(rest: Array, spacing: float) -> Layout:
     """Combinations for markers at rest positions (m, 2).
 
-    Radial by ring and tangential, translations, the radial part along x and along y (an axis beside the centre), and cos
-    2 theta radially and sin 2 theta tangentially (unlike axes), free of what the rings and translations already hold.
+    Radial by ring and tangential, translations, the radial part along x and along y (an axis beside the centre), cos 2
+    theta radially and sin 2 theta tangentially (unlike axes), free of what rings and translations already hold.
     """
     radius = np.hypot(rest[:, 0], rest[:, 1])
     outside = radius > CENTRAL * spacing
@@ -40,9 +40,10 @@ def layout(rest: Array, spacing: float) -> Layout:
     rows.append(("tangential", "marker_tangential", around / outside.sum()))
     rows += [(name, f"marker_{name}", shift) for name, shift in zip("xy", shifts, strict=True)]
     plain = [*rings, *shifts]
-    rows += [(f"radial_{name}", "marker_radial", _free_of(plain, unit * unit[:, k, None])) for k, name in enumerate("xy")]
-    rows.append(("cos_2", "marker_radial", _free_of(plain, unit * np.cos(angle)[:, None])))
-    rows.append(("sin_2", "marker_tangential", _free_of(plain, around * np.sin(angle)[:, None])))
+    others = [(f"radial_{name}", "marker_radial", unit * unit[:, k, None]) for k, name in enumerate("xy")]
+    others.append(("cos_2", "marker_radial", unit * np.cos(angle)[:, None]))
+    others.append(("sin_2", "marker_tangential", around * np.sin(angle)[:, None]))
+    rows += [(name, channel, _free_of(plain, pattern)) for name, channel, pattern in others]
     names, channels, weights = zip(*rows, strict=True)
     return Layout(rest, np.array(weights), tuple(names), tuple(channels))
 

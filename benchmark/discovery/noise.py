@@ -38,7 +38,7 @@ class Whitener:
 
 
 def whitener(count: Array, memory: float) -> Whitener:
-    """For rows that hold `count` (n,) raw samples, neighbours correlated by `memory`; a row without any says nothing."""
+    """For rows that hold `count` (n,) samples, neighbours correlated by `memory`; a row without any says nothing."""
     some = np.flatnonzero(count > 0.0)
     back, scale = np.zeros(count.size), np.full(count.size, np.sqrt(MISSING))
     before = np.arange(count.size)

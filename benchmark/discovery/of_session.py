@@ -6,8 +6,8 @@ import shutil
 from dataclasses import replace
 from pathlib import Path
 
-from benchmark.discovery.carrying_out import DiscoverRequest
 from benchmark.discovery.bases.elements import elements_only
+from benchmark.discovery.carrying_out import DiscoverRequest
 from benchmark.discovery.planning import propose
 from benchmark.discovery.record import DiscoveryRecord
 from benchmark.discovery.settings import Settings

@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
@@ -258,7 +259,7 @@ def _finer_at_contact(edges: Array, raw: RawTrial, number: int) -> Array:
     marks = piece.first + edges * (piece.last - 1 - piece.first)
     depth = np.interp(marks, np.arange(raw.depth.size), raw.depth) / peak
     parts = []
-    for k, (low, high) in enumerate(zip(depth[:-1], depth[1:], strict=True)):
+    for k, (low, high) in enumerate(pairwise(depth)):
         near = min(low, high) < NEAR[1] and max(low, high) > NEAR[0]
         count = int(np.ceil(abs(high - low) / SPAN)) if near else 1
         parts.append(np.linspace(edges[k], edges[k + 1], max(count, 1), endpoint=False))
@@ -267,7 +268,7 @@ def _finer_at_contact(edges: Array, raw: RawTrial, number: int) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Binned:
-    """Rows (n, 3 + C) of time, depth, acceleration and signals; samples (n, C) in each; mean time (n,) of its frames."""
+    """Rows (n, 3 + C) of time, depth, acceleration and signals; samples (n, C) in them; mean time (n,) of frames."""
 
     rows: Array
     count: Array

@@ -92,7 +92,7 @@ def select(
 
 
 def first_gain(selection: Selection) -> float:
-    """p of the first accepted effect's held-out gain, by Student's t over trials, for all candidates of its round."""
+    """Return p of the first accepted effect's held-out gain, by Student's t over trials, for all candidates of its round."""
     if not selection.steps:
         return 1.0
     step = selection.steps[0]
@@ -218,7 +218,7 @@ def _lookalikes(
         alike = []
         for rival in made:
             lead = gain(now, held_out(rival), groups)
-            if lead.mean < settings.lookalike_z * lead.error or lead.mean < CLOSE * total:
+            if lead.z < settings.lookalike_z or lead.mean < CLOSE * total:
                 alike.append((lead.mean, rival))
         alike.sort(key=lambda pair: pair[0])
         names[effect.slug] = tuple(rival.model.effects[-1].slug for _, rival in alike)

@@ -22,8 +22,8 @@ from benchmark.discovery.result import Discovery, Place
 from benchmark.discovery.sampling import compared, on_all, on_some, remark
 from benchmark.discovery.screen import screen
 from benchmark.discovery.select import Selection, first_gain, select, usable
-from benchmark.discovery.shown import places_of
 from benchmark.discovery.settings import Settings
+from benchmark.discovery.shown import places_of
 from benchmark.discovery.traces import traces
 from benchmark.discovery.verdict import Facts, statement, verdict
 from benchmark.effects import Effect, catalogue
@@ -143,7 +143,7 @@ def _discovery(
     silent_answer = word == "no_discrepancy"
     shown = places(base, before, settings.level)
     if chosen is not base and not silent_answer:
-        shown = _joined(places_of(base, chosen, settings), shown)
+        shown = _joined(places_of(chosen, settings), shown)
     return Discovery(
         verdict=word,
         statement=statement(word, facts),

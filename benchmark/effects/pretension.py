@@ -17,7 +17,8 @@ CARD = Card(
     slug="pretension",
     acts_on="body",
     sentence="The specimen was under tension before the press, which adds a stiffness that is there from the start.",
-    equation="F = f(d) + k d, for a membrane k = 2 pi T / ln(R / a); of its share of F a part q moves the lower face by t d / (2 r ln(R / a))",
+    equation="F = f(d) + k d, for a membrane k = 2 pi T / ln(R / a); "
+    "of its share of F a part q moves the lower face by t d / (2 r ln(R / a))",
     source="Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, chapter 13",
     parameters=(
         linear("stiffness", "N/m", 0.0, 1e5, "added stiffness k"),
@@ -37,7 +38,8 @@ def _spread(values: Values, spread: Spread, press: Press, around: Surroundings) 
     if not math.isfinite(around.hole_radius):
         return spread
     carried = values["stiffness"] * press.surface
-    share = np.divide(carried, press.elastic, out=np.zeros_like(carried), where=press.elastic > 1e-9 * around.peak_force)
+    pressed = press.elastic > 1e-9 * around.peak_force
+    share = np.divide(carried, press.elastic, out=np.zeros_like(carried), where=pressed)
     share = values["field"] * np.clip(share, 0.0, 1.0)
     slope = spread.depth / math.log(around.hole_radius / around.tool_radius)
     dent = 0.5 * around.thickness * share * slope

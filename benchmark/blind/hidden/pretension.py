@@ -1,7 +1,7 @@
 """A sheet that was stretched before: a stiffness from the first touch that flattens at large slopes.
 
-Its lower face moves more near the tool and less farther out: finite elements of the three sheets under a tension of 1 kPa
-show a change of 0.45 - r / 28 mm (within 0.03 from 3 to 16 mm) times the tension's share of the force.
+Its lower face moves more near the tool and less farther out: finite elements of the three sheets under a tension of
+1 kPa show a change of 0.45 - r / 28 mm (within 0.03 from 3 to 16 mm) times the tension's share of the force.
 """
 
 from __future__ import annotations

@@ -1,6 +1,5 @@
 import numpy as np
 import pytest
-
 from benchmark.discovery.base_law import BaseLaw
 from benchmark.discovery.fem_base import _with_force
 

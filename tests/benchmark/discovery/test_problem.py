@@ -1,8 +1,8 @@
 """A problem of some of its trials is the same problem to them."""
 
 import numpy as np
-
 from benchmark.discovery.base_law import base_law
+
 from benchmark.discovery.calibrate import calibrate
 from benchmark.discovery.model import Model
 from benchmark.discovery.preparing import prepare
