@@ -15,8 +15,8 @@ from benchmark.discovery.result import Array
 class Gain:
     """Held-out log density of each trial (R,) less another model's, with mean and standard error.
 
-    `z` is the mean over its error of sign(g) ln(1 + |g|), so that a trial which gains a hundred times what the others do
-    (one beyond a limit, the stiffest specimen) neither carries nor spoils it.
+    `z` is the mean over its error of sign(g) ln(1 + |g|), so that a trial which gains a hundred times what the others
+    do (one beyond a limit, the stiffest specimen) neither carries nor spoils it.
     """
 
     each: Array
@@ -57,13 +57,9 @@ def gain(fitted: Array, other: Array, conditions: Array) -> Gain:
     """Paired gain of held-out densities (R,) over another model's; the error from the scatter within conditions."""
     each = fitted - other
     even = np.sign(each) * np.log1p(np.abs(each))
-    mean = float(even.mean())
-    return Gain(
-        each,
-        float(each.mean()),
-        _error(each, conditions),
-        mean / max(_error(even, conditions), 1e-9 + 0.02 * abs(mean)),
-    )
+    middle = float(even.mean())
+    z = middle / max(_error(even, conditions), 1e-9 + 0.02 * abs(middle))
+    return Gain(each, float(each.mean()), _error(each, conditions), z)
 
 
 def _error(each: Array, conditions: Array) -> float:

@@ -92,7 +92,7 @@ def select(
 
 
 def first_gain(selection: Selection) -> float:
-    """Return p of the first accepted effect's held-out gain, by Student's t over trials, for all candidates of its round."""
+    """Return p of the first accepted effect's held-out gain by Student's t, for all candidates of its round."""
     if not selection.steps:
         return 1.0
     step = selection.steps[0]
