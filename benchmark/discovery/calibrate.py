@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from benchmark.discovery.bases.elements import elements_or_wave
-from benchmark.discovery.bases.law import BaseLaws
+from benchmark.discovery.bases.law import BaseLaw, BaseLaws
 from benchmark.discovery.fit import Fit, fit
 from benchmark.discovery.model import Model
 from benchmark.discovery.noise import fit_memory, scales
@@ -36,7 +36,7 @@ class Calibrated:
 def calibrate(session: Session, study: Study, base_of: BaseLaws | None = None) -> Calibrated:
     """Fit the base and estimate noise and spreads, twice over."""
     base_of = base_of or elements_or_wave(session)
-    laws = tuple(base_of(session.specimen, c.tool, c.support, c.around.peak_depth) for c in study.conditions)
+    laws = _laws(session, study, base_of)
     problem = Problem(study, laws, _first_noise(study), _wide(study), trial_refs(study))
     vector, state = _first_guess(problem)
     model = Model(problem, ())
@@ -47,6 +47,19 @@ def calibrate(session: Session, study: Study, base_of: BaseLaws | None = None) -
     base = fit(Model(problem, ()), second.vector, _kept_state(second, problem), most=8)
     notes = [law.note for law in laws if law.note]
     return Calibrated(problem, base, tuple(dict.fromkeys([*notes, *warnings])))
+
+
+def _laws(session: Session, study: Study, base_of: BaseLaws) -> tuple[BaseLaw, ...]:
+    """The base of each condition; those with the same tool and support share one."""
+    setups = [(condition.tool, condition.support) for condition in study.conditions]
+    depths = [condition.around.peak_depth for condition in study.conditions]
+    made = {
+        setup: base_of(
+            session.specimen, *setup, max(d for d, other in zip(depths, setups, strict=True) if other == setup)
+        )
+        for setup in dict.fromkeys(setups)
+    }
+    return tuple(made[setup] for setup in setups)
 
 
 def _kept_state(before: Fit, problem: Problem) -> Array:

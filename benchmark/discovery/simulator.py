@@ -74,11 +74,26 @@ class Bent:
         force = np.interp(depth, self.law.depth, self.force)
         return np.asarray(gain * (force + self.slope * np.maximum(depth - self.law.depth[-1], 0.0)))
 
-    def course(self, table: Array, depth: Array) -> Array:
-        """(FIELDS, n) courses at depths (n,), mirrored above the surface."""
+    @cached_property
+    def outward(self) -> tuple[Array, Array]:
+        """Courses (c, k) over depth and shapes (c, q) over radius of the outward motion with this tool radius."""
+        law = self.law
+        pairs = [law.outward] if law.outward is not None else []
+        pairs += [(self.shape.radius**order * c, s) for order, (c, s) in enumerate(law.outward_by_radius, start=1)]
+        courses, shapes = zip(*pairs, strict=True)
+        return np.concatenate(courses), np.concatenate(shapes)
+
+    def field(self, pair: tuple[Array, Array], depth: Array, radius: Array) -> Array:
+        """(n, m) motion by courses and shapes at depths (n,), mirrored above the surface, and radii (m,)."""
+        courses, shapes = pair
         size = np.abs(depth)
         growth = np.maximum(size / self.deep, 1e-4) ** self.shape.marker_exponent * np.sign(depth)
-        return np.array([np.interp(size, self.law.depth, row) * growth for row in table])
+        at = np.clip(size / self.law.depth[1], 0.0, self.law.depth.size - 1.000001)
+        low = at.astype(np.int64)
+        share = at - low
+        over_depth = (courses[:, low] * (1.0 - share) + courses[:, low + 1] * share) * growth
+        over_radius = np.array([np.interp(radius, self.law.radius, row, right=0.0) for row in shapes])
+        return np.asarray(over_depth.T @ over_radius)
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,20 +222,11 @@ def lower_face(bent: Bent, spread: Spread, rest: Array) -> tuple[Array, Array]:
     read = radius / (1.0 + shape.width)
     safe = np.maximum(radius, 1e-12)
     along = np.column_stack([x / root / safe, y * root / safe])
-    out = _field(bent, law.outward, spread.depth, read)
-    if shape.radius:
-        for order, pair in enumerate(law.outward_by_radius, start=1):
-            out = out + shape.radius**order * _field(bent, pair, spread.depth, read)
+    out = bent.field(bent.outward, spread.depth, read)
     moved = (1.0 + shape.marker_size) * spread.passed[:, None] * out
     if spread.dent is not None:
         moved = moved + spread.dent[0][:, None] / np.maximum(radius, spread.dent[1])
-    return rest + moved[..., None] * along, _field(bent, law.sink, spread.depth, read)
-
-
-def _field(bent: Bent, pair: tuple[Array, Array], depth: Array, radius: Array) -> Array:
-    courses, shapes = pair
-    at = np.array([np.interp(radius, bent.law.radius, row, right=0.0) for row in shapes])
-    return np.asarray(bent.course(courses, depth).T @ at)
+    return rest + moved[..., None] * along, bent.field(law.sink, spread.depth, read)
 
 
 def ordered(effects: Sequence[Effect], catalogue: Sequence[Effect]) -> tuple[Effect, ...]:

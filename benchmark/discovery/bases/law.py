@@ -28,7 +28,7 @@ class BaseLaw:
 
     Attributes
     ----------
-    depth : (k,) m from 0
+    depth : (k,) m from 0, evenly spaced
     force : (k,)
         N at modulus factor 1.
     force_by_radius : (2, k)
