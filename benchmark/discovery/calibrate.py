@@ -52,13 +52,10 @@ def calibrate(session: Session, study: Study, base_of: BaseLaws | None = None) -
 def _laws(session: Session, study: Study, base_of: BaseLaws) -> tuple[BaseLaw, ...]:
     """The base of each condition; those with the same tool and support share one."""
     setups = [(condition.tool, condition.support) for condition in study.conditions]
-    depths = [condition.around.peak_depth for condition in study.conditions]
-    made = {
-        setup: base_of(
-            session.specimen, *setup, max(d for d, other in zip(depths, setups, strict=True) if other == setup)
-        )
-        for setup in dict.fromkeys(setups)
-    }
+    deepest = dict.fromkeys(setups, 0.0)
+    for setup, condition in zip(setups, study.conditions, strict=True):
+        deepest[setup] = max(deepest[setup], condition.around.peak_depth)
+    made = {setup: base_of(session.specimen, *setup, depth) for setup, depth in deepest.items()}
     return tuple(made[setup] for setup in setups)
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from benchmark.discovery.calibrate import pure_errors
 from benchmark.discovery.fit import Fit, fit, settled
 from benchmark.discovery.model import Model
-from benchmark.discovery.problem import only
+from benchmark.discovery.problem import FOLLOWED, only
 from benchmark.discovery.result import Array, ChannelGap
 from benchmark.discovery.settings import Settings
 
@@ -21,6 +21,16 @@ class HeldOut:
     before: list[Array]
     after: list[Array]
     kind: str
+
+
+def unbent(chosen: Fit) -> Fit:
+    """The base fitted again, with bends and marker field as they are beside the effects.
+
+    A missing effect bends the base; what it hides by that is part of the gap.
+    """
+    names = chosen.model.problem.shapes
+    pinned = tuple((n, float(v)) for n, v in zip(names, chosen.vector, strict=False) if n not in FOLLOWED)
+    return fit(Model(chosen.model.problem, (), pinned), chosen.vector[: len(names)], chosen.nuisance, most=6)
 
 
 def held_out_residuals(base: Fit, chosen: Fit) -> HeldOut:
@@ -42,7 +52,7 @@ def _residuals(fitted: Fit, parts: list[np.ndarray], kind: str) -> list[Array]:
     for left in parts:
         vector = _without_condition(fitted, left) if kind == "condition" else fitted.without(left)
         mine = np.flatnonzero(left)
-        model = Model(only(problem, mine.tolist()), fitted.model.effects)
+        model = replace(fitted.model, problem=only(problem, mine.tolist()))
         state = settled(model, vector, fitted.nuisance[mine])
         for index, signal in zip(mine, model.signals(vector, state), strict=True):
             out[index] = problem.trials[index].signals - signal
@@ -52,7 +62,7 @@ def _residuals(fitted: Fit, parts: list[np.ndarray], kind: str) -> list[Array]:
 def _without_condition(fitted: Fit, left: np.ndarray) -> Array:
     """The vector fitted to the trials of the other conditions."""
     kept = np.flatnonzero(~left)
-    model = Model(only(fitted.model.problem, kept.tolist()), fitted.model.effects)
+    model = replace(fitted.model, problem=only(fitted.model.problem, kept.tolist()))
     return fit(model, fitted.vector, fitted.nuisance[kept], most=5).vector
 
 

@@ -25,10 +25,12 @@ class Model:
     """Base and effects for a problem.
 
     The vector is the shape nuisances of the base, then each effect's parameters; logarithmic ones by their logarithm.
+    `pinned` nuisances stay at their values.
     """
 
     problem: Problem
     effects: tuple[Effect, ...]
+    pinned: tuple[tuple[str, float], ...] = ()
 
     @cached_property
     def simulators(self) -> tuple[Simulator, ...]:
@@ -58,9 +60,11 @@ class Model:
     @cached_property
     def bounds(self) -> tuple[Array, Array]:
         """Lower and upper bounds of the vector."""
+        held = dict(self.pinned)
         reach = [FAR_RADIUS if name == "radius" else np.inf for name in self.problem.shapes]
-        low = [-far for far in reach] + [_inner(p, p.low) for _, p in self.parameters]
-        high = reach + [_inner(p, p.high) for _, p in self.parameters]
+        shapes = [(held.get(n, -far), held.get(n, far)) for n, far in zip(self.problem.shapes, reach, strict=True)]
+        low = [low for low, _ in shapes] + [_inner(p, p.low) for _, p in self.parameters]
+        high = [high for _, high in shapes] + [_inner(p, p.high) for _, p in self.parameters]
         return np.array(low), np.array(high)
 
     @cached_property

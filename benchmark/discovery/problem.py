@@ -21,6 +21,8 @@ SHAPE_PRIOR = Shape(3.0, 0.058, 0.03, 0.002, 0.0015, 0.03, 0.004, 0.0025)
 The two bends and the exponent and size of the marker field follow fits to blind nulls 0 to 2 (`docs/blind.md`).
 """
 MARKER_SHAPES = ("width", "marker_exponent", "marker_size")
+FOLLOWED = ("modulus", "radius", "exponent", "width")
+"""Nuisances in which a base may well be wrong; the others stand for its last per cent."""
 OFFSETS = ("x", "y", "tangential")
 """Marker combinations with a zero of their own in each trial."""
 

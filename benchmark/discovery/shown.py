@@ -10,12 +10,12 @@ from benchmark.discovery.cells import one_sided
 from benchmark.discovery.detect import signal_ranges
 from benchmark.discovery.fit import Fit, White
 from benchmark.discovery.model import Model, nuisance_precision
+from benchmark.discovery.problem import FOLLOWED
 from benchmark.discovery.result import PHASES, Array, Place
 from benchmark.discovery.settings import Settings
 
 LEAST = 4.0
 """Standard deviations of the trials' mean from which a change is shown."""
-FOLLOWED = ("modulus", "radius", "exponent", "width")
 BOTH = ("radial_x", "radial_y")
 """Combinations whose change is as much tangential as radial."""
 

@@ -15,7 +15,7 @@ from benchmark.discovery.calibrate import Calibrated, calibrate
 from benchmark.discovery.contrasts import contrasts
 from benchmark.discovery.detect import SHARES, Detection, combined, detect, places, smallest_visible, unexplained
 from benchmark.discovery.fit import Fit
-from benchmark.discovery.gap import HeldOut, closed_overall, gaps, held_out_residuals
+from benchmark.discovery.gap import HeldOut, closed_overall, gaps, held_out_residuals, unbent
 from benchmark.discovery.pool import Listener, fingerprint, pool, silent
 from benchmark.discovery.preparing import ENOUGH_TRIALS, prepare
 from benchmark.discovery.result import Discovery, Place
@@ -115,7 +115,7 @@ def findings(
     listener("verify", 0, 1, "")
     chosen = on_all(base, selection.chosen)
     after = detect(chosen, settings) if chosen is not base else before
-    held = held_out_residuals(base, chosen)
+    held = held_out_residuals(unbent(chosen) if chosen is not base else base, chosen)
     discovery = _discovery(session, settings, calibrated, selection, chosen, (before, after), held, known, began)
     return Findings(discovery, calibrated, selection)
 
