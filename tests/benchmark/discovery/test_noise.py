@@ -45,3 +45,14 @@ def test_the_memory_and_the_scale_are_found():
 def test_a_row_without_a_sample_weighs_nothing():
     use = whitener(np.array([1.0, 0.0, 1.0]), 0.6)
     assert abs(use(np.array([0.0, 1.0, 0.0]))).max() < 2e-3
+
+
+def test_rows_without_samples_do_not_break_the_chain():
+    rng = np.random.default_rng(4)
+    rows = np.zeros((400, 60))
+    count = np.tile([1.0, 0.0, 0.0], 20)
+    rows[:, count > 0.0] = remembered(rng, 400, 20, 0.8)
+    use = whitener(count, 0.8)
+    white = np.array([use(row) for row in rows])[:, count > 0.0]
+    assert white.std() == pytest.approx(1.0, rel=0.05)
+    assert abs(np.mean(white[:, 1:] * white[:, :-1])) < 0.05

@@ -1,8 +1,8 @@
 """A problem of some of its trials is the same problem to them."""
 
 import numpy as np
-from benchmark.discovery.base_law import base_law
 
+from benchmark.discovery.bases.wave import wave_law
 from benchmark.discovery.calibrate import calibrate
 from benchmark.discovery.model import Model
 from benchmark.discovery.preparing import prepare
@@ -23,12 +23,12 @@ def test_some_trials_are_simulated_and_whitened_as_among_all(session_of):
 
 
 def test_a_tool_is_pressed_deep_once_for_all_conditions(session_of):
-    from benchmark.discovery.base_law import _layered_wave
+    from benchmark.discovery.bases.wave import _layered_wave
 
     session = session_of(trials=3)
     trial = session.trials[0]
-    base_law(session.specimen, trial.tool, trial.support, 2e-3)
+    wave_law(session.specimen, trial.tool, trial.support, 2e-3)
     before = _layered_wave.cache_info().misses
-    law = base_law(session.specimen, trial.tool, trial.support, 3e-3)
+    law = wave_law(session.specimen, trial.tool, trial.support, 3e-3)
     assert _layered_wave.cache_info().misses == before
     assert law.depth[-1] > 3e-3

@@ -24,11 +24,11 @@ def linear_law() -> BaseLaw:
     return BaseLaw(
         depth,
         STIFFNESS * depth,
-        0.0 * depth,
+        np.zeros((2, depth.size)),
         radius,
         (0.1 * depth[None], flat),
         (0.5 * depth[None], flat),
-        (0.0 * depth[None], flat),
+        ((0.0 * depth[None], flat),),
     )
 
 
@@ -145,8 +145,19 @@ def test_anisotropy_moves_x_and_y_apart():
 
 
 def test_pretension_adds_its_stiffness():
-    made = readings(MOTION, pretension={"stiffness": 30.0})
+    made = readings(MOTION, pretension={"stiffness": 30.0, "field": 0.5})
     assert (made.force - PLAIN.force)[DEEP] == pytest.approx(30.0 * PEAK)
+    assert made.markers == pytest.approx(PLAIN.markers)
+
+
+def test_pretension_over_a_hole_moves_the_lower_face_as_a_membrane_does():
+    around = replace(AROUND, hole_radius=30e-3)
+    simulator = Simulator(linear_law(), around, (BY_SLUG["pretension"],))
+    made = simulator.readings(simulator.bent(Shape()), {"pretension": {"stiffness": 50.0, "field": 1.0}}, MOTION)
+    share = 50.0 / (STIFFNESS + 50.0)
+    membrane = 0.5 * 10e-3 * PEAK / (6e-3 * np.log(6.0))
+    moved = made.markers[DEEP[0], 0, 0] - 6e-3
+    assert moved == pytest.approx((1.0 - share) * 0.1 * PEAK + share * membrane, rel=1e-3)
 
 
 def test_slip_can_show_in_the_markers_alone():
@@ -249,7 +260,7 @@ def test_a_scale_error_shows_at_rest():
 def test_any_number_compose():
     made = readings(
         MOTION,
-        pretension={"stiffness": 50.0},
+        pretension={"stiffness": 50.0, "field": 0.0},
         contact_gap={"gap": 1e-3},
         force_drift={"rate": 0.0, "tau": 1.0},
         force_saturation={"limit": 0.9, "softness": 0.001},
