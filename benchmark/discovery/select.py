@@ -23,6 +23,8 @@ LATER = 5
 WORTH = 0.12
 """A further effect must gain at least this share of what the first gained: less is the first one's form."""
 SURE_BIC = -6.0
+BROAD = 8.0
+"""Held-out log density gained in all but the best trial that is evidence enough without z."""
 CLOSE = 0.03
 """A rival whose gain lacks no more than this share of the best one's counts as a look-alike."""
 
@@ -92,13 +94,17 @@ def select(
 
 
 def first_gain(selection: Selection) -> float:
-    """Return p of the first accepted effect's held-out gain by Student's t, for all candidates of its round."""
+    """Return p of the first accepted effect's held-out gain, for all candidates of its round.
+
+    By Student's t over trials, or by the bound exp(-g) on a density ratio e^g that has not seen the data.
+    """
     if not selection.steps:
         return 1.0
     step = selection.steps[0]
     freedom = max(step.gain.each.size - np.unique(conditions(selection.base)).size, 1)
     tried = sum(1 for scored in selection.candidates if len(scored.slugs) == 1)
-    return float(min(1.0, tried * t_distribution.sf(step.gain.z, freedom)))
+    by_trials, by_density = t_distribution.sf(step.gain.z, freedom), np.exp(-broad(step.gain))
+    return float(min(1.0, tried * min(by_trials, by_density)))
 
 
 def usable(base: Fit, effect: Effect) -> bool:
@@ -134,7 +140,17 @@ def _promising(ranked: Sequence[Screened], count: int) -> list[Screened]:
 
 def _accepted(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:
     worth = not steps or scored.gain.mean >= WORTH * steps[0].gain.mean
-    return worth and scored.gain.z >= settings.accept_z and scored.delta_bic < SURE_BIC
+    return worth and (scored.gain.z >= settings.accept_z or broad(scored.gain) > BROAD) and scored.delta_bic < SURE_BIC
+
+
+def broad(gain: Gain) -> float:
+    """Held-out log density gained in all trials but the one that gains most; 0 where others lose a tenth of it.
+
+    What acts in the stiffest specimens alone scatters too much between trials for z.
+    """
+    total = float(gain.each.sum() - gain.each.max())
+    lost = float(-gain.each[gain.each < 0.0].sum())
+    return total if lost < 0.1 * total else 0.0
 
 
 def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:

@@ -115,8 +115,11 @@ def findings(
     listener("verify", 0, 1, "")
     chosen = on_all(base, selection.chosen)
     after = detect(chosen, settings) if chosen is not base else before
-    held = held_out_residuals(unbent(chosen) if chosen is not base else base, chosen)
-    discovery = _discovery(session, settings, calibrated, selection, chosen, (before, after), held, known, began)
+    plain = unbent(chosen) if chosen is not base else base
+    held = held_out_residuals(plain, chosen)
+    opened = unexplained(detect(plain, settings)) if chosen is not base else 0.0
+    left = max(unexplained(after), 0.0) / opened if opened > 0.0 else 0.0
+    discovery = _discovery(session, settings, calibrated, selection, chosen, (before, after), left, held, known, began)
     return Findings(discovery, calibrated, selection)
 
 
@@ -127,13 +130,14 @@ def _discovery(
     selection: Selection,
     chosen: Fit,
     detections: tuple[Detection, Detection],
+    left: float,
     held: HeldOut,
     known: Sequence[Effect],
     began: float,
 ) -> Discovery:
     base = calibrated.base
     before, after = detections
-    facts = _facts(selection, before, after, known, settings)
+    facts = _facts(selection, before, after, left, known, settings)
     word = verdict(facts)
     problem = base.model.problem
     study = problem.study
@@ -172,20 +176,23 @@ def _joined(first: tuple[Place, ...], then: tuple[Place, ...]) -> tuple[Place, .
 
 
 def _facts(
-    selection: Selection, before: Detection, after: Detection, known: Sequence[Effect], settings: Settings
+    selection: Selection,
+    before: Detection,
+    after: Detection,
+    left: float,
+    known: Sequence[Effect],
+    settings: Settings,
 ) -> Facts:
     by_slug = {effect.slug: effect for effect in known}
     chosen = selection.chosen.model.effects
     alike = {slug for slugs in selection.lookalikes.values() for slug in slugs}
-    open_before = unexplained(before)
-    left = unexplained(after) / open_before if open_before > 0.0 else 0.0
     return Facts(
         p=before.p,
         p_cells=before.p_cells,
         enough=len(selection.base.model.problem.trials) >= ENOUGH_TRIALS,
         effects=tuple(chosen),
         lookalikes=tuple(by_slug[slug] for slug in sorted(alike)),
-        left=max(left, 0.0),
+        left=left,
         p_after=after.p,
         transfers=transfers(selection),
         level=settings.level,

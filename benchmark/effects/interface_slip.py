@@ -16,8 +16,8 @@ CARD = Card(
     slug="interface_slip",
     acts_on="body",
     sentence="Layers slide over each other beyond a shear limit: the lower face is carried along less than it should.",
-    equation="F = (1 - s) f + y, y follows s f within +-s F_s; markers move with (1 - q) + q y / (s f); "
-    "a share of y may slide back without friction, y = +-s F_s beyond the limit",
+    equation="F = (1 - s) f + y, y follows s f within +-s F_s; the markers' part q of the depth follows within +-d_s, "
+    "f(d_s) = F_s; a share of the slip may go back at once",
     source="W. D. Iwan 1966, J Appl Mech 33:893 (Jenkin element)",
     parameters=(
         logarithmic("limit", "N", 1e-4, 1e3, "force at which the interface begins to slide"),
@@ -37,14 +37,22 @@ def _body(values: Values, around: Surroundings) -> Mapping[str, Any]:
 def _spread(values: Values, spread: Spread, press: Press, around: Surroundings) -> Spread:
     from wavemodel.integrators.scan import bounded_sum
 
-    push = _bare(press.elastic, values["force_share"], values["limit"])
-    limit = np.where(press.touching, values["limit"], 0.0)
+    depth, limit = spread.depth, _limit_depth(values, press)
+    held = bounded_sum(np.diff(depth, prepend=0.0), np.full_like(depth, limit))
     at_once = values["return_share"]
-    held = bounded_sum(np.diff(push, prepend=0.0), limit)
-    carried = (1.0 - at_once) * held + at_once * np.clip(push, -limit, limit)
-    passed = np.divide(carried, push, out=np.ones_like(push), where=np.abs(push) > 1e-9 * around.peak_force)
-    share = values["marker_share"]
-    return replace(spread, passed=spread.passed * (1.0 - share + share * np.clip(passed, -1.0, 1.0)))
+    carried = (1.0 - at_once) * held + at_once * np.clip(depth, -limit, limit)
+    return replace(spread, depth=depth - values["marker_share"] * (depth - carried))
+
+
+def _limit_depth(values: Values, press: Press) -> float:
+    """Depth, m, at which the elastic force reaches the limit; beyond the deepest where it never does."""
+    push = _bare(press.elastic, values["force_share"], values["limit"])
+    order = np.argsort(press.surface)
+    depth, force = press.surface[order], np.maximum.accumulate(push[order])
+    deepest = float(depth[-1])
+    if values["limit"] >= force[-1]:
+        return deepest * values["limit"] / max(float(force[-1]), 1e-12)
+    return max(float(np.interp(values["limit"], force, depth)), 1e-3 * deepest)
 
 
 def _bare(elastic: np.ndarray, share: float, limit: float) -> np.ndarray:

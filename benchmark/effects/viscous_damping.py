@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 from benchmark.effects.effect import Card
 from benchmark.effects.parameter import linear
-from benchmark.effects.term import Effect, Surroundings, Values
+from benchmark.effects.term import Effect, Motion, Readings, Surroundings, Values
 
 CARD = Card(
     slug="viscous_damping",
     acts_on="body",
-    sentence="The tissue resists in proportion to the speed of the press, without any memory in a hold.",
-    equation="F = f + eta df/dt",
-    source="Kelvin-Voigt solid; Simo and Hughes, Computational Inelasticity, chapter 10",
-    parameters=(linear("eta", "s", 0.0, 10.0, "retardation time"),),
+    sentence="The tissue resists the speed of the press, without any memory in a hold.",
+    equation="F = f + eta df/dt + c v_0 sign(v) |v / v_0|^n, v_0 = 1 mm/s",
+    source="Kelvin-Voigt solid; Simo and Hughes, Computational Inelasticity, chapter 10; power-law fluid for n < 1",
+    parameters=(
+        linear("eta", "s", 0.0, 10.0, "retardation time"),
+        linear("drag", "N s/m", 0.0, 1e5, "resistance c at 1 mm/s, whatever the depth"),
+        linear("power", "", 0.5, 1.5, "power n of the speed in that resistance"),
+    ),
 )
+REFERENCE_SPEED = 1e-3
 
 
 def _body(values: Values, around: Surroundings) -> Mapping[str, Any]:
@@ -25,8 +33,20 @@ def _body(values: Values, around: Surroundings) -> Mapping[str, Any]:
     return {"damping": ViscousDamping(values["eta"])}
 
 
+def _observe(values: Values, readings: Readings, motion: Motion, around: Surroundings) -> Readings:
+    if values["drag"] <= 0.0:
+        return readings
+    speed = np.gradient(motion.depth, motion.time) / REFERENCE_SPEED
+    resisted = values["drag"] * REFERENCE_SPEED * np.sign(speed) * np.abs(speed) ** values["power"]
+    pushed = readings.force + np.where(motion.depth > 0.0, resisted, 0.0)
+    return replace(readings, force=np.where(motion.depth > 0.0, np.maximum(pushed, 0.0), readings.force))
+
+
 def _starts(around: Surroundings) -> tuple[dict[str, float], ...]:
-    return ({"eta": 0.003 * around.duration},)
+    slowest = around.peak_depth / around.duration
+    drag = 0.01 * around.peak_force / max(slowest, 1e-9)
+    kelvin = {"eta": 0.003 * around.duration, "drag": 0.0, "power": 1.0}
+    return kelvin, {"eta": 0.0, "drag": drag, "power": 1.0}, {"eta": 0.0, "drag": drag, "power": 0.8}
 
 
-EFFECT = Effect(CARD, "eta", body=_body, starts=_starts)
+EFFECT = Effect(CARD, "eta", body=_body, observe=_observe, starts=_starts)

@@ -69,5 +69,5 @@ def test_where_the_elements_have_no_answer_the_wave_goes_on_and_it_is_said(sheet
     law = elements_or_wave(sheet)(sheet.specimen, trial.tool, trial.support, 2e-3)
     assert "do not cover it" in law.note
     assert law.outward is not None
-    with pytest.raises(InputError, match="--model fem: .* --model wave"):
+    with pytest.raises(InputError, match=r"--model fem: .* --model wave"):
         elements_only(sheet)(sheet.specimen, trial.tool, trial.support, 2e-3)
