@@ -18,6 +18,8 @@ REFINED = 2
 """Starts that are refined."""
 WORTH = 0.7
 """A second start is refined where it promises at least this share of the first."""
+LATE = 1.5
+"""Trials of a condition are late where their time shift is this many times its scatter."""
 SCALES = (1e-5, 10.0)
 """A screened start's amplitude is scaled within this range."""
 
@@ -39,10 +41,27 @@ def fit_candidate(base: Fit, effect: Effect, most: int = 10, known: tuple[Array,
     model = Model(base.model.problem, (*base.model.effects, effect))
     if known is not None and known[0].shape == (model.size,) and known[1].shape == base.nuisance.shape:
         return fit(model, known[0], known[1], most=0)
-    starts = screened(base, model, effect)
-    close = [one.vector for one in starts[:REFINED] if one.won > WORTH * starts[0].won or one is starts[0]]
-    fits = [fit(model, start, base.nuisance, base.columns, most) for start in close]
+    fits = []
+    for state in (base.nuisance, *_unshifted(base)):
+        starts = screened(base, model, effect, state)
+        close = [one.vector for one in starts[:REFINED] if one.won > WORTH * starts[0].won or one is starts[0]]
+        warm = base.columns if state is base.nuisance else None
+        fits += [fit(model, start, state, warm, most) for start in close]
     return min(fits, key=lambda each: each.objective)
+
+
+def _unshifted(base: Fit) -> tuple[Array, ...]:
+    """The trials' nuisances (R, q) with all trials of a condition on time; none where they are so anyway.
+
+    What lags behind the motion looks like a late sensor; from a base that took it for one no step leads to the effect.
+    """
+    groups = np.array([trial.condition for trial in base.model.problem.trials])
+    state, late = base.nuisance.copy(), False
+    for number in np.unique(groups):
+        shift = base.nuisance[groups == number, 2]
+        late |= abs(shift.mean()) > LATE * max(float(shift.std()), base.model.problem.study.raw_interval)
+        state[groups == number, 2] -= shift.mean()
+    return (state,) if late else ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,20 +73,21 @@ class Start:
     along: Array
 
 
-def screened(base: Fit, model: Model, effect: Effect) -> list[Start]:
-    """Starts with what one step would gain from them, best first."""
+def screened(base: Fit, model: Model, effect: Effect, nuisance: Array | None = None) -> list[Start]:
+    """Starts with what one step would gain from them, best first, at the trials' nuisances or at others (R, q)."""
+    state = base.nuisance if nuisance is None else nuisance
     problem = base.model.problem
     white = White(problem)
     known = base.model.values(base.vector)
-    plain = base.model.signals(base.vector, base.nuisance)
+    plain = base.model.signals(base.vector, state)
     residuals = white.residuals(plain)
     projections = _projections(base)
     ranked: list[Start] = []
     for values in _starts(problem, effect):
         start = model.vector(base.vector[: base.model.shape_count], {**known, effect.slug: values})
-        signals = model.signals(start, base.nuisance)
+        signals = model.signals(start, state)
         moved = [white.flat(i, signals[i] - plain[i]) for i in range(len(plain))]
-        overlaps, sizes, pull = _projected(base, projections, residuals, moved)
+        overlaps, sizes, pull = _projected(base, state, projections, residuals, moved)
         overlap, size = float(overlaps.sum()) + pull, float(sizes.sum())
         if size <= 0.0:
             continue
@@ -86,11 +106,10 @@ def screened(base: Fit, model: Model, effect: Effect) -> list[Start]:
 def _scaled(
     model: Model, start: Array, effect: Effect, values: Values, scale: float, known: Mapping[str, Values]
 ) -> Array:
-    parameter = next(p for p in effect.card.parameters if p.name == effect.amplitude)
-    if parameter.logarithmic:
-        return start
     changed = dict(values)
-    changed[effect.amplitude] = float(np.clip(values[effect.amplitude] * scale, parameter.low, parameter.high))
+    for p in effect.card.parameters:
+        if p.name in (effect.amplitude, *effect.amplitudes) and not p.logarithmic:
+            changed[p.name] = float(np.clip(values[p.name] * scale, p.low, p.high))
     return model.vector(start[: model.shape_count], {**known, effect.slug: changed})
 
 
@@ -122,6 +141,7 @@ def _projections(base: Fit) -> tuple[list[tuple[Array, Array, Array]], Array]:
 
 def _projected(
     base: Fit,
+    state: Array,
     projections: tuple[list[tuple[Array, Array, Array]], Array],
     residuals: Sequence[Array],
     moved: Sequence[Array],
@@ -143,5 +163,5 @@ def _projected(
         rest = held[index] - (side - n @ (inner @ (n.T @ side)))
         overlaps.append(float(rest @ residuals[index]))
         sizes.append(float(rest @ moved[index]))
-        pull += float((n.T @ (moved[index] - side)) @ inner @ (weight * base.nuisance[index]))
+        pull += float((n.T @ (moved[index] - side)) @ inner @ (weight * state[index]))
     return np.array(overlaps), np.array(sizes), pull

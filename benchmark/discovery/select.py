@@ -126,10 +126,8 @@ def score(current: Fit, fits: Sequence[Fit]) -> list[Scored]:
     out = []
     for made in fits:
         transfer = gain(held_out_conditions(made), before_conditions, groups) if before_conditions is not None else None
-        slug = made.model.effects[-1].slug
-        out.append(
-            Scored(made, slug, gain(held_out(made), before, groups), transfer, delta_bic(made, current, samples))
-        )
+        slug, bic = made.model.effects[-1].slug, delta_bic(made, current, samples)
+        out.append(Scored(made, slug, gain(held_out(made), before, groups), transfer, bic))
     return sorted(out, key=lambda each: -each.gain.mean)
 
 

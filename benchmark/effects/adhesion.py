@@ -53,4 +53,4 @@ def _starts(around: Surroundings) -> tuple[dict[str, float], ...]:
     return tearing + following
 
 
-EFFECT = Effect(CARD, "tear", body=_body, observe=_observe, starts=_starts)
+EFFECT = Effect(CARD, "tear", body=_body, observe=_observe, starts=_starts, amplitudes=("pull_off",))

@@ -73,4 +73,4 @@ def _starts(around: Surroundings) -> tuple[dict[str, float], ...]:
     )
 
 
-EFFECT = Effect(CARD, "marker_share", body=_body, spread=_spread, starts=_starts)
+EFFECT = Effect(CARD, "marker_share", body=_body, spread=_spread, starts=_starts, amplitudes=("force_share",))

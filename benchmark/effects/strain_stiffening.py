@@ -33,4 +33,4 @@ def _starts(around: Surroundings) -> tuple[dict[str, float], ...]:
     return {"b_1": 0.02 / x, "b_2": 0.2 / x**2}, {"b_1": 0.2 / x, "b_2": 0.02 / x**2}
 
 
-EFFECT = Effect(CARD, "b_2", body=_body, starts=_starts)
+EFFECT = Effect(CARD, "b_2", body=_body, starts=_starts, amplitudes=("b_1",))

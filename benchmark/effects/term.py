@@ -136,6 +136,8 @@ class Effect:
         What people read of it.
     amplitude : str
         The parameter by which the effect grows from nothing, where a fit scales its start.
+    amplitudes : tuple of str
+        Further ones that are scaled with it.
     drive : (values, motion, answer) -> (n,) depth that the tissue is given, m
     body : (values, surroundings) -> options of `wavemodel.physics.Physics` by their names
     spread : (values, spread, press, surroundings) -> Spread
@@ -160,6 +162,7 @@ class Effect:
     needs_markers: bool = False
     richer: Effect | None = None
     origin: str | None = None
+    amplitudes: tuple[str, ...] = ()
 
     @property
     def slug(self) -> str:

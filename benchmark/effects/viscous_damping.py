@@ -25,6 +25,8 @@ CARD = Card(
     ),
 )
 REFERENCE_SPEED = 1e-3
+FORMED = 0.1
+"""Share of the deepest press over which the contact forms, and with it the resistance c."""
 
 
 def _body(values: Values, around: Surroundings) -> Mapping[str, Any]:
@@ -37,8 +39,9 @@ def _observe(values: Values, readings: Readings, motion: Motion, around: Surroun
     if values["drag"] <= 0.0:
         return readings
     speed = np.gradient(motion.depth, motion.time) / REFERENCE_SPEED
-    resisted = values["drag"] * REFERENCE_SPEED * np.sign(speed) * np.abs(speed) ** values["power"]
-    pushed = readings.force + np.where(motion.depth > 0.0, resisted, 0.0)
+    formed = np.clip(motion.depth / (FORMED * around.peak_depth), 0.0, 1.0)
+    resisted = values["drag"] * REFERENCE_SPEED * formed * np.sign(speed) * np.abs(speed) ** values["power"]
+    pushed = readings.force + resisted
     return replace(readings, force=np.where(motion.depth > 0.0, np.maximum(pushed, 0.0), readings.force))
 
 
@@ -49,4 +52,4 @@ def _starts(around: Surroundings) -> tuple[dict[str, float], ...]:
     return kelvin, {"eta": 0.0, "drag": drag, "power": 1.0}, {"eta": 0.0, "drag": drag, "power": 0.8}
 
 
-EFFECT = Effect(CARD, "eta", body=_body, observe=_observe, starts=_starts)
+EFFECT = Effect(CARD, "eta", body=_body, observe=_observe, starts=_starts, amplitudes=("drag",))

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Self
+
+import numpy as np
+
 from benchmark.blind.arrays import Array
 from benchmark.blind.hidden.hidden import Hidden
 
@@ -13,6 +17,10 @@ class ForceSaturation(Hidden):
 
     slug = "force_saturation"
     largest = 5.0
+
+    def in_trial(self, rng: np.random.Generator) -> Self:
+        """A sensor's range is the same in all trials."""
+        return self
 
     def reading(self, time: Array, depth: Array, force: Array) -> Array:
         """Force up to the limit."""
