@@ -106,10 +106,17 @@ def test_two_terms_add_up():
 
 
 def test_damping_adds_with_speed_and_not_in_the_hold():
-    made = readings(MOTION, viscous_damping={"eta": 0.1})
+    made = readings(MOTION, viscous_damping={"eta": 0.1, "drag": 0.0, "power": 1.0})
     rising = (MOTION.depth > 1e-3) & (MOTION.depth < 4e-3) & (np.gradient(MOTION.depth) > 0.0)
     assert (made.force - PLAIN.force)[rising] == pytest.approx(0.1 * STIFFNESS * 2e-3)
     assert (made.force - PLAIN.force)[DEEP[2:5]] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_drag_is_the_same_at_all_depths_once_the_contact_has_formed():
+    made = readings(MOTION, viscous_damping={"eta": 0.0, "drag": 20.0, "power": 0.5})
+    rising = (MOTION.depth > 1e-3) & (MOTION.depth < 4e-3) & (np.gradient(MOTION.depth) > 0.0)
+    assert (made.force - PLAIN.force)[rising] == pytest.approx(20.0 * 1e-3 * np.sqrt(2.0))
+    assert made.force[AIR] == pytest.approx(0.0)
 
 
 def test_softening_spares_the_first_loading():
