@@ -144,9 +144,9 @@ def flip_test(table: CellTable, flips: int, seed: int) -> FlipTest:
     kinds += [(-1, 0, 0)] * (len(means) - len(kinds))
     groups = np.zeros(means.shape[1], dtype=int) if table.groups is None else table.groups
     sided = np.arange(len(means)) >= len(table.cells)
-    t, error, p, largest = _flipped(means, np.array(kinds), sided, groups, (flips, seed))
+    t, error, p, flipped = _flipped(means, np.array(kinds), sided, groups, (flips, seed))
     size = len(table.cells)
-    critical = float(np.quantile(largest, 0.95, method="higher"))
+    critical = float(np.quantile(_largest(flipped, sided), 0.95, method="higher"))
     return FlipTest(t[:size], p[:size], critical, error[:size], float(p.min()))
 
 
@@ -159,16 +159,20 @@ def one_sided(rows: Array, groups: np.ndarray, flips: int, seed: int) -> Array:
 def _flipped(
     means: Array, kinds: Array, sided: np.ndarray, groups: np.ndarray, draw: tuple[int, int]
 ) -> tuple[Array, Array, Array, Array]:
-    """t, standard error and family-wise p (K,) of means (K, R), and the largest statistic of each flip (S,)."""
+    """t, standard error and family-wise p (K,) of means (K, R), and the statistics of each flip (S, K)."""
     count = means.shape[1]
     weights, signs = _members(groups), _signs(count, *draw)
     t, error = (column[0] for column in _statistics(means, kinds, np.ones((1, count)), weights))
     flipped = _statistics(means, kinds, signs, weights)[0]
-    largest = np.where(sided, flipped, np.abs(flipped)).max(axis=1)
     shown = np.where(sided, t, np.abs(t))
-    above = largest[:, None] >= shown[None] - 1e-9
+    above = _largest(flipped, sided)[:, None] >= shown[None] - 1e-9
     p = above.mean(axis=0) if count <= ALL_FLIPS else (1.0 + above.sum(axis=0)) / (1.0 + len(signs))
-    return t, error, p, largest
+    return t, error, p, flipped
+
+
+def _largest(flipped: Array, sided: np.ndarray) -> Array:
+    """(S,) largest statistic of each flip; `sided` ones count from one side."""
+    return np.asarray(np.where(sided, flipped, np.abs(flipped)).max(axis=1))
 
 
 def _members(groups: np.ndarray) -> Array:

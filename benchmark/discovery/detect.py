@@ -168,9 +168,3 @@ def smallest_visible(fitted: Fit, detection: Detection) -> dict[str, float]:
         channel = channels[cell.signal]
         out[channel] = min(out.get(channel, np.inf), size)
     return out
-
-
-def unexplained(detection: Detection) -> float:
-    """What the cells' means hold beyond chance, in squared standard errors."""
-    free = sum(len(cell.rows) for cell in detection.table.cells)
-    return float(np.sum(detection.test.t**2) - free)

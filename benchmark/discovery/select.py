@@ -25,6 +25,7 @@ WORTH = 0.12
 SURE_BIC = -6.0
 BROAD = 8.0
 """Held-out log density gained in all but the best trial that is evidence enough without z."""
+TIE = 0.01
 CLOSE = 0.03
 """A rival whose gain lacks no more than this share of the best one's counts as a look-alike."""
 
@@ -82,9 +83,10 @@ def select(
         scored = _enriched(current, scored, work)
         rounds.append(scored)
         all_scored += scored
-        best = next((s for s in scored if _accepted(s, steps, settings)), None)
-        if best is None:
+        accepted = [s for s in scored if _accepted(s, steps, settings)]
+        if not accepted:
             break
+        best = _commonest(accepted, effects)
         steps.append(best)
         current = best.fit
     current = _pruned(base, current, settings, work)
@@ -134,6 +136,13 @@ def score(current: Fit, fits: Sequence[Fit]) -> list[Scored]:
 def _promising(ranked: Sequence[Screened], count: int) -> list[Screened]:
     top = ranked[0].won if ranked else 0.0
     return [s for k, s in enumerate(ranked[:count]) if k < 2 or s.won > 0.02 * top]
+
+
+def _commonest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
+    """The first in the catalogue of those that gain as much as the best, which no data tell apart."""
+    slugs = [effect.slug for effect in effects]
+    ties = [s for s in accepted if s.gain.mean >= (1.0 - TIE) * accepted[0].gain.mean]
+    return min(ties, key=lambda each: slugs.index(each.slug))
 
 
 def _accepted(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:

@@ -13,7 +13,7 @@ from benchmark.discovery.answer import base_estimates, candidates, named_effects
 from benchmark.discovery.bases.law import BaseLaws
 from benchmark.discovery.calibrate import Calibrated, calibrate
 from benchmark.discovery.contrasts import contrasts
-from benchmark.discovery.detect import SHARES, Detection, combined, detect, places, smallest_visible, unexplained
+from benchmark.discovery.detect import SHARES, Detection, combined, detect, places, smallest_visible
 from benchmark.discovery.fit import Fit
 from benchmark.discovery.gap import HeldOut, closed_overall, gaps, held_out_residuals, unbent
 from benchmark.discovery.pool import Listener, fingerprint, pool, silent
@@ -23,6 +23,7 @@ from benchmark.discovery.sampling import compared, on_all, on_some, remark
 from benchmark.discovery.screen import screen
 from benchmark.discovery.select import Selection, first_gain, select, usable
 from benchmark.discovery.settings import Settings
+from benchmark.discovery.shared import share_left
 from benchmark.discovery.shown import places_of
 from benchmark.discovery.traces import traces
 from benchmark.discovery.verdict import Facts, statement, verdict
@@ -117,8 +118,7 @@ def findings(
     after = detect(chosen, settings) if chosen is not base else before
     plain = unbent(chosen) if chosen is not base else base
     held = held_out_residuals(plain, chosen)
-    opened = unexplained(detect(plain, settings)) if chosen is not base else 0.0
-    left = max(unexplained(after), 0.0) / opened if opened > 0.0 else 0.0
+    left = share_left(plain, chosen) if chosen is not base else 0.0
     discovery = _discovery(session, settings, calibrated, selection, chosen, (before, after), left, held, known, began)
     return Findings(discovery, calibrated, selection)
 

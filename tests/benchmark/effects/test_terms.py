@@ -174,7 +174,7 @@ def test_slip_can_show_in_the_markers_alone():
 
 
 def test_the_floor_is_met_at_its_depth():
-    made = readings(MOTION, bottoming_out={"depth": 4e-3, "stiffness": 100.0})
+    made = readings(MOTION, bottoming_out={"depth": 4e-3, "stiffness": 100.0, "power": 1.0})
     assert (made.force - PLAIN.force)[DEEP] == pytest.approx(0.1)
     assert made.force[MOTION.depth < 4e-3] == pytest.approx(PLAIN.force[MOTION.depth < 4e-3])
 

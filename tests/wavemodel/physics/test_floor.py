@@ -21,3 +21,9 @@ def test_off_without_stiffness(press):
 def test_refuses(wrong):
     with pytest.raises(WaveError, match="floor"):
         Floor(*wrong)
+
+
+def test_a_domed_floor_is_met_by_a_power(press) -> None:
+    depth = np.array([0.0, 2e-3, 3e-3, 6e-3])
+    found = press(Physics(floor=Floor(2e-3, 1e3, 1.5)), depth) - 500.0 * depth
+    assert found == pytest.approx([0.0, 0.0, 1.0, 8.0])
