@@ -22,12 +22,15 @@ REFINED = 7
 LATER = 5
 WORTH = 0.12
 """A further effect must gain at least this share of what the first gained: less is the first one's form."""
-SURE_BIC = -6.0
+SURE_BIC = -4.0
+RICHER_BIC = -6.0
+"""BIC by which an effect is accepted, and by which one more term of it is preferred."""
 BROAD = 8.0
 """Held-out log density gained in all but the best trial that is evidence enough without z."""
-TIE = 0.01
-CLOSE = 0.03
-"""A rival whose gain lacks no more than this share of the best one's counts as a look-alike."""
+TIE = 0.02
+"""Candidates whose gain lacks no more than this share of the best one's are equals."""
+CLOSE = 0.1
+"""A rival whose gain lacks no more than this share of the best one's is a look-alike: its true form may be another."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +176,7 @@ def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
     chosen = []
     for s in scored:
         other = better.get(s.slug)
-        chosen.append(other if other is not None and other.delta_bic < s.delta_bic + SURE_BIC else s)
+        chosen.append(other if other is not None and other.delta_bic < s.delta_bic + RICHER_BIC else s)
     return sorted(chosen, key=lambda each: -each.gain.mean)
 
 

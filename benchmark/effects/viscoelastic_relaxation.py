@@ -9,20 +9,20 @@ from benchmark.effects.effect import Card
 from benchmark.effects.parameter import linear, logarithmic
 from benchmark.effects.term import Effect, Surroundings, Values
 
-LARGEST = 0.97
-"""Share of the stiffness that may fade in all."""
-
 
 def _card(terms: int) -> Card:
     parameters = []
     for term in range(1, terms + 1):
-        parameters.append(linear(f"g_{term}", "", 0.0, 0.95, f"share of the stiffness that fades with tau_{term}"))
+        of = "the stiffness" if term == 1 else "what the first leaves"
+        parameters.append(linear(f"g_{term}", "", 0.0, 0.95, f"share of {of} that fades with tau_{term}"))
         parameters.append(logarithmic(f"tau_{term}", "s", 0.01, 1e3, f"relaxation time {term}"))
     return Card(
         slug="viscoelastic_relaxation",
         acts_on="body",
         sentence="The tissue's stiffness fades with time: the force decays in a hold, and fast presses are stiffer.",
-        equation="F(t) = int G(t - t') df(t'), G = 1 - sum_j g_j (1 - exp(-t / tau_j))",
+        equation="F(t) = int G(t - t') df(t'), G = 1 - g_1 (1 - exp(-t / tau_1)) - (1 - g_1) g_2 (1 - exp(-t / tau_2))"
+        if terms > 1
+        else "F(t) = int G(t - t') df(t'), G = 1 - g_1 (1 - exp(-t / tau_1))",
         source="Y. C. Fung, Biomechanics: Mechanical Properties of Living Tissues, section 7.6",
         parameters=tuple(parameters),
     )
@@ -31,16 +31,14 @@ def _card(terms: int) -> Card:
 def _body(values: Values, around: Surroundings) -> Mapping[str, Any]:
     from wavemodel import Prony
 
-    count = len(values) // 2
-    terms = [(values[f"g_{term}"], values[f"tau_{term}"]) for term in range(1, count + 1)]
-    kept = [(g, tau) for g, tau in terms if g > 0.0]
-    if not kept:
-        return {}
-    if len(kept) == 2 and kept[0][1] == kept[1][1]:
-        kept = [(kept[0][0] + kept[1][0], kept[0][1])]
-    total = sum(g for g, _ in kept)
-    scale = min(1.0, LARGEST / total)
-    return {"relaxation": Prony(tuple(g * scale for g, _ in kept), tuple(tau for _, tau in kept))}
+    shares: dict[float, float] = {}
+    left = 1.0
+    for term in range(1, len(values) // 2 + 1):
+        share, tau = left * values[f"g_{term}"], values[f"tau_{term}"]
+        left -= share
+        if share > 0.0:
+            shares[tau] = shares.get(tau, 0.0) + share
+    return {"relaxation": Prony(tuple(shares.values()), tuple(shares))} if shares else {}
 
 
 def _starts(around: Surroundings) -> tuple[dict[str, float], ...]:
