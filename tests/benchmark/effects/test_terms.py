@@ -95,14 +95,14 @@ def test_relaxation_decays_in_the_hold_to_its_long_term():
     assert made.force[last] == pytest.approx(0.7 * STIFFNESS * PEAK, rel=1e-4)
 
 
-def test_two_terms_add_up():
+def test_the_second_term_fades_what_the_first_leaves():
     motion = press(hold=60.0)
     two = replace(BY_SLUG["viscoelastic_relaxation"].richer)
     simulator = Simulator(linear_law(), AROUND, (two,))
     values = {two.slug: {"g_1": 0.2, "tau_1": 0.2, "g_2": 0.3, "tau_2": 2.0}}
     made = simulator.readings(simulator.bent(Shape()), values, motion)
     last = np.flatnonzero(motion.depth > PEAK - 1e-9)[-2]
-    assert made.force[last] == pytest.approx(0.5 * STIFFNESS * PEAK, rel=1e-3)
+    assert made.force[last] == pytest.approx(0.8 * 0.7 * STIFFNESS * PEAK, rel=1e-3)
 
 
 def test_damping_adds_with_speed_and_not_in_the_hold():
