@@ -219,7 +219,7 @@ def _condition(
         duration=float(time[:, -1].max()),
         spacing=session.camera.marker_spacing if session.camera and grid is not None else 0.0,
         markers=None if grid is None else grid.rest,
-        hole_radius=float(first.support.hole_radius) if first.support.kind == "hole" else math.inf,
+        hole_radius=(first.support.hole_radius or math.inf) if first.support.kind == "hole" else math.inf,
     )
     return ConditionData(
         first.condition,

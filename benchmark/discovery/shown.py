@@ -97,9 +97,9 @@ def _size(fitted: Fit, moved: Sequence[Array], pick: Sequence[np.ndarray]) -> fl
     groups = np.array([trial.condition for trial in fitted.model.problem.trials])
     total = 0.0
     for number in np.unique(groups):
-        mine = np.flatnonzero(groups == number)
+        mine = np.flatnonzero(groups == number).tolist()
         mean = np.mean([np.where(pick[i], moved[i], 0.0) for i in mine], axis=0)
-        total += mine.size * float(np.sum(mean**2))
+        total += len(mine) * float(np.sum(mean**2))
     return float(np.sqrt(total))
 
 
