@@ -89,7 +89,7 @@ def select(
         accepted = [s for s in scored if _accepted(s, steps, settings)]
         if not accepted:
             break
-        best = _commonest(accepted, effects)
+        best = _simplest(accepted, effects)
         steps.append(best)
         current = best.fit
     current = _pruned(base, current, settings, work)
@@ -141,11 +141,11 @@ def _promising(ranked: Sequence[Screened], count: int) -> list[Screened]:
     return [s for k, s in enumerate(ranked[:count]) if k < 2 or s.won > 0.02 * top]
 
 
-def _commonest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
-    """The first in the catalogue of those that gain as much as the best, which no data tell apart."""
-    slugs = [effect.slug for effect in effects]
+def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
+    """The simplest of those that gain as much as the best, which no data tell apart; then the catalogue's order."""
+    order = {effect.slug: (len(effect.names), place) for place, effect in enumerate(effects)}
     ties = [s for s in accepted if s.gain.mean >= (1.0 - TIE) * accepted[0].gain.mean]
-    return min(ties, key=lambda each: slugs.index(each.slug))
+    return min(ties, key=lambda each: order[each.slug])
 
 
 def _accepted(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:
