@@ -57,18 +57,26 @@ def discovery_page(record: DiscoveryRecord, environment: Mapping[str, Any], tabl
 
 
 def _subtitle(record: DiscoveryRecord) -> str:
-    base = {"wave": "wave model", "fem": "FEM"}.get(record.model, record.model)
     if record.source == "run":
-        return f"The {base} against the FEM of a finished run"
+        return "The wave model against the FEM of a finished run"
     found = record.found
     conditions = f"{len(found.conditions)} condition{'s' * (len(found.conditions) != 1)}"
-    return f"{len(found.trials)} trials, {conditions}, against the {base} of {record.tissue}"
+    return f"{len(found.trials)} trials, {conditions}, against the elastic model of {record.tissue}"
+
+
+def _base(record: DiscoveryRecord) -> str:
+    if record.source == "run":
+        return "the wave of small strain" if record.large_press == "linear" else "the wave of the layers' finite strain"
+    return "finite elements of the set-up" + (
+        "" if record.model == "fem" else "; a warning where the wave model goes on"
+    )
 
 
 def _facts(record: DiscoveryRecord, environment: Mapping[str, Any]) -> tuple[Fact, ...]:
     return (
         Fact("Made", str(environment["made"])),
         Fact("Channels", ", ".join(map(channel_name, record.found.channels))),
+        Fact("Elastic model", _base(record)),
         Fact("Seed", str(record.seed)),
         Fact("Time", f"{record.found.seconds:.1f} s"),
         Fact("Fingerprint", record.fingerprint[:16]),
