@@ -120,9 +120,10 @@ def _starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
     found: list[dict[str, float]] = []
     for around in (deepest, quickest) if deepest is not quickest else (deepest,):
         found += [dict(each) for each in effect.first_values(around) if each not in found]
-    parameter = next(p for p in effect.card.parameters if p.name == effect.amplitude)
-    if parameter.low < 0.0 and not parameter.logarithmic:
-        found += [{**each, effect.amplitude: -each[effect.amplitude]} for each in found]
+    scaled = (effect.amplitude, *effect.amplitudes)
+    either = {p.name for p in effect.card.parameters if p.name in scaled and p.low < 0.0 and not p.logarithmic}
+    if either:
+        found += [{name: -value if name in either else value for name, value in each.items()} for each in found]
     return found
 
 

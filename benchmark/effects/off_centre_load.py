@@ -28,7 +28,7 @@ def _spread(values: Values, spread: Spread, press: Press, around: Surroundings) 
 
 def _starts(around: Surroundings) -> tuple[dict[str, float], ...]:
     step = 0.1 * around.spacing
-    return {"x_0": step, "y_0": 0.0}, {"x_0": 0.0, "y_0": step}
+    return tuple({"x_0": step * x, "y_0": step * y} for x, y in ((1.0, 0.0), (0.7, 0.7), (0.0, 1.0), (-0.7, 0.7)))
 
 
-EFFECT = Effect(CARD, "x_0", spread=_spread, starts=_starts, needs_markers=True)
+EFFECT = Effect(CARD, "x_0", spread=_spread, starts=_starts, needs_markers=True, amplitudes=("y_0",))
