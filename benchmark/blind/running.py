@@ -14,6 +14,7 @@ from benchmark.blind.case import CaseName
 from benchmark.blind.discoverer import Discoverer, load_discoverer
 from benchmark.blind.judging import Judged, failed, judge
 from benchmark.blind.writing import case
+from benchmark.children import end_with_parent
 from benchmark.side_by_side import single_threaded_children
 from benchmark.sweep.journal import Journal, read_rows
 
@@ -76,7 +77,8 @@ def _work(waiting: Sequence[CaseName], discoverer: str, workers: int) -> Iterato
         yield from (_in_process(name, discoverer) for name in waiting)
         return
     context = multiprocessing.get_context("spawn")
-    with single_threaded_children(), ProcessPoolExecutor(min(workers, len(waiting)), context) as pool:
+    size = min(workers, len(waiting))
+    with single_threaded_children(), ProcessPoolExecutor(size, context, initializer=end_with_parent) as pool:
         futures = [pool.submit(_in_process, name, discoverer) for name in waiting]
         try:
             for future in as_completed(futures):

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmark.children import end_with_parent
 from benchmark.discovery.candidate_fit import fit_candidate
 from benchmark.discovery.fit import Fit
 from benchmark.effects import Effect, load_effects
@@ -124,6 +125,7 @@ def pool(workers: int, store: Path | None, key: str, own: Sequence[Effect], list
 
 
 def _prepare(files: Sequence[str]) -> None:
+    end_with_parent()
     for file in files:
         load_effects(file)
 

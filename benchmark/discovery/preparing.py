@@ -80,6 +80,8 @@ def prepare(session: Session, rows: int) -> Study:
     camera = session.camera
     seen = _seen(kept)
     grid = None
+    if camera is not None and seen is None:
+        warnings.append("[camera] is given, but no four markers are seen in all trials: force alone is compared")
     if camera is not None and seen is not None:
         positions = np.array([r.markers for group in kept for r in group if r.markers is not None][:1])
         nominal = resting_grid(camera, positions)

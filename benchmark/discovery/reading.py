@@ -9,6 +9,7 @@ import numpy as np
 from benchmark.discovery.layout import grid
 from benchmark.discovery.result import Array
 from benchmark.discovery.segments import Segment
+from benchmark.errors import InputError
 from benchmark.files import Camera, Trial
 
 GROWTH = 1.35
@@ -87,7 +88,13 @@ def acceleration(time: Array, depth: Array) -> Array:
 
 
 def marker_frames(trial: Trial, camera: Camera) -> tuple[Array, Array] | None:
-    """Times (f,) of a trial's frames and positions (f, m, 2) of the grid's markers in them."""
+    """Times (f,) of a trial's frames and positions (f, m, 2) of the grid's markers in them.
+
+    Raises
+    ------
+    InputError
+        A marker is numbered beyond the grid.
+    """
     table = trial.markers
     if table is None:
         return None
@@ -95,6 +102,12 @@ def marker_frames(trial: Trial, camera: Camera) -> tuple[Array, Array] | None:
     numbers = np.unique(table.marker)
     base = int(numbers.min()) if numbers.size == count else int(0 not in numbers)
     index = table.marker - base
+    if index.min() < 0 or index.max() >= count:
+        layout = f"{camera.marker_rows} x {camera.marker_columns}"
+        raise InputError(
+            f"trial {trial.name}, markers, column marker: {int(numbers[-1])} is not in the grid of {layout} markers "
+            f"that [camera] tells of; allowed: {count} numbers in a row, from 0 or 1."
+        )
     frames = np.unique(table.time)
     out = np.full((frames.size, count, 2), np.nan)
     for number in range(count):

@@ -30,7 +30,7 @@ density = "970 kg/m^3"
 youngs_modulus = "50 kPa"
 poisson_ratio = 0.48
 # Optional, in any layer (without `hyperelastic` the layer is neo-Hookean with the moduli above):
-# hyperelastic = {{ law = "yeoh", c10 = "3.4 kPa", c20 = "1 kPa" }}
+# hyperelastic = {{ law = "yeoh", c10 = "8.4 kPa", c20 = "2.5 kPa" }}
 # relaxation = [{{ g = 0.3, tau = "0.5 s" }}, {{ g = 0.2, tau = "10 s" }}]   # fractions of the stiffness that fade
 # fibre = {{ angle = "0 deg", k1 = "3 kPa", k2 = 1.0 }}                     # a fibre family, angle in the layer's plane
 """

@@ -1,9 +1,13 @@
 """Frames are averaged at their own instants."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from benchmark.discovery.reading import frame_means
+from benchmark.discovery.reading import frame_means, marker_frames
+from benchmark.errors import InputError
+from benchmark.files import Camera
 
 
 def test_frames_are_averaged_in_their_bin_with_their_own_time():
@@ -21,3 +25,11 @@ def test_frames_outside_the_rows_are_left_out():
     means, counts, _ = frame_means(frames, frames[:, None], np.array([0.0, 0.1]))
     assert counts.tolist() == [1.0]
     assert means[0, 0] == pytest.approx(0.05)
+
+
+def test_a_marker_beyond_the_grid_is_refused():
+    camera = Camera(marker_rows=3, marker_columns=2, marker_spacing=6e-3)
+    number = np.tile(np.arange(18), 2)
+    table = SimpleNamespace(time=np.repeat([0.0, 0.1], 18), marker=number, x=0.001 * number, y=0.0 * number)
+    with pytest.raises(InputError, match=r"17 is not in the grid of 3 x 2 .* allowed: 6 numbers"):
+        marker_frames(SimpleNamespace(name="t", markers=table), camera)

@@ -56,22 +56,22 @@ def test_units_are_read_and_a_value_may_stand_alone(tmp_path: Path) -> None:
         (HEAD.replace('"wave"', '"magic"'), ["base.model", "magic", "wave"]),
         (HEAD + "colour = 3\n", ["colour", "not known"]),
         (HEAD + '[[effects]]\nname = "strain_stiffning"\n', ["strain_stiffning", "strain_stiffening"]),
-        (HEAD + '[[effects]]\nname = "pretension"\n', ["pretension", "stiffness", "missing"]),
+        (HEAD + '[[effects]]\nname = "machine_compliance"\n', ["machine_compliance", "compliance", "missing"]),
         (
-            HEAD + '[[effects]]\nname = "pretension"\n[effects.parameters]\nstiffness = "3 kPa"\n',
-            ["line 8", "stiffness", "pressure"],
+            HEAD + '[[effects]]\nname = "machine_compliance"\n[effects.parameters]\ncompliance = "3 kPa"\n',
+            ["line 8", "compliance", "pressure"],
         ),
         (
-            HEAD + '[[effects]]\nname = "pretension"\n[effects.parameters]\nstiffness = "-3 N/mm"\n',
-            ["stiffness", "0 to"],
+            HEAD + '[[effects]]\nname = "machine_compliance"\n[effects.parameters]\ncompliance = "-3 mm/N"\n',
+            ["compliance", "0 to"],
         ),
         (
-            HEAD + '[[effects]]\nname = "pretension"\n[effects.parameters]\nstifness = "3 N/mm"\n',
-            ["stifness", "stiffness"],
+            HEAD + '[[effects]]\nname = "machine_compliance"\n[effects.parameters]\ncomplience = "3 um/N"\n',
+            ["complience", "compliance"],
         ),
         (
-            HEAD + 2 * '[[effects]]\nname = "pretension"\n[effects.parameters]\nstiffness = "3 N/mm"\n',
-            ["pretension", "twice"],
+            HEAD + 2 * '[[effects]]\nname = "machine_compliance"\n[effects.parameters]\ncompliance = "3 um/N"\n',
+            ["machine_compliance", "twice"],
         ),
     ],
 )
