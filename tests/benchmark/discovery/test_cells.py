@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from benchmark.discovery.cells import Cell, CellTable, flip_test
 
@@ -31,6 +32,34 @@ def test_false_alarms_are_few():
 @pytest.mark.slow
 def test_false_alarms_stay_at_their_level():
     assert 0.03 <= alarm_rate(1500, 2) <= 0.07
+
+
+def session_means(rng, trials=10, rows=240):
+    """Cell means of a session of nulls: trials whose gains scatter by a tenth, remembered heavy-tailed noise."""
+    shape = np.clip(np.minimum(np.arange(rows), rows - np.arange(rows)) / 80.0, 0.0, 1.0)
+    columns = np.column_stack([np.ones(rows), shape])
+    residuals = []
+    for _ in range(trials):
+        shocks = rng.standard_t(4, rows) * rng.uniform(0.7, 1.4)
+        noise = lfilter([1.0], [1.0, -0.85], shocks)
+        measured = np.exp(rng.normal(0.0, 0.1)) * 40.0 * shape + rng.normal(0.0, 2.0) + noise
+        residual = measured - 40.0 * shape
+        residuals.append(residual - columns @ np.linalg.lstsq(columns, residual, rcond=None)[0])
+    return np.array(residuals).reshape(trials, 24, -1).mean(axis=2).T
+
+
+def session_alarm_rate(sessions, seed):
+    rng = np.random.default_rng(seed)
+    return np.mean([flip_test(table(session_means(rng)), 0, 0).p_any < 0.05 for _ in range(sessions)])
+
+
+def test_remembered_noise_and_scattered_gains_give_few_false_alarms():
+    assert session_alarm_rate(60, 3) < 0.15
+
+
+@pytest.mark.slow
+def test_remembered_noise_and_scattered_gains_keep_the_level():
+    assert 0.03 <= session_alarm_rate(1000, 4) <= 0.07
 
 
 def test_a_shift_in_one_cell_is_found_there():
