@@ -67,11 +67,6 @@ class Model:
         high = [high for _, high in shapes] + [_inner(p, p.high) for _, p in self.parameters]
         return np.array(low), np.array(high)
 
-    @cached_property
-    def steps(self) -> Array:
-        """Sizes of difference steps, by the scale of each parameter."""
-        return np.array([1e-3] * self.shape_count + [0.0] * len(self.parameters))
-
     def prior(self, start: Array) -> tuple[Array, Array]:
         """Mean and precision (p,) of the priors; logarithmic parameters round their start."""
         mean, precision = np.zeros(self.size), np.zeros(self.size)

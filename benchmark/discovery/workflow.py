@@ -13,7 +13,7 @@ from benchmark.discovery.answer import base_estimates, candidates, named_effects
 from benchmark.discovery.bases.law import BaseLaws
 from benchmark.discovery.calibrate import Calibrated, calibrate
 from benchmark.discovery.contrasts import contrasts
-from benchmark.discovery.detect import SHARES, Detection, combined, detect, places, smallest_visible
+from benchmark.discovery.detect import Detection, combined, detect, places, smallest_visible
 from benchmark.discovery.fit import Fit
 from benchmark.discovery.gap import HeldOut, closed_overall, gaps, held_out_residuals, unbent
 from benchmark.discovery.pool import Listener, fingerprint, pool, silent
@@ -112,7 +112,7 @@ def findings(
         some = on_some(base, compared(base))
         searched = known if before.p < settings.level or screened[0].won > SURE else ()
         selection = select(some, searched, settings, work, screened if some is base else ())
-    before = replace(before, p=combined(before.p * SHARES[0], 1.0, first_gain(selection)))
+    before = replace(before, p=min(before.p, combined(1.0, 1.0, first_gain(selection))))
     listener("verify", 0, 1, "")
     chosen = on_all(base, selection.chosen)
     after = detect(chosen, settings) if chosen is not base else before
