@@ -1,7 +1,7 @@
 """The wave model of a finished run, repaired against the run's finite elements.
 
-A run is no experiment: one press, no replicates, no noise. So nothing is tested; candidates are ranked by what they
-leave and by BIC, the verdict is `conditional` at best, and the loads that were held out say whether it holds.
+A run is no experiment: one press, no replicates, no noise. So nothing is tested; candidates that gain by BIC where they
+are fitted are ranked by what they leave on the loads that were held out, and the verdict is `conditional` at best.
 """
 
 from __future__ import annotations
@@ -35,6 +35,8 @@ ENOUGH = 0.7
 """Share of the gap on held-out loads that an effect must close to be the answer."""
 ALIKE = 2.0
 """Rivals that leave no more than this many times what the best leaves on held-out loads are not separable from it."""
+EXACT = 1e-6
+"""Share of the base's gap below which what candidates leave does not tell them apart."""
 WORTH_NAMING = -10.0
 """The BIC that an effect must gain (Kass and Raftery 1995: very strong from 10 on)."""
 
@@ -85,25 +87,31 @@ def repair_run(
 
 
 def _fits(effects: Sequence[Effect], case: Case, listener: Listener) -> tuple[Fit, ...]:
-    """The candidates that have an answer, best BIC first."""
+    """The candidates that have an answer."""
     fits: list[Fit] = []
     with listener.progress(f"{case.run.name}: effects of the body against the finite elements") as advance:
         for number, effect in enumerate(effects, start=1):
             fit = fit_candidate(effect, case.body, case.history)
             fits += [] if fit is None else [fit]
             best = min(fits, key=lambda each: each.delta_bic, default=None)
-            advance("candidates", number, len(effects), "" if best is None else f"best so far {best.effect.slug}")
-    return tuple(sorted(fits, key=lambda each: each.delta_bic))
+            advance("candidates", number, len(effects), "" if best is None else f"best fit so far {best.effect.slug}")
+    return tuple(fits)
+
+
+def _gains(fit: Fit) -> bool:
+    """Whether a fit is better than the base where it was made."""
+    return fit.delta_bic <= WORTH_NAMING
 
 
 class _Answer:
     """The pieces of the answer, each from the fits and the two cases."""
 
     def __init__(self, fitted: Case, judged: Case, fits: Sequence[Fit]):
-        self.fitted, self.judged, self.fits = fitted, judged, fits
+        self.fitted, self.judged = fitted, judged
         self.margin = fitted.run.scenario.comparison.equivalence_margin
         self.gaps = {fit.effect.slug: self._gap(fit) for fit in fits}
-        self.best = fits[0] if fits else None
+        self.fits = sorted(fits, key=lambda fit: (not _gains(fit), self.gaps[fit.effect.slug]))
+        self.best = self.fits[0] if fits else None
         before = layer_gaps(judged)
         self.verdict = self._verdict(before)
         repaired = self.best if self.verdict == "conditional" else None
@@ -133,7 +141,7 @@ class _Answer:
     def _verdict(self, layers: Sequence[LayerGap]) -> str:
         if max(abs(layer.peak_before) for layer in layers) < 100.0 * self.margin:
             return "no_discrepancy"
-        if self.best is None or self.best.delta_bic > WORTH_NAMING or (self.closed(self.best) or 0.0) < ENOUGH:
+        if self.best is None or not _gains(self.best) or (self.closed(self.best) or 0.0) < ENOUGH:
             return "outside_catalogue"
         return "conditional"
 
@@ -196,9 +204,11 @@ class _Answer:
         return (NamedEffect(self.best.effect.slug, self._weight(), tuple(alike), estimates),)
 
     def _weight(self) -> float:
-        """The best candidate's share of the BIC weights."""
-        bics = np.array([fit.delta_bic for fit in self.fits])
-        return float(1.0 / np.sum(np.exp(-0.5 * (bics - bics.min()))))
+        """The best candidate's share of the likelihood of the held-out loads, one observation a load level."""
+        levels = np.unique(np.round(self.judged.history.force[self.judged.held], 9)).size
+        in_question = [fit for fit in self.fits if _gains(fit) == _gains(self.fits[0])]
+        left = np.maximum([self.gaps[fit.effect.slug] for fit in in_question], EXACT * self.before)
+        return float(1.0 / np.sum((left[0] / left) ** levels))
 
     def candidate(self, fit: Fit) -> Candidate:
         """A fit as evidence; there is no z without replicates."""
@@ -269,7 +279,8 @@ def _labels(answer: _Answer) -> dict[str, str]:
         "where": "Where the wave model's force at the reference's depth differs by more than the scenario's margin of "
         "the peak force. Nothing here is random, so no place has a p value.",
         "candidates": "Each effect of the body was fitted to the force over depth of the loads that are not held out, "
-        "and ranked by BIC. The share of the gap is that on the held-out loads.",
+        "and ranked by what it leaves on the held-out loads, those that gain by BIC where they were fitted first. The "
+        "share of the gap is that on the held-out loads, which so have a part in the choice.",
         "notice": "A run was taken as the measurement: both sides are computed. What is found is what the wave model "
         "lacks against the finite elements, not against tissue.",
         "next": "Give a second run of another load or tissue, discover RUN RUN, to see whether the effect and its "

@@ -47,6 +47,21 @@ def test_a_run_ends_in_stiffening_and_the_model_file_repairs_it(benchmark_cli, f
     assert "strain stiffening" in (tmp_path / "after/report.html").read_text()
 
 
+def test_the_held_out_loads_tell_stiffening_from_a_floor(benchmark_cli, tmp_path: Path) -> None:
+    """At the shipped press both bend the fitted half alike: BIC there is within 1 of each other."""
+    press, out = tmp_path / "press", tmp_path / "d"
+    called = benchmark_cli("run", "skin-5N", "--set", "wave.large_press=linear", "--out", press, "--quiet")
+    assert called.code == 0, called.err
+    called = benchmark_cli("discover", press, "--out", out, "--json", "--quiet")
+    assert called.code == 0, called.err
+    document = json.loads(called.out)
+    assert [effect["name"] for effect in document["effects"]] == ["strain_stiffening"]
+    assert document["effects"][0]["lookalikes"] == []
+    bic = {each["name"]: each["delta_bic"] for each in document["candidates"]}
+    assert abs(bic["bottoming_out"] - bic["strain_stiffening"]) < 1.0
+    assert max(abs(layer["percent_at_peak_after"]) for layer in document["layers"].values()) < 5.0
+
+
 def test_unusable_input_is_exit_2_and_leaves_nothing(benchmark_cli, finished: Path, tmp_path: Path) -> None:
     out = ("--out", tmp_path / "d", "--quiet")
     few = tmp_path / "few"
