@@ -80,8 +80,8 @@ def gaps(base: Fit, held: HeldOut, settings: Settings) -> tuple[ChannelGap, ...]
         mine = [k for k, other in enumerate(channels) if other == channel]
         b, a, f = (table[:, mine].mean(axis=1) for table in (before, after, floor))
         f = np.where(np.isfinite(f), f, np.nanmedian(f) if np.isfinite(f).any() else 0.0)
-        closed = _closed(b.mean(), a.mean(), f.mean())
-        resampled = [_closed(b[d].mean(), a[d].mean(), f[d].mean()) for d in draws] if closed is not None else []
+        closed = share_closed(b.mean(), a.mean(), f.mean())
+        resampled = [share_closed(b[d].mean(), a[d].mean(), f[d].mean()) for d in draws] if closed is not None else []
         kept = [value for value in resampled if value is not None]
         ends = np.quantile(kept, [0.025, 0.975]).tolist() if kept else None
         one, two, least = (float(np.sqrt(values.mean())) for values in (b, a, f))
@@ -108,12 +108,16 @@ def _squares(base: Fit, rows: list[Array]) -> Array:
 LEAST_GAP = 0.05
 """Where the base leaves less than this share above the floor there is nothing to close."""
 
+DECIMALS = 6
+"""Of the share that is closed; what lies beyond is round-off, as in a channel that no effect touches."""
 
-def _closed(before: float, after: float, floor: float) -> float | None:
+
+def share_closed(before: float, after: float, floor: float) -> float | None:
+    """Share of the gap over the floor that is gone, all three mean squares; None where there is nothing to close."""
     open_before = before - floor
     if open_before <= LEAST_GAP * floor:
         return None
-    return float(min((before - after) / open_before, 1.0))
+    return float(min(round((before - after) / open_before, DECIMALS) + 0.0, 1.0))  # + 0.0: no minus zero
 
 
 def closed_overall(base: Fit, held: HeldOut) -> float | None:
@@ -122,4 +126,4 @@ def closed_overall(base: Fit, held: HeldOut) -> float | None:
     known = np.where(np.isfinite(floor), floor, np.nanmedian(floor, axis=0))
     unit = np.maximum(known.mean(axis=0), 1e-300)
     before, after = (float((_squares(base, rows) / unit).mean()) for rows in (held.before, held.after))
-    return _closed(before, after, float((known / unit).mean()))
+    return share_closed(before, after, float((known / unit).mean()))
