@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +22,9 @@ FIRST_NOISE = 0.01
 FIRST_MEMORY = 0.6
 WIDE = TrialPrior(2.0, 10.0, 0.2, 1e-2)
 BAD = 6.0
-"""A trial whose noise is this many times the median's is left out."""
+"""A trial whose noise is this many times the usual one of its condition is told of."""
+ENOUGH_ALIKE = 3
+"""Trials of a condition that have a usual noise of their own; fewer share that of all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,13 +154,24 @@ def _estimated(fitted: Fit) -> tuple[Problem, list[str]]:
         columns.append(_shrunk(pick, counts, memory[-1], known, len(errors)))
     scale = np.column_stack(columns)
     noise = NoiseModel(tuple(memory), scale)
-    worst = (scale / np.median(scale, axis=0)).max(axis=1)
+    worst = (scale / _usual(scale, [trial.condition for trial in problem.trials])).max(axis=1)
     lively = _spread(fitted.nuisance[:, 0]) > 0.3
     bad = (worst > BAD) & (not lively)
     warnings = [
         f"trial {problem.trials[i].name}: {worst[i]:.3g} times as noisy as the others" for i in np.flatnonzero(bad)
     ]
     return replace(problem, noise=noise, prior=_spreads(fitted, scale)), warnings
+
+
+def _usual(scale: Array, condition: Sequence[int]) -> Array:
+    """(R, C) medians over the trials of the same condition: a quick protocol leaves more than a slow one."""
+    numbers = np.array(condition)
+    out = np.broadcast_to(np.median(scale, axis=0), scale.shape).copy()
+    for number in np.unique(numbers):
+        mine = numbers == number
+        if mine.sum() >= ENOUGH_ALIKE:
+            out[mine] = np.median(scale[mine], axis=0)
+    return out
 
 
 def _pairs(fitted: Fit) -> list[tuple[TrialRef, Array]]:

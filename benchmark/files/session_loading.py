@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.files.base import FileModel
+from benchmark.files.depth_counts import even_depths
 from benchmark.files.load import Load
 from benchmark.files.loading import (
     TISSUE_KEYS,
@@ -128,6 +129,7 @@ def _trials(file: SessionFile, source: Source) -> tuple[list[Trial], list[str]]:
         warnings.append("marker files are listed but [camera] does not give their layout: they are left out")
         marker_paths = [None] * len(paths)
     names = trial_names(paths, source.folder)
+    tables, counts = even_depths([read_table(path) for path in paths])
     trials = [
         Trial(
             name=name,
@@ -135,13 +137,13 @@ def _trials(file: SessionFile, source: Source) -> tuple[list[Trial], list[str]]:
             path=path,
             tool=setup[entry.condition].tool,
             support=setup[entry.condition].support,
-            table=read_table(path),
+            table=table,
             markers=None if markers is None else read_markers(markers),
             markers_path=markers,
         )
-        for name, entry, path, markers in zip(names, file.trials, paths, marker_paths, strict=True)
+        for name, entry, path, markers, table in zip(names, file.trials, paths, marker_paths, tables, strict=True)
     ]
-    return trials, warnings
+    return trials, [*warnings, *counts]
 
 
 def _doubled(paths: Sequence[Path]) -> list[str]:
