@@ -32,7 +32,10 @@ STANDS = 3.0
 
 
 def count_of(depth: Array) -> float | None:
-    """The count in m of depths (n,) m; None where they do not come in counts, or in such that do not matter."""
+    """The count in m of depths (n,) m; None where they do not come in counts, or in such that do not matter.
+
+    In counts are distances that are whole, changes of mostly one at a time, and more rows that repeat than that change.
+    """
     changes = np.flatnonzero(np.diff(depth))
     if len(changes) < LEAST_CHANGES or len(changes) > (1.0 - LEAST_REPEATS) * (changes[-1] - changes[0] + 1):
         return None
@@ -40,7 +43,8 @@ def count_of(depth: Array) -> float | None:
     counts = np.round(steps / steps.min())
     count = float(steps.sum() / counts.sum())
     whole = np.abs(steps - counts * count) <= WHOLE * count
-    return count if whole.all() and count >= LEAST_SHARE * float(np.ptp(depth)) else None
+    single = float(np.median(np.abs(np.diff(depth)[changes]))) < 1.5 * count
+    return count if whole.all() and single and count >= LEAST_SHARE * float(np.ptp(depth)) else None
 
 
 def between_counts(time: Array, depth: Array, count: float) -> Array:

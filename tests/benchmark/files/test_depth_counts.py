@@ -61,10 +61,11 @@ def test_readings_with_decimals_are_counts_too() -> None:
         _motion() + np.random.default_rng(3).normal(0.0, 1e-6, len(TIME)),  # noise, no counts
         1e-7 * np.round(_motion() / 1e-7),  # counts too fine to matter
         5e-5 * np.round(np.linspace(0.0, 0.1, len(TIME)) / 5e-5),  # a new count in each row
+        np.interp(TIME, [0.0, 6.0, 6.5, 7.0, 12.0], [0.0, 0.0, 4e-3, 0.0, 0.0]).round(5),  # quick and exact
         np.zeros(len(TIME)),
         np.where(TIME > 6.0, 1e-3, 0.0),  # one step
     ],
-    ids=["noise", "fine", "fast", "still", "step"],
+    ids=["noise", "fine", "fast", "quick", "still", "step"],
 )
 def test_what_does_not_come_in_counts(depth: np.ndarray) -> None:
     assert count_of(depth) is None
