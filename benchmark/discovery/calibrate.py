@@ -10,9 +10,9 @@ import numpy as np
 from benchmark.discovery.bases.elements import elements_or_wave
 from benchmark.discovery.bases.law import BaseLaw, BaseLaws
 from benchmark.discovery.fit import Fit, fit
-from benchmark.discovery.model import Model
+from benchmark.discovery.model import Model, nuisance_count
 from benchmark.discovery.noise import fit_memory, scales
-from benchmark.discovery.problem import NoiseModel, Problem, TrialPrior, TrialRef, trial_refs
+from benchmark.discovery.problem import OWN, NoiseModel, Problem, TrialPrior, TrialRef, trial_refs
 from benchmark.discovery.result import Array
 from benchmark.discovery.study import Study
 from benchmark.files import Session
@@ -20,9 +20,11 @@ from benchmark.files import Session
 FIRST_NOISE = 0.01
 """Noise to begin with, as a share of a signal's range."""
 FIRST_MEMORY = 0.6
-WIDE = TrialPrior(2.0, 10.0, 0.2, 1e-2)
+WIDE = TrialPrior(2.0, 10.0, 0.2, 1e-3, 1e-2)
 BAD = 6.0
 """A trial whose noise is this many times the usual one of its condition is told of."""
+LEAST_HEIGHT = 1e-3
+"""Of the deepest press, by which the depth at touch may differ between trials in any case."""
 ENOUGH_ALIKE = 3
 """Trials of a condition that have a usual noise of their own; fewer share that of all."""
 
@@ -91,7 +93,7 @@ def _first_guess(problem: Problem) -> tuple[Array, Array]:
     """Modulus and gains by the ratio of peaks."""
     model = Model(problem, ())
     vector = np.zeros(model.size)
-    state = np.zeros((len(problem.trials), 3 + (3 if problem.study.layout is not None else 0)))
+    state = np.zeros((len(problem.trials), nuisance_count(problem)))
     signals = model.signals(vector, state)
     ratio = [
         np.ptp(trial.signals[:, 0]) / max(np.ptp(signal[:, 0]), 1e-12)
@@ -218,11 +220,13 @@ def _size(values: Array) -> float:
 def _spreads(fitted: Fit, scale: Array) -> TrialPrior:
     state = fitted.nuisance
     noise = float(np.median(scale[:, 0]))
-    offset = _spread(state[:, 3:].ravel()) if state.shape[1] > 3 else 1.0
+    offset = _spread(state[:, len(OWN) :].ravel()) if state.shape[1] > len(OWN) else 1.0
+    deepest = max(condition.around.peak_depth for condition in fitted.model.problem.study.conditions)
     floor = float(np.median(scale[:, 1:])) if scale.shape[1] > 1 else 1.0
     return TrialPrior(
         gain=max(_spread(state[:, 0]), 3e-3),
         zero=max(_size(state[:, 1]), 0.2 * noise, 1e-9),
         shift=max(_size(state[:, 2]), 0.05 * fitted.model.problem.study.raw_interval, 1e-4),
+        height=max(_spread(state[:, 3]), LEAST_HEIGHT * deepest),
         offset=max(offset, 0.3 * floor, 1e-9),
     )

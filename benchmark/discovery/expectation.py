@@ -9,6 +9,7 @@ import numpy as np
 
 from benchmark.discovery.fit import Fit
 from benchmark.discovery.model import nuisance_count
+from benchmark.discovery.problem import OWN
 from benchmark.discovery.reading import acceleration
 from benchmark.discovery.result import Array
 from benchmark.discovery.workflow import Findings
@@ -79,6 +80,6 @@ def expected(rival: Rival, condition: str, time: Array, depth: Array, vector: Ar
     at = rival.vector if vector is None else vector
     bent = simulator.bent(model.shape(at))
     readings = simulator.readings(bent, model.values(at), motion)
-    signals = model.as_signals(readings, 0.0, np.zeros(nuisance_count(model.problem) - 3))
+    signals = model.as_signals(readings, 0.0, np.zeros(nuisance_count(model.problem) - len(OWN)))
     noise = np.median(model.problem.noise.scale, axis=0)
     return Expected(signals, model.problem.study.names, noise)

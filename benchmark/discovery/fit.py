@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.discovery.model import Model, nuisance_count, nuisance_precision
-from benchmark.discovery.problem import Problem
+from benchmark.discovery.problem import OFFSETS, OWN, Problem
 from benchmark.discovery.result import Array
 
 DAMPING = 1e-3
@@ -221,23 +221,22 @@ def _difference(model: Model, vector: Array, k: int) -> float:
 def _nuisance_columns(model: Model, white: White, vector: Array, state: Array, signals: list[Array]) -> list[Array]:
     problem = model.problem
     layout = problem.study.layout
-    steps = (0.01, 0.0, max(0.2 * problem.study.raw_interval, 1e-3))
-    moved = []
-    for k in (0, 2):
+    deepest = max(condition.around.peak_depth for condition in problem.study.conditions)
+    steps = {0: 0.01, 2: max(0.2 * problem.study.raw_interval, 1e-3), 3: 1e-3 * deepest}
+    moved = {}
+    for k, step in steps.items():
         other = state.copy()
-        other[:, k] += steps[k]
-        moved.append(model.signals(vector, other))
+        other[:, k] += step
+        moved[k] = model.signals(vector, other)
     out = []
     for i, base in enumerate(signals):
         columns = np.zeros((*base.shape, state.shape[1]))
-        columns[..., 0] = (moved[0][i] - base) / steps[0]
         columns[:, 0, 1] = 1.0
-        columns[..., 2] = (moved[1][i] - base) / steps[2]
+        for k, step in steps.items():
+            columns[..., k] = (moved[k][i] - base) / step
         if layout is not None:
-            from benchmark.discovery.problem import OFFSETS
-
-            for k, name in enumerate(OFFSETS):
-                columns[:, 1 + layout.names.index(name), 3 + k] = 1.0
+            for k, name in enumerate(OFFSETS, start=len(OWN)):
+                columns[:, 1 + layout.names.index(name), k] = 1.0
         out.append(np.column_stack([white.flat(i, columns[..., k]) for k in range(state.shape[1])]))
     return out
 

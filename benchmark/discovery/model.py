@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from benchmark.discovery.problem import OFFSETS, SHAPE_PRIOR, Problem
+from benchmark.discovery.problem import OFFSETS, OWN, SHAPE_PRIOR, Problem
 from benchmark.discovery.result import Array
 from benchmark.discovery.simulator import Bent, Shape, Simulator, ordered
 from benchmark.effects import Effect, EffectParameter, Readings, catalogue
@@ -110,7 +110,7 @@ class Model:
         vector
             (p,) of the model.
         nuisance
-            (trials, q): log gain, force zero, time shift, marker zeros.
+            (trials, q): log gain, force zero, time shift, depth at touch, marker zeros.
         only
             Numbers of the trials wanted; all by default.
         """
@@ -124,9 +124,9 @@ class Model:
         """(n, C) signals of one trial."""
         trial = self.problem.trials[index]
         simulator, bent = self.simulators[trial.condition], bents[trial.condition]
-        gain, zero, shift = np.exp(nuisance[0]), nuisance[1], nuisance[2]
-        readings = simulator.readings(bent, values, trial.motion, float(gain), float(shift))
-        signals = self.as_signals(readings, zero, nuisance[3:])
+        gain, zero, shift, height = nuisance[: len(OWN)].tolist()
+        readings = simulator.readings(bent, values, trial.motion, float(np.exp(gain)), shift, height)
+        signals = self.as_signals(readings, zero, nuisance[len(OWN) :])
         signals[:, 1:] = trial.at_frames(signals[:, 1:])
         return signals
 
@@ -149,12 +149,12 @@ def _inner(parameter: EffectParameter, value: float) -> float:
 
 
 def nuisance_count(problem: Problem) -> int:
-    """Nuisances of a trial: gain, zero, shift, and the marker zeros."""
-    return 3 + (len(OFFSETS) if problem.study.layout is not None else 0)
+    """Nuisances of a trial: gain, zero, shift, height, and the marker zeros."""
+    return len(OWN) + (len(OFFSETS) if problem.study.layout is not None else 0)
 
 
 def nuisance_precision(problem: Problem) -> Array:
     """(q,) prior precisions of a trial's nuisances."""
     prior = problem.prior
-    sizes = [prior.gain, prior.zero, prior.shift] + [prior.offset] * (nuisance_count(problem) - 3)
+    sizes = [getattr(prior, name) for name in OWN] + [prior.offset] * (nuisance_count(problem) - len(OWN))
     return np.array(sizes) ** -2.0

@@ -23,17 +23,20 @@ The two bends and the exponent and size of the marker field follow fits to blind
 MARKER_SHAPES = ("width", "marker_exponent", "marker_size")
 FOLLOWED = ("modulus", "radius", "exponent", "width")
 """Nuisances in which a base may well be wrong; the others stand for its last per cent."""
+OWN = ("gain", "zero", "shift", "height")
+"""What each trial has of its own whatever is measured; the zeros of its markers follow."""
 OFFSETS = ("x", "y", "tangential")
 """Marker combinations with a zero of their own in each trial."""
 
 
 @dataclass(frozen=True)
 class TrialPrior:
-    """Standard deviations over trials: of log gain, force zero (N), time shift (s) and marker zeros (m)."""
+    """Standard deviations over trials: log gain, force zero (N), time shift (s), touching depth, marker zeros (m)."""
 
     gain: float
     zero: float
     shift: float
+    height: float
     offset: float
 
 

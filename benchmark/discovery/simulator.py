@@ -156,7 +156,13 @@ class Simulator:
         return Bent(self.law, shape, self.around.peak_depth)
 
     def readings(
-        self, bent: Bent, values: Mapping[str, Values], motion: Motion, gain: float = 1.0, shift: float = 0.0
+        self,
+        bent: Bent,
+        values: Mapping[str, Values],
+        motion: Motion,
+        gain: float = 1.0,
+        shift: float = 0.0,
+        height: float = 0.0,
     ) -> Readings:
         """What sensor and camera report in a trial.
 
@@ -168,12 +174,13 @@ class Simulator:
             Parameters of each effect by its slug.
         motion
             As the actuator reports it, (n,) rows.
-        gain, shift
-            Factor on the stiffness, and time by which force and frames are late against depth, s.
+        gain, shift, height
+            Factor on the stiffness, time by which force and frames are late against depth, s, and depth at which the
+            tool touches, m.
         """
-        if shift:
+        if shift or height:
             late = motion.time - shift
-            motion = Motion(motion.time, np.interp(late, motion.time, motion.depth), motion.acceleration)
+            motion = Motion(motion.time, np.interp(late, motion.time, motion.depth) - height, motion.acceleration)
         body = Body(bent, gain, motion.time - motion.time[0] + FIRST_STEP, self._physics(values))
         depth = motion.depth
         for effect in self.effects:

@@ -51,19 +51,25 @@ def memory_noise(rng, size, scale, memory=0.6):
     return noise
 
 
-def write_session(folder, *, force=None, trials=4, speeds=(1.5e-3, 6e-3), noise=0.005, seed=0, hold=2.0):
-    """A session folder; `force(time, depth, elastic)` adds the effect."""
+def heights(trials, touch, seed=0):
+    """Depths (trials,) m at which the tool touches in each trial."""
+    return touch * np.random.default_rng([seed, 1]).normal(size=trials)
+
+
+def write_session(folder, *, force=None, trials=4, speeds=(1.5e-3, 6e-3), noise=0.005, seed=0, hold=2.0, touch=0.0):
+    """A session folder; `force(time, depth, elastic)` adds the effect; `touch` m by which `heights` scatter."""
     rng = np.random.default_rng(seed)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "layer.toml").write_text(TISSUE)
     lines = ['schema = 1\nname = "quick"\nspecimen = "layer.toml"\nsynthetic = true\n']
     lines.append('[tool]\nradius = "5 mm"\ncontact = "rigid_bonded"\n[support]\nkind = "bonded"\n')
     number = 0
+    touched = heights(trials * len(speeds), touch, seed)
     for speed in speeds:
         time, depth = motion(speed, hold=hold)
-        elastic = law(depth)
-        clean = elastic if force is None else force(time, depth, elastic)
         for _ in range(trials):
+            elastic = law(depth - touched[number])
+            clean = elastic if force is None else force(time, depth - touched[number], elastic)
             number += 1
             measured = np.exp(rng.normal(0.0, 0.02)) * clean + rng.normal(0.0, 0.01)
             measured = measured + memory_noise(rng, time.size, noise * elastic.max())
