@@ -27,7 +27,7 @@ RICHER_BIC = -6.0
 """BIC by which an effect is accepted, and by which one more term of it is preferred."""
 BROAD = 8.0
 """Held-out log density gained in all but the best trial that is evidence enough without z."""
-TIE = 0.02
+TIE = 0.03
 """Candidates whose gain lacks no more than this share of the best one's are equals."""
 CLOSE = 0.1
 """A rival whose gain lacks no more than this share of the best one's is a look-alike: its true form may be another."""
@@ -208,12 +208,13 @@ def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> Fit:
 
 
 def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], work: Pool) -> Fit:
-    """With two effects or more, put the best rivals in the place of each and keep what gains."""
+    """With two effects or more, put the best rivals in the place of each and keep what gains more than a tie."""
     if len(current.model.effects) < 2 or not rounds:
         return current
     taken = {effect.slug for effect in current.model.effects}
     rivals = [s.fit.model.effects[-1] for s in rounds[0] if s.slug not in taken][:2]
     best, density = current, float(held_out(current).sum())
+    density += TIE * max(density - float(held_out(base).sum()), 0.0)
     for effect in current.model.effects:
         others = [other for other in current.model.effects if other is not effect]
         under = _rebuilt(base, others, work, "swaps")
