@@ -9,16 +9,17 @@ SI units; a press and its deflection are positive into the tissue. The package k
 reports or other models.
 """
 
-from fem.errors import FemError
+from fem.errors import CheckpointError, FemError
 from fem.load import Load
 from fem.materials import Fibre, FibreReinforced, Gent, LinearElastic, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from fem.prepare import prepare
 from fem.problem import Discretisation, Layer, Problem, Support, Tool
 from fem.relaxation import PronyTerm
-from fem.solution import Failure, Solution, StepReport
+from fem.solution import Failure, Resumed, Solution, StepReport
 from fem.surface_file import read_surface
 
 __all__ = [
+    "CheckpointError",
     "Discretisation",
     "Failure",
     "FemError",
@@ -34,6 +35,7 @@ __all__ = [
     "Ogden",
     "Problem",
     "PronyTerm",
+    "Resumed",
     "Solution",
     "StepReport",
     "Support",

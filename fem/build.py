@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from fem.supports import SUPPORT_MODELS
 from fem.supports.clamp import clamp_sliding, sliding_nodes
 
 
-def build_model(problem: Problem, linear_solver: str) -> Model:
+def build_model(problem: Problem, linear_solver: str, mesh_file: Path | None = None) -> Model:
     """See :func:`fem.prepare`."""
     contact = CONTACT_MODELS.get(problem.tool.contact)
     if contact is None:
@@ -30,17 +31,17 @@ def build_model(problem: Problem, linear_solver: str) -> Model:
     warnings = contact.check(problem)
     if problem.geometry == "axisymmetric":
         return _axisymmetric_model(problem, linear_solver, warnings)
-    return _solid_model(problem, linear_solver, warnings)
+    return _solid_model(problem, linear_solver, warnings, mesh_file)
 
 
-def _solid_model(problem: Problem, linear_solver: str, warnings: tuple[str, ...]) -> Model:
+def _solid_model(problem: Problem, linear_solver: str, warnings: tuple[str, ...], mesh_file: Path | None) -> Model:
     from fem.layout_block import lay_out_block
     from fem.layout_surface import lay_out_surface
     from fem.setup_solid import solid_model
 
     if problem.surface is None:
         return solid_model(problem, lay_out_block(problem), linear_solver, warnings)
-    mesh = lay_out_surface(problem, problem.surface)
+    mesh = lay_out_surface(problem, problem.surface, mesh_file)
     return solid_model(problem, mesh, linear_solver, (*warnings, *mesh.remarks))
 
 

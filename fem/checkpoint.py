@@ -1,29 +1,26 @@
 """Checkpoints: the accepted steps of a nonlinear run in one file, so that a run that was killed goes on from there.
 
 The file holds every state of equilibrium that the prediction knows, so a resumed run takes the same way as an
-uninterrupted one. It carries a fingerprint of problem, mesh and load history and serves these only.
+uninterrupted one. It carries a fingerprint of problem, mesh, load history and solver and serves these only.
 """
 
 from __future__ import annotations
 
-import hashlib
-import os
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from fem.arrays import FloatArray, IntArray
-from fem.errors import FemError
+from fem.kept_file import fingerprint, read_kept, write_kept
 from fem.load import Load
 from fem.mesh import AnyMesh
 from fem.problem import Problem
 from fem.solving import State
 
-FORMAT = "fem checkpoint 2"
+FORMAT = "fem checkpoint 3"
 
 
 @dataclass(frozen=True)
@@ -42,6 +39,8 @@ class Progress:
         Time (k,) in s of each state.
     states
         The states in the order in which they were found, the one before the first step included.
+    seconds
+        CPU time in s that all of them took, in however many processes.
     """
 
     time: FloatArray
@@ -51,6 +50,19 @@ class Progress:
     values: FloatArray
     times: FloatArray
     states: tuple[State, ...]
+    seconds: float
+
+
+class Keeper(Protocol):
+    """Where a run keeps how far it has come."""
+
+    def read(self) -> Progress | None:
+        """What was kept; None to start from rest."""
+        ...
+
+    def write(self, progress: Progress) -> None:
+        """Keep the present progress; called after each accepted step."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -62,7 +74,7 @@ class Checkpoint:
     path
         Where it is; it need not exist yet.
     fingerprint
-        See :func:`fingerprint`.
+        See :func:`run_fingerprint`.
     """
 
     path: Path
@@ -73,50 +85,31 @@ class Checkpoint:
 
         Raises
         ------
-        FemError
+        CheckpointError
             If it cannot be written.
         """
         arrays = {f.name: getattr(progress, f.name) for f in fields(progress) if f.name != "states"}
         for f in fields(State):
             arrays[f"state_{f.name}"] = np.stack([np.asarray(getattr(state, f.name)) for state in progress.states])
-        part = self.path.with_name(f"{self.path.name}.part")
-        try:
-            with part.open("wb") as file:
-                np.savez(file, format=FORMAT, fingerprint=self.fingerprint, **arrays)
-                file.flush()
-                os.fsync(file.fileno())
-            part.replace(self.path)
-        except OSError as error:
-            raise FemError(f"checkpoint {self.path}: cannot be written ({error})") from error
+        write_kept(self.path, FORMAT, self.fingerprint, arrays)
 
     def read(self) -> Progress | None:
         """Progress in the file; None if there is no such file.
 
         Raises
         ------
-        FemError
-            If the file is damaged, no checkpoint, or of another problem, mesh or load history.
+        CheckpointError
+            If the file is damaged, no checkpoint, or of another problem, mesh, load history or solver.
         """
-        if not self.path.exists():
-            return None
-        try:
-            with np.load(self.path, allow_pickle=False) as data:
-                arrays = {name: data[name] for name in data.files}
-            found, owner = str(arrays["format"]), str(arrays["fingerprint"])
-        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-            raise FemError(f"checkpoint {self.path}: is damaged or no checkpoint ({error}); remove it") from error
-        if found != FORMAT or owner != self.fingerprint:
-            raise FemError(
-                f"checkpoint {self.path}: is of another problem, mesh or load history; "
-                "give the file another name, or remove it to start anew"
-            )
-        return _progress(arrays)
+        arrays = read_kept(self.path, FORMAT, self.fingerprint)
+        return None if arrays is None else _progress(arrays)
 
 
 def _progress(arrays: dict[str, np.ndarray]) -> Progress:
     columns = {f.name: arrays[f"state_{f.name}"] for f in fields(State)}
     states = tuple(_state({name: column[n] for name, column in columns.items()}) for n in range(len(arrays["values"])))
-    return Progress(**{f.name: arrays[f.name] for f in fields(Progress) if f.name != "states"}, states=states)
+    named: dict[str, Any] = {f.name: arrays[f.name] for f in fields(Progress) if f.name not in ("states", "seconds")}
+    return Progress(**named, states=states, seconds=float(arrays["seconds"]))
 
 
 def _state(values: Mapping[str, Any]) -> State:
@@ -124,15 +117,7 @@ def _state(values: Mapping[str, Any]) -> State:
     return State(**numbers)
 
 
-def fingerprint(problem: Problem, mesh: AnyMesh, load: Load) -> str:
-    """Hash of everything that decides the steps of a run."""
-    digest = hashlib.sha256(repr(_words(problem)).encode())
-    digest.update(load.control.encode())
-    for array in (mesh.nodes, mesh.elements, mesh.layer, load.time, load.value):
-        digest.update(np.ascontiguousarray(array).tobytes())
-    return digest.hexdigest()
-
-
-def _words(problem: Problem) -> tuple[object, ...]:
-    """The problem without its surface, of which the mesh says enough."""
-    return tuple(getattr(problem, f.name) for f in fields(problem) if f.name != "surface")
+def run_fingerprint(problem: Problem, mesh: AnyMesh, load: Load) -> str:
+    """Hash of everything that decides the steps of a run; of the problem's surface the mesh says enough."""
+    words = tuple(getattr(problem, f.name) for f in fields(problem) if f.name != "surface")
+    return fingerprint((words, load.control), (mesh.nodes, mesh.elements, mesh.layer, load.time, load.value))

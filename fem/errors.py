@@ -9,3 +9,7 @@ from __future__ import annotations
 
 class FemError(ValueError):
     """Input the solver cannot use; the message names the parameter, its value, its unit and what is allowed."""
+
+
+class CheckpointError(FemError):
+    """A checkpoint that cannot be written, is damaged, or belongs to another problem."""

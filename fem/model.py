@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem.checkpoint import Checkpoint, fingerprint
+from fem.checkpoint import Checkpoint, Keeper, run_fingerprint
 from fem.contact_system import ContactSystem
 from fem.fields import FieldRecovery
 from fem.linear_run import run_linear
@@ -74,7 +74,7 @@ class Model:
         self,
         load: Load,
         on_step: Callable[[StepReport], None] | None = None,
-        checkpoint: str | Path | None = None,
+        checkpoint: str | Path | Keeper | None = None,
     ) -> Solution:
         """Follow a load history.
 
@@ -85,8 +85,9 @@ class Model:
         on_step
             Called after each accepted step that was computed here.
         checkpoint
-            File in which a run at finite strain keeps its accepted steps. If it exists, the run goes on from
-            there; after the last step it stays, and can be removed. A linear run, which is one solve, has none.
+            File in which a run at finite strain keeps its accepted steps, each one, or a keeper round
+            :meth:`checkpoint` that decides which. If the file exists, the run goes on from there; after the last
+            step it stays, and can be removed. A linear run, which is one solve, has none.
 
         Returns
         -------
@@ -95,16 +96,20 @@ class Model:
 
         Raises
         ------
-        FemError
-            If the checkpoint cannot be written, is damaged, or is of another problem, mesh or load history.
+        CheckpointError
+            If the checkpoint cannot be written, is damaged, or is of another problem, mesh, load history or solver.
         """
         record = Record(self.mesh, self.equilibrium, self.recovery, self._names())
         warnings = self.warnings + ((self._pulling,) if load.value.min() < 0.0 else ())
         with suited_threads(self.unknowns):
             if self.problem.kinematics == "linear":
                 return run_linear(record, load, warnings, on_step)
-            kept = Checkpoint(Path(checkpoint), fingerprint(self.problem, self.mesh, load)) if checkpoint else None
+            kept = self.checkpoint(load, checkpoint) if isinstance(checkpoint, (str, Path)) else checkpoint
             return self._advised(run_nonlinear(record, load, self.newton, warnings, on_step, kept))
+
+    def checkpoint(self, load: Load, path: str | Path) -> Checkpoint:
+        """The file in which a run of a load history keeps its steps."""
+        return Checkpoint(Path(path), run_fingerprint(self.problem, self.mesh, load))
 
     def _advised(self, solution: Solution) -> Solution:
         """The solution; a press that the mesh could not follow with what may go further."""

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import time as clock
 from collections.abc import Callable
 
 import numpy as np
 
 from fem.assembly import System
-from fem.checkpoint import Checkpoint, Progress
+from fem.checkpoint import Keeper, Progress
 from fem.load import Load
 from fem.record import Record, largest_strain, reaction
 from fem.small_strain import unit_state
-from fem.solution import Failure, Solution, StepReport
+from fem.solution import Failure, Resumed, Solution, StepReport
 from fem.solving import Equilibrium, NewtonSettings, State, Stepper, settle
 
 LEAST_SHARE_OF_PEAK = 1e-3
@@ -27,7 +28,7 @@ def run_nonlinear(
     settings: NewtonSettings,
     warnings: tuple[str, ...],
     on_step: Callable[[StepReport], None] | None,
-    checkpoint: Checkpoint | None = None,
+    checkpoint: Keeper | None = None,
 ) -> Solution:
     """Follow a load history in finite strain.
 
@@ -48,7 +49,7 @@ def run_nonlinear(
 
     Raises
     ------
-    FemError
+    CheckpointError
         If the checkpoint cannot be used.
 
     Returns
@@ -56,6 +57,7 @@ def run_nonlinear(
     Solution
         All steps that were reached, and the failure if there was one.
     """
+    began = clock.process_time()
     problem = record.equilibrium
     scale = LEAST_SHARE_OF_PEAK * force_scale(problem, load)
     start, reason = settle(problem, scale, settings)
@@ -73,7 +75,7 @@ def run_nonlinear(
         if system.sliding is not None and system.sliding.everywhere(advance.state.y) and SLID not in warnings:
             warnings = (*warnings, SLID)
         if checkpoint is not None:
-            checkpoint.write(_progress(record, stepper))
+            checkpoint.write(_progress(record, stepper, clock.process_time() - began))
         if on_step is not None:
             depth = problem.depth(advance.state.y)
             on_step(
@@ -105,7 +107,7 @@ def _keep(record: Record, system: System, time: float, state: State) -> None:
     record.add(time, state, reaction(system, evaluation.element_force), largest_strain(system, state.y, finite=True))
 
 
-def _resume(record: Record, stepper: Stepper, checkpoint: Checkpoint) -> int:
+def _resume(record: Record, stepper: Stepper, checkpoint: Keeper) -> int:
     """Put the steps of a checkpoint into record and stepper; how many there are."""
     found = checkpoint.read()
     if found is None:
@@ -113,11 +115,12 @@ def _resume(record: Record, stepper: Stepper, checkpoint: Checkpoint) -> int:
     for n, time, reached, strain in zip(found.steps, found.time, found.reactions, found.strains, strict=True):
         record.add(float(time), found.states[n], float(reached), float(strain))
     stepper.resume(found.values, found.times, found.states)
+    record.resumed = Resumed(len(found.steps), found.seconds)
     return len(found.steps)
 
 
-def _progress(record: Record, stepper: Stepper) -> Progress:
-    known = stepper.known
+def _progress(record: Record, stepper: Stepper, seconds: float) -> Progress:
+    known, earlier = stepper.known, 0.0 if record.resumed is None else record.resumed.seconds
     place = {id(state): n for n, state in enumerate(known.states)}
     return Progress(
         time=np.array(record.time),
@@ -127,4 +130,5 @@ def _progress(record: Record, stepper: Stepper) -> Progress:
         values=known.values,
         times=stepper.times,
         states=known.states,
+        seconds=earlier + seconds,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem.problem import Problem
@@ -10,7 +11,7 @@ if TYPE_CHECKING:
     from fem.model import Model
 
 
-def prepare(problem: Problem, linear_solver: str = "auto") -> Model:
+def prepare(problem: Problem, linear_solver: str = "auto", mesh_file: str | Path | None = None) -> Model:
     """Mesh a problem and set up its equations, once for all load histories.
 
     Parameters
@@ -19,6 +20,9 @@ def prepare(problem: Problem, linear_solver: str = "auto") -> Model:
         Layers, tool, support, kinematics and discretisation.
     linear_solver
         "auto" (Pardiso where it installs, otherwise SuperLU), "pardiso" or "superlu".
+    mesh_file
+        File in which the mesh of a body from a surface is kept, and taken from if it holds that of the same body; the
+        mesher never makes the same mesh twice, which a checkpoint of a run needs. Other meshes need none.
 
     Returns
     -------
@@ -28,8 +32,8 @@ def prepare(problem: Problem, linear_solver: str = "auto") -> Model:
     Raises
     ------
     FemError
-        If the contact or the solver is not available for this problem.
+        If the contact or the solver is not available for this problem, or the mesh file cannot be written.
     """
     from fem.build import build_model
 
-    return build_model(problem, linear_solver)
+    return build_model(problem, linear_solver, None if mesh_file is None else Path(mesh_file))

@@ -13,7 +13,7 @@ from fem.assembly import System
 from fem.deformation import Deformation
 from fem.fields import FieldRecovery
 from fem.mesh import AnyMesh
-from fem.solution import Failure, Solution
+from fem.solution import Failure, Resumed, Solution
 from fem.solving import Equilibrium, State
 
 if TYPE_CHECKING:
@@ -38,6 +38,8 @@ class Record:
         Reactions in N so far.
     strains
         Largest strains so far.
+    resumed
+        What was taken over from a checkpoint; None in a run from rest.
     """
 
     mesh: AnyMesh
@@ -48,6 +50,7 @@ class Record:
     states: list[State] = field(default_factory=list)
     reactions: list[float] = field(default_factory=list)
     strains: list[float] = field(default_factory=list)
+    resumed: Resumed | None = None
 
     def add(self, time: float, state: State, reaction: float, largest_strain: float) -> None:
         """Keep an accepted step."""
@@ -78,6 +81,7 @@ class Record:
             warnings=warnings,
             mesh=self.mesh,
             recovery=self.recovery,
+            resumed=self.resumed,
         )
 
     def _top_deflection(self, nodal: FloatArray) -> FloatArray:

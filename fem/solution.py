@@ -82,6 +82,22 @@ class Failure:
 
 
 @dataclass(frozen=True)
+class Resumed:
+    """What a run took over from a checkpoint.
+
+    Attributes
+    ----------
+    steps
+        Accepted steps that were not computed again.
+    seconds
+        CPU time in s that they took in the processes before.
+    """
+
+    steps: int
+    seconds: float
+
+
+@dataclass(frozen=True)
 class Solution:
     """What a run gives; n accepted steps, L layers from the surface down.
 
@@ -117,6 +133,8 @@ class Solution:
         The mesh.
     recovery
         Evaluates stress and strain; used by :meth:`fields`.
+    resumed
+        What was taken over from a checkpoint; None in a run from rest.
     """
 
     time: FloatArray
@@ -133,6 +151,7 @@ class Solution:
     warnings: tuple[str, ...]
     mesh: AnyMesh
     recovery: FieldRecovery | SolidFieldRecovery
+    resumed: Resumed | None = None
 
     def profile(self, step: int, radii: FloatArray) -> FloatArray:
         """Deflection of each layer's top face at reference radii (from the tool's axis along +x).

@@ -1,6 +1,7 @@
 """One face over the finite-element solver, the wave models, and a user's own in their places."""
 
 from benchmark.models.frames import frame_seconds
+from benchmark.models.keeping import Keeping
 from benchmark.models.own import NOTHING, Own
 from benchmark.models.prepare import prepare, scenario_drive
 from benchmark.models.reference import Reference, read_reference
@@ -11,6 +12,7 @@ from benchmark.models.result import (
     ModelResult,
     PreparedModel,
     Reading,
+    Resumption,
     RunFailure,
     StepProgress,
     UncoveredError,
@@ -23,11 +25,13 @@ __all__ = [
     "Array",
     "Drive",
     "FieldSnapshot",
+    "Keeping",
     "ModelResult",
     "Own",
     "PreparedModel",
     "Reading",
     "Reference",
+    "Resumption",
     "RunFailure",
     "StepProgress",
     "UncoveredError",

@@ -9,6 +9,8 @@ from benchmark.errors import InputError
 from benchmark.files import Scenario
 from benchmark.models.coverage import refuse_options
 from benchmark.models.fem_layers import fem_layer
+from benchmark.models.keeping import Keeping
+from benchmark.models.kept_steps import kept_mesh, kept_steps
 from benchmark.models.radii import profile_radii
 from benchmark.models.result import (
     Drive,
@@ -16,6 +18,7 @@ from benchmark.models.result import (
     ModelResult,
     OnStep,
     Reading,
+    Resumption,
     RunFailure,
     StepProgress,
     UncoveredError,
@@ -28,6 +31,15 @@ OPTIONS = ("pretension", "adhesion_force", "clamp_shear_limit")
 class FemModel:
     """A scenario meshed and set up.
 
+    Parameters
+    ----------
+    scenario
+        Resolved scenario.
+    every_field
+        Keep the fields of each step instead of the peak's and the last one's.
+    keeping
+        Where the steps of the one load history that is followed are kept, and taken up; None keeps nothing.
+
     Raises
     ------
     UncoveredError
@@ -36,14 +48,17 @@ class FemModel:
         The scenario cannot be meshed or solved as it stands.
     """
 
-    def __init__(self, scenario: Scenario, *, every_field: bool = False):
+    def __init__(self, scenario: Scenario, *, every_field: bool = False, keeping: Keeping | None = None):
         refuse_options(scenario, OPTIONS, fibres=True)
         self._scenario = scenario
         self._every_field = every_field
+        self._keeping = keeping
         _refuse_contact(scenario)
         _refuse_clamp(scenario)
         try:
-            self._model = fem.prepare(problem_of(scenario))
+            slow = scenario.fem.geometry == "surface"
+            mesh_file = kept_mesh(keeping) if keeping is not None and slow else None
+            self._model = fem.prepare(problem_of(scenario), mesh_file=mesh_file)
         except fem.FemError as error:
             raise InputError(f"scenario {scenario.name}: {error}") from None
 
@@ -58,7 +73,8 @@ class FemModel:
         def report(step: fem.StepReport) -> None:
             on_step(StepProgress(step.step, step.total, step.force, step.depth))
 
-        solution = self._model.run(load, on_step=report)
+        kept = None if self._keeping is None else kept_steps(self._keeping, self._model, load)
+        solution = self._model.run(load, on_step=report, checkpoint=kept)
         return lambda: self._result(solution, load, drive)
 
     def _result(self, solution: fem.Solution, load: fem.Load, drive: Drive) -> ModelResult:
@@ -80,6 +96,7 @@ class FemModel:
             unknowns=self._model.unknowns,
             notes=self._notes(),
             warnings=solution.warnings,
+            resumed=_resumption(solution, load),
             failure=_failure(solution, load),
             fields=tuple(_snapshot(solution, step) for step in self._field_steps(peak, steps)),
         )
@@ -159,6 +176,12 @@ def problem_of(scenario: Scenario) -> fem.Problem:
         surface=surface,
         pretension=scenario.physics.pretension or 0.0,
     )
+
+
+def _resumption(solution: fem.Solution, load: fem.Load) -> Resumption | None:
+    """What an earlier run had done already, in the harness's terms."""
+    earlier = solution.resumed
+    return None if earlier is None else Resumption(earlier.steps, load.time.size, earlier.seconds)
 
 
 def _failure(solution: fem.Solution, load: fem.Load) -> RunFailure | None:

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel
+from benchmark.models.keeping import Keeping
 from benchmark.models.result import Drive, PreparedModel
 from benchmark.models.user_file import UserFile
 
 
 def prepare(
-    model: str, scenario: Scenario, *, every_field: bool = False, own: UserFile | RepairedModel | None = None
+    model: str,
+    scenario: Scenario,
+    *,
+    every_field: bool = False,
+    own: UserFile | RepairedModel | None = None,
+    keeping: Keeping | None = None,
 ) -> PreparedModel:
     """Set a model up for a scenario.
 
@@ -23,6 +29,8 @@ def prepare(
         Keep the fields of each step instead of the peak's and the last one's (FEM).
     own
         A user's own model in the wave's place, or a model file whose effects are switched on.
+    keeping
+        Where the steps of the load history are kept (FEM without effects of a model file); None keeps nothing.
 
     Raises
     ------
@@ -40,7 +48,7 @@ def prepare(
     if model == "fem":
         from benchmark.models.fem_model import FemModel
 
-        return FemModel(scenario, every_field=every_field)
+        return FemModel(scenario, every_field=every_field, keeping=keeping)
     if own is not None:
         from benchmark.models.user_model import UserModel
 

@@ -45,6 +45,24 @@ class RunFailure:
 
 
 @dataclass(frozen=True)
+class Resumption:
+    """What a run took over from one that was interrupted.
+
+    `steps` of `total` were not computed again; they took `seconds` of CPU time, which no timing holds.
+    """
+
+    steps: int
+    total: int
+    seconds: float
+
+    def __str__(self) -> str:
+        return (
+            f"resumed after step {self.steps} of {self.total}, which an interrupted run of the same problem had kept; "
+            f"they took {self.seconds:.3g} s of CPU there"
+        )
+
+
+@dataclass(frozen=True)
 class FieldSnapshot:
     """The deformed continuum at one step, ready for a VTU file.
 
@@ -88,6 +106,8 @@ class ModelResult:
         None when the whole load history was followed.
     fields
         Snapshots of the continuum (FEM only).
+    resumed
+        What was taken over from an interrupted run; None where all was computed at once.
     """
 
     model: str
@@ -104,6 +124,7 @@ class ModelResult:
     warnings: tuple[str, ...] = ()
     failure: RunFailure | None = None
     fields: tuple[FieldSnapshot, ...] = ()
+    resumed: Resumption | None = None
 
     @property
     def complete(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 from benchmark.comparison import comparison_summary
@@ -65,5 +66,6 @@ def _model(run: ModelRun, record: RunRecord) -> dict[str, Any]:
         "peak_memory_MB": None if run.peak_memory is None else run.peak_memory / 1e6,
         "picture_us": None if run.frame is None else 1e6 * run.frame,
         "notes": {} if result is None else dict(result.notes),
+        "resumed": None if result is None or result.resumed is None else asdict(result.resumed),
         "failure": None if result is None or result.failure is None else str(result.failure),
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -19,9 +20,12 @@ class RunOptions:
         Run both models on coarser and finer levels as well.
     seed
         Of every random draw.
+    keep
+        Folder in which a long run keeps its steps until its result is written; None keeps nothing.
     """
 
     every_field: bool = False
     repeats: int = 3
     refine: bool = False
     seed: int = 0
+    keep: Path | None = None

@@ -127,6 +127,10 @@ def gather_warnings(scenario: Scenario, pair: SideBySide, more: Sequence[str]) -
             found.append(f"the {run.name} does not cover this scenario, its columns are empty: {run.declined}")
         elif run.result is not None:
             found.extend(f"{run.name}: {warning}" for warning in run.result.warnings)
+            if run.result.resumed is not None:
+                found.append(
+                    f"{run.name} {run.result.resumed}; the times in this report are of whole runs without them"
+                )
             if run.result.failure is not None:
                 found.append(f"{run.name} stopped early at {run.result.failure}; results up to there are kept")
     return tuple(dict.fromkeys(found))

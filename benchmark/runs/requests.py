@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from benchmark.errors import InputError
@@ -17,6 +17,7 @@ from benchmark.runs.options import RunOptions
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.session_run import run_session
 from benchmark.runs.tissues_run import run_tissues
+from benchmark.runs.unfinished import unfinished
 from benchmark.sessions import SHIPPED
 
 DEFAULT_SCENARIO = "skin-5N"
@@ -107,9 +108,15 @@ def _scenario(request: RunRequest, name: str, out: Path | None, options: RunOpti
     scenario = load_scenario(name, {**(request.settings or {}), **chosen})
     folder = destination(out, scenario.name)
     own = _own(request, scenario)
-    return write_run(run_scenario(scenario, options, listener, own=own), folder)
+    with unfinished(folder) as keep:
+        return write_run(run_scenario(scenario, replace(options, keep=keep), listener, own=own), folder)
 
 
 def _session(request: RunRequest, path: Path, out: Path | None, options: RunOptions, listener: Listener) -> RunOutcome:
-    record = run_session(path, request.specimen, request.settings or {}, options, listener, _own(request))
-    return write_run(record, destination(out, record.name))
+    own = _own(request)
+    if out is None:
+        record = run_session(path, request.specimen, request.settings or {}, options, listener, own)
+        return write_run(record, destination(None, record.name))
+    with unfinished(destination(out, path.name)) as keep:
+        options = replace(options, keep=keep)
+        return write_run(run_session(path, request.specimen, request.settings or {}, options, listener, own), out)

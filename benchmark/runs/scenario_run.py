@@ -65,7 +65,9 @@ def run_scenario(
             seed=options.seed,
             every_field=options.every_field,
             on_progress=on_progress,
+            on_remark=listener.say,
             own=own,
+            keep=options.keep,
         )
     if own.wave is None and own.repair is None:
         pair = beside_small_strain(scenario, pair, drive)

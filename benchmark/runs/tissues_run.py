@@ -19,6 +19,7 @@ from benchmark.runs.record import RunRecord
 from benchmark.runs.report import tissues_page
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.tables import tissue_columns
+from benchmark.runs.unfinished import unfinished
 from reports import whole_folder, write_csv, write_json, write_page
 
 
@@ -52,17 +53,20 @@ def run_tissues(
         raise InputError(f"--tissue: {', '.join(tissues)} are not different; each needs a name of its own")
     scenarios = [load_scenario(name, {**settings, "tissue": tissue}) for tissue in tissues]
     target = destination(out, f"{scenarios[0].name}-tissues")
-    records = {
-        folder: run_scenario(scenario, options, listener, name=f"{scenario.name}, {folder}", own=own)
-        for folder, scenario in zip(folders, scenarios, strict=True)
-    }
-    document = _document(records)
-    page = tissues_page(records, describe_environment(seed=options.seed))
-    with whole_folder(target) as new:
-        outcomes = [write_run(record, new / folder) for folder, record in records.items()]
-        write_csv(new / "tables" / "tissues.csv", tissue_columns(records))
-        write_json(new / "results.json", document)
-        write_page(new / "report.html", page)
+    with unfinished(target) as keep:
+        records = {
+            folder: run_scenario(
+                scenario, replace(options, keep=keep / folder), listener, name=f"{scenario.name}, {folder}", own=own
+            )
+            for folder, scenario in zip(folders, scenarios, strict=True)
+        }
+        document = _document(records)
+        page = tissues_page(records, describe_environment(seed=options.seed))
+        with whole_folder(target) as new:
+            outcomes = [write_run(record, new / folder) for folder, record in records.items()]
+            write_csv(new / "tables" / "tissues.csv", tissue_columns(records))
+            write_json(new / "results.json", document)
+            write_page(new / "report.html", page)
     whole = RunOutcome(target, document, page.verdict.headline, complete=True, warnings=())
     return [whole, *(replace(outcome, folder=target / outcome.folder.name) for outcome in outcomes)]
 

@@ -15,6 +15,13 @@ class RunCommand:
 
 
 @dataclass(frozen=True)
+class Remark:
+    """What a person should know while the model runs, one sentence."""
+
+    text: str
+
+
+@dataclass(frozen=True)
 class Seconds:
     """One execution: set-up, then wall and CPU time of the load history alone, in s.
 
@@ -65,4 +72,4 @@ class Crashed:
 
 
 Answer = Finished | Declined | Crashed
-Message = StepProgress | Answer
+Message = StepProgress | Remark | Answer

@@ -6,6 +6,7 @@ import multiprocessing
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from types import TracebackType
 
 from benchmark.errors import InputError, SolverError
@@ -47,11 +48,12 @@ class ModelProcess:
         every_field: bool = False,
         core: int | None = None,
         own: UserFile | RepairedModel | None = None,
+        keep: Path | None = None,
     ):
         context = multiprocessing.get_context("spawn")
         self.model = model
         self.connection, far_end = context.Pipe()
-        arguments = (far_end, Job(model, scenario, every_field, own), core)
+        arguments = (far_end, Job(model, scenario, every_field, own, keep), core)
         self._process = context.Process(target=serve, args=arguments, daemon=True, name=f"tissuebench-{model}")
         with single_threaded_children():
             self._process.start()

@@ -13,16 +13,22 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from multiprocessing.connection import wait
+from pathlib import Path
 
 from benchmark.files import Scenario
 from benchmark.models import NOTHING, ModelResult, Own, StepProgress
-from benchmark.side_by_side.messages import Answer, Declined, Finished, Seconds
+from benchmark.side_by_side.messages import Answer, Declined, Finished, Remark, Seconds
 from benchmark.side_by_side.process import ModelProcess
 from benchmark.side_by_side.timing import Speedup, median_seconds, speedup
 
 MODELS = ("fem", "wave")
 NAMES = {"fem": "FEM", "wave": "wave model"}
 OnProgress = Callable[[str, StepProgress], None]
+OnRemark = Callable[[str], None]
+
+
+def unheard(_: str) -> None:
+    """Let a remark pass."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +87,9 @@ def run_side_by_side(
     seed: int,
     every_field: bool,
     on_progress: OnProgress,
+    on_remark: OnRemark = unheard,
     own: Own = NOTHING,
+    keep: Path | None = None,
 ) -> SideBySide:
     """Run both models on `scenario`.
 
@@ -97,8 +105,13 @@ def run_side_by_side(
         Keep the fields of each step instead of the peak's and the last one's.
     on_progress
         Called with the model's name and its progress.
+    on_remark
+        Called with what a person should know while it runs.
     own
         A user's own model in the wave's place, timed like it, or own FEA in the FEM's, which does not run.
+    keep
+        Folder in which the execution for the results keeps its FEM steps, and from which it takes up those of an
+        earlier run of the same problem; the timed repeats are whole in any case.
 
     Raises
     ------
@@ -107,11 +120,11 @@ def run_side_by_side(
     """
     with ExitStack() as stack:
         processes = [
-            stack.enter_context(_process(model, scenario, every_field, core, own))
+            stack.enter_context(_process(model, scenario, every_field, core, own, keep))
             for model, core in zip(MODELS, cores(len(MODELS)), strict=True)
             if model == "wave" or own.reference is None
         ]
-        first = _together(processes, on_progress)
+        first = _together(processes, on_progress, on_remark)
         timed = [p for p in processes if isinstance(first[p.model], Finished)]
         whole = all(a.result is not None and a.result.complete for a in first.values() if isinstance(a, Finished))
         repeated = _in_turn(timed, repeats if whole else 0)
@@ -120,12 +133,14 @@ def run_side_by_side(
     return SideBySide(fem, wave, ratio)
 
 
-def _process(model: str, scenario: Scenario, every_field: bool, core: int | None, own: Own) -> ModelProcess:
+def _process(
+    model: str, scenario: Scenario, every_field: bool, core: int | None, own: Own, keep: Path | None
+) -> ModelProcess:
     """The process of one model, which may be the user's in the wave's place, or have effects switched on."""
-    return ModelProcess(model, scenario, every_field=every_field, core=core, own=own.place(model))
+    return ModelProcess(model, scenario, every_field=every_field, core=core, own=own.place(model), keep=keep)
 
 
-def _together(processes: list[ModelProcess], on_progress: OnProgress) -> dict[str, Answer]:
+def _together(processes: list[ModelProcess], on_progress: OnProgress, on_remark: OnRemark) -> dict[str, Answer]:
     """Start every model at once and collect the answers as they come."""
     for process in processes:
         process.command(keep_result=True)
@@ -137,6 +152,8 @@ def _together(processes: list[ModelProcess], on_progress: OnProgress) -> dict[st
             message = process.receive()
             if isinstance(message, StepProgress):
                 on_progress(process.model, message)
+            elif isinstance(message, Remark):
+                on_remark(message.text)
             else:
                 answers[process.model] = message
                 del waiting[connection]  # type: ignore[arg-type]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -17,7 +18,7 @@ from benchmark.sweep.point import PointResult
 from benchmark.sweep.table import point_columns, write_points
 from reports import write_json, write_text
 
-PLAN, JOURNAL, POINTS = "sweep.json", "journal.jsonl", "points.parquet"
+PLAN, JOURNAL, POINTS, UNFINISHED = "sweep.json", "journal.jsonl", "points.parquet", "unfinished"
 LEAST_PAUSE = 0.5
 SHARE = 0.02
 """`points.parquet` is written anew as points finish, but takes no more than about this share of the time."""
@@ -31,6 +32,19 @@ class SweepFolder:
         self._plan, self._journal = plan, journal
         self.finished: dict[int, PointResult] = read_journal(path / JOURNAL)
         self._due = 0.0
+
+    @property
+    def unfinished(self) -> Path:
+        """Where long points keep what they have so far; it need not exist."""
+        return self.path / UNFINISHED
+
+    def close(self) -> None:
+        """End with what there is; once every point is there nothing is unfinished."""
+        self._journal.close()
+        if self.finished:
+            self.write_table()
+        if len(self.finished) == len(self._plan.points):
+            shutil.rmtree(self.unfinished, ignore_errors=True)
 
     def add(self, row: PointResult) -> None:
         """Keep a finished point."""
@@ -64,14 +78,11 @@ def open_folder(path: Path, plan: SweepPlan) -> Iterator[SweepFolder]:
         if not (path / PLAN).exists():
             write_text(path / "scenario.toml", plan.scenario.to_toml())
             write_json(path / PLAN, plan.document)
-        journal = Journal(path / JOURNAL)
-        folder = SweepFolder(path, plan, journal)
+        folder = SweepFolder(path, plan, Journal(path / JOURNAL))
         try:
             yield folder
         finally:
-            journal.close()
-            if folder.finished:
-                folder.write_table()
+            folder.close()
 
 
 def _check_holds(path: Path, plan: SweepPlan) -> None:

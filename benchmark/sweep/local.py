@@ -13,6 +13,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from multiprocessing.connection import Connection, wait
 
+from benchmark.children import end_with_parent
 from benchmark.side_by_side import single_threaded_children
 from benchmark.sweep.point import PointResult, Task, evaluate, failed
 
@@ -103,7 +104,8 @@ class _Worker:
 
 
 def _serve(connection: Connection) -> None:
-    """Compute points until the pipe ends; an interruption is the parent's business."""
+    """Compute points until the pipe or the parent ends; an interruption is the parent's business."""
+    end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         while True:

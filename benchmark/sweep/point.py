@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import shutil
 import threading
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from benchmark.errors import TissuebenchError
 from benchmark.files import Scenario
-from benchmark.models import ModelResult, UncoveredError, prepare, scenario_drive
+from benchmark.models import Keeping, ModelResult, UncoveredError, prepare, scenario_drive
 from benchmark.sweep.results import point_values
 
 OK, FAILED = "ok", "failed"
@@ -21,10 +23,11 @@ _ONE_AT_A_TIME = threading.Lock()
 
 @dataclass(frozen=True)
 class Task:
-    """A point to compute: its number, from 1, and its scenario."""
+    """A point to compute: its number, from 1, its scenario, and a folder for what a long one has so far."""
 
     point: int
     scenario: Scenario
+    keep: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,9 @@ def evaluate(task: Task) -> PointResult:
     from threadpoolctl import threadpool_limits
 
     with _ONE_AT_A_TIME, threadpool_limits(1):
-        answers = {model: _Answer.of(model, task.scenario) for model in MODELS}
+        answers = {model: _Answer.of(model, task.scenario, task.keep) for model in MODELS}
+    if task.keep is not None:
+        shutil.rmtree(task.keep, ignore_errors=True)
     results = {model: answer.result for model, answer in answers.items()}
     faults = [answer.fault for answer in answers.values() if answer.fault]
     warnings = [warning for answer in answers.values() for warning in answer.warnings]
@@ -87,21 +92,24 @@ class _Answer:
     seconds: float = float("nan")
 
     @classmethod
-    def of(cls, model: str, scenario: Scenario) -> _Answer:
+    def of(cls, model: str, scenario: Scenario, keep: Path | None) -> _Answer:
         """Run one model."""
-        name = MODELS[model]
+        name, said = MODELS[model], list[str]()
+        keeping = None if keep is None else Keeping(keep, said.append)
         started = time.perf_counter()
         try:
-            result = prepare(model, scenario).run(scenario_drive(scenario))
+            result = prepare(model, scenario, keeping=keeping).run(scenario_drive(scenario))
         except UncoveredError as error:
             return cls(warnings=(f"the {name} does not cover this scenario: {error}",))
         except TissuebenchError as error:
             return cls(fault=f"{name}: {error}")
         except Exception as error:
             return cls(fault=f"{name}: {type(error).__name__}: {error}")
-        warnings = tuple(f"{name}: {warning}" for warning in result.warnings)
+        warnings = (*said, *(f"{name}: {warning}" for warning in result.warnings))
         if result.failure is not None:
             return cls(fault=f"{name} stopped early at {result.failure}", warnings=warnings)
+        if result.resumed is not None:
+            return cls(result, "", (*warnings, f"{name} {result.resumed}; its time is left out"))
         return cls(result, "", warnings, time.perf_counter() - started)
 
 

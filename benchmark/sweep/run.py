@@ -91,20 +91,26 @@ def _finish(folder: SweepFolder, plan: SweepPlan, request: SweepRequest, listene
         return
     with listener.progress(f"{plan.scenario.name}: {len(missing)} points") as advance:
         progress = Progress(total, done, advance)
-        for row in _rows(plan, missing, request, listener):
+        for row in _rows(plan, missing, request, folder.unfinished, listener):
             folder.add(row)
             progress.add(row)
 
 
-def _rows(plan: SweepPlan, missing: Sequence[int], request: SweepRequest, listener: Listener) -> Iterator[PointResult]:
-    """The missing points as they finish: first those that have no scenario, then the computed ones."""
+def _rows(
+    plan: SweepPlan, missing: Sequence[int], request: SweepRequest, keep: Path, listener: Listener
+) -> Iterator[PointResult]:
+    """The missing points as they finish: first those that have no scenario, then the computed ones.
+
+    A long point on this machine keeps its steps in a folder in `keep`; a cluster's workers may not reach it.
+    """
     tasks = []
     for point in missing:
         scenario = plan.scenarios[point - 1]
         if isinstance(scenario, str):
             yield failed(point, scenario)
         else:
-            tasks.append(Task(point, scenario))
+            folder = keep / f"point_{point:06d}" if request.scheduler is None else None
+            tasks.append(Task(point, scenario, folder))
     if request.scheduler is None:
         yield from work_locally(tasks, request.workers or usable_cores())
     elif tasks:

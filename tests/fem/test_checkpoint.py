@@ -54,6 +54,9 @@ def test_a_stopped_run_goes_on(tmp_path, step):
     steps = []
     resumed = fem.prepare(skin()).run(LOAD, lambda report: steps.append(report.step), path)
     assert steps == list(range(step + 1, 7))
+    assert whole.resumed is None
+    assert resumed.resumed.steps == step
+    assert resumed.resumed.seconds > 0.0
     assert_equal(resumed, whole)
     assert [p.name for p in tmp_path.iterdir()] == ["run.npz"]
 
@@ -63,8 +66,12 @@ def test_depth_control_and_a_finished_run(tmp_path):
     whole = fem.prepare(skin()).run(load)
     with pytest.raises(StoppedError):
         fem.prepare(skin()).run(load, stop_at(2), tmp_path / "run.npz")
+    seconds = []
     for _ in range(2):
-        assert_equal(fem.prepare(skin()).run(load, checkpoint=tmp_path / "run.npz"), whole)
+        resumed = fem.prepare(skin()).run(load, checkpoint=tmp_path / "run.npz")
+        assert_equal(resumed, whole)
+        seconds.append(resumed.resumed.seconds)
+    assert 0.0 < seconds[0] < seconds[1]
 
 
 @pytest.mark.slow

@@ -10,7 +10,8 @@ import pytest
 import pyvista
 
 import fem
-from fem.mesh.surface import Surface, build_surface_mesh
+from fem.mesh.surface import Surface, build_surface_mesh, kept_filling
+from fem.mesh.surface.filling import Refinement
 from fem.setup_solid import solid_model
 
 ROOT = Path(__file__).parents[2]
@@ -110,3 +111,55 @@ def test_a_liver_goes_from_stl_to_a_pressed_vtu(tmp_path):
     grid = pyvista.read(tmp_path / "liver_synthetic.vtu")
     assert set(np.unique(grid.cell_data["layer"])) == {0, 1, 2}
     assert grid.point_data["displacement_m"][:, 2].min() < -5e-3
+
+
+def test_the_mesh_of_a_body_is_kept(ball, tmp_path, monkeypatch):
+    """The mesher is called once for a body, and again for another or where the file is damaged."""
+    kept, calls = tmp_path / "mesh.npz", []
+
+    def counted(*arguments):
+        calls.append(arguments)
+        points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, float(len(calls))]])
+        return points, np.array([[0, 1, 2, 3]]), np.array([0])
+
+    monkeypatch.setattr(kept_filling, "fill", counted)
+    wanted = Refinement(np.array([0.0, 0.0, 0.02]), 6e-3, 4e-3, 6e-3, 0.7)
+    first = kept_filling.kept_filling(ball, np.array([4e-3]), wanted, kept)
+    for found, array in zip(kept_filling.kept_filling(ball, np.array([4e-3]), wanted, kept), first, strict=True):
+        np.testing.assert_array_equal(found, array)
+    assert len(calls) == 1
+    kept_filling.kept_filling(ball, np.array([3e-3]), wanted, kept)
+    assert len(calls) == 2
+    kept.write_bytes(b"half")
+    kept_filling.kept_filling(ball, np.array([3e-3]), wanted, kept)
+    kept_filling.kept_filling(ball, np.array([3e-3]), wanted, None)
+    assert len(calls) == 4
+
+
+@pytest.mark.slow
+def test_a_run_on_a_kept_mesh_goes_on_with_a_new_model(ball, tmp_path):
+    layers = (
+        fem.Layer("rind", 4e-3, 1e3, fem.NeoHookean(2e4, 0.45)),
+        fem.Layer("rest", 1.0, 1e3, fem.NeoHookean(1e4, 0.45)),
+    )
+    problem = fem.Problem(
+        layers,
+        fem.Tool(6e-3, "uniform_pressure"),
+        fem.Support("bonded"),
+        discretisation=fem.Discretisation("coarse"),
+        geometry="surface",
+        surface=ball,
+    )
+    mesh, steps = tmp_path / "mesh.npz", tmp_path / "steps.npz"
+    load = fem.Load("force", [1.0, 2.0, 3.0], [0.02, 0.04, 0.05])
+    stopped = fem.prepare(problem, mesh_file=mesh)
+
+    def stop(report):
+        if report.step == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stopped.run(load, stop, steps)
+    resumed = fem.prepare(problem, mesh_file=mesh).run(load, checkpoint=steps)
+    assert resumed.resumed.steps == 2
+    np.testing.assert_allclose(resumed.displacement, stopped.run(load).displacement, rtol=1e-10, atol=1e-14)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
 from fem.arrays import BoolArray, FloatArray, IntArray
 from fem.errors import FemError
 from fem.mesh.surface.checking import check_surface
-from fem.mesh.surface.filling import Refinement, fill
+from fem.mesh.surface.filling import Refinement
+from fem.mesh.surface.kept_filling import kept_filling
 from fem.mesh.surface.mesh import SurfaceMesh, barycentric
 from fem.mesh.surface.model import Surface
 from fem.mesh.surface.quality import POOR, MeshQuality, measure_quality
@@ -23,7 +26,11 @@ PARTS = 16  # of each side of a face, where the tool's circle is integrated
 
 
 def build_surface_mesh(
-    surface: Surface, thickness: tuple[float, ...], tool: tuple[float, float, float], density: float
+    surface: Surface,
+    thickness: tuple[float, ...],
+    tool: tuple[float, float, float],
+    density: float,
+    keep: Path | None = None,
 ) -> SurfaceMesh:
     """Mesh of a specimen.
 
@@ -37,6 +44,8 @@ def build_surface_mesh(
         x, y and radius in m of the tool.
     density
         1 for the default mesh; larger is finer.
+    keep
+        File in which the mesher's tetrahedra are kept, and taken from if it holds those of the same specimen.
 
     Raises
     ------
@@ -50,7 +59,9 @@ def build_surface_mesh(
     fine = radius / (2.0 * density)
     coarse = max(fine, float(surface.size.max()) / (10.0 * density))
     depths = np.cumsum(thickness[:-1])
-    points, tetrahedra, layer = fill(surface, depths, Refinement(place, radius, fine, coarse, 0.5 / density))
+    points, tetrahedra, layer = kept_filling(
+        surface, depths, Refinement(place, radius, fine, coarse, 0.5 / density), keep
+    )
     points = _with_vertex(points, tetrahedra, place)
     quality = measure_quality(points, tetrahedra, layer, surface.volume)
     _require_quality(surface, quality)

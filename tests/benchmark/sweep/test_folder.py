@@ -34,6 +34,17 @@ def test_the_same_sweep_goes_on(plan_of, tmp_path: Path) -> None:
         assert folder.finished == {2: ROW}
 
 
+def test_unfinished_points_stay_until_all_are_there(plan_of, tmp_path: Path) -> None:
+    with open_folder(tmp_path, plan_of(VARY)) as folder:
+        (folder.unfinished / "point_000003").mkdir(parents=True)
+        folder.add(ROW)
+    assert (tmp_path / "unfinished" / "point_000003").is_dir()
+    with open_folder(tmp_path, plan_of(VARY)) as folder:
+        folder.add(failed(1, "no luck"))
+        folder.add(failed(3, "no luck"))
+    assert not (tmp_path / "unfinished").exists()
+
+
 def test_an_interrupted_sweep_keeps_its_points(plan_of, tmp_path: Path) -> None:
     def interrupted() -> None:
         with open_folder(tmp_path, plan_of(VARY)) as folder:

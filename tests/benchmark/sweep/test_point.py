@@ -1,13 +1,14 @@
 """One point: the results of both models under the names of the table, and every way to fail as a reason."""
 
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
-from benchmark.models import UncoveredError, prepare, scenario_drive
+from benchmark.models import Keeping, StepProgress, UncoveredError, kept_steps, prepare, scenario_drive
 from benchmark.sweep import point as point_module
 from benchmark.sweep.point import FAILED, OK, Task, evaluate, failed
 
@@ -53,7 +54,7 @@ def test_a_model_that_does_not_cover_the_point_leaves_its_columns_out() -> None:
 
 
 def test_a_point_that_no_model_covers_is_failed(scenario: Scenario, monkeypatch) -> None:
-    def declines(model: str, scenario: Scenario) -> None:
+    def declines(model: str, scenario: Scenario, **_: object) -> None:
         raise UncoveredError("it is beyond me")
 
     monkeypatch.setattr(point_module, "prepare", declines)
@@ -74,7 +75,7 @@ def test_a_solver_that_stops_early_fails_the_point_and_keeps_the_other_model() -
 
 @pytest.mark.parametrize("error", [InputError("window is too small"), ZeroDivisionError("no\nluck")])
 def test_an_exception_is_a_reason_on_one_line(scenario: Scenario, monkeypatch, error: Exception) -> None:
-    def broken(model: str, scenario: Scenario) -> None:
+    def broken(model: str, scenario: Scenario, **_: object) -> None:
         raise error
 
     monkeypatch.setattr(point_module, "prepare", broken)
@@ -96,3 +97,24 @@ def test_a_task_travels(scenario: Scenario) -> None:
 
 def test_failed_is_one_line() -> None:
     assert failed(2, "a\n  b").reason == "a b"
+
+
+def test_a_long_point_goes_on_from_its_steps(scenario: Scenario, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(kept_steps, "LEAST_PAUSE", 0.0)
+    monkeypatch.setattr(kept_steps, "SHARE", 1e9)
+    keep = tmp_path / "point"
+
+    def stop(progress: StepProgress) -> None:
+        if progress.step == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        prepare("fem", scenario, keeping=Keeping(keep, print)).run(scenario_drive(scenario), stop)
+    assert keep.is_dir()
+    row, whole = evaluate(Task(1, scenario, keep)), evaluate(Task(1, scenario))
+    assert row.status == OK
+    assert "FEM resumed after step 3 of 4" in (row.warnings or "")
+    assert row.values["fem_depth_mm"] == pytest.approx(whole.values["fem_depth_mm"], rel=1e-10)
+    assert "fem_seconds_s" not in row.values
+    assert "fem_seconds_s" in whole.values
+    assert not keep.exists()

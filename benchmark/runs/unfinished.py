@@ -1,0 +1,52 @@
+"""Unfinished work beside the folder of its result, from which the same run goes on after it was interrupted."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from benchmark.errors import InputError, SolverError
+
+SUFFIX = ".unfinished"
+OURS = (".kept", ".part")
+
+
+@contextmanager
+def unfinished(folder: Path) -> Iterator[Path]:
+    """Lend the folder `FOLDER.unfinished` to a run, and remove it when the run's result is written.
+
+    It is made only when a run is long enough to keep something. An interruption or a crash leaves it.
+
+    Raises
+    ------
+    InputError
+        There is something else of that name.
+    """
+    path = folder.with_name(folder.name + SUFFIX)
+    _refuse_other(path)
+    try:
+        yield path
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(_left(path, folder)) from None
+    except SolverError as error:
+        raise SolverError(f"{error}{'; ' if path.is_dir() else ''}{_left(path, folder)}") from error
+    if path.is_dir():
+        shutil.rmtree(path)
+
+
+def _refuse_other(path: Path) -> None:
+    """Refuse a name that is taken by something of somebody else's, which would be removed at the end."""
+    others = path.is_dir() and any(each.is_file() and each.suffix not in OURS for each in path.rglob("*"))
+    if others or (path.exists() and not path.is_dir()):
+        raise InputError(
+            f"{path} is where an unfinished run is kept, but holds something else; move it, or give another --out"
+        )
+
+
+def _left(path: Path, folder: Path) -> str:
+    """What a person may do after an interruption."""
+    if not path.is_dir():
+        return ""
+    return f"what was computed is in {path}; the same command with --out {folder} goes on from there"

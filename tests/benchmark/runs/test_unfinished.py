@@ -1,0 +1,46 @@
+"""The folder beside a result in which a run keeps what it has so far."""
+
+from pathlib import Path
+
+import pytest
+
+from benchmark.errors import InputError, SolverError
+from benchmark.runs.unfinished import unfinished
+
+
+def begin(keep: Path) -> None:
+    keep.mkdir()
+    (keep / "fem_steps.kept").write_bytes(b"steps")
+
+
+def test_it_goes_when_the_run_is_finished(tmp_path: Path) -> None:
+    with unfinished(tmp_path / "press") as keep:
+        assert not keep.exists()
+        begin(keep)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("kind", [KeyboardInterrupt, SolverError])
+def test_it_stays_after_an_interruption_which_says_how_to_go_on(tmp_path: Path, kind: type[BaseException]) -> None:
+    def broken() -> None:
+        with unfinished(tmp_path / "press") as keep:
+            begin(keep)
+            raise kind("it broke")
+
+    with pytest.raises(kind, match=r"the same command with --out .*press goes on from there"):
+        broken()
+    assert [each.name for each in tmp_path.iterdir()] == ["press.unfinished"]
+
+
+def test_an_early_interruption_promises_nothing(tmp_path: Path) -> None:
+    with pytest.raises(SolverError, match=r"^it broke$"), unfinished(tmp_path / "press"):
+        raise SolverError("it broke")
+
+
+def test_something_else_of_that_name_is_refused_and_kept(tmp_path: Path) -> None:
+    taken = tmp_path / "press.unfinished"
+    taken.mkdir()
+    (taken / "thesis.tex").write_text("years of work")
+    with pytest.raises(InputError, match="holds something else"), unfinished(tmp_path / "press"):
+        pass
+    assert (taken / "thesis.tex").read_text() == "years of work"
