@@ -43,3 +43,9 @@ class DeviceError(TissuebenchError):
     """A device of the bench failed or is not what the rig file says."""
 
     exit_code: ClassVar[int] = 5
+
+
+class InterruptedRunError(TissuebenchError):
+    """The user ended a run that goes on from where it was when it is started again."""
+
+    exit_code: ClassVar[int] = 130

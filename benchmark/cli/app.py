@@ -39,10 +39,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     try:
         code = app(args=arguments, prog_name="python -m benchmark", standalone_mode=False)
-    except KeyboardInterrupt as stop:
-        return _interrupted(stop)
+    except KeyboardInterrupt:
+        code = EXIT_INTERRUPTED
     except Exception as error:
         return _report(error, debug="--debug" in arguments)
+    if code == EXIT_INTERRUPTED:  # by the command-line library or from before it
+        return _fail("interrupted; results that were not finished were not written", EXIT_INTERRUPTED)
     return code if isinstance(code, int) else 0
 
 
@@ -53,7 +55,7 @@ def _report(error: Exception, *, debug: bool) -> int:
     if hasattr(error, "format_message"):  # a usage error of the command-line library
         return _fail(f"{error.format_message()} See python -m benchmark --help.", EXIT_USAGE)
     if isinstance(error, typer.Abort):
-        return _interrupted(error.__cause__)
+        return _fail("interrupted", EXIT_INTERRUPTED)
     from benchmark.errors import TissuebenchError
 
     if isinstance(error, TissuebenchError):
@@ -62,12 +64,6 @@ def _report(error: Exception, *, debug: bool) -> int:
         return _fail(str(error), EXIT_USAGE)
     text = f"a fault of the program, {type(error).__name__}: {error}; --debug shows where"
     return _fail(text, EXIT_BUG)
-
-
-def _interrupted(stop: BaseException | None) -> int:
-    """Say what an interruption left, where it brings that along, and return its exit code."""
-    left = str(stop) if isinstance(stop, KeyboardInterrupt) else ""
-    return _fail(f"interrupted; {left or 'results that were not finished were not written'}", EXIT_INTERRUPTED)
 
 
 def _fail(text: str, code: int) -> int:

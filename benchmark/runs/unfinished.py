@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from benchmark.errors import InputError, SolverError
+from benchmark.errors import InputError, InterruptedRunError, SolverError
 
 SUFFIX = ".unfinished"
 OURS = (".kept", ".part")
@@ -23,15 +23,21 @@ def unfinished(folder: Path) -> Iterator[Path]:
     ------
     InputError
         There is something else of that name.
+    InterruptedRunError, SolverError
+        An interruption or a crash that left something, with what to do.
     """
     path = folder.with_name(folder.name + SUFFIX)
     _refuse_other(path)
     try:
         yield path
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(_left(path, folder)) from None
+        if path.is_dir():
+            raise InterruptedRunError(f"interrupted; {_left(path, folder)}") from None
+        raise
     except SolverError as error:
-        raise SolverError(f"{error}{'; ' if path.is_dir() else ''}{_left(path, folder)}") from error
+        if path.is_dir():
+            raise SolverError(f"{error}; {_left(path, folder)}") from error
+        raise
     if path.is_dir():
         shutil.rmtree(path)
 
@@ -47,6 +53,4 @@ def _refuse_other(path: Path) -> None:
 
 def _left(path: Path, folder: Path) -> str:
     """What a person may do after an interruption."""
-    if not path.is_dir():
-        return ""
     return f"what was computed is in {path}; the same command with --out {folder} goes on from there"

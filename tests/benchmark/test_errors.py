@@ -4,6 +4,7 @@ from benchmark.errors import (
     DeviceError,
     GateError,
     InputError,
+    InterruptedRunError,
     NotComparableError,
     SolverError,
     TissuebenchError,
@@ -12,7 +13,14 @@ from benchmark.errors import (
 
 @pytest.mark.parametrize(
     ("error", "code"),
-    [(GateError, 1), (InputError, 2), (NotComparableError, 3), (SolverError, 4), (DeviceError, 5)],
+    [
+        (GateError, 1),
+        (InputError, 2),
+        (NotComparableError, 3),
+        (SolverError, 4),
+        (DeviceError, 5),
+        (InterruptedRunError, 130),
+    ],
 )
 def test_each_error_knows_its_exit_code(error, code):
     assert error.exit_code == code

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmark.errors import InputError, SolverError
+from benchmark.errors import InputError, InterruptedRunError, SolverError
 from benchmark.runs.unfinished import unfinished
 
 
@@ -20,14 +20,16 @@ def test_it_goes_when_the_run_is_finished(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("kind", [KeyboardInterrupt, SolverError])
-def test_it_stays_after_an_interruption_which_says_how_to_go_on(tmp_path: Path, kind: type[BaseException]) -> None:
+@pytest.mark.parametrize(("kind", "told"), [(KeyboardInterrupt, InterruptedRunError), (SolverError, SolverError)])
+def test_it_stays_after_an_interruption_which_says_how_to_go_on(
+    tmp_path: Path, kind: type[BaseException], told: type[Exception]
+) -> None:
     def broken() -> None:
         with unfinished(tmp_path / "press") as keep:
             begin(keep)
             raise kind("it broke")
 
-    with pytest.raises(kind, match=r"the same command with --out .*press goes on from there"):
+    with pytest.raises(told, match=r"the same command with --out .*press goes on from there"):
         broken()
     assert [each.name for each in tmp_path.iterdir()] == ["press.unfinished"]
 
