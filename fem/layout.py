@@ -34,17 +34,19 @@ def lay_out(problem: Problem) -> Mesh:
         extent=SUPPORT_MODELS[problem.support.kind].extent(problem),
         resolution=CONTACT_MODELS[problem.tool.contact].resolution(problem),
         density=DENSITY[problem.discretisation.density],
+        edge=problem.discretisation.edge,
     ).mesh()
 
 
 @dataclass(frozen=True)
 class _Layout:
-    """Tool radius (m), extent, resolution at the tool and density of one mesh."""
+    """Tool radius (m), extent, resolution at the tool, density and size of the fan of one mesh."""
 
     radius: float
     extent: Extent
     resolution: Resolution
     density: float
+    edge: float
 
     def mesh(self) -> Mesh:
         half_width = self._fan_half_width()
@@ -64,14 +66,14 @@ class _Layout:
     def _fan_half_width(self) -> float | None:
         """Half width of the fan in m, or None where the edge needs none or there is no room."""
         first = self.extent.thickness[0]
-        wanted = FAN_HALF_WIDTH * self.extent.edge_factor * self.radius
+        wanted = FAN_HALF_WIDTH * self.extent.edge_factor * self.edge * self.radius
         half_width = first if first < 2.0 * wanted else wanted
         in_the_way = any(abs(f.position - self.radius) <= 2.0 * half_width for f in self.extent.radial)
         room = self.extent.radius > self.radius + half_width and first >= FAN_LEAST_LAYER * self.radius
         return half_width if self.resolution.fan and room and not in_the_way else None
 
     def _fanned(self, half_width: float) -> Mesh:
-        element = FAN_ELEMENT * self.extent.edge_factor * self.radius
+        element = FAN_ELEMENT * self.extent.edge_factor * self.edge * self.radius
         pieces = max(1, round(half_width / element))
         count = max(1, round(pieces * self.density))
         fan = Fan(self.radius, half_width, _rings(self.density))

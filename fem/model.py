@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 PULLING = "the load history pulls (negative values): the contact is tied to the surface and cannot lift off"
 
 COARSER = "a coarser mesh, whose elements at the tool's edge fold later, may follow a deeper press"
+ROUNDER = "a larger edge_radius of the tool may follow a deeper press"
 
 LIFTING = (
     "the load history pulls (negative values): the tool comes off once it pulls more than its adhesion force; a depth "
@@ -114,9 +115,12 @@ class Model:
     def _advised(self, solution: Solution) -> Solution:
         """The solution; a press that the mesh could not follow with what may go further."""
         failure = solution.failure
-        if failure is None or self.problem.discretisation.density == "coarse" or failure.target <= failure.reached:
+        touches = isinstance(self.equilibrium.system, ContactSystem)
+        coarse = self.problem.discretisation.density == "coarse" and not touches
+        if failure is None or coarse or failure.target <= failure.reached:
             return solution
-        return replace(solution, failure=replace(failure, reason=f"{failure.reason}; {COARSER}"))
+        advice = ROUNDER if touches else COARSER
+        return replace(solution, failure=replace(failure, reason=f"{failure.reason}; {advice}"))
 
     @property
     def _pulling(self) -> str:

@@ -13,7 +13,7 @@ from fem.load import Load
 from fem.record import Record, largest_strain, reaction
 from fem.small_strain import unit_state
 from fem.solution import Failure, Resumed, Solution, StepReport
-from fem.solving import Equilibrium, NewtonSettings, State, Stepper, settle
+from fem.solving import Advance, Equilibrium, NewtonSettings, State, Stepper, settle
 
 LEAST_SHARE_OF_PEAK = 1e-3
 SLID = (
@@ -69,7 +69,8 @@ def run_nonlinear(
     for n, (time, value) in list(enumerate(zip(load.time.tolist(), load.value.tolist(), strict=True)))[first:]:
         advance = stepper.advance(value, time)
         if advance.reason:
-            return record.solution(Failure(n + 1, time, load.control, advance.value, value, advance.reason), warnings)
+            failure = Failure(n + 1, time, load.control, advance.value, value, advance.reason)
+            return record.solution(failure, warnings, _between(record, stepper.problem.system, advance, start))
         system = stepper.problem.system
         _keep(record, system, time, advance.state)
         if system.sliding is not None and system.sliding.everywhere(advance.state.y) and SLID not in warnings:
@@ -105,6 +106,16 @@ def _keep(record: Record, system: System, time: float, state: State) -> None:
     if evaluation is None:
         raise ArithmeticError("an accepted state cannot be evaluated")
     record.add(time, state, reaction(system, evaluation.element_force), largest_strain(system, state.y, finite=True))
+
+
+def _between(record: Record, system: System, advance: Advance, start: State) -> Record | None:
+    """The record with the last state of equilibrium as one more row; None if it is a step's or the start's."""
+    known = record.states[-1] if record.states else start
+    if advance.state is known:
+        return None
+    further = record.copy()
+    _keep(further, system, advance.time, advance.state)
+    return further
 
 
 def _resume(record: Record, stepper: Stepper, checkpoint: Keeper) -> int:

@@ -25,6 +25,7 @@ TOUCHING = ("rigid_frictionless", "rigid_frictional")
 LARGEST_FRICTION, LARGEST_ADHESION = 10.0, 1e3  # adhesion in N
 LARGEST_PRETENSION = 1e8  # Pa
 LARGEST_SHEAR_LIMIT = 1e12  # Pa
+LARGEST_EDGE = 8.0
 LARGEST_TILT = math.radians(30.0)
 
 
@@ -175,11 +176,15 @@ class Discretisation:
     stabilisation
         Finite strain: part of the bulk modulus, in shear moduli, that acts at each Gauss point instead of
         on the pressure field (see :class:`fem.assembly.System`); 0 gives the plain Q2/P1 element.
+    edge
+        How much larger than usual, 1 to 8, the elements are round the edge of a tool stuck to the surface, in finite
+        strain and axial symmetry: a little stiffer, but they fold later.
     """
 
     density: Literal["coarse", "default", "fine"] = "default"
     radius: float | None = None
     stabilisation: float = 1.0
+    edge: float = 1.0
 
     def __post_init__(self) -> None:
         require_one_of("discretisation.density", self.density, ("coarse", "default", "fine"))
@@ -187,6 +192,8 @@ class Discretisation:
             require_positive("discretisation.radius", self.radius, "m")
         if not 0.0 <= self.stabilisation <= 10.0:
             raise FemError(f"discretisation.stabilisation = {self.stabilisation:g}: must be from 0 to 10 shear moduli")
+        if not 1.0 <= self.edge <= LARGEST_EDGE:
+            raise FemError(f"discretisation.edge = {self.edge:g}: must be from 1 to {LARGEST_EDGE:g}")
 
 
 @dataclass(frozen=True)

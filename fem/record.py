@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -59,8 +59,13 @@ class Record:
         self.reactions.append(reaction)
         self.strains.append(largest_strain)
 
-    def solution(self, failure: Failure | None, warnings: tuple[str, ...]) -> Solution:
-        """Arrays of all steps kept."""
+    def copy(self) -> Record:
+        """The same steps, to which others can be added."""
+        lists = {name: [*getattr(self, name)] for name in ("time", "states", "reactions", "strains")}
+        return replace(self, **lists)
+
+    def solution(self, failure: Failure | None, warnings: tuple[str, ...], further: Record | None = None) -> Solution:
+        """Arrays of all steps kept; `further` has the last state of equilibrium between two steps, too."""
         numbering = self.equilibrium.system.numbering
         y = np.array([state.y for state in self.states]).reshape(len(self.states), numbering.count)
         nodal = numbering.expand(y).swapaxes(1, 2)
@@ -82,6 +87,7 @@ class Record:
             mesh=self.mesh,
             recovery=self.recovery,
             resumed=self.resumed,
+            last=None if further is None else further.solution(failure, warnings),
         )
 
     def _top_deflection(self, nodal: FloatArray) -> FloatArray:

@@ -135,6 +135,8 @@ class Solution:
         Evaluates stress and strain; used by :meth:`fields`.
     resumed
         What was taken over from a checkpoint; None in a run from rest.
+    last
+        Of a run that stopped between two steps: the same steps with, as one more row, the last state of equilibrium.
     """
 
     time: FloatArray
@@ -152,6 +154,7 @@ class Solution:
     mesh: AnyMesh
     recovery: FieldRecovery | SolidFieldRecovery
     resumed: Resumed | None = None
+    last: Solution | None = None
 
     def profile(self, step: int, radii: FloatArray) -> FloatArray:
         """Deflection of each layer's top face at reference radii (from the tool's axis along +x).

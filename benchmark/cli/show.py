@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from benchmark.cli.console import Console
@@ -31,13 +32,21 @@ def show_runs(outcomes: Sequence[RunOutcome], console: Console, *, as_json: bool
     stopped = [outcome for outcome in outcomes if not outcome.complete]
     if stopped:
         failures = [
-            f"{name} {model['failure']}"
+            f"{model['name']} {model['failure']}{_last(outcome.folder, model)}"
             for outcome in stopped
-            for name, model in outcome.document["models"].items()
+            for model in outcome.document["models"].values()
             if model["failure"]
         ]
         raise SolverError(f"{'; '.join(failures)}. Results up to there are in {stopped[0].folder}, marked incomplete")
     return 0
+
+
+def _last(folder: Path, model: dict[str, Any]) -> str:
+    """How deep the last state of equilibrium is, and where to look at it."""
+    last = model["last_state"]
+    if last is None:
+        return ""
+    return f"; that state is {last['depth_mm']:.4g} mm deep, see {folder / last['fields']}"
 
 
 def print_json(value: Any) -> None:

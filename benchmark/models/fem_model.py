@@ -15,6 +15,7 @@ from benchmark.models.radii import profile_radii
 from benchmark.models.result import (
     Drive,
     FieldSnapshot,
+    LastState,
     ModelResult,
     OnStep,
     Reading,
@@ -24,6 +25,8 @@ from benchmark.models.result import (
     UncoveredError,
     silent,
 )
+from benchmark.models.wider_edge import follow_deeper
+from fem.model import Model
 
 OPTIONS = ("pretension", "adhesion_force", "clamp_shear_limit")
 
@@ -73,11 +76,14 @@ class FemModel:
         def report(step: fem.StepReport) -> None:
             on_step(StepProgress(step.step, step.total, step.force, step.depth))
 
-        kept = None if self._keeping is None else kept_steps(self._keeping, self._model, load)
-        solution = self._model.run(load, on_step=report, checkpoint=kept)
-        return lambda: self._result(solution, load, drive)
+        def run(model: Model, edge: float) -> fem.Solution:
+            kept = None if self._keeping is None else kept_steps(self._keeping, model, load, edge)
+            return model.run(load, on_step=report, checkpoint=kept)
 
-    def _result(self, solution: fem.Solution, load: fem.Load, drive: Drive) -> ModelResult:
+        model, solution = follow_deeper(self._model, run)
+        return lambda: self._result(model, solution, load, drive)
+
+    def _result(self, model: Model, solution: fem.Solution, load: fem.Load, drive: Drive) -> ModelResult:
         """The solution in the harness's terms, with its profile and fields."""
         steps = solution.force.size
         peak = int(np.abs(drive.value[:steps]).argmax()) if steps else 0
@@ -93,22 +99,23 @@ class FemModel:
             profile_radii=radii,
             profile=solution.profile(peak, radii) if steps else np.full((len(layers), radii.size), np.nan),
             peak_step=peak,
-            unknowns=self._model.unknowns,
-            notes=self._notes(),
+            unknowns=model.unknowns,
+            notes=self._notes(model),
             warnings=solution.warnings,
             resumed=_resumption(solution, load),
             failure=_failure(solution, load),
+            last=_last(solution),
             fields=tuple(_snapshot(solution, step) for step in self._field_steps(peak, steps)),
         )
 
-    def _notes(self) -> dict[str, str]:
+    def _notes(self, model: Model) -> dict[str, str]:
         """Choices of the solver, in words."""
-        options = self._scenario.fem
+        options, edge = self._scenario.fem, model.problem.discretisation.edge
         return {
             "kinematics": "finite strain" if options.kinematics == "finite" else "small strain",
             "geometry": options.geometry,
-            "mesh": options.mesh,
-            "linear solver": str(self._model.linear_solver),
+            "mesh": options.mesh + ("" if edge == 1.0 else f", elements at the tool's edge {edge:g} times larger"),
+            "linear solver": str(model.linear_solver),
         }
 
     def _field_steps(self, peak: int, steps: int) -> list[int]:
@@ -190,6 +197,21 @@ def _failure(solution: fem.Solution, load: fem.Load) -> RunFailure | None:
     if stop is None:
         return None
     return RunFailure(stop.step, stop.time, stop.reached, stop.target, load.unit, stop.reason)
+
+
+def _last(solution: fem.Solution) -> LastState | None:
+    """The last state of equilibrium of a run that stopped early, at a step or between two; None if that is rest."""
+    found = solution if solution.last is None else solution.last
+    if solution.failure is None or not found.time.size:
+        return None
+    row = found.time.size - 1
+    return LastState(
+        time=float(found.time[row]),
+        force=float(found.force[row]),
+        depth=float(found.depth[row]),
+        top_deflection=found.top_deflection[row],
+        field=_snapshot(found, row),
+    )
 
 
 def _snapshot(solution: fem.Solution, step: int) -> FieldSnapshot:

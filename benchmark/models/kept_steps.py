@@ -12,16 +12,17 @@ from benchmark.models.keeping import Keeping
 from fem.checkpoint import Checkpoint, Progress
 from fem.model import Model
 
-STEPS, MESH = "fem_steps.kept", "fem_mesh.kept"
+STEPS, STEPS_AT_EDGE, MESH = "fem_steps.kept", "fem_steps_edge_{:g}.kept", "fem_mesh.kept"
 LEAST_PAUSE = 2.0
 """Wall s between two writings, and before the first: a run that is shorter keeps nothing."""
 SHARE = 0.02
 """Of the time, the most that writing takes."""
 
 
-def kept_steps(keeping: Keeping, model: Model, load: fem.Load) -> KeptSteps:
-    """The steps of a load history."""
-    return KeptSteps(model.checkpoint(load, keeping.folder / STEPS), len(load.time), keeping.say)
+def kept_steps(keeping: Keeping, model: Model, load: fem.Load, edge: float) -> KeptSteps:
+    """The steps of a load history, in a file of its own for each size of the elements at the tool's edge."""
+    path = keeping.folder / (STEPS if edge == 1.0 else STEPS_AT_EDGE.format(edge))
+    return KeptSteps(model.checkpoint(load, path), len(load.time), keeping.say)
 
 
 def kept_mesh(keeping: Keeping) -> Path:

@@ -79,6 +79,23 @@ class FieldSnapshot:
 
 
 @dataclass(frozen=True)
+class LastState:
+    """The last state of equilibrium of a run that stopped early, at a step or between two.
+
+    `time` in s, `force` in N, `depth` in m, `top_deflection` (L,) in m; `field` is None in a run that was read back.
+    """
+
+    time: float
+    force: float
+    depth: float
+    top_deflection: Array
+    field: FieldSnapshot | None = None
+
+    def __str__(self) -> str:
+        return f"the last state of equilibrium, at {self.force:.4g} N, is {1e3 * self.depth:.4g} mm deep"
+
+
+@dataclass(frozen=True)
 class ModelResult:
     """A model's answer to a scenario.
 
@@ -108,6 +125,8 @@ class ModelResult:
         Snapshots of the continuum (FEM only).
     resumed
         What was taken over from an interrupted run; None where all was computed at once.
+    last
+        Of a run that stopped early its last state of equilibrium, if it has one (FEM only).
     """
 
     model: str
@@ -125,6 +144,7 @@ class ModelResult:
     failure: RunFailure | None = None
     fields: tuple[FieldSnapshot, ...] = ()
     resumed: Resumption | None = None
+    last: LastState | None = None
 
     @property
     def complete(self) -> bool:

@@ -6,6 +6,8 @@ from dataclasses import asdict
 from typing import Any
 
 from benchmark.comparison import comparison_summary
+from benchmark.models import LastState
+from benchmark.runs.fields import LAST
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.film_section import measured_headline
 from benchmark.side_by_side import ModelRun
@@ -68,4 +70,16 @@ def _model(run: ModelRun, record: RunRecord) -> dict[str, Any]:
         "notes": {} if result is None else dict(result.notes),
         "resumed": None if result is None or result.resumed is None else asdict(result.resumed),
         "failure": None if result is None or result.failure is None else str(result.failure),
+        "last_state": None if result is None or result.last is None else _last_state(result.last, record.layers),
+    }
+
+
+def _last_state(last: LastState, layers: tuple[str, ...]) -> dict[str, Any]:
+    """The last state of equilibrium of a run that stopped early."""
+    return {
+        "time_s": last.time,
+        "force_N": last.force,
+        "depth_mm": 1e3 * last.depth,
+        "deflection_mm": dict(zip(layers, (1e3 * last.top_deflection).tolist(), strict=True)),
+        "fields": f"fields/{LAST}",
     }

@@ -5,8 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from benchmark.models import FieldSnapshot
+from benchmark.models import FieldSnapshot, LastState
 from benchmark.picture import save_grid
+
+LAST = "last.vtu"
+"""The last state of equilibrium of a run that stopped early."""
+
+
+def write_last(folder: Path, last: LastState | None) -> None:
+    """Write the last state of equilibrium into `folder`, where there is one."""
+    if last is not None and last.field is not None:
+        folder.mkdir(parents=True, exist_ok=True)
+        save_grid(last.field, folder / LAST)
 
 
 def write_fields(folder: Path, snapshots: Sequence[FieldSnapshot]) -> list[Path]:

@@ -9,7 +9,7 @@ from typing import Any
 from benchmark.model_file import model_toml
 from benchmark.runs.document import results_document
 from benchmark.runs.environment import describe_environment
-from benchmark.runs.fields import write_fields
+from benchmark.runs.fields import write_fields, write_last
 from benchmark.runs.pressed import draw, pressed_picture, write_drawn
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report import TrialsPart, run_page
@@ -74,6 +74,7 @@ def write_run(record: RunRecord, folder: Path) -> RunOutcome:
             write_text(new / "model.toml", model_toml(record.repair))
         fem = record.pair.fem.result
         write_fields(new / "fields", fem.fields if fem is not None else ())
+        write_last(new / "fields", None if fem is None else fem.last)
         write_drawn(new, drawn)
         write_page(new / "report.html", page)
     return RunOutcome(folder, document, page.verdict.headline, record.complete, record.warnings)

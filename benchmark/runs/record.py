@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,6 +12,7 @@ from benchmark.comparison import LayerComparison, compare_layer
 from benchmark.files import Scenario, scenario_notes
 from benchmark.model_file import RepairedModel
 from benchmark.models import Array, ModelResult
+from benchmark.runs.fields import LAST
 from benchmark.runs.measured import MeasuredComparison
 from benchmark.runs.refinement import Level
 from benchmark.side_by_side import SideBySide
@@ -133,4 +135,22 @@ def gather_warnings(scenario: Scenario, pair: SideBySide, more: Sequence[str]) -
                 )
             if run.result.failure is not None:
                 found.append(f"{run.name} stopped early at {run.result.failure}; results up to there are kept")
+                found.extend(_beyond(scenario, run.name, run.result))
     return tuple(dict.fromkeys(found))
+
+
+def _beyond(scenario: Scenario, name: str, result: ModelResult) -> list[str]:
+    """How far a run came that stopped early, and how soft the tissue is for its load."""
+    said, layers = [], scenario.tissue.layers
+    thickness = sum(layer.thickness for layer in layers if math.isfinite(layer.thickness))
+    if result.last is not None:
+        share = 100.0 * result.last.depth / thickness
+        said.append(f"{name}: {result.last}, {share:.3g} % of the {1e3 * thickness:.4g} mm stack: fields/{LAST}")
+    if scenario.load.control == "force":
+        pressure = abs(scenario.load.peak or 0.0) / (math.pi * scenario.tool.radius**2)
+        softest = min(layers, key=lambda layer: layer.youngs_modulus)
+        said.append(
+            f"the peak load is a mean pressure of {1e-3 * pressure:.3g} kPa under the tool, "
+            f"{pressure / softest.youngs_modulus:.3g} times Young's modulus of the softest layer, {softest.name}"
+        )
+    return said

@@ -35,6 +35,8 @@ class Advance:
         How often a part was halved.
     reason
         Why the target was not reached, or "".
+    time
+        Time in s of the state.
     """
 
     state: State
@@ -42,6 +44,7 @@ class Advance:
     iterations: int
     cuts: int
     reason: str = ""
+    time: float = 0.0
 
 
 class Stepper:
@@ -119,15 +122,16 @@ class Stepper:
             if result.success:
                 self._accept(result.state, value, end, system)
                 if last:
-                    return Advance(self._state, value, iterations, cuts)
+                    return Advance(self._state, value, iterations, cuts, time=self._time)
                 share += part
                 part *= 2.0
             else:
                 part *= 0.5
                 cuts += 1
                 if part <= SMALLEST_PART:
-                    return Advance(self._state, self._value, iterations, cuts, result.reason)
-        return Advance(self._state, self._value, iterations, cuts, f"more than {MOST_PARTS} parts of one step")
+                    return Advance(self._state, self._value, iterations, cuts, result.reason, self._time)
+        reason = f"more than {MOST_PARTS} parts of one step"
+        return Advance(self._state, self._value, iterations, cuts, reason, self._time)
 
     def _solve(self, value: float, time: float) -> tuple[NewtonResult, System]:
         """Newton's result at a load value and a time, and the equations that fit it."""
