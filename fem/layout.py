@@ -25,6 +25,7 @@ VERTICAL_GROWTH = 0.5
 FAN_HALF_WIDTH = 0.1
 FAN_ELEMENT = 0.05
 FAN_LEAST_LAYER = 0.06
+LARGEST_FAN = 4.0  # times the usual one; a larger one would come near the axis
 
 
 def lay_out(problem: Problem) -> Mesh:
@@ -40,7 +41,7 @@ def lay_out(problem: Problem) -> Mesh:
 
 @dataclass(frozen=True)
 class _Layout:
-    """Tool radius (m), extent, resolution at the tool, density and size of the fan of one mesh."""
+    """Tool radius (m), extent, resolution at the tool, density, and factor on the elements at a stuck edge."""
 
     radius: float
     extent: Extent
@@ -56,8 +57,12 @@ class _Layout:
     def _depths(self) -> FloatArray:
         return np.concatenate(([0.0], np.cumsum(self.extent.thickness)))
 
+    @property
+    def _fan_factor(self) -> float:
+        return min(self.extent.edge_factor * self.edge, LARGEST_FAN)
+
     def _graded(self) -> Mesh:
-        edge = self.resolution.edge * self.radius
+        edge = self.resolution.edge * self.radius * (self.edge if self.resolution.fan else 1.0)
         breaks = {0.0, self.radius, self.extent.radius, *(f.position for f in self.extent.radial)}
         r_lines = graded_line(tuple(sorted(breaks)), self._radial(self.radius, edge), self.density)
         depth_lines = graded_line(tuple(self._depths), self._vertical(0.0, edge), self.density)
@@ -66,14 +71,14 @@ class _Layout:
     def _fan_half_width(self) -> float | None:
         """Half width of the fan in m, or None where the edge needs none or there is no room."""
         first = self.extent.thickness[0]
-        wanted = FAN_HALF_WIDTH * self.extent.edge_factor * self.edge * self.radius
+        wanted = FAN_HALF_WIDTH * self._fan_factor * self.radius
         half_width = first if first < 2.0 * wanted else wanted
         in_the_way = any(abs(f.position - self.radius) <= 2.0 * half_width for f in self.extent.radial)
         room = self.extent.radius > self.radius + half_width and first >= FAN_LEAST_LAYER * self.radius
         return half_width if self.resolution.fan and room and not in_the_way else None
 
     def _fanned(self, half_width: float) -> Mesh:
-        element = FAN_ELEMENT * self.extent.edge_factor * self.edge * self.radius
+        element = FAN_ELEMENT * self._fan_factor * self.radius
         pieces = max(1, round(half_width / element))
         count = max(1, round(pieces * self.density))
         fan = Fan(self.radius, half_width, _rings(self.density))

@@ -10,8 +10,8 @@ import numpy as np
 import fem
 from fem.model import Model
 
-WIDER = (2.0, 4.0)
-"""How much larger the elements at the edge are in the second and the third try."""
+WIDER = (2.0, 4.0, 8.0)
+"""How much larger the elements at the edge are in each further try."""
 
 Run = Callable[[Model, float], fem.Solution]
 """Follows the load history on a model with elements so much larger at the edge."""
@@ -32,13 +32,15 @@ def follow_deeper(model: Model, run: Run) -> tuple[Model, fem.Solution]:
     tuple
         The model that came furthest, and its solution, which says how much its depth differs from the usual mesh's.
     """
-    best, found = model, run(model, 1.0)
-    usual = found
+    tried = best = model
+    usual = found = run(model, 1.0)
     for edge in WIDER if _may_fold(model.problem) else ():
         if found.failure is None or found.failure.target <= found.failure.reached:
             break
         wider = _with_edge(model.problem, edge)
-        other = run(wider, edge)
+        if wider.unknowns == tried.unknowns:
+            break  # there is no room for larger ones
+        tried, other = wider, run(wider, edge)
         if _reach(other) > _reach(found):
             best, found = wider, replace(other, warnings=(*other.warnings, _remark(edge, usual, other)))
     return best, found

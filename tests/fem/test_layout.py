@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -61,3 +63,30 @@ def test_meshes_of_all_sizes_are_alike(scale):
         )
     )
     np.testing.assert_allclose(mesh.nodes, scale * unit.nodes, rtol=1e-9, atol=1e-12 * scale)
+
+
+def test_elements_at_a_stuck_edge_are_larger_on_request(slab, skin):
+    def size(problem, edge):
+        wider = replace(problem, discretisation=replace(problem.discretisation, edge=edge))
+        mesh = lay_out(wider)
+        at_edge = (mesh.nodes == [5e-3, 0.0]).all(axis=1)
+        corners = mesh.nodes[mesh.elements[:4, at_edge[mesh.elements[:4]].any(axis=0)], 0]
+        return np.ptp(corners)
+
+    for problem in (slab("rigid_bonded"), skin("rigid_bonded")):
+        sizes = [size(problem, edge) for edge in (1.0, 2.0, 4.0)]
+        assert sizes[1] > 1.4 * sizes[0]
+        assert sizes[2] > 1.4 * sizes[1]
+    assert size(slab("uniform_pressure"), 4.0) == size(slab("uniform_pressure"), 1.0)
+
+
+@pytest.mark.parametrize("first", [4e-3, 7e-3, 20e-3])
+def test_the_largest_fan_stays_off_the_axis(first):
+    layer = fem.Layer("a", first, 1000.0, fem.NeoHookean(2e4, 0.48))
+    for support in (fem.Support("bonded"), fem.Support("hole", 0.03)):
+        problem = fem.Problem(
+            (layer,), fem.Tool(5e-3, "rigid_bonded"), support, discretisation=fem.Discretisation(edge=8)
+        )
+        mesh = lay_out(problem)
+        assert mesh.nodes[:, 0].min() == 0.0
+        assert fem.prepare(problem).run(fem.Load("force", [1.0], [0.01])).complete

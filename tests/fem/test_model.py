@@ -114,6 +114,13 @@ def test_a_tissue_too_soft_ends_in_a_report_with_the_steps_reached(ramp):
     assert solution.force[-1] <= solution.failure.reached < solution.failure.target
     assert solution.displacement.shape[0] == solution.top_deflection.shape[0] == reached
     assert str(solution.failure).endswith(solution.failure.reason)
+    last = solution.last
+    assert last.force.shape == (reached + 1,)
+    np.testing.assert_array_equal(last.depth[:-1], solution.depth)
+    assert last.force[-1] == pytest.approx(solution.failure.reached)
+    assert last.depth[-1] > solution.depth[-1]
+    assert solution.time[-1] < last.time[-1] < solution.failure.time
+    assert np.isfinite(last.fields(-1).cauchy_stress).all()
 
 
 def test_a_press_that_a_finer_mesh_cannot_follow_is_told_of_the_coarser_one():
@@ -127,6 +134,19 @@ def test_a_press_that_a_finer_mesh_cannot_follow_is_told_of_the_coarser_one():
         )
         failure = replace(fem.prepare(problem), newton=few).run(fem.Load("force", [1.0], [0.5])).failure
         assert ("a coarser mesh" in failure.reason) is told
+
+
+def test_a_tool_that_touches_is_told_of_a_rounder_edge():
+    problem = fem.Problem(
+        (fem.Layer("jelly", 1e-2, 1000.0, fem.NeoHookean(3e3, 0.49)),),
+        fem.Tool(5e-3, "rigid_frictionless", 0.5e-3),
+        fem.Support("bonded"),
+        discretisation=COARSE,
+    )
+    failure = (
+        replace(fem.prepare(problem), newton=NewtonSettings(iterations=2)).run(fem.Load("force", [1.0], [2.0])).failure
+    )
+    assert failure.reason.endswith("a larger edge_radius of the tool may follow a deeper press")
 
 
 def test_a_run_that_fails_at_once_is_empty_but_whole():

@@ -97,6 +97,11 @@ def test_a_solver_that_stops_early_exits_4_and_keeps_what_it_has(benchmark_cli, 
     assert "step" in called.err
     assert "N could not be reached" in called.err
     document = json.loads((out / "results.json").read_text())
+    last = document["models"]["fem"]["last_state"]
+    assert f"that state is {last['depth_mm']:.4g} mm deep, see" in " ".join(called.err.split())
+    assert (out / last["fields"]).is_file()
+    assert last["depth_mm"] == pytest.approx(last["deflection_mm"]["epidermis"])
+    assert "times Young's modulus of the softest layer" in called.err
     assert document["complete"] is False
     assert document["models"]["fem"]["failure"]
     assert "Incomplete" in (out / "report.html").read_text()

@@ -1,0 +1,91 @@
+"""A bonded press that folds the usual mesh is followed further with larger elements at the edge."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fem
+from benchmark.files import Scenario, load_scenario
+from benchmark.models import prepare, scenario_drive
+from benchmark.models.fem_model import problem_of
+from benchmark.models.wider_edge import WIDER, follow_deeper
+
+LAYER = fem.Layer("jelly", 12e-3, 1000.0, fem.NeoHookean(2e4, 0.45))
+TIME = np.array([1.0, 2.0, 3.0])
+
+
+def model(contact: str = "rigid_bonded", **others) -> fem.model.Model:
+    edge = None if contact in ("rigid_bonded", "uniform_pressure") else 1e-3
+    problem = fem.Problem((LAYER,), fem.Tool(5e-3, contact, edge), fem.Support("bonded"), **others)
+    return fem.prepare(problem)
+
+
+def reaching(made: fem.model.Model, steps: int, reached: float, depth: float = 1.0) -> fem.Solution:
+    """A run that stopped after so many of three steps of 1 N, or did not."""
+    whole = made.run(fem.Load("force", TIME, [0.1, 0.2, 0.3]))
+    stop = None if steps == 3 else fem.Failure(steps + 1, TIME[steps], "force", reached, steps + 1.0, "it folds")
+    kept = {name: getattr(whole, name)[:steps] for name in ("time", "force", "top_deflection")}
+    return replace(whole, **kept, depth=depth * np.arange(1.0, steps + 1), failure=stop, complete=stop is None)
+
+
+def follow(made: fem.model.Model, answers: dict[float, tuple[int, float]]):
+    tried: list[float] = []
+
+    def run(each: fem.model.Model, edge: float) -> fem.Solution:
+        assert each.problem.discretisation.edge == edge
+        tried.append(edge)
+        return reaching(each, *answers[edge], depth=1.0 if edge == 1.0 else 0.99)
+
+    best, found = follow_deeper(made, run)
+    return best.problem.discretisation.edge, found, tried
+
+
+def test_a_press_that_the_usual_mesh_follows_is_run_once() -> None:
+    edge, found, tried = follow(model(), {1.0: (3, 3.0)})
+    assert (edge, tried, found.warnings) == (1.0, [1.0], ())
+
+
+def test_the_first_larger_edge_that_goes_the_whole_way_is_taken_and_said() -> None:
+    edge, found, tried = follow(model(), {1.0: (2, 2.5), 2.0: (3, 3.0)})
+    assert (edge, tried) == (2.0, [1.0, 2.0])
+    assert found.complete
+    assert len(found.warnings) == 1
+    assert "could not follow the press beyond 2.5 N" in found.warnings[0]
+    assert "elements 2 times larger" in found.warnings[0]
+    assert "depth is -1.00 % apart at 2000 mm" in found.warnings[0]
+
+
+def test_of_runs_that_all_stop_the_furthest_is_taken() -> None:
+    edge, found, tried = follow(model(), {1.0: (1, 1.5), 2.0: (2, 2.7), 4.0: (2, 2.6)})
+    assert (edge, tried) == (2.0, [1.0, 2.0, 4.0]), "eight times has no room, and is no try"
+    assert found.failure is not None
+    assert follow(model(), {1.0: (1, 1.5), 2.0: (1, 1.5), 4.0: (1, 1.2)})[0] == 1.0
+
+
+@pytest.mark.parametrize(
+    "other", [{"contact": "uniform_pressure"}, {"contact": "rigid_frictionless"}, {"kinematics": "linear"}]
+)
+def test_other_presses_have_no_such_edge(other) -> None:
+    assert follow(model(**other), {1.0: (1, 1.5)})[2] == [1.0]
+    assert max(WIDER) <= fem.problem.LARGEST_EDGE
+
+
+def soft(**changed: str) -> Scenario:
+    one = {f"{layer}.youngs_modulus": "10 kPa" for layer in ("epidermis", "dermis", "subcutaneous_fat")}
+    ramp = {"load.control": "depth", "load.peak": "4 mm", "load.shape": "ramp", "load.observations": "12"}
+    return load_scenario("skin-5N", {**one, **ramp, "tool.contact": "rigid_bonded", **changed})
+
+
+def test_a_soft_tissue_is_pressed_twice_as_deep_as_the_usual_mesh_can() -> None:
+    scenario = soft()
+    drive = scenario_drive(scenario)
+    usual = fem.prepare(problem_of(scenario)).run(fem.Load("depth", drive.time, drive.value))
+    assert usual.failure is not None
+    assert usual.failure.reached < 2e-3
+    result = prepare("fem", scenario).run(drive)
+    assert result.complete
+    assert "times larger" in result.notes["mesh"]
+    both = len(usual.time)
+    assert both > 0
+    np.testing.assert_allclose(result.force[:both], usual.force, rtol=0.015)
