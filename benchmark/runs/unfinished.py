@@ -9,13 +9,12 @@ from pathlib import Path
 
 from benchmark.errors import InputError, InterruptedRunError, SolverError
 
-SUFFIX = ".unfinished"
 OURS = (".kept", ".part")
 
 
 @contextmanager
 def unfinished(folder: Path) -> Iterator[Path]:
-    """Lend the folder `FOLDER.unfinished` to a run, and remove it when the run's result is written.
+    """Lend the hidden folder `.NAME.unfinished` beside `folder` to a run, and remove it when the run's result is written.
 
     It is made only when a run is long enough to keep something. An interruption or a crash leaves it.
 
@@ -26,7 +25,7 @@ def unfinished(folder: Path) -> Iterator[Path]:
     InterruptedRunError, SolverError
         An interruption or a crash that left something, with what to do.
     """
-    path = folder.with_name(folder.name + SUFFIX)
+    path = folder.with_name(f".{folder.name}.unfinished")
     _refuse_other(path)
     try:
         yield path

@@ -49,12 +49,12 @@ def interrupt_once_resumed(process: subprocess.Popen[str]) -> str:
 
 @pytest.mark.slow
 def test_a_killed_run_goes_on_to_the_same_results(tmp_path: Path) -> None:
-    kept = tmp_path / "press.unfinished" / "fem_steps.kept"
+    kept = tmp_path / ".press.unfinished" / "fem_steps.kept"
     kill_once_kept(start(tmp_path), kept)
     assert not (tmp_path / "press").exists()
     said = interrupt_once_resumed(start(tmp_path))
     assert "Traceback" not in said
-    assert "error: interrupted; what was computed is in press.unfinished; " in said
+    assert "error: interrupted; what was computed is in .press.unfinished; " in said
     assert "the same command with --out press goes on from there" in said
     third = start(tmp_path)
     said = " ".join(third.communicate(timeout=PATIENCE)[1].split())

@@ -31,7 +31,7 @@ def test_it_stays_after_an_interruption_which_says_how_to_go_on(
 
     with pytest.raises(told, match=r"the same command with --out .*press goes on from there"):
         broken()
-    assert [each.name for each in tmp_path.iterdir()] == ["press.unfinished"]
+    assert [each.name for each in tmp_path.iterdir()] == [".press.unfinished"]
 
 
 def test_an_early_interruption_promises_nothing(tmp_path: Path) -> None:
@@ -40,7 +40,7 @@ def test_an_early_interruption_promises_nothing(tmp_path: Path) -> None:
 
 
 def test_something_else_of_that_name_is_refused_and_kept(tmp_path: Path) -> None:
-    taken = tmp_path / "press.unfinished"
+    taken = tmp_path / ".press.unfinished"
     taken.mkdir()
     (taken / "thesis.tex").write_text("years of work")
     with pytest.raises(InputError, match="holds something else"), unfinished(tmp_path / "press"):
