@@ -23,7 +23,8 @@ def write_kept(path: Path, form: str, fingerprint: str, arrays: Mapping[str, Any
     """Replace a file by arrays; raises CheckpointError if it cannot be written."""
     part = path.with_name(f"{path.name}.{os.getpid()}.part")
     content = io.BytesIO()
-    np.savez(content, **{FORMAT: form, OWNER: fingerprint}, **arrays)
+    named: dict[str, Any] = {FORMAT: form, OWNER: fingerprint, **arrays}
+    np.savez(content, **named)
     try:
         with part.open("wb") as file:
             file.write(hashlib.sha256(content.getbuffer()).hexdigest().encode())

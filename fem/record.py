@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -61,7 +61,7 @@ class Record:
 
     def copy(self) -> Record:
         """The same steps, to which others can be added."""
-        lists = {name: [*getattr(self, name)] for name in ("time", "states", "reactions", "strains")}
+        lists: dict[str, Any] = {name: [*getattr(self, name)] for name in ("time", "states", "reactions", "strains")}
         return replace(self, **lists)
 
     def solution(self, failure: Failure | None, warnings: tuple[str, ...], further: Record | None = None) -> Solution:

@@ -14,7 +14,7 @@ OURS = (".kept", ".part")
 
 @contextmanager
 def unfinished(folder: Path) -> Iterator[Path]:
-    """Lend the hidden folder `.NAME.unfinished` beside `folder` to a run, and remove it when the run's result is written.
+    """Lend the hidden folder `.NAME.unfinished` beside a result to its run, and remove it when the result is written.
 
     It is made only when a run is long enough to keep something. An interruption or a crash leaves it.
 
