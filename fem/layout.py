@@ -41,7 +41,7 @@ def lay_out(problem: Problem) -> Mesh:
 
 @dataclass(frozen=True)
 class _Layout:
-    """Tool radius (m), extent, resolution at the tool, density, and factor on the elements at a stuck edge."""
+    """Tool radius (m), extent, resolution at the tool, density, and factor on the size of the fan."""
 
     radius: float
     extent: Extent
@@ -62,7 +62,7 @@ class _Layout:
         return min(self.extent.edge_factor * self.edge, LARGEST_FAN)
 
     def _graded(self) -> Mesh:
-        edge = self.resolution.edge * self.radius * (self.edge if self.resolution.fan else 1.0)
+        edge = self.resolution.edge * self.radius
         breaks = {0.0, self.radius, self.extent.radius, *(f.position for f in self.extent.radial)}
         r_lines = graded_line(tuple(sorted(breaks)), self._radial(self.radius, edge), self.density)
         depth_lines = graded_line(tuple(self._depths), self._vertical(0.0, edge), self.density)

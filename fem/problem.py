@@ -25,7 +25,7 @@ TOUCHING = ("rigid_frictionless", "rigid_frictional")
 LARGEST_FRICTION, LARGEST_ADHESION = 10.0, 1e3  # adhesion in N
 LARGEST_PRETENSION = 1e8  # Pa
 LARGEST_SHEAR_LIMIT = 1e12  # Pa
-LARGEST_EDGE = 8.0
+LARGEST_EDGE = 4.0
 LARGEST_TILT = math.radians(30.0)
 
 
@@ -177,8 +177,8 @@ class Discretisation:
         Finite strain: part of the bulk modulus, in shear moduli, that acts at each Gauss point instead of
         on the pressure field (see :class:`fem.assembly.System`); 0 gives the plain Q2/P1 element.
     edge
-        How much larger than usual, 1 to 8, the elements are round the edge of a tool stuck to the surface, in finite
-        strain and axial symmetry: a little stiffer, but they fold later.
+        How much larger than usual, 1 to 4, the elements are round the edge of a tool stuck to a first layer that is not
+        thin, in finite strain and axial symmetry: a little stiffer, but they fold later.
     """
 
     density: Literal["coarse", "default", "fine"] = "default"

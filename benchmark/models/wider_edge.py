@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 import fem
 from fem.model import Model
 
-WIDER = (2.0, 4.0, 8.0)
+WIDER = (2.0, 4.0)
 """How much larger the elements at the edge are in each further try."""
+MOST_APART = 3.0
+"""Difference from the usual mesh in %, where both are known, beyond which a try is not believed."""
 
 Run = Callable[[Model, float], fem.Solution]
 """Follows the load history on a model with elements so much larger at the edge."""
@@ -41,8 +43,9 @@ def follow_deeper(model: Model, run: Run) -> tuple[Model, fem.Solution]:
         if wider.unknowns == tried.unknowns:
             break  # there is no room for larger ones
         tried, other = wider, run(wider, edge)
-        if _reach(other) > _reach(found):
-            best, found = wider, replace(other, warnings=(*other.warnings, _remark(edge, usual, other)))
+        apart = _apart(usual, other)
+        if _reach(other) > _reach(found) and (apart is None or abs(apart.percent) <= MOST_APART):
+            best, found = wider, replace(other, warnings=(*other.warnings, _remark(edge, usual, apart)))
     return best, found
 
 
@@ -62,20 +65,35 @@ def _reach(solution: fem.Solution) -> tuple[float, float]:
     return (len(solution.time), np.inf if stop is None else abs(stop.reached))
 
 
-def _remark(edge: float, usual: fem.Solution, wider: fem.Solution) -> str:
-    """What was done, and what it costs in accuracy as far as both runs show."""
+@dataclass(frozen=True)
+class _Apart:
+    """How far another mesh is from the usual one in the deepest step that both know, in per cent, at a depth in m."""
+
+    quantity: str
+    percent: float
+    depth: float
+
+
+def _apart(usual: fem.Solution, other: fem.Solution) -> _Apart | None:
+    """The difference in what the load leaves free; None where no step is known from both."""
+    both = min(len(usual.time), len(other.time))
+    if both == 0 or usual.failure is None:
+        return None
+    step = int(np.abs(usual.depth[:both]).argmax())
+    quantity = "depth" if usual.failure.control == "force" else "force"
+    percent = 100.0 * (getattr(other, quantity)[step] / getattr(usual, quantity)[step] - 1.0)
+    return _Apart(quantity, float(percent), float(usual.depth[step]))
+
+
+def _remark(edge: float, usual: fem.Solution, apart: _Apart | None) -> str:
+    """What was done, and what it costs in accuracy as far as both meshes show."""
     stop = usual.failure
     where = "" if stop is None else f" beyond {stop.reached:.4g} {'N' if stop.control == 'force' else 'm'}"
     text = (
         f"the usual mesh could not follow the press{where}: the whole press was computed again with elements {edge:g} "
         "times larger at the tool's edge"
     )
-    both = min(len(usual.time), len(wider.time))
-    if both == 0:
+    if apart is None:
         return text
-    step = int(np.abs(usual.depth[:both]).argmax())
-    quantity, ours, other = ("depth", wider.depth, usual.depth)
-    if stop is not None and stop.control == "depth":
-        quantity, ours, other = ("force", wider.force, usual.force)
-    apart = 100.0 * (ours[step] / other[step] - 1.0)
-    return f"{text}, whose {quantity} is {apart:+.2f} % apart at {1e3 * usual.depth[step]:.4g} mm, where both are known"
+    place = f"at {1e3 * apart.depth:.4g} mm, where both are known"
+    return f"{text}, whose {apart.quantity} is {apart.percent:+.2f} % apart {place}"

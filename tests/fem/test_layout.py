@@ -73,11 +73,11 @@ def test_elements_at_a_stuck_edge_are_larger_on_request(slab, skin):
         corners = mesh.nodes[mesh.elements[:4, at_edge[mesh.elements[:4]].any(axis=0)], 0]
         return np.ptp(corners)
 
-    for problem in (slab("rigid_bonded"), skin("rigid_bonded")):
-        sizes = [size(problem, edge) for edge in (1.0, 2.0, 4.0)]
-        assert sizes[1] > 1.4 * sizes[0]
-        assert sizes[2] > 1.4 * sizes[1]
-    assert size(slab("uniform_pressure"), 4.0) == size(slab("uniform_pressure"), 1.0)
+    sizes = [size(slab("rigid_bonded"), edge) for edge in (1.0, 2.0, 4.0)]
+    assert sizes[1] > 1.4 * sizes[0]
+    assert sizes[2] > 1.4 * sizes[1]
+    for other in (slab("uniform_pressure"), skin("rigid_bonded")):
+        assert size(other, 4.0) == size(other, 1.0)
 
 
 @pytest.mark.parametrize("first", [4e-3, 7e-3, 20e-3])
@@ -85,7 +85,7 @@ def test_the_largest_fan_stays_off_the_axis(first):
     layer = fem.Layer("a", first, 1000.0, fem.NeoHookean(2e4, 0.48))
     for support in (fem.Support("bonded"), fem.Support("hole", 0.03)):
         problem = fem.Problem(
-            (layer,), fem.Tool(5e-3, "rigid_bonded"), support, discretisation=fem.Discretisation(edge=8)
+            (layer,), fem.Tool(5e-3, "rigid_bonded"), support, discretisation=fem.Discretisation(edge=4)
         )
         mesh = lay_out(problem)
         assert mesh.nodes[:, 0].min() == 0.0
