@@ -43,7 +43,7 @@ class ContactSystem(System):
         stabilisation: float,
         contact: Contact,
     ) -> None:
-        u, tool = contact.unknowns, int(contact.unknowns[2, 0])
+        u, tool = contact.unknowns, contact.tool
         rows, columns = (np.concatenate([*(u[k] for k in side), [tool]]) for side in zip(*contact.entries, strict=True))
         self._free = np.flatnonzero((rows >= 0) & (columns >= 0))
         wide, self._place = widened(scatter, numbering.count, rows[self._free], columns[self._free])
@@ -81,7 +81,7 @@ class ContactSystem(System):
         if touch is None or not isinstance(other, ContactSystem):
             raise ArithmeticError("an accepted state cannot be evaluated")
         other = copy.copy(other)
-        other.contact = self.contact.after(touch, -float(touch.force[2].sum()))
+        other.contact = self.contact.after(touch)
         return other
 
     def corrected(self, y: FloatArray, press: float) -> ContactSystem | None:

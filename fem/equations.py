@@ -44,8 +44,8 @@ def set_up(
     """
     numbering = number_unknowns(fixed, conditions.tied)
     if conditions.punch is not None and conditions.area is not None:
-        kinds = 1 if conditions.punch.friction == 0.0 else 2
-        numbering = replace(numbering, count=numbering.count + 1 + kinds * int(np.sum(conditions.area > 0.0)))
+        more = 1 + _multipliers(conditions.punch, len(fixed)) * int(np.sum(conditions.area > 0.0))
+        numbering = replace(numbering, count=numbering.count + more)
     laws = element_laws(
         tuple(layer.material for layer in problem.layers),
         mesh.layer,
@@ -57,8 +57,7 @@ def set_up(
         contact = _contact(problem, mesh, numbering, conditions.punch, conditions.area)
         touched = ContactSystem(geometry, laws, numbering, scatter, _stabilisation(problem), contact)
         solver = make_solver(linear_solver, touched.scatter.indptr, touched.scatter.indices)
-        tool = int(contact.unknowns[2, 0])
-        return Equilibrium(touched, solver, -np.eye(1, numbering.count, tool)[0], tool)
+        return Equilibrium(touched, solver, -np.eye(1, numbering.count, contact.tool)[0], contact.tool)
     solver = make_solver(linear_solver, scatter.indptr, scatter.indices)
     nodal = np.zeros(fixed.shape)
     nodal[-1] = conditions.load
@@ -71,14 +70,19 @@ def set_up(
 def _contact(problem: Problem, mesh: AnyMesh, numbering: Numbering, punch: Punch, area: FloatArray) -> Contact:
     nodes = np.flatnonzero(area > 0.0)
     stiffness = STIFFNESS * problem.layers[0].material.shear_modulus / punch.radius
-    kinds = 1 if punch.friction == 0.0 else 2
+    kinds = _multipliers(punch, len(numbering.unknown))
     multipliers = numbering.count + np.arange(-kinds * len(nodes), 0).reshape(kinds, -1)
     tool = np.full((1, len(nodes)), multipliers[0, 0] - 1)
     place: FloatArray = mesh.nodes[nodes].T.copy()
     unknowns = np.concatenate((numbering.unknown[:, nodes], tool, multipliers))
-    gap = punch.gap(*place)
-    anchor = place[0] if gap is None else gap.path
+    gap = punch.gap(place)
+    anchor = place[:-1] if gap is None else gap.path
     return Contact(punch, place, stiffness * area[nodes], unknowns, anchor, np.zeros(len(nodes)))
+
+
+def _multipliers(punch: Punch, components: int) -> int:
+    """Multipliers a node: one against the punch and, with friction, one a direction on it."""
+    return 1 if punch.friction == 0.0 else components
 
 
 def _pretension(problem: Problem, components: Components) -> FloatArray | None:

@@ -297,8 +297,16 @@ class Problem:
                 f"tool.position = ({tool.position[0]:g}, {tool.position[1]:g}) m, tool.tilt = {tool.tilt:g} rad: "
                 "geometry = 'axisymmetric' has the tool upright on the axis; use geometry = 'block'"
             )
-        if tool.tilt != 0.0 and tool.contact != "rigid_bonded":
-            raise FemError(f"tool.tilt = {tool.tilt:g} rad: only a tool of contact 'rigid_bonded' can be tilted")
+        touches = tool.contact in TOUCHING and self.kinematics == "finite"
+        if tool.tilt != 0.0 and tool.contact != "rigid_bonded" and not touches:
+            raise FemError(
+                f"tool.tilt = {tool.tilt:g} rad: only a tool of contact 'rigid_bonded' or, in finite strain, "
+                f"{', '.join(TOUCHING)} can be tilted"
+            )
+        if tool.tilt != 0.0 and tool.adhesion_force > 0.0:
+            raise FemError(
+                f"tool.adhesion_force = {tool.adhesion_force:g} N: needs an upright tool; tool.tilt = {tool.tilt:g} rad"
+            )
         if self.geometry == "block" and tool.position[1] != 0.0:
             raise FemError(
                 f"tool.position = ({tool.position[0]:g}, {tool.position[1]:g}) m: must be (x, 0) with geometry = "

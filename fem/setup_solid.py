@@ -8,9 +8,8 @@ import numpy as np
 
 from fem.arrays import FloatArray
 from fem.assembly.solid_geometry import solid_geometry
-from fem.contact.solid import SOLID_CONTACTS
+from fem.contact.solid import solid_conditions
 from fem.equations import set_up
-from fem.errors import FemError
 from fem.mesh import SolidMesh
 from fem.model import Model
 from fem.problem import Problem
@@ -25,21 +24,16 @@ def solid_model(problem: Problem, mesh: SolidMesh, linear_solver: str, warnings:
     Raises
     ------
     FemError
-        If the contact is not available in three dimensions.
+        If the contact is not available for this problem.
     """
     tool = problem.tool
-    if tool.contact not in SOLID_CONTACTS:
-        raise FemError(
-            f"tool.contact = {tool.contact!r}: not available with geometry = {problem.geometry!r}; "
-            f"available are {', '.join(sorted(SOLID_CONTACTS))}"
-        )
-    conditions = SOLID_CONTACTS[tool.contact](mesh, tool.radius)
+    conditions = solid_conditions(mesh, problem)
     support = SUPPORT_MODELS[problem.support.kind].fixed(mesh, problem)
     lateral = support | conditions.held
     fixed = np.stack((lateral | mesh.mirror_x, lateral | mesh.mirror_y, support))
     geometry = solid_geometry(mesh)
     equilibrium = set_up(problem, mesh, geometry, fixed, conditions, linear_solver)
-    if tool.tilt != 0.0:
+    if tool.tilt != 0.0 and conditions.punch is None:
         turned = _turn(mesh, tool.tilt) * conditions.tied
         equilibrium = replace(equilibrium, system=equilibrium.system.displaced(mesh.elements, turned))
     system = equilibrium.system

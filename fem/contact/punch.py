@@ -10,25 +10,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem.arrays import FloatArray
+from fem.arrays import BoolArray, FloatArray
 
 
 @dataclass(frozen=True)
 class Gap:
-    """Distances of m points from the punch.
+    """Distances of m points from the punch, in c coordinates, the vertical one last; c - 1 directions lie on its surface.
 
     Attributes
     ----------
     distance
         (m,) in m, negative inside.
     normal
-        Derivative by (r, h), (2, m): outwards.
+        Derivative by the coordinates, (c, m): outwards.
     bend
-        Second derivative (3, m) by rr, rh and hh, in 1/m.
+        Second derivative in 1/m, its upper triangle row by row, (3, m) or (6, m).
     path
-        Length (m,) in m along the punch's profile from its axis to the nearest point.
+        Coordinates (c - 1, m) in m of the nearest point on the punch: the length along its profile from the axis, in
+        three dimensions in the direction seen along the axis.
     along
-        Derivative of the path by (r, h), (2, m).
+        Derivative of the path by the coordinates, (c - 1, c, m).
     """
 
     distance: FloatArray
@@ -40,7 +41,7 @@ class Gap:
 
 @dataclass(frozen=True)
 class Punch:
-    """What touches the tissue.
+    """What touches the tissue, in (r, h).
 
     Attributes
     ----------
@@ -62,8 +63,9 @@ class Punch:
         """Radius in m of the flat face."""
         return self.radius - self.edge_radius
 
-    def gap(self, r: FloatArray, h: FloatArray) -> Gap | None:
-        """Gap of points (m,) at radius r and height h over the face, in m; None where one is deep inside."""
+    def gap(self, place: FloatArray) -> Gap | None:
+        """Gap of points at radius and height over the face (2, m) in m; None where one is deep inside."""
+        r, h = place
         edge = self.edge_radius
         x, y = np.maximum(r - self.face, 0.0), np.minimum(h - edge, 0.0)
         reach = np.hypot(x, y)
@@ -76,4 +78,13 @@ class Punch:
         turn = np.arctan2(x, -y)
         path = np.minimum(r, self.face) + edge * turn + np.maximum(h - edge, 0.0)
         along = np.stack((-m, n)) * np.where(corner, edge / reach, 1.0)
-        return Gap(reach - edge, normal, bend, path, along)
+        return Gap(reach - edge, normal, bend, path[None], along[None])
+
+    def under_face(self, place: FloatArray) -> BoolArray:
+        """Which points (c, m) lie under the flat face."""
+        out: BoolArray = place[0] <= self.face
+        return out
+
+    def metric(self, path: FloatArray) -> FloatArray:
+        """Lengths on the punch by steps of the path (c - 1, m), symmetric (c - 1, c - 1, m)."""
+        return np.ones((1, *path.shape))

@@ -13,7 +13,7 @@ from fem.contact.rigid import RigidFrictionless
 from fem.errors import FemError
 from fem.mesh import Mesh
 from fem.mesh.rows import ring_areas
-from fem.problem import Problem
+from fem.problem import Problem, Tool
 
 REACH = 1.5  # radius in tool radii up to which nodes may touch the punch
 EDGE_ELEMENTS = 5.0  # elements over the edge radius where it begins and ends
@@ -55,11 +55,8 @@ class RoundedPunch:
 
     def conditions(self, mesh: Mesh, problem: Problem) -> Conditions:
         """No tie; the nodes near the tool may touch the punch."""
-        tool = problem.tool
-        free = np.zeros(len(mesh.nodes), dtype=np.bool_)
-        friction = tool.friction_coefficient if self.contact == "rigid_frictional" else 0.0
-        punch = Punch(tool.radius, tool.edge_radius or tool.radius, friction or 0.0, tool.adhesion_force)
-        return Conditions(free, free, np.zeros(len(mesh.nodes)), punch, _areas(mesh, REACH * tool.radius))
+        free, reach = np.zeros(len(mesh.nodes), dtype=np.bool_), REACH * problem.tool.radius
+        return Conditions(free, free, np.zeros(len(mesh.nodes)), punch_of(problem.tool), _areas(mesh, reach))
 
 
 @dataclass(frozen=True)
@@ -80,6 +77,12 @@ class FrictionlessPunch:
 
     def _of(self, problem: Problem) -> RoundedPunch | RigidFrictionless:
         return RigidFrictionless() if problem.kinematics == "linear" else RoundedPunch("rigid_frictionless")
+
+
+def punch_of(tool: Tool) -> Punch:
+    """The tool as a punch that touches; without an edge radius a sphere."""
+    friction = tool.friction_coefficient if tool.contact == "rigid_frictional" else 0.0
+    return Punch(tool.radius, tool.edge_radius or tool.radius, friction or 0.0, tool.adhesion_force)
 
 
 def _areas(mesh: Mesh, reach: float) -> FloatArray:

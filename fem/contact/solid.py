@@ -8,11 +8,15 @@ from types import MappingProxyType
 import numpy as np
 import skfem
 
-from fem.arrays import FloatArray
+from fem.arrays import BoolArray, FloatArray
 from fem.assembly.solid_element import SOLID_ELEMENTS
 from fem.contact.conditions import Conditions
+from fem.contact.rounded import REACH, punch_of
+from fem.contact.solid_punch import standing
+from fem.errors import FemError
 from fem.mesh import SolidMesh
 from fem.mesh.surface import SurfaceMesh
+from fem.problem import TOUCHING, Problem
 
 INSIDE = 1.0 + 1e-9
 
@@ -36,13 +40,51 @@ def rigid_frictionless(mesh: SolidMesh, radius: float) -> Conditions:
     return Conditions(held=np.zeros_like(inside), tied=inside, load=_master_load(mesh))
 
 
-SOLID_CONTACTS: Mapping[str, Callable[[SolidMesh, float], Conditions]] = MappingProxyType(
+def rigid_punch(mesh: SolidMesh, problem: Problem) -> Conditions:
+    """No tie; the nodes near the tool may touch the punch.
+
+    Raises
+    ------
+    FemError
+        If the mesh is not a block.
+    """
+    tool = problem.tool
+    if isinstance(mesh, SurfaceMesh):
+        raise FemError(
+            f"tool.contact = {tool.contact!r}: a tool that touches is not available with geometry = 'surface'; "
+            "use 'rigid_bonded' or 'uniform_pressure' there, or geometry = 'block'"
+        )
+    punch = standing(punch_of(tool), tool.position, tool.tilt)
+    area = mesh.images * _face_integrals(mesh, np.ones(len(mesh.top_elements), dtype=np.bool_))
+    x, y, _ = punch.tip
+    near = mesh.top & (np.hypot(mesh.nodes[:, 0] - x, mesh.nodes[:, 1] - y) <= REACH * tool.radius)
+    free = np.zeros(len(mesh.nodes), dtype=np.bool_)
+    return Conditions(
+        free, free, np.zeros(len(mesh.nodes)), punch.lowered(mesh.nodes[near].T), np.where(near, area, 0.0)
+    )
+
+
+TIED: Mapping[str, Callable[[SolidMesh, float], Conditions]] = MappingProxyType(
     {
         "uniform_pressure": uniform_pressure,
         "rigid_bonded": rigid_bonded,
         "rigid_frictionless": rigid_frictionless,
     }
 )
+
+
+def solid_conditions(mesh: SolidMesh, problem: Problem) -> Conditions:
+    """Conditions on the nodes of a mesh; tools that touch do so in finite strain.
+
+    Raises
+    ------
+    FemError
+        If the contact is not available for this problem.
+    """
+    tool = problem.tool
+    if tool.contact in TOUCHING and problem.kinematics == "finite":
+        return rigid_punch(mesh, problem)
+    return TIED[tool.contact](mesh, tool.radius)
 
 
 def _master_load(mesh: SolidMesh) -> FloatArray:
@@ -53,16 +95,22 @@ def _master_load(mesh: SolidMesh) -> FloatArray:
 
 def _disc_load(mesh: SolidMesh, radius: float) -> FloatArray:
     """Nodal forces (N,) that add up to -1: the shape functions' integrals over the top faces inside the disc."""
+    x, y, _ = mesh.nodes[mesh.elements[:, mesh.top_elements]].transpose(2, 0, 1)
+    centre = np.hypot(x.mean(axis=0) - mesh.axis_point[0], y.mean(axis=0) - mesh.axis_point[1])
+    share = _face_integrals(mesh, centre < radius)
+    out: FloatArray = -share / share.sum()
+    return out
+
+
+def _face_integrals(mesh: SolidMesh, wanted: BoolArray) -> FloatArray:
+    """Integrals (N,) in m2 of the nodes' shape functions over some of the top faces (T,)."""
     element = SOLID_ELEMENTS[mesh.element]
     points, weights = skfem.quadrature.get_quadrature(skfem.ElementQuad2(), 5)
     value, rows = element.tabulate(np.concatenate((points, np.ones((1, points.shape[1])))))
-    faces = mesh.elements[:, mesh.top_elements]
+    faces = mesh.elements[:, mesh.top_elements[wanted]]
     x, y, _ = mesh.nodes[faces].transpose(2, 0, 1)
-    centre = np.hypot(x.mean(axis=0) - mesh.axis_point[0], y.mean(axis=0) - mesh.axis_point[1])
-    inside = centre < radius
-    (x_xi, x_eta, _), (y_xi, y_eta, _) = ((rows @ c[:, inside]).reshape(3, len(weights), -1) for c in (x, y))
+    (x_xi, x_eta, _), (y_xi, y_eta, _) = ((rows @ c).reshape(3, len(weights), -1) for c in (x, y))
     share = value.T @ ((x_xi * y_eta - x_eta * y_xi) * weights[:, None])
-    load = np.zeros(len(mesh.nodes))
-    np.add.at(load, faces[:, inside].ravel(), share.ravel())
-    out: FloatArray = -load / load.sum()
-    return out
+    area = np.zeros(len(mesh.nodes))
+    np.add.at(area, faces.ravel(), share.ravel())
+    return area

@@ -1,55 +1,59 @@
-"""Nodes of the surface against a rigid punch: a multiplier a node, a second one with friction; adhesion.
+"""Nodes of the surface against a rigid punch: a multiplier a node, more of them with friction; adhesion.
 
 The multiplier x of a node is a length: its force is k x, k the node's penalty. In touch g = -x, so a node enters the
 punch by about 1e-5 of the punch's radius where the pressure equals the surface layer's shear modulus; out of touch
 x = 0. A node touches where x >= share * g, share a small number: the primal-dual active set (M. Hintermueller, K. Ito
 and K. Kunisch, SIAM J. Optim. 13 (2002) 865), with the symmetric potential -k x g - k x^2 / 2.
 
-Friction is Coulomb's law with as little elastic stick and a multiplier of its own (P. Wriggers, Computational Contact
-Mechanics, 2nd ed., 2006, chapters 5 and 6); within one Newton run its limit is given (Tresca's law, which keeps the
-stiffness symmetric), and runs follow each other until the limit fits the pressure. With adhesion the nodes of the flat
+Friction has a multiplier for each direction on the punch (see :mod:`fem.contact.friction`); its limit is given within
+one Newton run, and runs follow each other until it fits the pressure. With adhesion the nodes of the flat
 face are held both ways once the punch has pressed, until it pulls more than its adhesion.
+
+A node has c displacements, the vertical one last: two in axial symmetry, three in three dimensions.
 """
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, replace
+from functools import cache, cached_property
 
 import numpy as np
 
 from fem.arrays import BoolArray, FloatArray, IntArray
+from fem.contact.friction import rub
 from fem.contact.punch import Gap, Punch
 
 STIFFNESS = 1e5  # penalty in shear moduli of the surface layer over the punch's radius
 SHARE = 1e-3  # of the penalty, by which a gap counts against a multiplier
-TURN = 1e-5  # the same for slip against the multiplier of friction; larger ones make the slip turn to and fro
 SETTLED = 1e-6  # change of all friction limits, over the press, that ends these runs
 LOOSE = 1e-12  # stiffness of a punch in the air, in penalties
-ENTRIES = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2), (0, 3), (1, 3), (2, 3), (3, 3))
-FRICTION_ENTRIES = ((0, 4), (1, 4), (2, 4), (4, 4))
 
 
 @dataclass(frozen=True)
 class Touch:
-    """Contact at one state: forces on (node r, node z, punch, multiplier) and their derivative.
+    """Contact at one state: forces on (node, punch, multipliers) and their derivative.
 
     Attributes
     ----------
     force
-        Internal forces (4 or 5, m) in N: against the motion of node and punch; those of the multipliers are what their
-        equations leave, times k.
+        Internal forces (c + 2, m) in N, with friction (2 c + 1, m): against the motion of node and punch; those of the
+        multipliers are what their equations leave, times k.
     stiffness
-        (10 or 14, m) in N/m, in the order of `ENTRIES` and, with friction, `FRICTION_ENTRIES`.
+        In N/m, in the order of :attr:`Contact.entries`.
     anchor
-        Path (m,) in m on the punch at which friction would be zero.
+        Path (c - 1, m) in m on the punch at which friction would be zero.
     push
         Force (m,) in N of punch and node on each other.
+    press
+        Force in N of the punch on the tissue, downwards.
     """
 
     force: FloatArray
     stiffness: FloatArray
     anchor: FloatArray
     push: FloatArray
+    press: float
 
 
 @dataclass(frozen=True)
@@ -61,14 +65,14 @@ class Contact:
     punch
         The punch.
     place
-        Radius and height (2, m) of the nodes at rest, in m.
+        Nodes (c, m) at rest, in m.
     penalty
         Stiffness k (m,) of each node against the punch in N/m.
     unknowns
-        Unknowns (4, m): radial and vertical displacement of the node, -1 where fixed, of the punch, multiplier; with
-        friction (5, m): its multiplier.
+        Unknowns (c + 2, m): displacements of the node, -1 where fixed, of the punch, multiplier; with friction
+        (2 c + 1, m): its multipliers.
     anchor
-        Path (m,) in m on the punch at which friction is zero.
+        Path (c - 1, m) in m on the punch at which friction is zero.
     limit
         Largest friction (m,) in N.
     pressed
@@ -88,43 +92,63 @@ class Contact:
 
     def touch(self, y: FloatArray) -> Touch | None:
         """Contact at unknowns y (n,); None where a node is deep inside the punch."""
+        c = len(self.place)
         u = np.append(y, 0.0)[self.unknowns]
-        gap = self.punch.gap(self.place[0] + u[0], self.place[1] + u[1] - u[2])
+        place = self.place + u[:c]
+        place[-1] -= u[c]
+        gap = self.punch.gap(place)
         if gap is None:
             return None
-        active = ((u[3] >= SHARE * gap.distance) | self._glued) * self.penalty
-        push, rate = active * u[3], _three(gap.normal)
-        left = -active * gap.distance - self.penalty * u[3]
+        active = ((u[c + 1] >= SHARE * gap.distance) | self._glued) * self.penalty
+        push, rate = active * u[c + 1], with_punch(gap.normal)
+        left = -active * gap.distance - self.penalty * u[c + 1]
         force = np.concatenate((-push * rate, left[None]))
-        stiffness = np.concatenate((-push * _bend(gap), -active * rate, -self.penalty[None]))
-        touch = Touch(force, stiffness, gap.path, push)
-        return touch if self.punch.friction == 0.0 else self._with_friction(gap, u[4], touch)
+        stiffness = np.concatenate((-push * bend_with_punch(gap), -active * rate, -self.penalty[None]))
+        touch = Touch(force, stiffness, gap.path, push, -float(force[c].sum()))
+        return touch if self.punch.friction == 0.0 else self._with_friction(gap, u[c + 2 :], touch)
 
     def _with_friction(self, gap: Gap, drawn: FloatArray, touch: Touch) -> Touch:
-        """With the friction multipliers (m,) in m."""
-        limit, k, slid = self.limit, self.penalty, gap.path - self.anchor
-        trial = k * (drawn + TURN * (slid - drawn))
-        sticks = np.abs(trial) <= limit
-        drag = np.where(sticks, k * drawn, np.clip(trial, -limit, limit))
-        left = np.where(sticks, k * (slid - drawn), drag - k * drawn)
-        rate = _three(gap.along)
-        force = np.concatenate((touch.force[:3] + drag * rate, touch.force[3:], left[None]))
-        stiffness = np.concatenate((touch.stiffness, sticks * k * rate, -k[None]))
-        return Touch(force, stiffness, gap.path - drag / k, touch.push)
+        """With the friction multipliers (c - 1, m) in m."""
+        c, k, metric = len(self.place), self.penalty, self.punch.metric(self.anchor)
+        slid = _apply(metric, gap.path - self.anchor)
+        rubbed = rub(drawn, slid, self.limit, k)
+        rates = [with_punch(rate) for rate in _apply(metric, gap.along)]
+        force, stiffness = touch.force.copy(), touch.stiffness.copy()
+        for drag, rate in zip(rubbed.drag, rates, strict=True):
+            force[: c + 1] += drag * rate
+        if rubbed.turning is not None:
+            i, j = np.triu_indices(c + 1)
+            for a, b in itertools.product(range(c - 1), repeat=2):
+                stiffness[: len(i)] += rubbed.turning[a, b] * rates[a][i] * rates[b][j]
+        more = [part for rate in rates for part in (rubbed.sticks * k * rate, -k[None])]
+        drawn_back = _apply(_inverse(metric), rubbed.drag / k)
+        force = np.concatenate((force, rubbed.left))
+        press = -float(force[c].sum())
+        return Touch(force, np.concatenate((stiffness, *more)), gap.path - drawn_back, touch.push, press)
 
-    @property
+    @cached_property
     def entries(self) -> tuple[tuple[int, int], ...]:
         """Which unknowns each row of a touch's stiffness couples."""
-        return ENTRIES if self.punch.friction == 0.0 else ENTRIES + FRICTION_ENTRIES
+        moving = range(len(self.place) + 1)
+        pairs = list(itertools.combinations_with_replacement(moving, 2))
+        for multiplier in range(len(moving), len(self.unknowns)):
+            pairs += [*((i, multiplier) for i in moving), (multiplier, multiplier)]
+        return tuple(pairs)
+
+    @property
+    def tool(self) -> int:
+        """Unknown of the punch's displacement."""
+        return int(self.unknowns[len(self.place), 0])
 
     @property
     def _glued(self) -> BoolArray:
         """Nodes (m,) that are held both ways."""
-        held = self.place[0] <= self.punch.face
+        held = self.punch.under_face(self.place)
         return held if self.pressed and self.punch.adhesion > 0.0 else np.zeros_like(held)
 
-    def after(self, touch: Touch, press: float) -> Contact:
-        """What is remembered after a state with this contact, in which the punch presses (N)."""
+    def after(self, touch: Touch) -> Contact:
+        """What is remembered after a state with this contact."""
+        press = touch.press
         return replace(self, anchor=touch.anchor, pressed=self.pressed or press > 0.0, peak=max(self.peak, press))
 
     def corrected(self, touch: Touch, press: float) -> Contact | None:
@@ -140,16 +164,37 @@ class Contact:
         return replace(self, limit=limit)
 
 
-def _three(rate: FloatArray) -> FloatArray:
-    """By (node r, node z, punch) of a derivative by (r, h), (2, m)."""
-    return np.stack((rate[0], rate[1], -rate[1]))
+def with_punch(rate: FloatArray) -> FloatArray:
+    """By node and punch, (c + 1, m), of a derivative by the node's place, (c, m)."""
+    return np.concatenate((rate, -rate[-1:]))
 
 
-def _outer(rate: FloatArray) -> FloatArray:
-    a, b = rate
-    return np.stack((a * a, a * b, -a * b, b * b, -b * b, b * b))
+def bend_with_punch(gap: Gap) -> FloatArray:
+    """Second derivative of the distance by node and punch, its upper triangle row by row."""
+    order, sign = _bend_order(len(gap.normal))
+    out: FloatArray = sign * gap.bend[order]
+    return out
 
 
-def _bend(gap: Gap) -> FloatArray:
-    rr, rh, hh = gap.bend
-    return np.stack((rr, rh, -rh, hh, -hh, hh))
+@cache
+def _bend_order(c: int) -> tuple[IntArray, FloatArray]:
+    """Which derivative by the node's place is that by node and punch, and its sign (pairs, 1)."""
+    i, j = np.triu_indices(c + 1)
+    packed = np.zeros((c, c), dtype=np.int64)
+    packed[np.triu_indices(c)] = np.arange(c * (c + 1) // 2)
+    sign = np.where((i == c) != (j == c), -1.0, 1.0)
+    return packed[np.minimum(i, c - 1), np.minimum(j, c - 1)], sign[:, None]
+
+
+def _apply(metric: FloatArray, values: FloatArray) -> FloatArray:
+    """Matrix (t, t, m) times values (t, ..., m)."""
+    if len(metric) == 1:
+        return values
+    out: FloatArray = np.einsum("abm,b...m->a...m", metric, values)
+    return out
+
+
+def _inverse(metric: FloatArray) -> FloatArray:
+    """Inverse (t, t, m) of each matrix."""
+    out: FloatArray = np.linalg.inv(metric.T).T
+    return out

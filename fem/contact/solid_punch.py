@@ -1,0 +1,107 @@
+"""The punch in three dimensions: where it stands, and which way it leans."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fem.arrays import BoolArray, FloatArray
+from fem.contact.punch import Gap, Punch
+
+NEAR_AXIS = 1e-12  # radius within which a point has no direction from the axis, in radii of the punch
+TOUCHING = 1e-14  # depth by which a lowered punch enters, in its radii
+MOST_DROPS = 100
+PACKED = np.triu_indices(3)
+
+
+@dataclass(frozen=True)
+class SolidPunch(Punch):
+    """What touches the tissue, in (x, y, z).
+
+    Attributes
+    ----------
+    foot
+        Middle (x, y, z) in m of the face.
+    tilt
+        Angle in rad of the axis from the vertical in the x-z plane, its upper end towards +x.
+    """
+
+    foot: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    tilt: float = 0.0
+
+    @property
+    def _axes(self) -> FloatArray:
+        """Two axes across the punch and its own axis, (3, 3), in rows."""
+        s, c = np.sin(self.tilt), np.cos(self.tilt)
+        return np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]])
+
+    def _own(self, place: FloatArray) -> FloatArray:
+        """Points (3, m) in the punch's own axes."""
+        out: FloatArray = self._axes @ (place - np.array(self.foot)[:, None])
+        return out
+
+    def gap(self, place: FloatArray) -> Gap | None:
+        """Gap of points (3, m) in m; None where one is deep inside."""
+        x, y, h = self._own(place)
+        r = np.hypot(x, y)
+        none = NEAR_AXIS * self.radius
+        plane = super().gap(np.stack((np.maximum(r, none), h)))
+        if plane is None:
+            return None
+        away = r > none
+        r = np.where(away, r, none)
+        direction = np.where(away, np.stack((x, y)) / r, [[1.0], [0.0]])
+        square = np.stack((-direction[1], direction[0]))
+        outward, round_, axis = self._axes[:2].T @ direction, self._axes[:2].T @ square, self._axes[2][:, None]
+        normal = plane.normal[0] * outward + plane.normal[1] * axis
+        rr, rh, hh = plane.bend
+        i, j = PACKED
+        bend = rr * outward[i] * outward[j] + rh * (outward[i] * axis[j] + axis[i] * outward[j])
+        bend += hh * axis[i] * axis[j] + plane.normal[0] / r * round_[i] * round_[j]
+        by_r, by_h = plane.along[0]
+        meridian = by_r * outward + by_h * axis
+        along = direction[:, None] * meridian + square[:, None] * (plane.path[0] / r * round_)
+        return Gap(plane.distance, normal, bend, plane.path * direction, along)
+
+    def under_face(self, place: FloatArray) -> BoolArray:
+        """Which points (3, m) lie under the flat face."""
+        x, y, _ = self._own(place)
+        out: BoolArray = np.hypot(x, y) <= self.face
+        return out
+
+    def metric(self, path: FloatArray) -> FloatArray:
+        """Lengths on the punch by steps of the path (2, m), symmetric (2, 2, m): less across the profile than along it."""
+        length = np.hypot(*path)
+        turn = np.clip((length - self.face) / self.edge_radius, 0.0, 0.5 * np.pi)
+        ring = np.minimum(length, self.face) + self.edge_radius * np.sin(turn)
+        away = length > NEAR_AXIS * self.radius
+        share = np.where(away, ring / np.where(away, length, 1.0), 1.0)
+        direction = np.where(away, path / np.where(away, length, 1.0), 0.0)
+        out: FloatArray = share * np.eye(2)[..., None] + (1.0 - share) * direction[:, None] * direction
+        return out
+
+    @property
+    def tip(self) -> tuple[float, float, float]:
+        """Middle (x, y, z) in m of the cylinder inside the edge, over the face by the edge radius."""
+        x, y, z = self.foot
+        e = self.edge_radius
+        return x + e * float(np.sin(self.tilt)), y, z + e * float(np.cos(self.tilt))
+
+    def lowered(self, place: FloatArray) -> SolidPunch:
+        """The punch moved down until it touches the first of the points (3, m)."""
+        punch = self
+        for _ in range(MOST_DROPS):
+            gap = punch.gap(place)
+            if gap is None or gap.distance.min() <= 0.0:
+                break
+            x, y, z = punch.foot
+            punch = replace(punch, foot=(x, y, z - float(gap.distance.min()) - TOUCHING * self.radius))
+        return punch
+
+
+def standing(punch: Punch, position: tuple[float, float], tilt: float) -> SolidPunch:
+    """The punch whose lowest point is at z = 0, where its axis meets the plane z = 0 at the position (x, y) in m."""
+    height = punch.edge_radius * (1.0 - np.cos(tilt)) + punch.face * abs(np.sin(tilt))
+    foot = (position[0] + height * np.tan(tilt), position[1], height)
+    return SolidPunch(punch.radius, punch.edge_radius, punch.friction, punch.adhesion, foot, tilt)
