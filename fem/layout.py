@@ -19,7 +19,6 @@ from fem.problem import Problem
 from fem.supports import SUPPORT_MODELS, Extent
 
 DENSITY = {"coarse": 0.6, "default": 1.0, "fine": 2.0}
-RADIAL_GROWTH = 0.45
 VERTICAL_GROWTH = 0.5
 # In tool radii: size of the fan's box and of its outer elements, and the thinnest first layer it fits into.
 FAN_HALF_WIDTH = 0.1
@@ -100,7 +99,7 @@ class _Layout:
 
     def _radial(self, position: float, size: float) -> Sizing:
         places = [position + (share - 1.0) * self.radius for share in self.resolution.gather]
-        edges = [Feature(place, size, RADIAL_GROWTH, self.extent.far) for place in places]
+        edges = [Feature(place, size, self.resolution.growth, self.extent.far) for place in places]
         under = (self.radius, self.resolution.under * self.radius)
         return Sizing((*edges, *self.extent.radial), (under,))
 

@@ -1,25 +1,30 @@
 """Where the three-dimensional block of a problem has its grid lines.
 
 Radially and vertically as in :mod:`fem.layout`, but coarser at the tool's edge: unknowns cost more in three
-dimensions, and round the tool few elements are enough.
+dimensions, and round the tool few elements are enough. Under a tool that touches the lines gather where its rounded edge
+begins and ends, under a sphere at the axis.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
 from fem.arrays import FloatArray
 from fem.assembly.solid_element import SOLID_ELEMENTS
+from fem.contact import CONTACT_MODELS, Resolution
 from fem.errors import FemError
 from fem.mesh import DiscGrid, Feature, Sizing, SolidMesh, build_block, graded_line
-from fem.problem import Problem
+from fem.problem import TOUCHING, Problem
 from fem.supports import SUPPORT_MODELS, Extent
 
 ELEMENT = "hex27"
 PIECES = {"coarse": 2, "default": 2, "fine": 3}
 DENSITY = {"coarse": 0.7, "default": 1.0, "fine": 1.5}
-EDGE = 0.04  # element size at the tool's edge, in tool radii
-RADIAL_GROWTH = 0.7
+TIED = Resolution(edge=0.04, under=1.0, growth=0.7)
+FINEST_EDGE = 0.01  # element size at the edge of a tool that touches, in tool radii, at least
+UNDER = 1.0 / 12.0  # largest element under a tool that touches, in tool radii
 VERTICAL_GROWTH = 0.7
 INNER_SQUARE = 0.45  # half side over the radius of the innermost circle that is asked for
 THICKEST_RING = 1.4  # radius of the first circle over the half side, at least
@@ -34,22 +39,35 @@ def lay_out_block(problem: Problem) -> SolidMesh:
         If the tool does not fit.
     """
     extent = SUPPORT_MODELS[problem.support.kind].extent(problem)
+    resolution = _resolution(problem)
     density = DENSITY[problem.discretisation.density]
-    edge = EDGE * problem.tool.radius
     depths = np.concatenate(([0.0], np.cumsum(extent.thickness)))
+    edge = resolution.edge * problem.tool.radius
     vertical = Sizing((Feature(0.0, edge, VERTICAL_GROWTH, extent.far), *extent.vertical))
     depth_lines = graded_line(tuple(depths), vertical, density)
-    grid = _grid(problem, extent, edge, density)
+    grid = _grid(problem, extent, resolution, density)
     return build_block(grid, depth_lines, depths[:-1], SOLID_ELEMENTS[ELEMENT].node_places, ELEMENT)
 
 
-def _grid(problem: Problem, extent: Extent, edge: float, density: float) -> DiscGrid:
+def _resolution(problem: Problem) -> Resolution:
+    """How fine the mesh must be at the tool."""
+    tool = problem.tool
+    if tool.contact not in TOUCHING or problem.kinematics == "linear":
+        return TIED
+    wanted = CONTACT_MODELS[tool.contact].resolution(problem)
+    return replace(wanted, edge=max(wanted.edge, FINEST_EDGE), under=UNDER)
+
+
+def _grid(problem: Problem, extent: Extent, resolution: Resolution, density: float) -> DiscGrid:
     radius, (x, _) = problem.tool.radius, problem.tool.position
     rims = [f.position for f in extent.radial]
     _require_room(problem, rims, extent.radius)
+    pieces = PIECES[problem.discretisation.density]
+    least = min([radius, *rims])
+    inner = max(INNER_SQUARE * min(least, *(g * radius for g in resolution.gather)), pieces * resolution.edge * radius)
     return DiscGrid(
-        rings=_rings(radius, rims, extent, edge, density),
-        pieces=PIECES[problem.discretisation.density],
+        rings=_rings(radius, inner, extent, resolution, density),
+        pieces=pieces,
         quarters=1 if x == 0.0 and problem.tool.tilt == 0.0 else 2,
         centre=x,
         tool_radius=radius,
@@ -58,11 +76,12 @@ def _grid(problem: Problem, extent: Extent, edge: float, density: float) -> Disc
     )
 
 
-def _rings(radius: float, rims: list[float], extent: Extent, edge: float, density: float) -> FloatArray:
-    inner = INNER_SQUARE * min([radius, *rims])
-    features = (Feature(radius, edge, RADIAL_GROWTH, extent.far), *extent.radial)
-    breaks = sorted({inner, radius, extent.radius, *rims})
-    lines = graded_line(tuple(breaks), Sizing(features), density)
+def _rings(radius: float, inner: float, extent: Extent, resolution: Resolution, density: float) -> FloatArray:
+    size = resolution.edge * radius
+    edges = [Feature(place * radius, size, resolution.growth, extent.far) for place in resolution.gather]
+    sizing = Sizing((*edges, *extent.radial), ((radius, resolution.under * radius),))
+    breaks = sorted({inner, radius, extent.radius, *(f.position for f in extent.radial)})
+    lines = graded_line(tuple(breaks), sizing, density)
     kept: FloatArray = lines[(lines == inner) | (lines >= THICKEST_RING * inner)]
     return kept
 

@@ -131,8 +131,8 @@ def _refuse_contact(scenario: Scenario) -> None:
     touches = tool.contact in ("rigid_frictionless", "rigid_frictional")
     if tool.contact == "rigid_frictional" and not finite:
         raise UncoveredError("the contact rigid_frictional is part of finite strain only")
-    if touches and finite and scenario.fem.geometry != "axisymmetric":
-        raise UncoveredError(f"a {tool.contact} tool that touches is part of the axisymmetric geometry only")
+    if touches and finite and scenario.fem.geometry == "surface":
+        raise UncoveredError(f"a {tool.contact} tool that touches is not part of the geometry surface")
     if scenario.physics.adhesion_force is not None and not (touches and finite):
         raise UncoveredError("adhesion_force is part of rigid_frictionless and rigid_frictional tools in finite strain")
     if tool.contact == "rigid_bonded" and tool.edge_radius is not None:

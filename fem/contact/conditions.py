@@ -50,12 +50,15 @@ class Resolution:
         Whether the material turns round the edge, so that a fan of elements is needed there.
     gather
         Where the element size at the edge is wanted, in tool radii.
+    growth
+        Growth of the element size from there along the surface, per length.
     """
 
     edge: float
     under: float
     fan: bool = False
     gather: tuple[float, ...] = (1.0,)
+    growth: float = 0.45
 
 
 SMALL_STRAIN = Resolution(edge=1.0 / 200.0, under=1.0 / 3.0)
