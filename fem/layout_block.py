@@ -1,8 +1,8 @@
 """Where the three-dimensional block of a problem has its grid lines.
 
 Radially and vertically as in :mod:`fem.layout`, but coarser at the tool's edge: unknowns cost more in three
-dimensions, and round the tool few elements are enough. Under a tool that touches the lines gather where its rounded edge
-begins and ends, under a sphere at the axis.
+dimensions, and round the tool few elements are enough. Under a tool that touches the lines gather where its rounded
+edge begins and ends, under a sphere at the axis.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from fem.assembly.solid_element import SOLID_ELEMENTS
 from fem.contact import CONTACT_MODELS, Resolution
 from fem.errors import FemError
 from fem.mesh import DiscGrid, Feature, Sizing, SolidMesh, build_block, graded_line
-from fem.problem import TOUCHING, Problem
+from fem.problem import Problem
 from fem.supports import SUPPORT_MODELS, Extent
 
 ELEMENT = "hex27"
@@ -52,7 +52,7 @@ def lay_out_block(problem: Problem) -> SolidMesh:
 def _resolution(problem: Problem) -> Resolution:
     """How fine the mesh must be at the tool."""
     tool = problem.tool
-    if tool.contact not in TOUCHING or problem.kinematics == "linear":
+    if not problem.touches:
         return TIED
     wanted = CONTACT_MODELS[tool.contact].resolution(problem)
     return replace(wanted, edge=max(wanted.edge, FINEST_EDGE), under=UNDER)

@@ -297,8 +297,7 @@ class Problem:
                 f"tool.position = ({tool.position[0]:g}, {tool.position[1]:g}) m, tool.tilt = {tool.tilt:g} rad: "
                 "geometry = 'axisymmetric' has the tool upright on the axis; use geometry = 'block'"
             )
-        touches = tool.contact in TOUCHING and self.kinematics == "finite"
-        if tool.tilt != 0.0 and tool.contact != "rigid_bonded" and not touches:
+        if tool.tilt != 0.0 and tool.contact != "rigid_bonded" and not self.touches:
             raise FemError(
                 f"tool.tilt = {tool.tilt:g} rad: only a tool of contact 'rigid_bonded' or, in finite strain, "
                 f"{', '.join(TOUCHING)} can be tilted"
@@ -314,6 +313,11 @@ class Problem:
             )
         self._require_surface()
 
+    @property
+    def touches(self) -> bool:
+        """Whether the tool touches the tissue and comes off it, rather than being tied to it."""
+        return self.tool.contact in TOUCHING and self.kinematics == "finite"
+
     def _require_surface(self) -> None:
         if (self.surface is None) == (self.geometry == "surface"):
             state = "missing" if self.surface is None else "given"
@@ -324,3 +328,8 @@ class Problem:
             raise FemError(f"support.kind = {self.support.kind!r}: geometry = 'surface' has the support 'bonded' only")
         if self.tool.tilt != 0.0:
             raise FemError(f"tool.tilt = {self.tool.tilt:g} rad: must be 0 with geometry = 'surface'")
+        if self.touches:
+            raise FemError(
+                f"tool.contact = {self.tool.contact!r}: geometry = 'surface' has no tool that touches; "
+                "use 'rigid_bonded' or 'uniform_pressure' there, or geometry = 'block'"
+            )

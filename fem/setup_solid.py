@@ -19,13 +19,7 @@ from fem.supports import SUPPORT_MODELS
 
 
 def solid_model(problem: Problem, mesh: SolidMesh, linear_solver: str, warnings: tuple[str, ...]) -> Model:
-    """Model of a problem on a three-dimensional mesh.
-
-    Raises
-    ------
-    FemError
-        If the contact is not available for this problem.
-    """
+    """Model of a problem on a three-dimensional mesh."""
     tool = problem.tool
     conditions = solid_conditions(mesh, problem)
     support = SUPPORT_MODELS[problem.support.kind].fixed(mesh, problem)

@@ -5,8 +5,8 @@ Contact Mechanics, 2nd ed., 2006, chapters 5 and 6); a limit that is given (Tres
 A node that sticks has k x = k slid; one that slides has the limit against its slip.
 
 In two directions the friction of a node that slides turns with its slip. Its derivative is taken with the direction of
-the multiplier beside that of the slip (T. F. Chan, G. H. Golub and P. Mulet, SIAM J. Sci. Comput. 20 (1999) 1964), which
-keeps a slip from turning to and fro.
+the multiplier beside that of the slip (T. F. Chan, G. H. Golub and P. Mulet, SIAM J. Sci. Comput. 20 (1999) 1964),
+which keeps a slip from turning to and fro.
 """
 
 from __future__ import annotations

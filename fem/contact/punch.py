@@ -15,7 +15,7 @@ from fem.arrays import BoolArray, FloatArray
 
 @dataclass(frozen=True)
 class Gap:
-    """Distances of m points from the punch, in c coordinates, the vertical one last; c - 1 directions lie on its surface.
+    """Distances of m points from the punch, in c coordinates, the vertical one last.
 
     Attributes
     ----------

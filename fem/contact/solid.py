@@ -13,10 +13,9 @@ from fem.assembly.solid_element import SOLID_ELEMENTS
 from fem.contact.conditions import Conditions
 from fem.contact.rounded import REACH, punch_of
 from fem.contact.solid_punch import standing
-from fem.errors import FemError
 from fem.mesh import SolidMesh
 from fem.mesh.surface import SurfaceMesh
-from fem.problem import TOUCHING, Problem
+from fem.problem import Problem
 
 INSIDE = 1.0 + 1e-9
 
@@ -41,27 +40,14 @@ def rigid_frictionless(mesh: SolidMesh, radius: float) -> Conditions:
 
 
 def rigid_punch(mesh: SolidMesh, problem: Problem) -> Conditions:
-    """No tie; the nodes near the tool may touch the punch.
-
-    Raises
-    ------
-    FemError
-        If the mesh is not a block.
-    """
+    """No tie; the nodes of a block near the tool may touch the punch."""
     tool = problem.tool
-    if isinstance(mesh, SurfaceMesh):
-        raise FemError(
-            f"tool.contact = {tool.contact!r}: a tool that touches is not available with geometry = 'surface'; "
-            "use 'rigid_bonded' or 'uniform_pressure' there, or geometry = 'block'"
-        )
     punch = standing(punch_of(tool), tool.position, tool.tilt)
     area = mesh.images * _face_integrals(mesh, np.ones(len(mesh.top_elements), dtype=np.bool_))
     x, y, _ = punch.tip
     near = mesh.top & (np.hypot(mesh.nodes[:, 0] - x, mesh.nodes[:, 1] - y) <= REACH * tool.radius)
-    free = np.zeros(len(mesh.nodes), dtype=np.bool_)
-    return Conditions(
-        free, free, np.zeros(len(mesh.nodes)), punch.lowered(mesh.nodes[near].T), np.where(near, area, 0.0)
-    )
+    free, touching = np.zeros(len(mesh.nodes), dtype=np.bool_), punch.lowered(mesh.nodes[near].T)
+    return Conditions(free, free, np.zeros(len(mesh.nodes)), touching, np.where(near, area, 0.0))
 
 
 TIED: Mapping[str, Callable[[SolidMesh, float], Conditions]] = MappingProxyType(
@@ -74,15 +60,9 @@ TIED: Mapping[str, Callable[[SolidMesh, float], Conditions]] = MappingProxyType(
 
 
 def solid_conditions(mesh: SolidMesh, problem: Problem) -> Conditions:
-    """Conditions on the nodes of a mesh; tools that touch do so in finite strain.
-
-    Raises
-    ------
-    FemError
-        If the contact is not available for this problem.
-    """
+    """Conditions on the nodes of a mesh; tools that touch do so in finite strain."""
     tool = problem.tool
-    if tool.contact in TOUCHING and problem.kinematics == "finite":
+    if problem.touches:
         return rigid_punch(mesh, problem)
     return TIED[tool.contact](mesh, tool.radius)
 

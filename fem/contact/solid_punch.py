@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -33,7 +34,7 @@ class SolidPunch(Punch):
     @property
     def _axes(self) -> FloatArray:
         """Two axes across the punch and its own axis, (3, 3), in rows."""
-        s, c = np.sin(self.tilt), np.cos(self.tilt)
+        s, c = math.sin(self.tilt), math.cos(self.tilt)
         return np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]])
 
     def _own(self, place: FloatArray) -> FloatArray:
@@ -71,7 +72,7 @@ class SolidPunch(Punch):
         return out
 
     def metric(self, path: FloatArray) -> FloatArray:
-        """Lengths on the punch by steps of the path (2, m), symmetric (2, 2, m): less across the profile than along it."""
+        """Lengths on the punch by steps of the path (2, m), symmetric (2, 2, m): less round the axis than from it."""
         length = np.hypot(*path)
         turn = np.clip((length - self.face) / self.edge_radius, 0.0, 0.5 * np.pi)
         ring = np.minimum(length, self.face) + self.edge_radius * np.sin(turn)
@@ -86,7 +87,7 @@ class SolidPunch(Punch):
         """Middle (x, y, z) in m of the cylinder inside the edge, over the face by the edge radius."""
         x, y, z = self.foot
         e = self.edge_radius
-        return x + e * float(np.sin(self.tilt)), y, z + e * float(np.cos(self.tilt))
+        return x + e * math.sin(self.tilt), y, z + e * math.cos(self.tilt)
 
     def lowered(self, place: FloatArray) -> SolidPunch:
         """The punch moved down until it touches the first of the points (3, m)."""
@@ -102,6 +103,6 @@ class SolidPunch(Punch):
 
 def standing(punch: Punch, position: tuple[float, float], tilt: float) -> SolidPunch:
     """The punch whose lowest point is at z = 0, where its axis meets the plane z = 0 at the position (x, y) in m."""
-    height = punch.edge_radius * (1.0 - np.cos(tilt)) + punch.face * abs(np.sin(tilt))
-    foot = (position[0] + height * np.tan(tilt), position[1], height)
+    height = punch.edge_radius * (1.0 - math.cos(tilt)) + punch.face * abs(math.sin(tilt))
+    foot = (position[0] + height * math.tan(tilt), position[1], height)
     return SolidPunch(punch.radius, punch.edge_radius, punch.friction, punch.adhesion, foot, tilt)

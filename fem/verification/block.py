@@ -1,17 +1,18 @@
-"""The three-dimensional block: the half-space, and skin against the axisymmetric solver."""
+"""The three-dimensional block: the half-space, and skin against the axisymmetric solver, tied and touched."""
 
 from __future__ import annotations
 
 from functools import partial
+from typing import Literal
 
 import numpy as np
 
 from fem.load import Load
-from fem.materials import LinearElastic
+from fem.materials import LinearElastic, NeoHookean
 from fem.model import Model
 from fem.prepare import prepare
-from fem.problem import Layer, Problem, Support, Tool
-from fem.verification import half_space
+from fem.problem import TOUCHING, Discretisation, Layer, Problem, Support, Tool
+from fem.verification import half_space, hertz
 from fem.verification.case import Case, Quantity
 from fem.verification.half_space import Geometry
 from fem.verification.press import CONTACTS, LAYERS, POISSON_RATIO, RADIUS
@@ -19,13 +20,22 @@ from fem.verification.press import CONTACTS, LAYERS, POISSON_RATIO, RADIUS
 ALLOWED_PERCENT = 0.5
 FORCE = 0.1
 AXISYMMETRIC = "own axisymmetric solver (0.1 N, small strain)"
+PUNCH_FORCE, EDGE_RADIUS, FRICTION, SPHERE_INDENTATION = 1.0, 1e-3, 0.3, 4e-3
+FINE_SOURCE = "own axisymmetric solver, fine mesh (1 N, large strain, real contact)"
 
 
 def cases() -> tuple[Case, ...]:
     """Half-space under a disc and under a punch; skin under each contact."""
     discs = [_half_space("disc", half_space.disc, nu) for nu in (0.35, 0.499)]
     skins = [Case(f"block_axisymmetric/{contact}", AXISYMMETRIC, partial(skin, contact)) for contact in CONTACTS]
-    return (*discs, _half_space("punch", half_space.punch, 0.499), *skins)
+    punches = [Case(f"block_punch/{contact}", FINE_SOURCE, partial(punch, contact)) for contact in TOUCHING]
+    return (*discs, _half_space("punch", half_space.punch, 0.499), *skins, *punches, _sphere(0.499))
+
+
+def _sphere(nu: float) -> Case:
+    return Case(
+        f"block_hertz/nu_{nu:g}", hertz.SOURCE, partial(hertz.sphere, nu, (SPHERE_INDENTATION,), "block", "coarse")
+    )
 
 
 def _half_space(name: str, compute: half_space.Compute, nu: float) -> Case:
@@ -47,3 +57,21 @@ def skin(contact: str) -> tuple[Quantity, ...]:
 def _model(contact: str, geometry: Geometry) -> Model:
     layers = tuple(Layer(name, h, 1000.0, LinearElastic(modulus, POISSON_RATIO)) for name, h, modulus in LAYERS)
     return prepare(Problem(layers, Tool(RADIUS, contact), Support("bonded"), "linear", geometry=geometry))
+
+
+def punch(contact: str) -> tuple[Quantity, ...]:
+    """Deflection of each layer's top face on the axis under a punch with a rounded edge."""
+    load = Load("force", np.array([1.0, 2.0]), PUNCH_FORCE * np.array([0.5, 1.0]))
+    block, axial = _touched(contact, "block", "default"), _touched(contact, "axisymmetric", "fine")
+    ours, reference = (1e3 * model.run(load).top_deflection[-1] for model in (block, axial))
+    return tuple(
+        Quantity(name, exact, found, "mm", ALLOWED_PERCENT, block.unknowns)
+        for (name, _, _), exact, found in zip(LAYERS, reference.tolist(), ours.tolist(), strict=True)
+    )
+
+
+def _touched(contact: str, geometry: Geometry, density: Literal["default", "fine"]) -> Model:
+    layers = tuple(Layer(name, h, 1000.0, NeoHookean(modulus, POISSON_RATIO)) for name, h, modulus in LAYERS)
+    tool = Tool(RADIUS, contact, EDGE_RADIUS, friction_coefficient=FRICTION)
+    problem = Problem(layers, tool, Support("bonded"), "finite", Discretisation(density), geometry)
+    return prepare(problem)

@@ -16,21 +16,21 @@ def model(contact="rigid_frictionless", edge_radius=5e-4, layers=((1e-2, 2e4),),
 
 
 def test_gap_of_face_edge_and_wall():
-    gap = Punch(5.0, 1.0).gap(np.array([2.0, 4.0 + np.sqrt(2), 6.0]), np.array([-0.5, 1.0 - np.sqrt(2), 3.0]))
+    gap = Punch(5.0, 1.0).gap(np.array([[2.0, 4.0 + np.sqrt(2), 6.0], [-0.5, 1.0 - np.sqrt(2), 3.0]]))
     np.testing.assert_allclose(gap.distance, [0.5, 1.0, 1.0])
     np.testing.assert_allclose(gap.normal.T, [[0, -1], [np.sqrt(0.5), -np.sqrt(0.5)], [1, 0]], atol=1e-15)
-    np.testing.assert_allclose(gap.path, [2.0, 4.0 + np.pi / 4, 4.0 + np.pi / 2 + 2.0])
-    assert Punch(5.0, 1.0).gap(np.array([2.0]), np.array([1.5])) is None
+    np.testing.assert_allclose(gap.path[0], [2.0, 4.0 + np.pi / 4, 4.0 + np.pi / 2 + 2.0])
+    assert Punch(5.0, 1.0).gap(np.array([[2.0], [1.5]])) is None
 
 
 def test_derivatives_of_the_gap():
     punch, step = Punch(5.0, 1.0), 1e-5
-    r, h = np.array([3.0, 4.5, 4.8, 6.0]), np.array([-0.2, 0.1, -0.1, 2.0])
-    gap = punch.gap(r, h)
-    for axis, (dr, dh) in enumerate(((step, 0.0), (0.0, step))):
-        ahead, behind = punch.gap(r + dr, h + dh), punch.gap(r - dr, h - dh)
+    place = np.array([[3.0, 4.5, 4.8, 6.0], [-0.2, 0.1, -0.1, 2.0]])
+    gap = punch.gap(place)
+    for axis, way in enumerate(step * np.eye(2)[:, :, None]):
+        ahead, behind = punch.gap(place + way), punch.gap(place - way)
         np.testing.assert_allclose((ahead.distance - behind.distance) / (2 * step), gap.normal[axis], atol=1e-9)
-        np.testing.assert_allclose((ahead.path - behind.path) / (2 * step), gap.along[axis], atol=1e-9)
+        np.testing.assert_allclose((ahead.path - behind.path) / (2 * step), gap.along[:, axis], atol=1e-9)
         turned = (ahead.normal - behind.normal) / (2 * step)
         np.testing.assert_allclose(turned, gap.bend[axis : axis + 2], atol=1e-8)
 
@@ -54,7 +54,7 @@ def test_the_tissue_does_not_enter_the_punch():
     solution = model(layers=SKIN).run(fem.Load("force", np.arange(1.0, 6.0), np.arange(1.0, 6.0) * 0.6))
     top = solution.mesh.interfaces[0]
     r, z = (solution.mesh.nodes[top] + solution.displacement[-1, top]).T
-    gap = Punch(5e-3, 5e-4).gap(r, z + solution.depth[-1]).distance
+    gap = Punch(5e-3, 5e-4).gap(np.stack((r, z + solution.depth[-1]))).distance
     assert gap.min() > -1e-6
     assert (gap < 1e-6).sum() > 10
 
