@@ -77,12 +77,13 @@ class Tool:
         (x, y) in m where the tool's axis meets the surface; in three dimensions only, on a block along x only.
     tilt
         Angle in rad of the tool's axis from the vertical in the x-z plane, its upper end towards +x, at most
-        30 degrees. The tool presses and moves vertically.
+        30 degrees. The tool presses and moves vertically. One that touches has depth 0 where its lowest point meets
+        the surface.
     friction_coefficient
         Coulomb's, 0 to 10; needed by "rigid_frictional".
     adhesion_force
         Pull in N, 0 to 1e3, that the flat face of a rounded punch holds before it lets go; for the contacts
-        "rigid_frictionless" and "rigid_frictional" in finite strain.
+        "rigid_frictionless" and "rigid_frictional" in finite strain, upright.
     """
 
     radius: float

@@ -121,10 +121,11 @@ class Contact:
             for a, b in itertools.product(range(c - 1), repeat=2):
                 stiffness[: len(i)] += rubbed.turning[a, b] * rates[a][i] * rates[b][j]
         more = [part for rate in rates for part in (rubbed.sticks * k * rate, -k[None])]
-        drawn_back = _apply(_inverse(metric), rubbed.drag / k)
         force = np.concatenate((force, rubbed.left))
         press = -float(force[c].sum())
-        return Touch(force, np.concatenate((stiffness, *more)), gap.path - drawn_back, touch.push, press)
+        return Touch(
+            force, np.concatenate((stiffness, *more)), gap.path - _undo(metric, rubbed.drag / k), touch.push, press
+        )
 
     @cached_property
     def entries(self) -> tuple[tuple[int, int], ...]:
@@ -194,7 +195,9 @@ def _apply(metric: FloatArray, values: FloatArray) -> FloatArray:
     return out
 
 
-def _inverse(metric: FloatArray) -> FloatArray:
-    """Inverse (t, t, m) of each matrix."""
-    out: FloatArray = np.linalg.inv(metric.T).T
+def _undo(metric: FloatArray, values: FloatArray) -> FloatArray:
+    """Values (t, m) divided by a symmetric matrix (t, t, m)."""
+    if len(metric) == 1:
+        return values
+    out: FloatArray = np.linalg.solve(metric.T, values.T[..., None]).astype(np.float64)[..., 0].T
     return out

@@ -88,6 +88,15 @@ def test_position_and_tilt_reach_the_block() -> None:
     assert slope == pytest.approx(np.sin(np.radians(2.0)), rel=1e-6)
 
 
+def test_a_tool_with_a_rounded_edge_touches_the_block() -> None:
+    touching = {**LINEAR, "fem.kinematics": "finite", "tool.contact": "rigid_frictionless", "tool.edge_radius": "1 mm"}
+    axial = run({**touching, "fem.mesh": "default"})
+    block, tilted = (run({**touching, "fem.geometry": "block", "tool.tilt": tilt}) for tilt in ("0 deg", "4 deg"))
+    np.testing.assert_allclose(block.top_deflection, axial.top_deflection, rtol=2e-2)
+    assert tilted.depth[0] > 1.1 * block.depth[0]
+    assert not any("edge_radius has no effect" in text for text in block.warnings)
+
+
 NOT_OFFERED = {
     "tilt without a third dimension": ({"tool.tilt": "3 deg"}, "use geometry = 'block'"),
     "off-centre hole without a third dimension": (
@@ -136,6 +145,12 @@ def test_the_resolved_scenario_reads_again(
     resolved = tmp_path / "elsewhere" / "scenario.toml"
     resolved.write_text(scenario.to_toml())
     assert load_scenario(resolved) == scenario
+
+
+def test_no_tool_touches_a_body_from_a_surface(body: Callable[..., Scenario], ball: pyvista.PolyData) -> None:
+    touching = {"tool.contact": "rigid_frictionless", "tool.edge_radius": "1 mm", "fem.kinematics": "finite"}
+    with pytest.raises(UncoveredError, match="not part of the geometry surface"):
+        prepare("fem", body(ball, touching))
 
 
 def test_the_wave_has_no_body_from_a_surface(body: Callable[..., Scenario], ball: pyvista.PolyData) -> None:

@@ -136,7 +136,7 @@ def test_friction_lies_between_frictionless_and_stuck():
     free = model(border=0.05).run(load)
     stuck = model(contact="rigid_bonded", edge_radius=None, border=0.05).run(load)
     assert 1.01 * free.force[1] < block.force[1] < 0.9 * stuck.force[1]
-    np.testing.assert_allclose(block.force, axial.force, rtol=1e-2)
+    np.testing.assert_allclose(block.force, axial.force, rtol=1.5e-2)
     np.testing.assert_allclose(block.reaction, block.force, rtol=1e-6)
 
 
