@@ -23,7 +23,7 @@ ELEMENT = "hex27"
 PIECES = {"coarse": 2, "default": 2, "fine": 3}
 DENSITY = {"coarse": 0.7, "default": 1.0, "fine": 1.5}
 TIED = Resolution(edge=0.04, under=1.0, growth=0.7)
-FINEST_EDGE = 0.01  # element size at the edge of a tool that touches, in tool radii, at least
+FINEST_EDGE, COARSEST_EDGE = 0.01, 0.05  # element size at the edge of a tool that touches, in tool radii
 UNDER = 1.0 / 12.0  # largest element under a tool that touches, in tool radii
 VERTICAL_GROWTH = 0.7
 INNER_SQUARE = 0.45  # half side over the radius of the innermost circle that is asked for
@@ -55,7 +55,7 @@ def _resolution(problem: Problem) -> Resolution:
     if not problem.touches:
         return TIED
     wanted = CONTACT_MODELS[tool.contact].resolution(problem)
-    return replace(wanted, edge=max(wanted.edge, FINEST_EDGE), under=UNDER)
+    return replace(wanted, edge=min(max(wanted.edge, FINEST_EDGE), COARSEST_EDGE), under=UNDER)
 
 
 def _grid(problem: Problem, extent: Extent, resolution: Resolution, density: float) -> DiscGrid:
@@ -63,8 +63,8 @@ def _grid(problem: Problem, extent: Extent, resolution: Resolution, density: flo
     rims = [f.position for f in extent.radial]
     _require_room(problem, rims, extent.radius)
     pieces = PIECES[problem.discretisation.density]
-    least = min([radius, *rims])
-    inner = max(INNER_SQUARE * min(least, *(g * radius for g in resolution.gather)), pieces * resolution.edge * radius)
+    smallest = pieces * resolution.edge / INNER_SQUARE
+    inner = INNER_SQUARE * min([*rims, *(max(place, smallest) * radius for place in resolution.gather)])
     return DiscGrid(
         rings=_rings(radius, inner, extent, resolution, density),
         pieces=pieces,
