@@ -20,7 +20,7 @@ from fem.mesh import Mesh
 from fem.mesh.rows import ring_areas
 from fem.problem import Problem
 
-HOLD, GIVE = 1e2, 1e-6  # k in shear moduli over the thickness of the layer that gives more; what it gives
+HOLD, GIVE = 1e2, 1e-5  # k in shear moduli over the thickness of the layer that gives more; what it gives
 HALF_WAVE = 1.0 / 6.0  # length in tool radii over which a thin side is bent
 OWN_UNKNOWNS = 3  # of a node, besides its displacements
 

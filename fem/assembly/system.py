@@ -115,14 +115,10 @@ class System:
         self.interfaces: tuple[Slipping, ...] = ()
 
     @property
-    def rubs(self) -> bool:
-        """Whether the body slides against friction."""
-        return self.sliding is not None or any(interface.rubs for interface in self.interfaces)
-
-    @property
     def remembers(self) -> bool:
         """Whether a state depends on the states before it."""
-        return self.memory is not None or self.rubs
+        rubs = self.sliding is not None or any(interface.rubs for interface in self.interfaces)
+        return rubs or self.memory is not None
 
     def advanced(self, duration: float) -> System:
         """The equations of a step that takes `duration` s from the last accepted state."""

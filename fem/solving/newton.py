@@ -88,7 +88,7 @@ def solve_newton(
             step = _correction(problem, state, evaluation, control, target)
         except SingularMatrixError as error:
             return NewtonResult(state, iteration, str(error))
-        damped = problem.system.rubs and (control == "force" or _reached(problem, state, target))
+        damped = problem.system.sliding is not None and (control == "force" or _reached(problem, state, target))
         moved = _move(problem, state, evaluation, step, settings.halvings, damped)
         if moved is None:
             return NewtonResult(state, iteration, "an element turns inside out")
@@ -150,9 +150,9 @@ def _move(
 ) -> tuple[State, Evaluation] | None:
     """Make a correction, halved until no element is inside out.
 
-    On a body that rubs, whose equations have kinks, it is damped: also halved while it leaves more unbalanced than
-    before; if it always does, the half that leaves least is made. The way to another depth, which upsets
-    the balance, is not damped.
+    Where it is damped (on a body that rubs on a fixed one, whose equations have kinks; not on the way to another depth,
+    which upsets the balance) it is also halved while it leaves more unbalanced than before; if it always does, the half
+    that leaves least is made.
     """
     dy, df = step
     pressure_step = problem.system.pressure_after(evaluation, dy) - state.pressure
