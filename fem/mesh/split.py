@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from fem.arrays import FloatArray
 from fem.mesh.quads import Mesh
 
 
@@ -38,17 +37,14 @@ def _split_below(mesh: Mesh, layer: int) -> Mesh:
     elements[:, upper] = twin[elements[:, upper]]
     undersides = list(mesh.undersides)
     undersides[layer] = twin[row]
-
-    def longer(values: FloatArray) -> FloatArray:
-        return np.concatenate((values, values[parted]))
-
+    origin = np.concatenate((np.arange(count), parted))
     return replace(
         mesh,
-        nodes=longer(mesh.nodes),
+        nodes=mesh.nodes[origin],
         elements=elements,
-        axis=longer(mesh.axis),
-        top=longer(mesh.top),
-        base=longer(mesh.base),
-        border=longer(mesh.border),
+        axis=mesh.axis[origin],
+        top=mesh.top[origin],
+        base=mesh.base[origin],
+        border=mesh.border[origin],
         undersides=tuple(undersides),
     )

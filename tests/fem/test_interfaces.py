@@ -136,7 +136,7 @@ def test_what_a_cycle_loses_is_limit_times_slip():
     work = np.trapezoid(np.append(0.0, PRESS.value), depth)
     assert most == pytest.approx(1.0, abs=1e-6)
     assert lost > 1e-6
-    assert work == pytest.approx(lost + stored, rel=2e-2)
+    assert work - stored == pytest.approx(lost, rel=5e-3)
 
 
 def test_a_stopped_run_goes_on(slipping, tmp_path):
