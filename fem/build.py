@@ -13,6 +13,7 @@ from fem.equations import set_up
 from fem.errors import FemError
 from fem.fields import FieldRecovery
 from fem.layout import lay_out
+from fem.mesh.split import split_interfaces
 from fem.model import Model
 from fem.problem import Problem
 from fem.solving import NewtonSettings
@@ -46,7 +47,8 @@ def _solid_model(problem: Problem, linear_solver: str, warnings: tuple[str, ...]
 
 
 def _axisymmetric_model(problem: Problem, linear_solver: str, warnings: tuple[str, ...]) -> Model:
-    mesh = lay_out(problem)
+    slipping = [layer for layer, limit in enumerate(problem.shear_limits) if limit is not None]
+    mesh = split_interfaces(lay_out(problem), slipping)
     conditions = CONTACT_MODELS[problem.tool.contact].conditions(mesh, problem)
     support = SUPPORT_MODELS[problem.support.kind].fixed(mesh, problem)
     radial = (support & ~sliding_nodes(mesh, problem)) | mesh.axis | conditions.held

@@ -8,13 +8,15 @@ import numpy as np
 
 from fem.arrays import BoolArray, FloatArray
 from fem.assembly import ElementGeometry, Numbering, System, build_scatter, element_laws, number_unknowns
+from fem.assembly.slipping import Slipping
 from fem.components import Components
 from fem.contact import Conditions
 from fem.contact.punch import Punch
 from fem.contact.touching import STIFFNESS, Contact
 from fem.contact_system import ContactSystem
+from fem.interfaces import OWN_UNKNOWNS, slipping_interfaces, with_interfaces
 from fem.linear_solver import make_solver
-from fem.mesh import AnyMesh
+from fem.mesh import AnyMesh, Mesh
 from fem.problem import Problem
 from fem.solving import Equilibrium
 
@@ -42,7 +44,8 @@ def set_up(
     linear_solver
         See :func:`fem.prepare`.
     """
-    numbering = number_unknowns(fixed, conditions.tied)
+    numbering, interfaces = _numbered(problem, mesh, fixed, conditions.tied)
+    numbering = replace(numbering, count=numbering.count + sum(OWN_UNKNOWNS * len(part.start) for part in interfaces))
     if conditions.punch is not None and conditions.area is not None:
         more = 1 + _multipliers(conditions.punch, len(fixed)) * int(np.sum(conditions.area > 0.0))
         numbering = replace(numbering, count=numbering.count + more)
@@ -52,19 +55,32 @@ def set_up(
         tuple(layer.relaxation for layer in problem.layers),
         _pretension(problem, geometry.components),
     )
-    scatter = build_scatter(mesh.elements, numbering)
+    scatter = with_interfaces(build_scatter(mesh.elements, numbering), numbering.count, interfaces)
     if conditions.punch is not None and conditions.area is not None:
         contact = _contact(problem, mesh, numbering, conditions.punch, conditions.area)
         touched = ContactSystem(geometry, laws, numbering, scatter, _stabilisation(problem), contact)
         solver = make_solver(linear_solver, touched.scatter.indptr, touched.scatter.indices)
-        return Equilibrium(touched, solver, -np.eye(1, numbering.count, contact.tool)[0], contact.tool)
+        push = -np.eye(1, numbering.count, contact.tool)[0]
+        return Equilibrium(touched.slipping(interfaces), solver, push, contact.tool)
     solver = make_solver(linear_solver, scatter.indptr, scatter.indices)
     nodal = np.zeros(fixed.shape)
     nodal[-1] = conditions.load
     load: FloatArray = numbering.reduce(nodal)
     probe = int(numbering.unknown[-1, mesh.interfaces[0][0]])
     system = System(geometry, laws, numbering, scatter, _stabilisation(problem))
-    return Equilibrium(system, solver, load, probe)
+    return Equilibrium(system.slipping(interfaces), solver, load, probe)
+
+
+def _numbered(
+    problem: Problem, mesh: AnyMesh, fixed: BoolArray, tied: BoolArray
+) -> tuple[Numbering, tuple[Slipping, ...]]:
+    """The displacements' numbers and the interfaces that slip; in small strain their sides stay level."""
+    if not isinstance(mesh, Mesh):
+        return number_unknowns(fixed, tied), ()
+    if problem.kinematics == "linear":
+        return number_unknowns(fixed, tied, zip(mesh.undersides, mesh.interfaces[1:], strict=True)), ()
+    numbering = number_unknowns(fixed, tied)
+    return numbering, slipping_interfaces(problem, mesh, numbering)
 
 
 def _contact(problem: Problem, mesh: AnyMesh, numbering: Numbering, punch: Punch, area: FloatArray) -> Contact:

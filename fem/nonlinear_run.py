@@ -105,7 +105,8 @@ def _keep(record: Record, system: System, time: float, state: State) -> None:
     evaluation = system.evaluate(state.y, state.pressure)
     if evaluation is None:
         raise ArithmeticError("an accepted state cannot be evaluated")
-    record.add(time, state, reaction(system, evaluation.element_force), largest_strain(system, state.y, finite=True))
+    returned = reaction(system, evaluation.element_force, evaluation.grips)
+    record.add(time, state, returned, largest_strain(system, state.y, finite=True))
 
 
 def _between(record: Record, system: System, advance: Advance, start: State) -> Record | None:

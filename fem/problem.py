@@ -219,6 +219,10 @@ class Problem:
         layers' moduli are those of small motions from there. Not with geometry = "surface".
     surface
         The body's surface, for that geometry only (see :func:`fem.read_surface`).
+    interface_shear_limit
+        Shear stress in Pa, 0 to 1e12, per area at rest, at which the layers slide on each other without parting: one
+        value for all interfaces, or one for each from the top. 0: without friction; None or inf: bonded. For
+        geometry = "axisymmetric" only; in linear kinematics 0 or bonded only.
 
     Raises
     ------
@@ -234,6 +238,14 @@ class Problem:
     geometry: Literal["axisymmetric", "block", "surface"] = "axisymmetric"
     surface: Surface | None = None
     pretension: float = 0.0
+    interface_shear_limit: float | tuple[float | None, ...] | None = None
+
+    @property
+    def shear_limits(self) -> tuple[float | None, ...]:
+        """Limit in Pa of each interface from the top; None where it is bonded."""
+        given = self.interface_shear_limit
+        limits = given if isinstance(given, tuple) else (given,) * (len(self.layers) - 1)
+        return tuple(None if limit is None or limit == math.inf else limit for limit in limits)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "layers", tuple(self.layers))
@@ -251,6 +263,7 @@ class Problem:
         self._require_pretension()
         self._require_room()
         self._require_sliding()
+        self._require_slipping()
         self._require_three_dimensions()
 
     def _require_finite_thickness(self) -> None:
@@ -290,6 +303,26 @@ class Problem:
             raise FemError(
                 "support.clamp_shear_limit: only with kinematics = 'finite' and geometry = 'axisymmetric'; leave it out"
             )
+
+    def _require_slipping(self) -> None:
+        limits, name, interfaces = self.shear_limits, "interface_shear_limit", len(self.layers) - 1
+        if self.interface_shear_limit is None:
+            return
+        if not limits or len(limits) != interfaces:
+            raise FemError(
+                f"{name}: {len(limits)} values for {len(self.layers)} layers, which have {interfaces} interfaces; "
+                "give one value for all, or one for each from the top"
+            )
+        for limit in (limit for limit in limits if limit is not None):
+            if not 0.0 <= limit <= LARGEST_SHEAR_LIMIT:
+                raise FemError(f"{name} = {limit:g} Pa: must be from 0 to {LARGEST_SHEAR_LIMIT:g} Pa, or inf (bonded)")
+            if self.geometry != "axisymmetric":
+                raise FemError(f"{name}: only with geometry = 'axisymmetric'; leave it out")
+            if self.kinematics == "linear" and limit > 0.0:
+                raise FemError(
+                    f"{name} = {limit:g} Pa: kinematics = 'linear' has interfaces without friction (0) and bonded "
+                    "ones (inf) only; use kinematics = 'finite'"
+                )
 
     def _require_three_dimensions(self) -> None:
         tool = self.tool

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ import numpy as np
 from fem import strain
 from fem.arrays import FloatArray
 from fem.assembly import System
+from fem.assembly.slipping import Grip
 from fem.deformation import Deformation
 from fem.fields import FieldRecovery
 from fem.mesh import AnyMesh
@@ -97,15 +99,16 @@ class Record:
         return np.array(rows).reshape(len(nodal), len(self.layer_names))
 
 
-def reaction(system: System, element_force: FloatArray) -> float:
-    """Upward force in N of the support on the specimen, from element forces, vertical ones last.
+def reaction(system: System, element_force: FloatArray, grips: Sequence[Grip] = ()) -> float:
+    """Upward force in N of the support on the specimen, from element forces, vertical ones last, and interfaces.
 
     Internal forces in z add up to zero over all nodes, so what the support returns is minus the sum over the
-    nodes that may move.
+    nodes that may move; an interface that slips pulls on the fixed end of its curve.
     """
     last = -len(element_force) // len(system.numbering.unknown)
     vertical = element_force[last:][system.scatter.element_unknowns[last:] < system.numbering.count]
-    return float(-vertical.sum())
+    slipping = zip(system.interfaces, grips, strict=False)
+    return float(-vertical.sum()) + sum(interface.on_fixed(grip) for interface, grip in slipping)
 
 
 def largest_strain(system: System, y: FloatArray, finite: bool) -> float:

@@ -19,8 +19,7 @@ def unit_state(problem: Equilibrium) -> tuple[State, float]:
     tangent = system.tangent(rest)
     problem.solver.factorise(tangent)
     y = problem.solver.solve(problem.unit_load[:, None])[:, 0]
-    force = system.linear_force(rest, y)
-    y = y + problem.solver.solve((problem.unit_load - system.scatter.vector(force))[:, None])[:, 0]
+    y = y + problem.solver.solve((problem.unit_load - system.linear_residual(rest, y))[:, None])[:, 0]
     force = system.linear_force(rest, y)
     return State(y, system.linear_pressure(rest, y), 1.0), reaction(system, force)
 

@@ -50,7 +50,8 @@ class Physics(FileModel):
     pretension : float or None
         In-plane tensile stress before the press, Pa.
     interface_shear_limit : float or None
-        Shear stress at which layers begin to slide on each other, Pa: the interface that comes to it first.
+        Shear stress at which layers begin to slide on each other, Pa: every interface, where it comes to it, in the
+        finite elements in axial symmetry; the interface that comes to it first, as a whole, in the wave.
     clamp_shear_limit : float or None
         Shear stress at which a sheet over a hole begins to slide on the plate round it, Pa; part of the finite
         elements in finite strain and axial symmetry.

@@ -11,7 +11,7 @@ FRICTION = "friction_coefficient"
 """Belongs to a rigid_frictional tool, which each model refuses by itself, and has no effect on any other."""
 
 REASONS = {
-    "interface_shear_limit": "the layered wave on a base has it",
+    "interface_shear_limit": "the layered wave on a base and the finite elements have it",
     "clamp_shear_limit": "only the finite elements have it, for a hole in axial symmetry",
 }
 """Why an option is in no model."""

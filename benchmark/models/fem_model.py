@@ -28,7 +28,7 @@ from benchmark.models.result import (
 from benchmark.models.wider_edge import follow_deeper
 from fem.model import Model
 
-OPTIONS = ("pretension", "adhesion_force", "clamp_shear_limit")
+OPTIONS = ("pretension", "adhesion_force", "clamp_shear_limit", "interface_shear_limit")
 
 
 class FemModel:
@@ -58,6 +58,7 @@ class FemModel:
         self._keeping = keeping
         _refuse_contact(scenario)
         _refuse_clamp(scenario)
+        _refuse_slip(scenario)
         try:
             slow = scenario.fem.geometry == "surface"
             mesh_file = kept_mesh(keeping) if keeping is not None and slow else None
@@ -150,6 +151,18 @@ def _refuse_clamp(scenario: Scenario) -> None:
         )
 
 
+def _refuse_slip(scenario: Scenario) -> None:
+    """Refuse layers that slide on each other where this solver has none."""
+    options, limit = scenario.fem, scenario.physics.interface_shear_limit
+    if limit is None:
+        return
+    if options.geometry != "axisymmetric" or (options.kinematics == "linear" and limit > 0.0):
+        raise UncoveredError(
+            "the option physics.interface_shear_limit is part of axisymmetric geometry only, in finite strain or "
+            "without friction (0 Pa)"
+        )
+
+
 def problem_of(scenario: Scenario) -> fem.Problem:
     """The scenario in the solver's terms.
 
@@ -182,6 +195,7 @@ def problem_of(scenario: Scenario) -> fem.Problem:
         geometry=options.geometry,
         surface=surface,
         pretension=scenario.physics.pretension or 0.0,
+        interface_shear_limit=scenario.physics.interface_shear_limit,
     )
 
 

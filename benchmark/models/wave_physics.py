@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from benchmark.files import Scenario
+from benchmark.models.result import UncoveredError
 from wavemodel import ShearLimit
 from wavemodel.physics import (
     Adhesion,
@@ -88,10 +89,15 @@ def wave_slip(scenario: Scenario) -> ShearLimit | None:
 
     Raises
     ------
-    wavemodel.WaveError
-        If it is not positive.
+    UncoveredError
+        If all of them slide from the start.
     """
     limit = scenario.physics.interface_shear_limit
+    if limit == 0.0:
+        raise UncoveredError(
+            "the option physics.interface_shear_limit = 0 Pa is not part of this model: it lets one interface slide, "
+            "the one that comes to a limit above 0 first"
+        )
     return None if limit is None else ShearLimit(limit)
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -45,7 +47,7 @@ class Numbering:
         return total[:-1]
 
 
-def number_unknowns(fixed: BoolArray, tied: BoolArray) -> Numbering:
+def number_unknowns(fixed: BoolArray, tied: BoolArray, level: Iterable[tuple[IntArray, IntArray]] = ()) -> Numbering:
     """Number what is neither fixed (2, N) nor the same as another.
 
     Parameters
@@ -54,10 +56,14 @@ def number_unknowns(fixed: BoolArray, tied: BoolArray) -> Numbering:
         Displacements that are zero, (2, N) or (3, N), the vertical one last.
     tied
         Nodes (N,) that share one vertical displacement.
+    level
+        Rows of nodes (m,), not tied, whose vertical displacements are those of other rows (m,).
     """
     representative = np.arange(fixed.size).reshape(fixed.shape)
     if tied.any():
         representative[-1, tied] = representative[-1, tied].min()
+    for row, other in level:
+        representative[-1, row] = representative[-1, other]
     free = np.unique(representative[~fixed])
     unknown = np.searchsorted(free, representative)
     unknown[fixed] = FIXED
@@ -95,6 +101,17 @@ class Scatter:
         """Forces (n,) of element forces (18, E)."""
         out: FloatArray = self.vector_sum @ element.ravel()
         return out
+
+    @cached_property
+    def _keys(self) -> IntArray:
+        count = len(self.indptr) - 1
+        out: IntArray = np.repeat(np.arange(count), np.diff(self.indptr)) * count + self.indices
+        return out
+
+    def places(self, rows: IntArray, columns: IntArray) -> IntArray:
+        """Where the entries (k,) at rows and columns, or their mirror images, are in the upper triangle."""
+        low, high = np.minimum(rows, columns), np.maximum(rows, columns)
+        return np.searchsorted(self._keys, low * (len(self.indptr) - 1) + high)
 
     def round_off(self, tangent: FloatArray, y: FloatArray) -> float:
         """Norm of the forces that round-off leaves unbalanced: eps |A| |y| of entries (nnz,), unknowns (n,)."""

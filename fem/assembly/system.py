@@ -23,6 +23,7 @@ from fem.assembly.laws import ElementLaws
 from fem.assembly.memory import Memory
 from fem.assembly.scatter import Numbering, Scatter, packed_positions
 from fem.assembly.sliding import Sliding
+from fem.assembly.slipping import Grip, Slipping
 from fem.deformation import Deformation
 
 
@@ -48,6 +49,8 @@ class Evaluation:
         Their sum on the unknowns (n,), with the friction.
     friction_stiffness
         Derivative (m,) in N/m of the friction on the unknowns that rub.
+    grips
+        The interfaces that slip.
     """
 
     deformation: Deformation
@@ -58,6 +61,7 @@ class Evaluation:
     element_force: FloatArray
     residual: FloatArray
     friction_stiffness: FloatArray
+    grips: tuple[Grip, ...]
 
     @property
     def consistent_pressure(self) -> FloatArray:
@@ -108,11 +112,13 @@ class System:
         self.memory = None if laws.prony is None else Memory.of_rest(laws.prony, shape)
         self._duration = 0.0
         self.sliding: Sliding | None = None
+        self.interfaces: tuple[Slipping, ...] = ()
 
     @property
     def remembers(self) -> bool:
         """Whether a state depends on the states before it."""
-        return self.memory is not None or self.sliding is not None
+        rubs = self.sliding is not None or any(interface.rubs for interface in self.interfaces)
+        return rubs or self.memory is not None
 
     def advanced(self, duration: float) -> System:
         """The equations of a step that takes `duration` s from the last accepted state."""
@@ -125,6 +131,8 @@ class System:
     def accepted(self, y: FloatArray) -> System:
         """The equations after a step that ends at unknowns y (n,); evaluated there they give its forces."""
         slid = self if self.sliding is None else self.rubbing(self.sliding.after(y))
+        if self.interfaces:
+            slid = slid.slipping(tuple(interface.after(y) for interface in self.interfaces))
         if self.memory is None:
             return slid
         deformation = Deformation(self.geometry.components, self.geometry.gradient(self.element_displacement(y)))
@@ -147,6 +155,12 @@ class System:
         """The same equations with friction on a fixed body."""
         other = copy.copy(self)
         other.sliding = sliding
+        return other
+
+    def slipping(self, interfaces: tuple[Slipping, ...]) -> System:
+        """The same equations with interfaces that slip, whose entries the pattern has."""
+        other = copy.copy(self)
+        other.interfaces = interfaces
         return other
 
     def displaced(self, elements: IntArray, prescribed: FloatArray) -> System:
@@ -209,9 +223,23 @@ class System:
         stress = self.laws.stress(deformation) + at_points * deformation.cofactor
         force = self.geometry.forces(stress * weight) + np.einsum("nie,ie->ne", coupling, mismatch)
         residual, friction_stiffness = self._with_friction(self.scatter.vector(force), y)
-        if not np.isfinite(residual).all():
+        grips = self._gripped(residual, y)
+        if grips is None or not np.isfinite(residual).all():
             return None
-        return Evaluation(deformation, pressure, at_points, coupling, mismatch, force, residual, friction_stiffness)
+        return Evaluation(
+            deformation, pressure, at_points, coupling, mismatch, force, residual, friction_stiffness, grips
+        )
+
+    def _gripped(self, residual: FloatArray, y: FloatArray) -> tuple[Grip, ...] | None:
+        """The interfaces at unknowns y (n,), their forces added to the residual (n,); None beyond an end of one."""
+        grips = []
+        for interface in self.interfaces:
+            grip = interface.grip(y)
+            if grip is None:
+                return None
+            interface.add_force(grip, residual)
+            grips.append(grip)
+        return tuple(grips)
 
     def _with_friction(self, residual: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Forces (n,) with the friction at unknowns y (n,), and the friction's derivative (m,)."""
@@ -233,6 +261,8 @@ class System:
         out = self.scatter.matrix(packed)
         if self.sliding is not None:
             out[self.scatter.indptr[self.sliding.unknowns]] += state.friction_stiffness
+        for interface, grip in zip(self.interfaces, state.grips, strict=True):
+            out[self.scatter.places(*interface.entries)] += interface.values(grip)
         return out
 
     def _condense(self, packed: FloatArray, coupling: FloatArray) -> None:
@@ -251,6 +281,16 @@ class System:
     def linear_pressure(self, rest: Evaluation, y: FloatArray) -> FloatArray:
         """Pressure coefficients (3, E) at small displacements y (n,)."""
         out: FloatArray = self._field_modulus * np.einsum("nie,ne->ie", rest.coupling, self.element_displacement(y))
+        return out
+
+    def linear_residual(self, rest: Evaluation, y: FloatArray) -> FloatArray:
+        """Forces (n,) of small displacements y (n,), from the moduli and the interfaces at rest."""
+        out = self.scatter.vector(self.linear_force(rest, y))
+        for interface, grip in zip(self.interfaces, rest.grips, strict=True):
+            (rows, columns), values = interface.entries, interface.values(grip)
+            mirrored = np.where(rows == columns, 0.0, values)
+            np.add.at(out, rows, values * y[columns])
+            np.add.at(out, columns, mirrored * y[rows])
         return out
 
     def linear_force(self, rest: Evaluation, y: FloatArray) -> FloatArray:

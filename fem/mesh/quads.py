@@ -27,6 +27,9 @@ class Mesh:
         Nodes (N,) on the axis, the top face, the lower face and the outer border.
     interfaces
         For each layer the nodes of its top face from the axis outwards, corners and mid-sides in turn.
+    undersides
+        For each layer but the last the nodes of its lower face in the same order: those of the next top face, or
+        where the interface is split nodes at the same places (see :mod:`fem.mesh.split`).
     """
 
     nodes: FloatArray
@@ -37,6 +40,7 @@ class Mesh:
     base: BoolArray
     border: BoolArray
     interfaces: tuple[IntArray, ...]
+    undersides: tuple[IntArray, ...]
 
     @property
     def radius(self) -> float:
@@ -74,6 +78,7 @@ def mesh_of_quads(points: FloatArray, quads: IntArray, layer_tops: FloatArray) -
     nodes = np.ascontiguousarray(basis.doflocs.T)
     elements = np.asarray(basis.element_dofs, dtype=np.int64)
     r, z = nodes.T
+    interfaces = tuple(_row(r, np.flatnonzero(z == -depth)) for depth in layer_tops)
     return Mesh(
         nodes,
         elements,
@@ -82,7 +87,8 @@ def mesh_of_quads(points: FloatArray, quads: IntArray, layer_tops: FloatArray) -
         top=np.asarray(z == 0.0),
         base=np.asarray(z == z.min()),
         border=np.asarray(r == r.max()),
-        interfaces=tuple(_row(r, np.flatnonzero(z == -depth)) for depth in layer_tops),
+        interfaces=interfaces,
+        undersides=interfaces[1:],
     )
 
 

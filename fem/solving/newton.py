@@ -88,7 +88,8 @@ def solve_newton(
             step = _correction(problem, state, evaluation, control, target)
         except SingularMatrixError as error:
             return NewtonResult(state, iteration, str(error))
-        moved = _move(problem, state, evaluation, step, settings.halvings)
+        damped = problem.system.sliding is not None and (control == "force" or _reached(problem, state, target))
+        moved = _move(problem, state, evaluation, step, settings.halvings, damped)
         if moved is None:
             return NewtonResult(state, iteration, "an element turns inside out")
         state, evaluation = moved
@@ -145,16 +146,18 @@ def _move(
     evaluation: Evaluation,
     step: tuple[FloatArray, float],
     halvings: int,
+    damped: bool,
 ) -> tuple[State, Evaluation] | None:
     """Make a correction, halved until no element is inside out.
 
-    On a body that rubs, whose equations have kinks, it is also halved while it leaves more unbalanced than before; if
-    it always does, the half that leaves least is made.
+    Where it is damped (on a body that rubs on a fixed one, whose equations have kinks; not on the way to another depth,
+    which upsets the balance) it is also halved while it leaves more unbalanced than before; if it always does, the half
+    that leaves least is made.
     """
     dy, df = step
     pressure_step = problem.system.pressure_after(evaluation, dy) - state.pressure
     least, best = np.inf, None
-    before = _unbalanced(problem, state, evaluation) if problem.system.sliding is not None else np.inf
+    before = _unbalanced(problem, state, evaluation) if damped else np.inf
     for halving in range(halvings + 1):
         share = 0.5**halving
         moved = State(state.y + share * dy, state.pressure + share * pressure_step, state.force + share * df)

@@ -6,7 +6,8 @@ solutions, with zeta = k (z - top),
     U = (A + B zeta) e^-zeta,    W = -(A + (3 - 4 nu) B + B zeta) e^-zeta,
 
 and their mirror images that decay upwards from the layer's bottom. Tractions and displacements at the interfaces give
-the amplitudes for each wavenumber k; the deflection on the axis is the Hankel integral
+the amplitudes for each wavenumber k (at an interface without friction no shear stands in the place of one U); the
+deflection on the axis is the Hankel integral
 
     w(z) = q a int_0^inf k W(k, z) J_1(k a) / k dk,
 
@@ -21,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import j1
 
-from fem.arrays import FloatArray
+from fem.arrays import BoolArray, FloatArray
 
 NODES_PER_PANEL = 12
 DECAYED = 40.0  # k h at which exp(-k h) is nothing
@@ -30,7 +31,7 @@ SMALLEST = 1e-6  # k a of the first panel
 
 @dataclass(frozen=True)
 class ElasticStack:
-    """L bonded isotropic layers from the surface down.
+    """L isotropic layers from the surface down.
 
     Attributes
     ----------
@@ -40,11 +41,14 @@ class ElasticStack:
         (L,) in Pa.
     poisson_ratio
         (L,).
+    slipping
+        Which interfaces (L - 1,) carry no shear, layers staying in touch; None: all are bonded.
     """
 
     thickness: FloatArray
     youngs_modulus: FloatArray
     poisson_ratio: FloatArray
+    slipping: BoolArray | None = None
 
     @property
     def shear_modulus(self) -> FloatArray:
@@ -85,6 +89,9 @@ def surface_response(stack: ElasticStack, k: FloatArray) -> FloatArray:
         rows = slice(4 * n + 2, 4 * n + 6)
         matrix[:, rows, 4 * n : 4 * n + 4] = bottoms[n] * scale[:, None]
         matrix[:, rows, 4 * n + 4 : 4 * n + 8] = -tops[n + 1] * scale[:, None]
+        if stack.slipping is not None and stack.slipping[n]:
+            matrix[:, 4 * n + 2, :] = 0.0
+            matrix[:, 4 * n + 2, 4 * n : 4 * n + 4] = bottoms[n][:, 2]
     if endless:
         matrix[:, -2:, -2:] = np.eye(2)
     else:

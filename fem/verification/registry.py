@@ -19,6 +19,7 @@ from fem.verification import (
     patch,
     press,
     prony,
+    slipping,
     solid_patch,
 )
 from fem.verification.case import Case
@@ -32,6 +33,7 @@ FAMILIES: tuple[Callable[[], tuple[Case, ...]], ...] = (
     hayes.cases,
     hertz.cases,
     layered.cases,
+    slipping.cases,
     cylinder.cases,
     cook.cases,
     le1.cases,

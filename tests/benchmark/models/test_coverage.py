@@ -70,3 +70,14 @@ def test_a_sheet_that_slides_on_its_plate_is_the_fem_s() -> None:
     assert slid.max() > 1.001 * held.max()
     with pytest.raises(UncoveredError, match="clamp_shear_limit"):
         prepare("wave", loose)
+
+
+def test_layers_that_slide_on_each_other_are_deeper_in_both_models() -> None:
+    press = {"load.peak": "3 N", "load.observations": "6", "fem.mesh": "coarse"}
+    loose = {**press, "physics.interface_shear_limit": "1 kPa"}
+    for model in ("fem", "wave"):
+        held, slid = (
+            prepare(model, scenario).run(scenario_drive(scenario)).depth.max()
+            for scenario in (load_scenario("skin-5N", press), load_scenario("skin-5N", loose))
+        )
+        assert 1.005 < slid / held < 1.1

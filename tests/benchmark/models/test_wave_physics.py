@@ -90,11 +90,22 @@ def test_a_shear_limit_lets_layers_slide_from_a_force_on(strain):
     assert beyond[0] < 1.0 - lost[9]
 
 
-def test_a_shear_limit_belongs_to_the_layered_wave():
-    for model, settings in (("fem", {}), ("wave", HOLE)):
-        scenario = load_scenario("skin-5N", {"physics.interface_shear_limit": "5 kPa", **settings})
-        with pytest.raises(UncoveredError, match="the layered wave on a base has it"):
-            prepare(model, scenario)
+@pytest.mark.parametrize(
+    ("model", "limit", "settings", "message"),
+    [
+        ("wave", "5 kPa", HOLE, "the layered wave on a base and the finite elements have it"),
+        ("wave", "0 kPa", {}, "it lets one interface slide"),
+        ("fem", "5 kPa", LINEAR, "in finite strain or without friction"),
+        ("fem", "5 kPa", {"fem.geometry": "block"}, "axisymmetric geometry only"),
+    ],
+)
+def test_where_a_shear_limit_is_not_covered(model, limit, settings, message):
+    scenario = load_scenario("skin-5N", {"physics.interface_shear_limit": limit, **settings})
+    with pytest.raises(UncoveredError, match=message):
+        prepare(model, scenario)
+
+
+def test_a_shear_limit_is_given_once():
     with pytest.raises(InputError, match="slip is given twice"):
         pressed({"physics.interface_shear_limit": "5 kPa", "physics.slip_force": "1 N", "physics.slip_share": "0.5"})
 

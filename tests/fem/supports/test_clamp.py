@@ -47,6 +47,12 @@ def test_a_high_limit_holds_the_sheet(held):
     np.testing.assert_allclose(model(1e9).run(PRESS).depth, held.depth, atol=5e-4 * held.depth.max())
 
 
+def test_a_prescribed_depth_gives_the_force_back(sliding):
+    up = slice(0, 20)
+    load = fem.Load("depth", PRESS.time[up], sliding.depth[up])
+    np.testing.assert_allclose(model(5e3).run(load).force, sliding.force[up], rtol=1e-6)
+
+
 def test_without_friction_the_plate_is_a_row_of_rollers():
     free = model(0.0)
     plain = replace(free.equilibrium, system=free.equilibrium.system.plain)

@@ -50,3 +50,11 @@ def test_a_very_stiff_base_is_a_rigid_one():
     bonded = axis_deflection(stack([0.7], 1.0, 0.45), 1.0, 1.0)
     on_stiff = axis_deflection(stack([0.7, np.inf], [1.0, 1e7], [0.45, 0.3]), 1.0, 1.0)
     assert on_stiff[0] == pytest.approx(bonded[0], rel=1e-5)
+
+
+def test_a_layer_that_slides_on_a_very_stiff_base():
+    """Without shear at its base: 2 sinh^2(k h) / (sinh(2 k h) + 2 k h) of the half-space's response."""
+    nu, k = 0.4, np.linspace(0.2, 5.0, 9)
+    body = ElasticStack(np.array([1.0, np.inf]), np.array([1.0, 1e8]), np.array([nu, 0.3]), np.array([True]))
+    exact = 2.0 * np.sinh(k) ** 2 / (np.sinh(2.0 * k) + 2.0 * k) * (1.0 - nu) / body.shear_modulus[0]
+    np.testing.assert_allclose(surface_response(body, k)[:, 0], exact, rtol=1e-5)
