@@ -37,7 +37,7 @@ def hexahedra(case: Case) -> ElementGeometry:
 def quadrilaterals(case: Case) -> ElementGeometry:
     """Axisymmetric Q2 with one constant pressure."""
     sets = (np.zeros(len(case.nodes), dtype=np.bool_),) * 4
-    full = gauss_geometry(Mesh(case.nodes, case.elements, case.layer, *sets, (np.array([0]),)))
+    full = gauss_geometry(Mesh(case.nodes, case.elements, case.layer, *sets, (np.array([0]),), ()))
     return replace(full, pressure=full.pressure[:1], pressure_transform=full.pressure_transform[:1, :1])
 
 
