@@ -55,7 +55,7 @@ def refuse_solid(scenario: Scenario) -> None:
     if scenario.fem.geometry == "surface":
         raise UncoveredError("a body from a surface file has no plane layers")
     if scenario.tool.tilt != 0.0:
-        raise UncoveredError("a tilted tool needs a three-dimensional geometry")
+        raise UncoveredError("a tilted tool is part of the three-dimensional finite elements only")
     if scenario.support.kind == "hole" and scenario.tool.position != (0.0, 0.0):
         raise UncoveredError("the tool stands off the centre of the hole")
 
