@@ -6,7 +6,7 @@ The last unknowns are the punch's displacement and the multipliers of the nodes 
 from __future__ import annotations
 
 import copy
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -88,8 +88,15 @@ class ContactSystem(System):
         """The equations whose contact fits a state with unknowns y (n,) and a press in N; None if this one does."""
         touch = self.contact.touch(y)
         contact = None if touch is None else self.contact.corrected(touch, press)
-        if contact is None:
+        return None if contact is None else self._with(contact)
+
+    def lightened(self, share: float) -> ContactSystem | None:
+        """The equations with a share of the friction limits; None without friction."""
+        if self.contact.punch.friction == 0.0:
             return None
+        return self._with(replace(self.contact, limit=share * self.contact.limit))
+
+    def _with(self, contact: Contact) -> ContactSystem:
         other = copy.copy(self)
         other.contact = contact
         return other

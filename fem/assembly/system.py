@@ -145,6 +145,11 @@ class System:
         del y, press
         return None
 
+    def lightened(self, share: float) -> System | None:
+        """The equations to begin with where a share of the press is left; None if they are these."""
+        del share
+        return None
+
     def with_laws(self, laws: ElementLaws) -> System:
         """The same equations with other laws of the same moduli at rest."""
         other = copy.copy(self)

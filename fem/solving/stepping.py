@@ -136,12 +136,22 @@ class Stepper:
     def _solve(self, value: float, time: float) -> tuple[NewtonResult, System]:
         """Newton's result at a load value and a time, and the equations that fit it."""
         iterations = 0
-        for guess in self._guesses(value, time):
-            result, system = self._settle(guess, value, time)
+        for guess, begun in self._beginnings(value, time):
+            result, system = self._settle(guess, value, begun)
             iterations += result.iterations
             if result.success:
                 break
         return replace(result, iterations=iterations), system
+
+    def _beginnings(self, value: float, time: float) -> Iterator[tuple[State, System]]:
+        """Predictions with the equations to begin with; on the way back, last, those of a lighter press."""
+        system = self._problem.system.advanced(time - self._time)
+        for guess in self._guesses(value, time):
+            yield guess, system
+        if abs(value) < abs(self._value):
+            lighter = system.lightened(max(value / self._value, 0.0))
+            if lighter is not None:
+                yield next(self._guesses(value, time)), lighter
 
     def _guesses(self, value: float, time: float) -> Iterator[State]:
         """Predictions at a load value and a time, the best first."""
@@ -152,9 +162,8 @@ class Stepper:
         if len(self._times) > LOWEST_ORDER + 1:
             yield self._known.predict(value, LOWEST_ORDER)
 
-    def _settle(self, guess: State, value: float, time: float) -> tuple[NewtonResult, System]:
-        """Newton's result from a guess, and the equations that fit it."""
-        system = self._problem.system.advanced(time - self._time)
+    def _settle(self, guess: State, value: float, system: System) -> tuple[NewtonResult, System]:
+        """Newton's result from a guess and equations to begin with, and the equations that fit it."""
         iterations = 0
         for _ in range(MOST_CORRECTIONS):
             ahead = replace(self._problem, system=system)

@@ -140,6 +140,16 @@ def test_friction_lies_between_frictionless_and_stuck():
     np.testing.assert_allclose(block.reaction, block.force, rtol=1e-6)
 
 
+def test_a_frictional_press_of_skin_goes_back_to_no_force_at_once():
+    layers, reports = ((1e-4, 1.5e6), (1.5e-3, 9.6e5), (1e-2, 4.78e4)), []
+    pressed = model(layers=layers, border=None, contact="rigid_frictional", friction_coefficient=0.3)
+    solution = pressed.run(press("force", 0.5, 0.0), on_step=reports.append)
+    assert [report.cuts for report in reports] == [0, 0]
+    assert solution.force[-1] == 0.0
+    assert abs(solution.depth[-1]) < 1e-9
+    assert np.abs(solution.displacement[-1]).max() < 1e-9
+
+
 @pytest.mark.slow
 def test_a_tilted_punch_with_friction_is_dragged_sideways_less_than_it_could_be():
     pressed = model(tilt=TILT, contact="rigid_frictional", friction_coefficient=0.3)

@@ -124,6 +124,16 @@ def test_friction_loses_energy_in_a_cycle():
     assert work > 1e-4 * solution.force.max() * solution.depth.max()
 
 
+def test_a_frictional_press_that_goes_back_to_no_force_leaves_the_tool_where_it_first_touched():
+    k = np.arange(1.0, 11.0)
+    value = 2.0 * np.minimum(k, 10.0 - k) / 5.0
+    solution = model("rigid_frictional", layers=SKIN, friction_coefficient=0.3).run(fem.Load("force", k, value))
+    assert solution.complete
+    np.testing.assert_allclose(solution.force, value, atol=1e-9)
+    assert abs(solution.depth[-1]) < 1e-9
+    assert np.abs(solution.displacement[-1]).max() < 1e-9
+
+
 @pytest.mark.parametrize(
     ("contact", "tool", "message"),
     [
