@@ -34,7 +34,7 @@ def unbent(chosen: Fit) -> Fit:
 
 
 def held_out_residuals(base: Fit, chosen: Fit) -> HeldOut:
-    """Fit without each condition (or, with one, without each trial) and settle only gain, zero and shift there."""
+    """Fit without each condition (or, with one, without each trial) and settle only its own nuisances there."""
     groups = np.array([trial.condition for trial in base.model.problem.trials])
     if np.unique(groups).size > 1:
         parts, kind = [groups == number for number in np.unique(groups)], "condition"

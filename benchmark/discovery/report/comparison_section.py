@@ -26,7 +26,7 @@ def comparison_section(record: DiscoveryRecord) -> Section:
     panels = [_panel(trace, record) for trace in chosen]
     text = (
         "One trial a condition stands for the rest, the one in the middle of its group; held-out trials are marked. "
-        "Per-trial gain, zero and time shift are fitted to each trial, before and after alike."
+        "Gain, zero, time shift and depth at touch of each trial are fitted, before and after alike."
     )
     words = record.labels.get("comparison", text)
     return Section(title, [Paragraph(words), repaired(panels, changed=record.named, measured=measured)])
