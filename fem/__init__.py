@@ -12,8 +12,9 @@ reports or other models.
 from fem.errors import CheckpointError, FemError
 from fem.load import Load
 from fem.materials import Fibre, FibreReinforced, Gent, LinearElastic, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
+from fem.parts import Discretisation, Layer, Support, Tool
 from fem.prepare import prepare
-from fem.problem import Discretisation, Layer, Problem, Support, Tool
+from fem.problem import Problem
 from fem.relaxation import PronyTerm
 from fem.solution import Failure, Resumed, Solution, StepReport
 from fem.surface_file import read_surface

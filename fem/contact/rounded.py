@@ -13,7 +13,8 @@ from fem.contact.rigid import RigidFrictionless
 from fem.errors import FemError
 from fem.mesh import Mesh
 from fem.mesh.rows import ring_areas
-from fem.problem import Problem, Tool
+from fem.parts import Tool
+from fem.problem import Problem
 
 REACH = 1.5  # radius in tool radii up to which nodes may touch the punch
 EDGE_ELEMENTS = 5.0  # elements over the edge radius where it begins and ends

@@ -10,8 +10,9 @@ import numpy as np
 from fem.load import Load
 from fem.materials import LinearElastic, NeoHookean
 from fem.model import Model
+from fem.parts import TOUCHING, Discretisation, Layer, Support, Tool
 from fem.prepare import prepare
-from fem.problem import TOUCHING, Discretisation, Layer, Problem, Support, Tool
+from fem.problem import Problem
 from fem.verification import half_space, hertz
 from fem.verification.case import Case, Quantity
 from fem.verification.half_space import Geometry

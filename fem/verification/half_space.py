@@ -17,8 +17,9 @@ from fem.arrays import FloatArray
 from fem.load import Load
 from fem.materials import LinearElastic
 from fem.model import Model
+from fem.parts import Layer, Support, Tool
 from fem.prepare import prepare
-from fem.problem import Layer, Problem, Support, Tool
+from fem.problem import Problem
 from fem.verification.case import Case, Quantity
 
 Geometry: TypeAlias = Literal["axisymmetric", "block"]

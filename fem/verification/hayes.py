@@ -14,8 +14,9 @@ import numpy as np
 
 from fem.load import Load
 from fem.materials import LinearElastic
+from fem.parts import Layer, Support, Tool
 from fem.prepare import prepare
-from fem.problem import Layer, Problem, Support, Tool
+from fem.problem import Problem
 from fem.verification.case import Case, Quantity
 
 KAPPA: Mapping[float, float] = MappingProxyType(

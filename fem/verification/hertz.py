@@ -14,8 +14,9 @@ import numpy as np
 
 from fem.load import Load
 from fem.materials import NeoHookean
+from fem.parts import Discretisation, Layer, Support, Tool
 from fem.prepare import prepare
-from fem.problem import Discretisation, Layer, Problem, Support, Tool
+from fem.problem import Problem
 from fem.verification.case import Case, Quantity
 from fem.verification.half_space import Geometry
 

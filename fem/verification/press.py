@@ -14,8 +14,9 @@ from fem.arrays import FloatArray
 from fem.load import Load
 from fem.materials import NeoHookean
 from fem.model import Model
+from fem.parts import Discretisation, Layer, Support, Tool
 from fem.prepare import prepare
-from fem.problem import Discretisation, Layer, Problem, Support, Tool
+from fem.problem import Problem
 from fem.verification.body import worst
 from fem.verification.case import Case, Quantity
 

@@ -68,7 +68,7 @@ def test_of_runs_that_all_stop_the_furthest_is_taken() -> None:
 )
 def test_other_presses_have_no_such_edge(other) -> None:
     assert follow(model(**other), {1.0: (1, 1.5)})[2] == [1.0]
-    assert max(WIDER) <= fem.problem.LARGEST_EDGE
+    assert max(WIDER) <= fem.parts.LARGEST_EDGE
 
 
 def test_a_try_that_is_far_from_the_usual_mesh_is_not_believed() -> None:
