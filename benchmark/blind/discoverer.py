@@ -7,7 +7,7 @@ from typing import Any, Protocol, cast
 
 from benchmark.discovery.result import Discovery
 from benchmark.errors import InputError
-from benchmark.files.session import Session
+from benchmark.files.sessions.trials import Session
 
 PRODUCT = "benchmark.discovery:discover"
 

@@ -26,7 +26,7 @@ def run_case(name: CaseName, discover: Discoverer) -> Judged:
 
     A discovery that raises is judged as one that says nothing; its time is the discovery's, reading included.
     """
-    from benchmark.files.session_loading import load_session
+    from benchmark.files.sessions.session_loading import load_session
 
     with tempfile.TemporaryDirectory(prefix="blind-") as parent:
         folder, made = case(name, Path(parent))

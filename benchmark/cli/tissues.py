@@ -36,7 +36,7 @@ def tissues(name: Name = None, new_name: NewName = None, json: Json = False, deb
 
 def _write_new(name: str | None, *, as_json: bool) -> None:
     from benchmark.cli.show import print_json
-    from benchmark.files.new_tissue import write_new_tissue
+    from benchmark.files.shipped import write_new_tissue
 
     if name is None:
         raise typer.BadParameter("the name is missing: tissues new NAME")

@@ -3,20 +3,16 @@
 It imports pydantic and NumPy, so a command line imports it inside the verbs that need it.
 """
 
-from benchmark.files.load import Load
-from benchmark.files.load_history import LoadHistory
+from benchmark.files.load import Load, LoadHistory
 from benchmark.files.loading import load_scenario, load_tissue, scenario_from_table, tissue_from_table
-from benchmark.files.notes import scenario_notes
-from benchmark.files.registry import Entry, shipped_scenarios, shipped_tissues
-from benchmark.files.scaling import scaled_tissue
-from benchmark.files.scenario import Scenario
-from benchmark.files.session import Session
-from benchmark.files.session_file import Camera
-from benchmark.files.session_loading import load_session
+from benchmark.files.scenario import Scenario, scenario_notes
+from benchmark.files.sessions.description import Camera
+from benchmark.files.sessions.session_loading import load_session
+from benchmark.files.sessions.trials import Session, Trial
+from benchmark.files.shipped import Entry, shipped_scenarios, shipped_tissues
 from benchmark.files.sources import Source
-from benchmark.files.tissue import Layer, Tissue
+from benchmark.files.tissue import Layer, Tissue, scaled_tissue
 from benchmark.files.tool import Support, Tool
-from benchmark.files.trials import Trial
 
 __all__ = [
     "Camera",

@@ -1,19 +1,106 @@
-"""The load of a scenario: how high, how long, in what shape; `load_history` makes the rows."""
+"""The load of a scenario: how high, how long, in what shape, and the rows of time and value that it stands for."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal, Self
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Final, Literal, NamedTuple, Self
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import field_serializer, field_validator, model_validator
+from pydantic_core import PydanticCustomError
 from pydantic_core.core_schema import SerializationInfo, ValidationInfo
 
+from bench_hw.tables import TableError
+from bench_hw.tables.columns import check_increasing, read_columns
+from bench_hw.tables.source import read_source
+from bench_hw.tables.units import to_si
+from benchmark.errors import InputError
 from benchmark.files import units
-from benchmark.files.base import FileModel
-from benchmark.files.load_table import LOADS, Rows, read_load_file, read_rows
-from benchmark.files.quantities import Bounds, Duration, Number, problem
+from benchmark.files.quantities import Bounds, Duration, Number, Quantity, problem, quantity
+from benchmark.files.schema import FileModel
 from benchmark.files.sources import folder_of
 from benchmark.files.units import format_quantity
+
+Rows = tuple[tuple[float, float], ...]
+
+LOADS: Final[dict[str, Quantity]] = {
+    "force": quantity(units.FORCE, -1e9, 1e9),
+    "depth": quantity(units.LENGTH, -1e3, 1e3),
+}
+"""What the values of a load measure under each control."""
+
+_TIME = quantity(units.DURATION, 0.0, 1e7)
+_COLUMNS: Final = {"force": ("force_N", "N"), "depth": ("depth_mm", "mm")}
+
+
+def read_load_file(path: Path, control: str) -> Rows:
+    """Read the load table of a scenario.
+
+    Parameters
+    ----------
+    path : Path
+        A CSV file with the columns `time_s` and `force_N` (or `depth_mm` under depth control); more are allowed.
+    control : str
+        "force" or "depth".
+
+    Returns
+    -------
+    tuple of (time, value)
+        In s and N or m.
+
+    Raises
+    ------
+    InputError
+        When the file or a column is missing, a cell is no finite number, or time does not increase from >= 0 s.
+    """
+    column, unit = _COLUMNS[control]
+    try:
+        columns = read_columns(read_source(path, ("time_s", column)), ("time_s", column))
+        check_increasing(path, "time_s", columns.values["time_s"], columns.lines)
+    except TableError as error:
+        raise InputError(f"{error}.") from None
+    values = to_si(columns.values[column], unit)
+    rows = tuple(zip(columns.values["time_s"].tolist(), values.tolist(), strict=True))
+    fault = _fault(rows)
+    if fault:
+        raise InputError(f"{path}: {fault}.")
+    return rows
+
+
+def read_rows(table: Any, control: str, info: ValidationInfo) -> Rows:
+    """Read rows written in the scenario, `[["0.1 s", "1 N"], ...]`.
+
+    Raises
+    ------
+    PydanticCustomError
+        Naming the row, when one is not a time and a load, or when time does not increase from >= 0 s.
+    """
+    if not isinstance(table, list | tuple) or not all(isinstance(row, list | tuple) and len(row) == 2 for row in table):
+        raise problem('it must be a list of pairs such as ["0.1 s", "1 N"]', key="table")
+    rows = []
+    for number, (time, value) in enumerate(table, start=1):
+        try:
+            rows.append((_TIME.validate(time, info) or 0.0, LOADS[control].validate(value, info) or 0.0))
+        except PydanticCustomError as error:
+            raise problem(f"row {number}: {error.message()}", key="table") from None
+    fault = _fault(tuple(rows))
+    if fault:
+        raise problem(fault, key="table")
+    return tuple(rows)
+
+
+def _fault(rows: Rows) -> str | None:
+    """What is wrong with a table as a whole."""
+    times = [time for time, _ in rows]
+    if not times or times[-1] <= 0 or times[0] < 0:
+        return "a load table needs at least one row after 0 s and none before"
+    late = next((row for row in range(1, len(times)) if times[row] <= times[row - 1]), None)
+    if late is not None:
+        return f"row {late + 1} is at {times[late]:g} s after {times[late - 1]:g} s; time must increase"
+    return None
+
 
 Control = Literal["force", "depth"]
 Shape = Literal["triangle", "ramp", "ramp_hold", "table"]
@@ -118,3 +205,67 @@ def _rows(file: Any, table: Any, control: str, info: ValidationInfo) -> Rows:
     if not isinstance(file, str):
         raise problem(f"{file!r} is no file name", key="file")
     return read_load_file(folder_of(info) / file, control)
+
+
+class LoadHistory(NamedTuple):
+    """A load over time; before its first row the tissue is unloaded and at rest.
+
+    Attributes
+    ----------
+    time : ndarray (n,)
+        s, increasing, above zero.
+    value : ndarray (n,)
+        Force in N or depth in m, press positive.
+    """
+
+    time: NDArray[np.float64]
+    value: NDArray[np.float64]
+
+
+def load_history(load: Load) -> LoadHistory:
+    """The observations of a load, k = 1..n; there is no row at time zero.
+
+    Parameters
+    ----------
+    load : Load
+        - triangle: row k at k/n of the duration, min(k, n - k) / (n/2) of the peak: for n = 100 that is 1..50, 49..0
+          fiftieths, the history behind the paper's Table 2. An odd n steps over the peak.
+        - ramp: row k at k/n of the duration, k/n of the peak.
+        - ramp_hold: rows are shared between ramp and hold in proportion to their durations, at least one each, even
+          in each part, so that the end of the ramp is always a row.
+        - table: its own rows after time zero, or, with `observations`, n rows at k/n of its last time, interpolated
+          linearly (from zero load at time zero where the table has no row there).
+
+    Returns
+    -------
+    LoadHistory
+        time (n,) and value (n,).
+    """
+    if load.table is not None:
+        return _table(load.table, load.observations)
+    count = load.observations or OBSERVATIONS
+    step = np.arange(1, count + 1, dtype=np.float64)
+    if load.shape == "ramp_hold":
+        return _ramp_hold(load, count)
+    share = step / count if load.shape == "ramp" else np.minimum(step, count - step) / (count / 2)
+    return LoadHistory(load.duration * (step / count), load.peak * share)
+
+
+def _ramp_hold(load: Load, count: int) -> LoadHistory:
+    hold = load.hold or 0.0
+    ramp_rows = min(max(round(count * load.duration / (load.duration + hold)), 1), count - 1)
+    hold_rows = count - ramp_rows
+    up = np.arange(1, ramp_rows + 1) / ramp_rows
+    rest = np.arange(1, hold_rows + 1) / hold_rows
+    time = np.concatenate([load.duration * up, load.duration + hold * rest])
+    return LoadHistory(time, load.peak * np.concatenate([up, np.ones(hold_rows)]))
+
+
+def _table(rows: tuple[tuple[float, float], ...], count: int | None) -> LoadHistory:
+    time, value = np.array(rows, dtype=np.float64).T
+    if count is None:
+        return LoadHistory(time[time > 0], value[time > 0])
+    if time[0] > 0:
+        time, value = np.append(0.0, time), np.append(0.0, value)
+    at = time[-1] * (np.arange(1, count + 1) / count)
+    return LoadHistory(at, np.interp(at, time, value))

@@ -8,14 +8,12 @@ from pathlib import Path
 from typing import Any, Final
 
 from benchmark.errors import InputError
-from benchmark.files.base import FileModel
 from benchmark.files.load import Load
-from benchmark.files.options import Comparison, FemOptions, WaveOptions
 from benchmark.files.overrides import layer_path, parsed_value, put_in, unknown_key
 from benchmark.files.physics import Physics
-from benchmark.files.problems import check_schema, known_keys, validated
-from benchmark.files.registry import find
-from benchmark.files.scenario import Scenario
+from benchmark.files.scenario import Comparison, FemOptions, Scenario, WaveOptions
+from benchmark.files.schema import FileModel, check_schema, known_keys, validated
+from benchmark.files.shipped import find
 from benchmark.files.sources import KeyPath, Source, read_toml
 from benchmark.files.tissue import Layer, Tissue
 from benchmark.files.tool import Support, Tool

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from benchmark.errors import InputError
-from benchmark.files.problems import nearest
+from benchmark.files.schema import nearest
 from benchmark.files.sources import KeyPath, Source
 
 

@@ -6,7 +6,6 @@ from typing import Annotated, Self
 
 from pydantic import model_validator
 
-from benchmark.files.base import FileModel
 from benchmark.files.quantities import (
     Bounds,
     Diffusivity,
@@ -20,6 +19,7 @@ from benchmark.files.quantities import (
     Travel,
     problem,
 )
+from benchmark.files.schema import FileModel
 
 FrictionCoefficient = Annotated[float, Number("0 to 10", Bounds(0.0, 10.0))]
 LostShare = Annotated[float, Number("0 to 0.99", Bounds(0.0, 0.99))]

@@ -13,10 +13,10 @@ from typing import Any
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
-from benchmark.files.base import FileModel
 from benchmark.files.quantities import Number, Quantity
 from benchmark.files.scenario import Scenario
-from benchmark.files.session_file import SessionFile
+from benchmark.files.schema import FileModel
+from benchmark.files.sessions.description import SessionFile
 from benchmark.files.tissue import Tissue
 from benchmark.files.units import format_quantity
 

@@ -3,18 +3,100 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
+from pydantic_core.core_schema import ValidationInfo
 
-from benchmark.files.base import FileModel, Name, Schema
-from benchmark.files.load import Load
-from benchmark.files.load_history import LoadHistory, load_history
-from benchmark.files.options import Comparison, FemOptions, WaveOptions
+from benchmark.files.load import Load, LoadHistory, load_history
 from benchmark.files.physics import Physics
-from benchmark.files.quantities import problem
-from benchmark.files.tissue import Tissue
+from benchmark.files.quantities import AutoLength, Bounds, Margin, Number, problem
+from benchmark.files.schema import FileModel, Name, Schema
+from benchmark.files.sources import folder_of, is_file
+from benchmark.files.tissue import Layer, Tissue
 from benchmark.files.tool import Support, Tool, check_hole
+
+Modes = Annotated[
+    int | None,
+    Number('1 to 4096 modes each way (a whole number), or "auto"', Bounds(1, 4096), whole=True, automatic=True),
+]
+
+
+class Comparison(FileModel):
+    """How models are compared: the margin of the equivalence test, a fraction of the FEM's mean."""
+
+    equivalence_margin: Margin = 0.02
+
+
+class FemOptions(FileModel):
+    """What the finite-element solver is told.
+
+    Attributes
+    ----------
+    kinematics : str
+        finite | linear.
+    geometry : str
+        axisymmetric | block | surface.
+    mesh : str
+        coarse | default | fine.
+    radius : float or None
+        Radius of the modelled specimen, m; None follows tool and stack.
+    surface : str or None
+        Absolute path of the surface file of `geometry = "surface"`; the tissue's layers count inwards from it.
+    surface_unit : str or None
+        The unit of its coordinates.
+    """
+
+    kinematics: Literal["finite", "linear"] = "finite"
+    geometry: Literal["axisymmetric", "block", "surface"] = "axisymmetric"
+    mesh: Literal["coarse", "default", "fine"] = "default"
+    radius: AutoLength = None
+    surface: str | None = None
+    surface_unit: Literal["um", "mm", "cm", "m", "inch"] | None = None
+
+    @field_validator("surface", mode="after")
+    @classmethod
+    def _surface_exists(cls, value: str | None, info: ValidationInfo) -> str | None:
+        if value is None:
+            return None
+        path = folder_of(info) / value
+        if not is_file(path):
+            raise problem(f"there is no file {str(path)!r}; give a surface file (STL, OBJ, PLY or VTK)")
+        return str(path.resolve())
+
+    @model_validator(mode="after")
+    def _surface_is_complete(self) -> Self:
+        for key, example in (("surface", '"liver.stl"'), ("surface_unit", '"mm"')):
+            if self.geometry == "surface" and getattr(self, key) is None:
+                raise problem(f'the geometry "surface" needs it; give one such as {example}', key=key)
+            if self.geometry != "surface" and getattr(self, key) is not None:
+                raise problem('only the geometry "surface" has it; set fem.geometry, or leave it out', key=key)
+        if self.geometry == "surface" and self.radius is not None:
+            raise problem('the geometry "surface" ends at the surface; leave it out, or "auto"', key="radius")
+        return self
+
+
+class WaveOptions(FileModel):
+    """What the wave model is told.
+
+    Attributes
+    ----------
+    model : str
+        layered (over a hole the plate) | published | plate (a sheet over a hole).
+    modes : int or None
+        N for m, n = 1..N; None follows the window.
+    window : float or None
+        Side of the square window, m; None follows tool and stack.
+    large_press : str
+        linear (small strain at any depth) | corrected (the layers' finite strain in the same modes) | auto (corrected
+        where the finite elements are in finite strain, however deep, and linear with a warning where that has no
+        answer).
+    """
+
+    model: Literal["layered", "published", "plate"] = "layered"
+    modes: Modes = None
+    window: AutoLength = None
+    large_press: Literal["auto", "linear", "corrected"] = "auto"
 
 
 class Scenario(FileModel):
@@ -40,7 +122,7 @@ class Scenario(FileModel):
     wave: WaveOptions = WaveOptions()
 
     def load_history(self) -> LoadHistory:
-        """Time (n,) in s and value (n,) in N or m of the load, see `benchmark.files.load_history`."""
+        """Time (n,) in s and value (n,) in N or m of the load, see `benchmark.files.load`."""
         return load_history(self.load)
 
     @model_validator(mode="after")
@@ -87,3 +169,48 @@ class Scenario(FileModel):
                 f'{window * 1e3:g} mm is not wider than the tool; allowed: above {wide * 1e3:g} mm, or "auto"',
                 key="wave.window",
             )
+
+
+_ALIKE = 0.02
+
+
+def scenario_notes(scenario: Scenario) -> tuple[str, ...]:
+    """Say what of a scenario has no effect, or not the one that its file suggests; one sentence each."""
+    found = [_law_apart(layer) for layer in scenario.tissue.layers]
+    found += [_stepped_over(scenario.load), _unused_hold(scenario.load), _unused_position(scenario)]
+    if scenario.support.hole_radius is not None and scenario.support.kind != "hole":
+        found.append(f"support.hole_radius has no effect: the support is {scenario.support.kind}")
+    if scenario.physics.friction_coefficient is not None and scenario.tool.contact != "rigid_frictional":
+        found.append(f"physics.friction_coefficient has no effect: the contact is {scenario.tool.contact}")
+    return tuple(note for note in found if note)
+
+
+def _law_apart(layer: Layer) -> str | None:
+    """A layer whose law starts with another stiffness than its moduli say: models with and without the law differ."""
+    law = layer.hyperelastic.shear_modulus
+    if law is None or abs(law / layer.shear_modulus - 1) <= _ALIKE:
+        return None
+    return (
+        f"layer {layer.name}: its {layer.hyperelastic.law} law begins with a shear modulus of {law / 1e3:.4g} kPa, "
+        f"its moduli say {layer.shear_modulus / 1e3:.4g} kPa; finite strain follows the law, small strain the moduli"
+    )
+
+
+def _stepped_over(load: Load) -> str | None:
+    if load.shape != "triangle" or load.observations is None or load.observations % 2 == 0:
+        return None
+    return f"{load.observations} observations, an odd number, step over the triangle's peak, which is never reached"
+
+
+def _unused_hold(load: Load) -> str | None:
+    if load.hold is None or load.shape == "ramp_hold":
+        return None
+    return f"load.hold has no effect: the shape is {load.shape}"
+
+
+def _unused_position(scenario: Scenario) -> str | None:
+    if scenario.tool.position == (0.0, 0.0) or scenario.support.kind == "hole":
+        return None
+    if scenario.fem.geometry != "axisymmetric":
+        return None
+    return "tool.position has no effect: the specimen is laterally endless, and the same everywhere"

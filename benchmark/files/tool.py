@@ -6,8 +6,8 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
-from benchmark.files.base import FileModel
 from benchmark.files.quantities import Length, SignedLength, Tilt, problem
+from benchmark.files.schema import FileModel
 
 Contact = Literal["uniform_pressure", "rigid_bonded", "rigid_frictionless", "rigid_frictional"]
 

@@ -36,8 +36,8 @@ from typing import Annotated, Literal, Self, TypeVar
 
 from pydantic import Field, model_validator
 
-from benchmark.files.base import FileModel, Name, Schema
 from benchmark.files.quantities import Bounds, Margin, Number, problem
+from benchmark.files.schema import FileModel, Name, Schema
 
 Count = Annotated[int, Number("1 to 1000 (a whole number)", Bounds(1, 1000), whole=True)]
 Reference = Literal["dense", "elements", "calls", "batched"]

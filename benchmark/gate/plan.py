@@ -12,8 +12,8 @@ from typing import Any
 from benchmark.errors import InputError
 from benchmark.files import load_scenario
 from benchmark.files.loading import read_file
-from benchmark.files.problems import validated
-from benchmark.files.registry import find
+from benchmark.files.schema import validated
+from benchmark.files.shipped import find
 from benchmark.gate.gate_file import GateFile, Timed, Work, gate_path
 from benchmark.sessions import SHIPPED
 

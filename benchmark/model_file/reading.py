@@ -10,8 +10,7 @@ from pydantic import Field
 
 from benchmark.effects.effect import Card, EffectParameter
 from benchmark.errors import InputError
-from benchmark.files.base import FileModel, Name, Schema
-from benchmark.files.problems import nearest, validated
+from benchmark.files.schema import FileModel, Name, Schema, nearest, validated
 from benchmark.files.sources import KeyPath, Source, read_toml
 from benchmark.files.units import QuantityError, parse_quantity
 from benchmark.model_file.model import AddedEffect, RepairedModel, Value

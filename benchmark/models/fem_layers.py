@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import fem
 from benchmark.files import Layer
-from benchmark.files.laws import Gent, Hyperelastic, MooneyRivlin, NeoHookean, Ogden, Yeoh
+from benchmark.files.tissue import Gent, Hyperelastic, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from benchmark.models.result import UncoveredError
 
 

@@ -17,7 +17,7 @@ from bench_hw.vision.displacement import (
     fit_parabolas,
     inner_nine,
 )
-from benchmark.files.session_file import Camera
+from benchmark.files.sessions.description import Camera
 from benchmark.fitting import Film
 from benchmark.models import Array
 

@@ -21,7 +21,7 @@ from bench_hw.vision.tracking.outcome import TrackOutcome
 from bench_hw.vision.tracking.run import TrackOrder, track
 from benchmark.errors import InputError
 from benchmark.files import Session, Trial
-from benchmark.files.trials import read_markers
+from benchmark.files.sessions.trials import read_markers
 from benchmark.fitting import Film, View
 from benchmark.runs.listener import Listener
 

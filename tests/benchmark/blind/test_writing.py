@@ -7,7 +7,7 @@ import pytest
 
 from benchmark.blind.case import CaseName
 from benchmark.blind.writing import case
-from benchmark.files.session_loading import load_session
+from benchmark.files.sessions.session_loading import load_session
 
 
 @pytest.fixture(scope="module")

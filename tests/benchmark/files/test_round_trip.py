@@ -7,10 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmark.files import Layer, Scenario, Source, Support, Tissue, Tool, scenario_from_table, tissue_from_table
-from benchmark.files.laws import Fibre, Gent, MooneyRivlin, NeoHookean, Ogden, OgdenTerm, PronyTerm, Yeoh
 from benchmark.files.load import Load
-from benchmark.files.options import Comparison, FemOptions, WaveOptions
 from benchmark.files.physics import Physics
+from benchmark.files.scenario import Comparison, FemOptions, WaveOptions
+from benchmark.files.tissue import Fibre, Gent, MooneyRivlin, NeoHookean, Ogden, OgdenTerm, PronyTerm, Yeoh
 
 names = st.text(min_size=1, max_size=30).filter(lambda text: text.isprintable() and text.strip())
 moduli = st.floats(0.01, 1e12)

@@ -1,30 +1,58 @@
 from typing import Literal
 
 import pytest
+from pydantic import ValidationError
 
 from benchmark.errors import InputError
-from benchmark.files.base import FileModel
-from benchmark.files.laws import Hyperelastic
-from benchmark.files.problems import known_keys, nearest, shown_path, validated
 from benchmark.files.quantities import Length, problem
+from benchmark.files.schema import FileModel, Name, known_keys, nearest, shown_path, validated
 from benchmark.files.sources import Source
+from benchmark.files.tissue import Hyperelastic
 
 
 class Part(FileModel):
+    name: Name = "x"
+    size: float | None = None
+
+
+class Whole(FileModel):
+    parts: tuple[Part, ...] = ()
+    part: Part = Part()
+
+
+def test_what_is_not_given_is_left_out_of_the_table():
+    assert Whole(parts=(Part(), Part(size=2.0))).to_table() == {
+        "parts": [{"name": "x"}, {"name": "x", "size": 2.0}],
+        "part": {"name": "x"},
+    }
+
+
+def test_a_model_writes_itself_as_toml():
+    assert Part(name='a "b"').to_toml() == 'name = "a \\"b\\""\n'
+
+
+def test_unknown_keys_and_changes_are_refused():
+    with pytest.raises(ValidationError, match="extra_forbidden"):
+        Part(nme="y")
+    with pytest.raises(ValidationError, match="frozen"):
+        Part().name = "y"
+
+
+class Layered(FileModel):
     name: str = "x"
     side: Length = 1.0
     law: Hyperelastic | None = None
 
 
-class Whole(FileModel):
+class Described(FileModel):
     kind: Literal["a", "b"] = "a"
-    parts: tuple[Part, ...] = ()
+    parts: tuple[Layered, ...] = ()
     flag: bool = False
 
 
 def refusal(table, text=""):
     with pytest.raises(InputError) as error:
-        validated(Whole, table, Source("f.toml", text))
+        validated(Described, table, Source("f.toml", text))
     return str(error.value)
 
 
@@ -100,4 +128,4 @@ def test_paths_for_people():
 
 
 def test_known_keys_are_those_of_files():
-    assert known_keys(Whole) == ["kind", "parts", "flag"]
+    assert known_keys(Described) == ["kind", "parts", "flag"]

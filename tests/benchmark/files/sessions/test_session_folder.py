@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from benchmark.errors import InputError
-from benchmark.files.session_folder import fingerprint, inside, session_table
+from benchmark.files.sessions.session_folder import fingerprint, inside, session_table
 
 
 def entries(path: Path):

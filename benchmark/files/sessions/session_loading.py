@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
-from benchmark.files.base import FileModel
-from benchmark.files.depth_counts import even_depths
+import numpy as np
+
+from bench_hw.tables import TrialTable
 from benchmark.files.load import Load
 from benchmark.files.loading import (
     TISSUE_KEYS,
@@ -20,17 +21,23 @@ from benchmark.files.loading import (
     tissue_keys,
 )
 from benchmark.files.overrides import layer_path, put_in, unknown_key
-from benchmark.files.problems import known_keys, validated
-from benchmark.files.registry import find, shipped_tissues
-from benchmark.files.session import Session
-from benchmark.files.session_file import Camera, SessionFile
-from benchmark.files.session_folder import fingerprint, inside, session_table
-from benchmark.files.session_setup import assumptions, base_setup, setups
+from benchmark.files.schema import FileModel, known_keys, validated
+from benchmark.files.sessions.depth_counts import even_depths
+from benchmark.files.sessions.description import Camera, SessionFile, assumptions, base_setup, setups
+from benchmark.files.sessions.session_folder import fingerprint, inside, session_table
+from benchmark.files.sessions.trials import (
+    Session,
+    Trial,
+    is_synthetic,
+    read_markers,
+    read_table,
+    trial_names,
+    trial_paths,
+)
+from benchmark.files.shipped import find, shipped_tissues
 from benchmark.files.sources import KeyPath, Source
-from benchmark.files.specimen import assumed_specimen
-from benchmark.files.tissue import Tissue
+from benchmark.files.tissue import Layer, Tissue
 from benchmark.files.tool import Support, Tool
-from benchmark.files.trials import Trial, is_synthetic, read_markers, read_table, trial_names, trial_paths
 
 _NO_OVERRIDES: Overrides = {}
 
@@ -199,3 +206,54 @@ def _other_files(file: SessionFile, source: Source, specimen: Path | None) -> li
     if file.camera is not None and file.camera.file is not None:
         files.append(inside(source.folder, file.camera.file, source.place(("camera", "file"), "camera.file")))
     return files
+
+
+ASSUMED_THICKNESS: Final = 10e-3
+ASSUMED_YOUNGS_MODULUS: Final = 20e3
+ASSUMED_POISSON_RATIO: Final = 0.49
+ASSUMED_DENSITY: Final = 1000.0
+
+
+def assumed_specimen(tables: Sequence[TrialTable]) -> tuple[Tissue, str]:
+    """One layer of soft tissue as thick as the gap between tool and base at zero depth.
+
+    Parameters
+    ----------
+    tables : sequence of TrialTable
+        The session's trials; those with a `gap` column give the thickness, its median over trials.
+
+    Returns
+    -------
+    (Tissue, str)
+        The layer, and the warning that says what was assumed. The modulus is a start value for the fit (soft
+        tissue lies at 1 to 100 kPa); the Poisson ratio is that of a nearly incompressible tissue.
+    """
+    gaps = [gap for gap in map(_gap_at_zero_depth, tables) if gap is not None and 1e-7 <= gap <= 1e5]
+    thickness = float(np.median(gaps)) if gaps else ASSUMED_THICKNESS
+    layer = Layer(
+        name="specimen",
+        thickness=thickness,
+        density=ASSUMED_DENSITY,
+        youngs_modulus=ASSUMED_YOUNGS_MODULUS,
+        poisson_ratio=ASSUMED_POISSON_RATIO,
+    )
+    how = (
+        f"median gap_mm at zero depth, trials: {len(gaps)}, {1e3 * min(gaps):.3g} to {1e3 * max(gaps):.3g} mm"
+        if gaps
+        else "no trial has a usable gap_mm"
+    )
+    warning = (
+        f"the specimen is not given: assumed one layer of {1e3 * thickness:.4g} mm ({how}), "
+        f"Poisson ratio {ASSUMED_POISSON_RATIO:g}, density {ASSUMED_DENSITY:g} kg/m^3, "
+        f"Young's modulus {ASSUMED_YOUNGS_MODULUS / 1e3:g} kPa before any fit"
+    )
+    return Tissue(name="assumed specimen", citation="assumed, see warnings", layers=(layer,)), warning
+
+
+def _gap_at_zero_depth(table: TrialTable) -> float | None:
+    """Thickness of the specimen (m) at the row nearest to zero depth, the first of them; None without a gap."""
+    gap = table.extra.get("gap")
+    if gap is None:
+        return None
+    row = int(np.argmin(np.abs(table.depth)))
+    return float(gap[row] + table.depth[row])

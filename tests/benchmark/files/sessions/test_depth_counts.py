@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bench_hw.tables import TrialTable
-from benchmark.files.depth_counts import between_counts, count_of, even_depths
+from benchmark.files.sessions.depth_counts import between_counts, count_of, even_depths
 
 COUNT = 48.8e-6
 TIME = np.arange(0.0, 12.0, 0.01)

@@ -3,9 +3,9 @@ from pathlib import Path
 import pytest
 
 from benchmark.errors import InputError
-from benchmark.files.session_file import TrialEntry
+from benchmark.files.sessions.description import TrialEntry
+from benchmark.files.sessions.trials import is_synthetic, read_markers, read_table, trial_names, trial_paths
 from benchmark.files.sources import Source
-from benchmark.files.trials import is_synthetic, read_markers, read_table, trial_names, trial_paths
 
 FOLDER = Path("s")
 

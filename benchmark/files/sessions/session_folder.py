@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError
-from benchmark.files.base import SCHEMA
 from benchmark.files.loading import read_file
+from benchmark.files.schema import SCHEMA
 from benchmark.files.sources import Source, is_file
 
 SESSION_FILE = "session.toml"

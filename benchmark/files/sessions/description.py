@@ -1,0 +1,154 @@
+"""The file `session.toml`: which trials there are, what is known of the rig, and what is assumed where it is silent."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Annotated, Any, Final, Literal, Self
+
+from pydantic import Field, StrictBool, model_validator
+
+from benchmark.errors import InputError
+from benchmark.files.quantities import Bounds, Length, Number
+from benchmark.files.schema import FileModel, Name, Schema, nearest, validated
+from benchmark.files.sources import Source
+from benchmark.files.tool import Support, Tool, check_hole
+
+GridSize = Annotated[int, Number("1 to 1000 (a whole number)", Bounds(1, 1000), whole=True)]
+MarkerNumber = Annotated[int, Number("0 to 1000000 (a whole number)", Bounds(0, 1_000_000), whole=True)]
+Keys = Mapping[str, Any]
+
+
+class TrialEntry(FileModel):
+    """One trial.
+
+    Attributes
+    ----------
+    file : str
+        CSV or native trial file, inside the session's folder.
+    condition : str
+        What the trial shares with others: a speed, a depth, a day.
+    markers : str or None
+        CSV file of the marker tracks, inside the session's folder.
+    """
+
+    file: Name
+    condition: Name
+    markers: Name | None = None
+
+
+class Drive(FileModel):
+    """Which channel the rig prescribed: depth | force."""
+
+    channel: Literal["depth", "force"] = "depth"
+
+
+class Camera(FileModel):
+    """The marker grid and the camera that sees it.
+
+    Attributes
+    ----------
+    marker_rows, marker_columns : int
+        Layout of the grid, whose markers are numbered row by row.
+    marker_spacing : float
+        m.
+    distance : float or None
+        Camera to lower face, m; None where it is not known.
+    file : str or None
+        A camera.toml inside the session's folder.
+    centre_marker : int or None
+        Number of the marker whose 3 x 3 block is taken; None for the one nearest the tool axis.
+    """
+
+    marker_rows: GridSize
+    marker_columns: GridSize
+    marker_spacing: Length
+    distance: Length | None = None
+    file: Name | None = None
+    centre_marker: MarkerNumber | None = None
+
+
+class ConditionKeys(FileModel):
+    """What differs in one condition: some keys of the tool and of the support."""
+
+    tool: Keys = Field(default_factory=dict)
+    support: Keys = Field(default_factory=dict)
+
+
+class SessionFile(FileModel):
+    """The whole file; tool and support are some keys of a scenario's, checked once the rest is filled in."""
+
+    schema_: Annotated[Schema, Field(alias="schema")] = 1
+    name: Name
+    specimen: Name | None = None
+    trials: Annotated[tuple[TrialEntry, ...], Field(min_length=1, max_length=10_000)]
+    tool: Keys = Field(default_factory=dict)
+    support: Keys = Field(default_factory=dict)
+    drive: Drive = Drive()
+    camera: Camera | None = None
+    synthetic: StrictBool = False
+    conditions: Mapping[str, ConditionKeys] = Field(default_factory=dict)
+
+
+_ASSUMED: Final[Mapping[str, str]] = {"radius": "5 mm", "contact": "rigid_bonded"}
+_WHY: Final[Mapping[str, str]] = {
+    "radius": "the tool's radius is not given: assumed 5 mm",
+    "contact": "the tool's contact is not given: assumed rigid_bonded (a rigid tool to which the surface sticks)",
+}
+
+
+class Setup(FileModel):
+    """What one condition was measured with."""
+
+    tool: Tool
+    support: Support
+
+    @model_validator(mode="after")
+    def _tool_fits_the_hole(self) -> Self:
+        check_hole(self.tool, self.support)
+        return self
+
+
+def base_setup(file: SessionFile, source: Source) -> Setup:
+    """Tool and support where no condition says otherwise; raises InputError."""
+    return validated(Setup, _tables(file, ConditionKeys()), source)
+
+
+def setups(file: SessionFile, conditions: Iterable[str], source: Source) -> dict[str, Setup]:
+    """Tool and support of each condition.
+
+    Raises
+    ------
+    InputError
+        When a value is not allowed, or keys are given for a condition that no trial has.
+    """
+    names = list(conditions)
+    for name in file.conditions:
+        if name not in names:
+            place = source.place(("conditions", name), f"conditions.{name}")
+            raise InputError(f"{place}: no trial has this condition; {nearest(name, names)}")
+    base = base_setup(file, source)
+    return {
+        name: validated(Setup, _tables(file, keys), replace(source, prefix=("conditions", name)))
+        if (keys := file.conditions.get(name))
+        else base
+        for name in names
+    }
+
+
+def assumptions(file: SessionFile, conditions: Iterable[str]) -> list[str]:
+    """One sentence for each key of tool and support that no one gave."""
+    tools = [_given(file, file.conditions.get(name, ConditionKeys())) for name in conditions]
+    said = [_WHY[key] for key in _ASSUMED if any(key not in tool for tool, _ in tools)]
+    if any("kind" not in support for _, support in tools):
+        said.append("the support is not given: assumed bonded")
+    return said
+
+
+def _given(file: SessionFile, condition: ConditionKeys) -> tuple[dict[str, Any], dict[str, Any]]:
+    return {**file.tool, **condition.tool}, {**file.support, **condition.support}
+
+
+def _tables(file: SessionFile, condition: ConditionKeys) -> dict[str, Any]:
+    tool, support = _given(file, condition)
+    return {"tool": {**_ASSUMED, **tool}, "support": support}
