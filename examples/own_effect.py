@@ -1,16 +1,17 @@
 """An effect of your own for `python -m benchmark discover SESSION --effects examples/own_effect.py`.
 
-A tool that heats the tissue: the longer it is pressed, the softer the specimen becomes. Copy this file, change card
-and functions, and give it with --effects; every `Effect` at the top level is a candidate beside the catalogue.
+A tool that heats the tissue: the longer it is pressed, the softer the specimen becomes. Copy this file, change the
+description and the functions, and give it with --effects; every `Effect` at the top level is a
+candidate beside the catalogue.
 """
 
 from dataclasses import replace
 
 import numpy as np
 
-from benchmark.effects import Card, Effect, EffectParameter
+from benchmark.physics import Effect, EffectDescription, EffectParameter
 
-CARD = Card(
+DESCRIPTION = EffectDescription(
     slug="warming",
     acts_on="observation",
     sentence="The specimen warms under the tool and softens while it is touched.",
@@ -23,10 +24,10 @@ CARD = Card(
 )
 
 
-def _observe(values, readings, motion, around):  # noqa: ARG001 - every place gets the same
+def _observe(values, readings, motion, context):  # noqa: ARG001 - every place gets the same
     """Readings with the force fading; values in SI by name, (n,) arrays in readings and motion."""
     time = motion.time - motion.time[0]
     return replace(readings, force=readings.force * (1.0 + values["s"] * np.expm1(-time / values["tau"])))
 
 
-EFFECT = Effect(CARD, amplitude="s", observe=_observe)
+EFFECT = Effect(DESCRIPTION, amplitude="s", observe=_observe)

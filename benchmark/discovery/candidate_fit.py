@@ -11,8 +11,8 @@ from benchmark.discovery.fit import Fit, White, fit
 from benchmark.discovery.model import Model, nuisance_precision
 from benchmark.discovery.problem import Problem
 from benchmark.discovery.result import Array
-from benchmark.effects import Effect
-from benchmark.effects.term import Values
+from benchmark.physics import Effect
+from benchmark.physics.effect import Values
 
 REFINED = 2
 """Starts that are refined."""
@@ -107,7 +107,7 @@ def _scaled(
     model: Model, start: Array, effect: Effect, values: Values, scale: float, known: Mapping[str, Values]
 ) -> Array:
     changed = dict(values)
-    for p in effect.card.parameters:
+    for p in effect.description.parameters:
         if p.name in (effect.amplitude, *effect.amplitudes) and not p.logarithmic:
             changed[p.name] = float(np.clip(values[p.name] * scale, p.low, p.high))
     return model.vector(start[: model.shape_count], {**known, effect.slug: changed})
@@ -121,7 +121,7 @@ def _starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
     for around in (deepest, quickest) if deepest is not quickest else (deepest,):
         found += [dict(each) for each in effect.first_values(around) if each not in found]
     scaled = (effect.amplitude, *effect.amplitudes)
-    either = {p.name for p in effect.card.parameters if p.name in scaled and p.low < 0.0 and not p.logarithmic}
+    either = {p.name for p in effect.description.parameters if p.name in scaled and p.low < 0.0 and not p.logarithmic}
     if either:
         found += [{name: -value if name in either else value for name, value in each.items()} for each in found]
     return found

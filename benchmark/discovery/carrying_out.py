@@ -9,8 +9,8 @@ from pathlib import Path
 from benchmark.discovery.files import DiscoveryOutcome, write_discovery
 from benchmark.discovery.from_run import at_small_strain, is_run, read_run, repair_run
 from benchmark.discovery.record import DiscoveryRecord
-from benchmark.effects import Effect, catalogue, load_effects
 from benchmark.errors import InputError
+from benchmark.physics import Effect, catalogue, load_effects
 from benchmark.runs.destination import destination
 from benchmark.runs.listener import Listener
 

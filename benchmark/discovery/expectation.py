@@ -13,7 +13,7 @@ from benchmark.discovery.problem import OWN
 from benchmark.discovery.reading import acceleration
 from benchmark.discovery.result import Array
 from benchmark.discovery.workflow import Findings
-from benchmark.effects import Motion
+from benchmark.physics import Motion
 
 
 @dataclass(frozen=True, eq=False)

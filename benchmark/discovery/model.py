@@ -11,8 +11,8 @@ import numpy as np
 from benchmark.discovery.problem import OFFSETS, OWN, SHAPE_PRIOR, Problem
 from benchmark.discovery.result import Array
 from benchmark.discovery.simulator import Bent, Shape, Simulator, ordered
-from benchmark.effects import Effect, EffectParameter, Readings, catalogue
-from benchmark.effects.term import Values
+from benchmark.physics import Effect, EffectParameter, Readings, catalogue
+from benchmark.physics.effect import Values
 
 FAR_RADIUS = 0.25
 """Relative change of the tool's radius up to which the base's second order serves."""
@@ -45,7 +45,7 @@ class Model:
     @cached_property
     def parameters(self) -> tuple[tuple[str, EffectParameter], ...]:
         """(slug, parameter) of the effects, in the vector's order."""
-        return tuple((effect.slug, p) for effect in self.effects for p in effect.card.parameters)
+        return tuple((effect.slug, p) for effect in self.effects for p in effect.description.parameters)
 
     @property
     def shape_count(self) -> int:

@@ -12,8 +12,8 @@ from benchmark.discovery.planning import propose
 from benchmark.discovery.record import DiscoveryRecord
 from benchmark.discovery.settings import Settings
 from benchmark.discovery.workflow import Findings, findings
-from benchmark.effects import SLUGS, Effect
 from benchmark.files import Session, load_session
+from benchmark.physics import SLUGS, Effect
 from benchmark.runs.destination import file_name
 from benchmark.runs.listener import Listener
 
@@ -49,7 +49,7 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
         tissue=session.specimen.name,
         model=request.model,
         found=replace(found.discovery, warnings=warnings),
-        cards={effect.slug: (effect.richer or effect).card for effect in effects},
+        cards={effect.slug: (effect.richer or effect).description for effect in effects},
         seed=request.seed,
         proposal=propose(found),
         large_press="corrected",

@@ -18,7 +18,7 @@ import numpy as np
 from benchmark.children import end_with_parent
 from benchmark.discovery.candidate_fit import fit_candidate
 from benchmark.discovery.fit import Fit
-from benchmark.effects import Effect, load_effects
+from benchmark.physics import Effect, load_effects
 
 Listener = Callable[[str, int, int, str], None]
 """Called with stage, done, total and the best so far."""

@@ -27,9 +27,9 @@ from benchmark.discovery.result import Array
 from benchmark.discovery.segments import Segment, segments
 from benchmark.discovery.stages import stages
 from benchmark.discovery.study import ConditionData, Layout, Study
-from benchmark.effects import Surroundings
 from benchmark.errors import InputError
 from benchmark.files import Session, Trial
+from benchmark.physics import TrialContext
 
 LEAST_TRIALS = 3
 ENOUGH_TRIALS = 6
@@ -213,7 +213,7 @@ def _condition(
     depth = data[..., 1]
     kinds = np.concatenate([[piece] * (edges.size - 1) for piece, edges in plan]).astype(int)
     stage = stages(group[0].pieces, kinds, np.median(depth, axis=0))
-    around = Surroundings(
+    around = TrialContext(
         tool_radius=first.tool.radius,
         thickness=_finite(session.specimen.thickness),
         peak_depth=float(depth.max()),

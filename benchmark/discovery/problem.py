@@ -13,7 +13,7 @@ from benchmark.discovery.noise import Whitener, whitener
 from benchmark.discovery.result import Array
 from benchmark.discovery.simulator import Shape
 from benchmark.discovery.study import ConditionData, Study
-from benchmark.effects import Motion
+from benchmark.physics import Motion
 
 SHAPE_PRIOR = Shape(3.0, 0.058, 0.03, 0.0015, 0.001, 0.03, 0.003, 0.002)
 """Standard deviations of the base's nuisances (modulus: no bound in practice).

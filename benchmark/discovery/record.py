@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 from benchmark.discovery.result import Array, ChannelGap, Discovery, Estimate
 from benchmark.discovery.units import channel_unit
-from benchmark.effects.effect import Card
 from benchmark.model_file import AddedEffect, RepairedModel, Value
+from benchmark.physics.description import EffectDescription
 
 NAMING = ("named", "conditional", "lookalikes", "partly_explained", "instrument_first")
 """Verdicts under which the effects of the answer are part of the model; elsewhere they are nearest entries only."""
@@ -95,7 +95,7 @@ class DiscoveryRecord:
     tissue, model : str
         The base: what the specimen is and "wave" or "fem".
     found : Discovery
-    cards : mapping of str to Card
+    cards : mapping of str to EffectDescription
         What people read of every effect that was a candidate.
     seed : int
     layers : tuple of LayerGap
@@ -115,7 +115,7 @@ class DiscoveryRecord:
     tissue: str
     model: str
     found: Discovery
-    cards: Mapping[str, Card]
+    cards: Mapping[str, EffectDescription]
     seed: int
     layers: tuple[LayerGap, ...] = ()
     proposal: NextExperiment | None = None

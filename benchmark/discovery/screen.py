@@ -11,7 +11,7 @@ from benchmark.discovery.candidate_fit import screened
 from benchmark.discovery.fit import Fit
 from benchmark.discovery.model import Model
 from benchmark.discovery.result import Array
-from benchmark.effects import Effect
+from benchmark.physics import Effect
 
 
 @dataclass(frozen=True, eq=False)

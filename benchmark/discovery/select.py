@@ -15,7 +15,7 @@ from benchmark.discovery.pool import Pool
 from benchmark.discovery.result import Array
 from benchmark.discovery.screen import Screened, screen
 from benchmark.discovery.settings import Settings
-from benchmark.effects import Effect
+from benchmark.physics import Effect
 
 REFINED = 7
 """Candidates that are refined in the first round; fewer later on."""

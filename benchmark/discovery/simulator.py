@@ -11,8 +11,8 @@ import numpy as np
 
 from benchmark.discovery.bases.law import BaseLaw
 from benchmark.discovery.result import Array
-from benchmark.effects import Effect, Motion, Press, Readings, Spread, Surroundings
-from benchmark.effects.term import Values
+from benchmark.physics import Effect, LowerFaceMotion, Motion, PressHistory, Readings, TrialContext
+from benchmark.physics.effect import Values
 
 FIRST_STEP = 1e-3
 """A history begins this long after rest, s: what is shorter is taken as sudden."""
@@ -139,7 +139,7 @@ class Simulator:
     Attributes
     ----------
     law : BaseLaw
-    around : Surroundings
+    around : TrialContext
     effects : tuple of Effect
         In the order in which they act.
     distance : float or None
@@ -147,7 +147,7 @@ class Simulator:
     """
 
     law: BaseLaw
-    around: Surroundings
+    around: TrialContext
     effects: tuple[Effect, ...]
     distance: float | None = None
 
@@ -187,7 +187,7 @@ class Simulator:
             if effect.drive is not None:
                 depth = effect.drive(values[effect.slug], Motion(motion.time, depth, motion.acceleration), body)
         trace = body.trace(depth)
-        press = Press(motion.time, depth, trace.surface, trace.force, trace.elastic, trace.touching)
+        press = PressHistory(motion.time, depth, trace.surface, trace.force, trace.elastic, trace.touching)
         readings = self._seen(bent, press, values)
         for effect in self.effects:
             if effect.observe is not None:
@@ -203,37 +203,37 @@ class Simulator:
                 options |= effect.body(values[effect.slug], self.around)
         return Physics(**options)
 
-    def _seen(self, bent: Bent, press: Press, values: Mapping[str, Values]) -> Readings:
+    def _seen(self, bent: Bent, press: PressHistory, values: Mapping[str, Values]) -> Readings:
         if self.around.markers is None:
             return Readings(press.force)
         under = np.where(press.touching, press.surface, np.maximum(press.surface, 0.0))
-        spread = Spread(under, np.ones_like(under))
+        face = LowerFaceMotion(under, np.ones_like(under))
         for effect in self.effects:
-            if effect.spread is not None:
-                spread = effect.spread(values[effect.slug], spread, press, self.around)
-        markers, sink = lower_face(bent, spread, self.around.markers)
+            if effect.lower_face is not None:
+                face = effect.lower_face(values[effect.slug], face, press, self.around)
+        markers, sink = lower_face(bent, face, self.around.markers)
         if self.distance is not None:
             markers = markers / (1.0 - sink / self.distance)[..., None]
         return Readings(press.force, markers, sink)
 
 
-def lower_face(bent: Bent, spread: Spread, rest: Array) -> tuple[Array, Array]:
+def lower_face(bent: Bent, face: LowerFaceMotion, rest: Array) -> tuple[Array, Array]:
     """Positions (n, m, 2) and sinking (n, m) of markers at rest positions (m, 2), m."""
     law, shape = bent.law, bent.shape
-    rows, count = spread.depth.size, len(rest)
+    rows, count = face.depth.size, len(rest)
     if law.outward is None or law.sink is None:
         return np.broadcast_to(rest, (rows, count, 2)).copy(), np.zeros((rows, count))
-    x, y = (rest - np.asarray(spread.centre)).T
-    root = np.sqrt(spread.ratio)
+    x, y = (rest - np.asarray(face.centre)).T
+    root = np.sqrt(face.ratio)
     radius = np.sqrt(x**2 / root + y**2 * root)
     read = radius / (1.0 + shape.width)
     safe = np.maximum(radius, 1e-12)
     along = np.column_stack([x / root / safe, y * root / safe])
-    out = bent.field(bent.outward, spread.depth, read)
-    moved = (1.0 + shape.marker_size) * spread.passed[:, None] * out
-    if spread.dent is not None:
-        moved = moved + spread.dent[0][:, None] / np.maximum(radius, spread.dent[1])
-    return rest + moved[..., None] * along, bent.field(law.sink, spread.depth, read)
+    out = bent.field(bent.outward, face.depth, read)
+    moved = (1.0 + shape.marker_size) * face.passed[:, None] * out
+    if face.dent is not None:
+        moved = moved + face.dent[0][:, None] / np.maximum(radius, face.dent[1])
+    return rest + moved[..., None] * along, bent.field(law.sink, face.depth, read)
 
 
 def ordered(effects: Sequence[Effect], catalogue: Sequence[Effect]) -> tuple[Effect, ...]:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.discovery.result import Array
-from benchmark.effects import Surroundings
 from benchmark.files import Support, Tool
+from benchmark.physics import TrialContext
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ class ConditionData:
         Mean time of the frames in each row, s.
     phase, cycle, part : (n,)
         Index in PHASES, number of the press, and a half (0 or 1) of a phase.
-    around : Surroundings
+    around : TrialContext
     """
 
     name: str
@@ -68,7 +68,7 @@ class ConditionData:
     phase: NDArray[np.int64]
     cycle: NDArray[np.int64]
     part: NDArray[np.int64]
-    around: Surroundings
+    around: TrialContext
 
     @property
     def size(self) -> int:

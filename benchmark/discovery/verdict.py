@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from benchmark.effects import Effect
+from benchmark.physics import Effect
 
 LEFT = 0.3
 """A share of the explainable disagreement left by the best entry from which it counts as outside the catalogue."""
@@ -66,7 +66,7 @@ def verdict(facts: Facts) -> str:
 
 
 def _mixed(effects: Sequence[Effect]) -> bool:
-    places = {effect.card.acts_on == "body" for effect in effects}
+    places = {effect.description.acts_on == "body" for effect in effects}
     return len(places) > 1
 
 

@@ -27,8 +27,8 @@ from benchmark.discovery.shared import share_left
 from benchmark.discovery.shown import places_of
 from benchmark.discovery.traces import traces
 from benchmark.discovery.verdict import Facts, statement, verdict
-from benchmark.effects import Effect, catalogue
 from benchmark.files import Session
+from benchmark.physics import Effect, catalogue
 
 DEFAULT = Settings()
 VERSION = 2
@@ -85,7 +85,7 @@ def findings(
     settings
         The same for all sessions unless a user says otherwise.
     effects
-        Own effects beside the catalogue (`benchmark.effects.load_effects`).
+        Own effects beside the catalogue (`benchmark.physics.load_effects`).
     listener
         Told of stage, done, total and the best candidate so far.
     store
@@ -107,7 +107,7 @@ def findings(
     known = (*catalogue(), *effects)
     screened = screen(base, [effect for effect in known if usable(base, effect)])
     before = detect(base, settings, np.vstack([one.along for one in screened]))
-    key = fingerprint(VERSION, session.fingerprint, settings, [each.card for each in effects])
+    key = fingerprint(VERSION, session.fingerprint, settings, [each.description for each in effects])
     with pool(settings.workers, store, key, effects, listener) as work:
         some = on_some(base, compared(base))
         searched = known if before.p < settings.level or screened[0].won > SURE else ()

@@ -8,13 +8,13 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from benchmark.effects.effect import Card, EffectParameter
 from benchmark.errors import InputError
 from benchmark.files.schema import FileModel, Name, Schema, nearest, validated
 from benchmark.files.sources import KeyPath, Source, read_toml
 from benchmark.files.units import QuantityError, parse_quantity
 from benchmark.model_file.model import AddedEffect, RepairedModel, Value
 from benchmark.model_file.units import dimension_of, shown
+from benchmark.physics.description import EffectDescription, EffectParameter
 
 
 class _Base(FileModel):
@@ -40,14 +40,14 @@ class _File(FileModel):
     evidence: dict[str, Any] = Field(default_factory=dict)
 
 
-def read_model(path: Path, cards: Mapping[str, Card]) -> RepairedModel:
+def read_model(path: Path, cards: Mapping[str, EffectDescription]) -> RepairedModel:
     """Read a model file.
 
     Parameters
     ----------
     path : Path
         As `discover` writes it; a parameter may also be one text, NAME = "0.31".
-    cards : mapping of str to Card
+    cards : mapping of str to EffectDescription
         The effects that are known, by slug.
 
     Raises
@@ -67,7 +67,7 @@ def read_model(path: Path, cards: Mapping[str, Card]) -> RepairedModel:
     return RepairedModel(str(path), base.tissue, base.model, effects, file.evidence, base.large_press)
 
 
-def _effect(effect: _Effect, place: int, cards: Mapping[str, Card], source: Source) -> AddedEffect:
+def _effect(effect: _Effect, place: int, cards: Mapping[str, EffectDescription], source: Source) -> AddedEffect:
     at = ("effects", place)
     if effect.name not in cards:
         raise _wrong(

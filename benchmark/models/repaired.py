@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from benchmark.effects import Effect, Surroundings, catalogue, load_effects
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel, read_model
 from benchmark.models.result import Array, Drive, ModelResult, OnStep, PreparedModel, UncoveredError, silent
 from benchmark.models.wave_physics import given
+from benchmark.physics import Effect, TrialContext, catalogue, load_effects
 from wavemodel import WaveError
 from wavemodel.physics import Physics, QuasiStaticPress
 from wavemodel.physics.force_driven import drive_by_force
@@ -52,7 +52,7 @@ class SwitchedOn:
 def load_repair(path: Path, own_effects: Path | None = None) -> RepairedModel:
     """Read a model file, with the effects of a user's own file known beside the catalogue; raises InputError."""
     own = () if own_effects is None else load_effects(own_effects)
-    cards = {effect.slug: (effect.richer or effect).card for effect in (*catalogue(), *own)}
+    cards = {effect.slug: (effect.richer or effect).description for effect in (*catalogue(), *own)}
     return replace(read_model(path, cards), own_effects=own_effects)
 
 
@@ -103,8 +103,8 @@ def _variant(effect: Effect, values: Mapping[str, float]) -> Effect:
 
 def _left_out(effect: Effect, repair: RepairedModel, scenario: Scenario, model: str) -> str | None:
     """Why an effect takes no part in a press of a scenario; None where it does."""
-    if effect.card.acts_on != "body":
-        return f"it belongs to the {'rig' if effect.card.acts_on == 'drive' else 'sensors'}, not to the specimen"
+    if effect.description.acts_on != "body":
+        return f"it belongs to the {'rig' if effect.description.acts_on == 'drive' else 'sensors'}, not to the specimen"
     if effect.body is None:
         return "it shows in markers alone"
     if model == "fem" and held_by_finite_strain(effect, repair) and scenario.fem.kinematics == "finite":
@@ -117,10 +117,10 @@ def held_by_finite_strain(effect: Effect, repair: RepairedModel) -> bool:
     return repair.model == "wave" and repair.large_press == "linear" and effect.slug in IN_THE_FEM
 
 
-def _around(scenario: Scenario) -> Surroundings:
+def _around(scenario: Scenario) -> TrialContext:
     thickness = sum(layer.thickness for layer in scenario.tissue.layers if math.isfinite(layer.thickness))
     history = scenario.load_history()
-    return Surroundings(
+    return TrialContext(
         tool_radius=scenario.tool.radius,
         thickness=float(thickness),
         peak_depth=0.1 * float(thickness),

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from benchmark.effects import Effect, Motion, Readings, Surroundings
 from benchmark.models.result import Array, UncoveredError
+from benchmark.physics import Effect, Motion, Readings, TrialContext
 from wavemodel import WaveError
 from wavemodel.physics import Physics, QuasiStaticPress
 
@@ -36,7 +36,7 @@ class _Body:
         return QuasiStaticPress(self.law, self.physics).force(self.time, depth)
 
 
-def trial_force(law: Law, added: Sequence[Added], time: Array, depth: Array, around: Surroundings) -> Array:
+def trial_force(law: Law, added: Sequence[Added], time: Array, depth: Array, around: TrialContext) -> Array:
     """Force that the sensor reports in a trial.
 
     Parameters

@@ -11,13 +11,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmark.effects import Surroundings
 from benchmark.files import Session
 from benchmark.fitting import FittingError, SessionFit, TrialData, fit_session
 from benchmark.model_file import RepairedModel
 from benchmark.models import Array, Drive, PreparedModel, UncoveredError
 from benchmark.models.repaired import effects_of, held_by_finite_strain
 from benchmark.models.trial_response import Added, trial_force
+from benchmark.physics import TrialContext
 
 ROUNDS = 12
 STEPS = 60
@@ -109,10 +109,10 @@ def _share(session: Session, trial: TrialData, fit: SessionFit, effects: Sequenc
     return np.asarray(force - np.where(depth > 0.0, law(np.maximum(depth, 0.0)), 0.0))
 
 
-def _around(session: Session, trial: TrialData, depth: Array) -> Surroundings:
+def _around(session: Session, trial: TrialData, depth: Array) -> TrialContext:
     measured = next(each for each in session.trials if (each.condition, each.name) == trial.key)
     thickness = session.specimen.thickness
-    return Surroundings(
+    return TrialContext(
         tool_radius=measured.tool.radius,
         thickness=thickness if np.isfinite(thickness) else 0.05,
         peak_depth=float(depth.max()),

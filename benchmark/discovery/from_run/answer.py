@@ -27,7 +27,7 @@ from benchmark.discovery.result import (
     NamedEffect,
     Trace,
 )
-from benchmark.effects import Effect
+from benchmark.physics import Effect
 from benchmark.runs.listener import Listener
 from wavemodel.physics import Physics
 
@@ -78,7 +78,7 @@ def repair_run(
         tissue=run.scenario.tissue.name,
         model="wave",
         found=answer.discovery(time.perf_counter() - began),
-        cards={effect.slug: effect.card for effect in effects},
+        cards={effect.slug: effect.description for effect in effects},
         seed=seed,
         layers=answer.layers,
         labels=_labels(answer),
@@ -197,7 +197,7 @@ class _Answer:
             return ()
         left = self.gaps[self.best.effect.slug]
         alike = [slug for slug, gap in self.gaps.items() if gap <= ALIKE * left and slug != self.best.effect.slug]
-        units = {parameter.name: parameter.unit for parameter in self.best.effect.card.parameters}
+        units = {parameter.name: parameter.unit for parameter in self.best.effect.description.parameters}
         estimates = tuple(
             Estimate(name, value, units[name], self.best.ci95[name]) for name, value in self.best.values.items()
         )

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmark.discovery.from_run.reading import Array, FinishedRun
-from benchmark.effects import Effect, Surroundings
+from benchmark.physics import Effect, TrialContext
 from wavemodel.physics import Physics, QuasiStaticPress
 from wavemodel.physics.force_driven import drive_by_force
 
@@ -25,13 +25,13 @@ class Body:
         From zero up, rising; beyond the last the law goes on with its last slope.
     layers : (m, L) array
         Deflection of each layer's top face, m.
-    around : Surroundings
+    around : TrialContext
     """
 
     depth: Array
     force: Array
     layers: Array
-    around: Surroundings
+    around: TrialContext
 
     def law(self, depth: Array) -> Array:
         """(n,) N at depths (n,) in m of 0 and more."""
@@ -54,7 +54,7 @@ def body_of(run: FinishedRun) -> Body:
     rising = run.force > np.concatenate(([0.0], np.maximum.accumulate(run.force)[:-1]))
     layers = np.vstack([np.zeros((1, run.wave.shape[1])), run.wave[rising]])
     stack = [layer.thickness for layer in run.scenario.tissue.layers if np.isfinite(layer.thickness)]
-    around = Surroundings(
+    around = TrialContext(
         tool_radius=run.scenario.tool.radius,
         thickness=float(sum(stack)),
         peak_depth=float(run.reference[:, 0].max()),
@@ -64,7 +64,7 @@ def body_of(run: FinishedRun) -> Body:
     return Body(layers[:, 0], np.concatenate(([0.0], run.force[rising])), layers, around)
 
 
-def physics_of(effect: Effect, values: Mapping[str, float], around: Surroundings) -> Physics:
+def physics_of(effect: Effect, values: Mapping[str, float], around: TrialContext) -> Physics:
     """The options of the body with one effect switched on."""
     return NOTHING if effect.body is None else Physics(**effect.body(values, around))
 

@@ -11,7 +11,7 @@ from scipy.stats import t as student
 
 from benchmark.discovery.from_run.body import Body, physics_of
 from benchmark.discovery.from_run.reading import Array
-from benchmark.effects import Effect, EffectParameter
+from benchmark.physics import Effect, EffectParameter
 from wavemodel import WaveError
 
 EVALUATIONS = 80
@@ -57,7 +57,7 @@ def fit_candidate(effect: Effect, body: Body, history: History) -> Fit | None:
     """Fit an effect from each of its starts and keep the best; None where no start has an answer."""
     scale = _rms((body.pressed(history.time, history.depth) - history.force)[history.fitted])
     starts = effect.first_values(body.around)
-    coordinates = _Coordinates(effect.card.parameters, starts)
+    coordinates = _Coordinates(effect.description.parameters, starts)
 
     def residual(u: Array) -> Array:
         try:

@@ -21,9 +21,9 @@ from benchmark.discovery.result import (
     Place,
     Trace,
 )
-from benchmark.effects.effect import Card, EffectParameter
+from benchmark.physics.description import EffectDescription, EffectParameter
 
-RELAXATION = Card(
+RELAXATION = EffectDescription(
     slug="viscoelastic_relaxation",
     acts_on="body",
     sentence="The force fades while the depth is held, and rate matters.",
@@ -36,7 +36,7 @@ RELAXATION = Card(
         EffectParameter("tau_2", "s", (10.0,), 0.01, 1e3, True, "second time"),
     ),
 )
-COMPLIANCE = Card(
+COMPLIANCE = EffectDescription(
     slug="machine_compliance",
     acts_on="drive",
     sentence="The rig gives way in series with the tissue.",

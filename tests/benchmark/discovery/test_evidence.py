@@ -9,7 +9,7 @@ from benchmark.discovery.detect import combined, strained
 from benchmark.discovery.evidence import gain, strain
 from benchmark.discovery.preparing import prepare
 from benchmark.discovery.select import broad
-from benchmark.effects import catalogue
+from benchmark.physics import catalogue
 
 ONE = np.zeros(8, dtype=int)
 BY_SLUG = {effect.slug: effect for effect in catalogue()}

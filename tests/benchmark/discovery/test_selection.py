@@ -8,7 +8,7 @@ from benchmark.discovery.pool import pool, silent
 from benchmark.discovery.preparing import prepare
 from benchmark.discovery.select import select
 from benchmark.discovery.settings import Settings
-from benchmark.effects import catalogue
+from benchmark.physics import catalogue
 
 SETTINGS = Settings(rows=70, workers=1, bootstraps=50)
 SOME = tuple(

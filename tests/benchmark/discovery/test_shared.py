@@ -7,7 +7,7 @@ from benchmark.discovery.calibrate import calibrate
 from benchmark.discovery.candidate_fit import fit_candidate
 from benchmark.discovery.preparing import prepare
 from benchmark.discovery.shared import share_left, shared_misfit
-from benchmark.effects import catalogue
+from benchmark.physics import catalogue
 
 BY_SLUG = {effect.slug: effect for effect in catalogue()}
 

@@ -7,7 +7,7 @@ from benchmark.discovery.candidate_fit import fit_candidate
 from benchmark.discovery.preparing import prepare
 from benchmark.discovery.settings import Settings
 from benchmark.discovery.shown import places_of
-from benchmark.effects import catalogue
+from benchmark.physics import catalogue
 
 BY_SLUG = {effect.slug: effect for effect in catalogue()}
 

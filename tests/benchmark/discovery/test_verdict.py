@@ -2,7 +2,7 @@ import pytest
 
 from benchmark.discovery.result import VERDICTS
 from benchmark.discovery.verdict import Facts, statement, verdict
-from benchmark.effects import catalogue
+from benchmark.physics import catalogue
 
 BY_SLUG = {effect.slug: effect for effect in catalogue()}
 RELAXATION, DRAINAGE = BY_SLUG["viscoelastic_relaxation"], BY_SLUG["poroelastic_drainage"]

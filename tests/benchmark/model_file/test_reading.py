@@ -2,11 +2,11 @@ from pathlib import Path
 
 import pytest
 
-from benchmark.effects import catalogue
 from benchmark.errors import InputError
 from benchmark.model_file import AddedEffect, RepairedModel, Value, model_toml, read_model
+from benchmark.physics import catalogue
 
-CARDS = {effect.slug: (effect.richer or effect).card for effect in catalogue()}
+CARDS = {effect.slug: (effect.richer or effect).description for effect in catalogue()}
 MODEL = RepairedModel(
     "model.toml",
     "skin_forearm",

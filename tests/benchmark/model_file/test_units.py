@@ -1,10 +1,10 @@
 import pytest
 
-from benchmark.effects import catalogue
 from benchmark.files.units import format_quantity, parse_quantity
 from benchmark.model_file.units import dimension_of, shown
+from benchmark.physics import catalogue
 
-UNITS = sorted({p.unit for effect in catalogue() for p in (effect.richer or effect).card.parameters})
+UNITS = sorted({p.unit for effect in catalogue() for p in (effect.richer or effect).description.parameters})
 
 
 @pytest.mark.parametrize("unit", UNITS)

@@ -1,12 +1,12 @@
 import numpy as np
 import pytest
 
-from benchmark.effects import Surroundings, catalogue
 from benchmark.models.trial_response import trial_force
+from benchmark.physics import TrialContext, catalogue
 
 TIME = np.linspace(0.0, 20.0, 400)
 DEPTH = np.minimum(TIME / 0.5, 1.0) * 2e-3
-AROUND = Surroundings(5e-3, 1e-2, 2e-3, 2.0, 20.0)
+AROUND = TrialContext(5e-3, 1e-2, 2e-3, 2.0, 20.0)
 BY_SLUG = {effect.slug: effect for effect in catalogue()}
 
 

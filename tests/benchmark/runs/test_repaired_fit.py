@@ -3,11 +3,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from benchmark.effects import Surroundings, catalogue
 from benchmark.files import load_tissue
 from benchmark.fitting import ForceCurve, TrialData, fit_session
 from benchmark.model_file import AddedEffect, RepairedModel, Value
 from benchmark.models.trial_response import trial_force
+from benchmark.physics import TrialContext, catalogue
 from benchmark.runs.repaired_fit import fit_repaired
 
 TRUE = 1.3
@@ -21,7 +21,7 @@ def _trial(number: int) -> TrialData:
     time = np.linspace(0.0, 20.0, 400)
     depth = np.interp(time, [0.0, 2.0, 12.0, 14.0, 20.0], [-5e-4, 2.5e-3, 2.5e-3, -5e-4, -5e-4])
     effect = next(each for each in catalogue() if each.slug == "viscoelastic_relaxation")
-    around = Surroundings(5e-3, 1e-2, 2.5e-3, 3.0, 20.0)
+    around = TrialContext(5e-3, 1e-2, 2.5e-3, 3.0, 20.0)
     force = trial_force(lambda below: TRUE * CURVE(below), [(effect, RELAXATION.values())], time, depth, around)
     return TrialData(f"t{number}", "a", time, depth, force + rng.normal(0.0, 5e-3, time.size), CURVE)
 

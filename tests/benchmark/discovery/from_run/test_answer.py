@@ -4,7 +4,7 @@ import pytest
 
 from benchmark.cli.console import Console
 from benchmark.discovery.from_run import read_run, repair_run
-from benchmark.effects import catalogue
+from benchmark.physics import catalogue
 
 QUIET = Console(quiet=True)
 ELASTIC = tuple(e for e in catalogue() if e.slug in ("strain_stiffening", "pretension", "bottoming_out", "anisotropy"))

@@ -5,7 +5,7 @@ import pytest
 
 from benchmark.discovery.planning.proposing import _calibrations, _distinct, usual_press
 from benchmark.discovery.result import PHASES
-from benchmark.effects import Surroundings
+from benchmark.physics import TrialContext
 
 
 def _condition(kind: str) -> SimpleNamespace:
@@ -14,7 +14,7 @@ def _condition(kind: str) -> SimpleNamespace:
     phase = np.select(
         [time < 2.0, time < 8.0], [PHASES.index("load"), PHASES.index("hold")], PHASES.index("unload_high")
     )
-    around = Surroundings(5e-3, 4e-3, 2e-3, 3.0, 10.0)
+    around = TrialContext(5e-3, 4e-3, 2e-3, 3.0, 10.0)
     return SimpleNamespace(
         time=np.tile(time, (3, 1)), depth=np.tile(depth, (3, 1)), phase=phase, cycle=np.ones(101, dtype=int),
         around=around, support=SimpleNamespace(kind=kind),

@@ -1,0 +1,1 @@
+"""Effects of the tissue, its layers and the contact: one file each."""

@@ -1,0 +1,55 @@
+"""Adhesion: the tool is held on lift-off."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from benchmark.physics.description import EffectDescription, linear, logarithmic
+from benchmark.physics.effect import Effect, Motion, Readings, TrialContext, Values
+
+RISE = 0.1
+"""Share of its reach over which a tearing bond takes up its pull."""
+
+DESCRIPTION = EffectDescription(
+    slug="adhesion",
+    acts_on="body",
+    sentence="The tissue sticks to the tool: lifting it takes a pull before it lets go.",
+    equation="F = -f(|d|) above the surface until -F exceeds the pull-off force; a tearing bond adds -p (1 - |d| / r)",
+    source="K. Kendall 1971, J Phys D 4:1186; Geubelle and Baylor 1998, Compos B 29:589 (bilinear cohesive law)",
+    parameters=(
+        linear("tear", "N", 0.0, 100.0, "pull p of a bond that tears gradually"),
+        logarithmic("reach", "m", 1e-5, 0.02, "height r above the surface at which that bond is gone"),
+        linear("pull_off", "N", 0.0, 100.0, "force at which tissue that follows the tool lets go"),
+    ),
+)
+
+
+def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
+    from wavemodel.physics import Adhesion
+
+    return {"adhesion": Adhesion(values["pull_off"])}
+
+
+def _observe(values: Values, readings: Readings, motion: Motion, context: TrialContext) -> Readings:
+    from wavemodel.physics import Adhesion
+
+    if values["tear"] <= 0.0:
+        return readings
+    height = -motion.depth / values["reach"]
+    held = Adhesion(1.0).touching(motion.depth, height, False) & (height > 0.0)
+    pull = values["tear"] * np.minimum(height / RISE, np.maximum(1.0 - height, 0.0) / (1.0 - RISE))
+    return replace(readings, force=readings.force - np.where(held, pull, 0.0))
+
+
+def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
+    peak, depth = context.peak_force, context.peak_depth
+    tearing = tuple({"tear": 0.05 * peak, "reach": share * depth, "pull_off": 0.0} for share in (0.1, 0.2, 0.4))
+    following = tuple({"tear": 0.0, "reach": 0.2 * depth, "pull_off": share * peak} for share in (0.03, 0.1, 0.3))
+    return tearing + following
+
+
+EFFECT = Effect(DESCRIPTION, "tear", body=_body, observe=_observe, starts=_starts, amplitudes=("pull_off",))

@@ -1,0 +1,35 @@
+"""Poroelastic drainage: the force decays as fluid leaves the tissue."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from benchmark.physics.description import EffectDescription, linear, logarithmic
+from benchmark.physics.effect import Effect, TrialContext, Values
+
+DESCRIPTION = EffectDescription(
+    slug="poroelastic_drainage",
+    acts_on="body",
+    sentence="Fluid leaves the pressed tissue: the force decays over a time that grows with the contact size squared.",
+    equation="F = int (1 - g (1 - phi(xi - xi'))) df, xi = int D / a^2 dt, phi of one-dimensional consolidation",
+    source="H. F. Wang, Theory of Linear Poroelasticity, section 6.3; Hu et al. 2010, Appl Phys Lett 96:121904",
+    parameters=(
+        linear("g", "", 0.0, 0.95, "share of the force that drains away"),
+        logarithmic("diffusivity", "m^2/s", 1e-12, 1e-2, "of the pore fluid"),
+    ),
+)
+
+
+def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
+    from wavemodel.physics import PoroelasticDrainage
+
+    return {"drainage": PoroelasticDrainage(values["g"], values["diffusivity"], context.tool_radius)}
+
+
+def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
+    scale = context.tool_radius**2 / context.duration
+    return tuple({"g": 0.2, "diffusivity": factor * scale} for factor in (0.5, 4.0, 30.0))
+
+
+EFFECT = Effect(DESCRIPTION, "g", body=_body, starts=_starts)

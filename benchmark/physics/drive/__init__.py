@@ -1,0 +1,1 @@
+"""Effects of the rig, which gives the tissue another depth than it reports: one file each."""

@@ -1,0 +1,192 @@
+"""How an effect enters a model: what it may know, and the four places where it may act.
+
+The way of a trial is drive (what the rig imposes) -> body (tissue, layers, contact) -> markers -> observation. An
+effect is plain functions for the places where it acts; any number compose, in the order of the catalogue.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.physics.description import EffectDescription
+
+Array: TypeAlias = NDArray[np.float64]
+Values: TypeAlias = Mapping[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class TrialContext:
+    """What an effect may know of a condition, SI.
+
+    Attributes
+    ----------
+    tool_radius, thickness, spacing : float
+        Of tool and specimen, m; the marker spacing is 0 without markers.
+    peak_depth, peak_force : float
+        Largest depth that was driven, m, and the base model's force there, N.
+    duration : float
+        Of the longest trial, s.
+    markers : (m, 2) array or None
+        Resting positions of the markers by the nominal grid, m.
+    hole_radius : float
+        Of the support, m; infinite without a hole.
+    """
+
+    tool_radius: float
+    thickness: float
+    peak_depth: float
+    peak_force: float
+    duration: float
+    spacing: float = 0.0
+    markers: Array | None = None
+    hole_radius: float = math.inf
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """What the rig reports: time (n,) s, depth (n,) m, and the acceleration (n,) m/s2 of the tool."""
+
+    time: Array
+    depth: Array
+    acceleration: Array
+
+
+class BodyResponse(Protocol):
+    """The body as a drive effect sees it."""
+
+    def elastic(self, depth: Array) -> Array:
+        """(n,) elastic force in N at depths (n,) in m, without memory."""
+        ...
+
+    def force(self, depth: Array) -> Array:
+        """(n,) force in N of the body with its effects, pressed through depths (n,) in m."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class PressHistory:
+    """A press worked out: (n,) depth of the tool and of the tissue under it, m, force and elastic force, N."""
+
+    time: Array
+    depth: Array
+    surface: Array
+    force: Array
+    elastic: Array
+    touching: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class LowerFaceMotion:
+    """How the press moves the lower face.
+
+    Attributes
+    ----------
+    depth : (n,) array
+        Of the tissue under the tool, m, which the face follows.
+    passed : (n,) array
+        Share of the in-plane motion that reaches the markers.
+    centre : (x, y)
+        Of the tool axis from the grid's nominal centre, m.
+    ratio : float
+        Tension along x over tension along y.
+    dent : ((n,) array, float) or None
+        A dent that falls with the logarithm of the radius from an inner radius on: its outward motion times the
+        radius, m^2, and that inner radius, m.
+    """
+
+    depth: Array
+    passed: Array
+    centre: tuple[float, float] = (0.0, 0.0)
+    ratio: float = 1.0
+    dent: tuple[Array, float] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Readings:
+    """What sensor and camera report.
+
+    Attributes
+    ----------
+    force : (n,) array
+        N.
+    markers : (n, m, 2) array or None
+        Positions, m.
+    sink : (n, m) array or None
+        How far the lower face at the markers moved along the press, m.
+    """
+
+    force: Array
+    markers: Array | None = None
+    sink: Array | None = None
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An entry of the catalogue; every place is optional.
+
+    Attributes
+    ----------
+    description : EffectDescription
+        What people read of it.
+    amplitude : str
+        The parameter by which the effect grows from nothing, where a fit scales its start.
+    amplitudes : tuple of str
+        Further ones that are scaled with it.
+    drive : (values, motion, response) -> (n,) depth that the tissue is given, m
+    body : (values, context) -> options of `wavemodel.physics.Physics` by their names
+    lower_face : (values, face, press, context) -> LowerFaceMotion
+    observe : (values, readings, motion, context) -> Readings
+    starts : (context) -> starts of a fit, each a value for every parameter
+        In place of the starts of the description, where a start goes with the press.
+    needs_markers : bool
+        Whether it shows in the markers alone.
+    richer : Effect or None
+        The same effect with one more term, tried where this one is accepted.
+    origin : str or None
+        File of an own effect.
+    """
+
+    description: EffectDescription
+    amplitude: str
+    drive: Callable[[Values, Motion, BodyResponse], Array] | None = None
+    body: Callable[[Values, TrialContext], Mapping[str, Any]] | None = None
+    lower_face: Callable[[Values, LowerFaceMotion, PressHistory, TrialContext], LowerFaceMotion] | None = None
+    observe: Callable[[Values, Readings, Motion, TrialContext], Readings] | None = None
+    starts: Callable[[TrialContext], tuple[dict[str, float], ...]] | None = None
+    needs_markers: bool = False
+    richer: Effect | None = None
+    origin: str | None = None
+    amplitudes: tuple[str, ...] = ()
+
+    @property
+    def slug(self) -> str:
+        """Name in the catalogue."""
+        return self.description.slug
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the parameters."""
+        return tuple(parameter.name for parameter in self.description.parameters)
+
+    def from_origin(self, path: str) -> Effect:
+        """Copy with the file that it came from."""
+        return replace(self, origin=path)
+
+    def first_values(self, context: TrialContext) -> tuple[dict[str, float], ...]:
+        """Starts of a fit, within the bounds of the description."""
+        if self.starts is not None:
+            given = self.starts(context)
+        else:
+            longest = max(len(parameter.start) for parameter in self.description.parameters)
+            given = tuple(
+                {p.name: p.start[min(turn, len(p.start) - 1)] for p in self.description.parameters}
+                for turn in range(longest)
+            )
+        bounds = {parameter.name: (parameter.low, parameter.high) for parameter in self.description.parameters}
+        return tuple({name: float(np.clip(value, *bounds[name])) for name, value in each.items()} for each in given)

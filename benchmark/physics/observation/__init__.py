@@ -1,0 +1,1 @@
+"""Effects of the sensors and the camera, which report something else than happened: one file each."""

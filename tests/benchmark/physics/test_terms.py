@@ -1,0 +1,277 @@
+"""Each effect changes what it should, by hand-checkable amounts."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmark.discovery.bases.law import BaseLaw
+from benchmark.discovery.simulator import Shape, Simulator
+from benchmark.physics import SLUGS, Motion, TrialContext, catalogue
+
+STIFFNESS = 200.0
+PEAK = 5e-3
+REST = np.array([[6e-3, 0.0], [0.0, 6e-3], [-6e-3, 0.0], [0.0, -6e-3]])
+AROUND = TrialContext(5e-3, 10e-3, PEAK, STIFFNESS * PEAK, 10.0, 6e-3, REST)
+BY_SLUG = {effect.slug: effect for effect in catalogue()}
+
+
+def linear_law() -> BaseLaw:
+    """F = k d; the lower face moves outwards by a tenth of the depth at all radii and sinks by half of it."""
+    depth = np.linspace(0.0, 2 * PEAK, 200)
+    radius = np.array([0.0, 0.05])
+    flat = np.ones((1, 2))
+    return BaseLaw(
+        depth,
+        STIFFNESS * depth,
+        np.zeros((2, depth.size)),
+        radius,
+        (0.1 * depth[None], flat),
+        (0.5 * depth[None], flat),
+        ((0.0 * depth[None], flat),),
+    )
+
+
+def press(hold: float = 2.0) -> Motion:
+    """From -1 mm to 5 mm at 2 mm/s, hold, back, twice; 50 rows a second."""
+    knots = [(0.0, -1e-3)]
+    for _ in range(2):
+        for target in (PEAK, PEAK, -1e-3):
+            t, d = knots[-1]
+            knots.append((t + (abs(target - d) / 2e-3 or hold), target))
+    time = np.arange(0.0, knots[-1][0], 0.02)
+    depth = np.interp(time, *np.array(knots).T)
+    return Motion(time, depth, np.zeros_like(time))
+
+
+def readings(motion: Motion, **values):
+    effects = tuple(BY_SLUG[slug] for slug in values)
+    simulator = Simulator(linear_law(), AROUND, effects)
+    return simulator.readings(simulator.bent(Shape()), values, motion)
+
+
+MOTION = press()
+PLAIN = readings(MOTION)
+DEEP = np.flatnonzero(MOTION.depth > PEAK - 1e-9)
+AIR = MOTION.depth < -0.2e-3
+
+
+def test_the_plain_base_is_its_law():
+    assert PLAIN.force == pytest.approx(STIFFNESS * np.maximum(MOTION.depth, 0.0), abs=1e-9)
+    moved = np.hypot(*np.moveaxis(PLAIN.markers, -1, 0)) - 6e-3
+    assert moved[:, 0] == pytest.approx(0.1 * np.maximum(MOTION.depth, 0.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("slug", SLUGS)
+def test_every_description_is_complete_and_its_starts_change_a_reading(slug):
+    effect = BY_SLUG[slug]
+    description = effect.description
+    assert description.slug == slug
+    assert description.sentence.endswith(".")
+    assert description.source
+    assert effect.amplitude in effect.names
+    for parameter in description.parameters:
+        assert parameter.low < parameter.high
+        assert all(parameter.low <= start <= parameter.high for start in parameter.start)
+        assert parameter.low > 0.0 or not parameter.logarithmic
+    motion = replace(MOTION, acceleration=np.gradient(np.gradient(MOTION.depth, 0.02), 0.02))
+    for values in effect.first_values(AROUND):
+        made = readings(motion, **{slug: values})
+        changed = np.abs(made.force - PLAIN.force).max() / 1.0 + np.abs(made.markers - PLAIN.markers).max() / PEAK
+        assert changed > 1e-4, values
+        if effect.needs_markers:
+            assert made.force == pytest.approx(PLAIN.force)
+
+
+def test_stiffening_multiplies_the_force():
+    made = readings(MOTION, strain_stiffening={"b_1": 0.4, "b_2": 0.0})
+    assert made.force[DEEP] == pytest.approx(STIFFNESS * PEAK * 1.2)
+
+
+def test_relaxation_decays_in_the_hold_to_its_long_term():
+    motion = press(hold=60.0)
+    made = readings(motion, viscoelastic_relaxation={"g_1": 0.3, "tau_1": 0.5})
+    last = np.flatnonzero(motion.depth > PEAK - 1e-9)[-2]
+    assert made.force[last] == pytest.approx(0.7 * STIFFNESS * PEAK, rel=1e-4)
+
+
+def test_the_second_term_fades_what_the_first_leaves():
+    motion = press(hold=60.0)
+    two = replace(BY_SLUG["viscoelastic_relaxation"].richer)
+    simulator = Simulator(linear_law(), AROUND, (two,))
+    values = {two.slug: {"g_1": 0.2, "tau_1": 0.2, "g_2": 0.3, "tau_2": 2.0}}
+    made = simulator.readings(simulator.bent(Shape()), values, motion)
+    last = np.flatnonzero(motion.depth > PEAK - 1e-9)[-2]
+    assert made.force[last] == pytest.approx(0.8 * 0.7 * STIFFNESS * PEAK, rel=1e-3)
+
+
+def test_damping_adds_with_speed_and_not_in_the_hold():
+    made = readings(MOTION, viscous_damping={"eta": 0.1, "drag": 0.0, "power": 1.0})
+    rising = (MOTION.depth > 1e-3) & (MOTION.depth < 4e-3) & (np.gradient(MOTION.depth) > 0.0)
+    assert (made.force - PLAIN.force)[rising] == pytest.approx(0.1 * STIFFNESS * 2e-3)
+    assert (made.force - PLAIN.force)[DEEP[2:5]] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_drag_is_the_same_at_all_depths_once_the_contact_has_formed():
+    made = readings(MOTION, viscous_damping={"eta": 0.0, "drag": 20.0, "power": 0.5})
+    rising = (MOTION.depth > 1e-3) & (MOTION.depth < 4e-3) & (np.gradient(MOTION.depth) > 0.0)
+    assert (made.force - PLAIN.force)[rising] == pytest.approx(20.0 * 1e-3 * np.sqrt(2.0))
+    assert made.force[AIR] == pytest.approx(0.0)
+
+
+def test_softening_spares_the_first_loading():
+    made = readings(MOTION, stress_softening={"strength": 0.2, "width": 0.5})
+    first = np.arange(MOTION.time.size) < DEEP[0]
+    second = (MOTION.time > 8.5) & (MOTION.depth > 1e-3) & (MOTION.depth < 4e-3)
+    assert made.force[first] == pytest.approx(PLAIN.force[first], abs=1e-9)
+    assert (made.force[second] < 0.95 * PLAIN.force[second]).all()
+
+
+def test_set_leaves_the_surface_and_the_markers():
+    made = readings(MOTION, permanent_set={"fraction": 0.1, "onset": 0.0, "marker_share": 1.0})
+    after = AIR & (MOTION.time > 5.0)
+    assert made.force[after] == pytest.approx(0.0, abs=1e-12)
+    assert made.markers[after, 0, 0] == pytest.approx(6e-3 + 0.1 * 0.1 * PEAK)
+
+
+def test_drainage_goes_faster_under_a_smaller_tool():
+    values = {"poroelastic_drainage": {"g": 0.4, "diffusivity": 5e-6}}
+    effect = BY_SLUG["poroelastic_drainage"]
+
+    def left(radius: float) -> float:
+        simulator = Simulator(linear_law(), replace(AROUND, tool_radius=radius), (effect,))
+        return float(simulator.readings(simulator.bent(Shape()), values, MOTION).force[DEEP[50]])
+
+    assert left(2.5e-3) < left(5e-3) < PLAIN.force[DEEP[50]]
+
+
+def test_anisotropy_moves_x_and_y_apart():
+    made = readings(MOTION, anisotropy={"log_ratio": 0.2})
+    x, y = made.markers[DEEP[0], 0, 0] - 6e-3, made.markers[DEEP[0], 1, 1] - 6e-3
+    assert x / y == pytest.approx(np.exp(-0.1), rel=1e-6)
+
+
+def test_pretension_adds_its_stiffness():
+    made = readings(MOTION, pretension={"stiffness": 30.0, "field": 0.5})
+    assert (made.force - PLAIN.force)[DEEP] == pytest.approx(30.0 * PEAK)
+    assert made.markers == pytest.approx(PLAIN.markers)
+
+
+def test_pretension_over_a_hole_moves_the_lower_face_as_a_membrane_does():
+    around = replace(AROUND, hole_radius=30e-3)
+    simulator = Simulator(linear_law(), around, (BY_SLUG["pretension"],))
+    made = simulator.readings(simulator.bent(Shape()), {"pretension": {"stiffness": 50.0, "field": 1.0}}, MOTION)
+    share = 50.0 / (STIFFNESS + 50.0)
+    membrane = 0.5 * 10e-3 * PEAK / (6e-3 * np.log(6.0))
+    moved = made.markers[DEEP[0], 0, 0] - 6e-3
+    assert moved == pytest.approx((1.0 - share) * 0.1 * PEAK + share * membrane, rel=1e-3)
+
+
+def test_slip_can_show_in_the_markers_alone():
+    made = readings(MOTION, interface_slip={"limit": 0.5, "force_share": 0.0, "marker_share": 1.0, "return_share": 0.0})
+    assert made.force == pytest.approx(PLAIN.force)
+    assert made.markers[DEEP[0], 0, 0] - 6e-3 == pytest.approx(0.5 * 0.1 * PEAK, rel=1e-6)
+
+
+def test_the_floor_is_met_at_its_depth():
+    made = readings(MOTION, bottoming_out={"depth": 4e-3, "stiffness": 100.0, "power": 1.0})
+    assert (made.force - PLAIN.force)[DEEP] == pytest.approx(0.1)
+    assert made.force[MOTION.depth < 4e-3] == pytest.approx(PLAIN.force[MOTION.depth < 4e-3])
+
+
+def test_friction_changes_sign_on_reversal():
+    made = readings(MOTION, dry_friction={"force": 0.05, "length": 1e-4, "coefficient": 0.0})
+    extra = made.force - PLAIN.force
+    rate = np.gradient(MOTION.depth)
+    middle = (MOTION.depth > 2e-3) & (MOTION.depth < 4e-3)
+    assert extra[middle & (rate > 0)] == pytest.approx(0.05, rel=1e-3)
+    assert extra[middle & (rate < 0)] == pytest.approx(-0.05, rel=1e-3)
+
+
+def test_adhesion_pulls_before_it_lets_go():
+    made = readings(MOTION, adhesion={"tear": 0.0, "reach": 1e-3, "pull_off": 0.1})
+    assert made.force.min() == pytest.approx(-0.1, abs=0.01)
+    assert made.force[MOTION.depth < -0.6e-3] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_tearing_bond_pulls_as_far_as_it_reaches():
+    made = readings(MOTION, adhesion={"tear": 0.1, "reach": 0.5e-3, "pull_off": 0.0})
+    extra = made.force - PLAIN.force
+    assert -0.1 <= extra.min() < -0.05
+    assert extra[MOTION.depth >= 0.0] == pytest.approx(0.0)
+    assert extra[MOTION.depth < -0.5e-3] == pytest.approx(0.0)
+
+
+def test_gap_shifts_the_depth():
+    made = readings(MOTION, contact_gap={"gap": 0.5e-3})
+    assert made.force[DEEP] == pytest.approx(STIFFNESS * 4.5e-3)
+
+
+def test_off_centre_field_goes_round_its_own_axis():
+    made = readings(MOTION, off_centre_load={"x_0": 1e-3, "y_0": 0.0})
+    moved = made.markers[DEEP[0]] - REST
+    assert moved[1] == pytest.approx(0.1 * PEAK * np.array([-1.0, 6.0]) / np.sqrt(37.0))
+
+
+def test_compliance_gives_the_tissue_less_depth():
+    made = readings(MOTION, machine_compliance={"compliance": 1e-3})
+    assert made.force[DEEP] == pytest.approx(STIFFNESS * PEAK / 1.2, rel=1e-4)
+
+
+def test_backlash_is_lost_on_the_chosen_side():
+    for side, loading, unloading in ((1.0, 0.0, 0.2e-3), (0.0, -0.2e-3, 0.0)):
+        made = readings(MOTION, backlash={"width": 0.2e-3, "side": side})
+        extra = (made.force - PLAIN.force) / STIFFNESS
+        rate = np.gradient(MOTION.depth)
+        middle = (MOTION.depth > 1e-3) & (MOTION.depth < 4e-3)
+        assert extra[middle & (rate > 0)] == pytest.approx(loading, abs=1e-9)
+        assert extra[middle & (rate < 0)] == pytest.approx(unloading, abs=1e-9)
+
+
+def test_inertia_reads_the_acceleration():
+    motion = replace(MOTION, acceleration=np.linspace(-1.0, 1.0, MOTION.time.size))
+    made = readings(motion, tool_inertia={"mass": 0.2})
+    assert made.force - PLAIN.force == pytest.approx(0.2 * motion.acceleration)
+
+
+def test_drift_settles():
+    made = readings(MOTION, force_drift={"rate": 0.01, "tau": 2.0})
+    extra = made.force - PLAIN.force
+    assert extra[0] == 0.0
+    assert extra[100] == pytest.approx(0.02 * (1.0 - np.exp(-1.0)))
+
+
+def test_saturation_stops_at_its_limit():
+    made = readings(MOTION, force_saturation={"limit": 0.7, "softness": 0.001})
+    assert made.force.max() == pytest.approx(0.7, rel=1e-6)
+    low = PLAIN.force < 0.6
+    assert made.force[low] == pytest.approx(PLAIN.force[low])
+
+
+def test_late_frames_show_the_past():
+    made = readings(MOTION, camera_latency={"latency": 0.1})
+    assert made.markers[60:] == pytest.approx(PLAIN.markers[55:-5], abs=1e-9)
+    assert made.force == pytest.approx(PLAIN.force)
+
+
+def test_perspective_magnifies_what_came_nearer():
+    made = readings(MOTION, perspective={"nearness": 4.0})
+    assert made.markers[DEEP[0]] == pytest.approx(PLAIN.markers[DEEP[0]] / (1.0 - 4.0 * 0.5 * PEAK))
+
+
+def test_a_scale_error_shows_at_rest():
+    made = readings(MOTION, marker_scale_error={"error": 0.02})
+    assert made.markers == pytest.approx(1.02 * PLAIN.markers)
+
+
+def test_any_number_compose():
+    made = readings(
+        MOTION,
+        pretension={"stiffness": 50.0, "field": 0.0},
+        contact_gap={"gap": 1e-3},
+        force_drift={"rate": 0.0, "tau": 1.0},
+        force_saturation={"limit": 0.9, "softness": 0.001},
+    )
+    assert made.force[DEEP] == pytest.approx(0.9, rel=1e-6)
+    middle = np.flatnonzero(np.isclose(MOTION.depth, 3e-3))[0]
+    assert made.force[middle] == pytest.approx(250.0 * 2e-3)
