@@ -10,7 +10,7 @@ from benchmark.gate.measurement import subject
 from benchmark.gate.plan import Plan
 from benchmark.gate.revision import describe_revision
 from benchmark.gate.stored import Machine
-from benchmark.runs.environment import describe_environment
+from benchmark.runs.document import describe_environment
 
 DECISIVE = ("numpy", "scipy", "pypardiso")
 """Packages whose version can change a ratio of times."""

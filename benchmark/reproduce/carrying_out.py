@@ -15,7 +15,7 @@ from benchmark.reproduce.table_one import table_one_items
 from benchmark.reproduce.table_two import table_two_items
 from benchmark.reproduce.text import text_items
 from benchmark.runs.destination import destination
-from benchmark.runs.environment import describe_environment
+from benchmark.runs.document import describe_environment
 from benchmark.runs.listener import Listener
 from reports import csv_text, whole_folder, write_json, write_page, write_text
 

@@ -11,7 +11,7 @@ from benchmark.errors import InputError
 from benchmark.fitting import parameter_columns
 from benchmark.models.repaired import load_repair
 from benchmark.runs.destination import destination
-from benchmark.runs.environment import describe_environment
+from benchmark.runs.document import describe_environment
 from benchmark.runs.listener import Listener
 from benchmark.runs.report import fit_page
 from benchmark.runs.session_run import fit_trials

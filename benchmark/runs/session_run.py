@@ -42,7 +42,7 @@ from benchmark.runs.measured import FilmedSession, MeasuredComparison, TrialPred
 from benchmark.runs.options import RunOptions
 from benchmark.runs.record import RunRecord
 from benchmark.runs.repaired_fit import fit_repaired, wave_force
-from benchmark.runs.report.measured_section import fit_headline
+from benchmark.runs.report.values import fit_headline
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.sheets import session_sheets
 from benchmark.runs.table_one import Placed, table_one

@@ -11,7 +11,7 @@ from benchmark.errors import InputError
 from benchmark.files import load_scenario
 from benchmark.models import Own
 from benchmark.runs.destination import destination, file_name
-from benchmark.runs.environment import describe_environment
+from benchmark.runs.document import describe_environment
 from benchmark.runs.folder import RunOutcome, write_run
 from benchmark.runs.listener import Listener
 from benchmark.runs.options import RunOptions

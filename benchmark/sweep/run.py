@@ -9,7 +9,7 @@ from typing import Any
 
 from benchmark.errors import InputError
 from benchmark.runs.destination import destination
-from benchmark.runs.environment import describe_environment
+from benchmark.runs.document import describe_environment
 from benchmark.runs.listener import Listener
 from benchmark.sensitivity import Sensitivity
 from benchmark.sweep.design import chosen_design

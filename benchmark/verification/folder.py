@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from benchmark.runs.environment import describe_environment
+from benchmark.runs.document import describe_environment
 from benchmark.verification.page import verification_page
 from benchmark.verification.row import Row
 from benchmark.verification.table import columns, document

@@ -11,7 +11,7 @@ from benchmark.discovery.files.tables import discovery_tables
 from benchmark.discovery.record import DiscoveryRecord
 from benchmark.discovery.report import discovery_page
 from benchmark.model_file import model_toml
-from benchmark.runs.environment import describe_environment
+from benchmark.runs.document import describe_environment
 from reports import whole_folder, write_csv, write_json, write_page, write_text
 
 

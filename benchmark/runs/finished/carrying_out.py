@@ -9,10 +9,9 @@ from typing import Any
 
 from benchmark.errors import InputError
 from benchmark.runs.destination import destination, file_name
-from benchmark.runs.environment import describe_environment
-from benchmark.runs.finished.changes import changed_parameters, result_columns
-from benchmark.runs.finished.page import compare_page
-from benchmark.runs.finished.reading import SavedRun, read_run
+from benchmark.runs.document import describe_environment
+from benchmark.runs.finished.comparison_page import changed_parameters, compare_page, result_columns
+from benchmark.runs.finished.saved_run import SavedRun, read_run
 from benchmark.runs.pressed import pressed_picture, read_drawn, write_drawn
 from benchmark.runs.report import run_page
 from reports import csv_text, whole_folder, write_json, write_page, write_text

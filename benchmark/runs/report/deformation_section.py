@@ -1,4 +1,4 @@
-"""Section: deformations of FEM and wave model, layer by layer."""
+"""Section: deformations of FEM and wave model layer by layer, and both models' layers drawn under the press."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import numpy as np
 from benchmark.comparison import LayerComparison, ProfileError, profile_error
 from benchmark.models import Array
 from benchmark.runs.record import RunRecord
-from benchmark.runs.report.pressed_block import pressed_block
 from benchmark.runs.report.values import MM, fem_mm, pair_names, peak_errors, profile_mm, wave_mm
 from benchmark.runs.tables import percent_errors
 from reports import Block, Column, Download, Figure, Notice, Section, Table
 from reports.figures.force_depth import force_depth
 from reports.figures.max_deformation import max_deformation
+from reports.figures.pressed_layers import pressed_layers
 from reports.figures.profile import profile
 
 
@@ -123,5 +123,32 @@ def _force_depth(record: RunRecord) -> Block:
         None if wave is None else MM * wave.depth,
         None if wave is None else wave.force,
         planned,
+        pair_names(record),
+    )
+
+
+REACH = 4.0
+"""Tool radii round its axis that are shown."""
+
+
+def pressed_block(record: RunRecord) -> Block | None:
+    """The layers as they lie at peak load; None where they are no body of revolution, or no model has a profile."""
+    scenario = record.scenario
+    results = (record.pair.fem.result, record.pair.wave.result)
+    reference = next((each for each in results if each is not None and each.time.size), None)
+    if reference is None or scenario.fem.geometry != "axisymmetric":
+        return None
+    near = reference.profile_radii <= REACH * scenario.tool.radius * (1.0 + 1e-9)
+    fem, wave = (None if each is None else MM * each.profile[:, near] for each in results)
+    thickness = [MM * layer.thickness for layer in scenario.tissue.layers]
+    depths = np.concatenate([[0.0], np.cumsum(thickness)])
+    return pressed_layers(
+        record.layers,
+        depths[:-1],
+        float(depths[-1]) if scenario.support.kind == "bonded" else None,
+        MM * reference.profile_radii[near],
+        fem,
+        wave,
+        MM * scenario.tool.radius,
         pair_names(record),
     )

@@ -7,8 +7,8 @@ from typing import Any
 
 from benchmark.files import Session
 from benchmark.fitting import SessionFit, SheetFit
-from benchmark.runs.report.film_section import sheet_headline
-from benchmark.runs.report.measured_section import fit_headline, fit_section, sentence
+from benchmark.runs.report.trials_section import fit_section
+from benchmark.runs.report.values import fit_headline, sentence, sheet_headline
 from reports import Column, Download, Fact, Notice, Page, Section, Table, Verdict
 
 

@@ -1,4 +1,4 @@
-"""The page of a run, section after section."""
+"""The page of a run, section after section, with the verdict that its statistics allow first."""
 
 from __future__ import annotations
 
@@ -9,16 +9,65 @@ from typing import Any
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.deformation_section import deformation_section
 from benchmark.runs.report.film_section import film_section
-from benchmark.runs.report.measured_section import fit_section, measured_section, session_notices
-from benchmark.runs.report.method_section import method_section
-from benchmark.runs.report.scenario_section import scenario_section
-from benchmark.runs.report.statistics_section import statistics_section
+from benchmark.runs.report.scenario_section import method_section, scenario_section
+from benchmark.runs.report.statistics_section import Columns, growth_section, statistics_section, validation_section
 from benchmark.runs.report.timing_section import timing_section
-from benchmark.runs.report.trials_part import TrialsPart
-from benchmark.runs.report.validation_section import Columns, growth_section, validation_section
-from benchmark.runs.report.values import pair_names, peak_errors
-from benchmark.runs.report.verdict import run_verdict
-from reports import Block, Download, Fact, KeyFigure, Notice, Page, Section
+from benchmark.runs.report.trials_section import TrialsPart, fit_section, measured_section, session_notices
+from benchmark.runs.report.values import pair_names, peak_errors, sentence
+from benchmark.runs.small_strain import NOTE
+from reports import Block, Download, Fact, KeyFigure, Notice, Page, Section, Verdict
+
+
+def run_verdict(record: RunRecord, fit: str | None = None) -> Verdict:
+    """Return the verdict of a run; `fit` is what its trials told, in one sentence."""
+    if not record.complete:
+        stops = [str(result.failure) for result in record.results if result.failure is not None]
+        return Verdict("incomplete", "A solver stopped before the end of the load history.", stops)
+    if record.pair.fem.result is None or record.pair.wave.result is None:
+        return _one_sided(record, fit)
+    return _agreement(record, fit)
+
+
+def _one_sided(record: RunRecord, fit: str | None) -> Verdict:
+    """A model has no values: nothing to compare it with, but the trials may still have told something."""
+    missing = [run for run in (record.pair.fem, record.pair.wave) if run.result is None]
+    names = " and ".join(run.name for run in missing)
+    nothing = f"Nothing to compare the models by: {names} without values here"
+    points = [f"{nothing}, because {run.declined}" for run in missing]
+    if fit is None:
+        return Verdict("finding", f"{nothing}.", [str(run.declined) for run in missing])
+    return Verdict("finding", sentence(fit), points)
+
+
+def _agreement(record: RunRecord, fit: str | None) -> Verdict:
+    """Whether equivalence is shown, where both models have values."""
+    margin = f"{100 * record.scenario.comparison.equivalence_margin:g} % of the FEM's mean"
+    shown = [c for c in record.comparisons if c.statistics is not None and c.statistics.equivalence.equivalent]
+    errors = peak_errors(record)
+    wave, fem = record.pair.wave.name, record.pair.fem.name
+    points = [f"{name}: {wave} against {fem} {error:+.2f} % at peak load" for name, error in errors.items()]
+    if record.pair.speedup is not None:
+        ratio = record.pair.speedup
+        points.append(
+            f"the {wave} follows the load history {ratio.median:,.0f} times as fast "
+            f"(95 % {ratio.ci95[0]:.3g} to {ratio.ci95[1]:.3g}, {ratio.repeats} interleaved repeats, one thread each)"
+        )
+    result = record.pair.wave.result
+    points.extend([result.notes[NOTE]] if result is not None and NOTE in result.notes else [])
+    points.extend([] if fit is None else [fit])
+    worst = max(errors.values(), key=abs, default=float("nan"))
+    if len(shown) == len(record.comparisons):
+        headline = f"{wave} and {fem} are equivalent within {margin} in every layer's maximum deformation"
+        if abs(worst) > 100 * record.scenario.comparison.equivalence_margin:
+            at_peak = f"at peak load the {wave} is off by up to {worst:+.1f} %"
+            return Verdict("finding", sentence(f"{headline} on average over the load history, but {at_peak}"), points)
+        return Verdict("good", sentence(headline), points)
+    headline = (
+        f"Equivalence within {margin} is not shown in {len(record.comparisons) - len(shown)} of "
+        f"{len(record.comparisons)} layers; the {wave} is off by up to {worst:+.1f} % at peak load."
+    )
+    return Verdict("finding", headline, points)
+
 
 VALIDATION, REFINEMENT = "validation.csv", "refinement.csv"
 NO_COLUMNS: Mapping[str, Columns] = MappingProxyType({})

@@ -1,10 +1,12 @@
-"""The numbers of a run as the report's border wants them: mm, N, and None where there is nothing."""
+"""A run at the report's border: numbers in mm and N, None where there is nothing, and its fit in one sentence."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from benchmark.fitting import SessionFit, SheetFit
 from benchmark.models import Array, ModelResult
+from benchmark.runs.measured import MeasuredComparison
 from benchmark.runs.record import RunRecord
 from reports.figures.pair import Pair
 
@@ -53,3 +55,40 @@ def peak_errors(record: RunRecord) -> dict[str, float]:
         for column, name in enumerate(record.layers)
         if np.isfinite(fem[column]) and fem[column] != 0.0
     }
+
+
+def fit_headline(fit: SessionFit) -> str:
+    """Return the fit in one sentence."""
+    found, count = fit.stiffness, len(fit.trials)
+    rms = float(np.median([trial.residual_percent for trial in fit.trials]))
+    return (
+        f"fitted to {count} trial{'s' if count > 1 else ''}: the specimen is {found.value:.4g} times as stiff as its "
+        f"file says (95 % {found.ci95_low:.4g} to {found.ci95_high:.4g}); the elastic law leaves {rms:.2g} % of the "
+        "peak force (median over trials of the root mean square)"
+    )
+
+
+def sentence(text: str) -> str:
+    """Return a clause as a sentence of its own."""
+    return f"{text[0].upper()}{text[1:]}."
+
+
+def sheet_headline(sheet: SheetFit) -> str:
+    """Return the fit of force and markers in one sentence."""
+    found = sheet.stiffness
+    text = (
+        f"force and markers of {found.trials} trials together: the specimen is {found.value:.4g} times as stiff as its "
+        f"file says (95 % {found.low:.4g} to {found.high:.4g})"
+    )
+    if sheet.relaxation.share > 0.0 and sheet.share is not None:
+        text += (
+            f"; its force relaxes by {100 * sheet.relaxation.share:.3g} % (95 % {100 * sheet.share.low:.3g} to "
+            f"{100 * sheet.share.high:.3g}) within some {sheet.relaxation.tau:.3g} s"
+        )
+    return text
+
+
+def measured_headline(comparison: MeasuredComparison) -> str:
+    """Return the fit behind a run in one sentence: of force and markers where there are markers."""
+    sheet = None if comparison.filmed is None else comparison.filmed.sheet
+    return fit_headline(comparison.fit) if sheet is None else sheet_headline(sheet)

@@ -8,7 +8,7 @@ from benchmark.cli.console import Console
 from benchmark.files import load_scenario
 from benchmark.models import NOTHING, scenario_drive
 from benchmark.runs.options import RunOptions
-from benchmark.runs.report.verdict import run_verdict
+from benchmark.runs.report.run_page import run_verdict
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.small_strain import NOTE, beside_small_strain
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from benchmark.runs.report.film_part import FilmPart, MotionPart, StillPart, read_film, write_film
-from benchmark.runs.report.film_section import film_section
+from benchmark.runs.report.film_section import FilmPart, MotionPart, StillPart, film_section, read_film, write_film
 
 
 def part(ring: float = 10.5) -> FilmPart:

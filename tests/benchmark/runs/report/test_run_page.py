@@ -9,7 +9,7 @@ from benchmark.cli.console import Console
 from benchmark.files import load_scenario
 from benchmark.runs.options import RunOptions
 from benchmark.runs.record import RunRecord, compare_layers
-from benchmark.runs.report.verdict import run_verdict
+from benchmark.runs.report.run_page import run_verdict
 from benchmark.runs.scenario_run import run_scenario
 
 QUICK = {"fem.mesh": "coarse", "load.observations": "20", "wave.large_press": "linear"}

@@ -1,15 +1,17 @@
-"""Sections on trials: measured beside both models, and the fit behind them."""
+"""Sections on trials: measured beside both models and the fit behind them, from a run at hand or from its files."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from benchmark.fitting import FittedParameter, SessionFit
+from benchmark.fitting import FittedParameter
 from benchmark.models import Array
-from benchmark.runs.measured import TrialPrediction
-from benchmark.runs.report.values import MM
+from benchmark.runs.measured import MeasuredComparison, TrialPrediction
+from benchmark.runs.report.film_section import FilmPart, film_part
+from benchmark.runs.report.values import MM, measured_headline
 from benchmark.side_by_side import SideBySide
 from reports import Block, Bullets, Column, Download, Notice, Paragraph, Section, Table
 from reports.figures.fitted_parameters import FittedParameter as Dot
@@ -18,6 +20,41 @@ from reports.figures.measured import measured
 from reports.figures.pair import Pair
 from reports.figures.trials import TrialCurve
 
+
+@dataclass(frozen=True)
+class TrialsPart:
+    """Trials beside the models, and the fit behind them.
+
+    Attributes
+    ----------
+    trials
+        Each with both models' forces.
+    synthetic
+        Whether they were computed, not measured.
+    headline
+        The fit in one sentence.
+    parameters, notes
+        Of the fit.
+    markers
+        What the films of the trials show; None without any.
+    """
+
+    trials: Sequence[TrialPrediction]
+    synthetic: bool
+    headline: str
+    parameters: Sequence[FittedParameter]
+    notes: Sequence[str]
+    markers: FilmPart | None = None
+
+    @classmethod
+    def of(cls, measured: MeasuredComparison) -> TrialsPart:
+        """Return the part of a run at hand."""
+        fit = measured.fit
+        markers = None if measured.filmed is None else film_part(measured, measured.filmed)
+        headline, synthetic = measured_headline(measured), measured.session.synthetic
+        return cls(measured.trials, synthetic, headline, fit.parameters, fit.notes, markers)
+
+
 TABLE_ONE = ("published.", "sound.")
 """Rows of the article's Table 1: of many units, they stand in the table and not in the figure."""
 
@@ -25,22 +62,6 @@ CIRCULAR = (
     "The stiffness was fitted to these same trials, so that agreement of measured and finite elements is partly "
     "built in. The held-out column of the residual table uses the stiffness of the other trials only."
 )
-
-
-def fit_headline(fit: SessionFit) -> str:
-    """Return the fit in one sentence."""
-    found, count = fit.stiffness, len(fit.trials)
-    rms = float(np.median([trial.residual_percent for trial in fit.trials]))
-    return (
-        f"fitted to {count} trial{'s' if count > 1 else ''}: the specimen is {found.value:.4g} times as stiff as its "
-        f"file says (95 % {found.ci95_low:.4g} to {found.ci95_high:.4g}); the elastic law leaves {rms:.2g} % of the "
-        "peak force (median over trials of the root mean square)"
-    )
-
-
-def sentence(text: str) -> str:
-    """Return a clause as a sentence of its own."""
-    return f"{text[0].upper()}{text[1:]}."
 
 
 def session_notices(synthetic: bool) -> tuple[Notice, ...]:
