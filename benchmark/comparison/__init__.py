@@ -1,26 +1,41 @@
-"""Measures of how far a fast model is from the FEM: a measure a file, pure functions on arrays.
+"""Measures of how far a fast model is from the FEM: pure functions on arrays, a kind of measure a file.
 
 Nothing here runs a model, reads or writes a file. SciPy's statistics and statsmodels are loaded when a
 measure first needs them.
 """
 
-from benchmark.comparison.area_metric import AreaMetric, area_metric
-from benchmark.comparison.bland_altman import BlandAltman, bland_altman
-from benchmark.comparison.concordance import Concordance, concordance
+from benchmark.comparison.agreement import BlandAltman, Concordance, bland_altman, concordance
+from benchmark.comparison.distributions import AreaMetric, NormalFit, area_metric, normal_fit, overlap
 from benchmark.comparison.equivalence import Equivalence, paired_equivalence, two_sample_equivalence
-from benchmark.comparison.errors import ComparisonError
-from benchmark.comparison.grid_convergence import GridConvergence, grid_convergence
-from benchmark.comparison.layer import LayerComparison, PairStatistics, compare_layer
-from benchmark.comparison.normal_fit import NormalFit, normal_fit, overlap
-from benchmark.comparison.paired import PairedT, paired_t_test
-from benchmark.comparison.percent_error import PercentError, percent_error
-from benchmark.comparison.power import PassingRange, passing_scale_errors, t_test_power
-from benchmark.comparison.profile_error import ProfileError, profile_error
-from benchmark.comparison.samples import Moments
-from benchmark.comparison.t_test import TwoSampleT, pooled_t_test, welch_t_test
-from benchmark.comparison.tables import comparison_summary, normal_fit_columns, statistics_columns
-from benchmark.comparison.validation import Validation, input_uncertainty, replicate_uncertainty
-from benchmark.comparison.wording import describe_equivalence, describe_t_test
+from benchmark.comparison.layer_comparison import (
+    LayerComparison,
+    PairStatistics,
+    compare_layer,
+    comparison_summary,
+    describe_equivalence,
+    describe_t_test,
+    normal_fit_columns,
+    statistics_columns,
+)
+from benchmark.comparison.percent_error import PercentError, ProfileError, percent_error, profile_error
+from benchmark.comparison.samples import ComparisonError, Moments
+from benchmark.comparison.t_tests import (
+    PairedT,
+    PassingRange,
+    TwoSampleT,
+    paired_t_test,
+    passing_scale_errors,
+    pooled_t_test,
+    t_test_power,
+    welch_t_test,
+)
+from benchmark.comparison.uncertainty import (
+    GridConvergence,
+    Validation,
+    grid_convergence,
+    input_uncertainty,
+    replicate_uncertainty,
+)
 
 __all__ = [
     "AreaMetric",

@@ -10,11 +10,8 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from benchmark.comparison.errors import ComparisonError
-from benchmark.comparison.paired import ALL_EQUAL
-from benchmark.comparison.result import Result, Row
-from benchmark.comparison.samples import Array, is_constant, paired_samples
-from benchmark.comparison.t_test import NO_VARIANCE
+from benchmark.comparison.samples import Array, ComparisonError, Result, Row, is_constant, paired_samples
+from benchmark.comparison.t_tests import ALL_EQUAL, NO_VARIANCE
 
 LEVEL = 0.05
 

@@ -1,16 +1,51 @@
-"""Reading the two samples of a comparison: one dimension, same length, pairs without a gap, moments.
+"""What every measure takes and gives: samples without gaps, one error, and results as plain values and table rows.
 
-No test lives here; each measure takes its samples through these functions, so that all drop the same rows.
+No measure lives here; each takes its samples through these functions, so that all drop the same rows.
 """
 
-from dataclasses import dataclass
-from typing import TypeAlias
+import math
+from dataclasses import dataclass, fields
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from benchmark.comparison.errors import ComparisonError
-from benchmark.comparison.result import Result
+
+class ComparisonError(ValueError):
+    """Two samples cannot be compared; the message names which, the value found and what is allowed."""
+
+
+Row: TypeAlias = tuple[str, float | None, float | None, float | None]
+"""One line of a statistics table: quantity, value of the FEM, value of the wave model, value of both."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """Base of the frozen result dataclasses."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Fields as plain Python values, NaN and infinities as None, arrays as lists."""
+        return {field.name: plain(getattr(self, field.name)) for field in fields(self)}
+
+    def rows(self) -> list[Row]:
+        """Lines of the statistics table, in print order; empty where a result has none."""
+        return []
+
+
+def plain(value: Any) -> Any:
+    """Give a value as JSON knows it: NumPy scalars unwrapped, non-finite numbers None, results as dicts."""
+    if isinstance(value, Result):
+        return value.to_dict()
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
 
 Array: TypeAlias = NDArray[np.float64]
 

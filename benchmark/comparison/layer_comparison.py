@@ -1,25 +1,36 @@
-"""All measures of one layer: the deformations of FEM and wave model over the load steps, side by side."""
+"""All measures of one layer, FEM and wave model side by side: as a result, as table columns, in words.
 
+A t-test that does not reject is never called agreement.
+"""
+
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from benchmark.comparison.area_metric import AreaMetric, area_metric
-from benchmark.comparison.bland_altman import BlandAltman, bland_altman
-from benchmark.comparison.concordance import Concordance, concordance
+from benchmark.comparison.agreement import BlandAltman, Concordance, bland_altman, concordance
+from benchmark.comparison.distributions import AreaMetric, NormalFit, area_metric, normal_fit, overlap
 from benchmark.comparison.equivalence import Equivalence, paired_equivalence
-from benchmark.comparison.normal_fit import NormalFit, normal_fit, overlap
-from benchmark.comparison.paired import PairedT, paired_t_test
 from benchmark.comparison.percent_error import PercentError, percent_error
-from benchmark.comparison.power import PassingRange, passing_scale_errors, t_test_power
-from benchmark.comparison.result import Result, Row, plain
-from benchmark.comparison.samples import aligned
-from benchmark.comparison.t_test import TwoSampleT, pooled_t_test, welch_t_test
+from benchmark.comparison.samples import Result, Row, aligned, plain
+from benchmark.comparison.t_tests import (
+    PairedT,
+    PassingRange,
+    TwoSampleT,
+    paired_t_test,
+    passing_scale_errors,
+    pooled_t_test,
+    t_test_power,
+    welch_t_test,
+)
 
 LEAST_STEPS = 3
 UNCOVERED = "fewer than three steps that both models reached: nothing to compare"
+STATISTICS = ("layer", "test", "quantity", "fem", "wave", "value")
+NORMAL_FITS = ("layer", "model", "mean_mm", "std_mm", "n", "anderson_darling", "p_value")
 
 
 @dataclass(frozen=True)
@@ -135,3 +146,65 @@ def compare_layer(
         area_metric(first[both], second[both]),
     )
     return LayerComparison(layer, percent, fits[0], fits[1], statistics)
+
+
+def statistics_columns(layers: Sequence[LayerComparison]) -> dict[str, list[Any]]:
+    """Columns of `statistics.csv`; deformations in mm, variances in mm^2, None where a cell is empty."""
+    lines = [(layer.layer, test, *row) for layer in layers for test, rows in layer.tests().items() for row in rows]
+    return _columns(STATISTICS, lines)
+
+
+def normal_fit_columns(
+    layers: Sequence[LayerComparison], models: tuple[str, str] = ("fem", "wave")
+) -> dict[str, list[Any]]:
+    """Columns of `normal_fits.csv`, one line per layer and model; a model without values has no line.
+
+    `models` are the names of the two in the column `model`.
+    """
+    lines = [
+        (layer.layer, model, fit.mean, fit.std, fit.n, fit.anderson_darling, fit.p_value)
+        for layer in layers
+        for model, fit in zip(models, (layer.fem_fit, layer.wave_fit), strict=True)
+        if fit is not None
+    ]
+    return _columns(NORMAL_FITS, lines)
+
+
+def comparison_summary(layers: Sequence[LayerComparison]) -> dict[str, dict[str, Any]]:
+    """`comparison` of results.json: one entry per layer."""
+    return {layer.layer: layer.summary() for layer in layers}
+
+
+def _columns(names: Sequence[str], lines: Sequence[Sequence[Any]]) -> dict[str, list[Any]]:
+    return {name: [plain(line[column]) for line in lines] for column, name in enumerate(names)}
+
+
+def describe_t_test(test: TwoSampleT, passing: PassingRange, power: float | None = None) -> str:
+    """One paragraph on the pooled t-test, with the scale errors it lets pass and its `power` at the margin."""
+    if math.isnan(test.p_value):
+        return f"The two-sample t-test has no outcome: {test.note}."
+    reach = f"It lets pass any scale error from {_percent(passing.low)} to {_percent(passing.high)}."
+    if power is not None:
+        reach += f" Its power to see a scale error as large as the equivalence margin is {100.0 * power:.3g} %."
+    numbers = f"t = {test.t:.4g}, df = {test.df:.4g}, p = {test.p_value:.4g}, t critical = {test.t_critical:.6f}"
+    if test.rejects:
+        return f"The two-sample t-test rejects the hypothesis of one common mean ({numbers}). {reach}"
+    return f"The two-sample t-test does not reject, which shows nothing either way ({numbers}). {reach}"
+
+
+def describe_equivalence(test: Equivalence) -> str:
+    """One paragraph on the equivalence test, with its margin."""
+    margin = f"{100.0 * test.margin_fraction:.3g} % of the FEM's mean"
+    found = f"p = {test.p_value:.3g}, 90 % interval of the difference {_share(test)}"
+    if test.equivalent:
+        return f"Equivalent within {margin} (TOST, {test.form.replace('_', '-')}: {found})."
+    return f"Equivalence within {margin} is not shown (TOST, {test.form.replace('_', '-')}: {found})."
+
+
+def _share(test: Equivalence) -> str:
+    scale = 100.0 * test.margin_fraction / test.margin
+    return f"{scale * test.ci90_low:+.3g} to {scale * test.ci90_high:+.3g} % of it"
+
+
+def _percent(fraction: float) -> str:
+    return "any size" if math.isinf(fraction) else f"{100.0 * fraction:+.1f} %"
