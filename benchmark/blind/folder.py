@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.blind.judging import Judged
-from benchmark.blind.rows import Row, confusion, table, verdicts
+from benchmark.blind.rows import BlindRow, confusion, table, verdicts
 from benchmark.errors import InputError
 from reports import write_csv, write_json, write_text
 
@@ -68,7 +68,7 @@ def finish(path: Path, settings: dict[str, Any], cases: Sequence[Judged]) -> dic
     return result
 
 
-def document(settings: dict[str, Any], rows: Sequence[Row], cases: Sequence[Judged]) -> dict[str, Any]:
+def document(settings: dict[str, Any], rows: Sequence[BlindRow], cases: Sequence[Judged]) -> dict[str, Any]:
     """What `--json` prints."""
     return {
         "schema": SCHEMA,
@@ -80,7 +80,7 @@ def document(settings: dict[str, Any], rows: Sequence[Row], cases: Sequence[Judg
     }
 
 
-def text_table(rows: Sequence[Row]) -> str:
+def text_table(rows: Sequence[BlindRow]) -> str:
     """The rows as a Markdown table."""
     lines = ["| measure | value | 95 % | cases | bar | passed |", "|---|---|---|---|---|---|"]
     for row in rows:

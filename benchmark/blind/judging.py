@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from benchmark.blind.case import Case
+from benchmark.blind.cases import BlindCase
 from benchmark.discovery.result import Discovery
 
 NAMING = ("named", "conditional", "lookalikes", "instrument_first", "partly_explained")
@@ -67,7 +67,7 @@ class Judged:
     remark: str = ""
 
 
-def judge(case: Case, answer: Discovery, seconds: float) -> Judged:
+def judge(case: BlindCase, answer: Discovery, seconds: float) -> Judged:
     """Compare an answer with the truth."""
     effects = answer.effects if answer.verdict in NAMING else ()
     said = [effect.slug for effect in effects]
@@ -87,12 +87,12 @@ def judge(case: Case, answer: Discovery, seconds: float) -> Judged:
     )
 
 
-def failed(case: Case, error: Exception, seconds: float) -> Judged:
+def failed(case: BlindCase, error: Exception, seconds: float) -> Judged:
     """A case whose discovery raised: nothing was said."""
     return replace(_silent(case, "error", seconds), remark=f"{type(error).__name__}: {error}")
 
 
-def _silent(case: Case, verdict: str, seconds: float) -> Judged:
+def _silent(case: BlindCase, verdict: str, seconds: float) -> Judged:
     """A case of which nothing was said and no place was found."""
     strongest = case.cells.strongest
     return Judged(
@@ -122,7 +122,7 @@ def f1(found: set[tuple[str, str]], true: set[tuple[str, str]], allowed: set[tup
     return 2.0 * hits / (2.0 * hits + wrong + missed) if hits else 0.0
 
 
-def session_in_words(case: Case) -> str:
+def session_in_words(case: BlindCase) -> str:
     """Specimen, conditions, whether there are markers, a bad trial."""
     scene = case.scene
     shape = "told shape" if scene.body.shape.radius == 1.0 else "other shape"

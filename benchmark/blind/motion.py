@@ -1,19 +1,23 @@
-"""What the actuator reports in one trial of a blind session, and the phases of that motion."""
+"""What the actuator reports in one trial of a blind session, the phases of that motion, and the array types."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from benchmark.blind.arrays import Array, Flags
+Array = NDArray[np.float64]
+Integers = NDArray[np.intp]
+Flags = NDArray[np.bool_]
+
 
 SMOOTHING = 0.08
 PHASES = ("approach", "load", "hold", "unload_high", "unload_low", "after_lift_off")
 
 
 @dataclass(frozen=True)
-class Plan:
+class PressPlan:
     """A press, a hold, a lift just off the surface, a second press, a rest in air.
 
     Attributes
@@ -39,10 +43,10 @@ class Plan:
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class ReportedMotion:
     """Reported motion: s and m (n,), equally spaced in time; frames (f,) s."""
 
-    plan: Plan
+    plan: PressPlan
     time: Array
     depth: Array
     frames: Array
@@ -58,12 +62,14 @@ class Motion:
         return np.gradient(self.depth, self.time)
 
 
-def motion(plan: Plan, rate: float, frame_rate: float, *, depth_factor: float = 1.0, delay: float = 0.0) -> Motion:
+def motion(
+    plan: PressPlan, rate: float, frame_rate: float, *, depth_factor: float = 1.0, delay: float = 0.0
+) -> ReportedMotion:
     """The motion of one trial, rounded at its corners as an actuator rounds them.
 
     Parameters
     ----------
-    plan : Plan
+    plan : PressPlan
     rate, frame_rate : float
         Of force and camera, Hz.
     depth_factor : float
@@ -77,10 +83,10 @@ def motion(plan: Plan, rate: float, frame_rate: float, *, depth_factor: float = 
     weight = np.cos(np.pi * width) ** 2
     moved = np.interp(time[:, None] - delay + SMOOTHING * width, times, depths)
     depth = moved @ (weight / weight.sum())
-    return Motion(plan, time, depth, np.arange(0.5 / frame_rate, time[-1], 1.0 / frame_rate))
+    return ReportedMotion(plan, time, depth, np.arange(0.5 / frame_rate, time[-1], 1.0 / frame_rate))
 
 
-def _corners(plan: Plan, depth_factor: float) -> tuple[Array, Array]:
+def _corners(plan: PressPlan, depth_factor: float) -> tuple[Array, Array]:
     """Times and depths between which the tool moves evenly."""
     peak = depth_factor * plan.depth
     lift = -0.2 * plan.air

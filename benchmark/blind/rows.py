@@ -15,7 +15,7 @@ Interval = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Row:
+class BlindRow:
     """A measure: its value with a 95 % interval over `n` cases, and its bar.
 
     Attributes
@@ -38,7 +38,7 @@ class Row:
     passed: bool | None
 
 
-def table(cases: Sequence[Judged]) -> tuple[Row, ...]:
+def table(cases: Sequence[Judged]) -> tuple[BlindRow, ...]:
     """The rows of all measures for which there are cases."""
     effects = [case for case in cases if case.kind == "effect"]
     nulls = [case for case in cases if case.kind == "null"]
@@ -95,31 +95,31 @@ def clopper_pearson(hits: int, n: int, level: float = 0.95) -> Interval:
     return low, high
 
 
-def _share(measure: str, cases: Sequence[Judged], right: Callable[[Judged], bool], bar: str) -> Row:
+def _share(measure: str, cases: Sequence[Judged], right: Callable[[Judged], bool], bar: str) -> BlindRow:
     hits, n = sum(right(case) for case in cases), len(cases)
     if n == 0:
-        return Row(measure, 0.0, (0.0, 1.0), 0, bar, None)
-    return Row(measure, hits / n, clopper_pearson(hits, n), n, bar, _passed(hits / n, bar))
+        return BlindRow(measure, 0.0, (0.0, 1.0), 0, bar, None)
+    return BlindRow(measure, hits / n, clopper_pearson(hits, n), n, bar, _passed(hits / n, bar))
 
 
-def _average(measure: str, cases: Sequence[Judged], value: Callable[[Judged], float], bar: str) -> Row:
+def _average(measure: str, cases: Sequence[Judged], value: Callable[[Judged], float], bar: str) -> BlindRow:
     return _statistic(measure, [value(case) for case in cases], bar, middle=False)
 
 
-def _median(measure: str, cases: Sequence[Judged], value: Callable[[Judged], float], bar: str) -> Row:
+def _median(measure: str, cases: Sequence[Judged], value: Callable[[Judged], float], bar: str) -> BlindRow:
     return _statistic(measure, [value(case) for case in cases], bar, middle=True)
 
 
-def _statistic(measure: str, values: Sequence[float], bar: str, *, middle: bool) -> Row:
+def _statistic(measure: str, values: Sequence[float], bar: str, *, middle: bool) -> BlindRow:
     """A mean or median with an interval by 2000 resamples of the cases."""
     if not values:
-        return Row(measure, 0.0, (0.0, 0.0), 0, bar, None)
+        return BlindRow(measure, 0.0, (0.0, 0.0), 0, bar, None)
     of = np.median if middle else np.mean
     data = np.array(values, dtype=np.float64)
     drawn = np.random.default_rng(0).integers(data.size, size=(2000, data.size))
     low, high = np.quantile(of(data[drawn], axis=1), [0.025, 0.975])
     value = float(of(data))
-    return Row(measure, value, (float(low), float(high)), data.size, bar, _passed(value, bar))
+    return BlindRow(measure, value, (float(low), float(high)), data.size, bar, _passed(value, bar))
 
 
 def _passed(value: float, bar: str) -> bool | None:

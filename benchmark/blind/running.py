@@ -10,10 +10,10 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import closing
 from pathlib import Path
 
-from benchmark.blind.case import CaseName
+from benchmark.blind.cases import CaseName
 from benchmark.blind.discoverer import Discoverer, load_discoverer
 from benchmark.blind.judging import Judged, failed, judge
-from benchmark.blind.writing import case
+from benchmark.blind.session_files import case
 from benchmark.children import end_with_parent
 from benchmark.side_by_side import single_threaded_children
 from benchmark.sweep.journal import Journal, read_rows

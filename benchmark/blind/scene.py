@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmark.blind.arrays import Array, Flags
-from benchmark.blind.body import Body
 from benchmark.blind.hidden import Hidden, Scale
-from benchmark.blind.motion import Motion, Plan, motion, phases
-from benchmark.blind.simulate import Grid, Signals, simulate
+from benchmark.blind.motion import Array, Flags, PressPlan, ReportedMotion, motion, phases
+from benchmark.blind.simulate import MarkerGrid, Signals, simulate
+from benchmark.blind.specimens import TrueBody
 
 
 @dataclass(frozen=True)
@@ -28,21 +27,21 @@ class Scene:
 
     Attributes
     ----------
-    body : Body
-    plans : tuple of Plan
+    body : TrueBody
+    plans : tuple of PressPlan
         One a condition.
     repeats : int
         Trials of each condition.
-    grid : Grid or None
+    grid : MarkerGrid or None
     rate, frame_rate : float
         Hz.
     force_noise, marker_noise : Noise
     """
 
-    body: Body
-    plans: tuple[Plan, ...]
+    body: TrueBody
+    plans: tuple[PressPlan, ...]
     repeats: int
-    grid: Grid | None
+    grid: MarkerGrid | None
     rate: float
     frame_rate: float
     force_noise: Noise
@@ -57,15 +56,15 @@ class Scene:
         speed = max(plan.speed for plan in self.plans)
         return Scale(min(depths), deep, force, speed, self.body.specimen.tool_radius)
 
-    def motion(self, plan: Plan, delay: float = 0.0) -> Motion:
+    def motion(self, plan: PressPlan, delay: float = 0.0) -> ReportedMotion:
         """The nominal motion of a condition."""
         return motion(plan, self.rate, self.frame_rate, delay=delay)
 
-    def mean(self, plan: Plan, effects: Sequence[Hidden], delay: float = 0.0) -> Signals:
+    def mean(self, plan: PressPlan, effects: Sequence[Hidden], delay: float = 0.0) -> Signals:
         """A condition's mean trial; with `delay` the specimen follows its reported depth that much later, s."""
         return simulate(self.body, self.grid, self.motion(plan, delay), effects)
 
-    def with_body(self, body: Body) -> Scene:
+    def with_body(self, body: TrueBody) -> Scene:
         """The same session with another body."""
         return replace(self, body=body)
 
@@ -100,7 +99,7 @@ def _white(signal: Array, noise: Noise) -> Array:
     return out
 
 
-def frame_phases(moved: Motion) -> dict[str, Flags]:
+def frame_phases(moved: ReportedMotion) -> dict[str, Flags]:
     """The phases of a motion at its frames."""
     of_samples = phases(moved.time, moved.depth)
     nearest = np.clip(np.searchsorted(moved.time, moved.frames), 0, moved.time.size - 1)

@@ -7,17 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmark.blind.arrays import Array
-from benchmark.blind.body import Body
 from benchmark.blind.hidden import Hidden
-from benchmark.blind.motion import Motion
+from benchmark.blind.motion import Array, ReportedMotion
+from benchmark.blind.specimens import TrueBody
 
 ROUNDS = 60
 SETTLED = 1e-7
 
 
 @dataclass(frozen=True)
-class Grid:
+class MarkerGrid:
     """Markers on the lower face, numbered row by row round the nominal tool axis; spacing in m."""
 
     rows: int = 3
@@ -48,15 +47,17 @@ class Signals:
     y: Array | None
 
 
-def simulate(body: Body, grid: Grid | None, moved: Motion, effects: Sequence[Hidden], gain: float = 1.0) -> Signals:
+def simulate(
+    body: TrueBody, grid: MarkerGrid | None, moved: ReportedMotion, effects: Sequence[Hidden], gain: float = 1.0
+) -> Signals:
     """Simulate one trial.
 
     Parameters
     ----------
-    body : Body
-    grid : Grid or None
+    body : TrueBody
+    grid : MarkerGrid or None
         None where no camera sees the lower face.
-    moved : Motion
+    moved : ReportedMotion
         As the actuator reports it.
     effects : sequence of Hidden
         In any order.
@@ -70,7 +71,7 @@ def simulate(body: Body, grid: Grid | None, moved: Motion, effects: Sequence[Hid
     return Signals(force, x, y)
 
 
-def _press(body: Body, moved: Motion, effects: Sequence[Hidden], gain: float) -> tuple[Array, Array]:
+def _press(body: TrueBody, moved: ReportedMotion, effects: Sequence[Hidden], gain: float) -> tuple[Array, Array]:
     """True depth and contact force (n,) in balance with the rig; what gives way depends on the force."""
     force = np.zeros_like(moved.depth)
     for _ in range(ROUNDS if any(effect.gives_way for effect in effects) else 1):
@@ -83,7 +84,9 @@ def _press(body: Body, moved: Motion, effects: Sequence[Hidden], gain: float) ->
     return depth, force
 
 
-def _contact_force(body: Body, moved: Motion, effects: Sequence[Hidden], gain: float, depth: Array) -> Array:
+def _contact_force(
+    body: TrueBody, moved: ReportedMotion, effects: Sequence[Hidden], gain: float, depth: Array
+) -> Array:
     """Force (n,) N between tool and specimen at the tool's depth (n,) m."""
     strained = depth
     for effect in effects:
@@ -94,7 +97,9 @@ def _contact_force(body: Body, moved: Motion, effects: Sequence[Hidden], gain: f
     return touching + sum((effect.pull(moved.time, strained) for effect in effects), np.zeros_like(elastic))
 
 
-def _seen(body: Body, grid: Grid, moved: Motion, effects: Sequence[Hidden], depth: Array) -> tuple[Array, Array]:
+def _seen(
+    body: TrueBody, grid: MarkerGrid, moved: ReportedMotion, effects: Sequence[Hidden], depth: Array
+) -> tuple[Array, Array]:
     """Seen marker positions (f, markers) m."""
     strained = depth
     for effect in effects:
@@ -112,7 +117,7 @@ def _seen(body: Body, grid: Grid, moved: Motion, effects: Sequence[Hidden], dept
     return x, y
 
 
-def _face(body: Body, grid: Grid, effects: Sequence[Hidden], followed: Array) -> tuple[Array, Array, Array]:
+def _face(body: TrueBody, grid: MarkerGrid, effects: Sequence[Hidden], followed: Array) -> tuple[Array, Array, Array]:
     """True marker positions and sinking (f, markers) m at the depth (f,) m that the lower face follows.
 
     A slid face that is pulled back past its rest moves the other way: the field is odd in depth.

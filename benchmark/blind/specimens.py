@@ -1,4 +1,4 @@
-"""The specimens that blind sessions press: what is told of them, and the press that the FEM makes of it."""
+"""The specimens that blind sessions press: what is told of them, the press by the FEM, and the true body."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 import fem
-from benchmark.blind.arrays import Array
+from benchmark.blind.motion import Array
 
 HOLE_RADIUS = 30e-3
 DEEPEST = 5e-3
@@ -17,10 +17,11 @@ RADIUS_FACTORS = (0.9, 1.0, 1.1)
 STEPS = 25
 SECOND_SHARE = 0.2
 """Share of the shear modulus in the second Mooney-Rivlin constant, which no session tells of."""
+REFERENCE_DEPTH = 2e-3
 
 
 @dataclass(frozen=True)
-class Layer:
+class ToldLayer:
     """A layer: m, kg/m3, Pa."""
 
     name: str
@@ -31,13 +32,13 @@ class Layer:
 
 
 @dataclass(frozen=True)
-class Specimen:
+class ToldSpecimen:
     """What the session file says of specimen and tool.
 
     Attributes
     ----------
     name : str
-    layers : tuple of Layer
+    layers : tuple of ToldLayer
         From the surface down.
     support : str
         "hole" (of `HOLE_RADIUS`; its lower face carries markers) or "bonded" (no markers).
@@ -46,7 +47,7 @@ class Specimen:
     """
 
     name: str
-    layers: tuple[Layer, ...]
+    layers: tuple[ToldLayer, ...]
     support: str
     tool_radius: float
 
@@ -79,17 +80,17 @@ class PressTable:
     sinking: Array
 
 
-def _sheet(name: str, thickness: float, youngs_modulus: float, tool_radius: float) -> Specimen:
-    return Specimen(name, (Layer("silicone", thickness, 1100.0, youngs_modulus, 0.49),), "hole", tool_radius)
+def _sheet(name: str, thickness: float, youngs_modulus: float, tool_radius: float) -> ToldSpecimen:
+    return ToldSpecimen(name, (ToldLayer("silicone", thickness, 1100.0, youngs_modulus, 0.49),), "hole", tool_radius)
 
 
-def _skin(name: str, dermis: float, fat: float, tool_radius: float) -> Specimen:
+def _skin(name: str, dermis: float, fat: float, tool_radius: float) -> ToldSpecimen:
     layers = (
-        Layer("epidermis", 0.1e-3, 1150.0, 1.5e6, 0.48),
-        Layer("dermis", 1.5e-3, 1116.0, dermis, 0.48),
-        Layer("fat", 10e-3, 971.0, fat, 0.48),
+        ToldLayer("epidermis", 0.1e-3, 1150.0, 1.5e6, 0.48),
+        ToldLayer("dermis", 1.5e-3, 1116.0, dermis, 0.48),
+        ToldLayer("fat", 10e-3, 971.0, fat, 0.48),
     )
-    return Specimen(name, layers, "bonded", tool_radius)
+    return ToldSpecimen(name, layers, "bonded", tool_radius)
 
 
 SHEETS = (
@@ -101,7 +102,7 @@ SKINS = (_skin("skin_stiff", 0.8e6, 50e3, 5.0e-3), _skin("skin_soft", 0.3e6, 25e
 
 
 @lru_cache(maxsize=8)
-def press_table(specimen: Specimen) -> PressTable:
+def press_table(specimen: ToldSpecimen) -> PressTable:
     """Press the specimen with the told tool radius, and with one 10 % smaller and larger; some seconds."""
     presses = [_press(specimen, factor * specimen.tool_radius) for factor in RADIUS_FACTORS]
     depth, radius = _depths(), np.linspace(0.0, 0.9 * HOLE_RADIUS, 28)
@@ -120,7 +121,7 @@ def _depths() -> Array:
     return np.linspace(0.0, DEEPEST, STEPS + 1)
 
 
-def _press(specimen: Specimen, radius: float) -> fem.Solution:
+def _press(specimen: ToldSpecimen, radius: float) -> fem.Solution:
     layers = tuple(fem.Layer(each.name, each.thickness, each.density, _silicone(each)) for each in specimen.layers)
     problem = fem.Problem(
         layers=layers,
@@ -135,7 +136,7 @@ def _press(specimen: Specimen, radius: float) -> fem.Solution:
     return solution
 
 
-def _silicone(layer: Layer) -> fem.Material:
+def _silicone(layer: ToldLayer) -> fem.Material:
     """A Mooney-Rivlin law of the layer's moduli, where the session tells of the moduli alone."""
     shear = 0.5 * layer.youngs_modulus / (1.0 + layer.poisson_ratio)
     return fem.MooneyRivlin(0.5 * (1.0 - SECOND_SHARE) * shear, 0.5 * SECOND_SHARE * shear, layer.poisson_ratio)
@@ -151,3 +152,68 @@ def _lower_face(press: fem.Solution, radius: Array) -> tuple[Array, Array]:
     outward = CubicSpline(nodes[face, 0], moved[:, :, 0], axis=1)(radius)
     sinking = CubicSpline(nodes[face, 0], -moved[:, :, 1], axis=1)(radius)
     return np.concatenate([rest, outward]), np.concatenate([rest, sinking])
+
+
+@dataclass(frozen=True)
+class TrueShape:
+    """How the true body differs from the one that the session tells of.
+
+    Attributes
+    ----------
+    modulus : float
+        Factor on all moduli.
+    radius : float
+        Factor on the tool's radius, 0.9 to 1.1.
+    exponent : float
+        Added to the exponent of force over depth.
+    width : float
+        Factor on the width of the lower face's displacement field.
+    """
+
+    modulus: float = 1.0
+    radius: float = 1.0
+    exponent: float = 0.0
+    width: float = 1.0
+
+
+@dataclass(frozen=True)
+class TrueBody:
+    """A specimen with its true shape."""
+
+    specimen: ToldSpecimen
+    shape: TrueShape = TrueShape()
+
+    def force(self, depth: Array) -> Array:
+        """Elastic force (n,) N at depth (n,) m; zero in air."""
+        table = press_table(self.specimen)
+        pressed = np.clip(depth, 0.0, table.depth[-1])
+        curve = CubicSpline(table.depth, self._at_radius(table.force))
+        bend = (np.clip(pressed, 1e-3 * REFERENCE_DEPTH, None) / REFERENCE_DEPTH) ** self.shape.exponent
+        out: Array = self.shape.modulus * curve(pressed) * bend
+        return out
+
+    def lower_face(self, depth: Array, radius: Array) -> tuple[Array, Array]:
+        """Outward motion and sinking (n, m) m of lower-face points at radius (m,) m from the axis."""
+        table = press_table(self.specimen)
+        pressed = np.clip(depth, 0.0, table.depth[-1])
+        points = radius / self.shape.width
+        outward = _curves(table, self._at_radius(table.outward), points)(pressed)
+        sinking = _curves(table, self._at_radius(table.sinking), points)(pressed)
+        return outward, sinking
+
+    def _at_radius(self, rows: Array) -> Array:
+        """A table's value at the true tool radius, quadratic through the three that were computed."""
+        a, b, c = RADIUS_FACTORS
+        x = self.shape.radius
+        weights = (
+            (x - b) * (x - c) / ((a - b) * (a - c)),
+            (x - a) * (x - c) / ((b - a) * (b - c)),
+            (x - a) * (x - b) / ((c - a) * (c - b)),
+        )
+        out: Array = np.tensordot(weights, rows, axes=1)
+        return out
+
+
+def _curves(table: PressTable, rows: Array, points: Array) -> CubicSpline:
+    """Curves over depth at points (m,) of the lower face."""
+    return CubicSpline(table.depth, CubicSpline(table.radius, rows, axis=1)(points))

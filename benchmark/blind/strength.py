@@ -1,26 +1,29 @@
-"""How strong a hidden effect is: its whitened norm over all trials after the base model has explained what it can.
+"""How strong a hidden effect is and where it shows: what is left once the base model has explained what it can.
 
-Base parameters and nuisances, each projected off by its derivative: tool radius, exponent of force over depth and
-width of the lower face's field for the session; gain, zero and time shift for each trial.
+Base parameters and nuisances, each projected off by its derivative: tool radius, exponent of force over depth and width
+of the lower face's field for the session; gain, zero and time shift for each trial.
 """
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import brentq
 
-from benchmark.blind.arrays import Array
 from benchmark.blind.hidden import Hidden
-from benchmark.blind.motion import Plan
-from benchmark.blind.scene import Scene, Whitened, whiten
-from benchmark.blind.simulate import Signals
+from benchmark.blind.motion import Array, PressPlan, phases
+from benchmark.blind.scene import Scene, Whitened, frame_phases, whiten
+from benchmark.blind.simulate import MarkerGrid, Signals
 
 SHAPE_STEPS = {"radius": 0.01, "exponent": 0.01, "width": 0.01}
 DELAY_STEP = 5e-3
 TOLERANCE = 0.003
+SHOWS = 5.0
+MAY_SHOW = 2.5
+Cell = tuple[str, str]
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +100,7 @@ def _session_column(scene: Scene, means: Sequence[Signals], name: str, step: flo
     return _weight(scene) * np.concatenate(parts)
 
 
-def _trial_tangents(scene: Scene, plan: Plan, mean: Signals) -> list[Signals]:
+def _trial_tangents(scene: Scene, plan: PressPlan, mean: Signals) -> list[Signals]:
     """Derivatives of one trial by its gain, zero and time shift."""
     still_x = None if mean.x is None else np.zeros_like(mean.x)
     still_y = None if mean.y is None else np.zeros_like(mean.y)
@@ -140,3 +143,59 @@ def _size(signals: Signals) -> int:
 
 def _weight(scene: Scene) -> float:
     return float(np.sqrt(scene.repeats))
+
+
+@dataclass(frozen=True)
+class TrueCells:
+    """Cells (channel, phase) of a hidden effect.
+
+    Attributes
+    ----------
+    strongest : (channel, phase) or None
+        Where it shows most.
+    shows : tuple of (channel, phase)
+        More than `SHOWS` standard deviations of the trial mean: who misses one has missed it.
+    may_show : tuple of (channel, phase)
+        More than `MAY_SHOW`, or in the single markers of a channel whose mean has nothing: finding one is no error.
+    """
+
+    strongest: Cell | None
+    shows: tuple[Cell, ...]
+    may_show: tuple[Cell, ...]
+
+
+def true_cells(scene: Scene, base: Base, effects: Sequence[Hidden]) -> TrueCells:
+    """Cells of the effects together."""
+    power: dict[Cell, float] = defaultdict(float)
+    single: dict[Cell, float] = defaultdict(float)
+    for plan, rest in zip(scene.plans, leftover(scene, base, effects), strict=True):
+        moved = scene.motion(plan)
+        for phase, rows in phases(moved.time, moved.depth).items():
+            power["force_z", phase] += float(np.sum(rest.force[rows] ** 2))
+        if scene.grid is not None:
+            for phase, rows in frame_phases(moved).items():
+                for channel, values in _marker_channels(scene.grid, rest).items():
+                    power[channel, phase] += float(np.sum(values[rows] ** 2))
+                for channel, seen in (("marker_x", rest.x), ("marker_y", rest.y)):
+                    single[channel, phase] += 0.0 if seen is None else float(np.sum(seen[rows] ** 2))
+    size = {cell: np.sqrt(value) for cell, value in power.items()}
+    shows = tuple(sorted(cell for cell, value in size.items() if value >= SHOWS))
+    loose = {cell for cell, value in size.items() if value >= MAY_SHOW}
+    loose |= {cell for cell, value in single.items() if np.sqrt(value) >= MAY_SHOW}
+    strongest = max(shows, key=lambda cell: size[cell], default=None)
+    return TrueCells(strongest, shows, tuple(sorted(loose)))
+
+
+def _marker_channels(grid: MarkerGrid, rest: Whitened) -> dict[str, Array]:
+    """Values (f, ...) of each channel: radial and tangential of each marker, x and y of all markers together."""
+    if rest.x is None or rest.y is None:
+        return {}
+    x0, y0 = grid.positions()
+    radius = np.hypot(x0, y0)
+    together = np.sqrt(x0.size)
+    return {
+        "marker_radial": (rest.x * x0 + rest.y * y0) / radius,
+        "marker_tangential": (rest.y * x0 - rest.x * y0) / radius,
+        "marker_x": rest.x.mean(axis=1) * together,
+        "marker_y": rest.y.mean(axis=1) * together,
+    }

@@ -43,12 +43,12 @@ def blind(
     Writes table.md, cases.csv, confusion.csv and blind.json. The same command goes on where it was stopped. Exit code
     0 whatever it finds.
     """
+    from benchmark.blind.cases import chosen
+    from benchmark.blind.cases import suite as cases_of
     from benchmark.blind.discoverer import load_discoverer
     from benchmark.blind.folder import confusion_text, finish, open_folder, text_table
     from benchmark.blind.rows import table
     from benchmark.blind.running import run_cases
-    from benchmark.blind.suites import chosen
-    from benchmark.blind.suites import suite as cases_of
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
     from benchmark.runs.destination import fresh

@@ -20,7 +20,7 @@ def reproduce(out: Out = None, json: Json = False, quiet: Quiet = False, debug: 
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
     from benchmark.reproduce import reproduce as carry_out
-    from benchmark.reproduce.table import headline, text_table
+    from benchmark.reproduce.items import headline, text_table
 
     made = carry_out(out, Console(quiet=quiet))
     if json:

@@ -14,7 +14,7 @@ from types import TracebackType
 from typing import Any
 
 from benchmark.errors import InputError, NotComparableError, SolverError, TissuebenchError
-from benchmark.gate.measuring.memory import KEPT_MEMORY
+from benchmark.gate.measuring.costs import KEPT_MEMORY
 from benchmark.gate.plan import MEASURING, Plan
 from benchmark.side_by_side.process import THREAD_VARIABLES
 

@@ -6,14 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmark.reproduce.equations import equation_items
+from benchmark.reproduce.article_page import ITEMS, reproduce_page
+from benchmark.reproduce.article_statistics import table_two_items, text_items
+from benchmark.reproduce.article_wave import equation_items, table_one_items
 from benchmark.reproduce.evidence import Evidence, gather
-from benchmark.reproduce.item import Item
-from benchmark.reproduce.page import ITEMS, reproduce_page
-from benchmark.reproduce.table import columns, document
-from benchmark.reproduce.table_one import table_one_items
-from benchmark.reproduce.table_two import table_two_items
-from benchmark.reproduce.text import text_items
+from benchmark.reproduce.items import Item, columns, document
 from benchmark.runs.destination import destination
 from benchmark.runs.document import describe_environment
 from benchmark.runs.listener import Listener

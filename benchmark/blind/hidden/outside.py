@@ -7,13 +7,12 @@ from typing import Self
 
 import numpy as np
 
-from benchmark.blind.arrays import Array
-from benchmark.blind.hidden.hidden import Hidden, Scale
-from benchmark.blind.hidden.tools import touching
+from benchmark.blind.hidden.hidden_effect import Hidden, Scale, touching
+from benchmark.blind.motion import Array
 
 
 @dataclass(frozen=True, kw_only=True)
-class FrameResonance(Hidden):
+class HiddenFrameResonance(Hidden):
     """The frame rings at `frequency` Hz after each jerk, for a second."""
 
     slug = "outside_frame_resonance"
@@ -34,7 +33,7 @@ class FrameResonance(Hidden):
 
 
 @dataclass(frozen=True, kw_only=True)
-class MotorPickUp(Hidden):
+class HiddenMotorPickUp(Hidden):
     """The motor's current hums into the cable while it moves: a beat of `frequency` Hz, whichever way it moves."""
 
     slug = "outside_motor_pick_up"
@@ -53,7 +52,7 @@ class MotorPickUp(Hidden):
 
 
 @dataclass(frozen=True, kw_only=True)
-class LeadScrewError(Hidden):
+class HiddenLeadScrewError(Hidden):
     """The tool runs ahead and behind with each turn of a lead screw of `pitch` m."""
 
     slug = "outside_lead_screw"
@@ -69,7 +68,7 @@ class LeadScrewError(Hidden):
         return depth + 0.2 * self.amplitude * self.pitch * np.sin(2 * np.pi * depth / self.pitch)
 
 
-class LampHeat(Hidden):
+class HiddenLampHeat(Hidden):
     """A lamp warms the specimen while the tool touches it, which makes it stiffer and stiffer."""
 
     slug = "outside_lamp_heat"
@@ -82,7 +81,7 @@ class LampHeat(Hidden):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SwayingCamera(Hidden):
+class HiddenSwayingCamera(Hidden):
     """The camera's arm swings at `frequency` Hz after the motor has started, the same in each trial."""
 
     slug = "outside_swaying_camera"

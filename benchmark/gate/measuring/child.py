@@ -39,10 +39,10 @@ def main() -> None:
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     adopt(Path(sys.argv[1]), Path(sys.argv[2]))
-    from benchmark.gate.measuring.clock import Clock
+    from benchmark.gate.measuring.costs import CostClock
     from benchmark.gate.measuring.service import Service
 
-    with Clock() as clock:
+    with CostClock() as clock:
         service = Service(clock)
         for line in sys.stdin:
             answers.write(json.dumps(service.answer(json.loads(line))) + "\n")

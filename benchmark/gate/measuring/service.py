@@ -7,11 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from benchmark.errors import TissuebenchError
-from benchmark.gate.measuring.clock import Clock
-from benchmark.gate.measuring.interleave import Slice, measure_block, warm_up
+from benchmark.gate.measuring.costs import CostClock, Slice, measure_block, warm_up
+from benchmark.gate.measuring.jobs import CASES, WORKLOADS
 from benchmark.gate.measuring.references import CALLS, REFERENCES
-from benchmark.gate.measuring.values import CASES
-from benchmark.gate.measuring.workloads import WORKLOADS
 
 
 class Service:
@@ -22,7 +20,7 @@ class Service:
     - `block`: -> `seconds` of one call by name, references among them; after `prepare`
     """
 
-    def __init__(self, clock: Clock):
+    def __init__(self, clock: CostClock):
         self._clock = clock
         self._slices: dict[str, Slice] = {}
 

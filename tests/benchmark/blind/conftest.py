@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from benchmark.blind.case import Case, CaseName, make_case
+from benchmark.blind.cases import BlindCase, CaseName, make_case
 from benchmark.discovery.result import ChannelGap, Discovery, NamedEffect, Place
 
 
@@ -43,5 +43,5 @@ def answer() -> Callable[..., Discovery]:
 
 
 @pytest.fixture(scope="session")
-def saturation() -> Case:
+def saturation() -> BlindCase:
     return make_case(CaseName("effect", "force_saturation", 0))

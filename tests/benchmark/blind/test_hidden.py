@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmark.blind.case import CaseName, draw_scene, generator, layout, make_case
+from benchmark.blind.cases import CaseName, draw_scene, generator, layout, make_case
 from benchmark.blind.hidden import CATALOGUE, OUTSIDE, Hidden
 from benchmark.blind.scene import Scene
 from benchmark.blind.simulate import Signals

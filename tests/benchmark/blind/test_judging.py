@@ -2,13 +2,13 @@
 
 import pytest
 
-from benchmark.blind.case import Case
+from benchmark.blind.cases import BlindCase
 from benchmark.blind.judging import f1, failed, judge
 
 HOLD, LOAD, LIFTED = ("force_z", "hold"), ("force_z", "load"), ("force_z", "after_lift_off")
 
 
-def test_a_right_answer(saturation: Case, answer) -> None:
+def test_a_right_answer(saturation: BlindCase, answer) -> None:
     strongest = saturation.cells.strongest
     said = answer(
         "named",
@@ -25,14 +25,14 @@ def test_a_right_answer(saturation: Case, answer) -> None:
     assert judged.strongest == " ".join(strongest)
 
 
-def test_under_outside_catalogue_nothing_is_named(saturation: Case, answer) -> None:
+def test_under_outside_catalogue_nothing_is_named(saturation: BlindCase, answer) -> None:
     judged = judge(saturation, answer("outside_catalogue", {"force_saturation": ()}), 1.0)
     assert judged.said == judged.reported == ""
     assert judged.place_found is False
     assert judged.gap_closed is None
 
 
-def test_a_discovery_that_raises_has_said_nothing(saturation: Case) -> None:
+def test_a_discovery_that_raises_has_said_nothing(saturation: BlindCase) -> None:
     judged = failed(saturation, ValueError("no luck"), 1.0)
     assert (judged.verdict, judged.said, judged.place_found) == ("error", "", False)
     assert judged.remark == "ValueError: no luck"

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from benchmark.blind.judging import Judged
-from benchmark.blind.rows import Row, clopper_pearson, confusion, table
+from benchmark.blind.rows import BlindRow, clopper_pearson, confusion, table
 
 CASE = Judged(
     case="",
@@ -39,7 +39,7 @@ SILENT = replace(
 NULL = replace(SILENT, kind="null", truth="", strongest="", place_found=None, place_f1=None, strength=0.0)
 
 
-def rows_of(*cases: Judged) -> dict[str, Row]:
+def rows_of(*cases: Judged) -> dict[str, BlindRow]:
     return {row.measure: row for row in table(cases)}
 
 

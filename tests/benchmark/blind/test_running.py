@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmark.blind.suites import chosen, suite
+from benchmark.blind.cases import chosen, suite
 from benchmark.cli.app import main
 from benchmark.errors import InputError
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmark.blind.case import Case
-from benchmark.blind.hidden.hidden import Hidden
-from benchmark.blind.noise import remembered
+from benchmark.blind.cases import BlindCase
+from benchmark.blind.hidden.hidden_effect import Hidden
 from benchmark.blind.scene import Noise, whiten
+from benchmark.blind.session_files import remembered
 from benchmark.blind.simulate import Signals
 from benchmark.blind.strength import base_of, strength
 
@@ -20,17 +20,17 @@ class _Gain(Hidden):
         return self.amplitude * elastic
 
 
-def test_a_gain_is_no_effect(saturation: Case) -> None:
+def test_a_gain_is_no_effect(saturation: BlindCase) -> None:
     scene = saturation.scene
     assert strength(scene, base_of(scene), [_Gain(scale=scene.scale, amplitude=0.2)]) < 1e-6
 
 
-def test_more_trials_make_an_effect_stronger(saturation: Case) -> None:
+def test_more_trials_make_an_effect_stronger(saturation: BlindCase) -> None:
     more = replace(saturation.scene, repeats=4 * saturation.scene.repeats)
     assert strength(more, base_of(more), saturation.effects) == pytest.approx(2 * saturation.strength, rel=1e-6)
 
 
-def test_whitened_noise_is_white_with_unit_size(saturation: Case) -> None:
+def test_whitened_noise_is_white_with_unit_size(saturation: BlindCase) -> None:
     scene = replace(saturation.scene, grid=None, force_noise=Noise(0.01, 0.9))
     noise = remembered(scene.force_noise, (200_000,), np.random.default_rng(1))
     assert noise.std() == pytest.approx(0.01, rel=0.05)

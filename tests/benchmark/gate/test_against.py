@@ -9,7 +9,7 @@ import pytest
 from benchmark.errors import InputError, NotComparableError
 from benchmark.gate import CheckRequest, accept, check
 from benchmark.gate.measurement import PRODUCT, subject
-from benchmark.gate.measuring.values import Silent
+from benchmark.gate.measuring.jobs import SilentListener
 from benchmark.gate.plan import load_plan
 
 AUTHOR = ("-c", "user.name=test", "-c", "user.email=test@localhost")
@@ -31,7 +31,7 @@ def repository(tiny_gate):
 
 
 def run(gate, tmp_path: Path, revision: str = "HEAD", **options: object):
-    return check(CheckRequest(against=revision, gate=gate.path, out=tmp_path / "out", **options), Silent())
+    return check(CheckRequest(against=revision, gate=gate.path, out=tmp_path / "out", **options), SilentListener())
 
 
 @pytest.fixture(autouse=True)
@@ -63,7 +63,7 @@ def test_a_change_that_is_far_slower_is_found(repository, tmp_path: Path) -> Non
 
 def test_an_accepted_baseline_goes_before_the_revision_for_values(repository, tmp_path: Path) -> None:
     repository.change("my_model.py", "[1e-3", "[1.01e-3")
-    accept(CheckRequest(gate=repository.path), Silent())
+    accept(CheckRequest(gate=repository.path), SilentListener())
     verdict = run(repository, tmp_path).verdict
     assert all(row.passed for row in verdict.accuracy)
     assert "baseline" in verdict.accuracy_source

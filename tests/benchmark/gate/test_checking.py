@@ -12,7 +12,7 @@ from benchmark.errors import InputError, NotComparableError, SolverError
 from benchmark.gate import CheckRequest, accept, check
 from benchmark.gate.checking import remarks
 from benchmark.gate.history import read_history
-from benchmark.gate.measuring.clock import Clock
+from benchmark.gate.measuring.costs import CostClock
 from benchmark.gate.measuring.service import Service
 from benchmark.gate.plan import Plan
 from benchmark.gate.rounds import Measured
@@ -39,7 +39,7 @@ class Here:
     """A side in this process, which a test need not wait for; `test_side` has the real one."""
 
     def __init__(self, tree: Path, revision: str | None = None):
-        self._clock = Clock()
+        self._clock = CostClock()
         self._service = Service(self._clock)
 
     def values(self, plan: Plan) -> list[dict]:

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from benchmark.gate.measuring.clock import Clock
+from benchmark.gate.measuring.costs import CostClock
 from benchmark.gate.measuring.references import REFERENCES
 from benchmark.gate.measuring.service import Service
 from benchmark.gate.plan import Plan, load_plan
@@ -12,7 +12,7 @@ from benchmark.gate.plan import Plan, load_plan
 
 @pytest.fixture
 def service():
-    with Clock() as clock:
+    with CostClock() as clock:
         yield Service(clock)
 
 

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from scipy.special import betainc
 
-from benchmark.reproduce.item import RUN
-from benchmark.reproduce.table_two import table_two_items
-from benchmark.reproduce.text import text_items
+from benchmark.reproduce.article_statistics import table_two_items, text_items
+from benchmark.reproduce.items import RUN
 
 TRIANGLE = [min(k, 100 - k) / 50 for k in range(1, 101)]
 

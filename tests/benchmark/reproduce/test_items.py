@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from benchmark.reproduce.item import compare, half_last_digit
+from benchmark.reproduce.items import compare, half_last_digit
 
 
 @pytest.mark.parametrize(

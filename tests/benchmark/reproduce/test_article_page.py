@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 from benchmark.cli.app import main
-from benchmark.reproduce import carrying_out, page
-from benchmark.reproduce.figures import redrawn
+from benchmark.reproduce import article_page, carrying_out
+from benchmark.reproduce.article_page import redrawn
 from benchmark.runs.report import published_section
 
 KEYS = {"item", "printed", "recomputed", "agrees", "reason"}
@@ -27,7 +27,7 @@ def folder(evidence, figures, tmp_path_factory):
     folder = tmp_path_factory.mktemp("reproduce") / "out"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(carrying_out, "gather", lambda _: evidence)
-        patch.setattr(page, "redrawn", lambda _: figures)
+        patch.setattr(article_page, "redrawn", lambda _: figures)
         assert main(["reproduce", "--out", str(folder), "--quiet"]) == 0
     return folder
 
@@ -55,7 +55,7 @@ def test_the_page_says_what_is_synthetic_and_what_circular(folder) -> None:
 
 def test_an_earlier_result_is_replaced_and_json_is_one_object(folder, evidence, monkeypatch, capfd) -> None:
     monkeypatch.setattr(carrying_out, "gather", lambda _: evidence)
-    monkeypatch.setattr(page, "redrawn", lambda _: {})
+    monkeypatch.setattr(article_page, "redrawn", lambda _: {})
     assert main(["reproduce", "--out", str(folder), "--json"]) == 0
     found = json.loads(capfd.readouterr().out)
     assert found["out"] == str(folder)

@@ -1,12 +1,15 @@
-"""The timed pieces of the product: what a user waits for, one function each.
+"""What a measured process does with the product: gated values of a case, and timed pieces that a user waits for.
 
-A workload is set up from a job (names and absolute paths) and returns the work that is then called again and again;
-set-up is not timed. What only one of them needs it imports itself, since another revision may not have it.
+Both are told by a job, names and absolute paths. A timed piece is set up from it and returns the work that is then
+called again and again; set-up is not timed. What only one of them needs it imports itself, since another revision may
+not have it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -14,19 +17,102 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from benchmark.files import Scenario, load_scenario
-from benchmark.gate.measuring.models import model_of
 from benchmark.gate.measuring.references import Work
-from benchmark.models import scenario_drive
+from benchmark.models import ModelResult, PreparedModel, prepare, scenario_drive
 
 if TYPE_CHECKING:
     import fem
 
+MM = 1e3
+FAR = 2.0
+"""Where the surface is gated besides the axis, in tool radii."""
 Job = Mapping[str, Any]
-
 VERTICES = 81
 REACH = 4.0
 """A frame is a square of 81 x 81 vertices, four tool radii to each side of the axis."""
 FIT_TRIALS = 2
+
+
+def model_of(job: Mapping[str, Any], scenario: Scenario) -> PreparedModel:
+    """Set up the job's `model` ("fem" or "wave") for a scenario; `own` is a user's file or None."""
+    if job["own"] is None:
+        return prepare(job["model"], scenario)
+    from benchmark.models import read_user_file
+
+    return prepare(job["model"], scenario, own=read_user_file(Path(job["own"])))
+
+
+@dataclass(frozen=True)
+class GatedValue:
+    """A gated number: name within its case, value, unit, and why there is none where `value` is None."""
+
+    name: str
+    value: float | None
+    unit: str
+    reason: str | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain types."""
+        return asdict(self)
+
+
+class SilentListener:
+    """A listener that tells nobody."""
+
+    def say(self, text: str) -> None:
+        """Say nothing."""
+
+    @contextmanager
+    def progress(self, title: str) -> Iterator[Callable[[str, int, int, str], None]]:
+        """Yield an `advance` that does nothing."""
+        del title
+        yield lambda *_: None
+
+
+def press_values(case: Mapping[str, Any]) -> list[GatedValue]:
+    """Largest deflection of each layer, the surface at two tool radii, and the peak force under depth control."""
+    scenario = load_scenario(Path(case["scenario"]), case["set"])
+    result = model_of(case, scenario).run(scenario_drive(scenario))
+    reason = None if result.failure is None else f"stopped early at {result.failure}"
+    values = [
+        _value(f"max_deformation_mm.{layer}", MM * deflection, "mm", reason)
+        for layer, deflection in zip(result.layers, result.max_deformation(), strict=True)
+    ]
+    if np.isfinite(result.profile).any():
+        values.append(_value("surface_at_2_radii_mm", MM * _far(result, scenario.tool.radius), "mm", reason))
+    if scenario.load.control == "depth":
+        peak = float(result.force[result.peak_step]) if result.force.size else np.nan
+        values.append(_value("peak_force_N", peak, "N", reason))
+    return values
+
+
+def _far(result: ModelResult, radius: float) -> float:
+    return float(np.interp(FAR * radius, result.profile_radii, result.profile[0]))
+
+
+def fit_values(case: Mapping[str, Any]) -> list[GatedValue]:
+    """Pooled stiffness factor, and the medians of contact onset and force zero over the trials of a session."""
+    from benchmark.runs.session_run import fit_trials
+
+    fit = fit_trials(Path(case["session"]), None, {}, SilentListener(), films=False).fit
+    return [
+        _value("stiffness_factor", fit.stiffness_factor, "", None),
+        _value("contact_onset_mm", MM * float(np.median([trial.onset for trial in fit.trials])), "mm", None),
+        _value("zero_N", float(np.median([trial.zero for trial in fit.trials])), "N", None),
+    ]
+
+
+def _value(name: str, value: float, unit: str, reason: str | None) -> GatedValue:
+    """A value; none where a run stopped early, since a part of a history is another problem."""
+    if reason is None and not np.isfinite(value):
+        reason = "it is not a finite number"
+    return GatedValue(name, None if reason else float(value), unit, reason)
+
+
+CASES: Mapping[str, Callable[[Mapping[str, Any]], list[GatedValue]]] = MappingProxyType(
+    {"fem": press_values, "wave": press_values, "fit": fit_values}
+)
+"""How the values of a case are found, by its model."""
 
 
 def run_history(job: Job) -> Work:

@@ -1,4 +1,4 @@
-"""Blind cases as session folders: specimen, trials and markers as files, labelled synthetic."""
+"""Blind cases as session folders: trials with the bench's noise and now and then a bad one, labelled synthetic."""
 
 from __future__ import annotations
 
@@ -6,21 +6,45 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from scipy.signal import lfilter
 
-from benchmark.blind.case import Case, CaseName, generator, make_case
-from benchmark.blind.motion import Motion, motion
-from benchmark.blind.noise import dropout, remembered, spike
+from benchmark.blind.cases import BlindCase, CaseName, generator, make_case
+from benchmark.blind.motion import Array, Integers, ReportedMotion, motion
+from benchmark.blind.scene import Noise
 from benchmark.blind.simulate import Signals, simulate
-from benchmark.blind.specimens import HOLE_RADIUS, Specimen
+from benchmark.blind.specimens import HOLE_RADIUS, ToldSpecimen
 from reports import write_text
 
+TAILS = 4.0
 ZERO_SCATTER = 0.005
 DELAY_SCATTER = 8e-3
 DEPTH_SCATTER = 0.01
 MAKER = "computed by the blind trials' generator, not measured"
 
 
-def case(name: CaseName, parent: Path) -> tuple[Path, Case]:
+def remembered(noise: Noise, shape: tuple[int, ...], rng: np.random.Generator) -> Array:
+    """First-order autoregressive noise along the first axis, of Student-t shocks with 4 degrees of freedom."""
+    shocks = rng.standard_t(TAILS, shape) / np.sqrt(TAILS / (TAILS - 2.0))
+    shocks *= np.sqrt(1.0 - noise.memory**2)
+    shocks[0] /= np.sqrt(1.0 - noise.memory**2)
+    out: Array = noise.std * lfilter([1.0], [1.0, -noise.memory], shocks, axis=0)
+    return out
+
+
+def spike(time: Array, size: float, rng: np.random.Generator) -> Array:
+    """A knock against the bench: (n,) N, a decaying ring of a tenth of a second."""
+    since = time - rng.uniform(0.2, 0.8) * time[-1]
+    ring = np.exp(-since / 0.1) * np.cos(2 * np.pi * 15.0 * since)
+    return size * np.where(since >= 0.0, ring, 0.0)
+
+
+def dropout(time: Array, rng: np.random.Generator) -> Integers:
+    """Indices of the samples that are kept when a plug is loose for 0.3 s."""
+    begin = rng.uniform(0.2, 0.8) * time[-1]
+    return np.flatnonzero((time < begin) | (time > begin + 0.3))
+
+
+def case(name: CaseName, parent: Path) -> tuple[Path, BlindCase]:
     """Make a case and write its session.
 
     Parameters
@@ -38,7 +62,7 @@ def case(name: CaseName, parent: Path) -> tuple[Path, Case]:
     return write_case(made, parent / name.alias), made
 
 
-def write_case(made: Case, folder: Path) -> Path:
+def write_case(made: BlindCase, folder: Path) -> Path:
     """Write a case's session into `folder`."""
     rng = generator(made.name, "trials")
     folder.mkdir(parents=True, exist_ok=True)
@@ -57,11 +81,13 @@ def write_case(made: Case, folder: Path) -> Path:
     return folder
 
 
-def _write_trial(made: Case, moved: Motion, folder: Path, number: int, fault: str, rng: np.random.Generator) -> str:
+def _write_trial(
+    made: BlindCase, moved: ReportedMotion, folder: Path, number: int, fault: str, rng: np.random.Generator
+) -> str:
     """Write one trial's files; returns what the session file says of its markers."""
     scene, peak = made.scene, made.scene.scale.force
     effects = [effect.in_trial(rng) for effect in made.effects]
-    late = Motion(
+    late = ReportedMotion(
         moved.plan,
         moved.time,
         np.interp(moved.time - rng.normal(0.0, DELAY_SCATTER), moved.time, moved.depth),
@@ -84,7 +110,9 @@ def _write_trial(made: Case, moved: Motion, folder: Path, number: int, fault: st
     return f'markers = "markers_{number:03d}.csv"\n'
 
 
-def _write_markers(made: Case, moved: Motion, signals: Signals, path: Path, rng: np.random.Generator) -> None:
+def _write_markers(
+    made: BlindCase, moved: ReportedMotion, signals: Signals, path: Path, rng: np.random.Generator
+) -> None:
     assert signals.x is not None
     assert signals.y is not None
     frames, markers = signals.x.shape
@@ -99,7 +127,7 @@ def _write_markers(made: Case, moved: Motion, signals: Signals, path: Path, rng:
     pd.DataFrame(columns).to_csv(path, index=False)
 
 
-def _head(made: Case) -> str:
+def _head(made: BlindCase) -> str:
     """The session file down to its trials."""
     specimen, grid = made.scene.body.specimen, made.scene.grid
     hole = f'hole_radius = "{1e3 * HOLE_RADIUS:g} mm"\n' if specimen.support == "hole" else ""
@@ -116,7 +144,7 @@ def _head(made: Case) -> str:
     )
 
 
-def specimen_text(specimen: Specimen) -> str:
+def specimen_text(specimen: ToldSpecimen) -> str:
     """The tissue file of what is told of a specimen; its moduli are not the true ones."""
     text = f'schema = 1\nname = "{specimen.name}"\ncitation = "Synthetic: {MAKER}."\n'
     for layer in specimen.layers:

@@ -1,4 +1,7 @@
-"""Table 1 of the article (with eqs. 5 and 6, which print the same coefficients), number by number."""
+"""The article's wave number by number: Table 1 with eqs. (5) and (6), which print the same, and eqs. (7) and (8).
+
+What it prints stands in `wavemodel.published.printed`.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +10,18 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from benchmark.reproduce.evidence import Chain
-from benchmark.reproduce.item import SESSION, Item, compare
-from benchmark.reproduce.printed import PRESS_MM
+from benchmark.reproduce.items import SESSION, Item, compare
+from wavemodel import WaveError
 from wavemodel.published import PublishedWave, printed, table_one
 
 MODES = 15
 UNITS = ("mm/frame²", "mm/frame", "mm")
 POWERS = ("coefficient of x²", "coefficient of x", "constant")
+MILLI = 1e-3
+PRESS_MM = 2.0
+"""Section 3.3.3: the tool is "approximately 0.002m below the starting point"."""
+ROUNDING = 0.5e-4
+"""Half of the last digit of the printed lambda."""
 
 
 def table_one_items(chain: Chain) -> tuple[Item, ...]:
@@ -92,9 +100,9 @@ def _side(name: str, chain: Chain) -> Item:
     return compare(f"Table 1: {name}", printed.SIDE, chain.variables.get(f"published.{name}"), reason, "mm", SESSION)
 
 
-def side_of_frequency() -> float:
-    """Return a = b in mm from the printed c and lambda_11."""
-    return float(printed.SPEED * np.pi * np.sqrt(2.0) / printed.FREQUENCY)
+def side_of_frequency(frequency: float = printed.FREQUENCY) -> float:
+    """Return a = b in mm that gives lambda_11, the printed one, with the printed c."""
+    return float(printed.SPEED * np.pi * np.sqrt(2.0) / frequency)
 
 
 def _wave() -> Sequence[Item]:
@@ -108,3 +116,74 @@ def _frequency_in_si() -> Item:
     value = float(PublishedWave("corrected").frequency[0, 0])
     reason = "with a in m like c, lambda is in 1/s: the printed one divides m/s by mm"
     return compare("Table 1: lambda_11 taken per second, as eq. (2) does", printed.FREQUENCY, value, reason, "1/s")
+
+
+def equation_items() -> tuple[Item, ...]:
+    """Return the items of eqs. (7) and (8)."""
+    return (*_equation_7(), *_equation_8())
+
+
+def _equation_7() -> list[Item]:
+    as_printed, corrected = PublishedWave("as_printed"), PublishedWave("corrected")
+    amplitude = float(corrected.coefficient[0, 0]) / MILLI
+    frequency = float(as_printed.frequency[0, 0])
+    side, low, high = (side_of_frequency(printed.FREQUENCY + shift) for shift in (0.0, ROUNDING, -ROUNDING))
+    why_side = (
+        f"from the printed c and lambda; the rounding of lambda leaves {low:.4f} to {high:.4f} mm, which holds the "
+        "printed side"
+    )
+    middle = np.array([0.5 * as_printed.side])
+    deep = float(as_printed.deflection(middle, middle, 0.0)[0, 0]) / MILLI
+    return [
+        compare(
+            "Eq. (7): amplitude by eq. (3), downwards",
+            -printed.COEFFICIENT,
+            -amplitude,
+            "eq. (3) as it stands; the printed number follows if sin(n pi y / b) is written as sin(pi x / a)",
+            "mm",
+        ),
+        compare(
+            "Eq. (7): amplitude as B_11 of Table 1",
+            -printed.COEFFICIENT,
+            printed.COEFFICIENT,
+            "Table 1 prints it with the other sign: eq. (7) counts upwards, f of eq. (4) downwards",
+            "mm",
+        ),
+        compare("Eq. (7): factor of t", printed.FREQUENCY, frequency, "c in m/s over a in mm", "1/ms"),
+        *(compare(f"Eq. (7): side under {axis}", printed.SIDE, side, why_side, "mm") for axis in ("x", "y")),
+        compare(
+            "Eq. (7): depth in the middle at t = 0, against the press of section 3.3.3",
+            PRESS_MM,
+            deep,
+            "the wave starts some twenty times as deep as the tool ever was: d, in no proper unit, carries into B_11",
+            "mm",
+        ),
+    ]
+
+
+def _equation_8() -> list[Item]:
+    """Depths fed to eq. (8) and read off eq. (7) again; the article expects what was fed."""
+    beyond = "acos(depth / beta) has no value beyond a depth of 1, for beta is at most 1: eq. (8) lacks the amplitude"
+    multiple = "eq. (8) lacks the amplitude, so that eq. (7) gives B_11 times the depth that was fed"
+    circular = "acos(depth / (|B_11| beta)) / lambda returns what it is fed: circular, it predicts nothing"
+    label = "Eq. (8): depth read off eq. (7) for {:g} mm fed in, {}"
+    return [
+        compare(label.format(1.0, "as printed"), 1.0, _replayed("as_printed", 1.0), multiple, "mm"),
+        compare(label.format(PRESS_MM, "as printed"), PRESS_MM, _replayed("as_printed", PRESS_MM), beyond, "mm"),
+        compare(
+            label.format(PRESS_MM, "with the amplitude put in"),
+            PRESS_MM,
+            _replayed("corrected", PRESS_MM),
+            circular,
+            "mm",
+        ),
+    ]
+
+
+def _replayed(variant: str, depth_mm: float) -> float | None:
+    wave = PublishedWave(variant)
+    middle = 0.5 * wave.side
+    try:
+        return float(wave.replay(np.array([MILLI * depth_mm]), middle, middle)[0]) / MILLI
+    except WaveError:
+        return None

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad
 
-from benchmark.reproduce.equations import equation_items
-from benchmark.reproduce.item import SESSION
-from benchmark.reproduce.table_one import table_one_items
+from benchmark.reproduce.article_wave import equation_items, table_one_items
+from benchmark.reproduce.items import SESSION
 
 A, C, LAMBDA, D, B = 23.6053, 9.2496, 1.7409, 14.3321, 39.2012
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmark.blind.case import CaseName
-from benchmark.blind.writing import case
+from benchmark.blind.cases import CaseName
+from benchmark.blind.session_files import case
 from benchmark.files.sessions.session_loading import load_session
 
 

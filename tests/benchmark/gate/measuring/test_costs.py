@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmark.gate.measuring.clock import QUEUE, Clock, Reading
+from benchmark.gate.measuring.costs import QUEUE, CostClock, Reading
 
 MS = 1_000_000
 
@@ -28,13 +28,13 @@ def queue(tmp_path: Path) -> Path:
     ],
 )
 def test_cost(queue: Path, wall: int, cpu: int, queued: int, milliseconds: int) -> None:
-    with Clock(queue) as clock:
+    with CostClock(queue) as clock:
         before, after = Reading(5 * MS, 3 * MS, 7 * MS), Reading((5 + wall) * MS, (3 + cpu) * MS, (7 + queued) * MS)
         assert clock.seconds(before, after) == pytest.approx(1e-3 * milliseconds)
 
 
 def test_the_queue_is_read_anew_each_time(queue: Path) -> None:
-    with Clock(queue) as clock:
+    with CostClock(queue) as clock:
         assert clock.read().queued == 7 * MS
         queue.write_text("123456 9000000 8\n")
         assert clock.read().queued == 9 * MS
@@ -45,14 +45,14 @@ def test_where_the_system_does_not_tell_it_is_cpu_time(tmp_path: Path, text: str
     path = tmp_path / "schedstat"
     if text is not None:
         path.write_text(text)
-    with Clock(path) as clock:
+    with CostClock(path) as clock:
         assert not clock.sees_waiting
         assert clock.seconds(Reading(0, 0, 0), Reading(30 * MS, 10 * MS, 0)) == pytest.approx(10e-3)
 
 
 @pytest.mark.skipif(not QUEUE.is_file(), reason="this system has no schedstat")
 def test_sleep_counts() -> None:
-    with Clock() as clock:
+    with CostClock() as clock:
         before = clock.read()
         time.sleep(0.02)
         assert clock.seconds(before, clock.read()) >= 0.019

@@ -1,4 +1,4 @@
-"""A blind case: which effect is hidden in which session, drawn from a seed and from nothing else."""
+"""The blind cases: which effect is hidden in which session, drawn from a seed and from nothing else, and the suites."""
 
 from __future__ import annotations
 
@@ -8,20 +8,34 @@ from typing import Literal
 
 import numpy as np
 
-from benchmark.blind.body import Body, Shape
-from benchmark.blind.cells import TrueCells, true_cells
 from benchmark.blind.hidden import CATALOGUE, OUTSIDE, Hidden
-from benchmark.blind.motion import Plan
+from benchmark.blind.motion import PressPlan
 from benchmark.blind.scene import Noise, Scene
-from benchmark.blind.simulate import Grid
-from benchmark.blind.specimens import SHEETS, SKINS
-from benchmark.blind.strength import Base, base_of, scaled_to, strength
+from benchmark.blind.simulate import MarkerGrid
+from benchmark.blind.specimens import SHEETS, SKINS, TrueBody, TrueShape
+from benchmark.blind.strength import Base, TrueCells, base_of, scaled_to, strength, true_cells
+from benchmark.errors import InputError
 
 Kind = Literal["effect", "null", "pair", "outside"]
 Layout = Literal["two_conditions", "one_condition", "force_only"]
 
 FULL_SEED_CYCLE = 5
 """Of each five seeds three have two conditions and markers, one has no markers, and one has a single condition."""
+STRONG, STRONGER = 20.0, 40.0
+PAIRS = (
+    "viscoelastic_relaxation+machine_compliance",
+    "strain_stiffening+viscoelastic_relaxation",
+    "dry_friction+force_drift",
+    "stress_softening+camera_latency",
+    "permanent_set+perspective",
+    "backlash+viscous_damping",
+    "adhesion+anisotropy",
+    "tool_inertia+interface_slip",
+    "contact_gap+off_centre_load",
+    "poroelastic_drainage+marker_scale_error",
+)
+"""Pairs of effects that act in different ways; each has both at full strength."""
+SUITES = ("small", "first", "medium", "full")
 
 
 @dataclass(frozen=True)
@@ -61,7 +75,7 @@ class CaseName:
 
 
 @dataclass(frozen=True)
-class Case:
+class BlindCase:
     """A case ready to be written: scene, hidden effects at their strength, and where they show."""
 
     name: CaseName
@@ -73,7 +87,7 @@ class Case:
     bad_trial: str
 
 
-def make_case(name: CaseName) -> Case:
+def make_case(name: CaseName) -> BlindCase:
     """Draw a case; the same name gives the same case.
 
     Raises
@@ -88,7 +102,7 @@ def make_case(name: CaseName) -> Case:
     together = strength(scene, base, effects) if effects else 0.0
     bad = str(rng.choice(["", "", "", "", "spike", "dropout", "shaky"]))
     gain_scatter = float(rng.choice([0.02, 0.03, 0.05, 0.1]))
-    return Case(name, scene, effects, true_cells(scene, base, effects), together, gain_scatter, bad)
+    return BlindCase(name, scene, effects, true_cells(scene, base, effects), together, gain_scatter, bad)
 
 
 def generator(name: CaseName, purpose: str) -> np.random.Generator:
@@ -111,14 +125,14 @@ def draw_scene(name: CaseName, rng: np.random.Generator) -> Scene:
     chosen = layout(name)
     specimens = SKINS if chosen == "force_only" else SHEETS
     specimen = specimens[int(rng.integers(len(specimens)))]
-    body = Body(specimen, _shape(rng, wrong=name.kind != "null" or name.seed % 2 == 1))
+    body = TrueBody(specimen, _shape(rng, wrong=name.kind != "null" or name.seed % 2 == 1))
     plans = _plans(rng, single=chosen == "one_condition")
     peak = float(body.force(np.array([max(plan.depth for plan in plans)]))[0])
     return Scene(
         body=body,
         plans=plans,
         repeats=10 if chosen == "one_condition" else 5,
-        grid=Grid() if specimen.has_markers else None,
+        grid=MarkerGrid() if specimen.has_markers else None,
         rate=float(rng.choice([100.0, 125.0, 200.0])),
         frame_rate=30.0,
         force_noise=Noise(peak * float(rng.uniform(0.005, 0.02)), float(rng.uniform(0.5, 0.95))),
@@ -126,23 +140,71 @@ def draw_scene(name: CaseName, rng: np.random.Generator) -> Scene:
     )
 
 
-def _shape(rng: np.random.Generator, *, wrong: bool) -> Shape:
+def _shape(rng: np.random.Generator, *, wrong: bool) -> TrueShape:
     """A modulus that nobody knows, and a shape that is not the told one where `wrong`."""
     modulus = float(np.exp(rng.normal(0.0, 0.25)))
     radius, exponent, width = (rng.uniform(-1.0, 1.0, 3) * (0.1, 0.05, 0.05)).tolist()
-    return Shape(modulus, 1.0 + radius, exponent, 1.0 + width) if wrong else Shape(modulus)
+    return TrueShape(modulus, 1.0 + radius, exponent, 1.0 + width) if wrong else TrueShape(modulus)
 
 
-def _plans(rng: np.random.Generator, *, single: bool) -> tuple[Plan, ...]:
+def _plans(rng: np.random.Generator, *, single: bool) -> tuple[PressPlan, ...]:
     """A slow shallow and a fast deep condition, or one between them."""
     shallow, deep = float(rng.uniform(1.7e-3, 2.2e-3)), float(rng.uniform(2.8e-3, 3.4e-3))
     slow, fast = float(rng.uniform(0.8e-3, 1.2e-3)), float(rng.uniform(4e-3, 6e-3))
     hold, rest = float(rng.uniform(4.0, 7.0)), float(rng.uniform(4.0, 7.0))
     if single:
-        return (Plan("press", deep, 2.0 * slow, hold, rest),)
-    return Plan("slow", shallow, slow, hold, rest), Plan("fast", deep, fast, hold, rest)
+        return (PressPlan("press", deep, 2.0 * slow, hold, rest),)
+    return PressPlan("slow", shallow, slow, hold, rest), PressPlan("fast", deep, fast, hold, rest)
 
 
 def _hide(scene: Scene, base: Base, slug: str, name: CaseName, rng: np.random.Generator) -> Hidden:
     effect = (CATALOGUE | OUTSIDE)[slug].draw(scene.scale, rng)
     return scaled_to(scene, base, effect, name.strength)
+
+
+def suite(name: str, seed: int = 0) -> tuple[CaseName, ...]:
+    """The cases of a suite.
+
+    Parameters
+    ----------
+    name : str
+        "small": 4 nulls and each effect once. "first": each effect with 5 seeds and 40 nulls. "medium" adds pairs
+        (2 seeds) and effects outside the catalogue (4 seeds, stronger). "full": 10 seeds, 100 nulls, 5 seeds a
+        pair, 10 seeds each outside.
+    seed : int
+        Of the first case of each kind; the others follow it.
+
+    Raises
+    ------
+    InputError
+        There is no such suite.
+    """
+    if name not in SUITES:
+        raise InputError(f"--suite {name!r}: there is no such suite; allowed: {', '.join(SUITES)}")
+    effects, nulls, pairs, outside = {
+        "small": (1, 4, 0, 0),
+        "first": (5, 40, 0, 0),
+        "medium": (5, 40, 2, 4),
+        "full": (10, 100, 5, 10),
+    }[name]
+    return (
+        *(CaseName("effect", slug, seed + number, STRONG) for number in range(effects) for slug in CATALOGUE),
+        *(CaseName("null", "", seed + number, 0.0) for number in range(nulls)),
+        *(CaseName("pair", pair, seed + number, STRONG) for number in range(pairs) for pair in PAIRS),
+        *(CaseName("outside", slug, seed + number, STRONGER) for number in range(outside) for slug in OUTSIDE),
+    )
+
+
+def chosen(cases: tuple[CaseName, ...], slugs: tuple[str, ...]) -> tuple[CaseName, ...]:
+    """The cases of some effects (by slug, pair or "null"); all without any.
+
+    Raises
+    ------
+    InputError
+        A slug is in no case.
+    """
+    known = {case.slug or "null" for case in cases}
+    for slug in slugs:
+        if slug not in known:
+            raise InputError(f"--cases {slug!r}: no case of this suite; allowed: {', '.join(sorted(known))}")
+    return tuple(case for case in cases if not slugs or (case.slug or "null") in slugs)
