@@ -14,7 +14,7 @@ from benchmark.files.quantities import AutoLength, Bounds, Margin, Number, probl
 from benchmark.files.schema import FileModel, Name, Schema
 from benchmark.files.sources import folder_of, is_file
 from benchmark.files.tissue import Layer, Tissue
-from benchmark.files.tool import Support, Tool, check_hole
+from benchmark.files.tool import TOUCHING, Support, Tool, check_hole
 
 Modes = Annotated[
     int | None,
@@ -141,8 +141,7 @@ class Scenario(FileModel):
 
     def _check_tool(self) -> None:
         tool = self.tool
-        touches = tool.contact in ("rigid_frictionless", "rigid_frictional")
-        if touches and self.fem.kinematics == "finite" and tool.edge_radius is None:
+        if tool.contact in TOUCHING and self.fem.kinematics == "finite" and tool.edge_radius is None:
             other = ', or set fem.kinematics to "linear"' if tool.contact == "rigid_frictionless" else ""
             raise problem(
                 f'a {tool.contact} tool in finite strain needs a rounded edge; give a length such as "0.5 mm"{other}',

@@ -11,6 +11,9 @@ from benchmark.files.schema import FileModel
 
 Contact = Literal["uniform_pressure", "rigid_bonded", "rigid_frictionless", "rigid_frictional"]
 
+TOUCHING = ("rigid_frictionless", "rigid_frictional")
+"""Contacts by real contact, which need a rounded edge in finite strain."""
+
 
 class Tool(FileModel):
     """A round tool with a flat end.

@@ -12,7 +12,7 @@ from benchmark.errors import InputError
 from benchmark.files.quantities import Bounds, Length, Number
 from benchmark.files.schema import FileModel, Name, Schema, nearest, validated
 from benchmark.files.sources import Source
-from benchmark.files.tool import Support, Tool, check_hole
+from benchmark.files.tool import TOUCHING, Support, Tool, check_hole
 
 GridSize = Annotated[int, Number("1 to 1000 (a whole number)", Bounds(1, 1000), whole=True)]
 MarkerNumber = Annotated[int, Number("0 to 1000000 (a whole number)", Bounds(0, 1_000_000), whole=True)]
@@ -91,6 +91,8 @@ class SessionFile(FileModel):
 
 
 _ASSUMED: Final[Mapping[str, str]] = {"radius": "5 mm", "contact": "rigid_bonded"}
+ASSUMED_EDGE = 0.1
+"""Edge radius over tool radius of a touching tool whose edge no one measured: finite strain needs a rounded one."""
 _WHY: Final[Mapping[str, str]] = {
     "radius": "the tool's radius is not given: assumed 5 mm",
     "contact": "the tool's contact is not given: assumed rigid_bonded (a rigid tool to which the surface sticks)",
@@ -111,7 +113,7 @@ class Setup(FileModel):
 
 def base_setup(file: SessionFile, source: Source) -> Setup:
     """Tool and support where no condition says otherwise; raises InputError."""
-    return validated(Setup, _tables(file, ConditionKeys()), source)
+    return _setup(file, ConditionKeys(), source)
 
 
 def setups(file: SessionFile, conditions: Iterable[str], source: Source) -> dict[str, Setup]:
@@ -129,20 +131,39 @@ def setups(file: SessionFile, conditions: Iterable[str], source: Source) -> dict
             raise InputError(f"{place}: no trial has this condition; {nearest(name, names)}")
     base = base_setup(file, source)
     return {
-        name: validated(Setup, _tables(file, keys), replace(source, prefix=("conditions", name)))
+        name: _setup(file, keys, replace(source, prefix=("conditions", name)))
         if (keys := file.conditions.get(name))
         else base
         for name in names
     }
 
 
-def assumptions(file: SessionFile, conditions: Iterable[str]) -> list[str]:
-    """One sentence for each key of tool and support that no one gave."""
+def assumptions(file: SessionFile, conditions: Mapping[str, Setup]) -> list[str]:
+    """One sentence for each key of tool and support that no one gave; `conditions` are the set-ups in use."""
     tools = [_given(file, file.conditions.get(name, ConditionKeys())) for name in conditions]
     said = [_WHY[key] for key in _ASSUMED if any(key not in tool for tool, _ in tools)]
+    edges = {
+        setup.tool.edge_radius
+        for setup, (tool, _) in zip(conditions.values(), tools, strict=True)
+        if setup.tool.edge_radius is not None and "edge_radius" not in tool
+    }
+    said += [
+        f"the tool's edge is not given: assumed rounded by {1e3 * edge:g} mm, a tenth of its radius; "
+        f'state tool.edge_radius = "{1e3 * edge:g} mm" or the measured one'
+        for edge in sorted(edges)
+    ]
     if any("kind" not in support for _, support in tools):
         said.append("the support is not given: assumed bonded")
     return said
+
+
+def _setup(file: SessionFile, condition: ConditionKeys, source: Source) -> Setup:
+    """Tool and support of a condition; a touching tool without an edge gets the assumed one."""
+    setup = validated(Setup, _tables(file, condition), source)
+    tool = setup.tool
+    if tool.contact not in TOUCHING or tool.edge_radius is not None:
+        return setup
+    return setup.model_copy(update={"tool": tool.model_copy(update={"edge_radius": ASSUMED_EDGE * tool.radius})})
 
 
 def _given(file: SessionFile, condition: ConditionKeys) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -131,7 +131,7 @@ def _trials(file: SessionFile, source: Source) -> tuple[list[Trial], list[str]]:
     conditions = dict.fromkeys(entry.condition for entry in file.trials)
     setup = setups(file, conditions, source)
     paths, marker_paths = trial_paths(file.trials, source)
-    warnings = assumptions(file, conditions) + _doubled(paths)
+    warnings = assumptions(file, setup) + _doubled(paths)
     if file.camera is None and any(marker_paths):
         warnings.append("marker files are listed but [camera] does not give their layout: they are left out")
         marker_paths = [None] * len(paths)

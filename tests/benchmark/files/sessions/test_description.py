@@ -54,17 +54,41 @@ def session(**keys):
     return validated(SessionFile, {"name": "s", "trials": trials, **keys}, SOURCE)
 
 
+def assumed(file, *conditions):
+    return assumptions(file, {name: setups(file, ["slow", "fast"], SOURCE)[name] for name in conditions})
+
+
+def test_a_touching_tool_gets_an_edge_and_says_so():
+    file = session(
+        tool={"radius": "10 mm", "contact": "rigid_frictionless"},
+        conditions={"fast": {"tool": {"edge_radius": "2 mm"}}},
+    )
+    found = setups(file, ["slow", "fast"], SOURCE)
+    assert (found["slow"].tool.edge_radius, found["fast"].tool.edge_radius) == (pytest.approx(1e-3), 2e-3)
+    said = [each for each in assumed(file, "slow", "fast") if "edge" in each]
+    assert len(said) == 1
+    assert said[0].startswith("the tool's edge is not given: assumed rounded by 1 mm, a tenth")
+    assert not any("edge" in each for each in assumed(file, "fast"))
+
+
+@pytest.mark.parametrize("contact", ["uniform_pressure", "rigid_bonded"])
+def test_other_tools_stay_sharp(contact):
+    file = session(tool={"contact": contact})
+    assert base_setup(file, SOURCE).tool.edge_radius is None
+    assert not any("edge" in each for each in assumed(file, "slow", "fast"))
+
+
 def test_what_is_not_given_is_assumed_and_said():
     file = session()
     assert base_setup(file, SOURCE).tool == Tool(radius=5e-3, contact="rigid_bonded")
     assert base_setup(file, SOURCE).support == Support(kind="bonded")
-    said = " ".join(assumptions(file, ["slow", "fast"]))
+    said = " ".join(assumed(file, "slow", "fast"))
     assert all(word in said for word in ("assumed 5 mm", "assumed rigid_bonded", "assumed bonded"))
 
 
 def test_what_is_given_is_not_assumed():
     file = session(tool={"radius": "3 mm", "contact": "rigid_bonded"}, support={"kind": "bonded"})
-    assert assumptions(file, ["slow", "fast"]) == []
+    assert assumed(file, "slow", "fast") == []
     assert base_setup(file, SOURCE).tool.radius == 3e-3
 
 
@@ -78,9 +102,9 @@ def test_a_condition_overrides_single_keys():
 def test_an_assumption_in_any_condition_is_said():
     hole = {"kind": "hole", "hole_radius": "30 mm"}
     file = session(conditions={"fast": {"tool": {"radius": "2 mm"}, "support": hole}})
-    assert any("radius" in each for each in assumptions(file, ["slow", "fast"]))
-    assert not any("radius" in each for each in assumptions(file, ["fast"]))
-    assert not any("support" in each for each in assumptions(file, ["fast"]))
+    assert any("radius" in each for each in assumed(file, "slow", "fast"))
+    assert not any("radius" in each for each in assumed(file, "fast"))
+    assert not any("support" in each for each in assumed(file, "fast"))
 
 
 def test_a_condition_without_trials_is_refused():

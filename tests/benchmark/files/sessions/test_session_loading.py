@@ -140,10 +140,18 @@ def test_settings_of_scenarios_are_checked_and_handed_on(session_folder):
 
 
 def test_a_tool_that_no_press_can_have_is_refused_at_once(session_folder):
-    smooth = {"conditions.fast.tool.contact": "rigid_frictionless"}
-    assert "tool.edge_radius: a rigid_frictionless tool in finite strain" in refusal(session_folder, smooth)
-    session = load_session(session_folder, {**smooth, "fem.kinematics": "linear"})
-    assert session.trials[1].tool.contact == "rigid_frictionless"
+    rubbing = {"conditions.fast.tool.contact": "rigid_frictional"}
+    assert "physics.friction_coefficient" in refusal(session_folder, rubbing)
+    session = load_session(session_folder, {**rubbing, "physics.friction_coefficient": "0.3"})
+    assert session.trials[1].tool.contact == "rigid_frictional"
+
+
+def test_a_touching_tool_without_an_edge_gets_one_and_the_session_says_so(session_folder):
+    session = load_session(session_folder, {"conditions.fast.tool.contact": "rigid_frictionless"})
+    slow, fast = session.trials[0].tool, session.trials[1].tool
+    assert slow.edge_radius is None
+    assert fast.edge_radius == pytest.approx(0.1 * fast.radius)
+    assert any("assumed rounded" in each for each in session.warnings)
 
 
 def test_a_specimen_without_an_end_needs_a_half_space(session_folder, tissue_file, change):
