@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from typing import Any, Protocol, cast
 
-from benchmark.discovery.result import Discovery
+from benchmark.discovery.discovery_result import Discovery
 from benchmark.errors import InputError
 from benchmark.files.sessions.trials import Session
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from benchmark.blind.cases import BlindCase
-from benchmark.discovery.result import Discovery
+from benchmark.discovery.discovery_result import Discovery
 
 NAMING = ("named", "conditional", "lookalikes", "instrument_first", "partly_explained")
 """Verdicts under which the effects of an answer are claimed."""

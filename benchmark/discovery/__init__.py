@@ -7,22 +7,22 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from benchmark.discovery.expectation import Rival, expected, rivals
-    from benchmark.discovery.result import Discovery
-    from benchmark.discovery.settings import Settings
+    from benchmark.discovery.criteria import Settings
+    from benchmark.discovery.discovery_result import Discovery
+    from benchmark.discovery.planning.rivals import Rival, expected, rivals
     from benchmark.discovery.workflow import Findings, discover, findings
 
 __all__ = ["Discovery", "Findings", "Rival", "Settings", "discover", "expected", "findings", "rivals"]
 
 _HOMES = {
-    "Discovery": "result",
+    "Discovery": "discovery_result",
     "Findings": "workflow",
-    "Rival": "expectation",
-    "Settings": "settings",
+    "Rival": "planning.rivals",
+    "Settings": "criteria",
     "discover": "workflow",
-    "expected": "expectation",
+    "expected": "planning.rivals",
     "findings": "workflow",
-    "rivals": "expectation",
+    "rivals": "planning.rivals",
 }
 
 

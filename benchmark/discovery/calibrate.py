@@ -9,12 +9,12 @@ import numpy as np
 
 from benchmark.discovery.bases.elements import elements_or_wave
 from benchmark.discovery.bases.law import BaseLaw, BaseLaws
+from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.fit import Fit, fit
 from benchmark.discovery.model import Model, nuisance_count
 from benchmark.discovery.noise import fit_memory, scales
 from benchmark.discovery.problem import OWN, NoiseModel, Problem, TrialPrior, TrialRef, trial_refs
-from benchmark.discovery.result import Array
-from benchmark.discovery.study import Study
+from benchmark.discovery.trials.study import Study
 from benchmark.files import Session
 
 FIRST_NOISE = 0.01

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.fit import Fit, White, fit
 from benchmark.discovery.model import Model, nuisance_precision
 from benchmark.discovery.problem import Problem
-from benchmark.discovery.result import Array
 from benchmark.physics import Effect
 from benchmark.physics.effect import Values
 

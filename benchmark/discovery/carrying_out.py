@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from benchmark.discovery.files import DiscoveryOutcome, write_discovery
 from benchmark.discovery.from_run import at_small_strain, is_run, read_run, repair_run
-from benchmark.discovery.record import DiscoveryRecord
+from benchmark.discovery.report.discovery_files import DiscoveryOutcome, write_discovery
+from benchmark.discovery.report.discovery_record import DiscoveryRecord
 from benchmark.errors import InputError
 from benchmark.physics import Effect, catalogue, load_effects
 from benchmark.runs.destination import destination

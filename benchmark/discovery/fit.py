@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.model import Model, nuisance_count, nuisance_precision
 from benchmark.discovery.problem import OFFSETS, OWN, Problem
-from benchmark.discovery.result import Array
 
 DAMPING = 1e-3
 MOST = 12

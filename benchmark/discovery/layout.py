@@ -3,16 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from benchmark.discovery.result import Array
-from benchmark.discovery.study import Layout
+from benchmark.discovery.discovery_result import Array
 from benchmark.files import Camera
 
 RINGS = 3
 CENTRAL = 0.2
 """Markers nearer to the axis than this share of the spacing have no direction."""
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """The marker grid: resting positions (m, 2) m, and (signals, m, 2) weights of the combinations that are compared.
+
+    `names` are the combinations; `channels` where each is reported.
+    """
+
+    rest: Array
+    weights: Array
+    names: tuple[str, ...]
+    channels: tuple[str, ...]
+
+    def signals(self, positions: Array) -> Array:
+        """(..., signals) combinations of positions (..., m, 2), m, less their resting places."""
+        return np.asarray(np.tensordot(positions - self.rest, self.weights, axes=([-2, -1], [1, 2])))
 
 
 def grid(camera: Camera) -> Array:

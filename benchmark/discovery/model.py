@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
+from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.problem import OFFSETS, OWN, SHAPE_PRIOR, Problem
-from benchmark.discovery.result import Array
 from benchmark.discovery.simulator import Bent, Shape, Simulator, ordered
 from benchmark.physics import Effect, EffectParameter, Readings, catalogue
 from benchmark.physics.effect import Values

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmark.discovery.result import Array
+from benchmark.discovery.discovery_result import Array
 
 MEMORIES = (0.0, 0.2, 0.4, 0.6, 0.75, 0.85, 0.92, 0.96, 0.98, 0.99, 0.995, 0.998)
 """Correlations of neighbouring raw samples that are tried."""

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from benchmark.discovery.bases.elements import elements_only
 from benchmark.discovery.carrying_out import DiscoverRequest
-from benchmark.discovery.planning import propose
-from benchmark.discovery.record import DiscoveryRecord
-from benchmark.discovery.settings import Settings
+from benchmark.discovery.criteria import Settings
+from benchmark.discovery.planning.proposing import propose
+from benchmark.discovery.report.discovery_record import DiscoveryRecord
 from benchmark.discovery.workflow import Findings, findings
 from benchmark.files import Session, load_session
 from benchmark.physics import SLUGS, Effect

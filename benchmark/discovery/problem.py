@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.discovery.bases.law import BaseLaw
+from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.noise import Whitener, whitener
-from benchmark.discovery.result import Array
 from benchmark.discovery.simulator import Shape
-from benchmark.discovery.study import ConditionData, Study
+from benchmark.discovery.trials.study import ConditionData, Study
 from benchmark.physics import Motion
 
 SHAPE_PRIOR = Shape(3.0, 0.058, 0.03, 0.0015, 0.001, 0.03, 0.003, 0.002)

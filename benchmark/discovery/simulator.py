@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from benchmark.discovery.bases.law import BaseLaw
-from benchmark.discovery.result import Array
+from benchmark.discovery.discovery_result import Array
 from benchmark.physics import Effect, LowerFaceMotion, Motion, PressHistory, Readings, TrialContext
 from benchmark.physics.effect import Values
 

@@ -9,24 +9,21 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmark.discovery.answer import base_estimates, candidates, named_effects, remains, transfers
+from benchmark.discovery.answer.estimates import base_estimates, candidates, named_effects, remains, transfers
+from benchmark.discovery.answer.gap import HeldOut, closed_overall, gaps, held_out_residuals, share_left, traces, unbent
+from benchmark.discovery.answer.verdict import Facts, statement, verdict
 from benchmark.discovery.bases.law import BaseLaws
 from benchmark.discovery.calibrate import Calibrated, calibrate
-from benchmark.discovery.contrasts import contrasts
-from benchmark.discovery.detect import Detection, combined, detect, places, smallest_visible
+from benchmark.discovery.criteria import Settings
+from benchmark.discovery.detection.contrasts import contrasts
+from benchmark.discovery.detection.disagreement import Detection, combined, detect, places, smallest_visible
+from benchmark.discovery.detection.places import places_of
+from benchmark.discovery.discovery_result import Discovery, Place
+from benchmark.discovery.evidence.pool import Listener, fingerprint, pool, silent
+from benchmark.discovery.evidence.selection import Selection, first_gain, select, usable
+from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, remark, screen
 from benchmark.discovery.fit import Fit
-from benchmark.discovery.gap import HeldOut, closed_overall, gaps, held_out_residuals, unbent
-from benchmark.discovery.pool import Listener, fingerprint, pool, silent
-from benchmark.discovery.preparing import ENOUGH_TRIALS, prepare
-from benchmark.discovery.result import Discovery, Place
-from benchmark.discovery.sampling import compared, on_all, on_some, remark
-from benchmark.discovery.screen import screen
-from benchmark.discovery.select import Selection, first_gain, select, usable
-from benchmark.discovery.settings import Settings
-from benchmark.discovery.shared import share_left
-from benchmark.discovery.shown import places_of
-from benchmark.discovery.traces import traces
-from benchmark.discovery.verdict import Facts, statement, verdict
+from benchmark.discovery.trials.preparing import ENOUGH_TRIALS, prepare
 from benchmark.files import Session
 from benchmark.physics import Effect, catalogue
 

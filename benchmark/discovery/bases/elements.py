@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from benchmark.discovery.bases.law import MARGIN, POINTS, STEP, BaseLaw, BaseLaws, orders, reduced, resized
 from benchmark.discovery.bases.wave import wave_law
-from benchmark.discovery.result import Array
+from benchmark.discovery.discovery_result import Array
 from benchmark.errors import InputError
 from benchmark.files import Session, Support, Tissue, Tool
 from benchmark.models import Drive, UncoveredError, prepare

@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from benchmark.discovery.result import Array
+from benchmark.discovery.discovery_result import Array
 from benchmark.files import Support, Tissue, Tool
 
 POINTS = 500

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from benchmark.discovery.bases.law import MARGIN, POINTS, STEP, BaseLaw, reduced, resized
-from benchmark.discovery.result import Array
+from benchmark.discovery.discovery_result import Array
 from benchmark.errors import InputError
 from benchmark.files import Support, Tissue, Tool
 

@@ -12,13 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from benchmark.discovery.from_run.body import physics_of
-from benchmark.discovery.from_run.candidates import Fit, fit_candidate
-from benchmark.discovery.from_run.places import contrasts, places
-from benchmark.discovery.from_run.reading import FinishedRun
-from benchmark.discovery.from_run.splitting import Case, layer_gaps, split
-from benchmark.discovery.record import DiscoveryRecord, LayerGap
-from benchmark.discovery.result import (
+from benchmark.discovery.discovery_result import (
     Array,
     Candidate,
     ChannelGap,
@@ -27,6 +21,12 @@ from benchmark.discovery.result import (
     NamedEffect,
     Trace,
 )
+from benchmark.discovery.from_run.body import physics_of
+from benchmark.discovery.from_run.candidates import Fit, fit_candidate
+from benchmark.discovery.from_run.places import contrasts, places
+from benchmark.discovery.from_run.reading import FinishedRun
+from benchmark.discovery.from_run.splitting import Case, layer_gaps, split
+from benchmark.discovery.report.discovery_record import DiscoveryRecord, LayerGap
 from benchmark.physics import Effect
 from benchmark.runs.listener import Listener
 from wavemodel.physics import Physics

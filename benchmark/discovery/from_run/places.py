@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from benchmark.discovery.discovery_result import Contrast, Place
 from benchmark.discovery.from_run.splitting import Case
-from benchmark.discovery.result import Contrast, Place
 
 CLASSES = 3
 

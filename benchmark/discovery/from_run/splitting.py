@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.from_run.body import NOTHING, Body, body_of
 from benchmark.discovery.from_run.candidates import History
 from benchmark.discovery.from_run.reading import FinishedRun
-from benchmark.discovery.record import LayerGap
-from benchmark.discovery.result import Array
+from benchmark.discovery.report.discovery_record import LayerGap
 from benchmark.errors import InputError
 from wavemodel.physics import Physics
 

@@ -1,5 +1,1 @@
-"""The next experiment: from rivals to a protocol that the bench can run."""
-
-from benchmark.discovery.planning.proposing import propose
-
-__all__ = ["propose"]
+"""The next experiment: what rivals expect, the menu, and the protocol that the bench can run."""

@@ -1,10 +1,17 @@
-"""The short menu of experiments: protocols of motion that differ from a session's own in one thing each."""
+"""The menu of experiments: motions that differ from a session's own in one thing each, as the bench reads them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
+
+import numpy as np
+
+from bench_hw.configuration import validated
+from bench_hw.motion.plan import Plan, plan
+from bench_hw.motion.protocol import Protocol
+from benchmark.discovery.discovery_result import Array
 
 AIR = -2e-3
 APPROACH_SPEED = 1e-3
@@ -140,3 +147,35 @@ def _mm(length: float) -> str:
 
 def _pace(speed: float) -> str:
     return f"{1e3 * speed:.4g} mm/s"
+
+
+BETWEEN = 0.5
+"""Minutes between two trials."""
+
+
+def motion(experiment: Experiment, rows: int) -> tuple[Array, Array]:
+    """Time s and depth m (rows,) of one trial, evenly spaced."""
+    steps = dry_run(experiment).steps
+    times = np.array([0.0, *(step.start + step.duration for step in steps)])
+    depths = np.array([steps[0].depth_from, *(step.depth_to for step in steps)])
+    time = np.linspace(0.0, times[-1], rows)
+    return time, np.interp(time, times, depths)
+
+
+def minutes(experiment: Experiment, trials: int) -> float:
+    """Bench time of as many trials."""
+    return experiment.setup_minutes + trials * (dry_run(experiment).duration / 60.0 + BETWEEN)
+
+
+def protocol_toml(experiment: Experiment) -> str:
+    """The protocol file, checked as the bench checks it."""
+    import tomli_w
+
+    table = experiment.table()
+    validated(Protocol, table, experiment.name)
+    return tomli_w.dumps(table)
+
+
+def dry_run(experiment: Experiment) -> Plan:
+    """Where the tool would be when."""
+    return plan(validated(Protocol, experiment.table(), experiment.name))

@@ -7,13 +7,21 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from benchmark.discovery.expectation import Rival, expected, rivals
-from benchmark.discovery.planning.menu import Experiment, Usual, menu, rigid_block, ruler_image, same_again
-from benchmark.discovery.planning.protocol import minutes, motion, protocol_toml
-from benchmark.discovery.planning.separation import separation
-from benchmark.discovery.record import NextExperiment
-from benchmark.discovery.result import PHASES
-from benchmark.discovery.study import ConditionData
+from benchmark.discovery.discovery_result import PHASES
+from benchmark.discovery.planning.menu import (
+    Experiment,
+    Usual,
+    menu,
+    minutes,
+    motion,
+    protocol_toml,
+    rigid_block,
+    ruler_image,
+    same_again,
+)
+from benchmark.discovery.planning.rivals import Rival, expected, rivals, separation
+from benchmark.discovery.report.discovery_record import NextExperiment
+from benchmark.discovery.trials.study import ConditionData
 from benchmark.discovery.workflow import Findings
 from benchmark.errors import InputError
 

@@ -1,5 +1,1 @@
-"""The page of a discovery, a section a file."""
-
-from benchmark.discovery.report.page import discovery_page
-
-__all__ = ["discovery_page"]
+"""A discovery as a folder: discovery.json, tables, model.toml, next_experiment.toml and the page."""

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from benchmark.discovery.result import Place
-from benchmark.discovery.units import channel_unit
+from benchmark.discovery.discovery_result import Place, channel_unit
 from reports.formatting import format_number
 
 CHANNELS = {

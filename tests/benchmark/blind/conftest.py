@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from benchmark.blind.cases import BlindCase, CaseName, make_case
-from benchmark.discovery.result import ChannelGap, Discovery, NamedEffect, Place
+from benchmark.discovery.discovery_result import ChannelGap, Discovery, NamedEffect, Place
 
 
 def an_answer(

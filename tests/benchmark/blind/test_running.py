@@ -11,7 +11,7 @@ from benchmark.errors import InputError
 
 STUB = '''
 from pathlib import Path
-from benchmark.discovery.result import Discovery, NamedEffect
+from benchmark.discovery.discovery_result import Discovery, NamedEffect
 
 def always(session, *, seed):
     """Answers adhesion, and raises for sessions without markers."""

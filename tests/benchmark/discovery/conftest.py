@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmark.discovery.record import DiscoveryRecord
-from benchmark.discovery.result import (
+from benchmark.discovery.discovery_result import (
     Candidate,
     ChannelGap,
     Contrast,
@@ -21,6 +20,7 @@ from benchmark.discovery.result import (
     Place,
     Trace,
 )
+from benchmark.discovery.report.discovery_record import DiscoveryRecord
 from benchmark.physics.description import EffectDescription, EffectParameter
 
 RELAXATION = EffectDescription(

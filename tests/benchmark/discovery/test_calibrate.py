@@ -5,7 +5,7 @@ import pytest
 
 from benchmark.discovery.bases.wave import wave_law
 from benchmark.discovery.calibrate import calibrate
-from benchmark.discovery.preparing import prepare
+from benchmark.discovery.trials.preparing import prepare
 
 TOUCH = 60e-6  # m, what a touch by force leaves between trials
 

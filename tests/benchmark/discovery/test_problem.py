@@ -5,8 +5,8 @@ import numpy as np
 from benchmark.discovery.bases.wave import wave_law
 from benchmark.discovery.calibrate import calibrate
 from benchmark.discovery.model import Model
-from benchmark.discovery.preparing import prepare
 from benchmark.discovery.problem import only
+from benchmark.discovery.trials.preparing import prepare
 
 
 def test_some_trials_are_simulated_and_whitened_as_among_all(session_of):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmark.discovery import Settings, expected, findings, rivals
-from benchmark.discovery.result import CHANNELS, PHASES, VERDICTS
+from benchmark.discovery.discovery_result import CHANNELS, PHASES, VERDICTS
 
 SETTINGS = Settings(rows=90, workers=1, bootstraps=40, most_effects=1)
 

@@ -6,8 +6,16 @@ from typer.testing import CliRunner
 
 from bench_hw.cli import app
 from bench_hw.motion.loading import load_protocol
-from benchmark.discovery.planning.menu import Usual, menu, rigid_block, ruler_image, same_again
-from benchmark.discovery.planning.protocol import minutes, motion, protocol_toml
+from benchmark.discovery.planning.menu import (
+    Usual,
+    menu,
+    minutes,
+    motion,
+    protocol_toml,
+    rigid_block,
+    ruler_image,
+    same_again,
+)
 
 USUAL = Usual(depth=2e-3, speed=1e-3, hold=5.0, thickness=20e-3)
 EVERYTHING = (same_again(USUAL), *menu(USUAL), rigid_block(4.0), ruler_image())

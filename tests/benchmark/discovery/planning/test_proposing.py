@@ -3,8 +3,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from benchmark.discovery.discovery_result import PHASES
 from benchmark.discovery.planning.proposing import _calibrations, _distinct, usual_press
-from benchmark.discovery.result import PHASES
 from benchmark.physics import TrialContext
 
 

@@ -1,0 +1,207 @@
+"""How much of the gap closed on held-out data: channel by channel, of what trials share, and as curves for pictures.
+
+The replicates' pure error is the floor.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from benchmark.discovery.calibrate import pure_errors
+from benchmark.discovery.criteria import Settings
+from benchmark.discovery.discovery_result import Array, ChannelGap, Trace
+from benchmark.discovery.fit import Fit, White, fit, settled
+from benchmark.discovery.model import Model
+from benchmark.discovery.problem import FOLLOWED, only
+
+
+@dataclass(frozen=True, eq=False)
+class HeldOut:
+    """Residuals (n, C) of each trial by a fit that has not seen it, before and after; `kind` as in `ChannelGap`."""
+
+    before: list[Array]
+    after: list[Array]
+    kind: str
+
+
+def unbent(chosen: Fit) -> Fit:
+    """The base fitted again, with bends and marker field as they are beside the effects.
+
+    A missing effect bends the base; what it hides by that is part of the gap.
+    """
+    names = chosen.model.problem.shapes
+    pinned = tuple((n, float(v)) for n, v in zip(names, chosen.vector, strict=False) if n not in FOLLOWED)
+    return fit(Model(chosen.model.problem, (), pinned), chosen.vector[: len(names)], chosen.nuisance, most=6)
+
+
+def held_out_residuals(base: Fit, chosen: Fit) -> HeldOut:
+    """Fit without each condition (or, with one, without each trial) and settle only its own nuisances there."""
+    groups = np.array([trial.condition for trial in base.model.problem.trials])
+    if np.unique(groups).size > 1:
+        parts, kind = [groups == number for number in np.unique(groups)], "condition"
+    else:
+        parts, kind = [np.arange(groups.size) == k for k in range(groups.size)], "trial"
+    before = _residuals(base, parts, kind)
+    after = before if chosen is base else _residuals(chosen, parts, kind)
+    return HeldOut(before, after, kind)
+
+
+def _residuals(fitted: Fit, parts: list[np.ndarray], kind: str) -> list[Array]:
+    """Each part's trials alone are simulated with what the others gave."""
+    problem = fitted.model.problem
+    out: list[Array] = [np.zeros(0)] * len(problem.trials)
+    for left in parts:
+        vector = _without_condition(fitted, left) if kind == "condition" else fitted.without(left)
+        mine = np.flatnonzero(left)
+        model = replace(fitted.model, problem=only(problem, mine.tolist()))
+        state = settled(model, vector, fitted.nuisance[mine])
+        for index, signal in zip(mine, model.signals(vector, state), strict=True):
+            out[index] = problem.trials[index].signals - signal
+    return out
+
+
+def _without_condition(fitted: Fit, left: np.ndarray) -> Array:
+    """The vector fitted to the trials of the other conditions."""
+    kept = np.flatnonzero(~left)
+    model = replace(fitted.model, problem=only(fitted.model.problem, kept.tolist()))
+    return fit(model, fitted.vector, fitted.nuisance[kept], most=5).vector
+
+
+def gaps(base: Fit, held: HeldOut, settings: Settings) -> tuple[ChannelGap, ...]:
+    """The gap in each channel."""
+    problem = base.model.problem
+    floors = pure_errors(base)
+    before, after, floor = (_squares(base, rows) for rows in (held.before, held.after, floors))
+    channels = problem.study.channels
+    groups = np.array([trial.condition for trial in problem.trials])
+    generator = np.random.default_rng(settings.seed)
+    draws = [_draw(groups, generator) for _ in range(settings.bootstraps)]
+    out = []
+    for channel in dict.fromkeys(channels):
+        mine = [k for k, other in enumerate(channels) if other == channel]
+        b, a, f = (table[:, mine].mean(axis=1) for table in (before, after, floor))
+        f = np.where(np.isfinite(f), f, np.nanmedian(f) if np.isfinite(f).any() else 0.0)
+        closed = share_closed(b.mean(), a.mean(), f.mean())
+        resampled = [share_closed(b[d].mean(), a[d].mean(), f[d].mean()) for d in draws] if closed is not None else []
+        kept = [value for value in resampled if value is not None]
+        ends = np.quantile(kept, [0.025, 0.975]).tolist() if kept else None
+        one, two, least = (float(np.sqrt(values.mean())) for values in (b, a, f))
+        interval = None if ends is None else (ends[0], ends[1])
+        out.append(ChannelGap(channel, one, two, least, closed, interval, held.kind))
+    return tuple(out)
+
+
+def _draw(groups: Array, generator: np.random.Generator) -> Array:
+    parts = [np.flatnonzero(groups == number) for number in np.unique(groups)]
+    return np.concatenate([generator.choice(part, part.size) for part in parts])
+
+
+def _squares(base: Fit, rows: list[Array]) -> Array:
+    """(R, C) mean squares of each trial, rows weighted by their samples."""
+    out = []
+    for trial, residual in zip(base.model.problem.trials, rows, strict=True):
+        weight = trial.count
+        total = np.maximum(weight.sum(axis=0), 1e-12)
+        out.append(np.sum(weight * residual**2, axis=0) / total)
+    return np.array(out)
+
+
+LEAST_GAP = 0.05
+"""Where the base leaves less than this share above the floor there is nothing to close."""
+
+DECIMALS = 6
+"""Of the share that is closed; what lies beyond is round-off, as in a channel that no effect touches."""
+
+
+def share_closed(before: float, after: float, floor: float) -> float | None:
+    """Share of the gap over the floor that is gone, all three mean squares; None where there is nothing to close."""
+    open_before = before - floor
+    if open_before <= LEAST_GAP * floor:
+        return None
+    return float(min(round((before - after) / open_before, DECIMALS) + 0.0, 1.0))  # + 0.0: no minus zero
+
+
+def closed_overall(base: Fit, held: HeldOut) -> float | None:
+    """The gap closed in all channels together, each in units of its noise."""
+    floor = _squares(base, pure_errors(base))
+    known = np.where(np.isfinite(floor), floor, np.nanmedian(floor, axis=0))
+    unit = np.maximum(known.mean(axis=0), 1e-300)
+    before, after = (float((_squares(base, rows) / unit).mean()) for rows in (held.before, held.after))
+    return share_closed(before, after, float((known / unit).mean()))
+
+
+def shared_misfit(fitted: Fit) -> float:
+    """Squared norm of the whitened mean residual, in standard errors, above its expectation from replicates.
+
+    Each condition gives R |mean|^2 less the sum of its variances over trials; a condition without replicates gives its
+    rows' number in the place of the variances.
+    """
+    problem = fitted.model.problem
+    residuals = White(problem).residuals(fitted.model.signals(fitted.vector, fitted.nuisance))
+    groups = np.array([trial.condition for trial in problem.trials])
+    total = 0.0
+    for number in np.unique(groups):
+        rows = np.array([residuals[i] for i in np.flatnonzero(groups == number)])
+        floor = rows.var(axis=0, ddof=1).sum() if len(rows) > 1 else float(rows.shape[1])
+        total += len(rows) * float(np.sum(rows.mean(axis=0) ** 2)) - float(floor)
+    return total
+
+
+def share_left(before: Fit, after: Fit) -> float:
+    """Share of the misfit that trials share which a model with effects surely leaves of the one without; 0 to 1.
+
+    What is left is taken one standard deviation lower than it was found, as if of as many free numbers as rows.
+    """
+    opened, problem = shared_misfit(before), after.model.problem
+    rows = sum(condition.signals[0].size for condition in problem.study.conditions)
+    sure = shared_misfit(after) - np.sqrt(2.0 * rows)
+    return float(np.clip(sure / opened, 0.0, 1.0)) if opened > 0.0 else 0.0
+
+
+def traces(base: Fit, held: HeldOut) -> tuple[Trace, ...]:
+    """One trace a trial and channel; of a channel's marker combinations the liveliest."""
+    problem = base.model.problem
+    study = problem.study
+    errors = pure_errors(base)
+    shown = _shown(base)
+    out = []
+    for index, trial in enumerate(problem.trials):
+        condition = study.conditions[trial.condition]
+        mates = [k for k, other in enumerate(problem.trials) if other.condition == trial.condition]
+        noise = np.sqrt(np.mean([errors[k] ** 2 for k in mates], axis=0))
+        for channel, signal in shown.items():
+            absent = trial.count[:, signal] <= 0.0
+            measured = np.where(absent, np.nan, trial.signals[:, signal])
+            before, after = (_curve(trial.signals, rows[index], signal) for rows in (held.before, held.after))
+            out.append(
+                Trace(
+                    trial.name,
+                    condition.name,
+                    channel,
+                    True,
+                    trial.motion.time,
+                    trial.motion.depth,
+                    measured,
+                    before,
+                    after,
+                    np.nan_to_num(noise[:, signal]),
+                )
+            )
+    return tuple(out)
+
+
+def _curve(measured: Array, residual: Array, signal: int) -> Array:
+    return np.asarray(measured[:, signal] - residual[:, signal])
+
+
+def _shown(base: Fit) -> dict[str, int]:
+    """The signal that stands for each channel."""
+    study = base.model.problem.study
+    size = np.max([np.ptp(trial.signals, axis=0) for trial in base.model.problem.trials], axis=0)
+    out: dict[str, int] = {}
+    for k, channel in enumerate(study.channels):
+        if channel not in out or size[k] > size[out[channel]]:
+            out[channel] = k
+    return out

@@ -1,0 +1,212 @@
+"""Residuals in cells: one number a trial and cell, and the test of all cells at once by sign flips of whole trials."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmark.discovery.discovery_result import Array
+from benchmark.discovery.fit import Fit, White
+from benchmark.discovery.model import nuisance_precision
+from benchmark.discovery.problem import Problem
+
+ALL_FLIPS = 12
+"""Up to so many trials all sign patterns are taken."""
+STEADY = 4.0
+"""Trials that the pooled variance of a signal's cells counts as."""
+LEAST_ROWS = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """Where a mean is taken: of one signal, over `rows` ((n,) bool) of each condition by its number."""
+
+    phase: int
+    cycle: int
+    part: int
+    signal: int
+    rows: Mapping[int, np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class CellTable:
+    """Means of cells.
+
+    Attributes
+    ----------
+    cells : (K,)
+    means : (K, R)
+        NaN for trials of other conditions.
+    groups : (R,) or None
+        Condition of each trial; None: all in one.
+    matched : (M, R) or None
+        Further numbers a trial that share in the test, from one side: the residual along each effect's direction.
+    """
+
+    cells: tuple[Cell, ...]
+    means: Array
+    groups: np.ndarray | None = None
+    matched: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class FlipTest:
+    """Result: t, family-wise p and standard error (K,) of each cell, the |t| that reaches 5 %, and p of anything."""
+
+    t: Array
+    p: Array
+    critical: float
+    error: Array
+    p_any: float
+
+
+def cells_of(problem: Problem) -> tuple[Cell, ...]:
+    """Cells of phase, cycle (third and later ones together), half and signal, over all conditions that have them."""
+    found: dict[tuple[int, int, int, int], dict[int, np.ndarray]] = {}
+    for number, condition in enumerate(problem.study.conditions):
+        cycle = np.minimum(condition.cycle, 3)
+        keys = sorted(set(zip(condition.phase.tolist(), cycle.tolist(), condition.part.tolist(), strict=True)))
+        for phase, turn, part in keys:
+            rows = (condition.phase == phase) & (cycle == turn) & (condition.part == part)
+            if rows.sum() < LEAST_ROWS:
+                continue
+            for signal in range(condition.signals.shape[2]):
+                if (condition.count[:, rows, signal].sum(axis=1) > 0.0).all():
+                    found.setdefault((phase, turn, part, signal), {})[number] = rows
+    return tuple(Cell(*key, rows) for key, rows in sorted(found.items(), key=lambda pair: pair[0]))
+
+
+def projected_residuals(fitted: Fit) -> list[Array]:
+    """Residuals (n, C) of each trial less their part along the tangent of the base's and the trial's nuisances.
+
+    Priors of these hold here as in the fit, so that the tightly held ones take away little.
+    """
+    model, problem = fitted.model, fitted.model.problem
+    signals = model.signals(fitted.vector, fitted.nuisance)
+    plain = _tangents(fitted)
+    white_residuals = White(problem)
+    out = []
+    for i, trial in enumerate(problem.trials):
+        j, n = fitted.columns.vector[i], fitted.columns.nuisance[i]
+        white = np.hstack([j[:, : model.shape_count], n])
+        weight = np.concatenate([fitted.precision[: model.shape_count], nuisance_precision(problem)])
+        residual = trial.signals - signals[i]
+        flat = white_residuals.flat(i, residual)
+        inner = white.T @ white + np.diag(weight)
+        amount = np.linalg.solve(inner, white.T @ flat)
+        out.append(residual - np.tensordot(plain[i], amount, axes=([-1], [0])))
+    return out
+
+
+def _tangents(fitted: Fit) -> list[Array]:
+    """(n, C, s + q) derivatives of each trial's signals by the base's nuisances and its own, in raw units."""
+    model = fitted.model
+    signals = model.signals(fitted.vector, fitted.nuisance)
+    out: list[list[Array]] = [[] for _ in signals]
+    for k in range(model.shape_count):
+        moved = fitted.vector.copy()
+        moved[k] += 1e-3
+        for i, one in enumerate(model.signals(moved, fitted.nuisance)):
+            out[i].append((one - signals[i]) / 1e-3)
+    for k in range(fitted.nuisance.shape[1]):
+        step = (0.01, 1e-3, max(0.2 * model.problem.study.raw_interval, 1e-3))[k] if k < 3 else 1e-6
+        state = fitted.nuisance.copy()
+        state[:, k] += step
+        for i, one in enumerate(model.signals(fitted.vector, state)):
+            out[i].append((one - signals[i]) / step)
+    return [np.stack(columns, axis=-1) for columns in out]
+
+
+def cell_means(problem: Problem, residuals: list[Array], cells: tuple[Cell, ...]) -> CellTable:
+    """Means of residuals (n, C) over the rows of each cell."""
+    means = np.full((len(cells), len(problem.trials)), np.nan)
+    for k, cell in enumerate(cells):
+        for i, trial in enumerate(problem.trials):
+            rows = cell.rows.get(trial.condition)
+            if rows is not None:
+                weight = trial.count[rows, cell.signal]
+                means[k, i] = np.sum(residuals[i][rows, cell.signal] * weight) / max(weight.sum(), 1e-12)
+    return CellTable(cells, means, np.array([trial.condition for trial in problem.trials]))
+
+
+def flip_test(table: CellTable, flips: int, seed: int) -> FlipTest:
+    """Family-wise p of each cell's mean over trials.
+
+    The statistic is the root of the sum over conditions of squared t, signed by the sum of the means, with the variance
+    within conditions, shrunk to the median of like cells. Its largest value over all cells (and matched numbers) is
+    compared with those after flipping the signs of whole trials, which under no disagreement changes nothing.
+    """
+    means = table.means if table.matched is None else np.vstack([table.means, table.matched])
+    kinds = [(cell.signal, min(cell.rows), len(cell.rows)) for cell in table.cells]
+    kinds += [(-1, 0, 0)] * (len(means) - len(kinds))
+    groups = np.zeros(means.shape[1], dtype=int) if table.groups is None else table.groups
+    sided = np.arange(len(means)) >= len(table.cells)
+    t, error, p, flipped = _flipped(means, np.array(kinds), sided, groups, (flips, seed))
+    size = len(table.cells)
+    critical = float(np.quantile(_largest(flipped, sided), 0.95, method="higher"))
+    return FlipTest(t[:size], p[:size], critical, error[:size], float(p.min()))
+
+
+def one_sided(rows: Array, groups: np.ndarray, flips: int, seed: int) -> Array:
+    """(K,) family-wise p that numbers (K, R), one a trial, lie above zero in the mean."""
+    kinds = np.tile([-1, 0, 0], (len(rows), 1))
+    return _flipped(rows, kinds, np.ones(len(rows), dtype=bool), groups, (flips, seed))[2]
+
+
+def _flipped(
+    means: Array, kinds: Array, sided: np.ndarray, groups: np.ndarray, draw: tuple[int, int]
+) -> tuple[Array, Array, Array, Array]:
+    """t, standard error and family-wise p (K,) of means (K, R), and the statistics of each flip (S, K)."""
+    count = means.shape[1]
+    weights, signs = _members(groups), _signs(count, *draw)
+    t, error = (column[0] for column in _statistics(means, kinds, np.ones((1, count)), weights))
+    flipped = _statistics(means, kinds, signs, weights)[0]
+    shown = np.where(sided, t, np.abs(t))
+    above = _largest(flipped, sided)[:, None] >= shown[None] - 1e-9
+    p = above.mean(axis=0) if count <= ALL_FLIPS else (1.0 + above.sum(axis=0)) / (1.0 + len(signs))
+    return t, error, p, flipped
+
+
+def _largest(flipped: Array, sided: np.ndarray) -> Array:
+    """(S,) largest statistic of each flip; `sided` ones count from one side."""
+    return np.asarray(np.where(sided, flipped, np.abs(flipped)).max(axis=1))
+
+
+def _members(groups: np.ndarray) -> Array:
+    """(G, R) membership of trials in conditions; one group where no condition has replicates."""
+    names, counts = np.unique(groups, return_counts=True)
+    if counts.max() < 2:
+        return np.ones((1, groups.size))
+    return np.asarray(groups[None] == names[:, None], dtype=float)
+
+
+def _signs(trials: int, flips: int, seed: int) -> Array:
+    if trials <= ALL_FLIPS:
+        return np.array(list(itertools.product((1.0, -1.0), repeat=trials)))
+    return np.asarray(np.random.default_rng(seed).choice((1.0, -1.0), size=(flips, trials)))
+
+
+def _statistics(means: Array, kinds: Array, signs: Array, members: Array) -> tuple[Array, Array]:
+    """(S, K) statistics and standard errors after each of S flips (S, R), with trials in groups (G, R)."""
+    finite = np.isfinite(means)
+    known = np.nan_to_num(means)
+    total, explained, signed = (known**2).sum(axis=1), 0.0, 0.0
+    freedom = np.zeros(len(means))
+    for member in members:
+        count = finite @ member
+        sums = (signs * member) @ known.T
+        explained = explained + sums**2 / np.maximum(count, 1.0)
+        signed = signed + sums
+        freedom += np.maximum(count - 1.0, 0.0)
+    spread = (total - explained) / np.maximum(freedom, 1.0)
+    spread = np.maximum(spread, 1e-12 * total / np.maximum(finite.sum(axis=1), 1))
+    pooled = np.empty_like(spread)
+    for kind in np.unique(kinds, axis=0):
+        mine = (kinds == kind).all(axis=1)
+        pooled[:, mine] = np.median(spread[:, mine], axis=1, keepdims=True)
+    shrunk = (STEADY * pooled + freedom * spread) / (STEADY + freedom)
+    t = np.sign(signed) * np.sqrt(explained / np.maximum(shrunk, 1e-300))
+    return t, np.sqrt(shrunk / np.maximum(finite.sum(axis=1), 1))

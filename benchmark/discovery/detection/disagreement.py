@@ -1,0 +1,178 @@
+"""Is there a disagreement, and where: the base's residuals tested in cells, refitted once on the clean ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import norm
+
+from benchmark.discovery.criteria import Settings
+from benchmark.discovery.detection.cells import (
+    Cell,
+    CellTable,
+    FlipTest,
+    cell_means,
+    cells_of,
+    flip_test,
+    projected_residuals,
+)
+from benchmark.discovery.discovery_result import PHASES, Array, Place
+from benchmark.discovery.fit import Fit, fit
+from benchmark.discovery.model import Model
+
+SHARES = (0.7, 0.15, 0.15)
+"""Of the level: sign flips of cells and matched numbers, strain of the base, held-out gain of an effect."""
+MOST_CELLS = 0.6
+"""Where more than this share of the cells is flagged there is nothing clean to refit on."""
+
+
+@dataclass(frozen=True, eq=False)
+class Detection:
+    """Cells and their test, on the fit that used the clean cells.
+
+    `p` is of anything before that refit, matched directions and the base's strain included, `p_cells` that of the cells
+    alone.
+    """
+
+    table: CellTable
+    test: FlipTest
+    p: float
+    p_cells: float
+    trend: Array
+
+
+def detect(fitted: Fit, settings: Settings, matched: Array | None = None) -> Detection:
+    """Test the residuals of a fit; `matched` (M, R) are further numbers a trial that share in the test."""
+    first = _tested(fitted, settings, matched=matched)
+    cells_only = flip_test(replace(first[0], matched=None), settings.flips, settings.seed)
+    flagged = cells_only.p < settings.level
+    last = (replace(first[0], matched=None), cells_only)
+    if flagged.any() and flagged.mean() < MOST_CELLS:
+        last = _tested(_refitted(fitted, first[0], flagged), settings, full=fitted)
+    p = combined(first[1].p_any, strained(fitted))
+    return Detection(*last, p=p, p_cells=cells_only.p_any, trend=_trend(fitted, first[0]))
+
+
+def combined(*values: float) -> float:
+    """Least p of several tests that share the level as `SHARES` say."""
+    return float(min(1.0, *(value / share for value, share in zip(values, SHARES, strict=False))))
+
+
+def strained(fitted: Fit) -> float:
+    """Family-wise p that the base's shape lies as far off as the data bend it, by the normal priors of its nuisances.
+
+    What a base can follow by bending leaves no residual, so that no cell shows it.
+    """
+    free = [k for k, name in enumerate(fitted.model.problem.shapes) if name != "modulus"]
+    z = np.abs(fitted.vector[free]) * np.sqrt(fitted.precision[free])
+    return float(min(1.0, len(free) * 2.0 * norm.sf(z.max())))
+
+
+def _tested(
+    fitted: Fit, settings: Settings, full: Fit | None = None, matched: Array | None = None
+) -> tuple[CellTable, FlipTest]:
+    problem = (full or fitted).model.problem
+    table = replace(cell_means(problem, projected_residuals(fitted), cells_of(problem)), matched=matched)
+    return table, flip_test(table, settings.flips, settings.seed)
+
+
+def _refitted(fitted: Fit, table: CellTable, flagged: NDArray[np.bool_]) -> Fit:
+    """The model fitted on the rows of cells that are not flagged."""
+    problem = fitted.model.problem
+    masks = [np.ones(c.signals.shape[1:], dtype=bool) for c in problem.study.conditions]
+    for cell, bad in zip(table.cells, flagged, strict=True):
+        if bad:
+            for condition, rows in cell.rows.items():
+                masks[condition][rows, cell.signal] = False
+    clean = replace(problem, mask=tuple(masks))
+    model = Model(clean, fitted.model.effects)
+    return fit(model, fitted.vector, fitted.nuisance, most=4)
+
+
+def _trend(fitted: Fit, table: CellTable) -> Array:
+    """(K,) t of the slope of each cell's mean over the trial number, within conditions."""
+    problem = fitted.model.problem
+    numbers = np.array([trial.number for trial in problem.trials], dtype=float)
+    groups = np.array([trial.condition for trial in problem.trials])
+    out = np.zeros(len(table.cells))
+    for k, row in enumerate(table.means):
+        known = np.isfinite(row)
+        freedom = int(known.sum()) - np.unique(groups[known]).size - 1
+        if freedom < 2:
+            continue
+        x, y = _centred(numbers[known], groups[known]), _centred(row[known], groups[known])
+        if not x.any():
+            continue
+        slope = float(x @ y) / float(x @ x)
+        rest = y - slope * x
+        error = np.sqrt(float(rest @ rest) / freedom / float(x @ x))
+        out[k] = slope / max(error, 1e-300)
+    return out
+
+
+def _centred(values: Array, groups: NDArray[np.int64]) -> Array:
+    """Values (n,) less the mean of their group, so that conditions measured in blocks give no slope."""
+    out = values.copy()
+    for group in np.unique(groups):
+        out[groups == group] -= values[groups == group].mean()
+    return out
+
+
+def places(fitted: Fit, detection: Detection, level: float) -> tuple[Place, ...]:
+    """Flagged cells in words and numbers, marker combinations under their channel, largest t first."""
+    problem = fitted.model.problem
+    study, test = problem.study, detection.test
+    ranges = signal_ranges(fitted)
+    found: dict[tuple[object, ...], tuple[float, Place]] = {}
+    for k, cell in enumerate(detection.table.cells):
+        if test.p[k] >= level:
+            continue
+        number, size = _largest(fitted, detection.table.means[k], cell)
+        condition = study.conditions[number]
+        depth = np.median(condition.depth[:, cell.rows[number]], axis=0)
+        place = Place(
+            channel=study.channels[cell.signal],
+            phase=PHASES[cell.phase],
+            condition=condition.name,
+            cycle=cell.cycle,
+            depth=(float(depth.min()), float(depth.max())),
+            size=size,
+            percent_of_signal=float(100.0 * abs(size) / ranges[cell.signal]),
+            p=float(test.p[k]),
+        )
+        key = (place.channel, place.phase, place.condition, place.cycle, cell.part)
+        if key not in found or abs(test.t[k]) > found[key][0]:
+            found[key] = (abs(float(test.t[k])), place)
+    return tuple(place for _, place in sorted(found.values(), key=lambda pair: -pair[0]))
+
+
+def _largest(fitted: Fit, means: Array, cell: Cell) -> tuple[int, float]:
+    """The condition where a cell's mean is largest, and that mean."""
+    groups = np.array([trial.condition for trial in fitted.model.problem.trials])
+    each = {number: float(means[groups == number].mean()) for number in cell.rows}
+    number = max(each, key=lambda key: abs(each[key]))
+    return number, each[number]
+
+
+def signal_ranges(fitted: Fit) -> Array:
+    """(C,) largest simulated range of each signal, all marker combinations on the largest of them."""
+    signals = fitted.model.signals(fitted.vector, fitted.nuisance)
+    ranges = np.max([np.ptp(one, axis=0) for one in signals], axis=0)
+    measured = np.max([np.ptp(trial.signals, axis=0) for trial in fitted.model.problem.trials], axis=0)
+    ranges = np.maximum(ranges, 1e-12)
+    if ranges.size > 1:
+        ranges[1:] = max(ranges[1:].max(), 0.3 * measured[1:].max())
+    return np.asarray(ranges)
+
+
+def smallest_visible(fitted: Fit, detection: Detection) -> dict[str, float]:
+    """For each channel the smallest mean residual that would have been flagged, N or m."""
+    channels = fitted.model.problem.study.channels
+    out: dict[str, float] = {}
+    for k, cell in enumerate(detection.table.cells):
+        size = float(detection.test.critical * detection.test.error[k])
+        channel = channels[cell.signal]
+        out[channel] = min(out.get(channel, np.inf), size)
+    return out

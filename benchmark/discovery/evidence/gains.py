@@ -1,0 +1,98 @@
+"""What held-out trials and conditions say for a model against another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmark.discovery.discovery_result import Array
+from benchmark.discovery.fit import Fit
+from benchmark.discovery.noise import whitener
+
+
+@dataclass(frozen=True, eq=False)
+class Gain:
+    """Held-out log density of each trial (R,) less another model's, with mean and standard error.
+
+    `z` is the mean over its error of sign(g) ln(1 + |g|), so that a trial which gains a hundred times what the others
+    do (one beyond a limit, the stiffest specimen) neither carries nor spoils it.
+    """
+
+    each: Array
+    mean: float
+    error: float
+    z: float
+
+
+def strain(fitted: Fit) -> float:
+    """What the base's shape costs under its priors, in log density: it may bend to the data, but not for nothing."""
+    first = fitted.model.shape_count
+    moved = (fitted.vector - fitted.prior_mean)[:first]
+    return 0.5 * float(np.sum(fitted.precision[:first] * moved**2))
+
+
+def held_out(fitted: Fit) -> Array:
+    """(R,) log density of each trial under the fit to the others, less its share of the base's strain."""
+    count = len(fitted.model.problem.trials)
+    out = np.empty(count)
+    for index in range(count):
+        left = np.zeros(count, dtype=bool)
+        left[index] = True
+        out[index] = fitted.log_density(fitted.without(left))[index]
+    return out - strain(fitted) / count
+
+
+def held_out_conditions(fitted: Fit) -> Array:
+    """(R,) log density of each trial under the fit to the other conditions, to first order; strain as in `held_out`."""
+    conditions = np.array([trial.condition for trial in fitted.model.problem.trials])
+    out = np.empty(conditions.size)
+    for number in np.unique(conditions):
+        left = conditions == number
+        out[left] = fitted.log_density(fitted.without(left))[left]
+    return out - strain(fitted) / conditions.size
+
+
+def gain(fitted: Array, other: Array, conditions: Array) -> Gain:
+    """Paired gain of held-out densities (R,) over another model's; the error from the scatter within conditions."""
+    each = fitted - other
+    even = np.sign(each) * np.log1p(np.abs(each))
+    middle = float(even.mean())
+    z = middle / max(_error(even, conditions), 1e-9 + 0.02 * abs(middle))
+    return Gain(each, float(each.mean()), _error(each, conditions), z)
+
+
+def _error(each: Array, conditions: Array) -> float:
+    """Standard error of a mean over trials (R,), from the scatter within conditions where they have replicates."""
+    spread, freedom = 0.0, 0
+    for number in np.unique(conditions):
+        mine = each[conditions == number]
+        spread += float(((mine - mine.mean()) ** 2).sum())
+        freedom += mine.size - 1
+    if freedom < 1:
+        spread, freedom = float(((each - each.mean()) ** 2).sum()), max(each.size - 1, 1)
+    return float(np.sqrt(spread / freedom / each.size))
+
+
+def effective_size(fitted: Fit) -> float:
+    """Independent samples that tell as much as all rows of all signals."""
+    problem = fitted.model.problem
+    total = 0.0
+    for trial in problem.trials:
+        for signal, memory in enumerate(problem.noise.memory):
+            count = trial.count[:, signal]
+            if (count > 0.0).any():
+                total += float(np.sum(whitener(count, memory)(np.ones(count.size)) ** 2))
+    return max(total, float(len(problem.trials)))
+
+
+def informed(fitted: Fit) -> float:
+    """Parameters of the effects that the data tell of, in number: those only priors hold do not count."""
+    first = fitted.model.shape_count
+    shares = 1.0 - np.diag(fitted.covariance) * fitted.precision
+    return float(np.clip(shares[first:], 0.0, 1.0).sum())
+
+
+def delta_bic(fitted: Fit, other: Fit, samples: float) -> float:
+    """BIC of a model less another's: negative speaks for it."""
+    return 2.0 * (fitted.objective - other.objective) + (informed(fitted) - informed(other)) * float(np.log(samples))

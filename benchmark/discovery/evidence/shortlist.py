@@ -1,0 +1,81 @@
+"""What keeps the search short: a one-step look at every effect, and the trials on which candidates are compared."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmark.discovery.candidate_fit import screened
+from benchmark.discovery.discovery_result import Array
+from benchmark.discovery.fit import Fit, fit, settled
+from benchmark.discovery.model import Model
+from benchmark.discovery.problem import only
+from benchmark.physics import Effect
+
+
+@dataclass(frozen=True, eq=False)
+class Screened:
+    """An effect, what one step towards it gains in log density over all trials, and the residual along its starts.
+
+    `along` is (starts, R): one number a start and trial, of unit variance where there is nothing but noise.
+    """
+
+    effect: Effect
+    won: float
+    along: Array
+
+
+def screen(current: Fit, effects: Sequence[Effect]) -> tuple[Screened, ...]:
+    """Effects by what one step gains, best first."""
+    out = []
+    for effect in effects:
+        model = Model(current.model.problem, (*current.model.effects, effect))
+        ranked = screened(current, model, effect)
+        out.append(Screened(effect, ranked[0].won, np.array([start.along for start in ranked])))
+    return tuple(sorted(out, key=lambda each: -each.won))
+
+
+MOST_TRIALS = 30
+"""Trials on which candidates are compared, spread evenly over the conditions and over each one's order."""
+
+
+def compared(base: Fit, most: int = MOST_TRIALS) -> list[int]:
+    """Numbers of the trials on which candidates are compared; all where there are no more than `most`."""
+    groups = np.array([trial.condition for trial in base.model.problem.trials])
+    if groups.size <= most:
+        return list(range(groups.size))
+    each = max(most // np.unique(groups).size, 2)
+    picked: list[int] = []
+    for number in np.unique(groups):
+        mine = np.flatnonzero(groups == number)
+        places = np.linspace(0, mine.size - 1, min(each, mine.size)).round().astype(int)
+        picked += mine[places].tolist()
+    return picked
+
+
+def on_some(fitted: Fit, trials: list[int]) -> Fit:
+    """The same model fitted to some of its trials; the fit itself where these are all."""
+    problem = fitted.model.problem
+    if len(trials) == len(problem.trials):
+        return fitted
+    return fit(Model(only(problem, trials), fitted.model.effects), fitted.vector, fitted.nuisance[trials], most=6)
+
+
+def on_all(base: Fit, chosen: Fit) -> Fit:
+    """Chosen effects fitted to all trials of `base`, from where the fit to some of them ended."""
+    problem = base.model.problem
+    if len(chosen.model.problem.trials) == len(problem.trials):
+        return chosen
+    if not chosen.model.effects:
+        return base
+    model = Model(problem, chosen.model.effects)
+    return fit(model, chosen.vector, settled(model, chosen.vector, base.nuisance), most=5)
+
+
+def remark(count: int, total: int) -> tuple[str, ...]:
+    """What a reader must know of it."""
+    if count == total:
+        return ()
+    return (f"{total} trials: candidates are compared on {count} of them, test, fit and gap are of all",)

@@ -1,0 +1,139 @@
+"""Rival models in another protocol: what each expects, and how far apart two of them are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmark.discovery.discovery_result import Array
+from benchmark.discovery.fit import Fit
+from benchmark.discovery.model import nuisance_count
+from benchmark.discovery.problem import OWN
+from benchmark.discovery.trials.rows import acceleration
+from benchmark.discovery.workflow import Findings
+from benchmark.physics import Motion
+
+
+@dataclass(frozen=True, eq=False)
+class Rival:
+    """A model that the data left standing: its slugs and its fit."""
+
+    slugs: tuple[str, ...]
+    fit: Fit
+
+    @property
+    def vector(self) -> Array:
+        """(p,) its parameters, for `expected`."""
+        return self.fit.vector
+
+    @property
+    def covariance(self) -> Array:
+        """(p, p) of `vector`."""
+        return self.fit.covariance
+
+    @property
+    def values(self) -> Mapping[str, Mapping[str, float]]:
+        """Values of the effects' parameters by slug, SI."""
+        return self.fit.model.values(self.fit.vector)
+
+
+def rivals(found: Findings) -> tuple[Rival, ...]:
+    """The answer first, then its look-alikes, nearest first."""
+    chosen = [found.selection.chosen]
+    for others in found.selection.rivals.values():
+        chosen += others
+    return tuple(Rival(tuple(e.slug for e in fit.model.effects), fit) for fit in chosen)
+
+
+@dataclass(frozen=True, eq=False)
+class Expected:
+    """Signals (n, C) of a trial, their names (C,), and the standard deviation (C,) of a raw sample's noise."""
+
+    signals: Array
+    names: tuple[str, ...]
+    noise: Array
+
+
+def expected(rival: Rival, condition: str, time: Array, depth: Array, vector: Array | None = None) -> Expected:
+    """What a rival expects of a motion on the specimen and set-up of one condition.
+
+    Parameters
+    ----------
+    rival
+        From `rivals`.
+    condition
+        Whose tool and support are taken.
+    time, depth
+        (n,) s and m, evenly spaced in time, as the actuator would report them.
+    vector
+        Other parameters than the rival's own, (p,).
+    """
+    model = rival.fit.model
+    names = [one.name for one in model.problem.study.conditions]
+    number = names.index(condition)
+    simulator = model.simulators[number]
+    motion = Motion(
+        np.asarray(time, float), np.asarray(depth, float), acceleration(np.asarray(time), np.asarray(depth))
+    )
+    at = rival.vector if vector is None else vector
+    bent = simulator.bent(model.shape(at))
+    readings = simulator.readings(bent, model.values(at), motion)
+    signals = model.as_signals(readings, 0.0, np.zeros(nuisance_count(model.problem) - len(OWN)))
+    noise = np.median(model.problem.noise.scale, axis=0)
+    return Expected(signals, model.problem.study.names, noise)
+
+
+Signals = Callable[[Array], Array]
+"""Parameters (p,) of a model to its signals (n, C) in an experiment."""
+STEP = 0.1
+"""Of a parameter's standard deviation, for differences."""
+
+
+def separation(first: Array, rival: Signals, at: Array, covariance: Array, noise: Array, time: Array) -> float:
+    """T = min over the rival's parameters of |m_A - m_B|^2, in squared standard deviations of one trial.
+
+    The rival may move its parameters, at the price of what the session says of them, and each trial has a gain, a
+    zero of every channel and a time shift of its own. Linear in all of these (optimal design for discrimination:
+    A. C. Atkinson and V. V. Fedorov 1975, Biometrika 62:57).
+
+    Parameters
+    ----------
+    first : (n, C) array
+        What the first expects.
+    rival : (p,) to (n, C)
+        The second.
+    at, covariance : (p,) and (p, p)
+        The second's parameters by the session.
+    noise : (C,) array
+        Standard deviation of a row.
+    time : (n,) array
+        s.
+    """
+    second = rival(at)
+    whole = ((first - second) / noise).ravel()
+    spread = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    moved = [
+        ((rival(at + STEP * size * unit) - second) / (STEP * noise)).ravel()
+        for size, unit in zip(spread, np.eye(at.size), strict=True)
+        if size > 0.0
+    ]
+    columns = np.column_stack([*moved, *_nuisances(second, noise, time)])
+    prices = np.zeros((len(moved), columns.shape[1]))
+    kept = spread > 0.0
+    if moved:
+        correlation = covariance[np.ix_(kept, kept)] / np.outer(spread[kept], spread[kept])
+        values, vectors = np.linalg.eigh(correlation)
+        prices[:, : len(moved)] = (vectors / np.sqrt(np.maximum(values, 1e-9))).T
+    design = np.vstack([columns, prices])
+    wanted = np.concatenate([whole, np.zeros(len(moved))])
+    found = np.linalg.lstsq(design, wanted, rcond=1e-10)[0]
+    return float(np.sum((wanted - design @ found) ** 2))
+
+
+def _nuisances(signals: Array, noise: Array, time: Array) -> list[Array]:
+    """Gain, time shift, and the zero of each channel, as columns."""
+    shifted = np.gradient(signals, time, axis=0)
+    zeros = [np.broadcast_to(row, signals.shape).ravel() for row in np.eye(signals.shape[1])]
+    return [(signals / noise).ravel(), (shifted / noise).ravel(), *zeros]

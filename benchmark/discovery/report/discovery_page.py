@@ -1,0 +1,175 @@
+"""The page of a discovery: one story, from the verdict to what to measure next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from benchmark.discovery.report.disagreement_sections import (
+    comparison_section,
+    gap_section,
+    remains_section,
+    where_section,
+)
+from benchmark.discovery.report.discovery_record import DiscoveryRecord
+from benchmark.discovery.report.effect_sections import candidates_section, effects_section, next_section
+from benchmark.discovery.report.words import channel_name, effect_name, place_words, sized
+from reports import Download, Fact, KeyFigure, Notice, Page, Section, Verdict
+from reports.formatting import format_number
+
+SYNTHETIC = "These trials were computed, not measured. They show that the chain works."
+DESCRIPTIONS = {
+    "where.csv": "places that are significant",
+    "contrasts.csv": "one question at a time",
+    "candidates.csv": "every candidate and its evidence",
+    "gap.csv": "the gap before and after",
+    "parameters.csv": "base and effects with intervals",
+    "layers.csv": "the gap of each layer",
+}
+
+
+def discovery_page(record: DiscoveryRecord, environment: Mapping[str, Any], tables: Sequence[str]) -> Page:
+    """Return the page.
+
+    Parameters
+    ----------
+    record : DiscoveryRecord
+        What was found.
+    environment : mapping
+        Content of `environment.json`.
+    tables : sequence of str
+        File names of the tables in the result folder.
+    """
+    sections: list[Section] = [comparison_section(record), where_section(record), candidates_section(record)]
+    sections += [effects_section(record)] if record.found.effects else []
+    sections += [gap_section(record)] if record.found.gap or record.layers else []
+    sections += [remains_section(record), next_section(record)]
+    return Page(
+        title=f"{record.name}: what the model lacks",
+        subtitle=_subtitle(record),
+        verdict=discovery_verdict(record),
+        facts=_facts(record, environment),
+        notices=_notices(record),
+        key_figures=_key_figures(record),
+        sections=sections,
+        downloads=_downloads(record, tables),
+        footer=f"tissuebench {environment['packages']['tissuebench']}",
+    )
+
+
+def _subtitle(record: DiscoveryRecord) -> str:
+    if record.source == "run":
+        return "The wave model against the FEM of a finished run"
+    found = record.found
+    conditions = f"{len(found.conditions)} condition{'s' * (len(found.conditions) != 1)}"
+    return f"{len(found.trials)} trials, {conditions}, against the elastic model of {record.tissue}"
+
+
+def _base(record: DiscoveryRecord) -> str:
+    if record.source == "run":
+        return "the wave of small strain" if record.large_press == "linear" else "the wave of the layers' finite strain"
+    return "finite elements of the set-up" + (
+        "" if record.model == "fem" else "; a warning where the wave model goes on"
+    )
+
+
+def _facts(record: DiscoveryRecord, environment: Mapping[str, Any]) -> tuple[Fact, ...]:
+    return (
+        Fact("Made", str(environment["made"])),
+        Fact("Channels", ", ".join(map(channel_name, record.found.channels))),
+        Fact("Elastic model", _base(record)),
+        Fact("Seed", str(record.seed)),
+        Fact("Time", f"{record.found.seconds:.1f} s"),
+        Fact("Fingerprint", record.fingerprint[:16]),
+    )
+
+
+def _notices(record: DiscoveryRecord) -> tuple[Notice, ...]:
+    """What must be known before any figure: origin of the data, and warnings."""
+    notices = [Notice("synthetic", SYNTHETIC)] if record.synthetic and record.source == "session" else []
+    if "notice" in record.labels:
+        notices.append(Notice("assumption", record.labels["notice"]))
+    if record.found.warnings:
+        notices.append(Notice("warning", "Read these before you quote a figure.", record.found.warnings))
+    return tuple(notices)
+
+
+def _key_figures(record: DiscoveryRecord) -> tuple[KeyFigure, ...]:
+    """Verdict, the effect's confidence, and the gap closed in the channel with the largest part of it."""
+    found = record.found
+    figures = [KeyFigure("verdict", found.verdict.replace("_", " "))]
+    if record.named:
+        best = found.effects[0]
+        figures.append(KeyFigure(effect_name(best.slug), 100 * best.confidence, "%", "confidence"))
+    closed = [gap for gap in found.gap if gap.closed is not None]
+    if record.named and closed:
+        gap = closed[0]
+        note = "" if gap.ci95 is None else f"95 % {_percent(gap.ci95[0])} to {_percent(gap.ci95[1])}"
+        figures.append(
+            KeyFigure(
+                "gap closed", _percent(gap.closed or 0.0), "%", f"{channel_name(gap.channel)}, held out {note}".strip()
+            )
+        )
+    return tuple(figures)
+
+
+def _percent(share: float) -> str:
+    return format_number(100 * share, 3, trim=True)
+
+
+def _downloads(record: DiscoveryRecord, tables: Sequence[str]) -> tuple[Download, ...]:
+    files = [Download(f"tables/{name}", DESCRIPTIONS.get(name, "")) for name in tables]
+    toml = [Download("model.toml", "the model with what was found; for --model", media_type="application/toml")]
+    if record.proposal is not None:
+        toml.append(Download("next_experiment.toml", "the protocol to run next", media_type="application/toml"))
+    return (
+        *files,
+        *toml,
+        Download("discovery.json", "the answer for programs", media_type="application/json"),
+        Download("environment.json", "versions and machine", media_type="application/json"),
+    )
+
+
+MATTERS = 2.0
+"""Of a channel's largest signal, %: what is smaller is said to be small in practice."""
+MEANING = {
+    "no_discrepancy": "Verdict no_discrepancy: what is left between model and measurement is no more than chance.",
+    "named": "Verdict named: one answer, and it holds on a condition that it was not fitted to.",
+    "conditional": "Verdict conditional: the effect stands out here, but transfer to another condition is not shown.",
+    "lookalikes": "Verdict lookalikes: these data cannot separate the effects in the set.",
+    "partly_explained": "Verdict partly_explained: a real gain, and something significant is left.",
+    "outside_catalogue": "Verdict outside_catalogue: a real disagreement that no entry of the catalogue describes.",
+    "instrument_first": "Verdict instrument_first: the rig or a sensor could do this as well as the tissue. Calibrate.",
+}
+
+
+def discovery_verdict(record: DiscoveryRecord) -> Verdict:
+    """Return the verdict of the page."""
+    found = record.found
+    status = "good" if found.verdict in ("no_discrepancy", "named") else "finding"
+    points = [MEANING[found.verdict]]
+    if found.where:
+        points.append(f"Largest disagreement: {place_words(found.where[0])}.")
+        if all(abs(place.percent_of_signal) < MATTERS for place in found.where):
+            points.append(f"All of it lies below {MATTERS:g} % of the signal: visible, but small in practice.")
+    points.extend(_closed(record))
+    similar = sorted({name for effect in found.effects for name in effect.lookalikes})
+    if similar:
+        points.append(f"Not separable from it here: {', '.join(effect_name(name) for name in similar)}.")
+    if found.verdict == "no_discrepancy" and found.smallest_visible:
+        smallest = ", ".join(
+            f"{sized(name, size)} in {channel_name(name)}" for name, size in found.smallest_visible.items()
+        )
+        points.append(f"The smallest disagreement these data could have shown: {smallest}.")
+    return Verdict(status, found.statement, points)
+
+
+def _closed(record: DiscoveryRecord) -> list[str]:
+    """How much of the gap closed, channel by channel."""
+    closed = [gap for gap in record.found.gap if gap.closed is not None] if record.named else []
+    if not closed:
+        return []
+    told = "; ".join(
+        f"{channel_name(gap.channel)} {format_number(100 * (gap.closed or 0.0), 3, trim=True)} %" for gap in closed
+    )
+    return [f"Explainable gap closed on held-out data: {told}."]

@@ -1,0 +1,153 @@
+"""A trial's motion in segments between reversals, rests apart, and the stage of each row: phase, cycle and half."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.discovery.discovery_result import PHASES, Array
+
+REVERSAL = 0.1
+"""Share of the travel by which the depth must come back to count as a reversal."""
+LEVEL = 0.03
+"""Share of the travel within which a depth stands still."""
+LEAST_REST = 3.0
+"""A rest lasts at least this many times as long as the motion beside it needs to cross the level's width."""
+
+
+@dataclass(frozen=True)
+class Segment:
+    """Rows first..last-1 of a trial: `kind` is "rest", "press" or "retract"; `cycle` from 1 (0 before a press)."""
+
+    first: int
+    last: int
+    kind: str
+    cycle: int
+
+
+def reversals(depth: Array, threshold: float) -> list[int]:
+    """Rows of the successive extremes of a depth (n,), each more than `threshold` from the one before."""
+    found: list[int] = []
+    low = high = 0
+    direction = 0
+    for row, value in enumerate(depth.tolist()):
+        if value > depth[high]:
+            high = row
+        if value < depth[low]:
+            low = row
+        if direction >= 0 and value < depth[high] - threshold:
+            if direction > 0 or high > 0:
+                found.append(high)
+            direction, low = -1, row
+        elif direction <= 0 and value > depth[low] + threshold:
+            if direction < 0 or low > 0:
+                found.append(low)
+            direction, high = 1, row
+    return found
+
+
+def segments(time: Array, depth: Array) -> list[Segment]:
+    """Segments of a motion: time (n,) s, depth (n,) m; empty where nothing moves."""
+    travel = float(np.ptp(depth))
+    if travel <= 0.0:
+        return []
+    turns = reversals(depth, REVERSAL * travel)
+    edges = [0, *turns, depth.size - 1]
+    pieces: list[tuple[int, int, str]] = []
+    for first, last in pairwise(edges):
+        if last > first:
+            pieces += _with_rests(time, depth, first, last, LEVEL * travel)
+    return _numbered(_joined(pieces))
+
+
+def _with_rests(time: Array, depth: Array, first: int, last: int, width: float) -> list[tuple[int, int, str]]:
+    """A monotone piece, its rests at both ends cut off."""
+    kind = "press" if depth[last] > depth[first] else "retract"
+    piece = depth[first : last + 1]
+    if abs(float(depth[last] - depth[first])) <= 2.0 * width:
+        return [(first, last, "rest")]
+    away = np.flatnonzero(np.abs(piece - np.median(piece[: max(1, _near(piece, piece[0], width) // 2)])) > width)
+    start = first + max(int(away[0]) - 1, 0) if away.size else first
+    back = piece[::-1]
+    level = np.median(back[: max(1, _near(back, back[0], width) // 2)])
+    reached = np.flatnonzero(np.abs(piece - level) > width)
+    end = first + min(int(reached[-1]) + 1, piece.size - 1) if reached.size else last
+    if end <= start:
+        return [(first, last, kind)]
+    crossing = (time[end] - time[start]) * 2.0 * width / max(abs(float(depth[end] - depth[start])), 1e-12)
+    out = []
+    if time[start] - time[first] <= LEAST_REST * crossing:
+        start = first
+    if time[last] - time[end] <= LEAST_REST * crossing:
+        end = last
+    if start > first:
+        out.append((first, start, "rest"))
+    out.append((start, end, kind))
+    if end < last:
+        out.append((end, last, "rest"))
+    return out
+
+
+def _near(piece: Array, level: float, width: float) -> int:
+    away = np.flatnonzero(np.abs(piece - level) > width)
+    return int(away[0]) if away.size else piece.size
+
+
+def _joined(pieces: list[tuple[int, int, str]]) -> list[tuple[int, int, str]]:
+    out: list[tuple[int, int, str]] = []
+    for first, last, kind in pieces:
+        if out and out[-1][2] == kind:
+            out[-1] = (out[-1][0], last, kind)
+        else:
+            out.append((first, last, kind))
+    return out
+
+
+def _numbered(pieces: list[tuple[int, int, str]]) -> list[Segment]:
+    cycle, out = 0, []
+    for number, (first, last, kind) in enumerate(pieces):
+        cycle += kind == "press"
+        end = last + 1 if number == len(pieces) - 1 else last
+        if end > first:
+            out.append(Segment(first, end, kind, cycle))
+    return out
+
+
+Index = NDArray[np.int64]
+IN_AIR = 0.02
+"""Depths up to this share of the peak count as no press in a rest."""
+
+
+def stages(pieces: Sequence[Segment], number: Index, depth: Array) -> tuple[Index, Index, Index]:
+    """Phase (n,) as an index of PHASES, cycle (n,) and half (n,) of rows of segments `number` at depths (n,), m."""
+    phase, cycle, part = (np.zeros(depth.size, dtype=np.int64) for _ in range(3))
+    peaks = _peaks(pieces, number, depth)
+    for k, piece in enumerate(pieces):
+        rows = np.flatnonzero(number == k)
+        peak = peaks.get(piece.cycle, float(depth.max()))
+        names, half = _of_piece(piece, depth[rows], peak)
+        phase[rows] = [PHASES.index(name) for name in names]
+        cycle[rows], part[rows] = piece.cycle, half
+    return phase, cycle, part
+
+
+def _peaks(pieces: Sequence[Segment], number: Index, depth: Array) -> dict[int, float]:
+    cycles = np.array([piece.cycle for piece in pieces])[number]
+    return {int(c): float(depth[cycles == c].max()) for c in np.unique(cycles)}
+
+
+def _of_piece(piece: Segment, depth: Array, peak: float) -> tuple[list[str], Index]:
+    deep = (depth >= 0.5 * peak).astype(np.int64)
+    if piece.kind == "press":
+        return ["load" if d > 0.0 else "approach" for d in depth], deep
+    if piece.kind == "retract":
+        names = ["after_lift_off" if d <= 0.0 else "unload_high" if d >= 0.5 * peak else "unload_low" for d in depth]
+        return names, np.zeros_like(deep)
+    if np.median(depth) <= IN_AIR * peak:
+        return ["approach" if piece.cycle == 0 else "after_lift_off"] * depth.size, np.zeros_like(deep)
+    late = (np.arange(depth.size) >= 0.5 * depth.size).astype(np.int64)
+    return ["hold"] * depth.size, late

@@ -1,0 +1,102 @@
+"""The sign-flip test of whole trials keeps its level."""
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from benchmark.discovery.detection.cells import Cell, CellTable, flip_test
+
+TRIALS, CELLS = 8, 24
+
+
+def table(means):
+    rows = {0: np.ones(2, dtype=bool)}
+    return CellTable(tuple(Cell(k % 6, 1, 0, k % 3, rows) for k in range(len(means))), means)
+
+
+def null_means(rng):
+    """Cells of one trial resemble each other, and trials scatter differently."""
+    shared = rng.standard_t(4, TRIALS) * rng.uniform(0.5, 2.0, TRIALS)
+    return 0.7 * shared[None] * rng.normal(1.0, 0.4, (CELLS, 1)) + rng.standard_t(4, (CELLS, TRIALS))
+
+
+def alarm_rate(sessions, seed):
+    rng = np.random.default_rng(seed)
+    return np.mean([flip_test(table(null_means(rng)), 0, 0).p_any < 0.05 for _ in range(sessions)])
+
+
+def test_false_alarms_are_few():
+    assert 0.0 < alarm_rate(150, 1) < 0.1
+
+
+@pytest.mark.slow
+def test_false_alarms_stay_at_their_level():
+    assert 0.03 <= alarm_rate(1500, 2) <= 0.07
+
+
+def session_means(rng, trials=10, rows=240):
+    """Cell means of a session of nulls: trials whose gains scatter by a tenth, remembered heavy-tailed noise."""
+    shape = np.clip(np.minimum(np.arange(rows), rows - np.arange(rows)) / 80.0, 0.0, 1.0)
+    columns = np.column_stack([np.ones(rows), shape])
+    residuals = []
+    for _ in range(trials):
+        shocks = rng.standard_t(4, rows) * rng.uniform(0.7, 1.4)
+        noise = lfilter([1.0], [1.0, -0.85], shocks)
+        measured = np.exp(rng.normal(0.0, 0.1)) * 40.0 * shape + rng.normal(0.0, 2.0) + noise
+        residual = measured - 40.0 * shape
+        residuals.append(residual - columns @ np.linalg.lstsq(columns, residual, rcond=None)[0])
+    return np.array(residuals).reshape(trials, 24, -1).mean(axis=2).T
+
+
+def session_alarm_rate(sessions, seed):
+    rng = np.random.default_rng(seed)
+    return np.mean([flip_test(table(session_means(rng)), 0, 0).p_any < 0.05 for _ in range(sessions)])
+
+
+def test_remembered_noise_and_scattered_gains_give_few_false_alarms():
+    assert session_alarm_rate(60, 3) < 0.15
+
+
+@pytest.mark.slow
+def test_remembered_noise_and_scattered_gains_keep_the_level():
+    assert 0.03 <= session_alarm_rate(1000, 4) <= 0.07
+
+
+def test_a_shift_in_one_cell_is_found_there():
+    rng = np.random.default_rng(5)
+    means = null_means(rng)
+    means[7] += 8.0
+    test = flip_test(table(means), 0, 0)
+    assert test.p_any < 0.05
+    assert np.argmin(test.p) == 7
+
+
+def test_few_trials_cannot_reach_the_level():
+    rng = np.random.default_rng(6)
+    means = 10.0 + rng.normal(size=(CELLS, 5))
+    assert flip_test(table(means), 0, 0).p_any == pytest.approx(1 / 16)
+
+
+def test_many_trials_draw_their_signs_by_seed():
+    means = np.random.default_rng(7).normal(size=(4, 20))
+    one, two = (flip_test(table(means), 500, 3) for _ in range(2))
+    assert one.p == pytest.approx(two.p)
+
+
+def test_conditions_that_disagree_in_size_do_not_hide_each_other():
+    rng = np.random.default_rng(8)
+    means = rng.normal(size=(CELLS, 10))
+    groups = np.repeat([0, 1], 5)
+    means[3] += np.where(groups == 0, 2.0, 14.0)
+    base = table(means)
+    test = flip_test(CellTable(base.cells, means, groups), 0, 0)
+    assert np.argmin(test.p) == 3
+    assert test.p[3] < 0.01
+
+
+def test_matched_numbers_count_from_one_side():
+    rng = np.random.default_rng(9)
+    base = table(rng.normal(size=(CELLS, 10)))
+    along = 6.0 + rng.normal(size=(3, 10))
+    found = {sign: flip_test(CellTable(base.cells, base.means, None, sign * along), 0, 0).p_any for sign in (1, -1)}
+    assert found[1] < 0.01 < 0.05 < found[-1]

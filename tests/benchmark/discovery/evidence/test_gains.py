@@ -1,0 +1,53 @@
+"""Gains over trials: what one trial can do to them, and when they are evidence without z."""
+
+import numpy as np
+import pytest
+
+from benchmark.discovery.calibrate import calibrate
+from benchmark.discovery.candidate_fit import fit_candidate
+from benchmark.discovery.detection.disagreement import combined, strained
+from benchmark.discovery.evidence.gains import gain, strain
+from benchmark.discovery.evidence.selection import broad
+from benchmark.discovery.trials.preparing import prepare
+from benchmark.physics import catalogue
+
+ONE = np.zeros(8, dtype=int)
+BY_SLUG = {effect.slug: effect for effect in catalogue()}
+
+
+def gains(*values):
+    return gain(np.array(values, dtype=float), np.zeros(len(values)), ONE[: len(values)])
+
+
+def test_a_single_trial_carries_no_effect():
+    assert gains(0, 0, 0, 0, 0, 0, 0, 400).z < 3.0
+    assert gains(3, 4, 5, 3, 4, 5, 3, 400).z > 3.0
+
+
+def test_mean_and_error_are_those_of_the_gains():
+    found = gains(1, 2, 3)
+    assert found.mean == pytest.approx(2.0)
+    assert found.error == pytest.approx(1.0 / np.sqrt(3.0))
+
+
+def test_all_but_the_best_trial_are_evidence_unless_others_lose():
+    assert broad(gains(20, 30, 10, 50, 40, 0, 0, 0)) == pytest.approx(100.0)
+    assert broad(gains(0, 0, 0, 50, 0, 0, 0, 0)) == 0.0
+    assert broad(gains(20, 30, 10, 50, 40, -30, 0, 0)) == 0.0
+
+
+def test_a_base_that_bends_far_is_strained_and_pays_for_it(session_of):
+    session = session_of(force=lambda time, depth, elastic: elastic * (1 + (depth / 3e-3) ** 2), noise=0.003, trials=4)
+    bent = calibrate(session, prepare(session, 90)).base
+    session = session_of(noise=0.003, trials=4)
+    plain = calibrate(session, prepare(session, 90)).base
+    assert strained(bent) < 1e-3 < strained(plain)
+    assert strain(bent) > strain(plain) + 8.0
+    repaired = fit_candidate(bent, BY_SLUG["strain_stiffening"])
+    assert strain(repaired) < 0.5 * strain(bent)
+
+
+def test_tests_share_the_level():
+    assert combined(0.07, 1.0, 1.0) == pytest.approx(0.1)
+    assert combined(1.0, 0.015, 1.0) == pytest.approx(0.1)
+    assert combined(1.0, 1.0) == 1.0

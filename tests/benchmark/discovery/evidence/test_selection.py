@@ -1,0 +1,64 @@
+"""Effects added in their own form are found again: circular, a check of the chain and not of the method."""
+
+import numpy as np
+import pytest
+
+from benchmark.discovery.calibrate import calibrate
+from benchmark.discovery.criteria import Settings
+from benchmark.discovery.evidence.pool import pool, silent
+from benchmark.discovery.evidence.selection import select
+from benchmark.discovery.trials.preparing import prepare
+from benchmark.physics import catalogue
+
+SETTINGS = Settings(rows=70, workers=1, bootstraps=50)
+SOME = tuple(
+    effect
+    for effect in catalogue()
+    if effect.slug in ("viscoelastic_relaxation", "viscous_damping", "force_drift", "machine_compliance")
+)
+
+
+def relaxing(time, depth, elastic):
+    from wavemodel import Prony
+    from wavemodel.physics import Physics, QuasiStaticPress
+
+    order = np.argsort(depth)
+
+    def law(wanted):
+        return np.interp(wanted, depth[order], elastic[order])
+
+    press = QuasiStaticPress(law, Physics(relaxation=Prony((0.12,), (0.8,))))
+    return press.force(time + 1e-3, depth)
+
+
+def drifting(time, depth, elastic):
+    return elastic + 0.06 * elastic.max() * time / time.max()
+
+
+def chosen(session):
+    calibrated = calibrate(session, prepare(session, SETTINGS.rows))
+    with pool(1, None, "", (), silent) as work:
+        return select(calibrated.base, SOME, SETTINGS, work)
+
+
+def test_relaxation_is_found_with_its_parameters(session_of):
+    made = chosen(session_of(force=relaxing, noise=0.003))
+    assert [effect.slug for effect in made.chosen.model.effects] == ["viscoelastic_relaxation"]
+    values = made.chosen.model.values(made.chosen.vector)["viscoelastic_relaxation"]
+    assert values["g_1"] == pytest.approx(0.12, rel=0.15)
+    assert values["tau_1"] == pytest.approx(0.8, rel=0.25)
+    assert made.steps[0].gain.z > 3.0
+    assert made.steps[0].delta_bic < -20.0
+
+
+def test_drift_is_no_relaxation(session_of):
+    made = chosen(session_of(force=drifting, noise=0.003))
+    assert [effect.slug for effect in made.chosen.model.effects] == ["force_drift"]
+    assert "viscoelastic_relaxation" not in made.lookalikes["force_drift"]
+
+
+def test_nothing_is_found_where_nothing_is(session_of):
+    made = chosen(session_of(seed=3))
+    assert made.chosen is made.base
+    assert made.steps == ()
+    assert np.isfinite(made.base.objective)

@@ -1,0 +1,84 @@
+import math
+import re
+from dataclasses import replace
+
+import pytest
+
+from benchmark.discovery.discovery_result import VERDICTS
+from benchmark.discovery.report.disagreement_sections import representative
+from benchmark.discovery.report.discovery_page import discovery_page, discovery_verdict
+from benchmark.discovery.report.discovery_record import NextExperiment
+from benchmark.discovery.report.effect_sections import next_section
+from reports import render_page
+
+ENVIRONMENT = {"made": "today", "packages": {"tissuebench": "0"}}
+
+
+def _text(record) -> str:
+    html = render_page(discovery_page(record, ENVIRONMENT, ["where.csv"]))
+    return re.sub(r"\s+", " ", re.sub(r"<[^>]*>", " ", re.sub(r"<(style|svg).*?</\1>", " ", html, flags=re.S)))
+
+
+def test_the_story_is_told_in_order(record) -> None:
+    text = _text(record)
+    story = [
+        record.found.statement, "Measured against simulated", "Where", "Which effect", "The effect",
+        "The gap, before and after", "What remains", "What to measure next",
+    ]  # fmt: skip
+    sections = [section.title for section in discovery_page(record, ENVIRONMENT, []).sections]
+    assert sections == story[1:]
+    assert text.index(record.found.statement) < text.index(story[1])
+
+
+def test_the_named_effect_has_equation_parameters_and_source(record) -> None:
+    text = _text(record)
+    for words in ("G = 1 - sum g_j", "Fung", "0.31", "0.29", "share that fades", "poroelastic drainage"):
+        assert words in text
+    assert "Synthetic data" in text
+    assert "pig &lt;1&gt;" in text
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_every_verdict_has_its_words(record, verdict: str) -> None:
+    other = replace(record, found=replace(record.found, verdict=verdict))
+    shown = discovery_verdict(other)
+    assert shown.points[0].startswith(f"Verdict {verdict}:")
+    assert shown.status == ("good" if verdict in ("named", "no_discrepancy") else "finding")
+    assert next_section(other).blocks
+
+
+def test_outside_the_catalogue_nothing_counts_as_named(record) -> None:
+    text = _text(replace(record, found=replace(record.found, verdict="outside_catalogue")))
+    assert "The nearest entries, which are not named" in text
+    assert "Before" not in text[: text.index("Which effect")]
+
+
+def test_nothing_found_says_what_could_have_been_seen(empty) -> None:
+    text = _text(empty)
+    assert "0.015 N in press force" in text
+    assert "No place in which the disagreement is more than chance" in text
+    assert "Synthetic data" not in text
+
+
+def test_evidence_that_is_missing_is_no_number(record) -> None:
+    bare = [replace(each, z=math.nan, gain=math.nan, gain_standard_error=math.nan) for each in record.found.candidates]
+    places = [replace(each, p=math.nan) for each in record.found.where]
+    text = _text(replace(record, found=replace(record.found, candidates=tuple(bare), where=tuple(places), p=None)))
+    assert "nan" not in text.lower().replace("maintenance", "")
+    assert "not tested" in text
+
+
+def test_the_proposal_stands_with_its_protocol(record) -> None:
+    rivals = ("viscoelastic_relaxation", "force_drift")
+    proposal = NextExperiment(rivals, "rest", "Rest 60 s.", 6.9, 40.8, 22.0, {"rest": (40.8, 22.0)}, "[[segments]]\n")
+    text = _text(replace(record, proposal=proposal))
+    for words in ("Rest 60 s.", "40.8 standard deviations instead of 6.9", "[[segments]]"):
+        assert words in text
+
+
+def test_one_trial_a_channel_and_condition_is_shown_the_held_out_one(found) -> None:
+    chosen = representative(found.traces)
+    assert [(trace.channel, trace.condition) for trace in chosen] == [
+        ("force_z", "slow"), ("force_z", "fast"), ("marker_radial", "slow"), ("marker_radial", "fast"),
+    ]  # fmt: skip
+    assert [trace.held_out for trace in chosen] == [False, True, False, True]

@@ -1,0 +1,80 @@
+"""Sessions that cannot be used are refused, and those of few trials name nothing."""
+
+import numpy as np
+import pytest
+
+from benchmark.discovery.trials.preparing import prepare
+from benchmark.errors import InputError
+from benchmark.files import load_session
+
+
+def rewrite(folder, change):
+    for path in sorted(folder.glob("trial_*.csv")):
+        table = np.loadtxt(path, delimiter=",", skiprows=1)
+        np.savetxt(path, change(table), delimiter=",", header="time_s,depth_mm,force_N", comments="", fmt="%.7f")
+
+
+@pytest.mark.parametrize("trials", [1, 2])
+def test_one_or_two_trials_are_refused(session_of, trials):
+    with pytest.raises(InputError, match="at least 3 are needed"):
+        prepare(session_of(trials=trials, speeds=(3e-3,)), 100)
+
+
+def test_few_trials_are_said_to_show_nothing(session_of):
+    study = prepare(session_of(trials=4, speeds=(3e-3,)), 100)
+    assert any("cannot reach the 5 % level" in text for text in study.warnings)
+
+
+@pytest.mark.parametrize(
+    ("column", "message"), [(1, "no motion"), (2, "force_N does not change")], ids=["depth", "force"]
+)
+def test_a_channel_that_stays_is_refused(tmp_path, quick_session, column, message):
+    folder = quick_session.write_session(tmp_path / "s", trials=3, speeds=(3e-3,))
+
+    def still(table):
+        table[:, column] = 0.5
+        return table
+
+    rewrite(folder, still)
+    with pytest.raises(InputError, match=message):
+        prepare(load_session(folder), 100)
+
+
+def test_a_tool_in_air_is_refused(tmp_path, quick_session):
+    folder = quick_session.write_session(tmp_path / "s", trials=3, speeds=(3e-3,))
+    rewrite(folder, lambda table: table - np.array([0.0, 10.0, 0.0]))
+    with pytest.raises(InputError, match="never presses"):
+        prepare(load_session(folder), 100)
+
+
+def test_two_protocols_in_one_condition_are_refused(tmp_path, quick_session):
+    folder = quick_session.write_session(tmp_path / "s", trials=3, speeds=(1e-3, 8e-3))
+    file = folder / "session.toml"
+    file.write_text(file.read_text().replace("speed 1", "same").replace("speed 8", "same"))
+    with pytest.raises(InputError, match="different protocols"):
+        prepare(load_session(folder), 100)
+
+
+def test_missing_rows_are_said(tmp_path, quick_session):
+    folder = quick_session.write_session(tmp_path / "s", trials=3, speeds=(3e-3,))
+    rewrite(folder, lambda table: np.delete(table, np.s_[60:80], axis=0))
+    study = prepare(load_session(folder), 100)
+    assert any("a gap of" in text for text in study.warnings)
+    assert np.isfinite(study.conditions[0].depth).all()
+
+
+def test_one_row_a_second_is_prepared(tmp_path, quick_session):
+    folder = quick_session.write_session(tmp_path / "s", trials=3, speeds=(0.2e-3,), hold=10.0)
+    rewrite(folder, lambda table: table[::25])
+    assert prepare(load_session(folder), 100).conditions[0].size == 3
+
+
+def test_very_many_rows_are_reduced(tmp_path, quick_session):
+    folder = quick_session.write_session(tmp_path / "s", trials=3, speeds=(3e-3,))
+
+    def dense(table):
+        time = np.linspace(0.0, table[-1, 0], 40_000)
+        return np.column_stack([time, *(np.interp(time, table[:, 0], table[:, k]) for k in (1, 2))])
+
+    rewrite(folder, dense)
+    assert prepare(load_session(folder), 100).conditions[0].time.shape[1] < 400
