@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from benchmark.cli.console import Console
-    from benchmark.verification.row import Row
+    from benchmark.verification.cases import VerificationRow
 
 Cases = Annotated[
     list[str] | None,
@@ -40,7 +40,7 @@ def verify(
     from benchmark.errors import GateError
     from benchmark.runs.destination import destination
     from benchmark.verification.folder import write_verification
-    from benchmark.verification.table import document, headline, text_table
+    from benchmark.verification.verification_page import document, headline, text_table
 
     console, folder = Console(quiet=quiet), None if out is None else destination(out, "verification")
     rows = _run(cases or [], console)
@@ -60,10 +60,9 @@ def verify(
     return 0
 
 
-def _run(names: Sequence[str], console: Console) -> tuple[Row, ...]:
+def _run(names: Sequence[str], console: Console) -> tuple[VerificationRow, ...]:
     """Run what is named, with progress."""
-    from benchmark.verification.running import run_cases
-    from benchmark.verification.selection import all_cases, select
+    from benchmark.verification.cases import all_cases, run_cases, select
 
     chosen = select(all_cases(), names)
     with console.progress("verification") as advance:

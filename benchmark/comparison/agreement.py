@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from benchmark.comparison.samples import Array, Result, Row, is_constant, paired_samples
+from benchmark.comparison.samples import Array, Result, Row, is_constant, paired_samples, shared_rows
 
 
 @dataclass(frozen=True)
@@ -40,19 +40,20 @@ class BlandAltman(Result):
 
     def rows(self) -> list[Row]:
         """Lines for the statistics table."""
-        named = {
-            "bias": self.bias,
-            "std of difference": self.std,
-            "lower limit": self.lower,
-            "upper limit": self.upper,
-            "bias ci95 low": self.bias_ci95[0],
-            "bias ci95 high": self.bias_ci95[1],
-            "lower limit ci95 low": self.lower_ci95[0],
-            "lower limit ci95 high": self.lower_ci95[1],
-            "upper limit ci95 low": self.upper_ci95[0],
-            "upper limit ci95 high": self.upper_ci95[1],
-        }
-        return [(quantity, None, None, value) for quantity, value in named.items()]
+        return shared_rows(
+            {
+                "bias": self.bias,
+                "std of difference": self.std,
+                "lower limit": self.lower,
+                "upper limit": self.upper,
+                "bias ci95 low": self.bias_ci95[0],
+                "bias ci95 high": self.bias_ci95[1],
+                "lower limit ci95 low": self.lower_ci95[0],
+                "lower limit ci95 high": self.lower_ci95[1],
+                "upper limit ci95 low": self.upper_ci95[0],
+                "upper limit ci95 high": self.upper_ci95[1],
+            }
+        )
 
 
 def bland_altman(fem: ArrayLike, wave: ArrayLike) -> BlandAltman:
@@ -117,13 +118,15 @@ class Concordance(Result):
 
     def rows(self) -> list[Row]:
         """Lines for the statistics table."""
-        return [
-            ("concordance", None, None, self.coefficient),
-            ("concordance ci95 low", None, None, self.ci95_low),
-            ("concordance ci95 high", None, None, self.ci95_high),
-            ("correlation", None, None, self.correlation),
-            ("bias correction", None, None, self.bias_correction),
-        ]
+        return shared_rows(
+            {
+                "concordance": self.coefficient,
+                "concordance ci95 low": self.ci95_low,
+                "concordance ci95 high": self.ci95_high,
+                "correlation": self.correlation,
+                "bias correction": self.bias_correction,
+            }
+        )
 
 
 def concordance(fem: ArrayLike, wave: ArrayLike) -> Concordance:

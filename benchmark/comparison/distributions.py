@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from benchmark.comparison.samples import Array, Result, Row, is_constant, single_sample
+from benchmark.comparison.samples import Array, Result, Row, is_constant, shared_rows, single_sample
 
 
 @dataclass(frozen=True)
@@ -85,11 +85,13 @@ class AreaMetric(Result):
 
     def rows(self) -> list[Row]:
         """Lines for the statistics table."""
-        return [
-            ("area", None, None, self.area),
-            ("area above", None, None, self.above),
-            ("area below", None, None, self.below),
-        ]
+        return shared_rows(
+            {
+                "area": self.area,
+                "area above": self.above,
+                "area below": self.below,
+            }
+        )
 
 
 def area_metric(reference: ArrayLike, model: ArrayLike) -> AreaMetric:

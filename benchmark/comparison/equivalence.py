@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from benchmark.comparison.samples import Array, ComparisonError, Result, Row, is_constant, paired_samples
+from benchmark.comparison.samples import Array, ComparisonError, Result, Row, is_constant, paired_samples, shared_rows
 from benchmark.comparison.t_tests import ALL_EQUAL, NO_VARIANCE
 
 LEVEL = 0.05
@@ -61,17 +61,19 @@ class Equivalence(Result):
 
     def rows(self) -> list[Row]:
         """Lines for the statistics table; `equivalent` is 1 or 0."""
-        return [
-            ("margin", None, None, self.margin),
-            ("margin % of fem mean", None, None, 100.0 * self.margin_fraction),
-            ("mean difference", None, None, self.difference),
-            ("difference ci90 low", None, None, self.ci90_low),
-            ("difference ci90 high", None, None, self.ci90_high),
-            ("p lower", None, None, self.p_low),
-            ("p upper", None, None, self.p_high),
-            ("p", None, None, self.p_value),
-            ("equivalent", None, None, float(self.equivalent)),
-        ]
+        return shared_rows(
+            {
+                "margin": self.margin,
+                "margin % of fem mean": 100.0 * self.margin_fraction,
+                "mean difference": self.difference,
+                "difference ci90 low": self.ci90_low,
+                "difference ci90 high": self.ci90_high,
+                "p lower": self.p_low,
+                "p upper": self.p_high,
+                "p": self.p_value,
+                "equivalent": float(self.equivalent),
+            }
+        )
 
 
 def paired_equivalence(fem: ArrayLike, wave: ArrayLike, margin_fraction: float = 0.02) -> Equivalence:
@@ -91,12 +93,12 @@ def paired_equivalence(fem: ArrayLike, wave: ArrayLike, margin_fraction: float =
 
     first, second = paired_samples(fem, wave)
     margin = _margin(first, margin_fraction)
-    delta = second - first
+    delta, df = second - first, len(first) - 1.0
     if is_constant(delta, float(max(np.abs(first).max(), np.abs(second).max()))):
-        return _certain("paired", margin_fraction, margin, float(delta.mean()), len(delta) - 1.0, ALL_EQUAL)
+        return _outcome("paired", margin_fraction, margin, delta, df, note=ALL_EQUAL)
     _, low, high = ttost_paired(second, first, -margin, margin)
     error = float(np.std(delta, ddof=1)) / np.sqrt(len(delta))
-    return _outcome("paired", margin_fraction, margin, delta, error, len(delta) - 1.0, low[:2], high[:2])
+    return _outcome("paired", margin_fraction, margin, delta, df, error, (low[:2], high[:2]))
 
 
 def two_sample_equivalence(fem: ArrayLike, wave: ArrayLike, margin_fraction: float = 0.02) -> Equivalence:
@@ -109,12 +111,12 @@ def two_sample_equivalence(fem: ArrayLike, wave: ArrayLike, margin_fraction: flo
 
     first, second = paired_samples(fem, wave)
     margin = _margin(first, margin_fraction)
-    n, delta = len(first), second - first
+    delta, df = second - first, 2.0 * len(first) - 2.0
     if is_constant(first) and is_constant(second):
-        return _certain("two_sample", margin_fraction, margin, float(delta.mean()), 2.0 * n - 2.0, NO_VARIANCE)
+        return _outcome("two_sample", margin_fraction, margin, delta, df, note=NO_VARIANCE)
     _, low, high = ttost_ind(second, first, -margin, margin, usevar="pooled")
-    error = float(np.sqrt((np.var(first, ddof=1) + np.var(second, ddof=1)) / n))
-    return _outcome("two_sample", margin_fraction, margin, delta, error, 2.0 * n - 2.0, low[:2], high[:2])
+    error = float(np.sqrt((np.var(first, ddof=1) + np.var(second, ddof=1)) / len(first)))
+    return _outcome("two_sample", margin_fraction, margin, delta, df, error, (low[:2], high[:2]))
 
 
 def _margin(fem: Array, fraction: float) -> float:
@@ -131,44 +133,28 @@ def _outcome(
     fraction: float,
     margin: float,
     delta: Array,
-    standard_error: float,
     df: float,
-    low: tuple[float, float],
-    high: tuple[float, float],
+    error: float = 0.0,
+    tests: tuple[tuple[float, float], tuple[float, float]] | None = None,
+    note: str = "",
 ) -> Equivalence:
+    """From the standard error and both one-sided tests (t, p each); without tests the difference is certain."""
     difference = float(delta.mean())
-    half = float(scipy.stats.t.ppf(1.0 - LEVEL, df)) * standard_error
-    p_low, p_high = float(low[1]), float(high[1])
+    half = float(scipy.stats.t.ppf(1.0 - LEVEL, df)) * error
+    certain = ((np.nan, float(difference <= -margin)), (np.nan, float(difference >= margin)))
+    (t_low, p_low), (t_high, p_high) = ((float(t), float(p)) for t, p in tests or certain)
     return Equivalence(
-        form,
-        fraction,
-        margin,
-        difference,
-        difference - half,
-        difference + half,
-        float(low[0]),
-        p_low,
-        float(high[0]),
-        p_high,
-        df,
-        max(p_low, p_high),
-    )
-
-
-def _certain(form: str, fraction: float, margin: float, difference: float, df: float, note: str) -> Equivalence:
-    p_low, p_high = float(difference <= -margin), float(difference >= margin)
-    return Equivalence(
-        form,
-        fraction,
-        margin,
-        difference,
-        difference,
-        difference,
-        np.nan,
-        p_low,
-        np.nan,
-        p_high,
-        df,
-        max(p_low, p_high),
-        note,
+        form=form,
+        margin_fraction=fraction,
+        margin=margin,
+        difference=difference,
+        ci90_low=difference - half,
+        ci90_high=difference + half,
+        t_low=t_low,
+        p_low=p_low,
+        t_high=t_high,
+        p_high=p_high,
+        df=df,
+        p_value=max(p_low, p_high),
+        note=note,
     )

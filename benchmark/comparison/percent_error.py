@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from benchmark.comparison.samples import Array, ComparisonError, Result, Row, aligned
+from benchmark.comparison.samples import Array, ComparisonError, Result, Row, aligned, shared_rows
 
 UNLOADED = 1e-9
 """A FEM value below this fraction of its own largest magnitude counts as unloaded: no percentage there."""
@@ -37,12 +37,14 @@ class PercentError(Result):
 
     def rows(self) -> list[Row]:
         """Lines for the statistics table, in %."""
-        return [
-            ("mean absolute %", None, None, self.mean),
-            ("max absolute %", None, None, self.maximum),
-            ("at peak %", None, None, self.at_peak),
-            ("steps", None, None, float(self.steps)),
-        ]
+        return shared_rows(
+            {
+                "mean absolute %": self.mean,
+                "max absolute %": self.maximum,
+                "at peak %": self.at_peak,
+                "steps": float(self.steps),
+            }
+        )
 
 
 def percent_error(fem: ArrayLike, wave: ArrayLike, load: ArrayLike | None = None) -> PercentError:

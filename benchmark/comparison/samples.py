@@ -4,6 +4,7 @@ No measure lives here; each takes its samples through these functions, so that a
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, TypeAlias
 
@@ -30,6 +31,11 @@ class Result:
     def rows(self) -> list[Row]:
         """Lines of the statistics table, in print order; empty where a result has none."""
         return []
+
+
+def shared_rows(values: Mapping[str, float | None]) -> list[Row]:
+    """Lines of values that belong to both models."""
+    return [(quantity, None, None, value) for quantity, value in values.items()]
 
 
 def plain(value: Any) -> Any:

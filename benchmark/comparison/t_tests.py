@@ -14,7 +14,6 @@ import scipy
 from numpy.typing import ArrayLike
 
 from benchmark.comparison.samples import (
-    Array,
     ComparisonError,
     Moments,
     Result,
@@ -22,10 +21,12 @@ from benchmark.comparison.samples import (
     is_constant,
     moments,
     paired_samples,
+    shared_rows,
     single_sample,
 )
 
 NO_VARIANCE = "both samples are constant: t is not defined"
+ALL_EQUAL = "the differences do not vary: t is not defined"
 
 
 @dataclass(frozen=True)
@@ -105,47 +106,29 @@ def welch_t_test(fem: ArrayLike, wave: ArrayLike, hypothesized_difference: float
 
 def _two_sample(fem: ArrayLike, wave: ArrayLike, hypothesis: float, pooled: bool) -> TwoSampleT:
     first, second = paired_samples(fem, wave)
-    form = "pooled" if pooled else "welch"
     difference = float(np.mean(second) - np.mean(first))
     if is_constant(first) and is_constant(second):
-        return _constant(form, first, second, hypothesis, difference)
-    test = scipy.stats.ttest_ind(first - hypothesis, second, equal_var=pooled)
-    interval = test.confidence_interval(0.95)
+        df, t, p, note = 2.0 * len(first) - 2.0, np.nan, np.nan, NO_VARIANCE
+        low = high = difference
+    else:
+        test = scipy.stats.ttest_ind(first - hypothesis, second, equal_var=pooled)
+        interval = test.confidence_interval(0.95)
+        df, t, p, note = float(test.df), float(test.statistic), float(test.pvalue), ""
+        low, high = -float(interval.high) - hypothesis, -float(interval.low) - hypothesis
     return TwoSampleT(
-        form,
-        moments(first),
-        moments(second),
-        hypothesis,
-        float(test.df),
-        float(test.statistic),
-        float(test.pvalue),
-        float(scipy.stats.t.ppf(0.975, test.df)),
-        difference,
-        -float(interval.high) - hypothesis,
-        -float(interval.low) - hypothesis,
+        form="pooled" if pooled else "welch",
+        fem=moments(first),
+        wave=moments(second),
+        hypothesized_difference=hypothesis,
+        df=df,
+        t=t,
+        p_value=p,
+        t_critical=float(scipy.stats.t.ppf(0.975, df)),
+        difference=difference,
+        ci95_low=low,
+        ci95_high=high,
+        note=note,
     )
-
-
-def _constant(form: str, first: Array, second: Array, hypothesis: float, difference: float) -> TwoSampleT:
-    df = float(len(first) + len(second) - 2)
-    critical = float(scipy.stats.t.ppf(0.975, df))
-    return TwoSampleT(
-        form,
-        moments(first),
-        moments(second),
-        hypothesis,
-        df,
-        np.nan,
-        np.nan,
-        critical,
-        difference,
-        difference,
-        difference,
-        NO_VARIANCE,
-    )
-
-
-ALL_EQUAL = "the differences do not vary: t is not defined"
 
 
 @dataclass(frozen=True)
@@ -165,16 +148,18 @@ class PairedT(Result):
 
     def rows(self) -> list[Row]:
         """Lines for the statistics table."""
-        return [
-            ("mean difference", None, None, self.difference),
-            ("std of difference", None, None, self.std),
-            ("observations", None, None, self.observations),
-            ("t", None, None, self.t),
-            ("p two-tail", None, None, self.p_value),
-            ("t critical", None, None, self.t_critical),
-            ("difference ci95 low", None, None, self.ci95_low),
-            ("difference ci95 high", None, None, self.ci95_high),
-        ]
+        return shared_rows(
+            {
+                "mean difference": self.difference,
+                "std of difference": self.std,
+                "observations": self.observations,
+                "t": self.t,
+                "p two-tail": self.p_value,
+                "t critical": self.t_critical,
+                "difference ci95 low": self.ci95_low,
+                "difference ci95 high": self.ci95_high,
+            }
+        )
 
 
 def paired_t_test(fem: ArrayLike, wave: ArrayLike) -> PairedT:
@@ -221,10 +206,12 @@ class PassingRange(Result):
 
     def rows(self) -> list[Row]:
         """Lines for the statistics table, in %."""
-        return [
-            ("scale error passed from %", None, None, 100.0 * self.low),
-            ("scale error passed to %", None, None, 100.0 * self.high),
-        ]
+        return shared_rows(
+            {
+                "scale error passed from %": 100.0 * self.low,
+                "scale error passed to %": 100.0 * self.high,
+            }
+        )
 
 
 def passing_scale_errors(fem: ArrayLike) -> PassingRange:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from benchmark.comparison.samples import ComparisonError, Result, Row
+from benchmark.comparison.samples import ComparisonError, Result, Row, shared_rows
 
 OBSERVED, ASSUMED = 1.25, 3.0
 COVERAGE = 1.15
@@ -147,15 +147,17 @@ class Validation(Result):
     def rows(self) -> list[Row]:
         """Lines for a table."""
         low, high = self.interval
-        return [
-            ("E", None, None, self.error),
-            ("u_num", None, None, self.numerical),
-            ("u_input", None, None, self.inputs),
-            ("u_D", None, None, self.measured),
-            ("u_val", None, None, self.uncertainty),
-            ("model error low", None, None, low),
-            ("model error high", None, None, high),
-        ]
+        return shared_rows(
+            {
+                "E": self.error,
+                "u_num": self.numerical,
+                "u_input": self.inputs,
+                "u_D": self.measured,
+                "u_val": self.uncertainty,
+                "model error low": low,
+                "model error high": high,
+            }
+        )
 
 
 def replicate_uncertainty(values: Sequence[float]) -> float | None:

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from benchmark.gate.accepting import Accepted, accept
     from benchmark.gate.checking import CheckOutcome, check
-    from benchmark.gate.request import CheckRequest
+    from benchmark.gate.plan import CheckRequest
 
 __all__ = ["Accepted", "CheckOutcome", "CheckRequest", "accept", "check"]
 
 _HOMES = {
     "Accepted": "benchmark.gate.accepting",
     "CheckOutcome": "benchmark.gate.checking",
-    "CheckRequest": "benchmark.gate.request",
+    "CheckRequest": "benchmark.gate.plan",
     "accept": "benchmark.gate.accepting",
     "check": "benchmark.gate.checking",
 }

@@ -9,13 +9,18 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError, SolverError, TissuebenchError
-from benchmark.gate.history import Entry, append
-from benchmark.gate.measurement import gated_values, this_version
-from benchmark.gate.origin import Origin, origin_of
-from benchmark.gate.plan import Plan, load_plan
-from benchmark.gate.request import CheckRequest
-from benchmark.gate.rounds import measure
-from benchmark.gate.stored import Baseline, StoredTiming, StoredValue, read_baseline, write_baseline
+from benchmark.gate.baseline import (
+    Baseline,
+    HistoryEntry,
+    StoredTiming,
+    StoredValue,
+    append,
+    read_baseline,
+    write_baseline,
+)
+from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
+from benchmark.gate.processes import measure
+from benchmark.gate.versions import Origin, gated_values, origin_of, this_version
 from benchmark.runs.listener import Listener
 
 REFERENCE_TIMES = "reference times"
@@ -83,7 +88,7 @@ def _old(path: Path) -> tuple[Baseline | None, list[str]]:
         return None, [f"the old baseline is replaced without a comparison: {error}"]
 
 
-def _measured(plan: Plan, origin: Origin, listener: Listener) -> Baseline:
+def _measured(plan: GatePlan, origin: Origin, listener: Listener) -> Baseline:
     head, file = this_version(plan), plan.file
     listener.say(f"gate {file.name}: values of {len(plan.cases)} cases")
     values = gated_values(head)
@@ -105,9 +110,9 @@ def _measured(plan: Plan, origin: Origin, listener: Listener) -> Baseline:
     )
 
 
-def _entry(baseline: Baseline) -> Entry:
+def _entry(baseline: Baseline) -> HistoryEntry:
     ratios = {name: {"ratio": typical(each), "ci95": None, "allowed": None} for name, each in baseline.timing.items()}
-    return Entry(
+    return HistoryEntry(
         made=baseline.made,
         revision=baseline.revision,
         machine=baseline.machine.processor,

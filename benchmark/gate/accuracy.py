@@ -10,8 +10,8 @@ from typing import Any
 
 from benchmark.errors import InputError, NotComparableError
 from benchmark.files.units import FORCE, FRACTION, LENGTH, Dimension, QuantityError, parse_quantity
+from benchmark.gate.baseline import StoredValue
 from benchmark.gate.gate_file import Tolerance
-from benchmark.gate.stored import StoredValue
 
 UNITS: Mapping[str, tuple[Dimension, float]] = {"mm": (LENGTH, 1e-3), "N": (FORCE, 1.0), "": (FRACTION, 1.0)}
 """Units of gated values, each with its dimension and its size in SI units."""

@@ -9,16 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.gate.accuracy import compare_values
+from benchmark.gate.baseline import HistoryEntry, append, read_history
+from benchmark.gate.check_basis import CheckBasis, stored_baseline
 from benchmark.gate.folder import check_folder, write_check
-from benchmark.gate.history import Entry, append, read_history
-from benchmark.gate.measurement import gated_values, rival, this_version
-from benchmark.gate.origin import Origin, origin_of
-from benchmark.gate.plan import Plan, load_plan
-from benchmark.gate.request import CheckRequest
-from benchmark.gate.rounds import Measured, Party, measure
+from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
+from benchmark.gate.processes import Measured, Party, measure
 from benchmark.gate.timing import Judge, TimingRow
-from benchmark.gate.verdict import Verdict
-from benchmark.gate.yardstick import Yardstick, stored_baseline
+from benchmark.gate.verdict import CheckVerdict
+from benchmark.gate.versions import Origin, gated_values, origin_of, rival, this_version
 from benchmark.runs.listener import Listener
 
 NOTABLE = 0.25
@@ -30,7 +28,7 @@ class CheckOutcome:
     """A finished check on disk: its folder, the verdict, and the content of `check.json`."""
 
     folder: Path
-    verdict: Verdict
+    verdict: CheckVerdict
     document: dict[str, Any]
 
     @property
@@ -59,50 +57,50 @@ def check(request: CheckRequest, listener: Listener) -> CheckOutcome:
     origin = origin_of(plan, request.seed)
     with ExitStack() as stack:
         other = None if request.against is None else stack.enter_context(rival(plan, request.against))
-        yardstick = Yardstick(baseline, other, str(request.baseline_path))
-        verdict, measured = _verdict(plan, yardstick, origin, request.seed, listener)
+        basis = CheckBasis(baseline, other, str(request.baseline_path))
+        verdict, measured = _verdict(plan, basis, origin, request.seed, listener)
     verdict = replace(verdict, warnings=(*verdict.warnings, *_record(request, origin, verdict)))
     entries, _ = read_history(request.history_path)
     return CheckOutcome(folder, verdict, write_check(folder, verdict, measured, entries, origin))
 
 
 def _verdict(
-    plan: Plan, yardstick: Yardstick, origin: Origin, seed: int, listener: Listener
-) -> tuple[Verdict, Measured]:
+    plan: GatePlan, basis: CheckBasis, origin: Origin, seed: int, listener: Listener
+) -> tuple[CheckVerdict, Measured]:
     """Measure and compare."""
     head, file = this_version(plan), plan.file
     listener.say(f"gate {file.name}: values of {len(plan.cases)} cases")
     values = gated_values(head)
-    accuracy = compare_values(values, yardstick.values(), file.tolerances, yardstick.values_from)
-    measured, timing = _times(head, yardstick, origin, seed, listener)
-    warnings = (*yardstick.remarks(origin, file.timing.other_machine_margin), *remarks(measured, timing))
-    verdict = Verdict(
+    accuracy = compare_values(values, basis.values(), file.tolerances, basis.values_from)
+    measured, timing = _times(head, basis, origin, seed, listener)
+    warnings = (*basis.remarks(origin, file.timing.other_machine_margin), *remarks(measured, timing))
+    verdict = CheckVerdict(
         gate=file.name,
         accuracy=accuracy,
         timing=timing,
-        accuracy_source=yardstick.values_from,
-        timing_source=yardstick.times_from,
+        accuracy_source=basis.values_from,
+        timing_source=basis.times_from,
         rounds=measured.rounds,
-        against=None if yardstick.rival is None else yardstick.rival.commit,
+        against=None if basis.rival is None else basis.rival.commit,
         warnings=warnings,
     )
     return verdict, measured
 
 
 def _times(
-    head: Party, yardstick: Yardstick, origin: Origin, seed: int, listener: Listener
+    head: Party, basis: CheckBasis, origin: Origin, seed: int, listener: Listener
 ) -> tuple[Measured, tuple[TimingRow, ...]]:
     """Measure until it is clear, and judge."""
-    file, same = head.plan.file, yardstick.same_machine(origin)
-    judge = Judge(file.timed, file.timing, paired=yardstick.rival is not None, same_machine=same, seed=seed)
-    parties = (head,) if yardstick.rival is None else (head, yardstick.rival.party)
-    with listener.progress(f"gate {file.name}: {len(file.timed)} times against {yardstick.times_from}") as advance:
+    file, same = head.plan.file, basis.same_machine(origin)
+    judge = Judge(file.timed, file.timing, paired=basis.rival is not None, same_machine=same, seed=seed)
+    parties = (head,) if basis.rival is None else (head, basis.rival.party)
+    with listener.progress(f"gate {file.name}: {len(file.timed)} times against {basis.times_from}") as advance:
         measured = measure(
             parties,
-            lambda found: judge.clear(found.ratios[0], yardstick.ratios(found)),
+            lambda found: judge.clear(found.ratios[0], basis.ratios(found)),
             lambda done, most: advance("processes", done, most, ""),
         )
-    return measured, judge.rows(measured.ratios[0], yardstick.ratios(measured))
+    return measured, judge.rows(measured.ratios[0], basis.ratios(measured))
 
 
 def remarks(measured: Measured, timing: Sequence[TimingRow]) -> list[str]:
@@ -122,13 +120,13 @@ def remarks(measured: Measured, timing: Sequence[TimingRow]) -> list[str]:
     return found
 
 
-def _record(request: CheckRequest, origin: Origin, verdict: Verdict) -> list[str]:
+def _record(request: CheckRequest, origin: Origin, verdict: CheckVerdict) -> list[str]:
     """Add the check to the history; what goes wrong there is a warning, since the verdict stands without it."""
     _, unread = read_history(request.history_path)
     warnings = (
         [f"{request.history_path}: {unread} lines of this history cannot be read, left as they are"] if unread else []
     )
-    entry = Entry(
+    entry = HistoryEntry(
         made=origin.made,
         revision=origin.revision,
         machine=origin.machine.processor,

@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmark.gate.history import Entry
-from benchmark.gate.origin import Origin
-from benchmark.gate.report import check_page
-from benchmark.gate.rounds import Measured
-from benchmark.gate.verdict import Verdict
+from benchmark.gate.baseline import HistoryEntry
+from benchmark.gate.check_page import check_page
+from benchmark.gate.processes import Measured
+from benchmark.gate.verdict import CheckVerdict
+from benchmark.gate.versions import Origin
 from benchmark.runs.destination import destination
 from reports import whole_folder, write_csv, write_json, write_page
 
@@ -27,7 +27,7 @@ def check_folder(out: Path | None) -> Path:
 
 
 def write_check(
-    folder: Path, verdict: Verdict, measured: Measured, history: Sequence[Entry], origin: Origin
+    folder: Path, verdict: CheckVerdict, measured: Measured, history: Sequence[HistoryEntry], origin: Origin
 ) -> dict[str, Any]:
     """Write a check and return the content of `check.json`.
 

@@ -113,7 +113,7 @@ class Work(FileModel):
 Found = TypeVar("Found", bound=Work)
 
 
-class Case(Work):
+class GatedCase(Work):
     """A gated scenario or session; `model` says what computes it: fem | wave | fit."""
 
     model: Literal["fem", "wave", "fit"]
@@ -159,7 +159,7 @@ class GateFile(FileModel):
     name: Name
     timing: Timing = Timing()
     tolerances: Annotated[tuple[Tolerance, ...], Field(min_length=1)]
-    cases: Annotated[tuple[Case, ...], Field(min_length=1)]
+    cases: Annotated[tuple[GatedCase, ...], Field(min_length=1)]
     timed: tuple[Timed, ...] = ()
 
     @model_validator(mode="after")

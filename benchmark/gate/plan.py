@@ -1,4 +1,4 @@
-"""What is to be measured: a gate file with its scenarios, sessions and own models found."""
+"""What a check was asked for, and what is to be measured: a gate file with its scenarios, sessions and own models."""
 
 from __future__ import annotations
 
@@ -14,14 +14,54 @@ from benchmark.files import load_scenario
 from benchmark.files.loading import read_file
 from benchmark.files.schema import validated
 from benchmark.files.shipped import find
+from benchmark.gate.baseline import DEFAULT, history_path
 from benchmark.gate.gate_file import GateFile, Timed, Work, gate_path
 from benchmark.sessions import SHIPPED
+
+
+@dataclass(frozen=True)
+class CheckRequest:
+    """See `python -m benchmark check --help`.
+
+    Attributes
+    ----------
+    baseline
+        The baseline file; None for `tissuebench-baseline.json` in the current folder.
+    against
+        Another revision to measure beside this version.
+    gate
+        The gate file; None for the shipped one.
+    history
+        The history file; None for the one beside the baseline.
+    out
+        Folder of the report; None for `results/check-DATE-TIME`.
+    seed
+        Of the bootstrap.
+    """
+
+    baseline: Path | None = None
+    against: str | None = None
+    gate: Path | None = None
+    history: Path | None = None
+    out: Path | None = None
+    seed: int = 0
+
+    @property
+    def baseline_path(self) -> Path:
+        """Where the baseline is."""
+        return DEFAULT if self.baseline is None else self.baseline
+
+    @property
+    def history_path(self) -> Path:
+        """Where the history is."""
+        return history_path(self.baseline_path) if self.history is None else self.history
+
 
 MEASURING = Path(__file__).parent / "measuring"
 
 
 @dataclass(frozen=True)
-class Plan:
+class GatePlan:
     """A gate ready to be measured.
 
     Attributes
@@ -51,7 +91,7 @@ class Plan:
         """Whether it is the product's own gate."""
         return self.path == gate_path(None)
 
-    def moved(self, source: Path, target: Path) -> Plan:
+    def moved(self, source: Path, target: Path) -> GatePlan:
         """Return the plan with users' models taken from `target` where they stand in `source`; inputs stay."""
 
         def move(table: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -60,10 +100,10 @@ class Plan:
             return {**table, "own": str(target / Path(own).relative_to(source))} if inside else table
 
         cases, jobs = (tuple(map(move, tables)) for tables in (self.cases, self.jobs))
-        return Plan(self.file, self.path, cases, jobs, self.references, self.fingerprint)
+        return GatePlan(self.file, self.path, cases, jobs, self.references, self.fingerprint)
 
 
-def load_plan(path: Path | None) -> Plan:
+def load_plan(path: Path | None) -> GatePlan:
     """Read a gate file, the shipped one by default, and find what it names.
 
     Raises
@@ -77,7 +117,7 @@ def load_plan(path: Path | None) -> Plan:
     cases = tuple({**_job(case, found), "model": case.model} for case in file.cases)
     jobs = tuple(_timed_job(timed, found) for timed in file.timed)
     references = tuple(dict.fromkeys(name for timed in file.timed for name in timed.references))
-    return Plan(file, found, cases, jobs, references, _fingerprint(jobs, references))
+    return GatePlan(file, found, cases, jobs, references, _fingerprint(jobs, references))
 
 
 def _timed_job(timed: Timed, gate: Path) -> dict[str, Any]:

@@ -13,7 +13,7 @@ SCHEMA = 1
 
 
 @dataclass(frozen=True)
-class Verdict:
+class CheckVerdict:
     """What a check found.
 
     Attributes

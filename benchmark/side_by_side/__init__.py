@@ -1,9 +1,8 @@
 """Running FEM and wave model side by side in processes of their own, and timing them."""
 
-from benchmark.side_by_side.messages import Finished, Seconds
 from benchmark.side_by_side.process import ModelProcess, single_threaded_children
-from benchmark.side_by_side.runner import NAMES, ModelRun, SideBySide, run_side_by_side
-from benchmark.side_by_side.timing import Speedup, speedup
+from benchmark.side_by_side.runner import NAMES, ModelRun, SideBySide, Speedup, run_side_by_side, speedup
+from benchmark.side_by_side.worker import Finished, Seconds
 
 __all__ = [
     "NAMES",

@@ -13,8 +13,7 @@ from benchmark.errors import InputError, SolverError
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel
 from benchmark.models import UserFile
-from benchmark.side_by_side.messages import Answer, Crashed, Message, RunCommand
-from benchmark.side_by_side.worker import Job, serve
+from benchmark.side_by_side.worker import Answer, Crashed, Job, Message, RunCommand, serve
 
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 

@@ -9,22 +9,50 @@ from __future__ import annotations
 
 import os
 import statistics
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from multiprocessing.connection import wait
 from pathlib import Path
 
+import numpy as np
+
 from benchmark.files import Scenario
 from benchmark.models import NOTHING, ModelResult, Own, StepProgress
-from benchmark.side_by_side.messages import Answer, Declined, Finished, Remark, Seconds
 from benchmark.side_by_side.process import ModelProcess
-from benchmark.side_by_side.timing import Speedup, median_seconds, speedup
+from benchmark.side_by_side.worker import Answer, Declined, Finished, Remark, Seconds
 
 MODELS = ("fem", "wave")
 NAMES = {"fem": "FEM", "wave": "wave model"}
 OnProgress = Callable[[str, StepProgress], None]
 OnRemark = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Speedup:
+    """FEM wall time over wave wall time of interleaved repeats: median and 95 % bootstrap interval."""
+
+    median: float
+    ci95: tuple[float, float]
+    repeats: int
+
+
+def median_seconds(repeats: Sequence[Seconds]) -> Seconds:
+    """Median of each part over the repeats."""
+    table = np.array([(r.setup, r.wall, r.cpu) for r in repeats])
+    setup, wall, cpu = np.median(table, axis=0)
+    return Seconds(float(setup), float(wall), float(cpu))
+
+
+def speedup(slow: Sequence[Seconds], fast: Sequence[Seconds], *, seed: int, resamples: int = 2000) -> Speedup:
+    """Ratio of wall times, repeat by repeat, so that a drifting machine cancels.
+
+    The interval is the percentile bootstrap of the median over the pairs; with three pairs it spans them all.
+    """
+    ratios = np.array([s.wall / f.wall for s, f in zip(slow, fast, strict=True)])
+    draws = np.random.default_rng(seed).integers(0, ratios.size, size=(resamples, ratios.size))
+    low, high = np.quantile(np.median(ratios[draws], axis=1), [0.025, 0.975])
+    return Speedup(float(np.median(ratios)), (float(low), float(high)), int(ratios.size))
 
 
 def unheard(_: str) -> None:
@@ -95,23 +123,18 @@ def run_side_by_side(
 
     Parameters
     ----------
-    scenario
-        The resolved scenario.
     repeats
-        Timed repeats of each model; skipped where the FEM stopped early, since a part of a load history is not the job.
+        Timed repeats of each model; none where the FEM stopped early, since a part of a load history is not the job.
     seed
         Of the bootstrap of the speed-up.
     every_field
         Keep the fields of each step instead of the peak's and the last one's.
-    on_progress
-        Called with the model's name and its progress.
-    on_remark
-        Called with what a person should know while it runs.
+    on_progress, on_remark
+        Called with the model's name and its progress, and with what a person should know while it runs.
     own
         A user's own model in the wave's place, timed like it, or own FEA in the FEM's, which does not run.
     keep
-        Folder in which the execution for the results keeps its FEM steps, and from which it takes up those of an
-        earlier run of the same problem; the timed repeats are whole in any case.
+        Where the execution for the results keeps its FEM steps and takes up an earlier run's; repeats are whole anyway.
 
     Raises
     ------
@@ -120,24 +143,17 @@ def run_side_by_side(
     """
     with ExitStack() as stack:
         processes = [
-            stack.enter_context(_process(model, scenario, every_field, core, own, keep))
+            stack.enter_context(
+                ModelProcess(model, scenario, every_field=every_field, core=core, own=own.place(model), keep=keep)
+            )
             for model, core in zip(MODELS, cores(len(MODELS)), strict=True)
             if model == "wave" or own.reference is None
         ]
         first = _together(processes, on_progress, on_remark)
-        timed = [p for p in processes if isinstance(first[p.model], Finished)]
-        whole = all(a.result is not None and a.result.complete for a in first.values() if isinstance(a, Finished))
-        repeated = _in_turn(timed, repeats if whole else 0)
+        repeated = _in_turn(processes, first, repeats)
     fem, wave = (_model_run(model, first.get(model), repeated.get(model, []), own) for model in MODELS)
     ratio = speedup(fem.repeats, wave.repeats, seed=seed) if fem.repeats and wave.repeats else None
     return SideBySide(fem, wave, ratio)
-
-
-def _process(
-    model: str, scenario: Scenario, every_field: bool, core: int | None, own: Own, keep: Path | None
-) -> ModelProcess:
-    """The process of one model, which may be the user's in the wave's place, or have effects switched on."""
-    return ModelProcess(model, scenario, every_field=every_field, core=core, own=own.place(model), keep=keep)
 
 
 def _together(processes: list[ModelProcess], on_progress: OnProgress, on_remark: OnRemark) -> dict[str, Answer]:
@@ -160,11 +176,14 @@ def _together(processes: list[ModelProcess], on_progress: OnProgress, on_remark:
     return answers
 
 
-def _in_turn(processes: list[ModelProcess], repeats: int) -> dict[str, list[Finished]]:
-    """Timed repeats, one model after the other."""
-    found: dict[str, list[Finished]] = {process.model: [] for process in processes}
-    for _ in range(repeats):
-        for process in processes:
+def _in_turn(processes: list[ModelProcess], first: Mapping[str, Answer], repeats: int) -> dict[str, list[Finished]]:
+    """Timed repeats of the models that cover the scenario, in turn; none where a first answer stopped early."""
+    timed = [process for process in processes if isinstance(first[process.model], Finished)]
+    answers = [answer for answer in first.values() if isinstance(answer, Finished)]
+    whole = all(answer.result is not None and answer.result.complete for answer in answers)
+    found: dict[str, list[Finished]] = {process.model: [] for process in timed}
+    for _ in range(repeats if whole else 0):
+        for process in timed:
             process.command(keep_result=False)
             answer = process.answer()
             if isinstance(answer, Finished):

@@ -1,8 +1,4 @@
-"""Points on a Dask cluster that is there already, reached by the address of its scheduler.
-
-The scheduler gives the points of a worker that dies to another one. Without a scheduler the sweep stops; what is
-finished is on disk, and the same command goes on.
-"""
+"""Errors of a sweep that are nobody's scenario."""
 
 from __future__ import annotations
 
@@ -13,8 +9,13 @@ from contextlib import contextmanager
 from importlib import metadata
 from typing import Any
 
-from benchmark.sweep.errors import ClusterError
+from benchmark.errors import InputError
 from benchmark.sweep.point import PointResult, Task, evaluate, failed
+
+
+class ClusterError(InputError):
+    """The Dask cluster is not there, cannot serve, or is gone; what is finished is on disk."""
+
 
 PATIENCE = 10.0
 """Seconds for the scheduler to answer."""

@@ -1,7 +1,8 @@
-"""One point of a sweep: both models on its scenario, in whatever process the point ends up in."""
+"""One point of a sweep: both models on its scenario, in whatever process, and its results by column name."""
 
 from __future__ import annotations
 
+import math
 import shutil
 import threading
 import time
@@ -9,16 +10,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from benchmark.errors import TissuebenchError
 from benchmark.files import Scenario
 from benchmark.models import Keeping, ModelResult, UncoveredError, prepare, scenario_drive
-from benchmark.sweep.results import point_values
 
 OK, FAILED = "ok", "failed"
 MODELS = {"fem": "FEM", "wave": "wave model"}
 
 _ONE_AT_A_TIME = threading.Lock()
 """A Dask worker may have several threads; the solvers of one process take turns."""
+MM = 1e3
+SECONDS = "seconds_s"
 
 
 @dataclass(frozen=True)
@@ -65,7 +69,7 @@ def evaluate(task: Task) -> PointResult:
     from threadpoolctl import threadpool_limits
 
     with _ONE_AT_A_TIME, threadpool_limits(1):
-        answers = {model: _Answer.of(model, task.scenario, task.keep) for model in MODELS}
+        answers = {model: _ModelAnswer.of(model, task.scenario, task.keep) for model in MODELS}
     if task.keep is not None:
         shutil.rmtree(task.keep, ignore_errors=True)
     results = {model: answer.result for model, answer in answers.items()}
@@ -83,7 +87,7 @@ def evaluate(task: Task) -> PointResult:
 
 
 @dataclass(frozen=True)
-class _Answer:
+class _ModelAnswer:
     """One model's part: its complete result, or its fault, or neither where it does not cover the scenario."""
 
     result: ModelResult | None = None
@@ -92,7 +96,7 @@ class _Answer:
     seconds: float = float("nan")
 
     @classmethod
-    def of(cls, model: str, scenario: Scenario, keep: Path | None) -> _Answer:
+    def of(cls, model: str, scenario: Scenario, keep: Path | None) -> _ModelAnswer:
         """Run one model."""
         name, said = MODELS[model], list[str]()
         keeping = None if keep is None else Keeping(keep, said.append)
@@ -116,3 +120,44 @@ class _Answer:
 def _line(texts: list[str]) -> str | None:
     """Sentences as one line; None for none."""
     return " ".join("; ".join(texts).split()) or None
+
+
+def headline(control: str) -> tuple[str, str]:
+    """The quantity that a load under `control` leaves free, with its unit: what pictures show."""
+    return ("depth", "mm") if control == "force" else ("force", "N")
+
+
+def point_values(
+    scenario: Scenario, results: Mapping[str, ModelResult | None], seconds: Mapping[str, float]
+) -> dict[str, float]:
+    """Columns of one point; a model without a result has none.
+
+    For each model `m` of fem and wave: `m_depth_mm` and `m_force_N` at peak load, `LAYER.m_max_mm` (the largest
+    deflection of each layer's top face on the tool axis, press positive), and `m_seconds_s` (set-up and run, no
+    benchmark: other points may run beside it). With both models `error_percent`, the wave against the FEM in the
+    depth (the force under depth control), and `LAYER.error_percent` in the layer's largest deflection.
+    """
+    values: dict[str, float] = {}
+    for model in MODELS:
+        result = results[model]
+        if result is not None:
+            values |= _of_model(model, result)
+    quantity, unit = headline(scenario.load.control)
+    prefixes = [(f"{{}}_{quantity}_{unit}", "")]
+    prefixes += [(f"{layer}.{{}}_max_mm", f"{layer}.") for layer in scenario.tissue.layer_names]
+    for pattern, prefix in prefixes:
+        fem, wave = (values.get(pattern.format(model), math.nan) for model in MODELS)
+        if math.isfinite(wave - fem) and fem != 0.0:
+            values[f"{prefix}error_percent"] = 100.0 * (wave - fem) / fem
+    values |= {f"{model}_{SECONDS}": seconds[model] for model in MODELS}
+    return {name: value for name, value in values.items() if math.isfinite(value)}
+
+
+def _of_model(model: str, result: ModelResult) -> dict[str, float]:
+    peak = result.peak_step
+    largest = MM * np.asarray(result.max_deformation())
+    return {
+        f"{model}_depth_mm": float(MM * result.depth[peak]),
+        f"{model}_force_N": float(result.force[peak]),
+        **{f"{layer}.{model}_max_mm": float(largest[place]) for place, layer in enumerate(result.layers)},
+    }

@@ -10,7 +10,7 @@ from benchmark.sweep.point import FAILED, PointResult
 Advance = Callable[[str, int, int, str], None]
 
 
-class Progress:
+class SweepProgress:
     """Counts finished points; the estimate rests on those that finished since the start of this command."""
 
     def __init__(self, total: int, done: int, advance: Advance, clock: Callable[[], float] = time.monotonic):

@@ -11,16 +11,15 @@ from benchmark.errors import InputError
 from benchmark.runs.destination import destination
 from benchmark.runs.document import describe_environment
 from benchmark.runs.listener import Listener
-from benchmark.sensitivity import Sensitivity
 from benchmark.sweep.design import chosen_design
 from benchmark.sweep.folder import SweepFolder, open_folder
 from benchmark.sweep.local import usable_cores, work_locally
-from benchmark.sweep.page import sweep_page
 from benchmark.sweep.parameter import parse_parameter
 from benchmark.sweep.plan import SweepPlan, make_plan
 from benchmark.sweep.point import FAILED, OK, PointResult, Task, failed
-from benchmark.sweep.progress import Progress
-from benchmark.sweep.sensitivity import sensitivity_columns, sweep_sensitivity
+from benchmark.sweep.progress import SweepProgress
+from benchmark.sweep.sensitivity import Sensitivity, sensitivity_columns, sweep_sensitivity
+from benchmark.sweep.sweep_page import sweep_page
 from reports import write_csv, write_json, write_page
 
 
@@ -90,7 +89,7 @@ def _finish(folder: SweepFolder, plan: SweepPlan, request: SweepRequest, listene
     if not missing:
         return
     with listener.progress(f"{plan.scenario.name}: {len(missing)} points") as advance:
-        progress = Progress(total, done, advance)
+        progress = SweepProgress(total, done, advance)
         for row in _rows(plan, missing, request, folder.unfinished, listener):
             folder.add(row)
             progress.add(row)
@@ -121,7 +120,11 @@ def _rows(
 
 def _write(path: Path, plan: SweepPlan, rows: Sequence[PointResult], request: SweepRequest) -> SweepOutcome:
     """Write what a finished sweep leaves beside its points."""
-    found = sweep_sensitivity(plan, rows) if request.sensitivity else None
+    found = (
+        sweep_sensitivity([each.key for each in plan.parameters], rows, seed=plan.design.seed)
+        if request.sensitivity
+        else None
+    )
     environment = describe_environment(seed=request.seed)
     page = sweep_page(plan, rows, found, environment)
     if found is not None:

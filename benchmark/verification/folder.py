@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from benchmark.runs.document import describe_environment
-from benchmark.verification.page import verification_page
-from benchmark.verification.row import Row
-from benchmark.verification.table import columns, document
+from benchmark.verification.cases import VerificationRow
+from benchmark.verification.verification_page import columns, document, verification_page
 from reports import whole_folder, write_csv, write_json, write_page
 
 
-def write_verification(rows: Sequence[Row], folder: Path) -> Path:
+def write_verification(rows: Sequence[VerificationRow], folder: Path) -> Path:
     """Write verification.json, verification.csv and report.html; return the page's path.
 
     Raises

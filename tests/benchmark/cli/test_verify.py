@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from benchmark.verification import selection
+from benchmark.verification import cases as selection
 from fem.verification import Case, Quantity
 
 KEYS = {

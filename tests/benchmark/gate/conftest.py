@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from benchmark.gate.accuracy import AccuracyRow
-from benchmark.gate.stored import Baseline, Machine, StoredTiming, StoredValue
+from benchmark.gate.baseline import Baseline, Machine, StoredTiming, StoredValue
 from benchmark.gate.timing import TimingRow
-from benchmark.gate.verdict import Verdict
+from benchmark.gate.verdict import CheckVerdict
 
 MODEL = """\
 import numpy as np
@@ -121,10 +121,10 @@ def baseline() -> Baseline:
 
 
 @pytest.fixture
-def verdict() -> Callable[..., Verdict]:
-    def make(*, slow: bool = False, off: bool = False) -> Verdict:
+def verdict() -> Callable[..., CheckVerdict]:
+    def make(*, slow: bool = False, off: bool = False) -> CheckVerdict:
         now = 2.6 if slow else 2.0
-        return Verdict(
+        return CheckVerdict(
             gate="tiny",
             accuracy=[AccuracyRow("skin_mm", "mm", 5.0, 5.05 if off else 5.0, 0.005, not off)],
             timing=[TimingRow("frame", 2.0, now, 2.24, (0.99 * now, 1.01 * now), 0.13, 0.01, not slow)],

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from benchmark.errors import InputError, NotComparableError
 from benchmark.gate.accuracy import compare_values, tolerance_of
+from benchmark.gate.baseline import StoredValue
 from benchmark.gate.gate_file import Tolerance
 from benchmark.gate.plan import load_plan
-from benchmark.gate.stored import StoredValue
 
 SHIPPED = load_plan(None).file.tolerances
 

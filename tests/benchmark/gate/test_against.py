@@ -8,9 +8,9 @@ import pytest
 
 from benchmark.errors import InputError, NotComparableError
 from benchmark.gate import CheckRequest, accept, check
-from benchmark.gate.measurement import PRODUCT, subject
 from benchmark.gate.measuring.jobs import SilentListener
 from benchmark.gate.plan import load_plan
+from benchmark.gate.versions import PRODUCT, subject
 
 AUTHOR = ("-c", "user.name=test", "-c", "user.email=test@localhost")
 

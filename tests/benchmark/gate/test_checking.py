@@ -10,13 +10,12 @@ import pytest
 
 from benchmark.errors import InputError, NotComparableError, SolverError
 from benchmark.gate import CheckRequest, accept, check
+from benchmark.gate.baseline import read_baseline, read_history
 from benchmark.gate.checking import remarks
-from benchmark.gate.history import read_history
 from benchmark.gate.measuring.costs import CostClock
 from benchmark.gate.measuring.service import Service
-from benchmark.gate.plan import Plan
-from benchmark.gate.rounds import Measured
-from benchmark.gate.stored import read_baseline
+from benchmark.gate.plan import GatePlan
+from benchmark.gate.processes import Measured
 from benchmark.gate.timing import TimingRow
 
 
@@ -42,10 +41,10 @@ class Here:
         self._clock = CostClock()
         self._service = Service(self._clock)
 
-    def values(self, plan: Plan) -> list[dict]:
+    def values(self, plan: GatePlan) -> list[dict]:
         return self._service.answer({"do": "values", "cases": plan.cases})["values"]
 
-    def prepare(self, plan: Plan) -> bool:
+    def prepare(self, plan: GatePlan) -> bool:
         return self._service.answer({"do": "prepare", "timed": plan.jobs, "references": plan.references})[
             "sees_waiting"
         ]
@@ -62,7 +61,7 @@ class Here:
 
 @pytest.fixture(autouse=True)
 def here(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("benchmark.gate.measurement.Side", Here)
+    monkeypatch.setattr("benchmark.gate.versions.Side", Here)
 
 
 @pytest.fixture

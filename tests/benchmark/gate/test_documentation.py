@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from benchmark.cli.app import main
-from benchmark.gate.measurement import PRODUCT
 from benchmark.gate.plan import load_plan
+from benchmark.gate.versions import PRODUCT
 
 PAGE = (PRODUCT / "docs" / "gate.md").read_text(encoding="utf-8")
 

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from benchmark.gate.measurement import PRODUCT
+from benchmark.gate.versions import PRODUCT
 from benchmarks.gate_trial import __main__ as trial
 from benchmarks.gate_trial.copies import GATE, Check, values_gate
 from benchmarks.gate_trial.faults import HOWS, Fault, deflections, slowdowns

@@ -1,12 +1,12 @@
 import pytest
 
 from benchmark.sweep.point import PointResult, failed
-from benchmark.sweep.progress import Progress
+from benchmark.sweep.progress import SweepProgress
 
 
 def test_the_estimate_rests_on_what_this_command_did() -> None:
     now, said = [100.0], []
-    progress = Progress(10, 4, lambda *words: said.append(words), clock=lambda: now[0])
+    progress = SweepProgress(10, 4, lambda *words: said.append(words), clock=lambda: now[0])
     for point in (5, 6):
         now[0] += 30.0
         progress.add(PointResult(point, "ok"))
@@ -16,7 +16,7 @@ def test_the_estimate_rests_on_what_this_command_did() -> None:
 
 def test_failures_are_counted_and_the_end_has_no_estimate() -> None:
     now, said = [0.0], []
-    progress = Progress(3, 0, lambda *words: said.append(words[3]), clock=lambda: now[0])
+    progress = SweepProgress(3, 0, lambda *words: said.append(words[3]), clock=lambda: now[0])
     for point, seconds in ((1, 5.0), (2, 10000.0), (3, 1.0)):
         now[0] += seconds
         progress.add(failed(point, "no luck"))

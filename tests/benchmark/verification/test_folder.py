@@ -4,10 +4,9 @@ from html.parser import HTMLParser
 
 import pytest
 
+from benchmark.verification.cases import run_cases
 from benchmark.verification.folder import write_verification
-from benchmark.verification.page import verification_page
-from benchmark.verification.running import run_cases
-from benchmark.verification.table import document
+from benchmark.verification.verification_page import document, verification_page
 
 ENVIRONMENT = {"made": "2026-01-01", "processor": "any", "packages": {"tissuebench": "0", "numpy": "2"}}
 

@@ -7,7 +7,7 @@ import pytest
 from benchmark.gate.measuring.costs import CostClock
 from benchmark.gate.measuring.references import REFERENCES
 from benchmark.gate.measuring.service import Service
-from benchmark.gate.plan import Plan, load_plan
+from benchmark.gate.plan import GatePlan, load_plan
 
 
 @pytest.fixture
@@ -16,7 +16,7 @@ def service():
         yield Service(clock)
 
 
-def values_of(service: Service, plan: Plan) -> dict[str, dict]:
+def values_of(service: Service, plan: GatePlan) -> dict[str, dict]:
     answer = service.answer({"do": "values", "cases": plan.cases})
     assert "error" not in answer, answer
     return {each["name"]: each for each in answer["values"]}

@@ -1,7 +1,7 @@
 import pytest
 
-from benchmark.verification.running import run_cases
-from benchmark.verification.table import columns, document, headline, signed_error, text_table
+from benchmark.verification.cases import run_cases
+from benchmark.verification.verification_page import columns, document, headline, signed_error, text_table
 
 KEYS = [
     "case", "source", "reference", "ours", "unit", "error_percent", "allowed_percent", "unknowns", "seconds", "passed"

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from benchmark.errors import InputError
-from benchmark.gate.revision import checked_out, commit_of, describe_revision, repository_of
+from benchmark.gate.versions import checked_out, commit_of, describe_revision, repository_of
 
 AUTHOR = ("-c", "user.name=test", "-c", "user.email=test@localhost")
 

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from benchmark.gate.history import Entry
-from benchmark.gate.report.trend import MOST_CHECKS, trend_figure, trends
+from benchmark.gate.baseline import HistoryEntry
+from benchmark.gate.trend import MOST_CHECKS, trend_figure, trends
 
 
-def entry(ratio: float, *, machine: str = "A", against: str | None = None, accepted: bool = False) -> Entry:
+def entry(ratio: float, *, machine: str = "A", against: str | None = None, accepted: bool = False) -> HistoryEntry:
     timing = {
         "frame": {
             "ratio": ratio,
@@ -16,7 +16,7 @@ def entry(ratio: float, *, machine: str = "A", against: str | None = None, accep
             "allowed": None if accepted else 2.24,
         }
     }
-    return Entry("2026-01-02", "abc", machine, against, None if accepted else True, {}, timing)
+    return HistoryEntry("2026-01-02", "abc", machine, against, None if accepted else True, {}, timing)
 
 
 def test_checks_are_relative_to_the_first() -> None:

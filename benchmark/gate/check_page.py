@@ -1,26 +1,39 @@
-"""The page of a check: verdict, what is compared with what, trend, method."""
+"""The page of a check: verdict, what is compared with what, trend, and how the verdict came about."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
-from benchmark.gate.history import Entry
-from benchmark.gate.origin import Origin
-from benchmark.gate.report.method import method_section
-from benchmark.gate.report.trend import Trend, trend_figure, trends
-from benchmark.gate.verdict import Verdict
-from reports import Bullets, Column, Download, Fact, Notice, Page, Paragraph, Section, Table
-from reports import Verdict as PageVerdict
+from benchmark.gate.baseline import HistoryEntry
+from benchmark.gate.statistics import false_alarm, power
+from benchmark.gate.timing import TimingRow
+from benchmark.gate.trend import Trend, trend_figure, trends
+from benchmark.gate.verdict import CheckVerdict
+from benchmark.gate.versions import Origin
+from reports import Bullets, Column, Download, Fact, Notice, Page, Paragraph, Section, Table, Verdict
+
+SLOWDOWN = 0.25
+LEAST = 1e-6
+HOW = (
+    "A value passes where |now - baseline| is at most rtol |baseline| + atol. Time is measured in fresh processes with "
+    "one thread; each runs all timed quantities and the reference work (NumPy and SciPy alone) in turn, in blocks of a "
+    "tenth of a second. A quantity is divided, block by block, by the references of its own texture, so that a machine "
+    "that slows down slows both; blocks are condensed to one ratio a process (mean of the logarithms without the "
+    "highest and the lowest tenth), and processes to a trimmed mean. Waiting for a core is not counted, sleeping is. "
+    "A quantity is called slower where it exceeds its baseline by more than the margin, after the most processes the "
+    "gate file allows; a check ends sooner only where everything is far below its margin."
+)
 
 
-def check_page(verdict: Verdict, history: Sequence[Entry], origin: Origin) -> Page:
+def check_page(verdict: CheckVerdict, history: Sequence[HistoryEntry], origin: Origin) -> Page:
     """Return the page of a check; `history` has this check as its last entry."""
     status = "good" if verdict.passed else "failed"
     return Page(
         title=f"Regression check: {verdict.gate}",
         subtitle=f"Values against {verdict.accuracy_source}; times against {verdict.timing_source}",
-        verdict=PageVerdict(status, verdict.headline(), verdict.failures()),
+        verdict=Verdict(status, verdict.headline(), verdict.failures()),
         facts=_facts(origin, verdict),
         notices=_notices(verdict),
         sections=[
@@ -38,13 +51,13 @@ def check_page(verdict: Verdict, history: Sequence[Entry], origin: Origin) -> Pa
     )
 
 
-def _notices(verdict: Verdict) -> tuple[Notice, ...]:
+def _notices(verdict: CheckVerdict) -> tuple[Notice, ...]:
     if not verdict.warnings:
         return ()
     return (Notice("warning", "Read these before you trust the verdict.", verdict.warnings),)
 
 
-def _facts(origin: Origin, verdict: Verdict) -> tuple[Fact, ...]:
+def _facts(origin: Origin, verdict: CheckVerdict) -> tuple[Fact, ...]:
     found = origin.environment
     return (
         Fact("Made", origin.made),
@@ -54,7 +67,7 @@ def _facts(origin: Origin, verdict: Verdict) -> tuple[Fact, ...]:
     )
 
 
-def _timing_section(verdict: Verdict) -> Section:
+def _timing_section(verdict: CheckVerdict) -> Section:
     if not verdict.timing:
         return Section("Time", (Paragraph("This gate times nothing."),))
     columns = (
@@ -87,7 +100,7 @@ def _timing_section(verdict: Verdict) -> Section:
     return Section("Time", (Table(caption, columns, rows, folded=False),))
 
 
-def _accuracy_section(verdict: Verdict) -> Section:
+def _accuracy_section(verdict: CheckVerdict) -> Section:
     columns = (
         "quantity",
         "unit",
@@ -109,3 +122,37 @@ def _trend_section(found: Sequence[Trend]) -> Section:
         return Section("Trend", (Paragraph(text),))
     skipped = "Checks on other machines, or compared in another way, are in the history file but not in this figure."
     return Section("Trend", (trend_figure(found), Bullets((skipped,))))
+
+
+def method_section(verdict: CheckVerdict) -> Section:
+    """Return the section on method, with the chances of error at the scatter seen in this check."""
+    if not verdict.timing:
+        return Section("Method", (Paragraph(HOW),))
+    columns = (
+        "quantity",
+        Column("margin", "%", 3),
+        Column("standard error", "%", 2),
+        "chance of a false alarm",
+        f"chance to miss {100 * SLOWDOWN:g} %",
+    )
+    table = Table(
+        "Chances of error for a normal error of the size of the scatter between the processes of this check; a state "
+        "of the machine that lasts longer than a check is not in it",
+        columns,
+        [_chances(row) for row in verdict.timing],
+    )
+    return Section("Method", (Paragraph(HOW), table))
+
+
+def _chances(row: TimingRow) -> tuple[str, float, float, str, str]:
+    limit, noise = math.log(row.allowed / row.baseline), row.noise
+    chances = ("", "")
+    if noise > 0.0:
+        missed = 1.0 - power(math.log1p(SLOWDOWN), limit, noise)
+        chances = (_chance(false_alarm(limit, noise)), _chance(missed))
+    return (row.quantity, 100.0 * math.expm1(limit), 100.0 * noise, *chances)
+
+
+def _chance(value: float) -> str:
+    """A chance in words; below one in a million no normal distribution is to be believed."""
+    return f"below {LEAST:g}" if value < LEAST else f"{value:.2g}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmark.gate.history import Entry
+from benchmark.gate.baseline import HistoryEntry
 from reports import Figure, Panel
 from reports.figures.style import INK, MUTED, SMALL, draw, heading
 from reports.palette import PALETTE
@@ -46,7 +46,7 @@ class Trend:
     points: tuple[Point, ...]
 
 
-def trends(history: Sequence[Entry], machine: str, *, against: bool) -> list[Trend]:
+def trends(history: Sequence[HistoryEntry], machine: str, *, against: bool) -> list[Trend]:
     """Return the trends of the last check's quantities over the checks of one machine and way of comparing.
 
     A quantity that has fewer than two such checks has none.
@@ -75,7 +75,7 @@ def trend_figure(found: Sequence[Trend]) -> Figure:
     return Figure(panels, caption, "Trend of the timed quantities")
 
 
-def _points(name: str, history: Sequence[Entry]) -> tuple[Point, ...]:
+def _points(name: str, history: Sequence[HistoryEntry]) -> tuple[Point, ...]:
     entries = [(number, each.timing[name]) for number, each in enumerate(history, start=1) if name in each.timing]
     if not entries:
         return ()

@@ -3,9 +3,9 @@
 import re
 from dataclasses import replace
 
-from benchmark.gate.history import Entry
-from benchmark.gate.origin import Origin
-from benchmark.gate.report import check_page
+from benchmark.gate.baseline import HistoryEntry
+from benchmark.gate.check_page import check_page
+from benchmark.gate.versions import Origin
 from reports import render_page
 
 ORIGIN = Origin(
@@ -20,9 +20,9 @@ ORIGIN = Origin(
 )
 
 
-def entry(ratio: float, allowed: float | None = 2.24) -> Entry:
+def entry(ratio: float, allowed: float | None = 2.24) -> HistoryEntry:
     timing = {"frame": {"ratio": ratio, "ci95": [0.99 * ratio, 1.01 * ratio], "allowed": allowed}}
-    return Entry("2026-01-02", "abc", "any", None, True, {}, timing)
+    return HistoryEntry("2026-01-02", "abc", "any", None, True, {}, timing)
 
 
 def words(html: str) -> str:

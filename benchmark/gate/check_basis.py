@@ -7,17 +7,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from benchmark.errors import NotComparableError
-from benchmark.gate.measurement import Rival, gated_values
-from benchmark.gate.origin import Origin
-from benchmark.gate.plan import Plan
-from benchmark.gate.request import CheckRequest
-from benchmark.gate.rounds import Measured
-from benchmark.gate.stored import Baseline, StoredValue, how_to, read_baseline
+from benchmark.gate.baseline import Baseline, StoredValue, how_to, read_baseline
+from benchmark.gate.plan import CheckRequest, GatePlan
+from benchmark.gate.processes import Measured
 from benchmark.gate.timing import Ratios
+from benchmark.gate.versions import Origin, OtherRevision, gated_values
 
 
 @dataclass(frozen=True)
-class Yardstick:
+class CheckBasis:
     """What values and times are compared with.
 
     Attributes
@@ -31,7 +29,7 @@ class Yardstick:
     """
 
     baseline: Baseline | None
-    rival: Rival | None
+    rival: OtherRevision | None
     path: str
 
     @property
@@ -85,7 +83,7 @@ class Yardstick:
         return found
 
 
-def stored_baseline(request: CheckRequest, plan: Plan) -> Baseline | None:
+def stored_baseline(request: CheckRequest, plan: GatePlan) -> Baseline | None:
     """Read the baseline; None where there is none and `--against` asks for none.
 
     Raises

@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from benchmark.sensitivity import Sensitivity
 from benchmark.sweep.parameter import Parameter
 from benchmark.sweep.plan import SweepPlan
-from benchmark.sweep.point import FAILED, PointResult
-from benchmark.sweep.results import MODELS, SECONDS, headline
+from benchmark.sweep.point import FAILED, MODELS, SECONDS, PointResult, headline
+from benchmark.sweep.sensitivity import Sensitivity
 from benchmark.sweep.table import Columns, point_columns
 from reports import (
     Block,

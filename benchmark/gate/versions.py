@@ -1,0 +1,160 @@
+"""Which versions are measured: this one, or another revision checked out beside it; of what commit, and where."""
+
+from __future__ import annotations
+
+import subprocess
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from benchmark.errors import InputError
+from benchmark.gate.baseline import Machine, StoredValue
+from benchmark.gate.plan import GatePlan
+from benchmark.gate.processes import Party, Side
+from benchmark.runs.document import describe_environment
+
+DECISIVE = ("numpy", "scipy", "pypardiso")
+"""Packages whose version can change a ratio of times."""
+
+
+def repository_of(folder: Path) -> Path | None:
+    """The top folder of the git repository that a folder is in; None where there is none, or no git."""
+    try:
+        found = _git(folder, "rev-parse", "--show-toplevel")
+    except InputError:
+        return None
+    return Path(found)
+
+
+def describe_revision(folder: Path) -> str | None:
+    """The commit that a folder is at, with "+" where files that git knows have changed; None outside a repository."""
+    try:
+        commit = _git(folder, "rev-parse", "HEAD")
+        changed = _git(folder, "status", "--porcelain", "--untracked-files=no")
+    except InputError:
+        return None
+    return f"{commit}+" if changed else commit
+
+
+def commit_of(repository: Path, revision: str) -> str:
+    """The full name of the commit that a revision means; raises InputError where there is none."""
+    try:
+        return _git(repository, "rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}")
+    except InputError:
+        raise InputError(
+            f"--against {revision}: the repository {repository} has no such revision; give a commit, tag or branch, "
+            "and fetch it first (a shallow clone has only its newest commit)"
+        ) from None
+
+
+@contextmanager
+def checked_out(repository: Path, commit: str) -> Iterator[Path]:
+    """Yield a temporary folder with the files of a commit: a git worktree, removed on leaving.
+
+    Raises
+    ------
+    InputError
+        Git cannot make it.
+    """
+    with tempfile.TemporaryDirectory(prefix="tissuebench-") as parent:
+        tree = Path(parent).resolve() / "tree"
+        no_hooks = ("-c", "core.hooksPath=/dev/null")
+        _git(repository, *no_hooks, "worktree", "add", "--quiet", "--detach", "--force", str(tree), commit)
+        try:
+            yield tree
+        finally:
+            _git(repository, "worktree", "remove", "--force", str(tree))
+
+
+def _git(folder: Path, *arguments: str) -> str:
+    """What a git command prints; InputError where it fails."""
+    try:
+        done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True, check=False)
+    except OSError as error:
+        raise InputError(f"git cannot be run ({error.strerror or error}); --against needs it") from None
+    if done.returncode:
+        raise InputError(f"git {arguments[0]}: {done.stderr.strip() or f'exit code {done.returncode}'}")
+    return done.stdout.strip()
+
+
+PRODUCT = Path(__file__).resolve().parents[2]
+"""The folder with the packages of the version that runs."""
+
+
+@dataclass(frozen=True)
+class OtherRevision:
+    """Another revision, checked out: its commit, and how it is measured."""
+
+    commit: str
+    party: Party
+
+
+def this_version(plan: GatePlan) -> Party:
+    """The version that runs this check."""
+    return Party(partial(Side, PRODUCT), plan)
+
+
+def subject(plan: GatePlan) -> Path:
+    """The folder that a revision is of: the product's for its own gate, else that of a user's gate and model."""
+    return PRODUCT if plan.shipped or not _has_own(plan) else plan.path.parent
+
+
+@contextmanager
+def rival(plan: GatePlan, revision: str) -> Iterator[OtherRevision]:
+    """Check another revision out: of the product, or of a user's own models where the gate file has any.
+
+    Raises
+    ------
+    InputError
+        No repository, or no such revision in it.
+    """
+    folder = subject(plan)
+    repository = repository_of(folder)
+    if repository is None:
+        raise InputError(f"--against {revision}: {folder} is not in a git repository, so there are no revisions of it")
+    commit = commit_of(repository, revision)
+    with checked_out(repository, commit) as tree:
+        if subject(plan) == PRODUCT:
+            packages = tree / PRODUCT.relative_to(repository.resolve())
+            yield OtherRevision(commit, Party(partial(Side, packages, revision), plan))
+        else:
+            yield OtherRevision(commit, Party(partial(Side, PRODUCT, revision), plan.moved(repository.resolve(), tree)))
+
+
+def gated_values(party: Party) -> dict[str, StoredValue]:
+    """The gated values of a party, from a process of its own; raises as `side.Side`."""
+    with party.start() as side:
+        found = side.values(party.plan)
+    return {each["name"]: StoredValue(value=each["value"], unit=each["unit"], reason=each["reason"]) for each in found}
+
+
+def _has_own(plan: GatePlan) -> bool:
+    return any(table["own"] is not None for table in (*plan.cases, *plan.jobs))
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Environment (content of `environment.json`) and revision of what is measured (None outside a repository)."""
+
+    environment: Mapping[str, Any]
+    revision: str | None
+
+    @property
+    def machine(self) -> Machine:
+        """The part of the environment that decides whether ratios carry over."""
+        packages = {name: self.environment["packages"][name] for name in DECISIVE}
+        return Machine(processor=self.environment["processor"], python=self.environment["python"], packages=packages)
+
+    @property
+    def made(self) -> str:
+        """Date and time, UTC."""
+        return str(self.environment["made"])
+
+
+def origin_of(plan: GatePlan, seed: int) -> Origin:
+    """Where and of what a plan is measured now."""
+    return Origin(describe_environment(seed=seed), describe_revision(subject(plan)))
