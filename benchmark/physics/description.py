@@ -1,9 +1,35 @@
-"""What an entry of the catalogue says of itself."""
+"""How an effect is declared, once: what people read of it, its parameters, and how a scenario states them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Literal
+
+
+@dataclass(frozen=True)
+class Option:
+    """A parameter as a key of a scenario's `[physics]`: what may be written, and what holds where it is left out.
+
+    Attributes
+    ----------
+    low, high : float
+        What is allowed, SI; a fit searches within the narrower bounds of its parameter.
+    above : bool
+        Whether the lower bound itself is excluded.
+    default : float or None
+        What holds beside the effect's other keys where this one is left out; None: the effect needs it.
+    key : str
+        Its name in `[physics]`; "" where that is the parameter's own.
+    example : str
+        A value that one could give, as it is written.
+    """
+
+    low: float
+    high: float
+    above: bool = False
+    default: float | None = None
+    key: str = ""
+    example: str = ""
 
 
 @dataclass(frozen=True)
@@ -13,17 +39,21 @@ class EffectParameter:
     Attributes
     ----------
     name : str
-        As in `discovery.json` and `model.toml`.
+        As in `discovery.json`, `model.toml` and, with an `option`, in a scenario's `[physics]`.
     unit : str
         That pint reads; "" without dimension.
     start : tuple of float
         Where a fit begins, each in turn.
     low, high : float
-        Bounds.
+        Bounds of a fit.
     logarithmic : bool
         Whether it is fitted by its logarithm (then low > 0).
     meaning : str
         One phrase.
+    option : Option or None
+        How a scenario states it; None where it tells of markers or rate alone.
+    formerly : str
+        Name of the same quantity in older model files; "" without.
     """
 
     name: str
@@ -33,6 +63,13 @@ class EffectParameter:
     high: float
     logarithmic: bool
     meaning: str
+    option: Option | None = None
+    formerly: str = ""
+
+    @property
+    def key(self) -> str | None:
+        """Its name in a scenario's `[physics]`; None where it has none."""
+        return None if self.option is None else self.option.key or self.name
 
 
 @dataclass(frozen=True)
@@ -51,6 +88,12 @@ class EffectDescription:
     source : str
         Where the equation is from.
     parameters : tuple of EffectParameter
+    options : tuple of EffectParameter
+        Further keys of `[physics]` for the same physics, which a model has by itself and no fit searches.
+    in_wave, in_fem : str
+        How the wave and the FEM carry it; "" where they do not.
+    retired : tuple of (str, str)
+        Parameters of older model files that cannot be converted, and what to do instead.
     """
 
     slug: str
@@ -59,13 +102,45 @@ class EffectDescription:
     equation: str
     source: str
     parameters: tuple[EffectParameter, ...]
+    options: tuple[EffectParameter, ...] = ()
+    in_wave: str = ""
+    in_fem: str = ""
+    retired: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def keys(self) -> dict[str, EffectParameter]:
+        """Its keys in a scenario's `[physics]`."""
+        return {key: each for each in (*self.parameters, *self.options) if (key := each.key) is not None}
 
 
-def linear(name: str, unit: str, low: float, high: float, meaning: str, *start: float) -> EffectParameter:
+def option(name: str, unit: str, low: float, high: float, meaning: str) -> EffectParameter:
+    """A key of `[physics]` that no fit searches."""
+    return EffectParameter(name, unit, (), low, high, False, meaning, Option(low, high))
+
+
+def linear(
+    name: str,
+    unit: str,
+    low: float,
+    high: float,
+    meaning: str,
+    *start: float,
+    option: Option | None = None,
+    formerly: str = "",
+) -> EffectParameter:
     """A parameter fitted as it is; without a start it begins where it does nothing, at zero or its lower bound."""
-    return EffectParameter(name, unit, start or (max(low, 0.0),), low, high, False, meaning)
+    return EffectParameter(name, unit, start or (max(low, 0.0),), low, high, False, meaning, option, formerly)
 
 
-def logarithmic(name: str, unit: str, low: float, high: float, meaning: str, *start: float) -> EffectParameter:
+def logarithmic(
+    name: str,
+    unit: str,
+    low: float,
+    high: float,
+    meaning: str,
+    *start: float,
+    option: Option | None = None,
+    formerly: str = "",
+) -> EffectParameter:
     """A positive parameter fitted by its logarithm; without a start it begins at the middle of its range."""
-    return EffectParameter(name, unit, start or ((low * high) ** 0.5,), low, high, True, meaning)
+    return EffectParameter(name, unit, start or ((low * high) ** 0.5,), low, high, True, meaning, option, formerly)

@@ -9,12 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.physics.description import EffectDescription
+
+if TYPE_CHECKING:
+    from fem import Problem
+    from wavemodel import WaveLayer
 
 Array: TypeAlias = NDArray[np.float64]
 Values: TypeAlias = Mapping[str, float]
@@ -36,6 +40,10 @@ class TrialContext:
         Resting positions of the markers by the nominal grid, m.
     hole_radius : float
         Of the support, m; infinite without a hole.
+    layers : tuple of wavemodel.WaveLayer
+        The specimen from the surface down; empty where it is taken as one layer of `thickness`.
+    contact : str
+        Of the tool, as in a scenario.
     """
 
     tool_radius: float
@@ -46,6 +54,8 @@ class TrialContext:
     spacing: float = 0.0
     markers: Array | None = None
     hole_radius: float = math.inf
+    layers: tuple[WaveLayer, ...] = ()
+    contact: str = "rigid_bonded"
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,6 +136,29 @@ class Readings:
     sink: Array | None = None
 
 
+class NotInFemError(Exception):
+    """The FEM has no such term for this problem; the reason is the message."""
+
+
+@dataclass(frozen=True)
+class FemTerm:
+    """How the FEM carries an effect by itself.
+
+    Attributes
+    ----------
+    names : tuple of str
+        The parameters and options that it carries.
+    change : (values of those that are given, problem, context) -> problem with the effect
+        Raises `NotInFemError`.
+    elastic : bool
+        Whether the press has no memory of it, so that quasi-linear effects may act on top.
+    """
+
+    names: tuple[str, ...]
+    change: Callable[[Values, Problem, TrialContext], Problem]
+    elastic: bool = True
+
+
 @dataclass(frozen=True)
 class Effect:
     """An entry of the catalogue; every place is optional.
@@ -150,6 +183,8 @@ class Effect:
         The same effect with one more term, tried where this one is accepted.
     origin : str or None
         File of an own effect.
+    fem : FemTerm or None
+        How the FEM carries it by itself.
     """
 
     description: EffectDescription
@@ -163,6 +198,7 @@ class Effect:
     richer: Effect | None = None
     origin: str | None = None
     amplitudes: tuple[str, ...] = ()
+    fem: FemTerm | None = None
 
     @property
     def slug(self) -> str:

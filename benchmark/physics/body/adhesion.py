@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchmark.physics.description import EffectDescription, linear, logarithmic
-from benchmark.physics.effect import Effect, Motion, Readings, TrialContext, Values
+from benchmark.physics.description import EffectDescription, Option, linear, logarithmic
+from benchmark.physics.effect import Effect, FemTerm, Motion, NotInFemError, Readings, TrialContext, Values
+
+if TYPE_CHECKING:
+    from fem import Problem
 
 RISE = 0.1
 """Share of its reach over which a tearing bond takes up its pull."""
@@ -23,15 +26,25 @@ DESCRIPTION = EffectDescription(
     parameters=(
         linear("tear", "N", 0.0, 100.0, "pull p of a bond that tears gradually"),
         logarithmic("reach", "m", 1e-5, 0.02, "height r above the surface at which that bond is gone"),
-        linear("pull_off", "N", 0.0, 100.0, "force at which tissue that follows the tool lets go"),
+        linear(
+            "adhesion_force",
+            "N",
+            0.0,
+            100.0,
+            "pull with which tissue that follows the tool holds it before it lets go",
+            option=Option(0.0, 1e3),
+            formerly="pull_off",
+        ),
     ),
+    in_wave="on top of its elastic law",
+    in_fem="the contact of a rigid_frictionless or rigid_frictional tool in finite strain lets go at that pull",
 )
 
 
 def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
     from wavemodel.physics import Adhesion
 
-    return {"adhesion": Adhesion(values["pull_off"])}
+    return {"adhesion": Adhesion(values["adhesion_force"])}
 
 
 def _observe(values: Values, readings: Readings, motion: Motion, context: TrialContext) -> Readings:
@@ -47,9 +60,25 @@ def _observe(values: Values, readings: Readings, motion: Motion, context: TrialC
 
 def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     peak, depth = context.peak_force, context.peak_depth
-    tearing = tuple({"tear": 0.05 * peak, "reach": share * depth, "pull_off": 0.0} for share in (0.1, 0.2, 0.4))
-    following = tuple({"tear": 0.0, "reach": 0.2 * depth, "pull_off": share * peak} for share in (0.03, 0.1, 0.3))
+    tearing = tuple({"tear": 0.05 * peak, "reach": share * depth, "adhesion_force": 0.0} for share in (0.1, 0.2, 0.4))
+    following = tuple({"tear": 0.0, "reach": 0.2 * depth, "adhesion_force": share * peak} for share in (0.03, 0.1, 0.3))
     return tearing + following
 
 
-EFFECT = Effect(DESCRIPTION, "tear", body=_body, observe=_observe, starts=_starts, amplitudes=("pull_off",))
+def _in_fem(values: Values, problem: Problem, context: TrialContext) -> Problem:
+    if problem.tool.contact not in ("rigid_frictionless", "rigid_frictional") or problem.kinematics != "finite":
+        raise NotInFemError("adhesion_force is part of rigid_frictionless and rigid_frictional tools in finite strain")
+    if problem.geometry == "surface":
+        raise NotInFemError("adhesion_force is not part of the geometry surface")
+    return replace(problem, tool=replace(problem.tool, adhesion_force=values["adhesion_force"]))
+
+
+EFFECT = Effect(
+    DESCRIPTION,
+    "tear",
+    body=_body,
+    observe=_observe,
+    starts=_starts,
+    amplitudes=("adhesion_force",),
+    fem=FemTerm(("adhesion_force",), _in_fem, elastic=False),
+)

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchmark.physics.description import EffectDescription, linear, logarithmic
-from benchmark.physics.effect import Effect, LowerFaceMotion, PressHistory, TrialContext, Values
+from benchmark.physics.description import EffectDescription, Option, linear, logarithmic, option
+from benchmark.physics.effect import Effect, FemTerm, LowerFaceMotion, NotInFemError, PressHistory, TrialContext, Values
+
+if TYPE_CHECKING:
+    from fem import Problem
+
+SHEAR_LIMITS = ("interface_shear_limit", "clamp_shear_limit")
 
 DESCRIPTION = EffectDescription(
     slug="interface_slip",
@@ -19,18 +24,53 @@ DESCRIPTION = EffectDescription(
     "f(d_s) = F_s; a share of the slip may go back at once",
     source="W. D. Iwan 1966, J Appl Mech 33:893 (Jenkin element)",
     parameters=(
-        logarithmic("limit", "N", 1e-4, 1e3, "force at which the interface begins to slide"),
-        linear("force_share", "", 0.0, 1.0, "share of the stiffness that goes through the interface"),
+        logarithmic(
+            "slip_force",
+            "N",
+            1e-4,
+            1e3,
+            "force F_s on the tool at which an interface begins to slide",
+            option=Option(0.0, 1e3, above=True),
+            formerly="limit",
+        ),
+        linear(
+            "slip_share",
+            "",
+            0.0,
+            1.0,
+            "share s of the stiffness that goes through that interface",
+            option=Option(0.0, 1.0),
+            formerly="force_share",
+        ),
         linear("marker_share", "", 0.0, 1.0, "share of the markers' motion that goes through the interface"),
         linear("return_share", "", 0.0, 1.0, "share of the markers' slip that goes back at once when the press eases"),
     ),
+    options=(
+        option(
+            "interface_shear_limit",
+            "Pa",
+            0.0,
+            1e12,
+            "shear stress at which layers begin to slide on each other: every interface, where it comes to it, in the "
+            "FEM; the interface that comes to it first, as a whole, in the layered wave",
+        ),
+        option(
+            "clamp_shear_limit",
+            "Pa",
+            0.0,
+            1e12,
+            "shear stress at which a sheet over a hole begins to slide on the plate round it",
+        ),
+    ),
+    in_wave="slip_force and slip_share on top of its elastic law; interface_shear_limit between the layers on a base",
+    in_fem="the shear limits by its own interfaces and clamp, in axial symmetry; slip_force and slip_share quasi-linear",
 )
 
 
 def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
     from wavemodel.physics import InterfaceSlip
 
-    return {"slip": InterfaceSlip(values["limit"], values["force_share"])}
+    return {"slip": InterfaceSlip(values["slip_force"], values["slip_share"])}
 
 
 def _lower_face(values: Values, face: LowerFaceMotion, press: PressHistory, context: TrialContext) -> LowerFaceMotion:
@@ -45,13 +85,13 @@ def _lower_face(values: Values, face: LowerFaceMotion, press: PressHistory, cont
 
 def _limit_depth(values: Values, press: PressHistory) -> float:
     """Depth, m, at which the elastic force reaches the limit; beyond the deepest where it never does."""
-    push = _bare(press.elastic, values["force_share"], values["limit"])
+    push = _bare(press.elastic, values["slip_share"], values["slip_force"])
     order = np.argsort(press.surface)
     depth, force = press.surface[order], np.maximum.accumulate(push[order])
     deepest = float(depth[-1])
-    if values["limit"] >= force[-1]:
-        return deepest * values["limit"] / max(float(force[-1]), 1e-12)
-    return max(float(np.interp(values["limit"], force, depth)), 1e-3 * deepest)
+    if values["slip_force"] >= force[-1]:
+        return deepest * values["slip_force"] / max(float(force[-1]), 1e-12)
+    return max(float(np.interp(values["slip_force"], force, depth)), 1e-3 * deepest)
 
 
 def _bare(elastic: np.ndarray, share: float, limit: float) -> np.ndarray:
@@ -65,13 +105,37 @@ def _bare(elastic: np.ndarray, share: float, limit: float) -> np.ndarray:
 def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     marked = context.markers is not None
     kinds = ((0.0, 0.3, 0.0), (0.0, 0.3, 1.0), (0.1, 0.3, 0.5)) if marked else ((0.1, 0.0, 0.0),)
-    names = ("force_share", "marker_share", "return_share")
+    names = ("slip_share", "marker_share", "return_share")
     levels = (0.2, 0.45)
     return tuple(
-        {"limit": r * context.peak_force, **dict(zip(names, kind, strict=True))} for r in levels for kind in kinds
+        {"slip_force": r * context.peak_force, **dict(zip(names, kind, strict=True))} for r in levels for kind in kinds
     )
 
 
+def _in_fem(values: Values, problem: Problem, context: TrialContext) -> Problem:
+    interface, clamp = (values.get(name) for name in SHEAR_LIMITS)
+    if interface is not None:
+        if problem.geometry != "axisymmetric" or (problem.kinematics == "linear" and interface > 0.0):
+            raise NotInFemError(
+                "the option physics.interface_shear_limit is part of axisymmetric geometry only, in finite strain or "
+                "without friction (0 Pa)"
+            )
+        problem = replace(problem, interface_shear_limit=interface)
+    if clamp is not None:
+        if (problem.support.kind, problem.kinematics, problem.geometry) != ("hole", "finite", "axisymmetric"):
+            raise NotInFemError(
+                "the option physics.clamp_shear_limit is part of a hole in finite strain and axisymmetric geometry only"
+            )
+        problem = replace(problem, support=replace(problem.support, clamp_shear_limit=clamp))
+    return problem
+
+
 EFFECT = Effect(
-    DESCRIPTION, "marker_share", body=_body, lower_face=_lower_face, starts=_starts, amplitudes=("force_share",)
+    DESCRIPTION,
+    "marker_share",
+    body=_body,
+    lower_face=_lower_face,
+    starts=_starts,
+    amplitudes=("slip_share",),
+    fem=FemTerm(SHEAR_LIMITS, _in_fem),
 )

@@ -3,43 +3,63 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from benchmark.physics.description import EffectDescription, linear
+from benchmark.physics.description import EffectDescription, Option, linear
 from benchmark.physics.effect import Effect, LowerFaceMotion, PressHistory, TrialContext, Values
 
 DESCRIPTION = EffectDescription(
     slug="permanent_set",
     acts_on="body",
     sentence="The pressed surface does not come back all the way: it is left sooner and met later in the next cycle.",
-    equation="surface s = fraction max(d_max - onset, 0); the tool meets d_c = (d - s) d_max / (d_max - s)",
+    equation="surface s = permanent_set max(d_max - onset, 0); the tool meets d_c = (d - s) d_max / (d_max - s)",
     source="Oliver and Pharr 1992, J Mater Res 7:1564 (elastic unloading of an elastic-plastic body)",
     parameters=(
-        linear("fraction", "", 0.0, 0.9, "share of the deepest depth that stays"),
-        linear("onset", "m", 0.0, 0.05, "depth that leaves no set"),
+        linear(
+            "permanent_set",
+            "",
+            0.0,
+            0.9,
+            "share of the deepest depth that stays",
+            option=Option(0.0, 0.95, example="0.05"),
+            formerly="fraction",
+        ),
+        linear(
+            "permanent_set_onset",
+            "m",
+            0.0,
+            0.05,
+            "depth that leaves no set",
+            option=Option(1e-9, 1.0, default=0.0),
+            formerly="onset",
+        ),
         linear("marker_share", "", 0.0, 1.0, "share of the set that the lower face keeps after lift-off", 0.5),
     ),
+    in_wave="on top of its elastic law",
+    in_fem="quasi-linear: on top of its elastic answer, in `run --model` only",
 )
 
 
 def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
     from wavemodel.physics import PermanentSet
 
-    return {"permanent_set": PermanentSet(values["fraction"], values["onset"])}
+    return {"permanent_set": PermanentSet(values["permanent_set"], values["permanent_set_onset"])}
 
 
 def _lower_face(values: Values, face: LowerFaceMotion, press: PressHistory, context: TrialContext) -> LowerFaceMotion:
-    from dataclasses import replace
-
     kept = values["marker_share"] * press.surface
     return replace(face, depth=np.where(press.touching, face.depth, kept))
 
 
 def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     both = (0.0, 0.3)
-    return tuple({"fraction": 0.05, "onset": share * context.peak_depth, "marker_share": 0.5} for share in both)
+    return tuple(
+        {"permanent_set": 0.05, "permanent_set_onset": share * context.peak_depth, "marker_share": 0.5}
+        for share in both
+    )
 
 
-EFFECT = Effect(DESCRIPTION, "fraction", body=_body, lower_face=_lower_face, starts=_starts)
+EFFECT = Effect(DESCRIPTION, "permanent_set", body=_body, lower_face=_lower_face, starts=_starts)

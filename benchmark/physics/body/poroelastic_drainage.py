@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from benchmark.physics.description import EffectDescription, linear, logarithmic
+from benchmark.physics.description import EffectDescription, Option, linear, logarithmic
 from benchmark.physics.effect import Effect, TrialContext, Values
 
 DESCRIPTION = EffectDescription(
@@ -15,21 +15,41 @@ DESCRIPTION = EffectDescription(
     equation="F = int (1 - g (1 - phi(xi - xi'))) df, xi = int D / a^2 dt, phi of one-dimensional consolidation",
     source="H. F. Wang, Theory of Linear Poroelasticity, section 6.3; Hu et al. 2010, Appl Phys Lett 96:121904",
     parameters=(
-        linear("g", "", 0.0, 0.95, "share of the force that drains away"),
-        logarithmic("diffusivity", "m^2/s", 1e-12, 1e-2, "of the pore fluid"),
+        linear(
+            "drainage_share",
+            "",
+            0.0,
+            0.95,
+            "share g of the force that drains away",
+            option=Option(0.0, 0.99),
+            formerly="g",
+        ),
+        logarithmic(
+            "drainage_diffusivity",
+            "m^2/s",
+            1e-12,
+            1e-2,
+            "diffusivity D of the pore fluid",
+            option=Option(1e-15, 1.0),
+            formerly="diffusivity",
+        ),
     ),
+    in_wave="on top of its elastic law",
+    in_fem="quasi-linear: on top of its elastic answer, in `run --model` only",
 )
 
 
 def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
     from wavemodel.physics import PoroelasticDrainage
 
-    return {"drainage": PoroelasticDrainage(values["g"], values["diffusivity"], context.tool_radius)}
+    return {
+        "drainage": PoroelasticDrainage(values["drainage_share"], values["drainage_diffusivity"], context.tool_radius)
+    }
 
 
 def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     scale = context.tool_radius**2 / context.duration
-    return tuple({"g": 0.2, "diffusivity": factor * scale} for factor in (0.5, 4.0, 30.0))
+    return tuple({"drainage_share": 0.2, "drainage_diffusivity": factor * scale} for factor in (0.5, 4.0, 30.0))
 
 
-EFFECT = Effect(DESCRIPTION, "g", body=_body, starts=_starts)
+EFFECT = Effect(DESCRIPTION, "drainage_share", body=_body, starts=_starts)

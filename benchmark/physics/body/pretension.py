@@ -5,38 +5,99 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchmark.physics.description import EffectDescription, linear
-from benchmark.physics.effect import Effect, LowerFaceMotion, PressHistory, TrialContext, Values
+from benchmark.physics.description import EffectDescription, Option, linear
+from benchmark.physics.effect import (
+    Effect,
+    FemTerm,
+    LowerFaceMotion,
+    NotInFemError,
+    PressHistory,
+    TrialContext,
+    Values,
+)
+
+if TYPE_CHECKING:
+    from fem import Problem
+    from wavemodel import WaveLayer
 
 DESCRIPTION = EffectDescription(
     slug="pretension",
     acts_on="body",
     sentence="The specimen was under tension before the press, which adds a stiffness that is there from the start.",
-    equation="F = f(d) + k d, for a membrane k = 2 pi T / ln(R / a); "
+    equation="F = f(d) + k d; over a hole k = 2 pi S t / ln(R / a) (membrane), on a base k = S dF/(d dS) of the layers; "
     "of its share of F a part q moves the lower face by t d / (2 r ln(R / a))",
-    source="Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, chapter 13",
+    source="Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, chapter 13; M. A. Biot, Mechanics of "
+    "Incremental Deformations",
     parameters=(
-        linear("stiffness", "N/m", 0.0, 1e5, "added stiffness k"),
+        linear(
+            "pretension",
+            "Pa",
+            0.0,
+            1e8,
+            "in-plane tensile stress S of all layers before the press",
+            option=Option(0.0, 1e12),
+        ),
         linear("field", "", 0.0, 1.0, "part q of the tension's share that shows in the lower face: 1 for a membrane"),
     ),
+    in_wave="in the plane of every layer or of the sheet; a finite-strain wave on a base as the stiffness k on top",
+    in_fem="in-plane stress of all layers before the press, in axial symmetry and blocks",
+    retired=(
+        (
+            "stiffness",
+            "pretension is now a stress in Pa, which a stiffness alone does not tell: run discover on the session again, "
+            'or give pretension = "20 kPa" in its place',
+        ),
+    ),
 )
+PROBE = 100.0
+"""Pa, small beside every modulus of the layers: the stiffness on a base is linear in the stress."""
+UNKNOWN_MODULUS = 1e5
+"""Pa of a single layer in place of unknown ones; of one layer the added stiffness does not depend on it."""
+SHALLOW = 1e-4
+"""m; the layered wave of small strain is linear in depth."""
+
+
+def stiffness_per_stress(context: TrialContext) -> float:
+    """Added stiffness over the pretension, k / S, in m: from the membrane over a hole, from the layers on a base."""
+    if math.isfinite(context.hole_radius):
+        return 2.0 * math.pi * context.thickness / math.log(context.hole_radius / context.tool_radius)
+    return _on_base(context.layers or _one_layer(context.thickness), context.tool_radius, context.contact)
+
+
+def _one_layer(thickness: float) -> tuple[WaveLayer, ...]:
+    from wavemodel import WaveLayer
+
+    return (WaveLayer("specimen", thickness, 1000.0, UNKNOWN_MODULUS, 0.49),)
+
+
+@lru_cache(maxsize=64)
+def _on_base(layers: tuple[WaveLayer, ...], tool_radius: float, contact: str) -> float:
+    from wavemodel import DiscTool, LayeredWave
+
+    tool = DiscTool(tool_radius, contact)
+    bare, tense = (LayeredWave(layers, tool, support="bonded", pretension=s) for s in (None, PROBE))
+    depth = np.array([SHALLOW])
+    return float((tense.law(depth) - bare.law(depth))[0] / (PROBE * SHALLOW))
 
 
 def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
     from wavemodel.physics import Pretension
 
-    return {"pretension": Pretension(values["stiffness"])}
+    if values["pretension"] <= 0.0:
+        return {}
+    return {"pretension": Pretension(values["pretension"] * stiffness_per_stress(context))}
 
 
 def _lower_face(values: Values, face: LowerFaceMotion, press: PressHistory, context: TrialContext) -> LowerFaceMotion:
     """The tension's share of the force makes the dent a membrane's, whose slope is d / (r ln(R / a))."""
     if not math.isfinite(context.hole_radius):
         return face
-    carried = values["stiffness"] * press.surface
+    carried = values["pretension"] * stiffness_per_stress(context) * press.surface
     pressed = press.elastic > 1e-9 * context.peak_force
     share = np.divide(carried, press.elastic, out=np.zeros_like(carried), where=pressed)
     share = values["field"] * np.clip(share, 0.0, 1.0)
@@ -45,9 +106,22 @@ def _lower_face(values: Values, face: LowerFaceMotion, press: PressHistory, cont
     return replace(face, passed=face.passed * (1.0 - share), dent=(dent, context.tool_radius))
 
 
+def _in_fem(values: Values, problem: Problem, context: TrialContext) -> Problem:
+    if problem.geometry == "surface":
+        raise NotInFemError("pretension is no part of the geometry surface, which has no plane to lie in")
+    return replace(problem, pretension=values["pretension"])
+
+
 def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
-    stiffness = 0.1 * context.peak_force / context.peak_depth
-    return tuple({"stiffness": stiffness, "field": part} for part in (0.3, 1.0))
+    stress = 0.1 * context.peak_force / context.peak_depth / stiffness_per_stress(context)
+    return tuple({"pretension": stress, "field": part} for part in (0.3, 1.0))
 
 
-EFFECT = Effect(DESCRIPTION, "stiffness", body=_body, lower_face=_lower_face, starts=_starts)
+EFFECT = Effect(
+    DESCRIPTION,
+    "pretension",
+    body=_body,
+    lower_face=_lower_face,
+    starts=_starts,
+    fem=FemTerm(("pretension",), _in_fem),
+)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from benchmark.physics.description import EffectDescription, linear
+from benchmark.physics.description import EffectDescription, Option, linear
 from benchmark.physics.effect import Effect, TrialContext, Values
 
 DESCRIPTION = EffectDescription(
@@ -15,9 +15,25 @@ DESCRIPTION = EffectDescription(
     equation="F = f(d) (1 + b_1 x + b_2 x^2), x = d / thickness",
     source="Hayes et al. 1972, J Biomech 5:541 (linear law); first terms of any smooth hyperelastic correction",
     parameters=(
-        linear("b_1", "", 0.0, 30.0, "first-order growth with depth over thickness"),
-        linear("b_2", "", 0.0, 300.0, "second-order growth with depth over thickness"),
+        linear(
+            "b_1",
+            "",
+            0.0,
+            30.0,
+            "first-order growth with depth over thickness",
+            option=Option(0.0, 1e4, default=0.0, key="stiffening_linear"),
+        ),
+        linear(
+            "b_2",
+            "",
+            0.0,
+            300.0,
+            "second-order growth with depth over thickness",
+            option=Option(0.0, 1e4, default=0.0, key="stiffening_quadratic"),
+        ),
     ),
+    in_wave="on top of its elastic law",
+    in_fem="in finite strain Yeoh terms of the layers, identified so that the press is as much stiffer; else quasi-linear",
 )
 
 
