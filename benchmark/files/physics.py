@@ -1,122 +1,94 @@
-"""The options of the body in a scenario: what it does beyond the laws of its layers."""
+"""The scenario's `[physics]`: what the body does beyond the laws of its layers, as `benchmark.physics` declares it."""
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
-from pydantic import model_validator
+from pydantic import create_model, model_validator
 
-from benchmark.files.quantities import (
-    Bounds,
-    Diffusivity,
-    Duration,
-    Length,
-    Number,
-    Pressure,
-    PullOff,
-    SlipForce,
-    Stiffness,
-    Travel,
-    problem,
-)
+from benchmark.files.quantities import Bounds, Number, Quantity, problem
 from benchmark.files.schema import FileModel
-
-FrictionCoefficient = Annotated[float, Number("0 to 10", Bounds(0.0, 10.0))]
-LostShare = Annotated[float, Number("0 to 0.99", Bounds(0.0, 0.99))]
-SetShare = Annotated[float, Number("0 to 0.95", Bounds(0.0, 0.95))]
-Share = Annotated[float, Number("0 to 1", Bounds(0.0, 1.0))]
-Width = Annotated[float, Number("0.01 to 100", Bounds(0.01, 100.0))]
-Growth = Annotated[float, Number("0 to 1e4", Bounds(0.0, 1e4))]
-
-TOGETHER = (
-    ("friction_force", "friction_length"),
-    ("slip_force", "slip_share"),
-    ("drainage_share", "drainage_diffusivity"),
-)
-"""Options that mean nothing without each other."""
-GOES_WITH = (
-    ("floor_stiffness", "floor_depth", "6 mm"),
-    ("softening_width", "softening", "0.2"),
-    ("permanent_set_onset", "permanent_set", "0.05"),
-)
-"""Option, the one that it belongs to, and an example of that."""
+from benchmark.files.units import dimension_of, shown
+from benchmark.physics import EffectDescription, EffectParameter, option_effects
 
 
-class Physics(FileModel):
-    """Options of the body, each off where it is not given.
-
-    Attributes
-    ----------
-    pretension : float or None
-        In-plane tensile stress before the press, Pa.
-    interface_shear_limit : float or None
-        Shear stress at which layers begin to slide on each other, Pa: every interface, where it comes to it, in the
-        finite elements in axial symmetry; the interface that comes to it first, as a whole, in the wave.
-    clamp_shear_limit : float or None
-        Shear stress at which a sheet over a hole begins to slide on the plate round it, Pa; part of the finite
-        elements in finite strain and axial symmetry.
-    friction_coefficient : float or None
-        Between tool and tissue; needed by a `rigid_frictional` tool.
-    adhesion_force : float or None
-        Pull with which the tissue holds the tool before it lets go, N.
-    floor_depth : float or None
-        Depth of the press at which a stiff floor is met, m; over a hole the lower face is taken to be as deep.
-    floor_stiffness : float or None
-        Of the floor, N/m; without it 1000 N/mm.
-    friction_force : float or None
-        Dry friction in the tissue that does not depend on the rate, N; with friction_length.
-    friction_length : float or None
-        Travel over which it builds up, m.
-    damping_time : float or None
-        Kelvin-Voigt time of a force with the speed of the press, s.
-    softening : float or None
-        Largest share of the force that is lost below the deepest depth so far (Mullins).
-    softening_width : float or None
-        Share of the energy that is given back when softening is nearly full; without it 0.5.
-    permanent_set : float or None
-        Share of the deepest depth at which the surface stays.
-    permanent_set_onset : float or None
-        Depth that leaves no set, m; without it none.
-    stiffening_linear, stiffening_quadratic : float or None
-        b1 and b2 of F = f(d) (1 + b1 x + b2 x2), x = d over the thickness of the stack.
-    drainage_share : float or None
-        Share of the force that drains away with the pore fluid; with drainage_diffusivity.
-    drainage_diffusivity : float or None
-        Of the pore fluid, m2/s.
-    slip_force : float or None
-        Force on the tool at which an interface begins to slide, N; with slip_share.
-    slip_share : float or None
-        Share of the stiffness that goes through that interface.
-    """
-
-    pretension: Pressure | None = None
-    interface_shear_limit: Pressure | None = None
-    clamp_shear_limit: Pressure | None = None
-    friction_coefficient: FrictionCoefficient | None = None
-    adhesion_force: PullOff | None = None
-    floor_depth: Length | None = None
-    floor_stiffness: Stiffness | None = None
-    friction_force: PullOff | None = None
-    friction_length: Travel | None = None
-    damping_time: Duration | None = None
-    softening: LostShare | None = None
-    softening_width: Width | None = None
-    permanent_set: SetShare | None = None
-    permanent_set_onset: Travel | None = None
-    stiffening_linear: Growth | None = None
-    stiffening_quadratic: Growth | None = None
-    drainage_share: LostShare | None = None
-    drainage_diffusivity: Diffusivity | None = None
-    slip_force: SlipForce | None = None
-    slip_share: Share | None = None
+class _Options(FileModel):
+    """Rules over several keys."""
 
     @model_validator(mode="after")
     def _options_are_complete(self) -> Self:
-        for pair in TOGETHER:
-            for key, other in (pair, pair[::-1]):
-                if getattr(self, key) is None and getattr(self, other) is not None:
-                    raise problem(f"{other} needs it; give both or neither", key=key)
-        for key, owner, example in GOES_WITH:
-            if getattr(self, key) is not None and getattr(self, owner) is None:
-                raise problem(f"it has no meaning without {owner}; give {owner}, such as {example}, too", key=key)
+        for effect in option_effects():
+            given = [key for key in effect.description.keys if getattr(self, key) is not None]
+            for key, words in _incomplete(effect.description.keys, given):
+                raise problem(words, key=key)
         return self
+
+
+def _incomplete(keys: Mapping[str, EffectParameter], given: list[str]) -> list[tuple[str, str]]:
+    """Keys of an effect that are wrong as they stand, and why."""
+    needed = {key: each.option for key, each in keys.items() if each.option and _belongs(each) and not _rests(each)}
+    missing = [key for key in needed if key not in given]
+    wrong = []
+    for key in given:
+        if missing and key in needed:
+            wrong.append((missing[0], f"{key} needs it; give both or neither"))
+        elif missing and _belongs(keys[key]):
+            option = needed[missing[0]]
+            example = option.example if option else ""
+            text = f"it has no meaning without {missing[0]}; give {missing[0]}, such as {example}, too"
+            wrong.append((key, text))
+    return wrong
+
+
+def _belongs(parameter: EffectParameter) -> bool:
+    """Whether a key acts only beside the effect's others; one that no fit searches stands alone."""
+    return bool(parameter.start)
+
+
+def _rests(parameter: EffectParameter) -> bool:
+    return parameter.option is not None and parameter.option.default is not None
+
+
+def _field(parameter: EffectParameter) -> tuple[Any, None]:
+    """A key that may be left out, with its unit and bounds."""
+    option = parameter.option
+    assert option is not None, "a key of a scenario has an option"
+    bounds = Bounds(option.low, option.high, option.above)
+    if not parameter.unit:
+        return Annotated[float, Number(f"{option.low:g} to {option.high:g}", bounds)] | None, None
+    return Annotated[float, Quantity(dimension_of(parameter.unit), bounds)] | None, None
+
+
+def _meaning(effect: EffectDescription, key: str) -> str:
+    """What a key is: its unit, what it goes with, and what holds without it."""
+    parameter = effect.keys[key]
+    option = parameter.option
+    text = parameter.meaning[0].upper() + parameter.meaning[1:] + (f", {parameter.unit}" if parameter.unit else "")
+    if option is not None and option.default:
+        default, unit = shown(option.default, parameter.unit)
+        return f"{text}; without it {default:g} {unit}".rstrip() + f" ({effect.slug})."
+    others = [name for name, each in effect.keys.items() if name != key and _belongs(each) and not _rests(each)]
+    beside = f"; with {' and '.join(others)}" if others and _belongs(parameter) else ""
+    return f"{text}{beside} ({effect.slug})."
+
+
+def _declared() -> tuple[dict[str, Any], str]:
+    """The fields of the table, and its docstring, which the reference page prints."""
+    fields, lines = {}, ["Options of the body, each off where it is not given.", "", "Attributes", "----------"]
+    for effect in option_effects():
+        for key, parameter in effect.description.keys.items():
+            fields[key] = _field(parameter)
+            lines += [f"{key} : float or None", f"    {_meaning(effect.description, key)}"]
+    return fields, "\n".join(lines)
+
+
+if TYPE_CHECKING:
+
+    class Physics(_Options):
+        """Options of the body, each off where it is not given: the keys that `benchmark.physics` declares."""
+
+        def __getattr__(self, key: str) -> float | None: ...
+else:
+    _FIELDS, _DOC = _declared()
+    Physics = create_model("Physics", __base__=_Options, __doc__=_DOC, __module__=__name__, **_FIELDS)

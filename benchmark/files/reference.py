@@ -19,6 +19,7 @@ from benchmark.files.schema import FileModel
 from benchmark.files.sessions.description import SessionFile
 from benchmark.files.tissue import Tissue
 from benchmark.files.units import format_quantity
+from benchmark.physics.reference import effects_reference
 
 HEAD = """# File reference
 
@@ -37,7 +38,8 @@ ENTRY = re.compile(r"^(?P<names>\w+(?:, \w+)*)(?: : .*)?$")
 def reference() -> str:
     """The whole page as Markdown."""
     done: set[type[FileModel]] = set()
-    return "\n".join([HEAD, *(line for title, model in ROOTS for line in _section(title, model, done))]) + "\n"
+    sections = [HEAD, *(line for title, model in ROOTS for line in _section(title, model, done))]
+    return "\n".join([*sections, effects_reference()])
 
 
 def _section(title: str, model: type[FileModel], done: set[type[FileModel]]) -> Iterator[str]:

@@ -67,6 +67,43 @@ FRACTION = Dimension("fraction", "", (("%", 0.0),), "2 %")
 DIMENSIONS = (LENGTH, PRESSURE, FORCE, DURATION, SPEED, DENSITY, ANGLE, FREQUENCY, STIFFNESS, DIFFUSIVITY, FRACTION)
 
 
+_NUMBER_ALONE = Dimension("plain number", "", (("", 0.0),), "0.3 ")
+_BY_UNIT = {
+    **{each.si: each for each in DIMENSIONS if each.si},
+    "m/N": Dimension("compliance", "m/N", (("mm/N", 0.0),), "0.1 mm/N"),
+    "N/m": Dimension("stiffness", "N/m", (("N/mm", 100.0), ("N/m", 0.0)), "1.5 N/mm"),
+    "kg": Dimension("mass", "kg", (("kg", 1.0), ("g", 0.0)), "20 g"),
+    "": _NUMBER_ALONE,
+}
+_SHOWN = {
+    "m": (1e3, "mm"),
+    "Pa": (1e-3, "kPa"),
+    "m/s": (1e3, "mm/s"),
+    "m/N": (1e3, "mm/N"),
+    "N/m": (1e-3, "N/mm"),
+    "m^2/s": (1e6, "mm^2/s"),
+    "kg": (1e3, "g"),
+}
+"""Factor and name of the unit that readers get for an SI unit."""
+
+
+def dimension_of(unit: str) -> Dimension:
+    """The dimension whose SI unit is `unit` ("" for a plain number), with the units that people read it in."""
+    spelled = _pint_spelling(unit)
+    return _BY_UNIT.get(spelled, Dimension(f"quantity in {unit}", spelled, ((spelled, 0.0),), f"1 {spelled}"))
+
+
+def shown(value: float, unit: str) -> tuple[float, str]:
+    """A value in an SI unit as number and unit for a reader: lengths in mm, pressures in kPa, compliance in mm/N."""
+    factor, name = _SHOWN.get(_pint_spelling(unit), (1.0, unit))
+    return factor * value, name
+
+
+def _pint_spelling(unit: str) -> str:
+    plain = unit.replace("m2/s", "m^2/s").replace("m**2/s", "m^2/s")
+    return {"rad": "radian", "Hz": "1/s", "1/m": "m^-1"}.get(plain, plain)
+
+
 class QuantityError(ValueError):
     """A text that is no quantity of the wanted dimension; the message says what was given and what is wanted."""
 

@@ -1,4 +1,7 @@
-"""Reading `model.toml`: strict, with units and bounds checked against what the catalogue says of each effect."""
+"""Reading `model.toml`: strict, with units and bounds as each effect declares them.
+
+A quantity that has another name by now is read by its older one; what cannot be converted is refused with what to do.
+"""
 
 from __future__ import annotations
 
@@ -11,9 +14,8 @@ from pydantic import Field
 from benchmark.errors import InputError
 from benchmark.files.schema import FileModel, Name, Schema, nearest, validated
 from benchmark.files.sources import KeyPath, Source, read_toml
-from benchmark.files.units import QuantityError, parse_quantity
-from benchmark.model_file.model import AddedEffect, RepairedModel, Value
-from benchmark.model_file.units import dimension_of, shown
+from benchmark.files.units import QuantityError, dimension_of, parse_quantity, shown
+from benchmark.model_file.repaired_model import AddedEffect, RepairedModel, Value
 from benchmark.physics.description import EffectDescription, EffectParameter
 
 
@@ -40,14 +42,14 @@ class _File(FileModel):
     evidence: dict[str, Any] = Field(default_factory=dict)
 
 
-def read_model(path: Path, cards: Mapping[str, EffectDescription]) -> RepairedModel:
+def read_model(path: Path, known: Mapping[str, EffectDescription]) -> RepairedModel:
     """Read a model file.
 
     Parameters
     ----------
     path : Path
         As `discover` writes it; a parameter may also be one text, NAME = "0.31".
-    cards : mapping of str to EffectDescription
+    known : mapping of str to EffectDescription
         The effects that are known, by slug.
 
     Raises
@@ -59,7 +61,7 @@ def read_model(path: Path, cards: Mapping[str, EffectDescription]) -> RepairedMo
     if "schema" not in table:
         raise InputError(f"{path}: the key schema is missing; a model file begins with schema = 1.")
     file = validated(_File, table, source)
-    effects = tuple(_effect(effect, place, cards, source) for place, effect in enumerate(file.effects))
+    effects = tuple(_effect(effect, place, known, source) for place, effect in enumerate(file.effects))
     repeated = {effect.slug for effect in effects if sum(effect.slug == other.slug for other in effects) > 1}
     if repeated:
         raise InputError(f"{path}: the effect {min(repeated)} is there twice; each effect may be there once.")
@@ -67,29 +69,34 @@ def read_model(path: Path, cards: Mapping[str, EffectDescription]) -> RepairedMo
     return RepairedModel(str(path), base.tissue, base.model, effects, file.evidence, base.large_press)
 
 
-def _effect(effect: _Effect, place: int, cards: Mapping[str, EffectDescription], source: Source) -> AddedEffect:
+def _effect(effect: _Effect, place: int, known: Mapping[str, EffectDescription], source: Source) -> AddedEffect:
     at = ("effects", place)
-    if effect.name not in cards:
+    if effect.name not in known:
         raise _wrong(
-            source, (*at, "name"), f"the effect {effect.name!r} is not known; {nearest(effect.name, sorted(cards))}"
+            source, (*at, "name"), f"the effect {effect.name!r} is not known; {nearest(effect.name, sorted(known))}"
         )
-    known = {parameter.name: parameter for parameter in cards[effect.name].parameters}
-    for name in effect.parameters:
-        if name not in known:
-            where = (*at, "parameters", name)
-            raise _wrong(source, where, f"{effect.name} has no such parameter; {nearest(name, known)}")
-    missing = [name for name in known if name not in effect.parameters]
-    if missing and not _optional(missing, effect):
+    description = known[effect.name]
+    parameters = {parameter.name: parameter for parameter in description.parameters}
+    older = {each.formerly: each for each in description.parameters if each.formerly}
+    values: dict[str, Value] = {}
+    for name, given in effect.parameters.items():
+        where = (*at, "parameters", name)
+        parameter = parameters.get(name) or older.get(name)
+        if parameter is None:
+            reason = dict(description.retired).get(name) or f"has no such parameter; {nearest(name, parameters)}"
+            raise _wrong(source, where, f"{effect.name}: {reason}")
+        if parameter.name in values:
+            raise _wrong(source, where, f"{effect.name} has {parameter.name} already; give one of the two")
+        values[parameter.name] = _value(given, parameter, where, source)
+    missing = [name for name in parameters if name not in values]
+    if missing and not _optional(missing, values):
         raise _wrong(source, (*at, "parameters"), f"{effect.name} needs the parameter {missing[0]}; it is missing")
-    values = {
-        name: _value(given, known[name], (*at, "parameters", name), source) for name, given in effect.parameters.items()
-    }
     return AddedEffect(effect.name, values)
 
 
-def _optional(missing: list[str], effect: _Effect) -> bool:
+def _optional(missing: list[str], given: Mapping[str, Value]) -> bool:
     """A second Prony term is left out as a whole where one was enough."""
-    return all(name.endswith("_2") for name in missing) and not any(name.endswith("_2") for name in effect.parameters)
+    return all(name.endswith("_2") for name in missing) and not any(name.endswith("_2") for name in given)
 
 
 def _value(given: _Parameter | str, parameter: EffectParameter, at: KeyPath, source: Source) -> Value:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 import fem
@@ -25,10 +27,10 @@ from benchmark.models.result import (
     UncoveredError,
     silent,
 )
+from benchmark.models.scenario_effects import Given, given_effects, scenario_context
 from benchmark.models.wider_edge import follow_deeper
+from benchmark.physics import NotInFemError, option_effects
 from fem.model import Model
-
-OPTIONS = ("pretension", "adhesion_force", "clamp_shear_limit", "interface_shear_limit")
 
 
 class FemModel:
@@ -52,13 +54,11 @@ class FemModel:
     """
 
     def __init__(self, scenario: Scenario, *, every_field: bool = False, keeping: Keeping | None = None):
-        refuse_options(scenario, OPTIONS, fibres=True)
+        refuse_options(scenario, carried_keys(), fibres=True)
         self._scenario = scenario
         self._every_field = every_field
         self._keeping = keeping
         _refuse_contact(scenario)
-        _refuse_clamp(scenario)
-        _refuse_slip(scenario)
         try:
             slow = scenario.fem.geometry == "surface"
             mesh_file = kept_mesh(keeping) if keeping is not None and slow else None
@@ -134,33 +134,18 @@ def _refuse_contact(scenario: Scenario) -> None:
         raise UncoveredError("the contact rigid_frictional is part of finite strain only")
     if touches and finite and scenario.fem.geometry == "surface":
         raise UncoveredError(f"a {tool.contact} tool that touches is not part of the geometry surface")
-    if scenario.physics.adhesion_force is not None and not (touches and finite):
-        raise UncoveredError("adhesion_force is part of rigid_frictionless and rigid_frictional tools in finite strain")
     if tool.contact == "rigid_bonded" and tool.edge_radius is not None:
         raise UncoveredError("a rigid_bonded tool with a rounded edge is not part of this solver; a sharp edge is")
 
 
-def _refuse_clamp(scenario: Scenario) -> None:
-    """Refuse a clamp that slides where this solver has none."""
-    options = scenario.fem
-    if scenario.physics.clamp_shear_limit is None:
-        return
-    if (scenario.support.kind, options.kinematics, options.geometry) != ("hole", "finite", "axisymmetric"):
-        raise UncoveredError(
-            "the option physics.clamp_shear_limit is part of a hole in finite strain and axisymmetric geometry only"
-        )
-
-
-def _refuse_slip(scenario: Scenario) -> None:
-    """Refuse layers that slide on each other where this solver has none."""
-    options, limit = scenario.fem, scenario.physics.interface_shear_limit
-    if limit is None:
-        return
-    if options.geometry != "axisymmetric" or (options.kinematics == "linear" and limit > 0.0):
-        raise UncoveredError(
-            "the option physics.interface_shear_limit is part of axisymmetric geometry only, in finite strain or "
-            "without friction (0 Pa)"
-        )
+def carried_keys() -> tuple[str, ...]:
+    """Keys of `[physics]` that the FEM carries by itself."""
+    return tuple(
+        key
+        for effect in option_effects()
+        for key, parameter in effect.description.keys.items()
+        if effect.fem is not None and parameter.name in effect.fem.names
+    )
 
 
 def problem_of(scenario: Scenario) -> fem.Problem:
@@ -174,7 +159,7 @@ def problem_of(scenario: Scenario) -> fem.Problem:
     surface = None
     if options.surface is not None and options.surface_unit is not None:
         surface = fem.read_surface(options.surface, options.surface_unit)
-    return fem.Problem(
+    problem = fem.Problem(
         layers=tuple(fem_layer(layer, options.kinematics) for layer in scenario.tissue.layers),
         tool=fem.Tool(
             tool.radius,
@@ -183,20 +168,28 @@ def problem_of(scenario: Scenario) -> fem.Problem:
             position,
             tool.tilt,
             scenario.physics.friction_coefficient,
-            scenario.physics.adhesion_force or 0.0,
         ),
         support=fem.Support(
             scenario.support.kind,
             scenario.support.hole_radius if scenario.support.kind == "hole" else None,
-            scenario.physics.clamp_shear_limit,
         ),
         kinematics=options.kinematics,
         discretisation=fem.Discretisation(options.mesh, options.radius),
         geometry=options.geometry,
         surface=surface,
-        pretension=scenario.physics.pretension or 0.0,
-        interface_shear_limit=scenario.physics.interface_shear_limit,
     )
+    return with_effects(problem, given_effects(scenario), scenario)
+
+
+def with_effects(problem: fem.Problem, effects: Iterable[Given], scenario: Scenario) -> fem.Problem:
+    """A problem with the effects that the FEM carries by itself; raises UncoveredError for a term it does not have."""
+    for effect, values in effects:
+        if effect.fem is not None and set(effect.fem.names) & set(values):
+            try:
+                problem = effect.fem.change(values, problem, scenario_context(scenario))
+            except NotInFemError as error:
+                raise UncoveredError(str(error)) from None
+    return problem
 
 
 def _resumption(solution: fem.Solution, load: fem.Load) -> Resumption | None:

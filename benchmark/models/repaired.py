@@ -6,7 +6,6 @@ elastic force. Effects of the drive and of the observation belong to rig and sen
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,8 +16,8 @@ import numpy as np
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel, read_model
 from benchmark.models.result import Array, Drive, ModelResult, OnStep, PreparedModel, UncoveredError, silent
-from benchmark.models.wave_physics import given
-from benchmark.physics import Effect, TrialContext, catalogue, load_effects
+from benchmark.models.scenario_effects import given_in_wave, scenario_context
+from benchmark.physics import Effect, catalogue, load_effects
 from wavemodel import WaveError
 from wavemodel.physics import Physics, QuasiStaticPress
 from wavemodel.physics.force_driven import drive_by_force
@@ -58,7 +57,7 @@ def load_repair(path: Path, own_effects: Path | None = None) -> RepairedModel:
 
 def switched_on(repair: RepairedModel, scenario: Scenario, model: str) -> SwitchedOn:
     """What a model file switches on in a press of a scenario by `model` ("wave" or "fem")."""
-    around, on, warnings = _around(scenario), [], []
+    context, on, warnings = scenario_context(scenario), [], []
     options: dict[str, Any] = {}
     for effect, values in effects_of(repair):
         reason = _left_out(effect, repair, scenario, model)
@@ -66,7 +65,7 @@ def switched_on(repair: RepairedModel, scenario: Scenario, model: str) -> Switch
             warnings.append(f"the effect {effect.slug} is not switched on here: {reason}")
             continue
         assert effect.body is not None, "an effect without a body is left out"
-        options |= dict(effect.body(values, around))
+        options |= dict(effect.body(values, context))
         on.append(effect.slug)
     return SwitchedOn(Physics(**options), tuple(on), tuple(warnings))
 
@@ -81,7 +80,7 @@ def on_its_base(repair: RepairedModel, scenario: Scenario) -> Scenario:
 
 def refuse_options_twice(repair: RepairedModel, scenario: Scenario) -> None:
     """Refuse options of the body in the scenario beside effects of a model file; raises UncoveredError."""
-    names = given(scenario)
+    names = given_in_wave(scenario)
     if names and repair.effects:
         raise UncoveredError(
             f"the scenario's physics.{names[0]} cannot act beside the effects of a model file: its effects act on an "
@@ -115,18 +114,6 @@ def _left_out(effect: Effect, repair: RepairedModel, scenario: Scenario, model: 
 def held_by_finite_strain(effect: Effect, repair: RepairedModel) -> bool:
     """Whether an effect that was found on top of a linear wave is what a finite-strain solver has by itself."""
     return repair.model == "wave" and repair.large_press == "linear" and effect.slug in IN_THE_FEM
-
-
-def _around(scenario: Scenario) -> TrialContext:
-    thickness = sum(layer.thickness for layer in scenario.tissue.layers if math.isfinite(layer.thickness))
-    history = scenario.load_history()
-    return TrialContext(
-        tool_radius=scenario.tool.radius,
-        thickness=float(thickness),
-        peak_depth=0.1 * float(thickness),
-        peak_force=float(np.abs(history.value).max()),
-        duration=float(history.time[-1]),
-    )
 
 
 class RepairedPress:

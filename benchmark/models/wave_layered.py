@@ -9,8 +9,8 @@ import numpy as np
 from benchmark.files import Scenario
 from benchmark.models.frames import vertices
 from benchmark.models.result import Drive, Picture, UncoveredError
+from benchmark.models.scenario_effects import wave_physics, wave_slip
 from benchmark.models.wave_parts import PreparedWave, Solution, law_warnings, wave_layers, wave_relaxation, wave_tool
-from benchmark.models.wave_physics import wave_physics, wave_slip
 from wavemodel import LayeredWave, NotCoveredError, WaveError
 
 STRAINS = {
@@ -61,7 +61,7 @@ def _to_peak(scenario: Scenario) -> PreparedWave:
 def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) -> PreparedWave:
     """One wave; `to_peak`, refuse it where the scenario's peak is beyond its range."""
     wave = LayeredWave(
-        wave_layers(scenario),
+        wave_layers(scenario.tissue.layers),
         wave_tool(scenario),
         support=scenario.support.kind,
         window=scenario.wave.window,

@@ -9,9 +9,9 @@ from benchmark.files import Scenario
 from benchmark.models.coverage import refuse_options, refuse_solid
 from benchmark.models.radii import profile_radii
 from benchmark.models.result import Drive, ModelResult, OnStep, Picture, Reading, StepProgress, UncoveredError, silent
+from benchmark.models.scenario_effects import SHEAR_LIMIT, keys_on_top
 from benchmark.models.wave_layered import layered_wave
 from benchmark.models.wave_parts import PreparedWave, Solution
-from benchmark.models.wave_physics import OPTIONS, SHEAR_LIMIT
 from benchmark.models.wave_plate import plate_wave
 from wavemodel import NotCoveredError, WaveError
 
@@ -28,7 +28,7 @@ class WaveModel:
     """
 
     def __init__(self, scenario: Scenario):
-        refuse_options(scenario, ("pretension", *(() if _is_sheet(scenario) else (SHEAR_LIMIT,)), *OPTIONS))
+        refuse_options(scenario, ("pretension", *(() if _is_sheet(scenario) else (SHEAR_LIMIT,)), *keys_on_top()))
         refuse_solid(scenario)
         self._scenario = scenario
         try:

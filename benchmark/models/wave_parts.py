@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -78,11 +78,11 @@ class PreparedWave:
     picture: Callable[[Drive], Picture] | None = None
 
 
-def wave_layers(scenario: Scenario) -> list[WaveLayer]:
-    """The layers with the initial moduli of their laws."""
+def wave_layers(layers: Iterable[Layer]) -> list[WaveLayer]:
+    """Layers with the initial moduli of their laws."""
     return [
         WaveLayer(layer.name, layer.thickness, layer.density, initial_modulus(layer), layer.poisson_ratio)
-        for layer in scenario.tissue.layers
+        for layer in layers
     ]
 
 

@@ -7,8 +7,8 @@ import numpy as np
 from benchmark.files import Scenario
 from benchmark.models.coverage import relaxation_warnings
 from benchmark.models.result import UncoveredError
+from benchmark.models.scenario_effects import wave_physics
 from benchmark.models.wave_parts import PreparedWave, law_warnings, wave_layers, wave_relaxation, wave_tool
-from benchmark.models.wave_physics import wave_physics
 from wavemodel import PlateWave, Prony, WaveError
 
 MODEL = "sheet over a hole, finite deflection with its local tension"
@@ -36,7 +36,7 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
     series, warnings = _sheet_series(scenario)
     stress = scenario.physics.pretension or 0.0
     wave = PlateWave(
-        wave_layers(scenario),
+        wave_layers(scenario.tissue.layers),
         wave_tool(scenario),
         scenario.support.kind,
         hole,

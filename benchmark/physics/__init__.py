@@ -1,16 +1,18 @@
 """The physics that a model can have or lack: one file an effect, in `body`, `drive` and `observation` where it acts."""
 
-from benchmark.physics.description import EffectDescription, EffectParameter
+from benchmark.physics.description import EffectDescription, EffectParameter, Option
 from benchmark.physics.effect import (
     BodyResponse,
     Effect,
+    FemTerm,
     LowerFaceMotion,
     Motion,
+    NotInFemError,
     PressHistory,
     Readings,
     TrialContext,
 )
-from benchmark.physics.registry import SLUGS, catalogue, load_effects
+from benchmark.physics.registry import SLUGS, catalogue, load_effects, option_effects
 
 __all__ = [
     "SLUGS",
@@ -18,11 +20,15 @@ __all__ = [
     "Effect",
     "EffectDescription",
     "EffectParameter",
+    "FemTerm",
     "LowerFaceMotion",
     "Motion",
+    "NotInFemError",
+    "Option",
     "PressHistory",
     "Readings",
     "TrialContext",
     "catalogue",
     "load_effects",
+    "option_effects",
 ]

@@ -185,6 +185,8 @@ class Effect:
         File of an own effect.
     fem : FemTerm or None
         How the FEM carries it by itself.
+    native_in_wave : tuple of str
+        Parameters and options that the wave of a scenario has in its own equations, not on top of its elastic law.
     """
 
     description: EffectDescription
@@ -199,6 +201,7 @@ class Effect:
     origin: str | None = None
     amplitudes: tuple[str, ...] = ()
     fem: FemTerm | None = None
+    native_in_wave: tuple[str, ...] = ()
 
     @property
     def slug(self) -> str:

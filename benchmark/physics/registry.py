@@ -50,6 +50,12 @@ def catalogue() -> tuple[Effect, ...]:
     )
 
 
+@cache
+def option_effects() -> tuple[Effect, ...]:
+    """The effects that a scenario's `[physics]` can state, in the order of the catalogue."""
+    return tuple(effect for effect in catalogue() if effect.description.keys)
+
+
 def load_effects(path: str | Path) -> tuple[Effect, ...]:
     """Own effects of a Python file: every `Effect` at its top level, in their order.
 

@@ -6,6 +6,7 @@ the measured force; then the fit is done again. A few rounds settle it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -16,6 +17,7 @@ from benchmark.fitting import FittingError, SessionFit, TrialData, fit_session
 from benchmark.model_file import RepairedModel
 from benchmark.models import Array, Drive, PreparedModel, UncoveredError
 from benchmark.models.repaired import effects_of, held_by_finite_strain
+from benchmark.models.scenario_effects import specimen_layers
 from benchmark.models.trial_response import Added, trial_force
 from benchmark.physics import TrialContext
 
@@ -111,11 +113,14 @@ def _share(session: Session, trial: TrialData, fit: SessionFit, effects: Sequenc
 
 def _around(session: Session, trial: TrialData, depth: Array) -> TrialContext:
     measured = next(each for each in session.trials if (each.condition, each.name) == trial.key)
-    thickness = session.specimen.thickness
+    thickness, support = session.specimen.thickness, measured.support
     return TrialContext(
         tool_radius=measured.tool.radius,
         thickness=thickness if np.isfinite(thickness) else 0.05,
         peak_depth=float(depth.max()),
         peak_force=float(np.ptp(trial.force)),
         duration=float(np.ptp(trial.time)),
+        hole_radius=(support.hole_radius or math.inf) if support.kind == "hole" else math.inf,
+        layers=specimen_layers(session.specimen.layers),
+        contact=measured.tool.contact,
     )

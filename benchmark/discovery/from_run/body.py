@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmark.discovery.from_run.reading import Array, FinishedRun
+from benchmark.models.scenario_effects import specimen_layers
 from benchmark.physics import Effect, TrialContext
 from wavemodel.physics import Physics, QuasiStaticPress
 from wavemodel.physics.force_driven import drive_by_force
@@ -60,6 +61,8 @@ def body_of(run: FinishedRun) -> Body:
         peak_depth=float(run.reference[:, 0].max()),
         peak_force=float(run.force.max()),
         duration=float(run.time[-1]),
+        layers=specimen_layers(run.scenario.tissue.layers),
+        contact=run.scenario.tool.contact,
     )
     return Body(layers[:, 0], np.concatenate(([0.0], run.force[rising])), layers, around)
 

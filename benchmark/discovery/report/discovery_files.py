@@ -19,8 +19,8 @@ from benchmark.discovery.discovery_result import (
 )
 from benchmark.discovery.report.discovery_page import discovery_page
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, LayerGap, NextExperiment
+from benchmark.files.units import shown
 from benchmark.model_file import model_toml
-from benchmark.model_file.units import shown
 from benchmark.runs.document import describe_environment
 from reports import whole_folder, write_csv, write_json, write_page, write_text
 

@@ -7,7 +7,7 @@ import math
 from benchmark.discovery.discovery_result import Candidate, Estimate, NamedEffect
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, NextExperiment
 from benchmark.discovery.report.words import effect_name
-from benchmark.model_file.units import shown
+from benchmark.files.units import shown
 from reports import Block, Column, Download, Fact, Facts, Listing, Paragraph, Section, Subsection, Table
 from reports.figures import RankedCandidate, ranking
 from reports.formatting import format_number

@@ -28,6 +28,7 @@ from benchmark.discovery.trials.segments import Segment, segments, stages
 from benchmark.discovery.trials.study import ConditionData, Study
 from benchmark.errors import InputError
 from benchmark.files import Session, Trial
+from benchmark.models.scenario_effects import specimen_layers
 from benchmark.physics import TrialContext
 
 LEAST_TRIALS = 3
@@ -221,6 +222,8 @@ def _condition(
         spacing=session.camera.marker_spacing if session.camera and grid is not None else 0.0,
         markers=None if grid is None else grid.rest,
         hole_radius=(first.support.hole_radius or math.inf) if first.support.kind == "hole" else math.inf,
+        layers=specimen_layers(session.specimen.layers),
+        contact=first.tool.contact,
     )
     return ConditionData(
         first.condition,

@@ -15,6 +15,8 @@ DESCRIPTION = EffectDescription(
     equation="T_x w_xx + T_y w_yy = -q: the dent at r' = sqrt(x^2 / sqrt(rho) + y^2 sqrt(rho)), rho = T_x / T_y",
     source="R. Haberman, Applied Partial Differential Equations, section 9.5 (scaling of the axes)",
     parameters=(linear("log_ratio", "", -2.3, 2.3, "natural logarithm of the tension along x over that along y", 0.1),),
+    in_wave="in the markers alone",
+    in_fem="in the markers alone; a layer's `fibre` makes x and y differ in a block",
 )
 
 

@@ -41,7 +41,7 @@ DESCRIPTION = EffectDescription(
             "",
             0.0,
             10.0,
-            "between tool and tissue; needed by a rigid_frictional tool, in the FEM",
+            "Coulomb friction between tool and tissue; needed by a rigid_frictional tool, in the FEM",
         ),
     ),
     in_wave="on top of its elastic law",

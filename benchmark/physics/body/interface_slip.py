@@ -63,7 +63,7 @@ DESCRIPTION = EffectDescription(
         ),
     ),
     in_wave="slip_force and slip_share on top of its elastic law; interface_shear_limit between the layers on a base",
-    in_fem="the shear limits by its own interfaces and clamp, in axial symmetry; slip_force and slip_share quasi-linear",
+    in_fem="the shear limits by its interfaces and clamp, in axial symmetry; slip_force and slip_share quasi-linear",
 )
 
 
@@ -138,4 +138,5 @@ EFFECT = Effect(
     starts=_starts,
     amplitudes=("slip_share",),
     fem=FemTerm(SHEAR_LIMITS, _in_fem),
+    native_in_wave=SHEAR_LIMITS[:1],
 )

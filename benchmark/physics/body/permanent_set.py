@@ -23,7 +23,7 @@ DESCRIPTION = EffectDescription(
             "",
             0.0,
             0.9,
-            "share of the deepest depth that stays",
+            "share of the deepest depth at which the surface stays",
             option=Option(0.0, 0.95, example="0.05"),
             formerly="fraction",
         ),

@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.interpolate import pchip_interpolate
 
 from benchmark.physics.description import EffectDescription, Option, linear
 from benchmark.physics.effect import (
@@ -29,8 +30,8 @@ DESCRIPTION = EffectDescription(
     slug="pretension",
     acts_on="body",
     sentence="The specimen was under tension before the press, which adds a stiffness that is there from the start.",
-    equation="F = f(d) + k d; over a hole k = 2 pi S t / ln(R / a) (membrane), on a base k = S dF/(d dS) of the layers; "
-    "of its share of F a part q moves the lower face by t d / (2 r ln(R / a))",
+    equation="F = f(d) + k d; over a hole k = 2 pi S t / ln(R / a) (membrane), on a base k = (S / d) dF/dS "
+    "of the layers; of its share of F a part q moves the lower face by t d / (2 r ln(R / a))",
     source="Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, chapter 13; M. A. Biot, Mechanics of "
     "Incremental Deformations",
     parameters=(
@@ -38,7 +39,7 @@ DESCRIPTION = EffectDescription(
             "pretension",
             "Pa",
             0.0,
-            1e8,
+            5e6,
             "in-plane tensile stress S of all layers before the press",
             option=Option(0.0, 1e12),
         ),
@@ -49,24 +50,31 @@ DESCRIPTION = EffectDescription(
     retired=(
         (
             "stiffness",
-            "pretension is now a stress in Pa, which a stiffness alone does not tell: run discover on the session again, "
-            'or give pretension = "20 kPa" in its place',
+            "pretension is a stress in Pa, which a stiffness alone does not tell: run discover on the session again, "
+            'or give the stress in its place, such as pretension = "20 kPa"',
         ),
     ),
 )
-PROBE = 100.0
-"""Pa, small beside every modulus of the layers: the stiffness on a base is linear in the stress."""
+PROBES = (1e2, 1e3, 1e4, 1e5, 1e6, 1e7)
+"""Pa at which the stiffness of a tense base is worked out; between them k / S goes smoothly with the logarithm of S."""
 UNKNOWN_MODULUS = 1e5
-"""Pa of a single layer in place of unknown ones; of one layer the added stiffness does not depend on it."""
+"""Pa of a single layer in place of unknown ones."""
+STIFFEST = 1e6
+"""N/m; the wave takes no more."""
 SHALLOW = 1e-4
 """m; the layered wave of small strain is linear in depth."""
 
 
-def stiffness_per_stress(context: TrialContext) -> float:
-    """Added stiffness over the pretension, k / S, in m: from the membrane over a hole, from the layers on a base."""
+def added_stiffness(stress: float, context: TrialContext) -> float:
+    """N/m that a pretension in Pa adds: a membrane's over a hole, the layered wave's in small strain on a base."""
     if math.isfinite(context.hole_radius):
-        return 2.0 * math.pi * context.thickness / math.log(context.hole_radius / context.tool_radius)
-    return _on_base(context.layers or _one_layer(context.thickness), context.tool_radius, context.contact)
+        added = 2.0 * math.pi * stress * context.thickness / math.log(context.hole_radius / context.tool_radius)
+    else:
+        layers = context.layers or _one_layer(context.thickness)
+        per_stress = _on_base(layers, context.tool_radius, context.contact)
+        at = math.log(min(max(stress, PROBES[0]), PROBES[-1]))
+        added = stress * float(pchip_interpolate(np.log(PROBES), per_stress, at))
+    return min(added, STIFFEST)
 
 
 def _one_layer(thickness: float) -> tuple[WaveLayer, ...]:
@@ -76,13 +84,17 @@ def _one_layer(thickness: float) -> tuple[WaveLayer, ...]:
 
 
 @lru_cache(maxsize=64)
-def _on_base(layers: tuple[WaveLayer, ...], tool_radius: float, contact: str) -> float:
+def _on_base(layers: tuple[WaveLayer, ...], tool_radius: float, contact: str) -> tuple[float, ...]:
+    """K / S in m at each of the probes."""
     from wavemodel import DiscTool, LayeredWave
 
-    tool = DiscTool(tool_radius, contact)
-    bare, tense = (LayeredWave(layers, tool, support="bonded", pretension=s) for s in (None, PROBE))
-    depth = np.array([SHALLOW])
-    return float((tense.law(depth) - bare.law(depth))[0] / (PROBE * SHALLOW))
+    tool, depth = DiscTool(tool_radius, contact), np.array([SHALLOW])
+
+    def force(stress: float | None) -> float:
+        return float(LayeredWave(layers, tool, support="bonded", pretension=stress).law(depth)[0])
+
+    bare = force(None)
+    return tuple((force(stress) - bare) / (stress * SHALLOW) for stress in PROBES)
 
 
 def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
@@ -90,14 +102,14 @@ def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
 
     if values["pretension"] <= 0.0:
         return {}
-    return {"pretension": Pretension(values["pretension"] * stiffness_per_stress(context))}
+    return {"pretension": Pretension(added_stiffness(values["pretension"], context))}
 
 
 def _lower_face(values: Values, face: LowerFaceMotion, press: PressHistory, context: TrialContext) -> LowerFaceMotion:
     """The tension's share of the force makes the dent a membrane's, whose slope is d / (r ln(R / a))."""
     if not math.isfinite(context.hole_radius):
         return face
-    carried = values["pretension"] * stiffness_per_stress(context) * press.surface
+    carried = added_stiffness(values["pretension"], context) * press.surface
     pressed = press.elastic > 1e-9 * context.peak_force
     share = np.divide(carried, press.elastic, out=np.zeros_like(carried), where=pressed)
     share = values["field"] * np.clip(share, 0.0, 1.0)
@@ -113,7 +125,8 @@ def _in_fem(values: Values, problem: Problem, context: TrialContext) -> Problem:
 
 
 def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
-    stress = 0.1 * context.peak_force / context.peak_depth / stiffness_per_stress(context)
+    wanted = 0.1 * context.peak_force / context.peak_depth
+    stress = wanted * PROBES[1] / added_stiffness(PROBES[1], context)
     return tuple({"pretension": stress, "field": part} for part in (0.3, 1.0))
 
 
@@ -124,4 +137,5 @@ EFFECT = Effect(
     lower_face=_lower_face,
     starts=_starts,
     fem=FemTerm(("pretension",), _in_fem),
+    native_in_wave=("pretension",),
 )

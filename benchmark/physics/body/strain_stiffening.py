@@ -20,7 +20,7 @@ DESCRIPTION = EffectDescription(
             "",
             0.0,
             30.0,
-            "first-order growth with depth over thickness",
+            "growth b_1 of the force with depth over thickness",
             option=Option(0.0, 1e4, default=0.0, key="stiffening_linear"),
         ),
         linear(
@@ -28,12 +28,12 @@ DESCRIPTION = EffectDescription(
             "",
             0.0,
             300.0,
-            "second-order growth with depth over thickness",
+            "growth b_2 with depth over thickness squared",
             option=Option(0.0, 1e4, default=0.0, key="stiffening_quadratic"),
         ),
     ),
     in_wave="on top of its elastic law",
-    in_fem="in finite strain Yeoh terms of the layers, identified so that the press is as much stiffer; else quasi-linear",
+    in_fem="Yeoh terms of the layers in finite strain, identified so that it stiffens as much; else quasi-linear",
 )
 
 

@@ -20,7 +20,7 @@ DESCRIPTION = EffectDescription(
             "",
             0.0,
             0.95,
-            "largest share s of the force that is lost",
+            "largest share s of the force that is lost below the deepest depth so far (Mullins)",
             option=Option(0.0, 0.99, example="0.2"),
             formerly="strength",
         ),

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from benchmark.physics.description import EffectDescription, linear, logarithmic
-from benchmark.physics.effect import Effect, TrialContext, Values
+from benchmark.physics.effect import Effect, FemTerm, NotInFemError, TrialContext, Values
+
+if TYPE_CHECKING:
+    from fem import Problem
 
 
 def _description(terms: int) -> EffectDescription:
@@ -24,12 +28,13 @@ def _description(terms: int) -> EffectDescription:
         else "F(t) = int G(t - t') df(t'), G = 1 - g_1 (1 - exp(-t / tau_1))",
         source="Y. C. Fung, Biomechanics: Mechanical Properties of Living Tissues, section 7.6",
         parameters=tuple(parameters),
+        in_wave="Prony series on top of its elastic law; a scenario's layers have series of their own (`relaxation`)",
+        in_fem="the same Prony series in every layer; quasi-linear where layers relax by themselves",
     )
 
 
-def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
-    from wavemodel import Prony
-
+def _series(values: Values) -> dict[float, float]:
+    """Share of the whole stiffness that fades with each relaxation time in s."""
     shares: dict[float, float] = {}
     left = 1.0
     for term in range(1, len(values) // 2 + 1):
@@ -37,7 +42,24 @@ def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
         left -= share
         if share > 0.0:
             shares[tau] = shares.get(tau, 0.0) + share
+    return shares
+
+
+def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
+    from wavemodel import Prony
+
+    shares = _series(values)
     return {"relaxation": Prony(tuple(shares.values()), tuple(shares))} if shares else {}
+
+
+def _in_fem(values: Values, problem: Problem, context: TrialContext) -> Problem:
+    from fem import PronyTerm
+
+    relaxing = [layer.name for layer in problem.layers if layer.relaxation]
+    if relaxing:
+        raise NotInFemError(f"the layer {relaxing[0]} has a relaxation of its own")
+    terms = tuple(PronyTerm(share, tau) for tau, share in _series(values).items())
+    return replace(problem, layers=tuple(replace(layer, relaxation=terms) for layer in problem.layers))
 
 
 def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
@@ -49,5 +71,18 @@ def _two_starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     return tuple({"g_1": 0.15, "tau_1": max(share * slow, 0.02), "g_2": 0.15, "tau_2": slow} for share in (0.02, 0.1))
 
 
-TWO = Effect(_description(2), "g_1", body=_body, starts=_two_starts)
-EFFECT = Effect(_description(1), "g_1", body=_body, starts=_starts, richer=TWO)
+TWO = Effect(
+    _description(2),
+    "g_1",
+    body=_body,
+    starts=_two_starts,
+    fem=FemTerm(("g_1", "tau_1", "g_2", "tau_2"), _in_fem, elastic=False),
+)
+EFFECT = Effect(
+    _description(1),
+    "g_1",
+    body=_body,
+    starts=_starts,
+    richer=TWO,
+    fem=FemTerm(("g_1", "tau_1"), _in_fem, elastic=False),
+)

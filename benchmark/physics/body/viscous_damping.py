@@ -18,7 +18,15 @@ DESCRIPTION = EffectDescription(
     equation="F = f + eta df/dt + c v_0 sign(v) |v / v_0|^n, v_0 = 1 mm/s",
     source="Kelvin-Voigt solid; Simo and Hughes, Computational Inelasticity, chapter 10; power-law fluid for n < 1",
     parameters=(
-        linear("damping_time", "s", 0.0, 10.0, "Kelvin-Voigt time eta", option=Option(1e-6, 1e7), formerly="eta"),
+        linear(
+            "damping_time",
+            "s",
+            0.0,
+            10.0,
+            "Kelvin-Voigt time eta of a force with the speed of the press",
+            option=Option(1e-6, 1e7),
+            formerly="eta",
+        ),
         linear("drag", "N s/m", 0.0, 1e5, "resistance c at 1 mm/s, whatever the depth"),
         linear("power", "", 0.5, 1.5, "power n of the speed in that resistance"),
     ),

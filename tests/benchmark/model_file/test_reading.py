@@ -6,7 +6,7 @@ from benchmark.errors import InputError
 from benchmark.model_file import AddedEffect, RepairedModel, Value, model_toml, read_model
 from benchmark.physics import catalogue
 
-CARDS = {effect.slug: (effect.richer or effect).description for effect in catalogue()}
+KNOWN = {effect.slug: (effect.richer or effect).description for effect in catalogue()}
 MODEL = RepairedModel(
     "model.toml",
     "skin_forearm",
@@ -31,7 +31,7 @@ def _written(folder: Path, text: str) -> Path:
 
 
 def test_what_is_written_reads_back(tmp_path: Path) -> None:
-    read = read_model(_written(tmp_path, model_toml(MODEL)), CARDS)
+    read = read_model(_written(tmp_path, model_toml(MODEL)), KNOWN)
     assert read.effects == MODEL.effects
     assert (read.tissue, read.model, read.large_press) == ("skin_forearm", "wave", "corrected")
     assert read.evidence["session"] == 'a "quoted" name'
@@ -43,7 +43,7 @@ def test_units_are_read_and_a_value_may_stand_alone(tmp_path: Path) -> None:
     text = (
         HEAD + '[[effects]]\nname = "viscoelastic_relaxation"\n[effects.parameters]\ng_1 = "30 %"\ntau_1 = "250 ms"\n'
     )
-    (effect,) = read_model(_written(tmp_path, text), CARDS).effects
+    (effect,) = read_model(_written(tmp_path, text), KNOWN).effects
     assert effect.values() == {"g_1": pytest.approx(0.3), "tau_1": pytest.approx(0.25)}
     assert effect.parameters["g_1"].ci95 is None
 
@@ -77,6 +77,33 @@ def test_units_are_read_and_a_value_may_stand_alone(tmp_path: Path) -> None:
 )
 def test_what_is_wrong_is_said_with_its_place(tmp_path: Path, text: str, words: list[str]) -> None:
     with pytest.raises(InputError) as failure:
-        read_model(_written(tmp_path, text), CARDS)
+        read_model(_written(tmp_path, text), KNOWN)
     for word in (str(tmp_path / "model.toml"), *words):
         assert word in str(failure.value)
+
+
+def test_older_names_of_the_same_quantity_are_read(tmp_path: Path) -> None:
+    older = 'force = "12 mN"\nlength = "80 um"\ncoefficient = "0.1"\n'
+    text = HEAD + f'[[effects]]\nname = "dry_friction"\n[effects.parameters]\n{older}'
+    (effect,) = read_model(_written(tmp_path, text), KNOWN).effects
+    assert effect.values() == {"friction_force": 0.012, "friction_length": 8e-5, "friction_share": 0.1}
+
+
+@pytest.mark.parametrize("effect", catalogue(), ids=lambda effect: effect.slug)
+def test_every_older_name_stands_for_one_parameter(effect) -> None:
+    description = effect.description
+    older = [p.formerly for p in description.parameters if p.formerly] + [name for name, _ in description.retired]
+    names = [p.name for p in description.parameters]
+    assert len({*older, *names}) == len(older) + len(names)
+
+
+def test_a_pretension_of_unknown_stress_is_refused_with_the_way_out(tmp_path: Path) -> None:
+    older = '[[effects]]\nname = "pretension"\n[effects.parameters]\nstiffness = "1.5 N/mm"\nfield = "0.5"\n'
+    with pytest.raises(InputError, match=r"line 8.*stress in Pa.*run discover.*pretension = \"20 kPa\""):
+        read_model(_written(tmp_path, HEAD + older), KNOWN)
+
+
+def test_a_quantity_is_given_once(tmp_path: Path) -> None:
+    both = 'tear = "0 N"\nreach = "1 mm"\npull_off = "1 N"\nadhesion_force = "1 N"\n'
+    with pytest.raises(InputError, match="adhesion has adhesion_force already"):
+        read_model(_written(tmp_path, HEAD + f'[[effects]]\nname = "adhesion"\n[effects.parameters]\n{both}'), KNOWN)

@@ -73,7 +73,9 @@ def test_each_option_acts_by_its_equation(name):
 
 def test_the_fem_says_what_it_lacks():
     scenario = load_scenario("skin-5N", {"physics.permanent_set": "0.1"})
-    with pytest.raises(UncoveredError, match=r"permanent_set .* it has pretension, adhesion_force"):
+    with pytest.raises(
+        UncoveredError, match=r"permanent_set .* it has .*pretension, interface_shear_limit, .*adhesion_force"
+    ):
         prepare("fem", scenario)
 
 

@@ -8,12 +8,19 @@ import pytest
 from benchmark.discovery.bases.law import BaseLaw
 from benchmark.discovery.simulator import Shape, Simulator
 from benchmark.physics import SLUGS, Motion, TrialContext, catalogue
+from benchmark.physics.body.pretension import added_stiffness
+from wavemodel import DiscTool, LayeredWave, WaveLayer
 
 STIFFNESS = 200.0
 PEAK = 5e-3
 REST = np.array([[6e-3, 0.0], [0.0, 6e-3], [-6e-3, 0.0], [0.0, -6e-3]])
 AROUND = TrialContext(5e-3, 10e-3, PEAK, STIFFNESS * PEAK, 10.0, 6e-3, REST)
 BY_SLUG = {effect.slug: effect for effect in catalogue()}
+
+
+TENSE = 1e3
+ADDED = added_stiffness(TENSE, AROUND)
+SLIP = {"slip_force": 0.5, "slip_share": 0.0, "marker_share": 1.0, "return_share": 0.0}
 
 
 def linear_law() -> BaseLaw:
@@ -106,21 +113,21 @@ def test_the_second_term_fades_what_the_first_leaves():
 
 
 def test_damping_adds_with_speed_and_not_in_the_hold():
-    made = readings(MOTION, viscous_damping={"eta": 0.1, "drag": 0.0, "power": 1.0})
+    made = readings(MOTION, viscous_damping={"damping_time": 0.1, "drag": 0.0, "power": 1.0})
     rising = (MOTION.depth > 1e-3) & (MOTION.depth < 4e-3) & (np.gradient(MOTION.depth) > 0.0)
     assert (made.force - PLAIN.force)[rising] == pytest.approx(0.1 * STIFFNESS * 2e-3)
     assert (made.force - PLAIN.force)[DEEP[2:5]] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_drag_is_the_same_at_all_depths_once_the_contact_has_formed():
-    made = readings(MOTION, viscous_damping={"eta": 0.0, "drag": 20.0, "power": 0.5})
+    made = readings(MOTION, viscous_damping={"damping_time": 0.0, "drag": 20.0, "power": 0.5})
     rising = (MOTION.depth > 1e-3) & (MOTION.depth < 4e-3) & (np.gradient(MOTION.depth) > 0.0)
     assert (made.force - PLAIN.force)[rising] == pytest.approx(20.0 * 1e-3 * np.sqrt(2.0))
     assert made.force[AIR] == pytest.approx(0.0)
 
 
 def test_softening_spares_the_first_loading():
-    made = readings(MOTION, stress_softening={"strength": 0.2, "width": 0.5})
+    made = readings(MOTION, stress_softening={"softening": 0.2, "softening_width": 0.5})
     first = np.arange(MOTION.time.size) < DEEP[0]
     second = (MOTION.time > 8.5) & (MOTION.depth > 1e-3) & (MOTION.depth < 4e-3)
     assert made.force[first] == pytest.approx(PLAIN.force[first], abs=1e-9)
@@ -128,14 +135,14 @@ def test_softening_spares_the_first_loading():
 
 
 def test_set_leaves_the_surface_and_the_markers():
-    made = readings(MOTION, permanent_set={"fraction": 0.1, "onset": 0.0, "marker_share": 1.0})
+    made = readings(MOTION, permanent_set={"permanent_set": 0.1, "permanent_set_onset": 0.0, "marker_share": 1.0})
     after = AIR & (MOTION.time > 5.0)
     assert made.force[after] == pytest.approx(0.0, abs=1e-12)
     assert made.markers[after, 0, 0] == pytest.approx(6e-3 + 0.1 * 0.1 * PEAK)
 
 
 def test_drainage_goes_faster_under_a_smaller_tool():
-    values = {"poroelastic_drainage": {"g": 0.4, "diffusivity": 5e-6}}
+    values = {"poroelastic_drainage": {"drainage_share": 0.4, "drainage_diffusivity": 5e-6}}
     effect = BY_SLUG["poroelastic_drainage"]
 
     def left(radius: float) -> float:
@@ -152,35 +159,52 @@ def test_anisotropy_moves_x_and_y_apart():
 
 
 def test_pretension_adds_its_stiffness():
-    made = readings(MOTION, pretension={"stiffness": 30.0, "field": 0.5})
-    assert (made.force - PLAIN.force)[DEEP] == pytest.approx(30.0 * PEAK)
+    made = readings(MOTION, pretension={"pretension": TENSE, "field": 0.5})
+    assert (made.force - PLAIN.force)[DEEP] == pytest.approx(ADDED * PEAK)
     assert made.markers == pytest.approx(PLAIN.markers)
 
 
 def test_pretension_over_a_hole_moves_the_lower_face_as_a_membrane_does():
     around = replace(AROUND, hole_radius=30e-3)
     simulator = Simulator(linear_law(), around, (BY_SLUG["pretension"],))
-    made = simulator.readings(simulator.bent(Shape()), {"pretension": {"stiffness": 50.0, "field": 1.0}}, MOTION)
+    made = simulator.readings(
+        simulator.bent(Shape()),
+        {"pretension": {"pretension": 50.0 / added_stiffness(1.0, around), "field": 1.0}},
+        MOTION,
+    )
     share = 50.0 / (STIFFNESS + 50.0)
     membrane = 0.5 * 10e-3 * PEAK / (6e-3 * np.log(6.0))
     moved = made.markers[DEEP[0], 0, 0] - 6e-3
     assert moved == pytest.approx((1.0 - share) * 0.1 * PEAK + share * membrane, rel=1e-3)
 
 
+def test_a_membrane_under_tension_over_a_hole_has_its_stiffness():
+    around = replace(AROUND, hole_radius=30e-3)
+    assert added_stiffness(2e3, around) == pytest.approx(2.0 * np.pi * 2e3 * 10e-3 / np.log(6.0))
+
+
+def test_a_base_under_tension_is_as_stiff_as_its_layers_are_in_the_wave():
+    layers = (WaveLayer("skin", 1e-3, 1000.0, 5e5, 0.48), WaveLayer("fat", 9e-3, 1000.0, 3e4, 0.48))
+    around = replace(AROUND, layers=layers, contact="uniform_pressure")
+    tool, depth = DiscTool(5e-3, "uniform_pressure"), np.array([2e-3])
+    bare, tense = (LayeredWave(layers, tool, support="bonded", pretension=s).law(depth) for s in (None, 5e3))
+    assert added_stiffness(5e3, around) * 2e-3 == pytest.approx(float((tense - bare)[0]), rel=5e-3)
+
+
 def test_slip_can_show_in_the_markers_alone():
-    made = readings(MOTION, interface_slip={"limit": 0.5, "force_share": 0.0, "marker_share": 1.0, "return_share": 0.0})
+    made = readings(MOTION, interface_slip=SLIP)
     assert made.force == pytest.approx(PLAIN.force)
     assert made.markers[DEEP[0], 0, 0] - 6e-3 == pytest.approx(0.5 * 0.1 * PEAK, rel=1e-6)
 
 
 def test_the_floor_is_met_at_its_depth():
-    made = readings(MOTION, bottoming_out={"depth": 4e-3, "stiffness": 100.0, "power": 1.0})
+    made = readings(MOTION, bottoming_out={"floor_depth": 4e-3, "floor_stiffness": 100.0, "power": 1.0})
     assert (made.force - PLAIN.force)[DEEP] == pytest.approx(0.1)
     assert made.force[MOTION.depth < 4e-3] == pytest.approx(PLAIN.force[MOTION.depth < 4e-3])
 
 
 def test_friction_changes_sign_on_reversal():
-    made = readings(MOTION, dry_friction={"force": 0.05, "length": 1e-4, "coefficient": 0.0})
+    made = readings(MOTION, dry_friction={"friction_force": 0.05, "friction_length": 1e-4, "friction_share": 0.0})
     extra = made.force - PLAIN.force
     rate = np.gradient(MOTION.depth)
     middle = (MOTION.depth > 2e-3) & (MOTION.depth < 4e-3)
@@ -189,13 +213,13 @@ def test_friction_changes_sign_on_reversal():
 
 
 def test_adhesion_pulls_before_it_lets_go():
-    made = readings(MOTION, adhesion={"tear": 0.0, "reach": 1e-3, "pull_off": 0.1})
+    made = readings(MOTION, adhesion={"tear": 0.0, "reach": 1e-3, "adhesion_force": 0.1})
     assert made.force.min() == pytest.approx(-0.1, abs=0.01)
     assert made.force[MOTION.depth < -0.6e-3] == pytest.approx(0.0, abs=1e-12)
 
 
 def test_a_tearing_bond_pulls_as_far_as_it_reaches():
-    made = readings(MOTION, adhesion={"tear": 0.1, "reach": 0.5e-3, "pull_off": 0.0})
+    made = readings(MOTION, adhesion={"tear": 0.1, "reach": 0.5e-3, "adhesion_force": 0.0})
     extra = made.force - PLAIN.force
     assert -0.1 <= extra.min() < -0.05
     assert extra[MOTION.depth >= 0.0] == pytest.approx(0.0)
@@ -267,11 +291,11 @@ def test_a_scale_error_shows_at_rest():
 def test_any_number_compose():
     made = readings(
         MOTION,
-        pretension={"stiffness": 50.0, "field": 0.0},
+        pretension={"pretension": TENSE, "field": 0.0},
         contact_gap={"gap": 1e-3},
         force_drift={"rate": 0.0, "tau": 1.0},
         force_saturation={"limit": 0.9, "softness": 0.001},
     )
     assert made.force[DEEP] == pytest.approx(0.9, rel=1e-6)
     middle = np.flatnonzero(np.isclose(MOTION.depth, 3e-3))[0]
-    assert made.force[middle] == pytest.approx(250.0 * 2e-3)
+    assert made.force[middle] == pytest.approx((STIFFNESS + ADDED) * 2e-3)

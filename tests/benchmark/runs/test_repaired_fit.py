@@ -29,7 +29,8 @@ def _trial(number: int) -> TrialData:
 def test_the_effect_no_longer_softens_the_fit() -> None:
     trials = tuple(_trial(number) for number in range(4))
     specimen = load_tissue("ecoflex_00_30")
-    measured = [SimpleNamespace(name=t.name, condition=t.condition, tool=SimpleNamespace(radius=5e-3)) for t in trials]
+    rig = {"tool": SimpleNamespace(radius=5e-3, contact="rigid_bonded"), "support": SimpleNamespace(kind="bonded")}
+    measured = [SimpleNamespace(name=t.name, condition=t.condition, **rig) for t in trials]
     session = SimpleNamespace(specimen=specimen, trials=measured)
     plain = fit_session(trials, specimen.layers)
     repaired = fit_repaired(session, trials, MODEL)

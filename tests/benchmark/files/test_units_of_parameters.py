@@ -1,7 +1,6 @@
 import pytest
 
-from benchmark.files.units import format_quantity, parse_quantity
-from benchmark.model_file.units import dimension_of, shown
+from benchmark.files.units import dimension_of, format_quantity, parse_quantity, shown
 from benchmark.physics import catalogue
 
 UNITS = sorted({p.unit for effect in catalogue() for p in (effect.richer or effect).description.parameters})

@@ -1,0 +1,108 @@
+"""The effects that a scenario's `[physics]` switches on, with their values, as the waves take them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from benchmark.files import Layer, Scenario
+from benchmark.models.result import UncoveredError
+from benchmark.models.wave_parts import wave_layers
+from benchmark.physics import Effect, TrialContext, option_effects
+from wavemodel import ShearLimit, WaveLayer
+from wavemodel.physics import Physics
+
+Given = tuple[Effect, Mapping[str, float]]
+"""An effect with those of its parameters and options that a scenario gives, SI."""
+SHEAR_LIMIT = "interface_shear_limit"
+"""Of the layered wave only; it changes the elastic law, the other options act on top of it."""
+
+
+def given_effects(scenario: Scenario) -> tuple[Given, ...]:
+    """The effects that the scenario states, in the order of the catalogue."""
+    found = []
+    for effect in option_effects():
+        stated = {each.name: getattr(scenario.physics, key) for key, each in effect.description.keys.items()}
+        values = {name: value for name, value in stated.items() if value is not None}
+        if values:
+            found.append((effect, values))
+    return tuple(found)
+
+
+def scenario_context(scenario: Scenario) -> TrialContext:
+    """What an effect may know of a scenario."""
+    layers = specimen_layers(scenario.tissue.layers)
+    thickness = math.fsum(layer.thickness for layer in layers)
+    history = scenario.load_history()
+    return TrialContext(
+        tool_radius=scenario.tool.radius,
+        thickness=thickness,
+        peak_depth=0.1 * thickness,
+        peak_force=float(np.abs(history.value).max()),
+        duration=float(history.time[-1]),
+        hole_radius=(scenario.support.hole_radius or math.inf) if scenario.support.kind == "hole" else math.inf,
+        layers=layers,
+        contact=scenario.tool.contact,
+    )
+
+
+def specimen_layers(layers: Iterable[Layer]) -> tuple[WaveLayer, ...]:
+    """The layers of a specimen as effects know them, without an endless base."""
+    return tuple(wave_layers(layer for layer in layers if math.isfinite(layer.thickness)))
+
+
+def keys_on_top() -> tuple[str, ...]:
+    """Keys of `[physics]` that act on top of the elastic law of any wave."""
+    effects = (effect for effect in option_effects() if effect.body is not None)
+    return tuple(p.key for e in effects for p in e.description.parameters if p.key and p.name not in e.native_in_wave)
+
+
+def given_in_wave(scenario: Scenario) -> tuple[str, ...]:
+    """Keys of `[physics]` that change a wave's elastic law or act on top of it; pretension is part of the wave."""
+    return tuple(name for name in (SHEAR_LIMIT, *keys_on_top()) if getattr(scenario.physics, name) is not None)
+
+
+def wave_physics(scenario: Scenario) -> Physics | None:
+    """Return the options on top of a wave's elastic law; None where the scenario has none.
+
+    Raises
+    ------
+    wavemodel.WaveError
+        For a value that the wave does not take.
+    """
+    context = scenario_context(scenario)
+    options: dict[str, Any] = {}
+    for effect, given in given_effects(scenario):
+        own = {p.name for p in effect.description.parameters} - set(effect.native_in_wave)
+        if effect.body is not None and own & set(given):
+            options |= effect.body(_whole(effect, given), context)
+    return Physics(**options) if options else None
+
+
+def _whole(effect: Effect, given: Mapping[str, float]) -> dict[str, float]:
+    """A value for every parameter: what is not given is at its default, or does nothing."""
+    values = {}
+    for parameter in effect.description.parameters:
+        default = None if parameter.option is None else parameter.option.default
+        values[parameter.name] = given.get(parameter.name, parameter.start[0] if default is None else default)
+    return values
+
+
+def wave_slip(scenario: Scenario) -> ShearLimit | None:
+    """Return the shear stress at which layers begin to slide; None where they are bonded for good.
+
+    Raises
+    ------
+    UncoveredError
+        If all of them slide from the start.
+    """
+    limit = scenario.physics.interface_shear_limit
+    if limit == 0.0:
+        raise UncoveredError(
+            "the option physics.interface_shear_limit = 0 Pa is not part of this model: it lets one interface slide, "
+            "the one that comes to a limit above 0 first"
+        )
+    return None if limit is None else ShearLimit(limit)
