@@ -8,8 +8,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
-from benchmark.blind.judging import Judged
-from benchmark.blind.rows import BlindRow, confusion, table, verdicts
+from benchmark.blind.judging import BlindRow, Judged, confusion, table, verdicts
 from benchmark.errors import InputError
 from reports import write_csv, write_json, write_text
 

@@ -1,7 +1,11 @@
-"""Blind cases, each in a folder that lasts as long as its discovery, several at a time, resumed after a stop."""
+"""Blind cases put to a discovery, a function of a session and a seed that is named `module:function`.
+
+Each case is in a folder that lasts as long as its discovery; several run at a time, resumed after a stop.
+"""
 
 from __future__ import annotations
 
+import importlib
 import multiprocessing
 import tempfile
 import time
@@ -9,16 +13,61 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import closing
 from pathlib import Path
+from typing import Any, Protocol, cast
 
 from benchmark.blind.cases import CaseName
-from benchmark.blind.discoverer import Discoverer, load_discoverer
 from benchmark.blind.judging import Judged, failed, judge
 from benchmark.blind.session_files import case
-from benchmark.children import end_with_parent
-from benchmark.side_by_side import single_threaded_children
+from benchmark.child_processes import end_with_parent, single_threaded_children
+from benchmark.discovery.discovery_result import Discovery
+from benchmark.errors import InputError
+from benchmark.files.sessions.trials import Session
 from benchmark.sweep.journal import Journal, read_rows
 
+PRODUCT = "benchmark.discovery:discover"
 OnCase = Callable[[int, int, Judged | None], None]
+
+
+class Discoverer(Protocol):
+    """Answers for a session."""
+
+    def __call__(self, session: Session, *, seed: int) -> Discovery:
+        """Find where and why the model and the session disagree."""
+        ...
+
+
+def load_discoverer(name: str) -> Discoverer:
+    """The function of that name; the product's own gets its usual settings, the seed, and one process.
+
+    Raises
+    ------
+    InputError
+        It is not of the form `module:function`, or there is no such function.
+    """
+    found = _function(name)
+    if name != PRODUCT:
+        return cast(Discoverer, found)
+    settings = _function("benchmark.discovery:Settings")
+
+    def product(session: Session, *, seed: int) -> Discovery:
+        return cast(Discovery, found(session, settings=settings(seed=seed, workers=1)))
+
+    return product
+
+
+def _function(name: str) -> Any:
+    """What a module has under a name, if it can be called; raises InputError."""
+    module, _, function = name.partition(":")
+    try:
+        found = getattr(importlib.import_module(module), function)
+    except (ImportError, ValueError, AttributeError):
+        found = None
+    if not callable(found):
+        raise InputError(
+            f"--discoverer {name!r}: there is no such function; allowed: module:function, as in {PRODUCT}, called with "
+            "a session and a seed"
+        )
+    return found
 
 
 def run_case(name: CaseName, discover: Discoverer) -> Judged:

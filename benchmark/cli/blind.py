@@ -45,10 +45,9 @@ def blind(
     """
     from benchmark.blind.cases import chosen
     from benchmark.blind.cases import suite as cases_of
-    from benchmark.blind.discoverer import load_discoverer
     from benchmark.blind.folder import confusion_text, finish, open_folder, text_table
-    from benchmark.blind.rows import table
-    from benchmark.blind.running import run_cases
+    from benchmark.blind.judging import table
+    from benchmark.blind.running import load_discoverer, run_cases
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
     from benchmark.runs.destination import fresh

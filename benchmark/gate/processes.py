@@ -15,11 +15,11 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from benchmark.child_processes import THREAD_VARIABLES
 from benchmark.errors import InputError, NotComparableError, SolverError, TissuebenchError
 from benchmark.gate.measuring.costs import KEPT_MEMORY
 from benchmark.gate.plan import MEASURING, GatePlan
 from benchmark.gate.statistics import log_ratio
-from benchmark.side_by_side.process import THREAD_VARIABLES
 
 PATIENCE = 5.0
 LAST_LINES = 3

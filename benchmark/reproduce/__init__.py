@@ -5,7 +5,7 @@ statistics in `article_statistics`. What has to be run first, the marker chain o
 5 N, is in `evidence`.
 """
 
-from benchmark.reproduce.carrying_out import Reproduced, reproduce
 from benchmark.reproduce.items import Item
+from benchmark.reproduce.reproduction import Reproduced, reproduce
 
 __all__ = ["Item", "Reproduced", "reproduce"]

@@ -1,6 +1,6 @@
 """Running FEM and wave model side by side in processes of their own, and timing them."""
 
-from benchmark.side_by_side.process import ModelProcess, single_threaded_children
+from benchmark.side_by_side.process import ModelProcess
 from benchmark.side_by_side.runner import NAMES, ModelRun, SideBySide, Speedup, run_side_by_side, speedup
 from benchmark.side_by_side.worker import Finished, Seconds
 
@@ -13,6 +13,5 @@ __all__ = [
     "SideBySide",
     "Speedup",
     "run_side_by_side",
-    "single_threaded_children",
     "speedup",
 ]

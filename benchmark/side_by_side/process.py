@@ -3,34 +3,15 @@
 from __future__ import annotations
 
 import multiprocessing
-import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 
+from benchmark.child_processes import single_threaded_children
 from benchmark.errors import InputError, SolverError
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel
 from benchmark.models import UserFile
 from benchmark.side_by_side.worker import Answer, Crashed, Job, Message, RunCommand, serve
-
-THREAD_VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMEXPR_NUM_THREADS")
-
-
-@contextmanager
-def single_threaded_children() -> Iterator[None]:
-    """Processes started inside have one thread per linear-algebra library; the parent keeps its own."""
-    before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
-    os.environ.update(dict.fromkeys(THREAD_VARIABLES, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
 
 
 class ModelProcess:

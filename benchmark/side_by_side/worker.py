@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from benchmark.children import end_with_parent
+from benchmark.child_processes import end_with_parent
 from benchmark.errors import InputError
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel

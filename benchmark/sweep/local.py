@@ -13,8 +13,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from multiprocessing.connection import Connection, wait
 
-from benchmark.children import end_with_parent
-from benchmark.side_by_side import single_threaded_children
+from benchmark.child_processes import end_with_parent, single_threaded_children
 from benchmark.sweep.point import PointResult, Task, evaluate, failed
 
 LIVES = 2

@@ -1,12 +1,30 @@
-"""The rows of `verify`: for a terminal, for programs, as columns, and as a page."""
+"""The rows of `verify`: for a terminal, for programs, as columns, as a page, and all of it as a result folder."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
+from benchmark.runs.document import describe_environment
 from benchmark.verification.cases import VerificationRow
-from reports import Column, Download, Fact, KeyFigure, Listing, Notice, Page, Paragraph, Section, Table, Verdict
+from reports import (
+    Column,
+    Download,
+    Fact,
+    KeyFigure,
+    Listing,
+    Notice,
+    Page,
+    Paragraph,
+    Section,
+    Table,
+    Verdict,
+    whole_folder,
+    write_csv,
+    write_json,
+    write_page,
+)
 from reports.formatting import format_number
 
 SCHEMA = 1
@@ -157,3 +175,18 @@ def _row_values(row: VerificationRow) -> tuple[Any, ...]:
 
 def _reasons(rows: Sequence[VerificationRow]) -> list[str]:
     return [f"{row.case}: {row.reason}" for row in rows if row.reason]
+
+
+def write_verification(rows: Sequence[VerificationRow], folder: Path) -> Path:
+    """Write verification.json, verification.csv and report.html; return the page's path.
+
+    Raises
+    ------
+    OSError
+        Where the file system refuses; `folder` is then as it was.
+    """
+    with whole_folder(folder) as new:
+        write_json(new / "verification.json", document(rows))
+        write_csv(new / "verification.csv", columns(rows))
+        write_page(new / "report.html", verification_page(rows, describe_environment(seed=0)))
+    return folder / "report.html"

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmark.children import end_with_parent
+from benchmark.child_processes import end_with_parent
 from benchmark.discovery.candidate_fit import fit_candidate
 from benchmark.discovery.fit import Fit
 from benchmark.physics import Effect, load_effects

@@ -1,9 +1,11 @@
-"""Scoring against answers made by hand."""
+"""What an answer is worth, and the table of a blind run."""
+
+from dataclasses import replace
 
 import pytest
 
 from benchmark.blind.cases import BlindCase
-from benchmark.blind.judging import f1, failed, judge
+from benchmark.blind.judging import BlindRow, Judged, clopper_pearson, confusion, f1, failed, judge, table
 
 HOLD, LOAD, LIFTED = ("force_z", "hold"), ("force_z", "load"), ("force_z", "after_lift_off")
 
@@ -44,3 +46,87 @@ def test_f1_over_cells() -> None:
     assert f1({HOLD, LIFTED}, {HOLD}, set()) == pytest.approx(2 / 3)
     assert f1({HOLD, LIFTED}, {HOLD}, {LIFTED}) == 1.0
     assert f1(set(), {HOLD}, set()) == 0.0
+
+
+CASE = Judged(
+    case="",
+    kind="effect",
+    truth="adhesion",
+    seed=0,
+    session="",
+    strength=20.0,
+    verdict="named",
+    said="adhesion",
+    reported="adhesion",
+    first_set="adhesion",
+    p=0.01,
+    strongest="force_z after_lift_off",
+    place_found=True,
+    place_f1=1.0,
+    gap_closed=0.9,
+    seconds=2.0,
+)
+WRONG = replace(
+    CASE,
+    said="force_drift",
+    reported="force_drift+adhesion",
+    first_set="force_drift+adhesion",
+    place_f1=0.5,
+    gap_closed=0.5,
+)
+SILENT = replace(
+    CASE, verdict="no_discrepancy", said="", reported="", first_set="", place_found=False, place_f1=0.0, gap_closed=None
+)
+NULL = replace(SILENT, kind="null", truth="", strongest="", place_found=None, place_f1=None, strength=0.0)
+
+
+def rows_of(*cases: Judged) -> dict[str, BlindRow]:
+    return {row.measure: row for row in table(cases)}
+
+
+def test_shares_of_effects() -> None:
+    rows = rows_of(CASE, CASE, WRONG, SILENT)
+    assert rows["right name first"].value == 0.5
+    assert rows["right name first"].passed is False
+    assert rows["right name first, up to look-alikes"].value == 0.75
+    assert rows["truth inside the reported set"].value == 0.75
+    assert rows["mean size of the reported set"].value == pytest.approx(4 / 3)
+    assert rows["mean size of the reported set"].passed is True
+    assert rows["place contains the true one"].value == 0.75
+    assert rows["F1 over cells"].value == pytest.approx(2.5 / 4)
+    assert rows["gap closed on a held-out condition"].value == 0.9
+    assert "effects named on nulls" not in rows
+
+
+def test_nulls_pairs_and_outside() -> None:
+    named = replace(NULL, verdict="lookalikes", said="adhesion", reported="adhesion")
+    outside = replace(CASE, kind="outside", truth="outside_lamp_heat")
+    pair = replace(CASE, kind="pair", truth="adhesion+force_drift", said="force_drift+adhesion")
+    rows = rows_of(
+        NULL,
+        NULL,
+        NULL,
+        named,
+        outside,
+        replace(outside, verdict="outside_catalogue", said=""),
+        pair,
+        replace(pair, said="adhesion"),
+    )
+    assert rows["effects named on nulls"].value == 0.25
+    assert rows["nulls without a discrepancy"].value == 0.75
+    assert rows["outside: wrong confident name"].value == 0.5
+    assert rows["outside: flagged"].value == 0.5
+    assert rows["pairs: both named"].value == 0.5
+
+
+def test_clopper_pearson_against_published_values() -> None:
+    # 0 of 40: 1 - 0.025^(1/40); 39 of 40: a standard textbook table
+    assert clopper_pearson(0, 40) == pytest.approx((0.0, 1 - 0.025 ** (1 / 40)))
+    assert clopper_pearson(40, 40) == pytest.approx((0.025 ** (1 / 40), 1.0))
+    assert clopper_pearson(5, 10) == pytest.approx((0.1871, 0.8129), abs=1e-4)
+
+
+def test_confusion_counts_the_first_name_or_the_verdict() -> None:
+    found = confusion([CASE, WRONG, SILENT, NULL])
+    assert found["adhesion"] == {"adhesion": 1, "force_drift": 1, "(no_discrepancy)": 1}
+    assert found["none"] == {"(no_discrepancy)": 1}

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from benchmark.cli.app import main
-from benchmark.reproduce import article_page, carrying_out
+from benchmark.reproduce import article_page, reproduction
 from benchmark.reproduce.article_page import redrawn
 from benchmark.runs.report import published_section
 
@@ -26,7 +26,7 @@ def figures(evidence):
 def folder(evidence, figures, tmp_path_factory):
     folder = tmp_path_factory.mktemp("reproduce") / "out"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(carrying_out, "gather", lambda _: evidence)
+        patch.setattr(reproduction, "gather", lambda _: evidence)
         patch.setattr(article_page, "redrawn", lambda _: figures)
         assert main(["reproduce", "--out", str(folder), "--quiet"]) == 0
     return folder
@@ -54,7 +54,7 @@ def test_the_page_says_what_is_synthetic_and_what_circular(folder) -> None:
 
 
 def test_an_earlier_result_is_replaced_and_json_is_one_object(folder, evidence, monkeypatch, capfd) -> None:
-    monkeypatch.setattr(carrying_out, "gather", lambda _: evidence)
+    monkeypatch.setattr(reproduction, "gather", lambda _: evidence)
     monkeypatch.setattr(article_page, "redrawn", lambda _: {})
     assert main(["reproduce", "--out", str(folder), "--json"]) == 0
     found = json.loads(capfd.readouterr().out)
@@ -63,7 +63,7 @@ def test_an_earlier_result_is_replaced_and_json_is_one_object(folder, evidence, 
 
 
 def test_a_folder_of_something_else_is_refused_before_anything_runs(tmp_path, monkeypatch, capfd) -> None:
-    monkeypatch.setattr(carrying_out, "gather", lambda _: pytest.fail("it ran"))
+    monkeypatch.setattr(reproduction, "gather", lambda _: pytest.fail("it ran"))
     (tmp_path / "thesis.tex").write_text("mine")
     assert main(["reproduce", "--out", str(tmp_path)]) == 2
     assert "not a result of this program" in " ".join(capfd.readouterr().err.split())

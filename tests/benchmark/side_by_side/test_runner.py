@@ -1,7 +1,5 @@
 """Both models side by side in processes, and the speed-up of repeated timings."""
 
-import os
-
 import numpy as np
 import pytest
 
@@ -9,7 +7,6 @@ from benchmark.errors import InputError, SolverError
 from benchmark.files import Scenario, load_scenario
 from benchmark.models import StepProgress, prepare, scenario_drive
 from benchmark.side_by_side import ModelProcess, run_side_by_side
-from benchmark.side_by_side.process import THREAD_VARIABLES, single_threaded_children
 from benchmark.side_by_side.runner import cores, median_seconds, speedup
 from benchmark.side_by_side.worker import Seconds
 
@@ -110,15 +107,6 @@ def test_a_dead_process_is_said_to_be_dead(scenario: Scenario) -> None:
         process._process.kill()
         with pytest.raises(SolverError, match="ended unexpectedly"):
             process.receive()
-
-
-def test_children_get_one_thread_and_the_parent_keeps_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("OMP_NUM_THREADS", "7")
-    monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
-    with single_threaded_children():
-        assert {os.environ[name] for name in THREAD_VARIABLES} == {"1"}
-    assert os.environ["OMP_NUM_THREADS"] == "7"
-    assert "MKL_NUM_THREADS" not in os.environ
 
 
 def test_no_core_is_chosen_where_there_are_too_few() -> None:

@@ -1,14 +1,18 @@
-"""Processes of a pool end when who started them is killed."""
+"""Processes end when who started them is killed, and have one thread."""
 
+import os
 import subprocess
 import sys
 
 import psutil
+import pytest
+
+from benchmark.child_processes import THREAD_VARIABLES, single_threaded_children
 
 PARENT = """
 import multiprocessing, sys, time
 from concurrent.futures import ProcessPoolExecutor
-from benchmark.children import end_with_parent
+from benchmark.child_processes import end_with_parent
 if __name__ == "__main__":
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(1, context, initializer=end_with_parent) as pool:
@@ -31,3 +35,12 @@ def test_children_end_with_a_killed_parent(tmp_path):
     _, alive = psutil.wait_procs(children, timeout=20)
     assert not [child for child in alive if child.status() != psutil.STATUS_ZOMBIE]
     parent.stdout.close()
+
+
+def test_children_get_one_thread_and_the_parent_keeps_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
+    with single_threaded_children():
+        assert {os.environ[name] for name in THREAD_VARIABLES} == {"1"}
+    assert os.environ["OMP_NUM_THREADS"] == "7"
+    assert "MKL_NUM_THREADS" not in os.environ
