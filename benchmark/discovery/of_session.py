@@ -6,7 +6,6 @@ import shutil
 from dataclasses import replace
 from pathlib import Path
 
-from benchmark.discovery.bases.elements import elements_only
 from benchmark.discovery.carrying_out import DiscoverRequest
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.planning.proposing import propose
@@ -14,6 +13,7 @@ from benchmark.discovery.report.discovery_record import DiscoveryRecord
 from benchmark.discovery.workflow import Findings, findings
 from benchmark.files import Session, load_session
 from benchmark.physics import SLUGS, Effect
+from benchmark.response.fem_table import fem_table
 from benchmark.runs.destination import file_name
 from benchmark.runs.listener import Listener
 
@@ -74,7 +74,7 @@ def store_folder(out: Path | None, session: Session, model: str) -> Path:
 def _found(
     session: Session, request: DiscoverRequest, own: tuple[Effect, ...], listener: Listener, store: Path
 ) -> Findings:
-    base_of = elements_only(session) if request.model == "fem" else None
+    table_of = fem_table(session) if request.model == "fem" else None
     settings = Settings(seed=request.seed)
     with listener.progress(f"{session.name}: what the model lacks") as advance:
 
@@ -82,4 +82,4 @@ def _found(
             remark = f"best so far {best.replace('_', ' ')}" if best else ""
             advance(STAGES.get(stage, stage), done, max(total, 1), remark)
 
-        return findings(session, settings=settings, effects=own, listener=on_stage, store=store, base_of=base_of)
+        return findings(session, settings=settings, effects=own, listener=on_stage, store=store, table_of=table_of)

@@ -12,8 +12,8 @@ import numpy as np
 from benchmark.discovery.answer.estimates import base_estimates, candidates, named_effects, remains, transfers
 from benchmark.discovery.answer.gap import HeldOut, closed_overall, gaps, held_out_residuals, share_left, traces, unbent
 from benchmark.discovery.answer.verdict import Facts, statement, verdict
-from benchmark.discovery.bases.law import BaseLaws
-from benchmark.discovery.calibrate import Calibrated, calibrate
+from benchmark.discovery.base.calibration import Calibrated, calibrate
+from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.contrasts import contrasts
 from benchmark.discovery.detection.disagreement import Detection, combined, detect, places, smallest_visible
@@ -22,10 +22,10 @@ from benchmark.discovery.discovery_result import Discovery, Place
 from benchmark.discovery.evidence.pool import Listener, fingerprint, pool, silent
 from benchmark.discovery.evidence.selection import Selection, first_gain, select, usable
 from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, remark, screen
-from benchmark.discovery.fit import Fit
 from benchmark.discovery.trials.preparing import ENOUGH_TRIALS, prepare
 from benchmark.files import Session
 from benchmark.physics import Effect, catalogue
+from benchmark.response.elastic_table import TableOf
 
 DEFAULT = Settings()
 VERSION = 2
@@ -71,7 +71,7 @@ def findings(
     effects: Sequence[Effect] = (),
     listener: Listener = silent,
     store: Path | None = None,
-    base_of: BaseLaws | None = None,
+    table_of: TableOf | None = None,
 ) -> Findings:
     """Find what the model of a session lacks, and keep the fits.
 
@@ -87,7 +87,7 @@ def findings(
         Told of stage, done, total and the best candidate so far.
     store
         Folder for fits as they come, from which an interrupted discovery goes on.
-    base_of
+    table_of
         The elastic base of a set-up; by default the finite elements', or the wave's where they do not cover it.
 
     Raises
@@ -98,7 +98,7 @@ def findings(
     began = time.perf_counter()
     listener("prepare", 0, 1, "")
     study = prepare(session, settings.rows)
-    calibrated = calibrate(session, study, base_of)
+    calibrated = calibrate(session, study, table_of)
     base = calibrated.base
     listener("detect", 0, 1, "")
     known = (*catalogue(), *effects)

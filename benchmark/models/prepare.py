@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from benchmark.files import Scenario
-from benchmark.model_file import RepairedModel
 from benchmark.models.keeping import Keeping
 from benchmark.models.result import Drive, PreparedModel
 from benchmark.models.user_file import UserFile
@@ -14,7 +13,7 @@ def prepare(
     scenario: Scenario,
     *,
     every_field: bool = False,
-    own: UserFile | RepairedModel | None = None,
+    own: UserFile | None = None,
     keeping: Keeping | None = None,
 ) -> PreparedModel:
     """Set a model up for a scenario.
@@ -28,9 +27,9 @@ def prepare(
     every_field
         Keep the fields of each step instead of the peak's and the last one's (FEM).
     own
-        A user's own model in the wave's place, or a model file whose effects are switched on.
+        A user's own model in the wave's place.
     keeping
-        Where the steps of the load history are kept (FEM without effects of a model file); None keeps nothing.
+        Where the steps of the load history are kept (FEM); None keeps nothing.
 
     Raises
     ------
@@ -39,12 +38,6 @@ def prepare(
     InputError
         The scenario is at fault.
     """
-    if isinstance(own, RepairedModel):
-        from benchmark.models.repaired import RepairedPress, on_its_base, refuse_options_twice, switched_on
-
-        refuse_options_twice(own, scenario)
-        base = prepare(model, on_its_base(own, scenario), every_field=every_field)
-        return RepairedPress(base, switched_on(own, scenario, model))
     if model == "fem":
         from benchmark.models.fem_model import FemModel
 

@@ -18,7 +18,7 @@ from bench_hw.vision.displacement import (
     inner_nine,
 )
 from benchmark.files.sessions.description import Camera
-from benchmark.fitting import Film
+from benchmark.identification import Film
 from benchmark.models import Array
 
 MM = 1e3

@@ -22,7 +22,8 @@ from bench_hw.vision.tracking.run import TrackOrder, track
 from benchmark.errors import InputError
 from benchmark.files import Session, Trial
 from benchmark.files.sessions.trials import read_markers
-from benchmark.fitting import Film, View
+from benchmark.identification import Film
+from benchmark.response import View
 from benchmark.runs.listener import Listener
 
 Key = tuple[str, str]

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError
-from benchmark.fitting import parameter_columns
-from benchmark.models.repaired import load_repair
+from benchmark.identification import parameter_columns
+from benchmark.response.model_with_effects import load_repair
 from benchmark.runs.destination import destination
 from benchmark.runs.document import describe_environment
 from benchmark.runs.listener import Listener

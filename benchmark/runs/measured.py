@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from benchmark.files import Session
-from benchmark.fitting import SessionFit, SheetFit
+from benchmark.identification import SessionFit, SheetFit
 from benchmark.models import Array
 from benchmark.runs.film_tables import Motion
 from benchmark.runs.filming import Tracked

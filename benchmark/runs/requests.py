@@ -9,7 +9,7 @@ from pathlib import Path
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
 from benchmark.models import NOTHING, Own, read_reference, read_user_file
-from benchmark.models.repaired import load_repair
+from benchmark.response.model_with_effects import load_repair
 from benchmark.runs.destination import destination
 from benchmark.runs.folder import RunOutcome, write_run
 from benchmark.runs.listener import Listener

@@ -12,9 +12,8 @@ import numpy as np
 
 from benchmark.errors import InputError
 from benchmark.files import Load, Scenario, Session, Tissue, Trial, load_session, scaled_tissue
-from benchmark.fitting import (
+from benchmark.identification import (
     FittingError,
-    ForceCurve,
     SessionFit,
     TrialData,
     filmed_trial,
@@ -24,27 +23,26 @@ from benchmark.fitting import (
     required_depth,
     sheet_force,
 )
-from benchmark.fitting.film import FilmedTrial
-from benchmark.fitting.relaxation import NONE, relaxed
-from benchmark.fitting.remarks import elastic_only
-from benchmark.fitting.sheet_law import Sheet
-from benchmark.fitting.sheet_parameters import sheet_parameters
-from benchmark.fitting.sheet_session import held_out_state
-from benchmark.fitting.sheet_trial import SheetTrial
+from benchmark.identification.effects_in_fit import fit_repaired, wave_force
+from benchmark.identification.fitted_parameters import sheet_parameters
+from benchmark.identification.session_fit import elastic_only
+from benchmark.identification.sheet_model import NONE, FilmedTrial, relaxed
+from benchmark.identification.sheet_session import held_out_state
+from benchmark.identification.sheet_trial import SheetTrial
 from benchmark.model_file import RepairedModel
 from benchmark.models import NOTHING, Array, Drive, Own, PreparedModel, UncoveredError, prepare
-from benchmark.models.repaired import effects_of, on_its_base
-from benchmark.runs.base_curve import Setup, base_curves, setup_scenario
+from benchmark.response import ForceCurve, RampTable
+from benchmark.response.model_with_effects import effects_of, on_its_base
+from benchmark.response.ramp import Setup, setup_scenario
 from benchmark.runs.film_tables import Motion, motions_of
 from benchmark.runs.filming import Films, session_films
 from benchmark.runs.listener import Listener
 from benchmark.runs.measured import FilmedSession, MeasuredComparison, TrialPrediction
 from benchmark.runs.options import RunOptions
 from benchmark.runs.record import RunRecord
-from benchmark.runs.repaired_fit import fit_repaired, wave_force
 from benchmark.runs.report.values import fit_headline
 from benchmark.runs.scenario_run import run_scenario
-from benchmark.runs.sheets import session_sheets
+from benchmark.runs.session_tables import base_curves, session_sheets
 from benchmark.runs.table_one import Placed, table_one
 from benchmark.side_by_side import NAMES
 
@@ -80,7 +78,7 @@ class FittedSession:
     trials: tuple[TrialData, ...]
     warnings: tuple[str, ...]
     filmed: FilmedSession | None = None
-    sheets: Mapping[Key, tuple[FilmedTrial, Sheet]] = field(default_factory=dict)
+    sheets: Mapping[Key, tuple[FilmedTrial, RampTable]] = field(default_factory=dict)
     added: Mapping[Key, Array] = field(default_factory=dict)
 
     @property
@@ -155,7 +153,7 @@ def _with_films(found: FittedSession, films: Films, listener: Listener) -> Fitte
     return replace(found, fit=fit, filmed=filmed, sheets=pairs, warnings=warnings)
 
 
-def _placed(model: Sheet, own: SheetTrial) -> Placed:
+def _placed(model: RampTable, own: SheetTrial) -> Placed:
     """Take perspective off the markers of a trial, by how far the fitted sheet sinks."""
 
     def true_displacements(motion: Motion, depth: Array) -> Array:

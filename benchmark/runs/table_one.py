@@ -11,8 +11,8 @@ import numpy as np
 from bench_hw.errors import BenchError
 from bench_hw.vision.displacement import maximum_radius, moving_average, published_variables, sound_variables
 from benchmark.files import Session, Trial
-from benchmark.fitting import FittedParameter
-from benchmark.fitting.pooling import mean_interval
+from benchmark.identification import FittedParameter
+from benchmark.identification.pooling import mean_interval
 from benchmark.runs.film_tables import Motion
 
 OURS = "Table 1 with dimensions that are right, mean over {} trials of condition {}"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from benchmark.comparison import normal_fit_columns, statistics_columns
-from benchmark.fitting import parameter_columns
+from benchmark.identification import parameter_columns
 from benchmark.models import Array, ModelResult
 from benchmark.runs.film_tables import circles, marker_fits
 from benchmark.runs.measured import MeasuredComparison

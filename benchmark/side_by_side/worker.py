@@ -21,10 +21,10 @@ from benchmark.models import (
     UncoveredError,
     UserFile,
     frame_seconds,
-    prepare,
     scenario_drive,
     silent,
 )
+from benchmark.response.model_with_effects import prepare_with_effects
 
 
 @dataclass(frozen=True)
@@ -149,7 +149,7 @@ def _run(connection: Connection, command: RunCommand, job: Job) -> Finished:
     keeping = Keeping(job.keep, say) if command.keep_result and job.keep is not None else None
     started = time.perf_counter()
     every_field = job.every_field and command.keep_result
-    prepared = prepare(job.model, job.scenario, every_field=every_field, own=job.own, keeping=keeping)
+    prepared = prepare_with_effects(job.model, job.scenario, every_field=every_field, own=job.own, keeping=keeping)
     ready, cpu_ready = time.perf_counter(), time.process_time()
     reading = prepared.follow(drive, report if command.keep_result else silent)
     wall, cpu = time.perf_counter() - ready, time.process_time() - cpu_ready

@@ -97,7 +97,7 @@ def slowdowns(share: float, how: str) -> list[Fault]:
         _slower("wave.frame", "wavemodel/surface.py", ("Surface.frame",), share, often),
         _slower("fem.assembly", "fem/assembly/system.py", ("System.evaluate", "System.tangent"), share, often),
         _slower("fem.step", "fem/model.py", ("Model.run",), share, once),
-        _slower("fit", "benchmark/fitting/session.py", ("fit_session",), share, once),
+        _slower("fit", "benchmark/identification/session_fit.py", ("fit_session",), share, once),
     ]
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.detection.disagreement import Detection
 from benchmark.discovery.discovery_result import Array, Candidate, Estimate, NamedEffect
 from benchmark.discovery.evidence.gains import gain, held_out, held_out_conditions
 from benchmark.discovery.evidence.selection import Scored, Selection, conditions, constant
-from benchmark.discovery.fit import Fit
 
 SHAPE_UNITS = {"modulus": ""}
 LIMIT = 1.96

@@ -9,12 +9,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmark.discovery.calibrate import pure_errors
+from benchmark.discovery.base.calibration import pure_errors
+from benchmark.discovery.base.effect_model import Fit, Model, White, fit, settled
+from benchmark.discovery.base.trials_problem import FOLLOWED, only
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.discovery_result import Array, ChannelGap, Trace
-from benchmark.discovery.fit import Fit, White, fit, settled
-from benchmark.discovery.model import Model
-from benchmark.discovery.problem import FOLLOWED, only
 
 
 @dataclass(frozen=True, eq=False)

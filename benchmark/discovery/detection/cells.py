@@ -8,10 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmark.discovery.base.effect_model import Fit, White, nuisance_precision
+from benchmark.discovery.base.trials_problem import Problem
 from benchmark.discovery.discovery_result import Array
-from benchmark.discovery.fit import Fit, White
-from benchmark.discovery.model import nuisance_precision
-from benchmark.discovery.problem import Problem
 
 ALL_FLIPS = 12
 """Up to so many trials all sign patterns are taken."""

@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 
+from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.cells import CellTable, flip_test
 from benchmark.discovery.detection.disagreement import Detection
 from benchmark.discovery.discovery_result import PHASES, Contrast
-from benchmark.discovery.fit import Fit
 
 Pick = Callable[[CellTable, int], bool]
 

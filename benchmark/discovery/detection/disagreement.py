@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import norm
 
+from benchmark.discovery.base.effect_model import Fit, Model, fit
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.cells import (
     Cell,
@@ -19,8 +20,6 @@ from benchmark.discovery.detection.cells import (
     projected_residuals,
 )
 from benchmark.discovery.discovery_result import PHASES, Array, Place
-from benchmark.discovery.fit import Fit, fit
-from benchmark.discovery.model import Model
 
 SHARES = (0.7, 0.15, 0.15)
 """Of the level: sign flips of cells and matched numbers, strain of the base, held-out gain of an effect."""

@@ -6,13 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from benchmark.discovery.base.effect_model import Fit, Model, White, nuisance_precision
+from benchmark.discovery.base.trials_problem import FOLLOWED
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.cells import one_sided
 from benchmark.discovery.detection.disagreement import signal_ranges
 from benchmark.discovery.discovery_result import PHASES, Array, Place
-from benchmark.discovery.fit import Fit, White
-from benchmark.discovery.model import Model, nuisance_precision
-from benchmark.discovery.problem import FOLLOWED
 
 LEAST = 4.0
 """Standard deviations of the trials' mean from which a change is shown."""

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.discovery_result import Array
-from benchmark.discovery.fit import Fit
-from benchmark.discovery.noise import whitener
+from benchmark.response.noise import whitener
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from benchmark.child_processes import end_with_parent
-from benchmark.discovery.candidate_fit import fit_candidate
-from benchmark.discovery.fit import Fit
+from benchmark.discovery.base.candidate_fit import fit_candidate
+from benchmark.discovery.base.effect_model import Fit
 from benchmark.physics import Effect, load_effects
 
 Listener = Callable[[str, int, int, str], None]

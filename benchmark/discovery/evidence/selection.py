@@ -8,13 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import t as t_distribution
 
+from benchmark.discovery.base.effect_model import Fit, Model
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.evidence.gains import Gain, delta_bic, effective_size, gain, held_out, held_out_conditions
 from benchmark.discovery.evidence.pool import Pool
 from benchmark.discovery.evidence.shortlist import Screened, screen
-from benchmark.discovery.fit import Fit
-from benchmark.discovery.model import Model
 from benchmark.physics import Effect
 
 REFINED = 7

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmark.discovery.candidate_fit import screened
+from benchmark.discovery.base.candidate_fit import screened
+from benchmark.discovery.base.effect_model import Fit, Model, fit, settled
+from benchmark.discovery.base.trials_problem import only
 from benchmark.discovery.discovery_result import Array
-from benchmark.discovery.fit import Fit, fit, settled
-from benchmark.discovery.model import Model
-from benchmark.discovery.problem import only
 from benchmark.physics import Effect
 
 

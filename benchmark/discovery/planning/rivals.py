@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmark.discovery.base.effect_model import Fit, nuisance_count
+from benchmark.discovery.base.trials_problem import OWN
 from benchmark.discovery.discovery_result import Array
-from benchmark.discovery.fit import Fit
-from benchmark.discovery.model import nuisance_count
-from benchmark.discovery.problem import OWN
 from benchmark.discovery.trials.rows import acceleration
 from benchmark.discovery.workflow import Findings
 from benchmark.physics import Motion
@@ -73,13 +72,11 @@ def expected(rival: Rival, condition: str, time: Array, depth: Array, vector: Ar
     model = rival.fit.model
     names = [one.name for one in model.problem.study.conditions]
     number = names.index(condition)
-    simulator = model.simulators[number]
     motion = Motion(
         np.asarray(time, float), np.asarray(depth, float), acceleration(np.asarray(time), np.asarray(depth))
     )
     at = rival.vector if vector is None else vector
-    bent = simulator.bent(model.shape(at))
-    readings = simulator.readings(bent, model.values(at), motion)
+    readings = model.pipelines[number].readings(model.shaped(at)[number], model.values(at), motion)
     signals = model.as_signals(readings, 0.0, np.zeros(nuisance_count(model.problem) - len(OWN)))
     noise = np.median(model.problem.noise.scale, axis=0)
     return Expected(signals, model.problem.study.names, noise)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.discovery.discovery_result import Array
-from benchmark.discovery.layout import Layout, layout
+from benchmark.discovery.trials.marker_layout import Layout, layout
 from benchmark.discovery.trials.rows import (
     RawTrial,
     acceleration,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmark.discovery.discovery_result import Array
-from benchmark.discovery.layout import grid
+from benchmark.discovery.trials.marker_layout import grid
 from benchmark.discovery.trials.segments import Segment
 from benchmark.errors import InputError
 from benchmark.files import Camera, Trial

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.discovery.discovery_result import Array
-from benchmark.discovery.layout import Layout
+from benchmark.discovery.trials.marker_layout import Layout
 from benchmark.files import Support, Tool
 from benchmark.physics import TrialContext
 

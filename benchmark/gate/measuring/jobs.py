@@ -187,7 +187,8 @@ def _problem(scenario: Scenario) -> fem.Problem:
 def fit(job: Job) -> Work:
     """Fit two trials of a session with a curve that is given: no finite elements in it."""
     from benchmark.files import load_session
-    from benchmark.fitting import ForceCurve, TrialData, fit_session
+    from benchmark.identification import TrialData, fit_session
+    from benchmark.response import ForceCurve
 
     session = load_session(Path(job["session"]))
     depth = np.linspace(0.0, 12e-3, 41)[1:]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from benchmark.errors import InputError
-from benchmark.fitting import FittedParameter
+from benchmark.identification import FittedParameter
 from benchmark.models import Array
 from benchmark.runs.measured import TrialPrediction
 from benchmark.runs.report.film_section import read_film

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from benchmark.files import Session
-from benchmark.fitting import SessionFit, SheetFit
+from benchmark.identification import SessionFit, SheetFit
 from benchmark.runs.report.trials_section import fit_section
 from benchmark.runs.report.values import fit_headline, sentence, sheet_headline
 from reports import Column, Download, Fact, Notice, Page, Section, Table, Verdict

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmark.fitting import FittedParameter
+from benchmark.identification import FittedParameter
 from benchmark.models import Array
 from benchmark.runs.measured import MeasuredComparison, TrialPrediction
 from benchmark.runs.report.film_section import FilmPart, film_part

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from benchmark.fitting import SessionFit, SheetFit
+from benchmark.identification import SessionFit, SheetFit
 from benchmark.models import Array, ModelResult
 from benchmark.runs.measured import MeasuredComparison
 from benchmark.runs.record import RunRecord

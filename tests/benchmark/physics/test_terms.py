@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmark.discovery.bases.law import BaseLaw
-from benchmark.discovery.simulator import Shape, Simulator
+from benchmark.discovery.base.base_shape import Shape, ShapedTable
 from benchmark.physics import SLUGS, Motion, TrialContext, catalogue
 from benchmark.physics.body.pretension import added_stiffness
+from benchmark.response import ElasticTable, SeparableField, SetupDerivative, TrialPipeline
+from benchmark.response.setup_change import RADIUS
 from wavemodel import DiscTool, LayeredWave, WaveLayer
 
 STIFFNESS = 200.0
@@ -23,20 +24,13 @@ ADDED = added_stiffness(TENSE, AROUND)
 SLIP = {"slip_force": 0.5, "slip_share": 0.0, "marker_share": 1.0, "return_share": 0.0}
 
 
-def linear_law() -> BaseLaw:
+def linear_table() -> ShapedTable:
     """F = k d; the lower face moves outwards by a tenth of the depth at all radii and sinks by half of it."""
     depth = np.linspace(0.0, 2 * PEAK, 200)
-    radius = np.array([0.0, 0.05])
     flat = np.ones((1, 2))
-    return BaseLaw(
-        depth,
-        STIFFNESS * depth,
-        np.zeros((2, depth.size)),
-        radius,
-        (0.1 * depth[None], flat),
-        (0.5 * depth[None], flat),
-        ((0.0 * depth[None], flat),),
-    )
+    outward, sink, none = (SeparableField(share * depth[None], flat) for share in (0.1, 0.5, 0.0))
+    by = {RADIUS: SetupDerivative(np.zeros((2, depth.size)), (none,))}
+    return ShapedTable(ElasticTable(depth, STIFFNESS * depth, np.array([0.0, 0.05]), outward, sink, by), Shape(), PEAK)
 
 
 def press(hold: float = 2.0) -> Motion:
@@ -53,8 +47,8 @@ def press(hold: float = 2.0) -> Motion:
 
 def readings(motion: Motion, **values):
     effects = tuple(BY_SLUG[slug] for slug in values)
-    simulator = Simulator(linear_law(), AROUND, effects)
-    return simulator.readings(simulator.bent(Shape()), values, motion)
+    pipeline = TrialPipeline(AROUND, effects)
+    return pipeline.readings(linear_table(), values, motion)
 
 
 MOTION = press()
@@ -105,9 +99,9 @@ def test_relaxation_decays_in_the_hold_to_its_long_term():
 def test_the_second_term_fades_what_the_first_leaves():
     motion = press(hold=60.0)
     two = replace(BY_SLUG["viscoelastic_relaxation"].richer)
-    simulator = Simulator(linear_law(), AROUND, (two,))
+    pipeline = TrialPipeline(AROUND, (two,))
     values = {two.slug: {"g_1": 0.2, "tau_1": 0.2, "g_2": 0.3, "tau_2": 2.0}}
-    made = simulator.readings(simulator.bent(Shape()), values, motion)
+    made = pipeline.readings(linear_table(), values, motion)
     last = np.flatnonzero(motion.depth > PEAK - 1e-9)[-2]
     assert made.force[last] == pytest.approx(0.8 * 0.7 * STIFFNESS * PEAK, rel=1e-3)
 
@@ -146,8 +140,8 @@ def test_drainage_goes_faster_under_a_smaller_tool():
     effect = BY_SLUG["poroelastic_drainage"]
 
     def left(radius: float) -> float:
-        simulator = Simulator(linear_law(), replace(AROUND, tool_radius=radius), (effect,))
-        return float(simulator.readings(simulator.bent(Shape()), values, MOTION).force[DEEP[50]])
+        pipeline = TrialPipeline(replace(AROUND, tool_radius=radius), (effect,))
+        return float(pipeline.readings(linear_table(), values, MOTION).force[DEEP[50]])
 
     assert left(2.5e-3) < left(5e-3) < PLAIN.force[DEEP[50]]
 
@@ -166,11 +160,9 @@ def test_pretension_adds_its_stiffness():
 
 def test_pretension_over_a_hole_moves_the_lower_face_as_a_membrane_does():
     around = replace(AROUND, hole_radius=30e-3)
-    simulator = Simulator(linear_law(), around, (BY_SLUG["pretension"],))
-    made = simulator.readings(
-        simulator.bent(Shape()),
-        {"pretension": {"pretension": 50.0 / added_stiffness(1.0, around), "field": 1.0}},
-        MOTION,
+    pipeline = TrialPipeline(around, (BY_SLUG["pretension"],))
+    made = pipeline.readings(
+        linear_table(), {"pretension": {"pretension": 50.0 / added_stiffness(1.0, around), "field": 1.0}}, MOTION
     )
     share = 50.0 / (STIFFNESS + 50.0)
     membrane = 0.5 * 10e-3 * PEAK / (6e-3 * np.log(6.0))

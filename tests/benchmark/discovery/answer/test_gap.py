@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from benchmark.discovery.answer.gap import share_closed, share_left, shared_misfit
-from benchmark.discovery.calibrate import calibrate
-from benchmark.discovery.candidate_fit import fit_candidate
+from benchmark.discovery.base.calibration import calibrate
+from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from benchmark.discovery.calibrate import calibrate
-from benchmark.discovery.candidate_fit import fit_candidate
+from benchmark.discovery.base.calibration import calibrate
+from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.places import places_of
 from benchmark.discovery.trials.preparing import prepare

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from benchmark.discovery.calibrate import calibrate
-from benchmark.discovery.candidate_fit import fit_candidate
+from benchmark.discovery.base.calibration import calibrate
+from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.detection.disagreement import combined, strained
 from benchmark.discovery.evidence.gains import gain, strain
 from benchmark.discovery.evidence.selection import broad

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmark.discovery.calibrate import calibrate
+from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence.pool import pool, silent
 from benchmark.discovery.evidence.selection import select

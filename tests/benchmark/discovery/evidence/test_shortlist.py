@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmark.discovery.calibrate import calibrate
+from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, remark
 from benchmark.discovery.trials.preparing import prepare
 

@@ -1,0 +1,124 @@
+"""How an elastic table may be wrong in shape: nuisances of the base, and the table bent by them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from benchmark.physics import LowerFaceMotion
+from benchmark.response.elastic_table import ElasticTable, SeparableField
+from benchmark.response.force_curve import Array
+from benchmark.response.setup_change import RADIUS
+
+
+@dataclass(frozen=True)
+class Shape:
+    """How the base deviates from its table; all zero for the table itself.
+
+    Attributes
+    ----------
+    modulus : float
+        Natural logarithm of the common factor on the moduli.
+    radius, exponent : float
+        Relative change of the tool's radius, change of the force's exponent.
+    bend, turn : float
+        Amounts of the second and third shifted Legendre polynomial over depth in the force.
+    width, marker_exponent, marker_size : float
+        Relative width of the marker field, change of its exponent over depth, relative size.
+    """
+
+    modulus: float = 0.0
+    radius: float = 0.0
+    exponent: float = 0.0
+    bend: float = 0.0
+    turn: float = 0.0
+    width: float = 0.0
+    marker_exponent: float = 0.0
+    marker_size: float = 0.0
+
+    @property
+    def setup(self) -> Mapping[str, float]:
+        """The set-up parameters among them, by their keys."""
+        return {RADIUS: self.radius}
+
+
+@dataclass(frozen=True, eq=False)
+class ShapedTable:
+    """A table with a shape, worked out once for all trials of a condition.
+
+    Attributes
+    ----------
+    table : ElasticTable
+    shape : Shape
+    deep : float
+        Largest depth of the condition, m, on which bends and exponents rest.
+    """
+
+    table: ElasticTable
+    shape: Shape
+    deep: float
+
+    @cached_property
+    def forces(self) -> Array:
+        """(k,) N over the table's depths."""
+        shape = self.shape
+        x = np.clip(self.table.depth / self.deep, 0.0, None)
+        inside = np.minimum(x, 1.0)
+        second, third = 6 * inside**2 - 6 * inside + 1, 20 * inside**3 - 30 * inside**2 + 12 * inside - 1
+        force = self.table.force_with(shape.setup)
+        bent = force * (1.0 + shape.bend * second + shape.turn * third) * np.maximum(x, 1e-4) ** shape.exponent
+        return np.asarray(np.exp(shape.modulus) * np.maximum(bent, 0.0))
+
+    @cached_property
+    def slope(self) -> float:
+        """N/m beyond the table."""
+        depth = self.table.depth
+        return float((self.forces[-1] - self.forces[-20]) / (depth[-1] - depth[-20]))
+
+    def force(self, depth: Array) -> Array:
+        """(n,) N at depths (n,) of 0 and more, m; straight on beyond the table."""
+        known = self.table.depth
+        force = np.interp(depth, known, self.forces)
+        return np.asarray(force + self.slope * np.maximum(depth - known[-1], 0.0))
+
+    @cached_property
+    def outward(self) -> SeparableField | None:
+        """The outward motion of the lower face with this set-up."""
+        return self.table.outward_with(self.shape.setup)
+
+    @cached_property
+    def sink(self) -> SeparableField | None:
+        """Its sinking with this set-up."""
+        return self.table.sink_with(self.shape.setup)
+
+    def lower_face(self, spread: LowerFaceMotion, rest: Array) -> tuple[Array, Array]:
+        """Positions (n, m, 2) and sinking (n, m) of markers at rest positions (m, 2), m."""
+        rows, count = spread.depth.size, len(rest)
+        if self.outward is None or self.sink is None:
+            return np.broadcast_to(rest, (rows, count, 2)).copy(), np.zeros((rows, count))
+        x, y = (rest - np.asarray(spread.centre)).T
+        root = np.sqrt(spread.ratio)
+        radius = np.sqrt(x**2 / root + y**2 * root)
+        read = radius / (1.0 + self.shape.width)
+        safe = np.maximum(radius, 1e-12)
+        along = np.column_stack([x / root / safe, y * root / safe])
+        out = self._field(self.outward, spread.depth, read)
+        moved = (1.0 + self.shape.marker_size) * spread.passed[:, None] * out
+        if spread.dent is not None:
+            moved = moved + spread.dent[0][:, None] / np.maximum(radius, spread.dent[1])
+        return rest + moved[..., None] * along, self._field(self.sink, spread.depth, read)
+
+    def _field(self, field: SeparableField, depth: Array, radius: Array) -> Array:
+        """(n, m) m at depths (n,), mirrored above the surface, and radii (m,), m."""
+        known, amplitudes = self.table.depth, field.amplitudes
+        size = np.abs(depth)
+        growth = np.maximum(size / self.deep, 1e-4) ** self.shape.marker_exponent * np.sign(depth)
+        at = np.clip(size / known[1], 0.0, known.size - 1.000001)
+        low = at.astype(np.int64)
+        share = at - low
+        over_depth = (amplitudes[:, low] * (1.0 - share) + amplitudes[:, low + 1] * share) * growth
+        over_radius = np.array([np.interp(radius, self.table.radius, row, right=0.0) for row in field.shapes])
+        return np.asarray(over_depth.T @ over_radius)

@@ -1,0 +1,230 @@
+"""Noise and trial-to-trial spread of a session, estimated from what replicates do not share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from benchmark.discovery.base.effect_model import Fit, Model, fit, nuisance_count
+from benchmark.discovery.base.trials_problem import OWN, NoiseModel, Problem, TrialPrior, TrialRef, trial_refs
+from benchmark.discovery.trials.study import Study
+from benchmark.files import Session
+from benchmark.response.elastic_table import ElasticTable, TableOf
+from benchmark.response.fem_table import fem_or_wave_table
+from benchmark.response.force_curve import Array
+from benchmark.response.noise import fit_memory, scales
+
+FIRST_NOISE = 0.01
+"""Noise to begin with, as a share of a signal's range."""
+FIRST_MEMORY = 0.6
+WIDE = TrialPrior(2.0, 10.0, 0.2, 1e-3, 1e-2)
+BAD = 6.0
+"""A trial whose noise is this many times the usual one of its condition is told of."""
+LEAST_HEIGHT = 1e-3
+"""Of the deepest press, by which the depth at touch may differ between trials in any case."""
+ENOUGH_ALIKE = 3
+"""Trials of a condition that have a usual noise of their own; fewer share that of all."""
+
+
+@dataclass(frozen=True, eq=False)
+class Calibrated:
+    """A problem with noise and priors, its base model fitted, and what was left out."""
+
+    problem: Problem
+    base: Fit
+    warnings: tuple[str, ...]
+
+
+def calibrate(session: Session, study: Study, table_of: TableOf | None = None) -> Calibrated:
+    """Fit the base and estimate noise and spreads, twice over."""
+    tables = _tables(session, study, table_of or fem_or_wave_table(session))
+    problem = Problem(study, tables, _first_noise(study), _wide(study), trial_refs(study))
+    vector, state = _first_guess(problem)
+    model = Model(problem, ())
+    start = fit(model, vector, state, most=6)
+    problem, warnings = _estimated(start)
+    second = fit(Model(problem, ()), start.vector, _kept_state(start, problem), most=6)
+    problem = _estimated(second)[0]
+    base = fit(Model(problem, ()), second.vector, _kept_state(second, problem), most=8)
+    notes = [table.note for table in tables if table.note]
+    return Calibrated(problem, base, tuple(dict.fromkeys([*notes, *warnings])))
+
+
+def _tables(session: Session, study: Study, table_of: TableOf) -> tuple[ElasticTable, ...]:
+    """The table of each condition; those with the same tool and support share one."""
+    setups = [(condition.tool, condition.support) for condition in study.conditions]
+    deepest = dict.fromkeys(setups, 0.0)
+    for setup, condition in zip(setups, study.conditions, strict=True):
+        deepest[setup] = max(deepest[setup], condition.around.peak_depth)
+    made = {setup: table_of(session.specimen, *setup, depth) for setup, depth in deepest.items()}
+    return tuple(made[setup] for setup in setups)
+
+
+def _kept_state(before: Fit, problem: Problem) -> Array:
+    names = [(t.condition, t.name) for t in before.model.problem.trials]
+    return np.array([before.nuisance[names.index((t.condition, t.name))] for t in problem.trials])
+
+
+def _ranges(study: Study) -> Array:
+    """(C,) largest range of each signal."""
+    each = [np.nanmax(c.signals, axis=(0, 1)) - np.nanmin(c.signals, axis=(0, 1)) for c in study.conditions]
+    ranges = np.nanmax(each, axis=0)
+    if ranges.size > 1:
+        ranges[1:] = np.nanmax(ranges[1:])
+    return np.asarray(np.maximum(ranges, 1e-9))
+
+
+def _first_noise(study: Study) -> NoiseModel:
+    scale = np.tile(FIRST_NOISE * _ranges(study), (study.trial_count, 1))
+    return NoiseModel((FIRST_MEMORY,) * len(study.names), scale)
+
+
+def _wide(study: Study) -> TrialPrior:
+    peak = max(c.around.peak_force for c in study.conditions)
+    interval = study.raw_interval
+    return replace(WIDE, zero=0.5 * peak, shift=max(0.02, 2.0 * interval), offset=WIDE.offset)
+
+
+def _first_guess(problem: Problem) -> tuple[Array, Array]:
+    """Modulus and gains by the ratio of peaks."""
+    model = Model(problem, ())
+    vector = np.zeros(model.size)
+    state = np.zeros((len(problem.trials), nuisance_count(problem)))
+    signals = model.signals(vector, state)
+    ratio = [
+        np.ptp(trial.signals[:, 0]) / max(np.ptp(signal[:, 0]), 1e-12)
+        for trial, signal in zip(problem.trials, signals, strict=True)
+    ]
+    logs = np.log(np.maximum(ratio, 1e-9))
+    vector[0] = np.median(logs)
+    state[:, 0] = logs - vector[0]
+    state[:, 1] = [trial.signals[:3, 0].mean() for trial in problem.trials]
+    return vector, state
+
+
+def pure_errors(fitted: Fit) -> list[Array]:
+    """What each trial's residual (n, C) does not share with its condition's, its own nuisances taken out.
+
+    Scaled so that its variance is the noise's; NaN for a condition of one trial.
+    """
+    problem = fitted.model.problem
+    signals = fitted.model.signals(fitted.vector, fitted.nuisance)
+    out: list[Array] = []
+    for number, condition in enumerate(problem.study.conditions):
+        mine = [i for i, trial in enumerate(problem.trials) if trial.condition == number]
+        if len(mine) < 2:
+            out += [np.full_like(problem.trials[i].signals, np.nan) for i in mine]
+            continue
+        gains = np.ones((len(mine), 1, condition.signals.shape[2]))
+        gains[:, 0, 0] = np.exp(fitted.nuisance[mine, 0])
+        rows = np.array([problem.trials[i].signals - signals[i] for i in mine]) / gains
+        counts = np.array([problem.trials[i].count for i in mine]) > 0.0
+        mean = np.sum(rows * counts, axis=0) / np.maximum(counts.sum(axis=0), 1)
+        factor = np.sqrt(len(mine) / (len(mine) - 1.0))
+        own = (rows - mean) * counts * gains * factor
+        out += [_less_nuisances(own[k], signals[i]) for k, i in enumerate(mine)]
+    return out
+
+
+def _less_nuisances(rows: Array, signals: Array) -> Array:
+    """Rows (n, C) less what a gain, a zero and a time shift of the trial explain, channel by channel."""
+    out = rows.copy()
+    for k in range(rows.shape[1]):
+        shape = signals[:, k]
+        columns = np.column_stack([np.ones_like(shape), shape, np.gradient(shape)])[:, : 3 if k == 0 else 1]
+        out[:, k] -= columns @ np.linalg.lstsq(columns, rows[:, k], rcond=None)[0]
+    return out
+
+
+def _estimated(fitted: Fit) -> tuple[Problem, list[str]]:
+    """The problem with noise and spreads from a fit, without bad trials."""
+    problem = fitted.model.problem
+    errors = pure_errors(fitted)
+    known = [i for i, error in enumerate(errors) if np.isfinite(error).all()]
+    if not known:
+        errors = [_rough(trial.signals, signal) for trial, signal in _pairs(fitted)]
+        known = list(range(len(errors)))
+    memory, columns = [], []
+    for signal in range(errors[0].shape[1]):
+        pick = [errors[i][:, signal] for i in known]
+        counts = [problem.trials[i].count[:, signal] for i in known]
+        memory.append(_pooled_memory(pick, counts))
+        columns.append(_shrunk(pick, counts, memory[-1], known, len(errors)))
+    scale = np.column_stack(columns)
+    noise = NoiseModel(tuple(memory), scale)
+    worst = (scale / _usual(scale, [trial.condition for trial in problem.trials])).max(axis=1)
+    lively = _spread(fitted.nuisance[:, 0]) > 0.3
+    bad = (worst > BAD) & (not lively)
+    warnings = [
+        f"trial {problem.trials[i].name}: {worst[i]:.3g} times as noisy as the others" for i in np.flatnonzero(bad)
+    ]
+    return replace(problem, noise=noise, prior=_spreads(fitted, scale)), warnings
+
+
+def _usual(scale: Array, condition: Sequence[int]) -> Array:
+    """(R, C) medians over the trials of the same condition: a quick protocol leaves more than a slow one."""
+    numbers = np.array(condition)
+    out = np.broadcast_to(np.median(scale, axis=0), scale.shape).copy()
+    for number in np.unique(numbers):
+        mine = numbers == number
+        if mine.sum() >= ENOUGH_ALIKE:
+            out[mine] = np.median(scale[mine], axis=0)
+    return out
+
+
+def _pairs(fitted: Fit) -> list[tuple[TrialRef, Array]]:
+    signals = fitted.model.signals(fitted.vector, fitted.nuisance)
+    return list(zip(fitted.model.problem.trials, signals, strict=True))
+
+
+def _rough(measured: Array, simulated: Array) -> Array:
+    """Errors of a trial without replicates: what a running mean of its residual leaves."""
+    rows = measured - simulated
+    kernel = np.ones(9) / 9.0
+    smooth = np.column_stack([np.convolve(rows[:, k], kernel, mode="same") for k in range(rows.shape[1])])
+    return np.asarray(rows - smooth)
+
+
+def _pooled_memory(errors: list[Array], counts: list[Array]) -> float:
+    sizes = {error.size for error in errors}
+    groups = [[k for k, error in enumerate(errors) if error.size == size] for size in sizes]
+    votes = [fit_memory(np.array([errors[k] for k in g]), np.array([counts[k] for k in g])) for g in groups]
+    return float(np.average(votes, weights=[len(g) for g in groups]))
+
+
+def _shrunk(errors: list[Array], counts: list[Array], memory: float, known: list[int], total: int) -> Array:
+    """(total,) scales, each halfway (in logarithm) to the median's; the median's where nothing is known."""
+    own = np.array([scales(e[None], c[None], memory)[0] for e, c in zip(errors, counts, strict=True)])
+    own = np.maximum(own, 1e-3 * np.median(own) + 1e-12)
+    middle = float(np.median(own))
+    out = np.full(total, middle)
+    out[known] = np.sqrt(own * middle)
+    far = own / middle > 2.0
+    out[np.array(known)[far]] = own[far]
+    return out
+
+
+def _spread(values: Array) -> float:
+    return float(np.std(values, ddof=1)) if values.size > 1 else 0.0
+
+
+def _size(values: Array) -> float:
+    """Root mean square: what all trials share, such as a late sensor, is no less likely than what they do not."""
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _spreads(fitted: Fit, scale: Array) -> TrialPrior:
+    state = fitted.nuisance
+    noise = float(np.median(scale[:, 0]))
+    offset = _spread(state[:, len(OWN) :].ravel()) if state.shape[1] > len(OWN) else 1.0
+    deepest = max(condition.around.peak_depth for condition in fitted.model.problem.study.conditions)
+    floor = float(np.median(scale[:, 1:])) if scale.shape[1] > 1 else 1.0
+    return TrialPrior(
+        gain=max(_spread(state[:, 0]), 3e-3),
+        zero=max(_size(state[:, 1]), 0.2 * noise, 1e-9),
+        shift=max(_size(state[:, 2]), 0.05 * fitted.model.problem.study.raw_interval, 1e-4),
+        height=max(_spread(state[:, 3]), LEAST_HEIGHT * deepest),
+        offset=max(offset, 0.3 * floor, 1e-9),
+    )

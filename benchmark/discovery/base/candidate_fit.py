@@ -1,0 +1,167 @@
+"""Fitting one candidate: starts screened by one step each, the promising one refined."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmark.discovery.base.effect_model import Fit, Model, White, fit, nuisance_precision
+from benchmark.discovery.base.trials_problem import Problem
+from benchmark.physics import Effect
+from benchmark.physics.effect import Values
+from benchmark.response.force_curve import Array
+
+REFINED = 2
+"""Starts that are refined."""
+WORTH = 0.7
+"""A second start is refined where it promises at least this share of the first."""
+LATE = 1.5
+"""Trials of a condition are late where their time shift is this many times its scatter."""
+SCALES = (1e-5, 10.0)
+"""A screened start's amplitude is scaled within this range."""
+
+
+def fit_candidate(base: Fit, effect: Effect, most: int = 10, known: tuple[Array, Array] | None = None) -> Fit:
+    """Fit `base` with one more effect.
+
+    Parameters
+    ----------
+    base
+        Model fitted without it.
+    effect
+        To add.
+    most
+        Steps of the refinement.
+    known
+        Vector and trial nuisances of this fit from before, which are then only looked up.
+    """
+    model = Model(base.model.problem, (*base.model.effects, effect))
+    if known is not None and known[0].shape == (model.size,) and known[1].shape == base.nuisance.shape:
+        return fit(model, known[0], known[1], most=0)
+    fits = []
+    for state in (base.nuisance, *_unshifted(base)):
+        starts = screened(base, model, effect, state)
+        close = [one.vector for one in starts[:REFINED] if one.won > WORTH * starts[0].won or one is starts[0]]
+        warm = base.columns if state is base.nuisance else None
+        fits += [fit(model, start, state, warm, most) for start in close]
+    return min(fits, key=lambda each: each.objective)
+
+
+def _unshifted(base: Fit) -> tuple[Array, ...]:
+    """The trials' nuisances (R, q) with all trials of a condition on time; none where they are so anyway.
+
+    What lags behind the motion looks like a late sensor; from a base that took it for one no step leads to the effect.
+    """
+    groups = np.array([trial.condition for trial in base.model.problem.trials])
+    state, late = base.nuisance.copy(), False
+    for number in np.unique(groups):
+        shift = base.nuisance[groups == number, 2]
+        late |= abs(shift.mean()) > LATE * max(float(shift.std()), base.model.problem.study.raw_interval)
+        state[groups == number, 2] -= shift.mean()
+    return (state,) if late else ()
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """A start (p,) of the vector, what one step would gain from it, and the residual along it in each trial (R,)."""
+
+    won: float
+    vector: Array
+    along: Array
+
+
+def screened(base: Fit, model: Model, effect: Effect, nuisance: Array | None = None) -> list[Start]:
+    """Starts with what one step would gain from them, best first, at the trials' nuisances or at others (R, q)."""
+    state = base.nuisance if nuisance is None else nuisance
+    problem = base.model.problem
+    white = White(problem)
+    known = base.model.values(base.vector)
+    plain = base.model.signals(base.vector, state)
+    residuals = white.residuals(plain)
+    projections = _projections(base)
+    ranked: list[Start] = []
+    for values in _starts(problem, effect):
+        start = model.vector(base.vector[: base.model.shape_count], {**known, effect.slug: values})
+        signals = model.signals(start, state)
+        moved = [white.flat(i, signals[i] - plain[i]) for i in range(len(plain))]
+        overlaps, sizes, pull = _projected(base, state, projections, residuals, moved)
+        overlap, size = float(overlaps.sum()) + pull, float(sizes.sum())
+        if size <= 0.0:
+            continue
+        scale = float(np.clip(overlap / size, *SCALES))
+        won = scale * overlap - 0.5 * scale**2 * size
+        along = overlaps / np.sqrt(size / len(plain))
+        ranked.append(Start(won, _scaled(model, start, effect, values, scale, known), along))
+    ranked.sort(key=lambda each: -each.won)
+    if not ranked:
+        first = effect.first_values(problem.study.conditions[0].around)[0]
+        start = model.vector(base.vector[: base.model.shape_count], {**known, effect.slug: first})
+        return [Start(0.0, start, np.zeros(len(plain)))]
+    return ranked
+
+
+def _scaled(
+    model: Model, start: Array, effect: Effect, values: Values, scale: float, known: Mapping[str, Values]
+) -> Array:
+    changed = dict(values)
+    for p in effect.description.parameters:
+        if p.name in (effect.amplitude, *effect.amplitudes) and not p.logarithmic:
+            changed[p.name] = float(np.clip(values[p.name] * scale, p.low, p.high))
+    return model.vector(start[: model.shape_count], {**known, effect.slug: changed})
+
+
+def _starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
+    """Starts for all conditions, and with the other sign where the amplitude may have it."""
+    deepest = max((c.around for c in problem.study.conditions), key=lambda around: around.peak_depth)
+    quickest = min((c.around for c in problem.study.conditions), key=lambda around: around.duration)
+    found: list[dict[str, float]] = []
+    for around in (deepest, quickest) if deepest is not quickest else (deepest,):
+        found += [dict(each) for each in effect.first_values(around) if each not in found]
+    scaled = (effect.amplitude, *effect.amplitudes)
+    either = {p.name for p in effect.description.parameters if p.name in scaled and p.low < 0.0 and not p.logarithmic}
+    if either:
+        found += [{name: -value if name in either else value for name, value in each.items()} for each in found]
+    return found
+
+
+def _projections(base: Fit) -> tuple[list[tuple[Array, Array, Array]], Array]:
+    """For each trial its columns with the solved nuisances, and the normal matrix of the base's vector."""
+    problem = base.model.problem
+    weight = nuisance_precision(problem)
+    parts, matrix = [], np.diag(base.precision).astype(float)
+    for j, n in zip(base.columns.vector, base.columns.nuisance, strict=True):
+        inner = np.asarray(np.linalg.inv(n.T @ n + np.diag(weight)))
+        parts.append((j, n, inner))
+        side = n.T @ j
+        matrix += j.T @ j - side.T @ inner @ side
+    return parts, np.asarray(matrix)
+
+
+def _projected(
+    base: Fit,
+    state: Array,
+    projections: tuple[list[tuple[Array, Array, Array]], Array],
+    residuals: Sequence[Array],
+    moved: Sequence[Array],
+) -> tuple[Array, Array, float]:
+    """Overlap (R,) of what an effect moves with the residual, and its own size (R,), off base and nuisances.
+
+    The third is what their priors add to the overlap: a base that is bent against its priors to follow the data pulls
+    towards the effect that would let it go.
+    """
+    parts, matrix = projections
+    weight = nuisance_precision(base.model.problem)
+    held = [move - n @ (inner @ (n.T @ move)) for (_, n, inner), move in zip(parts, moved, strict=True)]
+    on_base = sum((j.T @ h for (j, _, _), h in zip(parts, held, strict=True)), np.zeros(len(matrix)))
+    amount = np.linalg.solve(matrix, on_base)
+    overlaps, sizes = [], []
+    pull = float(amount @ (base.precision * (base.vector - base.prior_mean)))
+    for index, (j, n, inner) in enumerate(parts):
+        side = j @ amount
+        rest = held[index] - (side - n @ (inner @ (n.T @ side)))
+        overlaps.append(float(rest @ residuals[index]))
+        sizes.append(float(rest @ moved[index]))
+        pull += float((n.T @ (moved[index] - side)) @ inner @ (weight * state[index]))
+    return np.array(overlaps), np.array(sizes), pull

@@ -1,0 +1,301 @@
+"""A model of a session: the base with some effects, its parameters as a vector, and its fit to every trial."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TypeAlias
+
+import numpy as np
+
+from benchmark.discovery.base.base_shape import Shape, ShapedTable
+from benchmark.discovery.base.trials_problem import OFFSETS, OWN, SHAPE_PRIOR, Problem
+from benchmark.physics import Effect, EffectParameter, Readings, catalogue
+from benchmark.physics.effect import Values
+from benchmark.response.force_curve import Array
+from benchmark.response.least_squares import Columns, Evaluation, Stop, TrialsFit, least_squares
+from benchmark.response.least_squares import settled as settled_nuisances
+from benchmark.response.noise import Whitener
+from benchmark.response.pipeline import TrialPipeline
+
+FAR_RADIUS = 0.25
+"""Relative change of the tool's radius up to which the base's second order serves."""
+LOG_PRIOR = 2.5
+"""Standard deviation of a logarithmic parameter round its start."""
+SHAPE_STEP = 1e-3
+"""By which the base's nuisances are changed to differentiate."""
+MOST = 12
+"""Steps of a fit at most."""
+
+
+@dataclass(frozen=True, eq=False)
+class White:
+    """Residual vectors of a problem, whitened and flattened: one array a trial."""
+
+    problem: Problem
+
+    @cached_property
+    def _whiteners(self) -> list[list[Whitener]]:
+        return [self.problem.whiteners(index) for index in range(len(self.problem.trials))]
+
+    def flat(self, index: int, rows: Array) -> Array:
+        """Rows (n, C) of a trial whitened, masked and flattened to (N,)."""
+        use = self._whiteners[index]
+        white = np.column_stack([use[signal](rows[:, signal]) for signal in range(rows.shape[1])])
+        mask = self.problem.mask
+        if mask is not None:
+            white = white * mask[self.problem.trials[index].condition]
+        return np.asarray(white.ravel())
+
+    def residuals(self, signals: list[Array]) -> list[Array]:
+        """White residuals, measured minus simulated."""
+        return [self.flat(i, trial.signals - signals[i]) for i, trial in enumerate(self.problem.trials)]
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """Base and effects for a problem; a `benchmark.response.least_squares.TrialsModel`.
+
+    The vector is the shape nuisances of the base, then each effect's parameters; logarithmic ones by their logarithm.
+    `pinned` nuisances stay at their values.
+    """
+
+    problem: Problem
+    effects: tuple[Effect, ...]
+    pinned: tuple[tuple[str, float], ...] = ()
+
+    @cached_property
+    def pipelines(self) -> tuple[TrialPipeline, ...]:
+        """The way of a trial in each condition."""
+        study = self.problem.study
+        chosen = ordered(self.effects, catalogue())
+        return tuple(TrialPipeline(condition.around, chosen, study.distance) for condition in study.conditions)
+
+    @cached_property
+    def white(self) -> White:
+        """The problem's whitening."""
+        return White(self.problem)
+
+    @cached_property
+    def parameters(self) -> tuple[tuple[str, EffectParameter], ...]:
+        """(slug, parameter) of the effects, in the vector's order."""
+        return tuple((effect.slug, p) for effect in self.effects for p in effect.description.parameters)
+
+    @property
+    def shape_count(self) -> int:
+        """Base nuisances, which come first."""
+        return len(self.problem.shapes)
+
+    @property
+    def size(self) -> int:
+        """Length of the vector."""
+        return self.shape_count + len(self.parameters)
+
+    @cached_property
+    def bounds(self) -> tuple[Array, Array]:
+        """Lower and upper bounds of the vector."""
+        held = dict(self.pinned)
+        reach = [FAR_RADIUS if name == "radius" else np.inf for name in self.problem.shapes]
+        shapes = [(held.get(n, -far), held.get(n, far)) for n, far in zip(self.problem.shapes, reach, strict=True)]
+        low = [low for low, _ in shapes] + [_inner(p, p.low) for _, p in self.parameters]
+        high = [high for _, high in shapes] + [_inner(p, p.high) for _, p in self.parameters]
+        return np.array(low), np.array(high)
+
+    def prior(self, start: Array) -> tuple[Array, Array]:
+        """Mean and precision (p,) of the priors; logarithmic parameters round their start."""
+        mean, precision = np.zeros(self.size), np.zeros(self.size)
+        for k, name in enumerate(self.problem.shapes):
+            precision[k] = getattr(SHAPE_PRIOR, name) ** -2
+        for k, (_, parameter) in enumerate(self.parameters, start=self.shape_count):
+            if parameter.logarithmic:
+                mean[k], precision[k] = start[k], LOG_PRIOR**-2
+            else:
+                precision[k] = (parameter.high - parameter.low) ** -2
+                mean[k] = start[k]
+        return mean, precision
+
+    def vector(self, shape: Array, values: Mapping[str, Values]) -> Array:
+        """The vector of shape nuisances (s,) and the effects' values."""
+        inner = [_inner(p, values[slug][p.name]) for slug, p in self.parameters]
+        return np.concatenate([shape, inner])
+
+    def shape(self, vector: Array) -> Shape:
+        """The base's shape."""
+        return Shape(**dict(zip(self.problem.shapes, vector.tolist(), strict=False)))
+
+    def values(self, vector: Array) -> dict[str, dict[str, float]]:
+        """Values of each effect's parameters, in SI."""
+        out: dict[str, dict[str, float]] = {effect.slug: {} for effect in self.effects}
+        for k, (slug, p) in enumerate(self.parameters, start=self.shape_count):
+            raw = float(np.exp(vector[k]) if p.logarithmic else vector[k])
+            out[slug][p.name] = min(max(raw, p.low), p.high)
+        return out
+
+    def shaped(self, vector: Array) -> tuple[ShapedTable, ...]:
+        """The table of each condition with the vector's shape."""
+        shape, study = self.shape(vector), self.problem.study
+        return tuple(
+            ShapedTable(table, shape, condition.around.peak_depth)
+            for table, condition in zip(self.problem.tables, study.conditions, strict=True)
+        )
+
+    def signals(self, vector: Array, nuisance: Array) -> list[Array]:
+        """(n, C) signals of each trial.
+
+        Parameters
+        ----------
+        vector
+            (p,) of the model.
+        nuisance
+            (trials, q): log gain, force zero, time shift, depth at touch, marker zeros.
+        """
+        tables, values = self.shaped(vector), self.values(vector)
+        return [self._trial(index, tables, values, own) for index, own in enumerate(nuisance)]
+
+    def _trial(self, index: int, tables: Sequence[ShapedTable], values: Mapping[str, Values], nuisance: Array) -> Array:
+        """(n, C) signals of one trial."""
+        trial = self.problem.trials[index]
+        gain, zero, shift, height = nuisance[: len(OWN)].tolist()
+        pipeline, table = self.pipelines[trial.condition], tables[trial.condition]
+        readings = pipeline.readings(table, values, trial.motion, float(np.exp(gain)), shift, height)
+        signals = self.as_signals(readings, zero, nuisance[len(OWN) :])
+        signals[:, 1:] = trial.at_frames(signals[:, 1:])
+        return signals
+
+    def as_signals(self, readings: Readings, zero: float, offsets: Array) -> Array:
+        """(n, C): force, then marker combinations, with their zeros."""
+        layout = self.problem.study.layout
+        force = readings.force[:, None] + zero
+        if layout is None or readings.markers is None:
+            return force
+        markers = layout.signals(readings.markers)
+        for k, name in enumerate(OFFSETS):
+            markers[:, layout.names.index(name)] += offsets[k]
+        return np.concatenate([force, markers], axis=1)
+
+    @cached_property
+    def trial_precision(self) -> Array:
+        """(q,) prior precisions of a trial's nuisances."""
+        return nuisance_precision(self.problem)
+
+    @property
+    def trial_bounds(self) -> None:
+        """Nuisances are held by their priors alone."""
+
+    def evaluated(self, vector: Array, nuisance: Array) -> Evaluation:
+        """Signals and white residuals of all trials."""
+        signals = self.signals(vector, nuisance)
+        return Evaluation(vector, nuisance, signals, self.white.residuals(signals))
+
+    def columns(self, at: Evaluation, warm: Columns | None = None) -> Columns:
+        """Derivatives by differences; `warm` lends those by the base's nuisances and the trials'."""
+        first = 0 if warm is None else self.shape_count
+        changes = [self._change(at, k) for k in range(first, self.size)]
+        count = len(at.signals)
+        own = [np.column_stack([c[i] for c in changes]) if changes else np.zeros((0, 0)) for i in range(count)]
+        if warm is None:
+            return Columns(own, self.nuisance_columns(at))
+        shapes = [columns[:, : self.shape_count] for columns in warm.vector]
+        return Columns([np.hstack([s, o]) if o.size else s for s, o in zip(shapes, own, strict=True)], warm.nuisance)
+
+    def _change(self, at: Evaluation, k: int) -> list[Array]:
+        """White derivative of each trial by one number of the vector."""
+        step = self._step(at.vector, k)
+        moved = at.vector.copy()
+        moved[k] += step
+        changed = self.signals(moved, at.nuisance)
+        return [self.white.flat(i, (changed[i] - signals) / step) for i, signals in enumerate(at.signals)]
+
+    def _step(self, vector: Array, k: int) -> float:
+        if k < self.shape_count:
+            return SHAPE_STEP
+        _, p = self.parameters[k - self.shape_count]
+        size = 0.02 if p.logarithmic else max(0.02 * abs(vector[k]), 1e-5 * (p.high - p.low))
+        return size if vector[k] + size <= self.bounds[1][k] else -size
+
+    def nuisance_columns(self, at: Evaluation) -> list[Array]:
+        """White derivatives (N, q) of each trial by its nuisances."""
+        study = self.problem.study
+        steps = self._nuisance_steps
+        moved = {}
+        for k, step in steps.items():
+            other = at.nuisance.copy()
+            other[:, k] += step
+            moved[k] = self.signals(at.vector, other)
+        out = []
+        for i, base in enumerate(at.signals):
+            columns = np.zeros((*base.shape, at.nuisance.shape[1]))
+            columns[:, 0, 1] = 1.0
+            for k, step in steps.items():
+                columns[..., k] = (moved[k][i] - base) / step
+            if study.layout is not None:
+                for k, name in enumerate(OFFSETS, start=len(OWN)):
+                    columns[:, 1 + study.layout.names.index(name), k] = 1.0
+            out.append(np.column_stack([self.white.flat(i, columns[..., k]) for k in range(columns.shape[2])]))
+        return out
+
+    @cached_property
+    def _nuisance_steps(self) -> Mapping[int, float]:
+        """By which log gain, time shift and depth at touch are changed to differentiate."""
+        study = self.problem.study
+        deepest = max(condition.around.peak_depth for condition in study.conditions)
+        return {0: 0.01, 2: max(0.2 * study.raw_interval, 1e-3), 3: 1e-3 * deepest}
+
+
+Fit: TypeAlias = TrialsFit[Model]
+"""A model fitted to the trials of its problem."""
+
+
+def fit(
+    model: Model, start: Array, nuisance: Array | None = None, warm: Columns | None = None, most: int = MOST
+) -> Fit:
+    """Fit a model from a start.
+
+    Parameters
+    ----------
+    model
+        What is fitted.
+    start
+        (p,) vector; logarithmic parameters have their priors round it.
+    nuisance
+        (R, q) start of the trials' nuisances; zeros by default.
+    warm
+        Derivatives of the base near the start, whose columns serve for the first steps.
+    most
+        Steps at most.
+    """
+    problem = model.problem
+    state = np.zeros((len(problem.trials), nuisance_count(problem))) if nuisance is None else nuisance
+    return least_squares(model, start, state, warm=warm, stop=Stop(most))
+
+
+def settled(model: Model, vector: Array, nuisance: Array) -> Array:
+    """(R, q) nuisances of the trials, all their rows counted, at a vector that stays."""
+    if model.problem.mask is not None:
+        model = Model(replace(model.problem, mask=None), model.effects)
+    return settled_nuisances(model, vector, nuisance)
+
+
+def ordered(effects: Sequence[Effect], catalogue: Sequence[Effect]) -> tuple[Effect, ...]:
+    """Effects in the order of the catalogue, own ones last."""
+    slugs = [effect.slug for effect in catalogue]
+    return tuple(sorted(effects, key=lambda each: slugs.index(each.slug) if each.slug in slugs else len(slugs)))
+
+
+def _inner(parameter: EffectParameter, value: float) -> float:
+    if not parameter.logarithmic:
+        return float(value)
+    return float(np.log(max(value, parameter.low, 1e-300)))
+
+
+def nuisance_count(problem: Problem) -> int:
+    """Nuisances of a trial: gain, zero, shift, height, and the marker zeros."""
+    return len(OWN) + (len(OFFSETS) if problem.study.layout is not None else 0)
+
+
+def nuisance_precision(problem: Problem) -> Array:
+    """(q,) prior precisions of a trial's nuisances."""
+    prior = problem.prior
+    sizes = [getattr(prior, name) for name in OWN] + [prior.offset] * (nuisance_count(problem) - len(OWN))
+    return np.array(sizes) ** -2.0

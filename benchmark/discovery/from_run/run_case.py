@@ -1,0 +1,113 @@
+"""A finished run as a fit sees it: its wave model as a ramp, the loads that are held out, and the gap in each layer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.discovery.discovery_result import Array
+from benchmark.discovery.from_run.finished_run import FinishedRun
+from benchmark.discovery.report.discovery_record import LayerGap
+from benchmark.errors import InputError
+from benchmark.models.scenario_effects import specimen_layers
+from benchmark.physics import TrialContext
+from benchmark.response import Ramp
+from wavemodel.physics import Physics, QuasiStaticPress
+from wavemodel.physics.force_driven import drive_by_force
+
+HALF = 0.5
+LEAST = 5
+"""Load levels that a fit needs."""
+NOTHING = Physics()
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A press of the reference beside the wave model.
+
+    Attributes
+    ----------
+    run : FinishedRun
+    ramp : Ramp
+        The wave model's elastic answer.
+    context : TrialContext
+        What effects may know of the press.
+    fitted, held : (n,) array of bool
+        Rows that a fit sees, and rows on which it is judged.
+    """
+
+    run: FinishedRun
+    ramp: Ramp
+    context: TrialContext
+    fitted: NDArray[np.bool_]
+    held: NDArray[np.bool_]
+
+    @property
+    def depth(self) -> Array:
+        """(n,) m of the reference's surface."""
+        return self.run.reference[:, 0]
+
+    def force(self, physics: Physics = NOTHING) -> Array:
+        """(n,) N of the wave model with options of its body, moved through the reference's depths."""
+        return QuasiStaticPress(self.ramp.force_at, physics).force(self.run.time, self.depth)
+
+    def deflections(self, physics: Physics = NOTHING) -> Array:
+        """(n, L) m of the wave model with options of its body under the run's force."""
+        press = QuasiStaticPress(self.ramp.force_at, physics)
+        trace = drive_by_force(press, self.run.time, self.run.force, float(self.ramp.depth[-1]))
+        return self.ramp.layers_at(np.maximum(trace.surface, 0.0))
+
+
+def split(run: FinishedRun, other: FinishedRun | None) -> tuple[Case, Case]:
+    """The case that is fitted, and the case whose held-out rows count: the upper half of loads, or the other run.
+
+    Raises
+    ------
+    InputError
+        Too few loads to fit.
+    """
+    whole = np.ones(run.force.size, dtype=bool)
+    fitted = whole if other is not None else run.force <= HALF * run.force.max() * (1.0 + 1e-9)
+    if np.unique(run.force[fitted & (run.force > 0.0)]).size < LEAST or run.force.max() <= 0.0:
+        raise InputError(
+            f"run {run.name}: its load history has fewer than {LEAST} loads to fit; raise load.observations, or press "
+            "instead of pulling"
+        )
+    first = _case(run, fitted, ~fitted)
+    if other is None:
+        return first, first
+    return first, _case(other, np.ones(other.force.size, dtype=bool), np.ones(other.force.size, dtype=bool))
+
+
+def _case(run: FinishedRun, fitted: NDArray[np.bool_], held: NDArray[np.bool_]) -> Case:
+    """The wave model's ramp is read off the rows while the load rises."""
+    rising = run.force > np.concatenate(([0.0], np.maximum.accumulate(run.force)[:-1]))
+    layers = np.vstack([np.zeros((1, run.wave.shape[1])), run.wave[rising]])
+    stack = [layer.thickness for layer in run.scenario.tissue.layers if np.isfinite(layer.thickness)]
+    context = TrialContext(
+        tool_radius=run.scenario.tool.radius,
+        thickness=float(sum(stack)),
+        peak_depth=float(run.reference[:, 0].max()),
+        peak_force=float(run.force.max()),
+        duration=float(run.time[-1]),
+        layers=specimen_layers(run.scenario.tissue.layers),
+        contact=run.scenario.tool.contact,
+    )
+    return Case(run, Ramp(layers[:, 0], np.append(0.0, run.force[rising]), layers), context, fitted, held)
+
+
+def layer_gaps(case: Case, physics: Physics = NOTHING) -> tuple[LayerGap, ...]:
+    """The gap of each layer under the run's force, before and with `physics`."""
+    after = case.deflections(physics)
+    return tuple(_layer_gap(name, case, column, after[:, column]) for column, name in enumerate(case.run.layers))
+
+
+def _layer_gap(name: str, case: Case, column: int, after: Array) -> LayerGap:
+    run = case.run
+    reference, before = run.reference[:, column], run.wave[:, column]
+    peak = int(np.abs(run.force).argmax())
+    errors = [100.0 * float((each[peak] - reference[peak]) / reference[peak]) for each in (before, after)]
+    sizes = [float(np.sqrt(np.mean((each - reference)[case.held] ** 2))) for each in (before, after)]
+    return LayerGap(name, run.force, reference, before, after, *sizes, *errors)

@@ -1,0 +1,126 @@
+"""A session's fit with the effects of a model file: what they add to the elastic force is taken off before the fit.
+
+The elastic fit gives stiffness, onset and zero; with these the effects' share of each row follows, and is taken off
+the measured force; then the fit is done again. A few rounds settle it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from benchmark.files import Session
+from benchmark.identification import FittingError, SessionFit, TrialData, fit_session
+from benchmark.model_file import RepairedModel
+from benchmark.models import Array, Drive, PreparedModel, UncoveredError
+from benchmark.models.scenario_effects import specimen_layers
+from benchmark.physics import TrialContext
+from benchmark.response.model_with_effects import effects_of, held_by_finite_strain
+from benchmark.response.pipeline import Added, trial_force
+
+ROUNDS = 12
+STEPS = 60
+REACH = 1.2
+"""The wave's elastic law is ramped this much deeper than the trial."""
+SETTLED = 1e-3
+"""Relative change of the stiffness from which a round is the last."""
+
+
+@dataclass(frozen=True, eq=False)
+class RepairedFit:
+    """A fit with effects.
+
+    Attributes
+    ----------
+    fit : SessionFit
+        Stiffness, onsets and zeros of the elastic part.
+    trials : tuple of TrialData
+        The measured trials with the effects' share taken off their force.
+    added : mapping of (condition, trial) to (n,) array
+        That share, N.
+    settled : bool
+        Whether the rounds came to rest.
+    """
+
+    fit: SessionFit
+    trials: tuple[TrialData, ...]
+    added: Mapping[tuple[str, str], Array]
+    settled: bool
+
+
+def fit_repaired(session: Session, trials: Sequence[TrialData], repair: RepairedModel) -> RepairedFit:
+    """Fit a session's specimen with effects switched on.
+
+    Raises
+    ------
+    FittingError
+        The trials cannot be fitted, or the effects do not cover them.
+    """
+    effects = tuple(added for added in effects_of(repair) if not held_by_finite_strain(added[0], repair))
+    fit = fit_session(trials, session.specimen.layers)
+    reduced, added, settled = tuple(trials), {trial.key: np.zeros(trial.rows) for trial in trials}, False
+    for _ in range(ROUNDS):
+        before = fit.stiffness_factor
+        added = {trial.key: _share(session, trial, fit, effects) for trial in trials if _fitted(trial, fit)}
+        reduced = tuple(
+            replace(trial, force=trial.force - added.get(trial.key, np.zeros(trial.rows))) for trial in trials
+        )
+        fit = fit_session(reduced, session.specimen.layers)
+        if abs(fit.stiffness_factor - before) <= SETTLED * before:
+            settled = True
+            break
+    return RepairedFit(fit, reduced, added, settled)
+
+
+def wave_force(
+    session: Session, trial: TrialData, onset: float, wave: PreparedModel, effects: Sequence[Added]
+) -> Array:
+    """(n,) N of a wave model at a trial's depth with all effects around its elastic law; raises UncoveredError."""
+    depth = trial.depth - onset
+    deepest = REACH * float(depth.max())
+    fractions = np.arange(1, STEPS + 1) / STEPS
+    ramp = wave.run(Drive("depth", fractions, deepest * fractions))
+
+    def law(below: Array) -> Array:
+        return np.asarray(np.interp(below, np.append(0.0, ramp.depth), np.append(0.0, ramp.force)))
+
+    return trial_force(law, effects, trial.time, depth, _around(session, trial, depth))
+
+
+def _fitted(trial: TrialData, fit: SessionFit) -> bool:
+    return trial.key in {each.key for each in fit.trials}
+
+
+def _share(session: Session, trial: TrialData, fit: SessionFit, effects: Sequence[Added]) -> Array:
+    """(n,) N that the effects add to the elastic force of a trial."""
+    own, factor = fit.trial(trial.name, trial.condition), fit.stiffness_factor
+    depth = trial.depth - own.onset
+
+    def law(below: Array) -> Array:
+        inside = np.minimum(below, trial.curve.depth[-1])
+        slope = (trial.curve.force[-1] - trial.curve.force[-2]) / (trial.curve.depth[-1] - trial.curve.depth[-2])
+        return np.asarray(factor * (trial.curve(inside) + slope * (below - inside)))
+
+    try:
+        force = trial_force(law, effects, trial.time, depth, _around(session, trial, depth))
+    except UncoveredError as error:
+        raise FittingError(f"{trial.label}: {error}") from None
+    return np.asarray(force - np.where(depth > 0.0, law(np.maximum(depth, 0.0)), 0.0))
+
+
+def _around(session: Session, trial: TrialData, depth: Array) -> TrialContext:
+    measured = next(each for each in session.trials if (each.condition, each.name) == trial.key)
+    thickness, support = session.specimen.thickness, measured.support
+    return TrialContext(
+        tool_radius=measured.tool.radius,
+        thickness=thickness if np.isfinite(thickness) else 0.05,
+        peak_depth=float(depth.max()),
+        peak_force=float(np.ptp(trial.force)),
+        duration=float(np.ptp(trial.time)),
+        hole_radius=(support.hole_radius or math.inf) if support.kind == "hole" else math.inf,
+        layers=specimen_layers(session.specimen.layers),
+        contact=measured.tool.contact,
+    )

@@ -1,0 +1,232 @@
+"""Where a trial's force rises: bounds and a start for the contact onset, and whether there is contact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from benchmark.identification.trial_data import TrialData
+from benchmark.response.force_curve import Array
+from benchmark.response.noise import lag_one, whitened
+
+RISEN = 0.01
+"""Force above its level at the least depth, as a fraction of its rise, at which contact has begun."""
+NOISES = 6.0
+"""The same in standard deviations of the force's sample-to-sample noise."""
+LEAST_EVIDENCE = 5.0
+"""Least t of the stiffness, with autocorrelated noise, that counts as contact."""
+LEAST_TRAVEL = 1e-6
+"""A trial whose depth stays within this range (m) has no motion."""
+ONSETS = 41
+
+
+@dataclass(frozen=True)
+class ContactRange:
+    """What the data allow of a trial's contact.
+
+    Attributes
+    ----------
+    low, high : float
+        Range of the contact onset, m on the trial's own depth scale.
+    reference : float
+        Depth at which the trial is least deep, m.
+    rest_low, rest_high : float
+        Range of the force there, N.
+    """
+
+    low: float
+    high: float
+    reference: float
+    rest_low: float
+    rest_high: float
+
+
+@dataclass(frozen=True)
+class Start:
+    """Best linear fit over a grid of onsets: stiffness factor, force at the reference depth (N), onset (m).
+
+    `evidence` is the t of the stiffness with autocorrelated noise.
+    """
+
+    stiffness: float
+    rest: float
+    onset: float
+    evidence: float
+
+
+def travel(depth: Array) -> float:
+    """Range of the depth (n,), m."""
+    return float(np.ptp(depth))
+
+
+def sample_noise(force: Array) -> float:
+    """Robust standard deviation of the sample-to-sample noise of a force (n,), N, by second differences."""
+    return float(np.median(np.abs(np.diff(force, 2))) / (0.6745 * np.sqrt(6.0)))
+
+
+def without_spikes(force: Array) -> Array:
+    """Force (n,), N, with bad samples replaced by the running median of five.
+
+    Bad is what leaves that median by more than a quarter of its range; up to two neighbours are recognised.
+    """
+    windows = np.lib.stride_tricks.sliding_window_view(np.pad(force, 2, mode="reflect"), 5)
+    calm = np.median(windows, axis=1)
+    return np.where(np.abs(force - calm) > 0.25 * np.ptp(calm), calm, force)
+
+
+def contact_range(depth: Array, force: Array) -> ContactRange:
+    """Range in which the data allow the contact onset, and the force where the trial is least deep.
+
+    Contact has begun at the latest where the force has left its level at the least depth by 1 % of its rise
+    and six standard deviations of its noise, for the last time before the largest force. It began at the
+    earliest as far above that as the deepest row lies below it, and no more than a tenth of the travel above
+    the least depth. The force at the least depth is its median there, within twice those margins.
+
+    Parameters
+    ----------
+    depth, force : (n,)
+        m and N.
+    """
+    shallow = depth <= np.quantile(depth, 0.05)
+    calm = without_spikes(force)
+    level, peak = float(np.median(force[shallow])), int(np.argmax(calm))
+    margin = max(NOISES * sample_noise(force), RISEN * float(calm[peak] - level))
+    below = np.flatnonzero(calm[:peak] <= level + margin)
+    risen = float(depth[below[-1] + 1]) if below.size else float(depth.min())
+    low = max(float(depth.min()) - 0.1 * travel(depth), 2.0 * risen - float(depth.max()))
+    high = max(risen, low + 1e-3 * travel(depth))
+    margin = max(margin, np.finfo(float).tiny)
+    return ContactRange(low, high, float(np.median(depth[shallow])), level - 2.0 * margin, level + 2.0 * margin)
+
+
+def required_depth(depth: Array, force: Array) -> float:
+    """Depth in m that a force curve must reach to cover a trial with `depth` (n,) m and `force` (n,) N.
+
+    At least a micrometre, also for a trial without motion.
+    """
+    return max(float(depth.max()) - contact_range(depth, force).low, LEAST_TRAVEL)
+
+
+def find_start(trial: TrialData, allowed: ContactRange) -> Start:
+    """Best stiffness factor and force at rest by linear least squares over 41 onsets, all within the range."""
+    onsets = np.linspace(allowed.low, allowed.high, ONSETS)
+    shapes = np.stack([shape_above_rest(trial, allowed, onset) for onset in onsets])
+    mean, force = shapes.mean(axis=1), trial.force
+    power = np.einsum("ij,ij->i", shapes, shapes) - trial.rows * mean**2
+    free = _ratio(shapes @ force - trial.rows * mean * force.mean(), power)
+    rest = np.clip(force.mean() - free * mean, allowed.rest_low, allowed.rest_high)
+    stiffness = _ratio(shapes @ force - trial.rows * mean * rest, power + trial.rows * mean**2)
+    residual = force - rest[:, None] - stiffness[:, None] * shapes
+    misfit = np.einsum("ij,ij->i", residual, residual)
+    best = int(np.argmin(np.where(stiffness > 0.0, misfit, np.inf)))
+    evidence = evidence_of(shapes[best], force)
+    return Start(float(stiffness[best]), float(rest[best]), float(onsets[best]), evidence)
+
+
+def shape_above_rest(trial: TrialData, allowed: ContactRange, onset: float) -> Array:
+    """Force (n,) in N of the curve at the trial's depths, less that at the reference depth."""
+    return trial.curve(trial.depth - onset) - trial.curve(np.array([allowed.reference - onset]))
+
+
+def _ratio(above: Array, below: Array) -> Array:
+    return np.divide(above, below, out=np.zeros_like(above), where=below > 0.0)
+
+
+def evidence_of(shape: Array, force: Array) -> float:
+    """Return t of the slope of force (n,) over shape (n,) with AR(1) noise (Cochrane and Orcutt, JASA 44:32).
+
+    0 where the shape does not vary, infinite where it explains the force without a residual.
+    """
+    if np.ptp(shape) == 0.0:
+        return 0.0
+    columns = np.column_stack((shape, np.ones_like(shape), force))
+    fitted, *_ = np.linalg.lstsq(columns[:, :2], force)
+    white = whitened(columns, lag_one(force - columns[:, :2] @ fitted, parameters=2))
+    design, target = white[:, :2], white[:, 2]
+    slope, *_ = np.linalg.lstsq(design, target)
+    residual = target - design @ slope
+    variance = float(residual @ residual) / (len(target) - 2) * np.linalg.pinv(design.T @ design)[0, 0]
+    if variance <= 0.0:
+        return float(np.sign(slope[0]) * np.inf) if slope[0] else 0.0
+    return float(slope[0] / np.sqrt(variance))
+
+
+STILL = 0.005
+"""Depth within this fraction of the travel counts as held."""
+LEAST_SHARE = 0.05
+"""Least length of a hold as a fraction of the trial's duration; it also needs five rows."""
+LOADED = 0.2
+"""Least force of a hold above the level in the air, as a fraction of the trial's rise."""
+SEEN = 2.0
+"""A loss of force in a hold counts above this, in %, where a decay stands out of the noise."""
+CLEAR = 10.0
+"""A larger loss, in %, needs only to be above twelve standard deviations of the sample-to-sample noise."""
+SHARES = (0.02, 0.05, 0.1, 0.2, 0.5, 2.0)
+"""Time constants of the decays that are looked for, as fractions of the hold."""
+
+
+@dataclass(frozen=True)
+class Hold:
+    """A hold: `start` and `end` in s, `depth` in m, force lost in % of the force above the unloaded level.
+
+    `seen` says whether the loss stands out of the noise.
+    """
+
+    start: float
+    end: float
+    depth: float
+    decay_percent: float
+    seen: bool
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values with units in the keys."""
+        return {
+            "start_s": self.start,
+            "end_s": self.end,
+            "depth_mm": 1e3 * self.depth,
+            "decay_percent": self.decay_percent,
+            "seen": self.seen,
+        }
+
+
+def largest_decay(trial: TrialData) -> Hold | None:
+    """Return the loaded hold in which the force falls most, None where the depth is never held under load."""
+    level = float(np.median(trial.force[trial.depth <= np.quantile(trial.depth, 0.05)]))
+    rise = float(without_spikes(trial.force).max()) - level
+    holds = [_hold(trial, rows, level) for rows in _still(trial) if _loaded(trial.force[rows], level, rise)]
+    return max(holds, key=lambda hold: hold.decay_percent, default=None)
+
+
+def _still(trial: TrialData) -> Iterator[slice]:
+    """Rows of each stretch in which the depth stays put, in order."""
+    tolerance = STILL * travel(trial.depth)
+    shortest = LEAST_SHARE * float(trial.time[-1] - trial.time[0])
+    first = 0
+    while first < trial.rows - 4:
+        moved = np.abs(trial.depth[first:] - trial.depth[first]) > tolerance
+        end = first + int(np.argmax(moved)) if moved.any() else trial.rows
+        if end - first >= 5 and trial.time[end - 1] - trial.time[first] >= shortest:
+            yield slice(first, end)
+            first = end
+        else:
+            first += 1
+
+
+def _loaded(force: Array, level: float, rise: float) -> bool:
+    return rise > 0.0 and float(force.max()) - level >= LOADED * rise
+
+
+def _hold(trial: TrialData, rows: slice, level: float) -> Hold:
+    """Compare the highest force of the first quarter with the mean of the last tenth."""
+    force = without_spikes(trial.force)[rows]
+    before = float(force[: max(2, len(force) // 4)].max())
+    after = float(force[-max(2, len(force) // 10) :].mean())
+    decay = 100.0 * (before - after) / (float(force.max()) - level)
+    elapsed = (trial.time[rows] - trial.time[rows][0]) / (trial.time[rows][-1] - trial.time[rows][0])
+    falls = [evidence_of(np.exp(-elapsed / share), force) for share in SHARES]
+    clear = decay > CLEAR and before - after > 2.0 * NOISES * sample_noise(trial.force)
+    seen = bool(clear or (decay > SEEN and max(falls) >= LEAST_EVIDENCE))
+    return Hold(float(trial.time[rows][0]), float(trial.time[rows][-1]), float(trial.depth[rows].mean()), decay, seen)

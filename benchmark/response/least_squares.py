@@ -1,0 +1,389 @@
+"""One engine of least squares: damped Gauss-Newton for many trials that share a vector of parameters.
+
+Each trial may have nuisances of its own, which are eliminated in closed form: the trials meet in the vector alone, so
+that the normal matrix is an arrow. Priors are normal; bounds are kept by stopping what would leave them while the
+others make up for it. What a trial says of the vector, after its nuisances, is kept as its block; the blocks also give
+the covariance, the fit without a trial and the density of a trial at other parameters, to second order.
+
+No library eliminates nuisances trial by trial (SciPy's `least_squares` and lmfit would carry all of them in one dense
+matrix); a single record without nuisances is the case of one trial (`Record`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.response.force_curve import Array
+
+DAMPING = 1e-3
+"""Of the diagonal of the normal matrix, to begin with; a step that lowers the objective takes it down to a fifth."""
+MOST_DAMPING = 1e5
+LENT = 3
+"""Steps for which the derivatives of a start serve."""
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A fit has converged where a step lowers the objective by less than `gain`, or by this `share` of it."""
+
+    most: int = 12
+    gain: float = 0.03
+    share: float = 3e-5
+
+
+EXACT = Stop(most=200, gain=0.0, share=1e-14)
+"""Of a fit of few parameters to one record: to round-off."""
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """White derivatives of each trial's prediction: by the vector (N, p) and by the trial's nuisances (N, q)."""
+
+    vector: list[Array]
+    nuisance: list[Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """A model at a vector (p,) and nuisances (R, q): its signals and the white residuals (N,) of each trial.
+
+    Residuals are measured minus predicted; what signals are is the model's own affair.
+    """
+
+    vector: Array
+    nuisance: Array
+    signals: list[Array]
+    residuals: list[Array]
+
+
+class TrialsModel(Protocol):
+    """What is fitted to R trials: a vector (p,), and q nuisances of each trial with priors round zero."""
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """Lower and upper bounds (p,) of the vector."""
+        ...
+
+    @property
+    def trial_precision(self) -> Array:
+        """(q,) prior precisions of a trial's nuisances; 0 for none."""
+        ...
+
+    @property
+    def trial_bounds(self) -> tuple[Array, Array] | None:
+        """Lower and upper bounds (R, q) of the nuisances; None where there are none."""
+        ...
+
+    def prior(self, start: Array) -> tuple[Array, Array]:
+        """Mean and precision (p,) of the priors of a fit that begins at a vector."""
+        ...
+
+    def evaluated(self, vector: Array, nuisance: Array) -> Evaluation:
+        """Signals and white residuals of all trials."""
+        ...
+
+    def columns(self, at: Evaluation, warm: Columns | None = None) -> Columns:
+        """Derivatives of all trials; some may be lent by those of a start nearby (`warm`)."""
+        ...
+
+    def nuisance_columns(self, at: Evaluation) -> list[Array]:
+        """Those by the nuisances alone."""
+        ...
+
+
+Model = TypeVar("Model", bound=TrialsModel)
+
+
+@dataclass(frozen=True, eq=False)
+class Blocks:
+    """What each of R trials says of the vector (p,) after its nuisances.
+
+    Attributes
+    ----------
+    matrix : (R, p, p), slope : (R, p)
+        Half the misfit is constant - slope . step + step . matrix . step / 2.
+    misfit : (R,)
+        Sum of squares of the white residual, its nuisances at their best.
+    log_size : (R,)
+        Logarithm of the determinant that marginalising the nuisances adds.
+    """
+
+    matrix: Array
+    slope: Array
+    misfit: Array
+    log_size: Array
+
+
+@dataclass(frozen=True, eq=False)
+class TrialsFit(Generic[Model]):
+    """A model fitted.
+
+    Attributes
+    ----------
+    model
+        What was fitted.
+    vector : (p,) array
+    nuisance : (R, q) array
+    objective : float
+        Half the sum of squares with all priors.
+    blocks : Blocks
+        At the solution.
+    precision, prior_mean : (p,) array
+        Of the priors on the vector.
+    columns : Columns
+        At the solution.
+    """
+
+    model: Model
+    vector: Array
+    nuisance: Array
+    objective: float
+    blocks: Blocks
+    precision: Array
+    prior_mean: Array
+    columns: Columns
+
+    @property
+    def covariance(self) -> Array:
+        """(p, p) of the vector, for residuals of unit variance."""
+        total = self.blocks.matrix.sum(axis=0) + np.diag(self.precision)
+        return np.asarray(np.linalg.pinv(total, hermitian=True))
+
+    def without(self, trials: NDArray[np.bool_]) -> Array:
+        """(p,) of the fit without some trials (mask (R,)), to first order, within the bounds."""
+        matrix = self.blocks.matrix[~trials].sum(axis=0) + np.diag(self.precision)
+        slope = self.blocks.slope[~trials].sum(axis=0) - self.precision * (self.vector - self.prior_mean)
+        step = bounded_step(matrix, slope, self.vector, 1e-9, self.model.bounds)
+        return np.clip(self.vector + step, *self.model.bounds)
+
+    def log_density(self, vector: Array) -> Array:
+        """(R,) log density of each trial at another vector, to second order, its nuisances marginalised."""
+        step = vector - self.vector
+        misfit = self.blocks.misfit - 2.0 * self.blocks.slope @ step
+        misfit = misfit + np.einsum("i,rij,j->r", step, self.blocks.matrix, step)
+        return np.asarray(-0.5 * np.maximum(misfit, 0.0) - 0.5 * self.blocks.log_size)
+
+
+def least_squares(
+    model: Model, start: Array, nuisance: Array, *, warm: Columns | None = None, stop: Stop = Stop()
+) -> TrialsFit[Model]:
+    """Fit a model from a start.
+
+    Parameters
+    ----------
+    model
+        What is fitted.
+    start
+        (p,) vector; its priors may lie round it.
+    nuisance
+        (R, q) start of the trials' nuisances.
+    warm
+        Derivatives near the start, some of which serve for the first steps.
+    stop
+        When the fit has converged; with `most` = 0 the start is only looked up.
+    """
+    mean, precision = model.prior(start)
+    at = model.evaluated(np.clip(start, *model.bounds), nuisance)
+    value = _objective(model, at, mean, precision)
+    damping, columns = DAMPING, None
+    for turn in range(stop.most):
+        if columns is None:
+            columns = model.columns(at, warm if turn < LENT else None)
+        tried = model.evaluated(*_moved(model, columns, at, (mean, precision), damping))
+        tried_value = _objective(model, tried, mean, precision)
+        if tried_value < value:
+            gain, at, value = value - tried_value, tried, tried_value
+            damping, columns = damping * 0.2, None
+            if gain < max(stop.gain, stop.share * value):
+                break
+        else:
+            if warm is not None and turn < LENT:
+                warm, columns = None, None
+            damping = max(damping, 1e-4) * 12.0
+            if damping > MOST_DAMPING:
+                break
+    columns = model.columns(at)
+    blocks = _blocks(model, columns, at)
+    return TrialsFit(model, at.vector, at.nuisance, value, blocks, precision, mean, columns)
+
+
+def _objective(model: TrialsModel, at: Evaluation, mean: Array, precision: Array) -> float:
+    data = sum(float(r @ r) for r in at.residuals)
+    prior = float(np.sum(at.nuisance**2 * model.trial_precision) + np.sum(precision * (at.vector - mean) ** 2))
+    total = 0.5 * (data + prior)
+    return total if np.isfinite(total) else np.inf
+
+
+def _moved(
+    model: TrialsModel, columns: Columns, at: Evaluation, prior: tuple[Array, Array], damping: float
+) -> tuple[Array, Array]:
+    """Vector and nuisances one damped step further, within their bounds."""
+    mean, precision = prior
+    matrix, slope = np.diag(precision).astype(float), -precision * (at.vector - mean)
+    parts = []
+    for index, residual in enumerate(at.residuals):
+        one = _eliminated(
+            columns, index, residual, at.nuisance[index], model.trial_precision, _held(model, columns, at, index)
+        )
+        matrix += one.matrix
+        slope += one.slope
+        parts.append(one)
+    step = bounded_step(matrix, slope, at.vector, damping, model.bounds)
+    moves = np.array([one.solved[:, -1] - one.solved[:, :-1] @ step for one in parts])
+    limits = model.trial_bounds
+    if limits is None:
+        return np.clip(at.vector + step, *model.bounds), at.nuisance + moves
+    for index, one in enumerate(parts):
+        pull, own = one.pull - one.side @ step, at.nuisance[index]
+        moves[index] = bounded_step(one.inner, pull, own, 0.0, (limits[0][index], limits[1][index]))
+    return np.clip(at.vector + step, *model.bounds), np.clip(at.nuisance + moves, *limits)
+
+
+@dataclass(frozen=True, eq=False)
+class _Eliminated:
+    """A trial's normal equations: its nuisances' own (`inner`, `side`, `pull`), and what is left of the vector's."""
+
+    inner: Array
+    side: Array
+    pull: Array
+    solved: Array
+    matrix: Array
+    slope: Array
+
+
+def _eliminated(
+    columns: Columns, index: int, residual: Array, own: Array, weight: Array, held: NDArray[np.bool_]
+) -> _Eliminated:
+    """Eliminate the nuisances of a trial that stand at `own` (q,); those that are `held` stay there."""
+    j, n = columns.vector[index], columns.nuisance[index]
+    inner = n.T @ n + np.diag(weight)
+    side, pull = n.T @ j, n.T @ residual - weight * own
+    if held.any():
+        solved = np.zeros((own.size, j.shape[1] + 1))
+        solved[~held] = np.linalg.solve(inner[np.ix_(~held, ~held)], np.column_stack([side, pull])[~held])
+    else:
+        solved = np.linalg.solve(inner, np.column_stack([side, pull]))
+    matrix = j.T @ j - side.T @ solved[:, :-1]
+    return _Eliminated(inner, side, pull, solved, matrix, j.T @ residual - side.T @ solved[:, -1])
+
+
+def _held(model: TrialsModel, columns: Columns, at: Evaluation, index: int) -> NDArray[np.bool_]:
+    """Which nuisances of a trial stand at a bound that they would pass (q,)."""
+    limits, own = model.trial_bounds, at.nuisance[index]
+    if limits is None:
+        return np.zeros(own.size, dtype=bool)
+    pull = columns.nuisance[index].T @ at.residuals[index] - model.trial_precision * own
+    low, high = limits[0][index], limits[1][index]
+    return np.asarray(((own <= low) & (pull <= 0.0)) | ((own >= high) & (pull >= 0.0)))
+
+
+def bounded_step(matrix: Array, slope: Array, vector: Array, damping: float, bounds: tuple[Array, Array]) -> Array:
+    """Damped step within the bounds: what would leave them stops at their edge, and the others make up for it."""
+    low, high = bounds[0] - vector, bounds[1] - vector
+    damped = matrix + np.diag(damping * np.maximum(np.diag(matrix), 1e-12))
+    free = np.ones(vector.size, dtype=bool)
+    step = np.zeros(vector.size)
+    for _ in range(vector.size):
+        if not free.any():
+            return step
+        pull = slope[free] - matrix[np.ix_(free, ~free)] @ step[~free]
+        step[free] = np.linalg.solve(damped[np.ix_(free, free)], pull)
+        out = free & ((step < low) | (step > high))
+        if not out.any():
+            return step
+        step[out] = np.clip(step, low, high)[out]
+        free &= ~out
+    return step
+
+
+def _blocks(model: TrialsModel, columns: Columns, at: Evaluation) -> Blocks:
+    matrices, slopes, misfits, sizes = [], [], [], []
+    weight = model.trial_precision
+    for index, residual in enumerate(at.residuals):
+        held = _held(model, columns, at, index)
+        free = residual + columns.nuisance[index] @ np.where(held, 0.0, at.nuisance[index])
+        one = _eliminated(columns, index, free, np.zeros(held.size), weight, held)
+        matrices.append(one.matrix)
+        slopes.append(one.slope)
+        misfits.append(float(free @ free - one.pull @ one.solved[:, -1]))
+        sizes.append(float(np.linalg.slogdet(one.inner)[1] - np.log(weight[weight > 0.0]).sum()))
+    return Blocks(np.array(matrices), np.array(slopes), np.array(misfits), np.array(sizes))
+
+
+def settled(model: TrialsModel, vector: Array, nuisance: Array, turns: int = 2) -> Array:
+    """(R, q) nuisances of the trials at a vector that stays, by so many Gauss-Newton steps."""
+    state, weight = nuisance.copy(), model.trial_precision
+    for _ in range(turns):
+        at = model.evaluated(vector, state)
+        columns = model.nuisance_columns(at)
+        for index, residual in enumerate(at.residuals):
+            n = columns[index]
+            state[index] += np.linalg.solve(n.T @ n + np.diag(weight), n.T @ residual - weight * state[index])
+    return state
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """One record fitted by a vector (p,) alone, without nuisances and priors.
+
+    Attributes
+    ----------
+    residual : (p,) -> (n,)
+        Measured minus predicted.
+    derivative : (p,) -> (n, p)
+        Of the prediction.
+    bounds : (p,) and (p,) array
+        Equal ones fix a parameter.
+    """
+
+    residual: Callable[[Array], Array]
+    derivative: Callable[[Array], Array]
+    bounds: tuple[Array, Array]
+
+    @property
+    def trial_precision(self) -> Array:
+        """No nuisance has a prior."""
+        return np.zeros(0)
+
+    @property
+    def trial_bounds(self) -> None:
+        """Nor bounds."""
+
+    def prior(self, start: Array) -> tuple[Array, Array]:
+        """No priors."""
+        return np.zeros_like(start), np.zeros_like(start)
+
+    def evaluated(self, vector: Array, nuisance: Array) -> Evaluation:
+        """The record's residual."""
+        return Evaluation(vector, nuisance, [], [self.residual(vector)])
+
+    def columns(self, at: Evaluation, warm: Columns | None = None) -> Columns:  # noqa: ARG002
+        """The record's derivative; nothing is lent."""
+        return Columns([self.derivative(at.vector)], self.nuisance_columns(at))
+
+    def nuisance_columns(self, at: Evaluation) -> list[Array]:
+        """None."""
+        return [np.zeros((at.residuals[0].size, 0))]
+
+    def fit(self, start: Array, stop: Stop = EXACT) -> TrialsFit[Record]:
+        """Fit from a start (p,)."""
+        return least_squares(self, start, np.zeros((1, 0)), stop=stop)
+
+
+def differences(residual: Callable[[Array], Array], vector: Array, step: float, bounds: tuple[Array, Array]) -> Array:
+    """(n, p) derivatives of a prediction from its residuals, measured minus predicted: central, one-sided at bounds.
+
+    A parameter whose bounds are equal has none.
+    """
+    columns = []
+    for k in range(vector.size):
+        less, more = vector.copy(), vector.copy()
+        less[k], more[k] = max(vector[k] - step, bounds[0][k]), min(vector[k] + step, bounds[1][k])
+        wide = more[k] - less[k]
+        columns.append((residual(less) - residual(more)) / wide if wide > 0.0 else 0.0 * residual(vector))
+    return np.stack(columns, axis=1)

@@ -1,0 +1,194 @@
+"""The way of a trial: drive (what the rig imposes) -> body (tissue, layers, contact) -> observation (sensor, camera).
+
+Effects act around the elastic answer of a specimen, whichever model gives it, in the order in which they are handed in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol, TypeAlias
+
+import numpy as np
+
+from benchmark.models import UncoveredError
+from benchmark.physics import Effect, LowerFaceMotion, Motion, PressHistory, Readings, TrialContext
+from benchmark.response.force_curve import Array
+from wavemodel import WaveError
+from wavemodel.physics import Physics, QuasiStaticPress
+from wavemodel.physics.quasi_static_press import Trace
+
+Law: TypeAlias = Callable[[Array], Array]
+"""Elastic force (n,) N over depths (n,) of 0 and more, m."""
+Added: TypeAlias = tuple[Effect, Mapping[str, float]]
+"""An effect with the values of its parameters, SI."""
+
+FIRST_STEP = 1e-3
+"""A trial begins this long after rest, s: what is shorter is taken as sudden."""
+
+
+class Elastic(Protocol):
+    """The elastic answer of a specimen under a tool."""
+
+    def force(self, depth: Array) -> Array:
+        """(n,) N at depths (n,) of 0 and more, m."""
+        ...
+
+    def lower_face(self, spread: LowerFaceMotion, rest: Array) -> tuple[Array, Array]:
+        """Positions (n, m, 2) and sinking (n, m) of markers at rest positions (m, 2), m."""
+        ...
+
+
+def physics_of(added: Iterable[Added], around: TrialContext) -> Physics:
+    """The options of the body that effects switch on."""
+    options: dict[str, Any] = {}
+    for effect, values in added:
+        if effect.body is not None:
+            options |= dict(effect.body(values, around))
+    return Physics(**options)
+
+
+@dataclass(frozen=True, eq=False)
+class PressedBody:
+    """An elastic law with a body's options, pressed through the times (n,) of a trial, the first just after rest."""
+
+    law: Law
+    time: Array
+    physics: Physics
+
+    def elastic(self, depth: Array) -> Array:
+        """(n,) N without memory, through the options that are elastic."""
+        kept = self.physics
+        plain = Physics(stiffening=kept.stiffening, pretension=kept.pretension, floor=kept.floor)
+        return QuasiStaticPress(self.law, plain).force(1.0 + np.arange(depth.size, dtype=np.float64), depth)
+
+    def force(self, depth: Array) -> Array:
+        """(n,) N."""
+        return self.trace(depth).force
+
+    def trace(self, depth: Array) -> Trace:
+        """The press through depths (n,), m."""
+        press = QuasiStaticPress(self.law, self.physics)
+        return press.follow(np.diff(self.time, prepend=0.0), depth, press.rest())[0]
+
+
+@dataclass(frozen=True, eq=False)
+class TrialPipeline:
+    """One condition with effects.
+
+    Attributes
+    ----------
+    around : TrialContext
+        What the effects may know of it; its markers are what is seen.
+    effects : tuple of Effect
+        In the order in which they act.
+    distance : float or None
+        From camera to lower face, where the model knows it, m.
+    """
+
+    around: TrialContext
+    effects: tuple[Effect, ...]
+    distance: float | None = None
+
+    def readings(
+        self,
+        elastic: Elastic,
+        values: Mapping[str, Mapping[str, float]],
+        motion: Motion,
+        gain: float = 1.0,
+        shift: float = 0.0,
+        height: float = 0.0,
+    ) -> Readings:
+        """What sensor and camera report in a trial.
+
+        Parameters
+        ----------
+        elastic
+            The specimen's elastic answer.
+        values
+            Parameters of each effect by its slug.
+        motion
+            As the actuator reports it, (n,) rows.
+        gain, shift, height
+            Factor on the stiffness, time by which force and frames are late against depth, s, and depth at which the
+            tool touches, m.
+
+        Raises
+        ------
+        wavemodel.WaveError
+            A depth or a value that the body's options do not cover.
+        """
+        if shift or height:
+            late = motion.time - shift
+            motion = replace(motion, depth=np.interp(late, motion.time, motion.depth) - height)
+        added = [(effect, values[effect.slug]) for effect in self.effects]
+        clock = motion.time - motion.time[0] + FIRST_STEP
+        body = PressedBody(lambda depth: gain * elastic.force(depth), clock, physics_of(added, self.around))
+        depth = motion.depth
+        for effect, own in added:
+            if effect.drive is not None:
+                depth = effect.drive(own, replace(motion, depth=depth), body)
+        trace = body.trace(depth)
+        press = PressHistory(motion.time, depth, trace.surface, trace.force, trace.elastic, trace.touching)
+        readings = self._seen(elastic, press, added)
+        for effect, own in added:
+            if effect.observe is not None and (readings.markers is not None or not effect.needs_markers):
+                readings = effect.observe(own, readings, motion, self.around)
+        return readings
+
+    def _seen(self, elastic: Elastic, press: PressHistory, added: Sequence[Added]) -> Readings:
+        """The force, and the markers where there are any."""
+        if self.around.markers is None:
+            return Readings(press.force)
+        under = np.where(press.touching, press.surface, np.maximum(press.surface, 0.0))
+        spread = LowerFaceMotion(under, np.ones_like(under))
+        for effect, values in added:
+            if effect.lower_face is not None:
+                spread = effect.lower_face(values, spread, press, self.around)
+        markers, sink = elastic.lower_face(spread, self.around.markers)
+        if self.distance is not None:
+            markers = markers / (1.0 - sink / self.distance)[..., None]
+        return Readings(press.force, markers, sink)
+
+
+@dataclass(frozen=True, eq=False)
+class ForceAlone:
+    """An elastic law whose lower face nobody sees."""
+
+    law: Law
+
+    def force(self, depth: Array) -> Array:
+        """(n,) N at depths (n,), m."""
+        return self.law(depth)
+
+    def lower_face(self, spread: LowerFaceMotion, rest: Array) -> tuple[Array, Array]:
+        """Markers that stay where they are."""
+        return np.broadcast_to(rest, (spread.depth.size, *rest.shape)).copy(), np.zeros((spread.depth.size, len(rest)))
+
+
+def trial_force(law: Law, added: Sequence[Added], time: Array, depth: Array, around: TrialContext) -> Array:
+    """Force (n,) N that the sensor reports in a trial.
+
+    Parameters
+    ----------
+    law
+        The specimen's elastic law.
+    added
+        Effects with their values, in the order in which they act.
+    time, depth
+        (n,) s and m below contact.
+    around
+        What the effects may know of the trial.
+
+    Raises
+    ------
+    UncoveredError
+        A depth or a value that the effects do not cover.
+    """
+    motion = Motion(time, depth, np.gradient(np.gradient(depth, time), time))
+    pipeline = TrialPipeline(replace(around, markers=None), tuple(effect for effect, _ in added))
+    values = {effect.slug: own for effect, own in added}
+    try:
+        return pipeline.readings(ForceAlone(law), values, motion).force
+    except WaveError as error:
+        raise UncoveredError(str(error)) from None

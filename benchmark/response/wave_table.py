@@ -1,0 +1,143 @@
+"""Elastic tables by the wave models: the sheet over a hole, or bonded layers under a large press.
+
+Their force and face are explicit in depth, so that no steps are needed; setting one up takes long enough for one change
+of each parameter alone, so that derivatives are of first order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from benchmark.errors import InputError
+from benchmark.files import Support, Tissue, Tool
+from benchmark.response.elastic_table import POINTS, ElasticTable, SeparableField, SetupDerivative
+from benchmark.response.force_curve import Array
+from benchmark.response.setup_change import RADIUS, changed_setup
+
+LEVELS = 24
+RADII = 90
+STEP = 0.06
+"""Share of a set-up parameter by which tables are differentiated."""
+MARGIN = 1.25
+"""A table reaches this much deeper than the trials."""
+Specimen: TypeAlias = tuple[Tissue, Tool, Support]
+
+ENDLESS = 0.05
+"""Thickness of an endless layer, m."""
+
+
+def wave_table(
+    tissue: Tissue, tool: Tool, support: Support, depth: float, keys: Sequence[str] = (RADIUS,)
+) -> ElasticTable:
+    """The table of one set-up to a depth, m.
+
+    Parameters
+    ----------
+    tissue, tool, support
+        The set-up.
+    depth : float
+        Deepest depth of the trials, m.
+    keys : sequence of str
+        Set-up parameters by which the table is differentiated.
+
+    Raises
+    ------
+    InputError
+        The wave models do not cover the set-up.
+    """
+    from wavemodel import WaveError
+
+    setup = (tissue, tool, support)
+    try:
+        if support.kind == "hole":
+            return _sheet(setup, MARGIN * depth, keys)
+        return _bonded(setup, MARGIN * depth, keys)
+    except WaveError as error:
+        raise InputError(f"the base model of {tissue.name!r} cannot be worked out: {error}.") from None
+
+
+def _bonded(setup: Specimen, depth: float, keys: Sequence[str]) -> ElasticTable:
+    grid = np.linspace(0.0, depth, POINTS)
+    force = _layered_force(*setup[:2], grid)
+    by = {}
+    for key in keys:
+        tissue, tool, _ = changed_setup(*setup, key, STEP)
+        by[key] = SetupDerivative(((_layered_force(tissue, tool, grid) - force) / STEP)[None])
+    return ElasticTable(grid, force, np.array([0.0, 1.0]), by=by)
+
+
+def _sheet(setup: Specimen, depth: float, keys: Sequence[str]) -> ElasticTable:
+    grid = np.linspace(0.0, depth, POINTS)
+    levels = np.linspace(0.0, 1.0, LEVELS + 1) ** 1.3 * depth
+    radii = np.linspace(0.0, float(setup[2].hole_radius or 0.0), RADII)
+    force, outward, sink = _sheet_fields(*setup, grid, levels, radii)
+    by = {}
+    for key in keys:
+        more = _sheet_fields(*changed_setup(*setup, key, STEP), grid, levels, radii)
+        field = SeparableField.of(levels, (more[1] - outward) / STEP, grid)
+        by[key] = SetupDerivative(((more[0] - force) / STEP)[None], (field,))
+    out, sunk = (SeparableField.of(levels, each, grid) for each in (outward, sink))
+    return ElasticTable(grid, force, radii, out, sunk, by)
+
+
+def _sheet_fields(
+    tissue: Tissue, tool: Tool, support: Support, grid: Array, levels: Array, radii: Array
+) -> tuple[Array, Array, Array]:
+    """Force (k,) N on the grid; outward motion and sinking (levels, radii) m of the lower face."""
+    from wavemodel import DiscTool, PlateWave
+
+    hole, reach = float(support.hole_radius or 0.0), float(grid[-1])
+    wave = PlateWave(_layers(tissue), DiscTool(tool.radius, _contact(tool)), "hole", hole, reach=reach)
+    faces = np.array([wave.field(float(level), radii)[:, -1] for level in levels[1:]])
+    faces = np.concatenate([np.zeros((1, *faces.shape[1:])), faces])
+    return wave.force_of_depth(grid), faces[:, 0], faces[:, 1]
+
+
+@lru_cache(maxsize=16)
+def _layered_wave(layers: tuple[Any, ...], radius: float, contact: str) -> Any:
+    """The wave of a large press, which takes seconds to set up: once for all conditions with the same tool."""
+    from wavemodel import DiscTool, LayeredWave
+
+    return LayeredWave(list(layers), DiscTool(radius, contact), large_press="corrected")
+
+
+def _layered_force(tissue: Tissue, tool: Tool, grid: Array) -> Array:
+    """Force (k,) of a large press as far as its range goes, then on with the growth over the linear law."""
+    wave = _layered_wave(tuple(_layers(tissue)), tool.radius, _contact(tool))
+    linear = grid / wave.law.compliance
+    reach = 0.999 * wave.law.large.deepest if wave.law.large is not None else grid[-1]
+    inside = grid <= reach
+    ratio = np.ones_like(grid)
+    ratio[inside] = np.divide(
+        wave.law(grid[inside]), linear[inside], out=np.ones(inside.sum()), where=linear[inside] > 0
+    )
+    ratio[0] = ratio[1]
+    if not inside.all():
+        known, beyond = grid[inside], grid[~inside]
+        growth = np.polyfit(known[1:], np.log(ratio[inside][1:]), 2)
+        slope = max(float(np.polyval(np.polyder(growth), known[-1])), 0.0)
+        ratio[~inside] = ratio[inside][-1] * np.exp(slope * (beyond - known[-1]))
+    return np.asarray(linear * ratio)
+
+
+def _layers(tissue: Tissue) -> list[Any]:
+    from wavemodel import WaveLayer
+
+    return [
+        WaveLayer(
+            one.name,
+            one.thickness if np.isfinite(one.thickness) else ENDLESS,
+            one.density,
+            one.youngs_modulus,
+            one.poisson_ratio,
+        )
+        for one in tissue.layers
+    ]
+
+
+def _contact(tool: Tool) -> str:
+    return "rigid_bonded" if tool.contact == "rigid_frictional" else tool.contact

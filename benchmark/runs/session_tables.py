@@ -1,0 +1,126 @@
+"""The elastic answer of a session's specimen, from depth ramps of the finite elements for each tool and support.
+
+One ramp gives the force over depth; where markers were filmed over a hole, two more give the lower face as the file has
+the specimen and a little thicker.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from benchmark.errors import SolverError
+from benchmark.files import Session
+from benchmark.models import StepProgress, prepare
+from benchmark.models.result import OnStep
+from benchmark.response import FaceField, ForceCurve, Neighbour, Ramp, RampTable, View, depth_ramp
+from benchmark.response.ramp import Setup, setup_scenario
+from benchmark.response.setup_change import THICKNESS, changed_setup
+from benchmark.runs.listener import Advance, Listener
+
+STEP = 0.5e-3
+LEAST_STEPS = 24
+MOST_STEPS = 40
+LEAST_REACH = 0.5
+"""A curve that the solver followed at least this far of the depth asked for serves, with a warning."""
+THICKER = 0.1
+FACE_STEPS = 24
+
+
+@dataclass(frozen=True)
+class BaseCurves:
+    """One curve for each tool and support, and what a reader must know of them."""
+
+    curves: Mapping[Setup, ForceCurve]
+    warnings: tuple[str, ...]
+
+
+def base_curves(session: Session, depths: Mapping[Setup, float], listener: Listener) -> BaseCurves:
+    """Compute a curve for each tool and support, deep enough for the `depths` (m) asked for.
+
+    Raises
+    ------
+    SolverError
+        The solver stops before half the depth, saying where.
+    """
+    curves, warnings = {}, []
+    with listener.progress(f"{session.name}: force over depth of the specimen") as advance:
+        for number, (setup, depth) in enumerate(depths.items(), start=1):
+            model = prepare("fem", setup_scenario(session, session.specimen, setup))
+            steps = min(max(math.ceil(depth / STEP), LEAST_STEPS), MOST_STEPS)
+            ramp = depth_ramp(model, depth, steps, _told(advance, f"FEM {number}"))
+            if ramp.failure is not None:
+                _refuse_short(session, ramp, depth, steps)
+                warnings.append(
+                    f"{_stop(ramp, depth)}; deeper rows are left out of the fit and have no finite-element force"
+                )
+            curves[setup] = ForceCurve(ramp.depth, ramp.force)
+    return BaseCurves(curves, tuple(warnings))
+
+
+def session_sheets(
+    session: Session, depths: Mapping[Setup, float], view: View, listener: Listener
+) -> tuple[dict[Setup, RampTable], tuple[str, ...]]:
+    """Compute a sheet for each tool and support over a hole; others, and what the solver cannot follow, are said.
+
+    Parameters
+    ----------
+    session : Session
+    depths : mapping
+        How deep (m) each setup is needed.
+    view : View
+        The camera.
+    listener : Listener
+    """
+    sheets, warnings = {}, []
+    with listener.progress(f"{session.name}: lower face of the specimen") as advance:
+        for setup, depth in depths.items():
+            if setup[1].kind != "hole":
+                warnings.append("the markers of trials without a hole are not fitted: their face is held")
+                continue
+            try:
+                thin, thick = (_sheet(session, setup, share, depth, advance) for share in (0.0, THICKER))
+            except SolverError as error:
+                warnings.append(f"the markers are not fitted: {error}")
+                continue
+            sheets[setup] = RampTable(*thin, {THICKNESS: Neighbour(1.0 + THICKER, *thick)}, view)
+    return sheets, tuple(dict.fromkeys(warnings))
+
+
+def _sheet(
+    session: Session, setup: Setup, thicker: float, depth: float, advance: Advance
+) -> tuple[ForceCurve, FaceField]:
+    """Force and lower face with all layers thicker by a share; raises SolverError."""
+    tissue, tool, support = changed_setup(session.specimen, *setup, THICKNESS, thicker)
+    task = f"{tissue.name}, thicker" if thicker else tissue.name
+    model = prepare("fem", setup_scenario(session, tissue, (tool, support)), every_field=True)
+    ramp = depth_ramp(model, depth, FACE_STEPS, _told(advance, task), face=True)
+    face = ramp.face
+    if ramp.failure is not None or face is None:
+        raise SolverError(f"the finite elements do not follow the sheet to {1e3 * depth:.4g} mm ({ramp.failure})")
+    return ForceCurve(ramp.depth, ramp.force), FaceField(face.depth, face.radius, face.outward, face.sunk)
+
+
+def _told(advance: Advance, task: str) -> OnStep:
+    def on_step(step: StepProgress) -> None:
+        advance(task, step.step, step.total, f"{1e3 * step.depth:.3g} mm")
+
+    return on_step
+
+
+def _refuse_short(session: Session, ramp: Ramp, depth: float, steps: int) -> None:
+    if ramp.steps < max(LEAST_REACH * steps, 2):
+        raise SolverError(
+            f"session {session.name}: {_stop(ramp, depth)}; a thicker specimen, a larger tool or trials of less depth "
+            "can be followed"
+        )
+
+
+def _stop(ramp: Ramp, depth: float) -> str:
+    failure = ramp.failure
+    assert failure is not None
+    return (
+        f"the finite-element curve of the specimen is needed to {1e3 * depth:.4g} mm but stopped at "
+        f"{1e3 * failure.reached:.4g} mm ({failure.reason})"
+    )

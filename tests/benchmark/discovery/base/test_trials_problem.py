@@ -1,0 +1,34 @@
+"""A problem of some of its trials is the same problem to them."""
+
+import numpy as np
+
+from benchmark.discovery.base.calibration import calibrate
+from benchmark.discovery.base.effect_model import Model
+from benchmark.discovery.base.trials_problem import only
+from benchmark.discovery.trials.preparing import prepare
+from benchmark.response.wave_table import wave_table
+
+
+def test_some_trials_are_simulated_and_whitened_as_among_all(session_of):
+    session = session_of(trials=3)
+    base = calibrate(session, prepare(session, 60)).base
+    problem, picked = base.model.problem, [1, 4, 5]
+    part = only(problem, picked)
+    assert [t.name for t in part.trials] == [problem.trials[i].name for i in picked]
+    whole = base.model.signals(base.vector, base.nuisance)
+    some = Model(part, ()).signals(base.vector, base.nuisance[picked])
+    for k, i in enumerate(picked):
+        np.testing.assert_array_equal(some[k], whole[i])
+        np.testing.assert_array_equal(part.whiteners(k)[0].scale, problem.whiteners(i)[0].scale)
+
+
+def test_a_tool_is_pressed_deep_once_for_all_conditions(session_of):
+    from benchmark.response.wave_table import _layered_wave
+
+    session = session_of(trials=3)
+    trial = session.trials[0]
+    wave_table(session.specimen, trial.tool, trial.support, 2e-3)
+    before = _layered_wave.cache_info().misses
+    law = wave_table(session.specimen, trial.tool, trial.support, 3e-3)
+    assert _layered_wave.cache_info().misses == before
+    assert law.depth[-1] > 3e-3

@@ -1,0 +1,41 @@
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from benchmark.files import load_tissue
+from benchmark.identification import TrialData, fit_session
+from benchmark.identification.effects_in_fit import fit_repaired
+from benchmark.model_file import AddedEffect, RepairedModel, Value
+from benchmark.physics import TrialContext, catalogue
+from benchmark.response import ForceCurve
+from benchmark.response.pipeline import trial_force
+
+TRUE = 1.3
+CURVE = ForceCurve(np.linspace(0.0, 4e-3, 41), 1000.0 * np.linspace(0.0, 4e-3, 41) ** 1.2 / (4e-3**0.2))
+RELAXATION = AddedEffect("viscoelastic_relaxation", {"g_1": Value(0.3, ""), "tau_1": Value(2.0, "s")})
+MODEL = RepairedModel("m.toml", "ecoflex_00_30", "wave", (RELAXATION,), {}, "corrected")
+
+
+def _trial(number: int) -> TrialData:
+    rng = np.random.default_rng(number)
+    time = np.linspace(0.0, 20.0, 400)
+    depth = np.interp(time, [0.0, 2.0, 12.0, 14.0, 20.0], [-5e-4, 2.5e-3, 2.5e-3, -5e-4, -5e-4])
+    effect = next(each for each in catalogue() if each.slug == "viscoelastic_relaxation")
+    around = TrialContext(5e-3, 1e-2, 2.5e-3, 3.0, 20.0)
+    force = trial_force(lambda below: TRUE * CURVE(below), [(effect, RELAXATION.values())], time, depth, around)
+    return TrialData(f"t{number}", "a", time, depth, force + rng.normal(0.0, 5e-3, time.size), CURVE)
+
+
+def test_the_effect_no_longer_softens_the_fit() -> None:
+    trials = tuple(_trial(number) for number in range(4))
+    specimen = load_tissue("ecoflex_00_30")
+    rig = {"tool": SimpleNamespace(radius=5e-3, contact="rigid_bonded"), "support": SimpleNamespace(kind="bonded")}
+    measured = [SimpleNamespace(name=t.name, condition=t.condition, **rig) for t in trials]
+    session = SimpleNamespace(specimen=specimen, trials=measured)
+    plain = fit_session(trials, specimen.layers)
+    repaired = fit_repaired(session, trials, MODEL)
+    assert plain.stiffness_factor < 0.95 * TRUE
+    assert repaired.settled
+    assert repaired.fit.stiffness_factor == pytest.approx(TRUE, rel=0.03)
+    assert repaired.added["a", "t0"].min() < -0.3

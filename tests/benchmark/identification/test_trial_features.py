@@ -1,0 +1,97 @@
+"""WRITE"""
+
+import numpy as np
+import pytest
+
+from benchmark.identification import TrialData, required_depth
+from benchmark.identification.trial_features import contact_range, evidence_of, find_start, largest_decay, sample_noise
+
+
+@pytest.mark.parametrize("onset", [-4e-4, 0.0, 3e-4, 1e-3])
+@pytest.mark.parametrize("noise", [0.0, 0.01])
+def test_the_true_onset_and_zero_lie_in_the_range(trial, onset, noise):
+    made = trial(onset=onset, noise=noise)
+    allowed = contact_range(made.depth, made.force)
+    assert allowed.low < onset < allowed.high
+    assert allowed.rest_low < 0.01 < allowed.rest_high
+
+
+def test_quiet_data_bound_the_onset_tightly(trial):
+    made = trial(onset=1e-3)
+    assert contact_range(made.depth, made.force).high - 1e-3 < 3e-4
+
+
+def test_required_depth_covers_every_allowed_onset(trial):
+    made = trial()
+    needed = required_depth(made.depth, made.force)
+    assert needed == pytest.approx(made.depth.max() - contact_range(made.depth, made.force).low)
+    assert needed < 1.25 * (made.depth.max() - made.depth.min())
+    assert required_depth(np.zeros(30), np.zeros(30)) > 0.0
+
+
+def test_start_is_near_the_truth(trial):
+    made = trial(noise=0.005)
+    start = find_start(made, contact_range(made.depth, made.force))
+    assert start.stiffness == pytest.approx(1.7, rel=0.1)
+    assert start.onset == pytest.approx(2e-4, abs=1.5e-4)
+
+
+def test_sample_noise_sees_through_the_signal(trial):
+    made = trial(noise=0.01, rows=2000)
+    assert sample_noise(made.force) == pytest.approx(0.01 * (trial().force.max()), rel=0.1)
+
+
+@pytest.mark.parametrize(("rho", "share"), [(0.0, 0.0), (0.9, 0.0), (0.98, 0.01)])
+def test_noise_alone_is_no_evidence(ar1, rho, share):
+    generator = np.random.default_rng(4)
+    ramp = np.clip(np.linspace(0, 2, 160), 0, 1)
+    found = np.array([evidence_of(ramp, ar1(generator, 160, rho)) for _ in range(300)])
+    assert np.mean(found >= 5.0) <= share
+
+
+def test_evidence_of_a_clear_slope_and_of_none():
+    ramp = np.linspace(0, 1, 50)
+    assert evidence_of(ramp, 2 * ramp + 1e-3 * np.sin(np.arange(50.0) ** 2)) > 100
+    assert evidence_of(np.ones(50), ramp) == 0.0
+    assert evidence_of(ramp, np.zeros(50)) == 0.0
+
+
+@pytest.mark.parametrize(("g", "tau"), [(0.5, 2.0), (0.3, 1.0)])
+def test_decay_of_a_fading_force(fading_trial, g, tau):
+    made = fading_trial(g=g, tau=tau)
+    hold = largest_decay(made)
+    peak = made.force.max() - 0.01
+    expected = 100 * (1 - (made.force[-16:].mean() - 0.01) / peak)
+    assert hold is not None
+    assert hold.seen
+    assert hold.decay_percent == pytest.approx(expected, abs=2.0)
+    assert (hold.start, hold.end) == (pytest.approx(4.0, abs=0.11), pytest.approx(15.9))
+    assert hold.depth == pytest.approx(5e-3, rel=1e-3)
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.8, 0.95])
+def test_noise_in_a_hold_is_seldom_a_decay(trial, rho):
+    seen = [largest_decay(trial(noise=0.01, rho=rho, seed=seed)).seen for seed in range(100)]
+    assert np.mean(seen) <= 0.05
+
+
+def test_a_triangle_has_no_hold(trial):
+    made = trial()
+    depth = 5e-3 * (1 - np.abs(np.linspace(-1, 1, 160)))
+    assert largest_decay(TrialData("a", "b", made.time, depth, 1.0 * depth, made.curve)) is None
+
+
+def test_a_hold_in_the_air_does_not_count(trial):
+    made = trial()
+    air = np.r_[np.zeros(60), np.linspace(0, 5e-3, 100)]
+    assert largest_decay(TrialData("a", "b", made.time, air, 1e3 * air, made.curve)) is None
+
+
+def test_a_force_that_grows_in_the_hold_has_not_fallen(trial):
+    made = trial()
+    depth = np.r_[np.linspace(0, 5e-3, 60), np.full(100, 5e-3)]
+    force = np.r_[np.zeros(60), np.linspace(0, 2.0, 100)]
+    hold = largest_decay(TrialData("a", "b", made.time, depth, force, made.curve))
+    assert hold is not None
+    assert hold.decay_percent < 0.0
+    assert not hold.seen
