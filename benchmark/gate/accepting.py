@@ -23,7 +23,7 @@ from benchmark.gate.processes import measure
 from benchmark.gate.versions import Origin, gated_values, origin_of, this_version
 from benchmark.runs.listener import Listener
 
-REFERENCE_TIMES = "reference times"
+TIMING_UNIT = "x the reference workload"
 
 
 @dataclass(frozen=True)
@@ -136,7 +136,7 @@ def _steps(old: Baseline | None, new: Baseline) -> tuple[Step, ...]:
     ]
     times = {} if old is None else {name: typical(each) for name, each in old.timing.items()}
     now = {name: typical(each) for name, each in new.timing.items()}
-    return (*steps, *(Step(name, REFERENCE_TIMES, times.get(name), now.get(name)) for name in {**now, **times}))
+    return (*steps, *(Step(name, TIMING_UNIT, times.get(name), now.get(name)) for name in {**now, **times}))
 
 
 def _unit(name: str, old: Mapping[str, StoredValue], new: Mapping[str, StoredValue]) -> str:

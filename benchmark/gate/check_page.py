@@ -89,7 +89,7 @@ def _timing_section(verdict: CheckVerdict) -> Section:
             100.0 * row.slowdown,
             row.allowed,
             100.0 * row.caught,
-            "as allowed" if row.passed else "slower",
+            "within limits" if row.passed else "slower",
         )
         for row in verdict.timing
     ]
@@ -110,7 +110,7 @@ def _accuracy_section(verdict: CheckVerdict) -> Section:
         "verdict",
     )
     rows = [
-        (row.quantity, row.unit, row.baseline, row.now, row.allowed, "as allowed" if row.passed else "changed")
+        (row.quantity, row.unit, row.baseline, row.now, row.allowed, "within limits" if row.passed else "changed")
         for row in verdict.accuracy
     ]
     return Section("Accuracy", (Table("Gated values", columns, rows, folded=False),))

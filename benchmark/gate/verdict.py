@@ -62,12 +62,10 @@ class CheckVerdict:
         """The verdict in one sentence."""
         values, times = len(self.accuracy), len(self.timing)
         if self.passed:
-            return f"Nothing got worse: {_count(values, 'gated value')} and {_count(times, 'time')} are as allowed."
+            return f"Nothing got worse: {_count(values, 'value')} and {_count(times, 'timing')} are within limits."
         bad_values = sum(not row.passed for row in self.accuracy)
         bad_times = sum(not row.passed for row in self.timing)
-        return (
-            f"{bad_values} of {_count(values, 'gated value')} changed, {bad_times} of {_count(times, 'time')} slower."
-        )
+        return f"{bad_values} of {_count(values, 'value')} changed, {bad_times} of {_count(times, 'timing')} slower."
 
     def to_dict(self) -> dict[str, Any]:
         """The content of `check.json`."""
@@ -97,8 +95,8 @@ def time_words(row: TimingRow) -> str:
     """One time against its baseline."""
     low, high = row.ci95
     return (
-        f"{row.quantity}: baseline {row.baseline:.4g} reference times, now {row.now:.4g} (95 % interval {low:.4g} to "
-        f"{high:.4g}; {100 * row.slowdown:+.1f} %), allowed {row.allowed:.4g}"
+        f"{row.quantity}: baseline {row.baseline:.4g} x the reference workload, now {row.now:.4g} "
+        f"(95 % interval {low:.4g} to {high:.4g}; {100 * row.slowdown:+.1f} %), allowed {row.allowed:.4g}"
     )
 
 

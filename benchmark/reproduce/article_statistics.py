@@ -149,7 +149,7 @@ def test_numbers() -> list[Item]:
 
 
 def _predicted(test: TwoSampleT) -> list[Item]:
-    reason = "FEM against a wave that predicts; that the test does not reject shows no agreement"
+    reason = "FEM against a wave that predicts; failing to reject does not show agreement"
     return [
         compare("Table 2: t Stat, predicted", T, test.t, reason, basis=RUN),
         compare("Table 2: P(T<=t) two-tail, predicted", P_VALUE, test.p_value, reason, basis=RUN),

@@ -196,7 +196,7 @@ def _failures(plan: SweepPlan, rows: Sequence[PointResult]) -> Section:
 def _method(plan: SweepPlan, environment: Mapping[str, Any]) -> Section:
     text = (
         "Each point is a run of both models with the same layers, tool, support and load, one thread, no repeats; no "
-        "value of the FEM is fed into the wave model. Seconds in the file are no benchmark: other points ran beside."
+        "value of the FEM is fed into the wave model. Timings are indicative only; points ran in parallel."
     )
     versions = "\n".join(f"{name} {version}" for name, version in environment["packages"].items())
     listings = (Listing(versions, "Versions"), Listing(plan.scenario.to_toml(), "The scenario before anything varies"))

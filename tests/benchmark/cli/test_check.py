@@ -121,7 +121,7 @@ def test_slower_is_exit_one(call) -> None:
     called = call()
     assert called.code == 1
     assert "warning: the baseline's times come from another machine" in paragraph(called)
-    assert "spring.history: baseline 1e-09 reference times" in paragraph(called)
+    assert "spring.history: baseline 1e-09 x the reference workload" in paragraph(called)
     assert "slower" in called.out
 
 

@@ -33,8 +33,8 @@ def test_a_failed_check_leads_with_what_failed(verdict) -> None:
     noisy = replace(verdict(slow=True), warnings=["the machine is noisy"])
     html = render_page(check_page(noisy, [entry(2.0), entry(2.6)], ORIGIN))
     text = words(html)
-    assert text.index("1 of 1 time slower") < text.index("the machine is noisy") < text.index("Trend")
-    assert "frame: baseline 2 reference times, now 2.6" in text
+    assert text.index("1 of 1 timing slower") < text.index("the machine is noisy") < text.index("Trend")
+    assert "frame: baseline 2 x the reference workload, now 2.6" in text
     assert "abc+" in text
 
 

@@ -7,7 +7,7 @@ def test_nothing_worse(verdict) -> None:
     found = verdict()
     assert found.passed
     assert found.failures() == []
-    assert found.headline() == "Nothing got worse: 1 gated value and 1 time are as allowed."
+    assert found.headline() == "Nothing got worse: 1 value and 1 timing are within limits."
     assert found.summary()[0].startswith("values: 1 against the baseline b.json")
 
 
@@ -16,8 +16,10 @@ def test_failures_name_quantity_baseline_now_and_allowed(verdict) -> None:
     assert not found.passed
     value, time = found.failures()
     assert value == "skin_mm: baseline 5 mm, now 5.05 mm, allowed a difference of 0.005 mm"
-    assert time == ("frame: baseline 2 reference times, now 2.6 (95 % interval 2.574 to 2.626; +30.0 %), allowed 2.24")
-    assert found.headline() == "1 of 1 gated value changed, 1 of 1 time slower."
+    assert time == (
+        "frame: baseline 2 x the reference workload, now 2.6 (95 % interval 2.574 to 2.626; +30.0 %), allowed 2.24"
+    )
+    assert found.headline() == "1 of 1 value changed, 1 of 1 timing slower."
 
 
 @pytest.mark.parametrize("part", ["slow", "off"])
