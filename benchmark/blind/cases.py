@@ -11,13 +11,13 @@ import numpy as np
 from benchmark.blind.hidden import CATALOGUE, OUTSIDE, Hidden
 from benchmark.blind.motion import PressPlan
 from benchmark.blind.scene import Noise, Scene
-from benchmark.blind.simulate import MarkerGrid
+from benchmark.blind.simulate import FaceMarkers
 from benchmark.blind.specimens import SHEETS, SKINS, TrueBody, TrueShape
 from benchmark.blind.strength import Base, TrueCells, base_of, scaled_to, strength, true_cells
 from benchmark.errors import InputError
 
-Kind = Literal["effect", "null", "pair", "outside"]
-Layout = Literal["two_conditions", "one_condition", "force_only"]
+CaseKind = Literal["effect", "null", "pair", "outside"]
+CaseLayout = Literal["two_conditions", "one_condition", "force_only"]
 
 FULL_SEED_CYCLE = 5
 """Of each five seeds three have two conditions and markers, one has no markers, and one has a single condition."""
@@ -53,7 +53,7 @@ class CaseName:
         D of each effect, in standard deviations of the trial mean.
     """
 
-    kind: Kind
+    kind: CaseKind
     slug: str
     seed: int
     strength: float = 20.0
@@ -111,7 +111,7 @@ def generator(name: CaseName, purpose: str) -> np.random.Generator:
     return np.random.default_rng(int.from_bytes(digest[:8], "big"))
 
 
-def layout(name: CaseName) -> Layout:
+def layout(name: CaseName) -> CaseLayout:
     """Conditions and channels of a case; effects that only a camera sees keep it."""
     place = name.seed % FULL_SEED_CYCLE
     if place == 4:
@@ -132,7 +132,7 @@ def draw_scene(name: CaseName, rng: np.random.Generator) -> Scene:
         body=body,
         plans=plans,
         repeats=10 if chosen == "one_condition" else 5,
-        grid=MarkerGrid() if specimen.has_markers else None,
+        grid=FaceMarkers() if specimen.has_markers else None,
         rate=float(rng.choice([100.0, 125.0, 200.0])),
         frame_rate=30.0,
         force_noise=Noise(peak * float(rng.uniform(0.005, 0.02)), float(rng.uniform(0.5, 0.95))),

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmark.blind.hidden import Hidden, Scale
+from benchmark.blind.hidden import Hidden, SessionScale
 from benchmark.blind.motion import Array, Flags, PressPlan, ReportedMotion, motion, phases
-from benchmark.blind.simulate import MarkerGrid, Signals, simulate
+from benchmark.blind.simulate import FaceMarkers, Signals, simulate
 from benchmark.blind.specimens import TrueBody
 
 
@@ -32,7 +32,7 @@ class Scene:
         One a condition.
     repeats : int
         Trials of each condition.
-    grid : MarkerGrid or None
+    grid : FaceMarkers or None
     rate, frame_rate : float
         Hz.
     force_noise, marker_noise : Noise
@@ -41,20 +41,20 @@ class Scene:
     body: TrueBody
     plans: tuple[PressPlan, ...]
     repeats: int
-    grid: MarkerGrid | None
+    grid: FaceMarkers | None
     rate: float
     frame_rate: float
     force_noise: Noise
     marker_noise: Noise
 
     @property
-    def scale(self) -> Scale:
+    def scale(self) -> SessionScale:
         """Sizes by which effects choose theirs."""
         depths = [plan.depth for plan in self.plans]
         deep = max(depths)
         force = float(self.body.force(np.array([deep]))[0])
         speed = max(plan.speed for plan in self.plans)
-        return Scale(min(depths), deep, force, speed, self.body.specimen.tool_radius)
+        return SessionScale(min(depths), deep, force, speed, self.body.specimen.tool_radius)
 
     def motion(self, plan: PressPlan, delay: float = 0.0) -> ReportedMotion:
         """The nominal motion of a condition."""

@@ -16,7 +16,7 @@ SETTLED = 1e-7
 
 
 @dataclass(frozen=True)
-class MarkerGrid:
+class FaceMarkers:
     """Markers on the lower face, numbered row by row round the nominal tool axis; spacing in m."""
 
     rows: int = 3
@@ -48,14 +48,14 @@ class Signals:
 
 
 def simulate(
-    body: TrueBody, grid: MarkerGrid | None, moved: ReportedMotion, effects: Sequence[Hidden], gain: float = 1.0
+    body: TrueBody, grid: FaceMarkers | None, moved: ReportedMotion, effects: Sequence[Hidden], gain: float = 1.0
 ) -> Signals:
     """Simulate one trial.
 
     Parameters
     ----------
     body : TrueBody
-    grid : MarkerGrid or None
+    grid : FaceMarkers or None
         None where no camera sees the lower face.
     moved : ReportedMotion
         As the actuator reports it.
@@ -98,7 +98,7 @@ def _contact_force(
 
 
 def _seen(
-    body: TrueBody, grid: MarkerGrid, moved: ReportedMotion, effects: Sequence[Hidden], depth: Array
+    body: TrueBody, grid: FaceMarkers, moved: ReportedMotion, effects: Sequence[Hidden], depth: Array
 ) -> tuple[Array, Array]:
     """Seen marker positions (f, markers) m."""
     strained = depth
@@ -117,7 +117,7 @@ def _seen(
     return x, y
 
 
-def _face(body: TrueBody, grid: MarkerGrid, effects: Sequence[Hidden], followed: Array) -> tuple[Array, Array, Array]:
+def _face(body: TrueBody, grid: FaceMarkers, effects: Sequence[Hidden], followed: Array) -> tuple[Array, Array, Array]:
     """True marker positions and sinking (f, markers) m at the depth (f,) m that the lower face follows.
 
     A slid face that is pulled back past its rest moves the other way: the field is odd in depth.

@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 from benchmark.blind.hidden import Hidden
 from benchmark.blind.motion import Array, PressPlan, phases
 from benchmark.blind.scene import Scene, Whitened, frame_phases, whiten
-from benchmark.blind.simulate import MarkerGrid, Signals
+from benchmark.blind.simulate import FaceMarkers, Signals
 
 SHAPE_STEPS = {"radius": 0.01, "exponent": 0.01, "width": 0.01}
 DELAY_STEP = 5e-3
@@ -186,7 +186,7 @@ def true_cells(scene: Scene, base: Base, effects: Sequence[Hidden]) -> TrueCells
     return TrueCells(strongest, shows, tuple(sorted(loose)))
 
 
-def _marker_channels(grid: MarkerGrid, rest: Whitened) -> dict[str, Array]:
+def _marker_channels(grid: FaceMarkers, rest: Whitened) -> dict[str, Array]:
     """Values (f, ...) of each channel: radial and tangential of each marker, x and y of all markers together."""
     if rest.x is None or rest.y is None:
         return {}

@@ -88,7 +88,7 @@ class Tolerance(FileModel):
     atol: Name
 
 
-class Work(FileModel):
+class GatedWork(FileModel):
     """What a case and a timed quantity share: what the model is given.
 
     Attributes
@@ -110,10 +110,10 @@ class Work(FileModel):
     own: Name | None = None
 
 
-Found = TypeVar("Found", bound=Work)
+Found = TypeVar("Found", bound=GatedWork)
 
 
-class GatedCase(Work):
+class GatedCase(GatedWork):
     """A gated scenario or session; `model` says what computes it: fem | wave | fit."""
 
     model: Literal["fem", "wave", "fit"]
@@ -123,7 +123,7 @@ class GatedCase(Work):
         return _with_input(self, "session" if self.model == "fit" else "scenario", wave=self.model == "wave")
 
 
-class Timed(Work):
+class Timed(GatedWork):
     """A timed quantity.
 
     Attributes

@@ -15,7 +15,7 @@ from benchmark.files.loading import read_file
 from benchmark.files.schema import validated
 from benchmark.files.shipped import find
 from benchmark.gate.baseline import DEFAULT, history_path
-from benchmark.gate.gate_file import GateFile, Timed, Work, gate_path
+from benchmark.gate.gate_file import GatedWork, GateFile, Timed, gate_path
 from benchmark.sessions import SHIPPED
 
 
@@ -124,7 +124,7 @@ def _timed_job(timed: Timed, gate: Path) -> dict[str, Any]:
     return {**_job(timed, gate), "model": timed.model, "workload": timed.workload, "calls": timed.calls}
 
 
-def _job(work: Work, gate: Path) -> dict[str, Any]:
+def _job(work: GatedWork, gate: Path) -> dict[str, Any]:
     """Name and absolute paths; every file is looked at, so that a mistake shows before anything long begins."""
     return {
         "name": work.name,
@@ -135,7 +135,7 @@ def _job(work: Work, gate: Path) -> dict[str, Any]:
     }
 
 
-def _scenario(work: Work, name: str, gate: Path) -> str:
+def _scenario(work: GatedWork, name: str, gate: Path) -> str:
     path = find(name, "scenario", gate.parent).resolve()
     load_scenario(path, work.set)
     return str(path)

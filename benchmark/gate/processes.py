@@ -134,14 +134,11 @@ def _environment(tree: Path, *, temporary: bool) -> dict[str, str]:
     return {**{name: value for name, value in os.environ.items() if name not in left_out}, **fixed}
 
 
-Start = Callable[[], Side]
-
-
 @dataclass(frozen=True)
 class Party:
     """One side of a comparison: how its processes are started, and what they are told."""
 
-    start: Start
+    start: Callable[[], Side]
     plan: GatePlan
 
 

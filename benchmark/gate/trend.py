@@ -24,7 +24,7 @@ MARKERS = {False: "o", True: "X"}
 
 
 @dataclass(frozen=True)
-class Point:
+class TrendPoint:
     """One check of one quantity, relative to the trend's first: time, interval and limit (None where it has none)."""
 
     number: int
@@ -43,7 +43,7 @@ class Trend:
     """A quantity over the checks, oldest first."""
 
     quantity: str
-    points: tuple[Point, ...]
+    points: tuple[TrendPoint, ...]
 
 
 def trends(history: Sequence[HistoryEntry], machine: str, *, against: bool) -> list[Trend]:
@@ -75,13 +75,13 @@ def trend_figure(found: Sequence[Trend]) -> Figure:
     return Figure(panels, caption, "Trend of the timed quantities")
 
 
-def _points(name: str, history: Sequence[HistoryEntry]) -> tuple[Point, ...]:
+def _points(name: str, history: Sequence[HistoryEntry]) -> tuple[TrendPoint, ...]:
     entries = [(number, each.timing[name]) for number, each in enumerate(history, start=1) if name in each.timing]
     if not entries:
         return ()
     first = entries[0][1]["ratio"]
     return tuple(
-        Point(
+        TrendPoint(
             number,
             each["ratio"] / first,
             None if each["ci95"] is None else (each["ci95"][0] / first, each["ci95"][1] / first),
@@ -110,7 +110,7 @@ class _Painter:
         heading(axes, self.trend.quantity)
 
 
-def _paint(axes: Axes, point: Point) -> None:
+def _paint(axes: Axes, point: TrendPoint) -> None:
     colour = COLOURS[point.failed]
     if point.ci95 is not None:
         axes.plot((point.number, point.number), point.ci95, color=colour, alpha=0.6, linewidth=2.0)

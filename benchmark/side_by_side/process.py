@@ -11,7 +11,7 @@ from benchmark.errors import InputError, SolverError
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel
 from benchmark.models import UserFile
-from benchmark.side_by_side.worker import Answer, Crashed, Job, Message, RunCommand, serve
+from benchmark.side_by_side.worker import Answer, Crashed, Message, ModelJob, RunCommand, serve
 
 
 class ModelProcess:
@@ -33,7 +33,7 @@ class ModelProcess:
         context = multiprocessing.get_context("spawn")
         self.model = model
         self.connection, far_end = context.Pipe()
-        arguments = (far_end, Job(model, scenario, every_field, own, keep), core)
+        arguments = (far_end, ModelJob(model, scenario, every_field, own, keep), core)
         self._process = context.Process(target=serve, args=arguments, daemon=True, name=f"tissuebench-{model}")
         with single_threaded_children():
             self._process.start()

@@ -96,7 +96,7 @@ Message = StepProgress | Remark | Answer
 
 
 @dataclass(frozen=True)
-class Job:
+class ModelJob:
     """What a process is for: a model's place, the scenario, whether fields are kept, and what a user puts there.
 
     `keep` is the folder in which an execution whose result is wanted keeps what an interruption would lose.
@@ -109,7 +109,7 @@ class Job:
     keep: Path | None = None
 
 
-def serve(connection: Connection, job: Job, core: int | None) -> None:
+def serve(connection: Connection, job: ModelJob, core: int | None) -> None:
     """Answer `RunCommand`s on `connection` until `None` or its end arrives, or the parent is gone."""
     end_with_parent()
     if core is not None and hasattr(os, "sched_setaffinity"):
@@ -121,7 +121,7 @@ def serve(connection: Connection, job: Job, core: int | None) -> None:
         return
 
 
-def _execute(connection: Connection, command: RunCommand, job: Job) -> Answer:
+def _execute(connection: Connection, command: RunCommand, job: ModelJob) -> Answer:
     """Run once and turn whatever happens into an answer."""
     try:
         return _run(connection, command, job)
@@ -133,7 +133,7 @@ def _execute(connection: Connection, command: RunCommand, job: Job) -> Answer:
         return Crashed(f"{type(error).__name__}: {error}", traceback.format_exc(), input_error=False)
 
 
-def _run(connection: Connection, command: RunCommand, job: Job) -> Finished:
+def _run(connection: Connection, command: RunCommand, job: ModelJob) -> Finished:
     """Set up, run and time; a picture is drawn where no result is wanted, so that it runs beside no other model.
 
     A run without a result is timed, and neither keeps nor takes up anything.

@@ -19,7 +19,7 @@ from benchmark.blind.hidden.body_shape import (
     HiddenStrainStiffening,
 )
 from benchmark.blind.hidden.drive import HiddenBacklash, HiddenContactGap, HiddenMachineCompliance, HiddenOffCentreLoad
-from benchmark.blind.hidden.hidden_effect import Hidden, Scale
+from benchmark.blind.hidden.hidden_effect import Hidden, SessionScale
 from benchmark.blind.hidden.observation import (
     HiddenCameraLatency,
     HiddenForceDrift,
@@ -71,4 +71,4 @@ _OUTSIDE: tuple[type[Hidden], ...] = (
 CATALOGUE: dict[str, type[Hidden]] = {each.slug: each for each in _OF_CATALOGUE}
 OUTSIDE: dict[str, type[Hidden]] = {each.slug: each for each in _OUTSIDE}
 
-__all__ = ["CATALOGUE", "OUTSIDE", "Hidden", "Scale"]
+__all__ = ["CATALOGUE", "OUTSIDE", "Hidden", "SessionScale"]

@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from benchmark.blind.hidden.hidden_effect import Hidden, Scale, lost_memory, touching
+from benchmark.blind.hidden.hidden_effect import Hidden, SessionScale, lost_memory, touching
 from benchmark.blind.motion import Array
 
 
@@ -20,7 +20,7 @@ class HiddenViscoelasticRelaxation(Hidden):
     times: tuple[float, ...]
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Three terms a decade apart, or a spectrum of 13."""
         if rng.random() < 0.5:
             times = np.array([0.12, 1.1, 9.0]) * np.exp(rng.uniform(-0.5, 0.5, 3))
@@ -46,7 +46,7 @@ class HiddenViscousDamping(Hidden):
     power: float
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Powers 0.75 to 0.9."""
         return cls(scale=scale, power=float(rng.uniform(0.75, 0.9)))
 
@@ -68,7 +68,7 @@ class HiddenPoroelasticDrainage(Hidden):
     time: float
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Two to ten seconds."""
         return cls(scale=scale, time=float(np.exp(rng.uniform(np.log(2.0), np.log(10.0)))))
 
@@ -90,7 +90,7 @@ class HiddenStressSoftening(Hidden):
     logarithmic: bool
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Either form."""
         return cls(scale=scale, logarithmic=bool(rng.random() < 0.5))
 
@@ -112,7 +112,7 @@ class HiddenPermanentSet(Hidden):
     shown: float
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Quick or slow, seen by the camera or not."""
         return cls(scale=scale, delay=float(rng.uniform(0.1, 0.6)), shown=float(rng.choice([0.0, 0.5, 1.0])))
 
@@ -145,7 +145,7 @@ class HiddenDryFriction(Hidden):
     growing: bool
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """A friction force that grows with the load, or not."""
         return cls(
             scale=scale,

@@ -12,7 +12,7 @@ from typing import Self
 
 import numpy as np
 
-from benchmark.blind.hidden.hidden_effect import Hidden, Scale, play, smooth_excess
+from benchmark.blind.hidden.hidden_effect import Hidden, SessionScale, play, smooth_excess
 from benchmark.blind.motion import Array
 
 AT_AXIS, FALL = 0.45, 28e-3
@@ -26,7 +26,7 @@ class HiddenStrainStiffening(Hidden):
     steepness: float
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Steepness 2.5 to 5."""
         return cls(scale=scale, steepness=float(rng.uniform(2.5, 5.0)))
 
@@ -45,7 +45,7 @@ class HiddenBottomingOut(Hidden):
     floor: float
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Floors at 0.6 to 0.8."""
         return cls(scale=scale, floor=float(rng.uniform(0.6, 0.8)))
 
@@ -82,7 +82,7 @@ class HiddenAdhesion(Hidden):
     reach: float
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Reaches of 0.3 to 0.8 mm."""
         return cls(scale=scale, reach=float(rng.uniform(0.3e-3, 0.8e-3)))
 
@@ -111,7 +111,7 @@ class HiddenAnisotropy(Hidden):
     sign: int
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Either axis."""
         return cls(scale=scale, sign=int(rng.choice([-1, 1])))
 
@@ -134,7 +134,7 @@ class HiddenInterfaceSlip(Hidden):
     felt: float
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Sticky or not, felt in the force or not."""
         return cls(
             scale=scale,

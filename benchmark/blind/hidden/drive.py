@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from benchmark.blind.hidden.hidden_effect import Hidden, Scale, play
+from benchmark.blind.hidden.hidden_effect import Hidden, SessionScale, play
 from benchmark.blind.motion import Array
 from benchmark.blind.specimens import HOLE_RADIUS
 
@@ -23,7 +23,7 @@ class HiddenOffCentreLoad(Hidden):
     angle: float
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Any direction."""
         return cls(scale=scale, angle=float(rng.uniform(-np.pi, np.pi)))
 
@@ -64,7 +64,7 @@ class HiddenBacklash(Hidden):
     side: int
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Either side."""
         return cls(scale=scale, side=int(rng.choice([-1, 1])))
 

@@ -17,7 +17,7 @@ AMPLITUDE_SCATTER = 0.05
 
 
 @dataclass(frozen=True)
-class Scale:
+class SessionScale:
     """Sizes of a session, by which effects choose theirs.
 
     Attributes
@@ -45,7 +45,7 @@ class Hidden:
 
     Attributes
     ----------
-    scale : Scale
+    scale : SessionScale
     amplitude : float
         0 is nothing, 1 is so large that nobody could miss it.
     """
@@ -55,11 +55,11 @@ class Hidden:
     gives_way: ClassVar[bool] = False
     largest: ClassVar[float] = 30.0
 
-    scale: Scale
+    scale: SessionScale
     amplitude: float = 0.1
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """An effect of a random shape."""
         return cls(scale=scale)
 

@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from benchmark.blind.hidden.hidden_effect import Hidden, Scale
+from benchmark.blind.hidden.hidden_effect import Hidden, SessionScale
 from benchmark.blind.motion import Array
 
 ROUNDNESS = 12.0
@@ -21,7 +21,7 @@ class HiddenToolInertia(Hidden):
     ringing: float
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Mounts of 12 to 20 Hz."""
         return cls(scale=scale, ringing=float(rng.uniform(12.0, 20.0)))
 
@@ -45,7 +45,7 @@ class HiddenForceDrift(Hidden):
     walk: int | None = None
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Up or down, 8 to 40 s."""
         return cls(scale=scale, time=float(rng.uniform(8.0, 40.0)), sign=int(rng.choice([-1, 1])))
 
@@ -123,7 +123,7 @@ class HiddenMarkerScaleError(Hidden):
     y: float
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Either sign, a middle within 1.5 mm."""
         middle = rng.uniform(-1.5e-3, 1.5e-3, 2)
         return cls(scale=scale, sign=int(rng.choice([-1, 1])), x=float(middle[0]), y=float(middle[1]))

@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from benchmark.blind.hidden.hidden_effect import Hidden, Scale, touching
+from benchmark.blind.hidden.hidden_effect import Hidden, SessionScale, touching
 from benchmark.blind.motion import Array
 
 
@@ -19,7 +19,7 @@ class HiddenFrameResonance(Hidden):
     frequency: float
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """3 to 6 Hz."""
         return cls(scale=scale, frequency=float(rng.uniform(3.0, 6.0)))
 
@@ -40,7 +40,7 @@ class HiddenMotorPickUp(Hidden):
     frequency: float
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """0.8 to 2 Hz."""
         return cls(scale=scale, frequency=float(rng.uniform(0.8, 2.0)))
 
@@ -59,7 +59,7 @@ class HiddenLeadScrewError(Hidden):
     pitch: float
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """A pitch of 0.5 to 0.9 mm."""
         return cls(scale=scale, pitch=float(rng.uniform(0.5e-3, 0.9e-3)))
 
@@ -90,7 +90,7 @@ class HiddenSwayingCamera(Hidden):
     angle: float
 
     @classmethod
-    def draw(cls, scale: Scale, rng: np.random.Generator) -> Self:
+    def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """Slow swings in any direction."""
         return cls(scale=scale, frequency=float(rng.uniform(0.3, 1.0)), angle=float(rng.uniform(-np.pi, np.pi)))
 

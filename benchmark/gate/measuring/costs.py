@@ -31,7 +31,7 @@ _LINE_BYTES = 128
 WARM_UP = 2
 
 
-class Reading(NamedTuple):
+class ClockReading(NamedTuple):
     """Nanoseconds so far: wall clock, CPU of the process, and this thread's time in the queue for a core."""
 
     wall: int
@@ -56,12 +56,12 @@ class CostClock:
         except OSError:
             self.sees_waiting = False
 
-    def read(self) -> Reading:
+    def read(self) -> ClockReading:
         """The times now."""
         queued = self._queued() if self.sees_waiting else None
-        return Reading(time.perf_counter_ns(), time.process_time_ns(), queued or 0)
+        return ClockReading(time.perf_counter_ns(), time.process_time_ns(), queued or 0)
 
-    def seconds(self, before: Reading, after: Reading) -> float:
+    def seconds(self, before: ClockReading, after: ClockReading) -> float:
         """The cost between two readings in s."""
         cpu = after.cpu - before.cpu
         if not self.sees_waiting:

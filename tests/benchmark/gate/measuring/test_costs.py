@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmark.gate.measuring.costs import QUEUE, CostClock, Reading
+from benchmark.gate.measuring.costs import QUEUE, ClockReading, CostClock
 
 MS = 1_000_000
 
@@ -29,7 +29,10 @@ def queue(tmp_path: Path) -> Path:
 )
 def test_cost(queue: Path, wall: int, cpu: int, queued: int, milliseconds: int) -> None:
     with CostClock(queue) as clock:
-        before, after = Reading(5 * MS, 3 * MS, 7 * MS), Reading((5 + wall) * MS, (3 + cpu) * MS, (7 + queued) * MS)
+        before, after = (
+            ClockReading(5 * MS, 3 * MS, 7 * MS),
+            ClockReading((5 + wall) * MS, (3 + cpu) * MS, (7 + queued) * MS),
+        )
         assert clock.seconds(before, after) == pytest.approx(1e-3 * milliseconds)
 
 
@@ -47,7 +50,7 @@ def test_where_the_system_does_not_tell_it_is_cpu_time(tmp_path: Path, text: str
         path.write_text(text)
     with CostClock(path) as clock:
         assert not clock.sees_waiting
-        assert clock.seconds(Reading(0, 0, 0), Reading(30 * MS, 10 * MS, 0)) == pytest.approx(10e-3)
+        assert clock.seconds(ClockReading(0, 0, 0), ClockReading(30 * MS, 10 * MS, 0)) == pytest.approx(10e-3)
 
 
 @pytest.mark.skipif(not QUEUE.is_file(), reason="this system has no schedstat")
