@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmark.discovery import criteria
 from benchmark.discovery.answer.estimates import base_estimates, candidates, named_effects, remains, transfers
 from benchmark.discovery.answer.gap import HeldOut, closed_overall, gaps, held_out_residuals, share_left, traces, unbent
 from benchmark.discovery.answer.verdict import Facts, statement, verdict
@@ -16,21 +17,20 @@ from benchmark.discovery.base.calibration import Calibrated, calibrate
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.contrasts import contrasts
-from benchmark.discovery.detection.disagreement import Detection, combined, detect, places, smallest_visible
-from benchmark.discovery.detection.places import places_of
-from benchmark.discovery.discovery_result import Discovery, Place
-from benchmark.discovery.evidence.pool import Listener, fingerprint, pool, silent
+from benchmark.discovery.detection.disagreement import Detection, combined, detect, exchangeable, smallest_visible
+from benchmark.discovery.detection.places import places
+from benchmark.discovery.discovery_result import Discovery
+from benchmark.discovery.evidence.pool import Listener, Pool, fingerprint, pool, silent
 from benchmark.discovery.evidence.selection import Selection, first_gain, select, usable
 from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, remark, screen
-from benchmark.discovery.trials.preparing import ENOUGH_TRIALS, prepare
+from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import Session
 from benchmark.physics import Effect, catalogue
 from benchmark.response.elastic_table import TableOf
 
 DEFAULT = Settings()
 VERSION = 2
-SURE = 15.0
-"""Effects are searched for, whatever the test says, where one step towards one gains so much log density."""
+"""Of the method: fits kept by another are done anew."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,10 +77,8 @@ def findings(
 
     Parameters
     ----------
-    session
-        Measured trials.
-    settings
-        The same for all sessions unless a user says otherwise.
+    session, settings
+        Measured trials, and choices that are the same for all sessions unless a user says otherwise.
     effects
         Own effects beside the catalogue (`benchmark.physics.load_effects`).
     listener
@@ -96,111 +94,106 @@ def findings(
         The session cannot be used: too few trials, no motion, no force, or mixed protocols.
     """
     began = time.perf_counter()
-    listener("prepare", 0, 1, "")
-    study = prepare(session, settings.rows)
-    calibrated = calibrate(session, study, table_of)
-    base = calibrated.base
-    listener("detect", 0, 1, "")
     known = (*catalogue(), *effects)
+    listener("prepare", 0, 1, "")
+    calibrated = calibrate(session, prepare(session, settings.rows), table_of)
+    key = fingerprint(VERSION, session.fingerprint, settings, [each.description for each in effects])
+    listener("detect", 0, 1, "")
+    with pool(settings.workers, store, key, effects, listener) as work:
+        selection, before = _searched(calibrated.base, known, settings, work)
+    listener("verify", 0, 1, "")
+    answer = _verified(calibrated.base, selection, before, settings)
+    return Findings(_discovery(session, calibrated, answer, known, settings, began), calibrated, selection)
+
+
+def _searched(base: Fit, known: Sequence[Effect], settings: Settings, work: Pool) -> tuple[Selection, Detection]:
+    """The effects that were chosen, and whether there is a disagreement at all."""
     screened = screen(base, [effect for effect in known if usable(base, effect)])
     before = detect(base, settings, np.vstack([one.along for one in screened]))
-    key = fingerprint(VERSION, session.fingerprint, settings, [each.description for each in effects])
-    with pool(settings.workers, store, key, effects, listener) as work:
-        some = on_some(base, compared(base))
-        searched = known if before.p < settings.level or screened[0].won > SURE else ()
-        selection = select(some, searched, settings, work, screened if some is base else ())
-    before = replace(before, p=min(before.p, combined(1.0, 1.0, first_gain(selection))))
-    listener("verify", 0, 1, "")
+    some = on_some(base, compared(base))
+    searched = known if before.p < settings.level or screened[0].won > criteria.SURE else ()
+    selection = select(some, searched, settings, work, screened if some is base else ())
+    return selection, replace(before, p=min(before.p, combined(1.0, 1.0, first_gain(selection))))
+
+
+@dataclass(frozen=True, eq=False)
+class _Answer:
+    """The chosen effects on all trials: fitted, tested again, and predicting what the fit has not seen.
+
+    Attributes
+    ----------
+    base, chosen : Fit
+        Of all trials; the same where nothing was chosen.
+    selection : Selection
+    before, after : Detection
+        Without and with the effects.
+    held : HeldOut
+    left : float
+        Share of the misfit that trials share which the effects leave.
+    """
+
+    base: Fit
+    chosen: Fit
+    selection: Selection
+    before: Detection
+    after: Detection
+    held: HeldOut
+    left: float
+
+
+def _verified(base: Fit, selection: Selection, before: Detection, settings: Settings) -> _Answer:
     chosen = on_all(base, selection.chosen)
-    after = detect(chosen, settings) if chosen is not base else before
-    plain = unbent(chosen) if chosen is not base else base
+    if chosen is base:
+        return _Answer(base, base, selection, before, before, held_out_residuals(base, base), 0.0)
+    after, plain = detect(chosen, settings), unbent(chosen)
     held = held_out_residuals(plain, chosen)
-    left = share_left(plain, chosen) if chosen is not base else 0.0
-    discovery = _discovery(session, settings, calibrated, selection, chosen, (before, after), left, held, known, began)
-    return Findings(discovery, calibrated, selection)
+    return _Answer(base, chosen, selection, before, after, held, share_left(plain, chosen))
 
 
 def _discovery(
-    session: Session,
-    settings: Settings,
-    calibrated: Calibrated,
-    selection: Selection,
-    chosen: Fit,
-    detections: tuple[Detection, Detection],
-    left: float,
-    held: HeldOut,
-    known: Sequence[Effect],
-    began: float,
+    session: Session, calibrated: Calibrated, answer: _Answer, known: Sequence[Effect], settings: Settings, began: float
 ) -> Discovery:
-    base = calibrated.base
-    before, after = detections
-    facts = _facts(selection, before, after, left, known, settings)
+    """The answer in plain results; `began` is when the clock started, s."""
+    base, chosen, before = answer.base, answer.chosen, answer.before
+    facts = _facts(answer, known, settings)
     word = verdict(facts)
-    problem = base.model.problem
-    study = problem.study
-    few = remark(len(selection.base.model.problem.trials), len(problem.trials))
-    overall = closed_overall(base, held)
-    slugs = tuple(effect.slug for effect in chosen.model.effects)
-    silent_answer = word == "no_discrepancy"
-    shown = places(base, before, settings.level)
-    if chosen is not base and not silent_answer:
-        shown = _joined(places_of(chosen, settings), shown)
+    nothing = word == "no_discrepancy"
+    problem, slugs = base.model.problem, tuple(effect.slug for effect in chosen.model.effects)
+    closed = {slugs: closed_overall(base, answer.held)} if slugs else {}
+    few = remark(len(answer.selection.base.model.problem.trials), len(problem.trials))
     return Discovery(
         verdict=word,
         statement=statement(word, facts),
-        p=before.p_cells if silent_answer else before.p,
-        effects=() if silent_answer else named_effects(selection),
-        where=shown,
+        p=before.p_cells if nothing else before.p,
+        effects=() if nothing else named_effects(answer.selection),
+        where=places(base, base if nothing else chosen, before, settings),
         contrasts=contrasts(base, before, settings),
-        gap=gaps(base, held, settings),
+        gap=gaps(base, answer.held, settings),
         smallest_visible=smallest_visible(base, before),
-        candidates=candidates(selection, {slugs: overall} if slugs else {}),
+        candidates=candidates(answer.selection, closed),
         base=base_estimates(chosen),
-        remains=remains(chosen, after, settings.level) if not silent_answer else (),
-        warnings=(*study.warnings, *calibrated.warnings, *_remarks(before), *few),
-        traces=traces(base, held),
+        remains=() if nothing else remains(chosen, answer.after, settings.level),
+        warnings=(*problem.study.warnings, *calibrated.warnings, *exchangeable(before), *few),
+        traces=traces(base, answer.held),
         conditions=session.conditions,
-        channels=tuple(dict.fromkeys(study.channels)),
+        channels=tuple(dict.fromkeys(problem.study.channels)),
         trials=tuple(trial.name for trial in problem.trials),
         seconds=time.perf_counter() - began,
     )
 
 
-def _joined(first: tuple[Place, ...], then: tuple[Place, ...]) -> tuple[Place, ...]:
-    """Places of both, those of a channel and phase that the first has not dropped from the second."""
-    have = {(place.channel, place.phase) for place in first}
-    return (*first, *(place for place in then if (place.channel, place.phase) not in have))
-
-
-def _facts(
-    selection: Selection,
-    before: Detection,
-    after: Detection,
-    left: float,
-    known: Sequence[Effect],
-    settings: Settings,
-) -> Facts:
-    by_slug = {effect.slug: effect for effect in known}
-    chosen = selection.chosen.model.effects
+def _facts(answer: _Answer, known: Sequence[Effect], settings: Settings) -> Facts:
+    """What the verdict rests on."""
+    selection, by_slug = answer.selection, {effect.slug: effect for effect in known}
     alike = {slug for slugs in selection.lookalikes.values() for slug in slugs}
     return Facts(
-        p=before.p,
-        p_cells=before.p_cells,
-        enough=len(selection.base.model.problem.trials) >= ENOUGH_TRIALS,
-        effects=tuple(chosen),
+        p=answer.before.p,
+        p_cells=answer.before.p_cells,
+        enough=len(selection.base.model.problem.trials) >= criteria.ENOUGH_TRIALS,
+        effects=tuple(selection.chosen.model.effects),
         lookalikes=tuple(by_slug[slug] for slug in sorted(alike)),
-        left=left,
-        p_after=after.p,
+        left=answer.left,
+        p_after=answer.after.p,
         transfers=transfers(selection),
         level=settings.level,
     )
-
-
-def _remarks(before: Detection) -> tuple[str, ...]:
-    """Whether the trials can be exchanged."""
-    if before.trend.size and abs(before.trend).max() > 6.0:
-        return (
-            "residuals change with the trial number: the trials are not exchangeable (softening, set or drift from "
-            "trial to trial)",
-        )
-    return ()

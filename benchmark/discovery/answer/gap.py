@@ -9,11 +9,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from benchmark.discovery import criteria
 from benchmark.discovery.base.calibration import pure_errors
 from benchmark.discovery.base.effect_model import Fit, Model, White, fit, settled
 from benchmark.discovery.base.trials_problem import FOLLOWED, only
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.discovery_result import Array, ChannelGap, Trace
+from benchmark.discovery.evidence.gains import conditions
+
+DECIMALS = 6
+"""Of the share that is closed; what lies beyond is round-off, as in a channel that no effect touches."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +42,7 @@ def unbent(chosen: Fit) -> Fit:
 
 def held_out_residuals(base: Fit, chosen: Fit) -> HeldOut:
     """Fit without each condition (or, with one, without each trial) and settle only its own nuisances there."""
-    groups = np.array([trial.condition for trial in base.model.problem.trials])
+    groups = conditions(base)
     if np.unique(groups).size > 1:
         parts, kind = [groups == number for number in np.unique(groups)], "condition"
     else:
@@ -70,26 +75,30 @@ def _without_condition(fitted: Fit, left: np.ndarray) -> Array:
 
 def gaps(base: Fit, held: HeldOut, settings: Settings) -> tuple[ChannelGap, ...]:
     """The gap in each channel."""
-    problem = base.model.problem
-    floors = pure_errors(base)
-    before, after, floor = (_squares(base, rows) for rows in (held.before, held.after, floors))
-    channels = problem.study.channels
-    groups = np.array([trial.condition for trial in problem.trials])
+    channels, groups = base.model.problem.study.channels, conditions(base)
+    tables = [_squares(base, rows) for rows in (held.before, held.after, pure_errors(base))]
     generator = np.random.default_rng(settings.seed)
     draws = [_draw(groups, generator) for _ in range(settings.bootstraps)]
     out = []
     for channel in dict.fromkeys(channels):
         mine = [k for k, other in enumerate(channels) if other == channel]
-        b, a, f = (table[:, mine].mean(axis=1) for table in (before, after, floor))
-        f = np.where(np.isfinite(f), f, np.nanmedian(f) if np.isfinite(f).any() else 0.0)
-        closed = share_closed(b.mean(), a.mean(), f.mean())
-        resampled = [share_closed(b[d].mean(), a[d].mean(), f[d].mean()) for d in draws] if closed is not None else []
-        kept = [value for value in resampled if value is not None]
-        ends = np.quantile(kept, [0.025, 0.975]).tolist() if kept else None
-        one, two, least = (float(np.sqrt(values.mean())) for values in (b, a, f))
-        interval = None if ends is None else (ends[0], ends[1])
+        before, after, floor = (table[:, mine].mean(axis=1) for table in tables)
+        floor = np.where(np.isfinite(floor), floor, np.nanmedian(floor) if np.isfinite(floor).any() else 0.0)
+        closed = share_closed(before.mean(), after.mean(), floor.mean())
+        interval = None if closed is None else _interval((before, after, floor), draws)
+        one, two, least = (float(np.sqrt(values.mean())) for values in (before, after, floor))
         out.append(ChannelGap(channel, one, two, least, closed, interval, held.kind))
     return tuple(out)
+
+
+def _interval(squares: tuple[Array, Array, Array], draws: list[Array]) -> tuple[float, float] | None:
+    """95 % of the share closed over resampled trials; None where none has anything to close."""
+    resampled = (share_closed(*(each[draw].mean() for each in squares)) for draw in draws)
+    kept = [value for value in resampled if value is not None]
+    if not kept:
+        return None
+    low, high = np.quantile(kept, [0.025, 0.975]).tolist()
+    return low, high
 
 
 def _draw(groups: Array, generator: np.random.Generator) -> Array:
@@ -107,24 +116,19 @@ def _squares(base: Fit, rows: list[Array]) -> Array:
     return np.array(out)
 
 
-LEAST_GAP = 0.05
-"""Where the base leaves less than this share above the floor there is nothing to close."""
-
-DECIMALS = 6
-"""Of the share that is closed; what lies beyond is round-off, as in a channel that no effect touches."""
-
-
 def share_closed(before: float, after: float, floor: float) -> float | None:
     """Share of the gap over the floor that is gone, all three mean squares; None where there is nothing to close."""
     open_before = before - floor
-    if open_before <= LEAST_GAP * floor:
+    if open_before <= criteria.LEAST_GAP * floor:
         return None
     return float(min(round((before - after) / open_before, DECIMALS) + 0.0, 1.0))  # + 0.0: no minus zero
 
 
 def closed_overall(base: Fit, held: HeldOut) -> float | None:
-    """The gap closed in all channels together, each in units of its noise."""
+    """The gap closed in all channels together, each in units of its noise; None where no replicates tell the noise."""
     floor = _squares(base, pure_errors(base))
+    if not np.isfinite(floor).any():
+        return None
     known = np.where(np.isfinite(floor), floor, np.nanmedian(floor, axis=0))
     unit = np.maximum(known.mean(axis=0), 1e-300)
     before, after = (float((_squares(base, rows) / unit).mean()) for rows in (held.before, held.after))
@@ -139,7 +143,7 @@ def shared_misfit(fitted: Fit) -> float:
     """
     problem = fitted.model.problem
     residuals = White(problem).residuals(fitted.model.signals(fitted.vector, fitted.nuisance))
-    groups = np.array([trial.condition for trial in problem.trials])
+    groups = conditions(fitted)
     total = 0.0
     for number in np.unique(groups):
         rows = np.array([residuals[i] for i in np.flatnonzero(groups == number)])
@@ -162,37 +166,18 @@ def share_left(before: Fit, after: Fit) -> float:
 def traces(base: Fit, held: HeldOut) -> tuple[Trace, ...]:
     """One trace a trial and channel; of a channel's marker combinations the liveliest."""
     problem = base.model.problem
-    study = problem.study
-    errors = pure_errors(base)
-    shown = _shown(base)
+    errors, groups, shown = pure_errors(base), conditions(base), _shown(base)
     out = []
     for index, trial in enumerate(problem.trials):
-        condition = study.conditions[trial.condition]
-        mates = [k for k, other in enumerate(problem.trials) if other.condition == trial.condition]
-        noise = np.sqrt(np.mean([errors[k] ** 2 for k in mates], axis=0))
-        for channel, signal in shown.items():
-            absent = trial.count[:, signal] <= 0.0
-            measured = np.where(absent, np.nan, trial.signals[:, signal])
-            before, after = (_curve(trial.signals, rows[index], signal) for rows in (held.before, held.after))
-            out.append(
-                Trace(
-                    trial.name,
-                    condition.name,
-                    channel,
-                    True,
-                    trial.motion.time,
-                    trial.motion.depth,
-                    measured,
-                    before,
-                    after,
-                    np.nan_to_num(noise[:, signal]),
-                )
-            )
+        mates = np.flatnonzero(groups == trial.condition)
+        noise = np.nan_to_num(np.sqrt(np.mean([errors[k] ** 2 for k in mates], axis=0)))
+        measured = np.where(trial.count > 0.0, trial.signals, np.nan)
+        before, after = (trial.signals - rows[index] for rows in (held.before, held.after))
+        name = problem.study.conditions[trial.condition].name
+        for channel, k in shown.items():
+            curves = (measured[:, k], before[:, k], after[:, k], noise[:, k])
+            out.append(Trace(trial.name, name, channel, True, trial.motion.time, trial.motion.depth, *curves))
     return tuple(out)
-
-
-def _curve(measured: Array, residual: Array, signal: int) -> Array:
-    return np.asarray(measured[:, signal] - residual[:, signal])
 
 
 def _shown(base: Fit) -> dict[str, int]:

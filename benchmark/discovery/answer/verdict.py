@@ -5,11 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from benchmark.discovery import criteria
 from benchmark.physics import Effect
-
-LEFT = 0.3
-"""A share of the explainable disagreement left by the best entry from which it counts as outside the catalogue."""
-PARTLY = 0.1
 
 
 @dataclass(frozen=True)
@@ -54,13 +51,13 @@ def verdict(facts: Facts) -> str:
         return "no_discrepancy"
     if not facts.effects:
         return "outside_catalogue" if facts.p_cells < facts.level else "no_discrepancy"
-    if facts.left > LEFT and facts.p_after < facts.level:
+    if facts.left > criteria.OUTSIDE and facts.p_after < facts.level:
         return "outside_catalogue"
     if facts.lookalikes:
         return "instrument_first" if _mixed((*facts.effects, *facts.lookalikes)) else "lookalikes"
     if facts.transfers is None:
         return "conditional"
-    if facts.p_after < facts.level and facts.left > PARTLY:
+    if facts.p_after < facts.level and facts.left > criteria.PARTLY:
         return "partly_explained"
     return "named" if facts.transfers else "conditional"
 

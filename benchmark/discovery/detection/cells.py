@@ -8,15 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit, White, nuisance_precision
 from benchmark.discovery.base.trials_problem import Problem
 from benchmark.discovery.discovery_result import Array
-
-ALL_FLIPS = 12
-"""Up to so many trials all sign patterns are taken."""
-STEADY = 4.0
-"""Trials that the pooled variance of a signal's cells counts as."""
-LEAST_ROWS = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,11 +61,11 @@ def cells_of(problem: Problem) -> tuple[Cell, ...]:
     """Cells of phase, cycle (third and later ones together), half and signal, over all conditions that have them."""
     found: dict[tuple[int, int, int, int], dict[int, np.ndarray]] = {}
     for number, condition in enumerate(problem.study.conditions):
-        cycle = np.minimum(condition.cycle, 3)
+        cycle = np.minimum(condition.cycle, criteria.MOST_CYCLE)
         keys = sorted(set(zip(condition.phase.tolist(), cycle.tolist(), condition.part.tolist(), strict=True)))
         for phase, turn, part in keys:
             rows = (condition.phase == phase) & (cycle == turn) & (condition.part == part)
-            if rows.sum() < LEAST_ROWS:
+            if rows.sum() < criteria.LEAST_ROWS:
                 continue
             for signal in range(condition.signals.shape[2]):
                 if (condition.count[:, rows, signal].sum(axis=1) > 0.0).all():
@@ -165,7 +160,7 @@ def _flipped(
     flipped = _statistics(means, kinds, signs, weights)[0]
     shown = np.where(sided, t, np.abs(t))
     above = _largest(flipped, sided)[:, None] >= shown[None] - 1e-9
-    p = above.mean(axis=0) if count <= ALL_FLIPS else (1.0 + above.sum(axis=0)) / (1.0 + len(signs))
+    p = above.mean(axis=0) if count <= criteria.ALL_FLIPS else (1.0 + above.sum(axis=0)) / (1.0 + len(signs))
     return t, error, p, flipped
 
 
@@ -183,7 +178,7 @@ def _members(groups: np.ndarray) -> Array:
 
 
 def _signs(trials: int, flips: int, seed: int) -> Array:
-    if trials <= ALL_FLIPS:
+    if trials <= criteria.ALL_FLIPS:
         return np.array(list(itertools.product((1.0, -1.0), repeat=trials)))
     return np.asarray(np.random.default_rng(seed).choice((1.0, -1.0), size=(flips, trials)))
 
@@ -206,6 +201,6 @@ def _statistics(means: Array, kinds: Array, signs: Array, members: Array) -> tup
     for kind in np.unique(kinds, axis=0):
         mine = (kinds == kind).all(axis=1)
         pooled[:, mine] = np.median(spread[:, mine], axis=1, keepdims=True)
-    shrunk = (STEADY * pooled + freedom * spread) / (STEADY + freedom)
+    shrunk = (criteria.POOLED_TRIALS * pooled + freedom * spread) / (criteria.POOLED_TRIALS + freedom)
     t = np.sign(signed) * np.sqrt(explained / np.maximum(shrunk, 1e-300))
     return t, np.sqrt(shrunk / np.maximum(finite.sum(axis=1), 1))

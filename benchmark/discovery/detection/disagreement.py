@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import norm
 
+from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit, Model, fit
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.cells import (
-    Cell,
     CellTable,
     FlipTest,
     cell_means,
@@ -19,12 +19,7 @@ from benchmark.discovery.detection.cells import (
     flip_test,
     projected_residuals,
 )
-from benchmark.discovery.discovery_result import PHASES, Array, Place
-
-SHARES = (0.7, 0.15, 0.15)
-"""Of the level: sign flips of cells and matched numbers, strain of the base, held-out gain of an effect."""
-MOST_CELLS = 0.6
-"""Where more than this share of the cells is flagged there is nothing clean to refit on."""
+from benchmark.discovery.discovery_result import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,15 +43,15 @@ def detect(fitted: Fit, settings: Settings, matched: Array | None = None) -> Det
     cells_only = flip_test(replace(first[0], matched=None), settings.flips, settings.seed)
     flagged = cells_only.p < settings.level
     last = (replace(first[0], matched=None), cells_only)
-    if flagged.any() and flagged.mean() < MOST_CELLS:
+    if flagged.any() and flagged.mean() < criteria.MOST_FLAGGED:
         last = _tested(_refitted(fitted, first[0], flagged), settings, full=fitted)
     p = combined(first[1].p_any, strained(fitted))
     return Detection(*last, p=p, p_cells=cells_only.p_any, trend=_trend(fitted, first[0]))
 
 
 def combined(*values: float) -> float:
-    """Least p of several tests that share the level as `SHARES` say."""
-    return float(min(1.0, *(value / share for value, share in zip(values, SHARES, strict=False))))
+    """Least p of several tests that share the level as `criteria.LEVEL_SHARES` say."""
+    return float(min(1.0, *(value / share for value, share in zip(values, criteria.LEVEL_SHARES, strict=False))))
 
 
 def strained(fitted: Fit) -> float:
@@ -119,53 +114,6 @@ def _centred(values: Array, groups: NDArray[np.int64]) -> Array:
     return out
 
 
-def places(fitted: Fit, detection: Detection, level: float) -> tuple[Place, ...]:
-    """Flagged cells in words and numbers, marker combinations under their channel, largest t first."""
-    problem = fitted.model.problem
-    study, test = problem.study, detection.test
-    ranges = signal_ranges(fitted)
-    found: dict[tuple[object, ...], tuple[float, Place]] = {}
-    for k, cell in enumerate(detection.table.cells):
-        if test.p[k] >= level:
-            continue
-        number, size = _largest(fitted, detection.table.means[k], cell)
-        condition = study.conditions[number]
-        depth = np.median(condition.depth[:, cell.rows[number]], axis=0)
-        place = Place(
-            channel=study.channels[cell.signal],
-            phase=PHASES[cell.phase],
-            condition=condition.name,
-            cycle=cell.cycle,
-            depth=(float(depth.min()), float(depth.max())),
-            size=size,
-            percent_of_signal=float(100.0 * abs(size) / ranges[cell.signal]),
-            p=float(test.p[k]),
-        )
-        key = (place.channel, place.phase, place.condition, place.cycle, cell.part)
-        if key not in found or abs(test.t[k]) > found[key][0]:
-            found[key] = (abs(float(test.t[k])), place)
-    return tuple(place for _, place in sorted(found.values(), key=lambda pair: -pair[0]))
-
-
-def _largest(fitted: Fit, means: Array, cell: Cell) -> tuple[int, float]:
-    """The condition where a cell's mean is largest, and that mean."""
-    groups = np.array([trial.condition for trial in fitted.model.problem.trials])
-    each = {number: float(means[groups == number].mean()) for number in cell.rows}
-    number = max(each, key=lambda key: abs(each[key]))
-    return number, each[number]
-
-
-def signal_ranges(fitted: Fit) -> Array:
-    """(C,) largest simulated range of each signal, all marker combinations on the largest of them."""
-    signals = fitted.model.signals(fitted.vector, fitted.nuisance)
-    ranges = np.max([np.ptp(one, axis=0) for one in signals], axis=0)
-    measured = np.max([np.ptp(trial.signals, axis=0) for trial in fitted.model.problem.trials], axis=0)
-    ranges = np.maximum(ranges, 1e-12)
-    if ranges.size > 1:
-        ranges[1:] = max(ranges[1:].max(), 0.3 * measured[1:].max())
-    return np.asarray(ranges)
-
-
 def smallest_visible(fitted: Fit, detection: Detection) -> dict[str, float]:
     """For each channel the smallest mean residual that would have been flagged, N or m."""
     channels = fitted.model.problem.study.channels
@@ -175,3 +123,13 @@ def smallest_visible(fitted: Fit, detection: Detection) -> dict[str, float]:
         channel = channels[cell.signal]
         out[channel] = min(out.get(channel, np.inf), size)
     return out
+
+
+def exchangeable(detection: Detection) -> tuple[str, ...]:
+    """A remark where the trials cannot be exchanged, which the sign flips rest on."""
+    if detection.trend.size and abs(detection.trend).max() > criteria.TREND:
+        return (
+            "residuals change with the trial number: the trials are not exchangeable (softening, set or drift from "
+            "trial to trial)",
+        )
+    return ()

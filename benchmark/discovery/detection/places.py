@@ -1,25 +1,58 @@
-"""Where accepted effects show: what they change that the base cannot follow, cell by cell, tested along that change."""
+"""Where model and measurement disagree: cells that were flagged, and where accepted effects show."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit, Model, White, nuisance_precision
 from benchmark.discovery.base.trials_problem import FOLLOWED
 from benchmark.discovery.criteria import Settings
-from benchmark.discovery.detection.cells import one_sided
-from benchmark.discovery.detection.disagreement import signal_ranges
+from benchmark.discovery.detection.cells import Cell, one_sided
+from benchmark.discovery.detection.disagreement import Detection
 from benchmark.discovery.discovery_result import PHASES, Array, Place
 
-LEAST = 4.0
-"""Standard deviations of the trials' mean from which a change is shown."""
 BOTH = ("radial_x", "radial_y")
 """Combinations whose change is as much tangential as radial."""
 
 
-def places_of(chosen: Fit, settings: Settings) -> tuple[Place, ...]:
+def places(base: Fit, chosen: Fit, detection: Detection, settings: Settings) -> tuple[Place, ...]:
+    """Where the effects of `chosen` show, then cells flagged without it in channels and phases not among these."""
+    flagged = flagged_places(base, detection, settings.level)
+    if chosen is base:
+        return flagged
+    first = effect_places(chosen, settings)
+    have = {(place.channel, place.phase) for place in first}
+    return (*first, *(place for place in flagged if (place.channel, place.phase) not in have))
+
+
+def flagged_places(fitted: Fit, detection: Detection, level: float) -> tuple[Place, ...]:
+    """Flagged cells in words and numbers, marker combinations under their channel, largest t first."""
+    test, ranges = detection.test, _signal_ranges(fitted)
+    found: dict[tuple[object, ...], tuple[float, Place]] = {}
+    for k, cell in enumerate(detection.table.cells):
+        if test.p[k] >= level:
+            continue
+        number, size = _largest(fitted, detection.table.means[k], cell)
+        place = _place(fitted, ranges, (number, cell.signal), cell.rows[number], cell.cycle, size, float(test.p[k]))
+        key = (place.channel, place.phase, place.condition, place.cycle, cell.part)
+        if key not in found or abs(test.t[k]) > found[key][0]:
+            found[key] = (abs(float(test.t[k])), place)
+    return tuple(place for _, place in sorted(found.values(), key=lambda pair: -pair[0]))
+
+
+def _largest(fitted: Fit, means: Array, cell: Cell) -> tuple[int, float]:
+    """The condition where a cell's mean is largest, and that mean."""
+    groups = np.array([trial.condition for trial in fitted.model.problem.trials])
+    each = {number: float(means[groups == number].mean()) for number in cell.rows}
+    number = max(each, key=lambda key: abs(each[key]))
+    return number, each[number]
+
+
+def effect_places(chosen: Fit, settings: Settings) -> tuple[Place, ...]:
     """Channels and phases in which the effects of a fit show, the clearest first.
 
     The change is what the model with the effects gives more than without them, less what a base could follow that is
@@ -34,22 +67,33 @@ def places_of(chosen: Fit, settings: Settings) -> tuple[Place, ...]:
     white = White(problem)
     moved = _unfollowed(chosen, [white.flat(i, change) for i, change in enumerate(changes)])
     residual = _unfollowed(chosen, white.residuals(without))
-    found = []
+    found: list[_Shown] = []
     for channel, signals in _channels(chosen).items():
         for phase in range(len(PHASES)):
             pick = [_picked(chosen, i, phase, signals) for i in range(len(changes))]
             size = _size(chosen, moved, pick)
-            if size >= LEAST:
+            if size >= criteria.SHOWN:
                 along = [float(np.sum(m[p] * r[p])) for m, r, p in zip(moved, residual, pick, strict=True)]
-                found.append((size, channel, phase, signals, along))
+                found.append(_Shown(channel, phase, signals, size, np.array(along)))
     if not found:
         return ()
     groups = np.array([trial.condition for trial in problem.trials])
-    p = one_sided(np.array([each[-1] for each in found]), groups, settings.flips, settings.seed)
-    shown = [(*each[:4], value) for each, value in zip(found, p, strict=True) if value < settings.level]
-    shown.sort(key=lambda each: -each[0])
-    ranges = signal_ranges(chosen)
-    return tuple(_place(chosen, changes, ranges, each[1], each[2], each[3], float(each[4])) for each in shown)
+    p = one_sided(np.array([each.along for each in found]), groups, settings.flips, settings.seed)
+    clear = [(each, float(value)) for each, value in zip(found, p, strict=True) if value < settings.level]
+    clear.sort(key=lambda pair: -pair[0].size)
+    ranges = _signal_ranges(chosen)
+    return tuple(_largest_change(chosen, changes, ranges, each, value) for each, value in clear)
+
+
+@dataclass(frozen=True, eq=False)
+class _Shown:
+    """A channel and phase in which effects show: size in standard deviations, residual along the change (R,)."""
+
+    channel: str
+    phase: int
+    signals: Sequence[int]
+    size: float
+    along: Array
 
 
 def _unfollowed(fitted: Fit, rows: Sequence[Array]) -> list[Array]:
@@ -102,32 +146,50 @@ def _size(fitted: Fit, moved: Sequence[Array], pick: Sequence[np.ndarray]) -> fl
     return float(np.sqrt(total))
 
 
-def _place(
-    fitted: Fit, changes: Sequence[Array], ranges: Array, channel: str, phase: int, signals: Sequence[int], p: float
-) -> Place:
+def _largest_change(fitted: Fit, changes: Sequence[Array], ranges: Array, shown: _Shown, p: float) -> Place:
     """The place in the condition and signal where the change is largest."""
     problem = fitted.model.problem
-    best = (0.0, 0, 0)
+    best, at = 0.0, (0, 0)
     for number, condition in enumerate(problem.study.conditions):
-        rows = condition.phase == phase
+        rows = condition.phase == shown.phase
         mine = [i for i, trial in enumerate(problem.trials) if trial.condition == number]
         if not rows.any():
             continue
-        for signal in signals:
+        for signal in shown.signals:
             size = float(np.mean([changes[i][rows, signal].mean() for i in mine]))
-            if abs(size) >= abs(best[0]):
-                best = (size, number, signal)
-    size, number, signal = best
-    condition = problem.study.conditions[number]
-    rows = condition.phase == phase
+            if abs(size) >= abs(best):
+                best, at = size, (number, signal)
+    condition = problem.study.conditions[at[0]]
+    rows = condition.phase == shown.phase
+    place = _place(fitted, ranges, at, rows, int(condition.cycle[rows].min()), best, p)
+    return replace(place, channel=shown.channel)
+
+
+def _place(
+    fitted: Fit, ranges: Array, at: tuple[int, int], rows: np.ndarray, cycle: int, size: float, p: float
+) -> Place:
+    """Rows (n,) of a condition and signal (`at`) as a place."""
+    study, (number, signal) = fitted.model.problem.study, at
+    condition = study.conditions[number]
     depth = np.median(condition.depth[:, rows], axis=0)
     return Place(
-        channel=channel,
-        phase=PHASES[phase],
+        channel=study.channels[signal],
+        phase=PHASES[condition.phase[rows][0]],
         condition=condition.name,
-        cycle=int(condition.cycle[rows].min()),
+        cycle=cycle,
         depth=(float(depth.min()), float(depth.max())),
         size=size,
         percent_of_signal=float(100.0 * abs(size) / ranges[signal]),
         p=p,
     )
+
+
+def _signal_ranges(fitted: Fit) -> Array:
+    """(C,) largest simulated range of each signal, all marker combinations on the largest of them."""
+    signals = fitted.model.signals(fitted.vector, fitted.nuisance)
+    ranges = np.max([np.ptp(one, axis=0) for one in signals], axis=0)
+    measured = np.max([np.ptp(trial.signals, axis=0) for trial in fitted.model.problem.trials], axis=0)
+    ranges = np.maximum(ranges, 1e-12)
+    if ranges.size > 1:
+        ranges[1:] = max(ranges[1:].max(), 0.3 * measured[1:].max())
+    return np.asarray(ranges)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.discovery_result import Array
 from benchmark.response.noise import whitener
@@ -23,6 +24,11 @@ class Gain:
     mean: float
     error: float
     z: float
+
+
+def conditions(fitted: Fit) -> Array:
+    """(R,) number of each trial's condition."""
+    return np.array([trial.condition for trial in fitted.model.problem.trials])
 
 
 def strain(fitted: Fit) -> float:
@@ -45,28 +51,38 @@ def held_out(fitted: Fit) -> Array:
 
 def held_out_conditions(fitted: Fit) -> Array:
     """(R,) log density of each trial under the fit to the other conditions, to first order; strain as in `held_out`."""
-    conditions = np.array([trial.condition for trial in fitted.model.problem.trials])
-    out = np.empty(conditions.size)
-    for number in np.unique(conditions):
-        left = conditions == number
+    groups = conditions(fitted)
+    out = np.empty(groups.size)
+    for number in np.unique(groups):
+        left = groups == number
         out[left] = fitted.log_density(fitted.without(left))[left]
-    return out - strain(fitted) / conditions.size
+    return out - strain(fitted) / groups.size
 
 
-def gain(fitted: Array, other: Array, conditions: Array) -> Gain:
+def gain(fitted: Array, other: Array, groups: Array) -> Gain:
     """Paired gain of held-out densities (R,) over another model's; the error from the scatter within conditions."""
     each = fitted - other
     even = np.sign(each) * np.log1p(np.abs(each))
     middle = float(even.mean())
-    z = middle / max(_error(even, conditions), 1e-9 + 0.02 * abs(middle))
-    return Gain(each, float(each.mean()), _error(each, conditions), z)
+    z = middle / max(_error(even, groups), 1e-9 + criteria.LEAST_ERROR * abs(middle))
+    return Gain(each, float(each.mean()), _error(each, groups), z)
 
 
-def _error(each: Array, conditions: Array) -> float:
+def broad(gain: Gain) -> float:
+    """Held-out log density gained in all trials but the one that gains most; 0 where others lose a tenth of it.
+
+    What acts in the stiffest specimens alone scatters too much between trials for z.
+    """
+    total = float(gain.each.sum() - gain.each.max())
+    lost = float(-gain.each[gain.each < 0.0].sum())
+    return total if lost < criteria.BROAD_LOST * total else 0.0
+
+
+def _error(each: Array, groups: Array) -> float:
     """Standard error of a mean over trials (R,), from the scatter within conditions where they have replicates."""
     spread, freedom = 0.0, 0
-    for number in np.unique(conditions):
-        mine = each[conditions == number]
+    for number in np.unique(groups):
+        mine = each[groups == number]
         spread += float(((mine - mine.mean()) ** 2).sum())
         freedom += mine.size - 1
     if freedom < 1:

@@ -3,33 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import t as t_distribution
 
-from benchmark.discovery.base.effect_model import Fit, Model
+from benchmark.discovery import criteria
+from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.criteria import Settings
-from benchmark.discovery.discovery_result import Array
-from benchmark.discovery.evidence.gains import Gain, delta_bic, effective_size, gain, held_out, held_out_conditions
+from benchmark.discovery.evidence.gains import (
+    Gain,
+    broad,
+    conditions,
+    delta_bic,
+    effective_size,
+    gain,
+    held_out,
+    held_out_conditions,
+)
 from benchmark.discovery.evidence.pool import Pool
 from benchmark.discovery.evidence.shortlist import Screened, screen
 from benchmark.physics import Effect
-
-REFINED = 7
-"""Candidates that are refined in the first round; fewer later on."""
-LATER = 5
-WORTH = 0.12
-"""A further effect must gain at least this share of what the first gained: less is the first one's form."""
-SURE_BIC = -4.0
-RICHER_BIC = -6.0
-"""BIC by which an effect is accepted, and by which one more term of it is preferred."""
-BROAD = 8.0
-"""Held-out log density gained in all but the best trial that is evidence enough without z."""
-TIE = 0.03
-"""Candidates whose gain lacks no more than this share of the best one's are equals."""
-CLOSE = 0.1
-"""A rival whose gain lacks no more than this share of the best one's is a look-alike: its true form may be another."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,8 +46,8 @@ class Scored:
 class Selection:
     """The chosen fit (the base's where nothing was accepted), its steps and its look-alikes.
 
-    `first` are the candidates of the first round, best first, refined or only screened (`screened`); `lookalikes`
-    and `rivals` are by the slug of a chosen effect.
+    `candidates` are those fitted, round by round, the best of a round first; `screened` all effects by what one step
+    gains. `lookalikes` and `rivals` are by the slug of a chosen effect.
     """
 
     base: Fit
@@ -69,36 +63,34 @@ def select(
     base: Fit, effects: Sequence[Effect], settings: Settings, work: Pool, first_screen: tuple[Screened, ...] = ()
 ) -> Selection:
     """Choose effects; `first_screen` is that of the base, where it is known."""
-    current = base
+    current, ranked = base, first_screen
     steps: list[Scored] = []
-    all_scored: list[Scored] = []
     rounds: list[list[Scored]] = []
     for number in range(1, settings.most_effects + 1):
         taken = {effect.slug for effect in current.model.effects}
         rest = [effect for effect in effects if effect.slug not in taken and usable(base, effect)]
         if not rest:
             break
-        ranked = first_screen if number == 1 and first_screen else screen(current, rest)
+        if number > 1 or not ranked:
+            ranked = screen(current, rest)
         first_screen = first_screen or ranked
-        promising = _promising(ranked, REFINED if number == 1 else LATER)
+        promising = _promising(ranked, criteria.REFINED if number == 1 else criteria.REFINED_LATER)
         scored = score(current, work.fits(f"round {number}", [(current, s.effect) for s in promising]))
-        scored = _enriched(current, scored, work)
-        rounds.append(scored)
-        all_scored += scored
-        accepted = [s for s in scored if _accepted(s, steps, settings)]
+        rounds.append(_enriched(current, scored, work))
+        accepted = [s for s in rounds[-1] if _accepted(s, steps, settings)]
         if not accepted:
             break
-        best = _simplest(accepted, effects)
-        steps.append(best)
-        current = best.fit
+        steps.append(_simplest(accepted, effects))
+        current = steps[-1].fit
     current = _pruned(base, current, settings, work)
     current = _swapped(base, current, rounds, work)
     lookalikes, rivals = _lookalikes(base, current, rounds, settings, work)
-    return Selection(base, current, tuple(steps), tuple(all_scored), first_screen, lookalikes, rivals)
+    tried = tuple(scored for each in rounds for scored in each)
+    return Selection(base, current, tuple(steps), tried, first_screen, lookalikes, rivals)
 
 
 def first_gain(selection: Selection) -> float:
-    """Return p of the first accepted effect's held-out gain, for all candidates of its round.
+    """P of the first accepted effect's held-out gain, for all candidates of its round.
 
     By Student's t over trials, or by the bound exp(-g) on a density ratio e^g that has not seen the data.
     """
@@ -114,11 +106,6 @@ def first_gain(selection: Selection) -> float:
 def usable(base: Fit, effect: Effect) -> bool:
     """Whether the session's channels can show an effect."""
     return not effect.needs_markers or base.model.problem.study.layout is not None
-
-
-def conditions(fitted: Fit) -> Array:
-    """(R,) number of each trial's condition."""
-    return np.array([trial.condition for trial in fitted.model.problem.trials])
 
 
 def score(current: Fit, fits: Sequence[Fit]) -> list[Scored]:
@@ -137,29 +124,20 @@ def score(current: Fit, fits: Sequence[Fit]) -> list[Scored]:
 
 def _promising(ranked: Sequence[Screened], count: int) -> list[Screened]:
     top = ranked[0].won if ranked else 0.0
-    return [s for k, s in enumerate(ranked[:count]) if k < 2 or s.won > 0.02 * top]
+    return [s for k, s in enumerate(ranked[:count]) if k < 2 or s.won > criteria.PROMISING * top]
 
 
 def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
     """The simplest of those that gain as much as the best, which no data tell apart; then the catalogue's order."""
     order = {effect.slug: (len(effect.names), place) for place, effect in enumerate(effects)}
-    ties = [s for s in accepted if s.gain.mean >= (1.0 - TIE) * accepted[0].gain.mean]
+    ties = [s for s in accepted if s.gain.mean >= (1.0 - criteria.TIE) * accepted[0].gain.mean]
     return min(ties, key=lambda each: order[each.slug])
 
 
 def _accepted(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:
-    worth = not steps or scored.gain.mean >= WORTH * steps[0].gain.mean
-    return worth and (scored.gain.z >= settings.accept_z or broad(scored.gain) > BROAD) and scored.delta_bic < SURE_BIC
-
-
-def broad(gain: Gain) -> float:
-    """Held-out log density gained in all trials but the one that gains most; 0 where others lose a tenth of it.
-
-    What acts in the stiffest specimens alone scatters too much between trials for z.
-    """
-    total = float(gain.each.sum() - gain.each.max())
-    lost = float(-gain.each[gain.each < 0.0].sum())
-    return total if lost < 0.1 * total else 0.0
+    worth = not steps or scored.gain.mean >= criteria.WORTH * steps[0].gain.mean
+    evident = scored.gain.z >= settings.accept_z or broad(scored.gain) > criteria.BROAD
+    return worth and evident and scored.delta_bic < criteria.ACCEPT_BIC
 
 
 def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
@@ -167,15 +145,14 @@ def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
     if not scored:
         return scored
     top = scored[0].gain.mean
-    wanted = [s for s in scored[:3] if s.fit.model.effects[-1].richer is not None and s.gain.mean > 0.5 * top]
-    wanted = [s for s in wanted if s.gain.z >= 2.0]
-    jobs = [(current, s.fit.model.effects[-1].richer) for s in wanted]
-    richer = work.fits("second terms", [(fit, effect) for fit, effect in jobs if effect is not None])
+    near = [s for s in scored[:3] if s.gain.mean > criteria.RICHER_SHARE * top and s.gain.z >= criteria.RICHER_Z]
+    wanted = [effect for effect in (s.fit.model.effects[-1].richer for s in near) if effect is not None]
+    richer = work.fits("second terms", [(current, effect) for effect in wanted])
     better = {s.slug: s for s in score(current, richer)}
     chosen = []
     for s in scored:
         other = better.get(s.slug)
-        chosen.append(other if other is not None and other.delta_bic < s.delta_bic + RICHER_BIC else s)
+        chosen.append(other if other is not None and other.delta_bic < s.delta_bic + criteria.RICHER_BIC else s)
     return sorted(chosen, key=lambda each: -each.gain.mean)
 
 
@@ -213,7 +190,7 @@ def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], work: 
     taken = {effect.slug for effect in current.model.effects}
     rivals = [s.fit.model.effects[-1] for s in rounds[0] if s.slug not in taken][:2]
     best, density = current, float(held_out(current).sum())
-    density += TIE * max(density - float(held_out(base).sum()), 0.0)
+    density += criteria.TIE * max(density - float(held_out(base).sum()), 0.0)
     for effect in current.model.effects:
         others = [other for other in current.model.effects if other is not effect]
         under = _rebuilt(base, others, work, "swaps")
@@ -244,7 +221,7 @@ def _lookalikes(
         alike = []
         for rival in made:
             lead = gain(now, held_out(rival), groups)
-            if lead.z < settings.lookalike_z or lead.mean < CLOSE * total:
+            if lead.z < settings.lookalike_z or lead.mean < criteria.CLOSE * total:
                 alike.append((lead.mean, rival))
         alike.sort(key=lambda pair: pair[0])
         names[effect.slug] = tuple(rival.model.effects[-1].slug for _, rival in alike)
@@ -255,27 +232,21 @@ def _lookalikes(
 def constant(fitted: Fit) -> bool | None:
     """Whether the effects' parameters agree between conditions, each told from its own trials; None with one.
 
-    Each condition's own estimate is one step from the joint fit; parameters agree where they differ by less than three
-    standard errors or a fifth of their value (0.4 in the logarithm).
+    Each condition's own estimate is one step from the joint fit. It agrees where it differs by less than three standard
+    errors or by less than a share of the value (`SAME_SHARE`; in the logarithm `SAME_LOG`).
     """
     groups = conditions(fitted)
     if np.unique(groups).size < 2 or not fitted.model.effects:
         return None
     first = fitted.model.shape_count
+    logarithmic = np.array([parameter.logarithmic for _, parameter in fitted.model.parameters])
+    joint = fitted.vector[first:]
+    size = np.where(logarithmic, criteria.SAME_LOG, criteria.SAME_SHARE * np.abs(joint))
     agree = True
     for number in np.unique(groups):
         own = fitted.without(groups != number)[first:]
         matrix = fitted.blocks.matrix[groups == number].sum(axis=0) + np.diag(fitted.precision)
-        error = np.sqrt(np.diag(np.linalg.pinv(matrix, hermitian=True)))[first:]
-        low, high = fitted.model.bounds
-        for k, (_, parameter) in enumerate(fitted.model.parameters):
-            moved = abs(own[k] - fitted.vector[first + k])
-            size = 0.7 if parameter.logarithmic else 0.35 * abs(fitted.vector[first + k])
-            at_edge = own[k] <= low[first + k] or own[k] >= high[first + k]
-            agree &= bool(moved < max(3.0 * error[k], size) or (at_edge and moved < 3.0 * error[k]))
+        error = criteria.SAME_ERRORS * np.sqrt(np.diag(np.linalg.pinv(matrix, hermitian=True)))[first:]
+        moved = np.abs(own - joint)
+        agree &= bool(np.all(moved < np.maximum(error, size)))
     return agree
-
-
-def refit_model(fitted: Fit, **changes: object) -> Model:
-    """The model of a fit on a changed problem."""
-    return Model(replace(fitted.model.problem, **changes), fitted.model.effects)  # type: ignore[arg-type]

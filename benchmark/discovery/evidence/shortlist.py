@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmark.discovery import criteria
 from benchmark.discovery.base.candidate_fit import screened
 from benchmark.discovery.base.effect_model import Fit, Model, fit, settled
 from benchmark.discovery.base.trials_problem import only
@@ -36,11 +37,7 @@ def screen(current: Fit, effects: Sequence[Effect]) -> tuple[Screened, ...]:
     return tuple(sorted(out, key=lambda each: -each.won))
 
 
-MOST_TRIALS = 30
-"""Trials on which candidates are compared, spread evenly over the conditions and over each one's order."""
-
-
-def compared(base: Fit, most: int = MOST_TRIALS) -> list[int]:
+def compared(base: Fit, most: int = criteria.MOST_TRIALS) -> list[int]:
     """Numbers of the trials on which candidates are compared; all where there are no more than `most`."""
     groups = np.array([trial.condition for trial in base.model.problem.trials])
     if groups.size <= most:

@@ -89,7 +89,7 @@ def where_section(record: DiscoveryRecord) -> Section:
     )
     blocks: list[Block] = [Paragraph(record.labels.get("where", text))]
     blocks += [where_map(cells, rows[:MOST_ROWS], list(map(phase_name, PHASES)))] if len(rows) <= MOST_ROWS else []
-    return Section("Where", [*blocks, _table(record), *_contrasts(found.contrasts)])
+    return Section("Where", [*blocks, _where_table(record), *_contrasts(found.contrasts)])
 
 
 def _cell(place: Place, record: DiscoveryRecord) -> Disagreement:
@@ -106,7 +106,7 @@ def _cell(place: Place, record: DiscoveryRecord) -> Disagreement:
     )
 
 
-def _table(record: DiscoveryRecord) -> Table:
+def _where_table(record: DiscoveryRecord) -> Table:
     columns = (
         "channel", "phase", "condition", "cycle", Column("from", "mm", 3), Column("to", "mm", 3),
         Column("measured minus simulated", "", 3), "unit", Column("of the signal", "%", 3), Column("p", "", 2),
@@ -150,7 +150,7 @@ def gap_section(record: DiscoveryRecord) -> Section:
         held = {gap.held_out for gap in record.found.gap}
         words = HELD_OUT.get("condition" if "condition" in held else "trial", "held-out data")
         blocks.append(gap_bars(bars, record.labels.get("held_out", words)))
-    blocks.append(_table_gap_section(record))
+    blocks.append(_gap_table(record))
     if record.layers:
         layers = [Gap(each.layer, 1e3 * each.rmse_before, 1e3 * each.rmse_after, None, "mm") for each in record.layers]
         if all(layer.before > 0 for layer in layers):
@@ -167,17 +167,17 @@ def _bar(gap: ChannelGap) -> Gap:
     return Gap(channel_name(gap.channel), scale * gap.rmse_before, scale * gap.rmse_after, floor, unit)
 
 
-def _table_gap_section(record: DiscoveryRecord) -> Table:
+def _gap_table(record: DiscoveryRecord) -> Table:
     columns = (
         "channel", "unit", Column("rms before", "", 3), Column("rms after", "", 3), Column("floor", "", 3),
         Column("closed", "%", 3), Column("95 % low", "%", 3), Column("95 % high", "%", 3), "held out",
     )  # fmt: skip
-    rows = [_row(gap) for gap in record.found.gap]
+    rows = [_gap_row(gap) for gap in record.found.gap]
     caption = "Gap per channel; closed = (before² − after²) / (before² − floor²), interval by bootstrap over trials"
     return Table(caption, columns, rows, Download("tables/gap.csv", "the same"), False)
 
 
-def _row(gap: ChannelGap) -> tuple[object, ...]:
+def _gap_row(gap: ChannelGap) -> tuple[object, ...]:
     unit, scale = channel_unit(gap.channel)
     ends = (None, None) if gap.ci95 is None else tuple(100 * end for end in gap.ci95)
     closed = None if gap.closed is None else 100 * gap.closed

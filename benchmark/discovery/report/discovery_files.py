@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ from benchmark.discovery.discovery_result import (
     channel_unit,
 )
 from benchmark.discovery.report.discovery_page import discovery_page
-from benchmark.discovery.report.discovery_record import DiscoveryRecord, LayerGap, NextExperiment
+from benchmark.discovery.report.discovery_record import DiscoveryRecord, LayerGap, NextExperiment, gap_in_units
 from benchmark.files.units import shown
 from benchmark.model_file import model_toml
 from benchmark.runs.document import describe_environment
@@ -105,16 +105,9 @@ def _contrast(contrast: Contrast) -> dict[str, Any]:
 
 
 def _gap(gap: ChannelGap) -> dict[str, Any]:
-    unit, scale = channel_unit(gap.channel)
-    return {
-        "unit": unit,
-        "rmse_before": scale * gap.rmse_before,
-        "rmse_after": scale * gap.rmse_after,
-        "noise_floor": scale * gap.noise_floor,
-        "closed": gap.closed,
-        "ci95": None if gap.ci95 is None else list(gap.ci95),
-        "held_out": gap.held_out,
-    }
+    row = gap_in_units(gap)
+    held_out = row.pop("held_out")
+    return {**row, "ci95": None if gap.ci95 is None else list(gap.ci95), "held_out": held_out}
 
 
 def _candidate(candidate: Candidate) -> dict[str, Any]:
@@ -157,119 +150,52 @@ def _proposal(proposal: NextExperiment) -> dict[str, Any]:
 
 
 Columns = dict[str, list[Any]]
+COLUMNS = {
+    "where.csv": ("channel", "phase", "condition", "cycle", "depth_low_mm", "depth_high_mm", "size", "unit",
+                  "percent_of_signal", "p"),
+    "contrasts.csv": ("question", "channel", "size", "unit", "p"),
+    "candidates.csv": ("name", "z", "gain", "gain_standard_error", "delta_bic", "gap_closed", "constant"),
+    "gap.csv": ("channel", "unit", "rmse_before", "rmse_after", "noise_floor", "closed", "ci95_low", "ci95_high",
+                "held_out"),
+    "parameters.csv": ("part", "name", "value", "unit", "ci95_low", "ci95_high"),
+    "layers.csv": ("layer", "rmse_before_mm", "rmse_after_mm", "closed", "percent_at_peak_before",
+                   "percent_at_peak_after"),
+}  # fmt: skip
+"""Names and order are the contract with readers; the values are those of `discovery.json`."""
 
 
-def discovery_tables(record: DiscoveryRecord) -> dict[str, Columns]:
-    """Return the tables by file name; the layers' one only where there are layers."""
-    tables = {
-        "where.csv": _where(record),
-        "contrasts.csv": _contrasts(record),
-        "candidates.csv": _candidates(record),
-        "gap.csv": _gap_tables(record),
-        "parameters.csv": _parameters(record),
+def discovery_tables(document: Mapping[str, Any]) -> dict[str, Columns]:
+    """Return the CSV tables of a `discovery.json` as columns, by file name; the layers' only where there are layers."""
+    parameters = [{"part": "base", "name": name, **each} for name, each in document["base"].items()]
+    for effect in document["effects"]:
+        parameters += [{"part": effect["name"], "name": name, **each} for name, each in effect["parameters"].items()]
+    rows: dict[str, list[dict[str, Any]]] = {
+        "where.csv": document["where"],
+        "contrasts.csv": document["contrasts"],
+        "candidates.csv": document["candidates"],
+        "gap.csv": [{"channel": channel, **gap} for channel, gap in document["gap"].items()],
+        "parameters.csv": parameters,
     }
-    if record.layers:
-        tables["layers.csv"] = _layers(record)
-    return tables
+    if "layers" in document:
+        rows["layers.csv"] = [{"layer": name, **each} for name, each in document["layers"].items()]
+    return {file: _columns(map(_flat, each), COLUMNS[file]) for file, each in rows.items()}
 
 
-def _where(record: DiscoveryRecord) -> Columns:
-    return _columns(
-        record.found.where,
-        {
-            "channel": lambda place: place.channel,
-            "phase": lambda place: place.phase,
-            "condition": lambda place: place.condition,
-            "cycle": lambda place: place.cycle,
-            "depth_low_mm": lambda place: 1e3 * place.depth[0],
-            "depth_high_mm": lambda place: 1e3 * place.depth[1],
-            "size": lambda place: channel_unit(place.channel)[1] * place.size,
-            "unit": lambda place: channel_unit(place.channel)[0],
-            "percent_of_signal": lambda place: place.percent_of_signal,
-            "p": lambda place: place.p,
-        },
-    )
+def _flat(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A row with its intervals in two cells each, and a layer's sizes by their names with the unit."""
+    out = dict(row)
+    for name, low, high in (("depth_mm", "depth_low_mm", "depth_high_mm"), ("ci95", "ci95_low", "ci95_high")):
+        if name in out:
+            out[low], out[high] = out[name] or (None, None)
+    if "layer" in out:
+        out |= {f"{name}_mm": out[name] for name in ("rmse_before", "rmse_after")}
+    return out
 
 
-def _contrasts(record: DiscoveryRecord) -> Columns:
-    return _columns(
-        record.found.contrasts,
-        {
-            "question": lambda contrast: contrast.question,
-            "channel": lambda contrast: contrast.channel,
-            "size": lambda contrast: channel_unit(contrast.channel)[1] * contrast.size,
-            "unit": lambda contrast: channel_unit(contrast.channel)[0],
-            "p": lambda contrast: contrast.p,
-        },
-    )
-
-
-def _candidates(record: DiscoveryRecord) -> Columns:
-    return _columns(
-        record.found.candidates,
-        {
-            "name": lambda candidate: "+".join(candidate.slugs),
-            "z": lambda candidate: candidate.z,
-            "gain": lambda candidate: candidate.gain,
-            "gain_standard_error": lambda candidate: candidate.gain_standard_error,
-            "delta_bic": lambda candidate: candidate.delta_bic,
-            "gap_closed": lambda candidate: candidate.gap_closed,
-            "constant": lambda candidate: candidate.constant,
-        },
-    )
-
-
-def _gap_tables(record: DiscoveryRecord) -> Columns:
-    return _columns(
-        record.found.gap,
-        {
-            "channel": lambda gap: gap.channel,
-            "unit": lambda gap: channel_unit(gap.channel)[0],
-            "rmse_before": lambda gap: channel_unit(gap.channel)[1] * gap.rmse_before,
-            "rmse_after": lambda gap: channel_unit(gap.channel)[1] * gap.rmse_after,
-            "noise_floor": lambda gap: channel_unit(gap.channel)[1] * gap.noise_floor,
-            "closed": lambda gap: gap.closed,
-            "ci95_low": lambda gap: None if gap.ci95 is None else gap.ci95[0],
-            "ci95_high": lambda gap: None if gap.ci95 is None else gap.ci95[1],
-            "held_out": lambda gap: gap.held_out,
-        },
-    )
-
-
-def _parameters(record: DiscoveryRecord) -> Columns:
-    rows: list[tuple[str, Estimate]] = [("base", estimate) for estimate in record.found.base]
-    rows += [(effect.slug, estimate) for effect in record.found.effects for estimate in effect.parameters]
-    return _columns(
-        rows,
-        {
-            "part": lambda row: row[0],
-            "name": lambda row: row[1].name,
-            "value": lambda row: shown(row[1].value, row[1].unit)[0],
-            "unit": lambda row: shown(row[1].value, row[1].unit)[1],
-            "ci95_low": lambda row: shown(row[1].ci95[0], row[1].unit)[0],
-            "ci95_high": lambda row: shown(row[1].ci95[1], row[1].unit)[0],
-        },
-    )
-
-
-def _layers(record: DiscoveryRecord) -> Columns:
-    return _columns(
-        record.layers,
-        {
-            "layer": lambda layer: layer.layer,
-            "rmse_before_mm": lambda layer: 1e3 * layer.rmse_before,
-            "rmse_after_mm": lambda layer: 1e3 * layer.rmse_after,
-            "closed": lambda layer: layer.closed,
-            "percent_at_peak_before": lambda layer: layer.peak_before,
-            "percent_at_peak_after": lambda layer: layer.peak_after,
-        },
-    )
-
-
-def _columns(rows: Iterable[Any], cells: Mapping[str, Callable[[Any], Any]]) -> Columns:
+def _columns(rows: Iterable[Mapping[str, Any]], names: Sequence[str]) -> Columns:
     """One list a column, one entry a row."""
     listed = list(rows)
-    return {name: [cell(row) for row in listed] for name, cell in cells.items()}
+    return {name: [row[name] for row in listed] for name in names}
 
 
 @dataclass(frozen=True)
@@ -291,7 +217,7 @@ def write_discovery(record: DiscoveryRecord, folder: Path) -> DiscoveryOutcome:
         Where the file system refuses; `folder` is then as it was.
     """
     document, environment = discovery_document(record), describe_environment(seed=record.seed)
-    tables = discovery_tables(record)
+    tables = discovery_tables(document)
     page = discovery_page(record, environment, list(tables))
     with whole_folder(folder) as new:
         for name, columns in tables.items():

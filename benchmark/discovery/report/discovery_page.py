@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from benchmark.discovery import criteria
 from benchmark.discovery.report.disagreement_sections import (
     comparison_section,
     gap_section,
@@ -130,8 +131,6 @@ def _downloads(record: DiscoveryRecord, tables: Sequence[str]) -> tuple[Download
     )
 
 
-MATTERS = 2.0
-"""Of a channel's largest signal, %: what is smaller is said to be small in practice."""
 MEANING = {
     "no_discrepancy": "Verdict no_discrepancy: what is left between model and measurement is no more than chance.",
     "named": "Verdict named: one answer, and it holds on a condition that it was not fitted to.",
@@ -150,8 +149,9 @@ def discovery_verdict(record: DiscoveryRecord) -> Verdict:
     points = [MEANING[found.verdict]]
     if found.where:
         points.append(f"Largest disagreement: {place_words(found.where[0])}.")
-        if all(abs(place.percent_of_signal) < MATTERS for place in found.where):
-            points.append(f"All of it lies below {MATTERS:g} % of the signal: visible, but small in practice.")
+        small = criteria.SMALL_IN_PRACTICE
+        if all(abs(place.percent_of_signal) < small for place in found.where):
+            points.append(f"All of it lies below {small:g} % of the signal: visible, but small in practice.")
     points.extend(_closed(record))
     similar = sorted({name for effect in found.effects for name in effect.lookalikes})
     if similar:

@@ -142,7 +142,7 @@ class DiscoveryRecord:
             "synthetic": self.synthetic,
             "verdict": self.found.verdict,
             "statement": self.found.statement,
-            "gap": {gap.channel: _gap(gap) for gap in self.found.gap},
+            "gap": {gap.channel: gap_in_units(gap) for gap in self.found.gap},
         }
 
 
@@ -152,7 +152,8 @@ def _value(estimate: Estimate) -> Value:
     return Value(value, estimate.unit, (low, high))
 
 
-def _gap(gap: ChannelGap) -> dict[str, object]:
+def gap_in_units(gap: ChannelGap) -> dict[str, object]:
+    """A channel's gap with its unit, N or mm."""
     unit, scale = channel_unit(gap.channel)
     return {
         "unit": unit,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from benchmark.discovery.criteria import Settings
 from benchmark.discovery.discovery_result import Candidate, Estimate, NamedEffect
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, NextExperiment
 from benchmark.discovery.report.words import effect_name
@@ -23,7 +24,7 @@ def candidates_section(record: DiscoveryRecord) -> Section:
         return Section("Which effect", [Paragraph(record.labels.get("no_candidates", text))])
     text = (
         "Each candidate was fitted together with the base model and scored on trials that it had not seen. An effect "
-        "is accepted from z = 3 up, with BIC on the effective sample size agreeing."
+        f"is accepted from z = {Settings.accept_z:g} up, with BIC on the effective sample size agreeing."
     )
     figure = ranking([_ranked(each, record) for each in candidates[:MOST_CANDIDATES]])
     return Section("Which effect", [Paragraph(record.labels.get("candidates", text)), figure, _table(record)])

@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
+from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import Array
-from benchmark.discovery.trials.marker_layout import grid
+from benchmark.discovery.trials.marker_layout import Layout, grid
 from benchmark.discovery.trials.segments import Segment
 from benchmark.errors import InputError
 from benchmark.files import Camera, Trial
 
 GROWTH = 1.35
-SEEN = 0.5
-"""Share of the frames in which a marker must be seen."""
+"""Each bin is so many times as large as the one before it, away from a turning point."""
+LEAST_BINS = 10
+"""Of a segment."""
+NEAR = (-0.04, 0.08)
+SPAN = 0.008
+"""Bins whose depth comes within `NEAR` (shares of the peak) of contact span no more than `SPAN` of it."""
+
+BinPlan: TypeAlias = Sequence[tuple[int, Array]]
+"""For each segment its number and the edges (0 to 1) of its bins."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +124,7 @@ def marker_frames(trial: Trial, camera: Camera) -> tuple[Array, Array] | None:
     out = np.full((frames.size, count, 2), np.nan)
     for number in range(count):
         mine = (index == number) & np.isfinite(table.x) & np.isfinite(table.y)
-        if mine.sum() < max(SEEN * frames.size, 2):
+        if mine.sum() < max(criteria.MARKER_SEEN * frames.size, 2):
             continue
         stamps = table.time[mine]
         order = np.argsort(stamps)
@@ -143,3 +155,68 @@ def resting_grid(camera: Camera, positions: Array) -> Array:
     first = np.nanmean(positions[:, :3], axis=(0, 1))
     turned = nominal * np.array([1.0, -1.0])
     return turned if np.nansum(np.abs(first - turned)) < np.nansum(np.abs(first - nominal)) else nominal
+
+
+def bin_plan(group: Sequence[RawTrial], rows: int) -> BinPlan:
+    """The bins of a condition, about `rows` in all, the same for all its trials."""
+    lengths = np.median([[piece.last - piece.first for piece in raw.pieces] for raw in group], axis=0)
+    share = np.sqrt(lengths) / np.sqrt(lengths).sum()
+    out = []
+    for number, (length, part) in enumerate(zip(lengths, share, strict=True)):
+        edges = fractions(bin_sizes(max(int(length), 1), max(LEAST_BINS, int(rows * part))))
+        out.append((number, _finer_at_contact(edges, group[0], number)))
+    return out
+
+
+def _finer_at_contact(edges: Array, raw: RawTrial, number: int) -> Array:
+    """Edges with bins near zero depth split, since the mean force over a bend is not the force of the mean depth."""
+    piece, peak = raw.pieces[number], float(raw.depth.max())
+    marks = piece.first + edges * (piece.last - 1 - piece.first)
+    depth = np.interp(marks, np.arange(raw.depth.size), raw.depth) / peak
+    parts = []
+    for k, (low, high) in enumerate(pairwise(depth)):
+        near = min(low, high) < NEAR[1] and max(low, high) > NEAR[0]
+        count = int(np.ceil(abs(high - low) / SPAN)) if near else 1
+        parts.append(np.linspace(edges[k], edges[k + 1], max(count, 1), endpoint=False))
+    return np.concatenate([*parts, edges[-1:]])
+
+
+@dataclass(frozen=True, eq=False)
+class Binned:
+    """Rows (n, 3 + C) of time, depth, acceleration and signals; samples (n, C) in them; mean time (n,) of frames."""
+
+    rows: Array
+    count: Array
+    frame_time: Array
+
+
+def binned(raw: RawTrial, plan: BinPlan, layout: Layout | None, seen: NDArray[np.bool_] | None) -> Binned:
+    """A trial's means in the bins of a plan: force, and the combinations of the markers (m,) that were seen."""
+    table = np.column_stack([raw.time, raw.depth, raw.acceleration, raw.force])
+    parts = [bin_means(table, raw.pieces[k].first, raw.pieces[k].last, edges) for k, edges in plan]
+    rows, samples = _rising(np.concatenate([p[0] for p in parts])), np.concatenate([p[1] for p in parts])
+    if layout is None:
+        return Binned(rows, samples[:, None], rows[:, 0])
+    missing = np.full((samples.size, len(layout.names)), np.nan)
+    if raw.markers is None or raw.frames is None:
+        nothing = np.zeros_like(missing)
+        return Binned(np.hstack([rows, missing]), np.column_stack([samples, nothing]), rows[:, 0])
+    signals, frames, moment = frame_means(raw.frames, layout.signals(raw.markers[:, seen]), _edges(raw, plan))
+    return Binned(np.hstack([rows, signals]), np.column_stack([samples, *[frames] * len(layout.names)]), moment)
+
+
+def _edges(raw: RawTrial, plan: BinPlan) -> Array:
+    """Times between the bins of all segments, which follow one another, halfway between raw rows."""
+    halfway = 0.5 * (raw.time[1:] + raw.time[:-1])
+    borders = np.concatenate([[2 * raw.time[0] - halfway[0]], halfway, [2 * raw.time[-1] - halfway[-1]]])
+    marks = [np.array([raw.pieces[plan[0][0]].first])]
+    for number, edges in plan:
+        piece = raw.pieces[number]
+        marks.append(piece.first + np.round(edges[1:] * (piece.last - piece.first)).astype(int))
+    return np.asarray(borders[np.concatenate(marks)])
+
+
+def _rising(rows: Array) -> Array:
+    """Times that rise, where bins without rows repeat one."""
+    rows[:, 0] = np.maximum.accumulate(rows[:, 0] + 1e-9 * np.arange(len(rows)))
+    return rows

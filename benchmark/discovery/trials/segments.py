@@ -9,14 +9,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import PHASES, Array
-
-REVERSAL = 0.1
-"""Share of the travel by which the depth must come back to count as a reversal."""
-LEVEL = 0.03
-"""Share of the travel within which a depth stands still."""
-LEAST_REST = 3.0
-"""A rest lasts at least this many times as long as the motion beside it needs to cross the level's width."""
 
 
 @dataclass(frozen=True)
@@ -55,12 +49,12 @@ def segments(time: Array, depth: Array) -> list[Segment]:
     travel = float(np.ptp(depth))
     if travel <= 0.0:
         return []
-    turns = reversals(depth, REVERSAL * travel)
+    turns = reversals(depth, criteria.REVERSAL * travel)
     edges = [0, *turns, depth.size - 1]
     pieces: list[tuple[int, int, str]] = []
     for first, last in pairwise(edges):
         if last > first:
-            pieces += _with_rests(time, depth, first, last, LEVEL * travel)
+            pieces += _with_rests(time, depth, first, last, criteria.LEVEL_WIDTH * travel)
     return _numbered(_joined(pieces))
 
 
@@ -80,9 +74,9 @@ def _with_rests(time: Array, depth: Array, first: int, last: int, width: float) 
         return [(first, last, kind)]
     crossing = (time[end] - time[start]) * 2.0 * width / max(abs(float(depth[end] - depth[start])), 1e-12)
     out = []
-    if time[start] - time[first] <= LEAST_REST * crossing:
+    if time[start] - time[first] <= criteria.LEAST_REST * crossing:
         start = first
-    if time[last] - time[end] <= LEAST_REST * crossing:
+    if time[last] - time[end] <= criteria.LEAST_REST * crossing:
         end = last
     if start > first:
         out.append((first, start, "rest"))
@@ -118,8 +112,6 @@ def _numbered(pieces: list[tuple[int, int, str]]) -> list[Segment]:
 
 
 Index = NDArray[np.int64]
-IN_AIR = 0.02
-"""Depths up to this share of the peak count as no press in a rest."""
 
 
 def stages(pieces: Sequence[Segment], number: Index, depth: Array) -> tuple[Index, Index, Index]:
@@ -141,13 +133,16 @@ def _peaks(pieces: Sequence[Segment], number: Index, depth: Array) -> dict[int, 
 
 
 def _of_piece(piece: Segment, depth: Array, peak: float) -> tuple[list[str], Index]:
-    deep = (depth >= 0.5 * peak).astype(np.int64)
+    deep = (depth >= criteria.DEEP * peak).astype(np.int64)
     if piece.kind == "press":
         return ["load" if d > 0.0 else "approach" for d in depth], deep
     if piece.kind == "retract":
-        names = ["after_lift_off" if d <= 0.0 else "unload_high" if d >= 0.5 * peak else "unload_low" for d in depth]
+        names = [
+            "after_lift_off" if d <= 0.0 else "unload_high" if d >= criteria.DEEP * peak else "unload_low"
+            for d in depth
+        ]
         return names, np.zeros_like(deep)
-    if np.median(depth) <= IN_AIR * peak:
+    if np.median(depth) <= criteria.IN_AIR * peak:
         return ["approach" if piece.cycle == 0 else "after_lift_off"] * depth.size, np.zeros_like(deep)
     late = (np.arange(depth.size) >= 0.5 * depth.size).astype(np.int64)
     return ["hold"] * depth.size, late

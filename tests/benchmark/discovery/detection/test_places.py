@@ -5,7 +5,7 @@ import numpy as np
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.criteria import Settings
-from benchmark.discovery.detection.places import places_of
+from benchmark.discovery.detection.places import effect_places
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
 
@@ -20,7 +20,7 @@ def test_a_drift_shows_in_the_air_and_not_in_markers_that_there_are_none_of(sess
     session = session_of(force=drifting, noise=0.003, trials=4)
     base = calibrate(session, prepare(session, 90)).base
     chosen = fit_candidate(base, BY_SLUG["force_drift"])
-    shown = places_of(chosen, Settings())
+    shown = effect_places(chosen, Settings())
     assert ("force_z", "after_lift_off") in {(place.channel, place.phase) for place in shown}
     assert {place.channel for place in shown} == {"force_z"}
     assert all(place.p < 0.05 for place in shown)
@@ -30,5 +30,5 @@ def test_an_effect_of_no_size_shows_nowhere(session_of):
     session = session_of(noise=0.003, trials=4)
     base = calibrate(session, prepare(session, 90)).base
     chosen = fit_candidate(base, BY_SLUG["tool_inertia"])
-    assert places_of(chosen, Settings()) == ()
+    assert effect_places(chosen, Settings()) == ()
     assert np.isfinite(chosen.objective)

@@ -6,8 +6,7 @@ import pytest
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.detection.disagreement import combined, strained
-from benchmark.discovery.evidence.gains import gain, strain
-from benchmark.discovery.evidence.selection import broad
+from benchmark.discovery.evidence.gains import broad, gain, strain
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
 
