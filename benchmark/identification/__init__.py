@@ -1,6 +1,6 @@
 """Fitting force-depth trials with the elastic curve of a model: one stiffness, the trial as the unit.
 
-Nothing here runs a model, reads or writes a file. SciPy's parts and lmfit are loaded when first needed.
+Nothing here runs a model, reads or writes a file. SciPy is loaded when first needed.
 """
 
 from benchmark.identification.errors import FittingError, NoContactError

@@ -1,4 +1,4 @@
-"""Least squares of the elastic law of one trial by lmfit.
+"""Least squares of the elastic law of one trial.
 
 force = rest + stiffness factor x (curve(depth - onset) - curve(reference - onset)), where `rest` is the force at the
 reference depth, at which the trial is least deep: what the data say of it bounds it. The force without contact,
@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmark.identification.trial_data import TrialData
 from benchmark.identification.trial_features import ContactRange, Start, shape_above_rest
 from benchmark.response.force_curve import Array
+from benchmark.response.least_squares import Record, TrialsFit
 from benchmark.response.noise import effective_rows, lag_one
 
 AT_BOUND = 1e-3
@@ -63,89 +64,70 @@ def minimise(trial: TrialData, allowed: ContactRange, start: Start, contact_fixe
 
     What ends at a bound is fixed there, so that the other standard errors stay defined.
     """
-    parameters = _parameters(allowed, start, contact_fixed)
-    result = _leastsq(parameters, trial, allowed)
-    free = [result.params[name] for name in ("rest", "onset") if result.params[name].vary]
-    fixed = [fix_at_bound(parameter) for parameter in free]
-    if any(fixed):
-        result = _leastsq(result.params, trial, allowed)
-    return _law_fit(result, trial, allowed)
-
-
-def add_bounded(parameters: Any, name: str, value: float, low: float, high: float) -> None:
-    """Add a bounded parameter, its start inside: at a bound lmfit's variables would have no gradient."""
-    inner = AT_BOUND * (high - low)
-    parameters.add(name, value=float(np.clip(value, low + inner, high - inner)), min=low, max=high)
-
-
-def fix_at_bound(parameter: Any) -> bool:
-    """Fix a parameter that lies at an end of its range there, and say whether it was fixed."""
-    inner = AT_BOUND * (parameter.max - parameter.min)
-    for end in (parameter.min, parameter.max):
-        if abs(parameter.value - end) <= inner:
-            parameter.set(value=end, vary=False)
-            return True
-    return False
-
-
-def _parameters(allowed: ContactRange, start: Start, contact_fixed: bool) -> Any:
-    import lmfit
-
-    parameters = lmfit.Parameters()
-    parameters.add("log_stiffness", value=float(np.log(start.stiffness)))
+    vector = np.array([np.log(start.stiffness), start.rest, start.onset])
+    low = np.array([-np.inf, allowed.rest_low, allowed.low])
+    high = np.array([np.inf, allowed.rest_high, allowed.high])
     if contact_fixed:
-        parameters.add("rest", value=start.rest, vary=False)
-        parameters.add("onset", value=start.onset, vary=False)
-    else:
-        add_bounded(parameters, "rest", start.rest, allowed.rest_low, allowed.rest_high)
-        add_bounded(parameters, "onset", start.onset, allowed.low, allowed.high)
-    return parameters
+        low[1:] = high[1:] = vector[1:]
+    vector[1:] = np.clip(vector[1:], *inside(low[1:], high[1:]))
+    fitted = _record(trial, allowed, low, high).fit(vector)
+    ends = np.array([at_end(*each) for each in zip(fitted.vector, low, high, strict=True)])
+    fixed = np.isfinite(ends) & (low < high)
+    if fixed.any():
+        low[fixed] = high[fixed] = ends[fixed]
+        fitted = _record(trial, allowed, low, high).fit(fitted.vector)
+    return _law_fit(fitted, trial, allowed, low < high)
 
 
-def _leastsq(parameters: Any, trial: TrialData, allowed: ContactRange) -> Any:
-    import lmfit
-
-    return lmfit.Minimizer(_residual, parameters, fcn_args=(trial, allowed)).leastsq(Dfun=_jacobian)
-
-
-def _residual(parameters: Any, trial: TrialData, allowed: ContactRange) -> Array:
-    value = parameters.valuesdict()
-    shape = shape_above_rest(trial, allowed, value["onset"])
-    return np.asarray(value["rest"] + np.exp(value["log_stiffness"]) * shape - trial.force)
+def inside(low: Array, high: Array) -> tuple[Array, Array]:
+    """Ends of ranges (k,) a little within them, where a fit may begin."""
+    return low + AT_BOUND * (high - low), high - AT_BOUND * (high - low)
 
 
-def _jacobian(parameters: Any, trial: TrialData, allowed: ContactRange) -> Array:
-    """Return the derivatives (n, p) by the parameters that vary, in lmfit's order."""
-    value = parameters.valuesdict()
-    columns = law_derivatives(trial, allowed, value["log_stiffness"], value["onset"])
-    return np.column_stack([columns[name] for name, each in parameters.items() if each.vary])
+def at_end(value: float, low: float, high: float) -> float:
+    """The end of a range at which a value lies; NaN within."""
+    near = [end for end in (low, high) if np.isfinite(end) and abs(value - end) <= AT_BOUND * (high - low)]
+    return near[0] if near else np.nan
 
 
-def law_derivatives(trial: TrialData, allowed: ContactRange, log_stiffness: float, onset: float) -> dict[str, Array]:
-    """Return the derivatives (n,) of the law's force by `log_stiffness`, `rest` (N) and `onset` (m)."""
+def _record(trial: TrialData, allowed: ContactRange, low: Array, high: Array) -> Record:
+    def residual(vector: Array) -> Array:
+        return np.asarray(trial.force - law_force(trial, allowed, *vector))
+
+    def derivative(vector: Array) -> Array:
+        return law_derivatives(trial, allowed, vector[0], vector[2])
+
+    return Record(residual, derivative, (low, high))
+
+
+def law_force(trial: TrialData, allowed: ContactRange, log_stiffness: float, rest: float, onset: float) -> Array:
+    """(n,) N of the law."""
+    return np.asarray(rest + np.exp(log_stiffness) * shape_above_rest(trial, allowed, onset))
+
+
+def law_derivatives(trial: TrialData, allowed: ContactRange, log_stiffness: float, onset: float) -> Array:
+    """(n, 3) derivatives of the law's force by `NAMES`."""
     factor = np.exp(log_stiffness)
     slope = trial.curve.slope(trial.depth - onset) - trial.curve.slope(np.array([allowed.reference - onset]))
-    return {
-        "log_stiffness": factor * shape_above_rest(trial, allowed, onset),
-        "rest": np.ones(trial.rows),
-        "onset": -factor * slope,
-    }
+    return np.column_stack([factor * shape_above_rest(trial, allowed, onset), np.ones(trial.rows), -factor * slope])
 
 
-def _law_fit(result: Any, trial: TrialData, allowed: ContactRange) -> LawFit:
-    value = result.params.valuesdict()
-    rho = lag_one(result.residual, result.nvarys)
+def _law_fit(fitted: TrialsFit[Record], trial: TrialData, allowed: ContactRange, free: NDArray[np.bool_]) -> LawFit:
+    log_stiffness, rest, onset = fitted.vector.tolist()
+    residual, parameters = fitted.model.residual(fitted.vector), int(free.sum())
+    rho = lag_one(residual, parameters)
     effective = max(effective_rows(trial.rows, rho), LEAST_EFFECTIVE)
-    covariance = _covariance(result) * trial.rows / effective
-    above = np.array([allowed.reference - value["onset"]])
-    factor = np.exp(value["log_stiffness"])
+    variance = float(residual @ residual) / (trial.rows - parameters)
+    covariance = _covariance(fitted, free) * variance * trial.rows / effective
+    above = np.array([allowed.reference - onset])
+    factor = np.exp(log_stiffness)
     preload, slope = factor * float(trial.curve(above)[0]), factor * float(trial.curve.slope(above)[0])
     to_zero = np.array([-preload, 1.0, slope])
     return LawFit(
-        value["log_stiffness"],
-        value["rest"],
-        value["rest"] - preload,
-        value["onset"],
+        log_stiffness,
+        rest,
+        rest - preload,
+        onset,
         float(np.sqrt(covariance[0, 0])),
         float(np.sqrt(max(to_zero @ covariance @ to_zero, 0.0))),
         float(np.sqrt(covariance[2, 2])),
@@ -155,12 +137,13 @@ def _law_fit(result: Any, trial: TrialData, allowed: ContactRange) -> LawFit:
     )
 
 
-def _covariance(result: Any) -> Array:
-    """Return lmfit's covariance as (3, 3) in the order of NAMES, zeros for what was fixed."""
-    covariance = np.zeros((len(NAMES), len(NAMES)))
-    if result.covar is not None:
-        free = [NAMES.index(name) for name in result.var_names]
-        covariance[np.ix_(free, free)] = result.covar
+def _covariance(fitted: TrialsFit[Record], free: NDArray[np.bool_]) -> Array:
+    """(3, 3) for residuals of unit variance, zeros for what was fixed."""
+    normal = fitted.blocks.matrix[0]
+    covariance: Array = np.zeros_like(normal)
+    scale = np.sqrt(np.maximum(np.diag(normal)[free], 1e-300))
+    unit = normal[np.ix_(free, free)] / np.outer(scale, scale)
+    covariance[np.ix_(free, free)] = np.linalg.pinv(unit, hermitian=True) / np.outer(scale, scale)
     return covariance
 
 

@@ -5,17 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
 import scipy
 
-from benchmark.identification.elastic_law import NAMES, add_bounded, law_derivatives
+from benchmark.identification.elastic_law import NAMES, inside, law_derivatives, law_force
 from benchmark.identification.errors import FittingError
 from benchmark.identification.trial_data import TrialData, reduced
-from benchmark.identification.trial_features import ContactRange, shape_above_rest
+from benchmark.identification.trial_features import ContactRange
 from benchmark.identification.trial_fit import TrialFit
 from benchmark.response.force_curve import Array
+from benchmark.response.least_squares import EXACT, Columns, Evaluation, least_squares
 
 BETWEEN_TRIALS = "t interval of the mean logarithm, the trial as the unit"
 LEAST_FREEDOM = 2.0
@@ -134,7 +136,7 @@ class JointFit:
 
 
 def fit_jointly(trials: Triples, pooled: PooledStiffness) -> JointFit:
-    """Fit one stiffness factor with each trial's own rest force and onset to all trials by lmfit.
+    """Fit one stiffness factor with each trial's own rest force and onset to all trials.
 
     Residuals are divided by the trial's peak and the root of its rows, so that each trial counts alike. Onset
     and rest force that come from a trial's loading alone, and what is at its bound, stay as fitted there.
@@ -147,58 +149,67 @@ def fit_jointly(trials: Triples, pooled: PooledStiffness) -> JointFit:
     pooled : PooledStiffness
         Start and interval to compare with.
     """
-    import lmfit
-
     most = max(50, TOTAL_ROWS // len(trials))
-    rows = [(reduced(trial, most), allowed, fit) for trial, allowed, fit in trials]
-    parameters = lmfit.Parameters()
-    parameters.add("log_stiffness", value=math.log(pooled.value))
-    for number, (_, allowed, fit) in enumerate(rows):
-        _add_trial(parameters, number, allowed, fit)
-    minimizer = lmfit.Minimizer(_residual, parameters, fcn_args=(rows,))
-    result = minimizer.least_squares(jac=_jacobian, x_scale="jac")  # knows bounds, where leastsq creeps along them
-    value = math.exp(result.params["log_stiffness"].value)
+    model = _CommonStiffness(tuple((reduced(trial, most), allowed, fit) for trial, allowed, fit in trials))
+    own = np.clip([[fit.rest, fit.onset] for _, _, fit in trials], *inside(*model.trial_bounds))
+    fitted = least_squares(model, np.array([math.log(pooled.value)]), own, search=EXACT)
+    value = math.exp(fitted.vector[0])
     return JointFit(value, not pooled.ci95_low <= value <= pooled.ci95_high)
 
 
-def _add_trial(parameters: Any, number: int, allowed: ContactRange, fit: TrialFit) -> None:
-    ranges = {
-        "rest": (fit.rest, allowed.rest_low, allowed.rest_high),
-        "onset": (fit.onset, allowed.low, allowed.high),
-    }
-    for name, (value, low, high) in ranges.items():
-        if fit.contact_from_loading or value in (low, high):
-            parameters.add(f"{name}_{number}", value=value, vary=False)
-        else:
-            add_bounded(parameters, f"{name}_{number}", value, low, high)
+@dataclass(frozen=True, eq=False)
+class _CommonStiffness:
+    """One stiffness factor, by its logarithm, and the rest force and onset of each trial as nuisances in their range.
+
+    A `benchmark.response.least_squares.TrialsModel`.
+    """
+
+    trials: tuple[tuple[TrialData, ContactRange, TrialFit], ...]
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """None on the stiffness."""
+        return np.array([-np.inf]), np.array([np.inf])
+
+    @property
+    def trial_precision(self) -> Array:
+        """No priors."""
+        return np.zeros(2)
+
+    @cached_property
+    def trial_bounds(self) -> tuple[Array, Array]:
+        """(R, 2) ranges of rest force, N, and onset, m; both ends alike for what stays."""
+        low = np.array([[allowed.rest_low, allowed.low] for _, allowed, _ in self.trials])
+        high = np.array([[allowed.rest_high, allowed.high] for _, allowed, _ in self.trials])
+        known = np.array([[fit.rest, fit.onset] for _, _, fit in self.trials])
+        loading = np.array([[fit.contact_from_loading] for _, _, fit in self.trials])
+        stays = loading | (known == low) | (known == high)
+        return np.where(stays, known, low), np.where(stays, known, high)
+
+    def prior(self, start: Array) -> tuple[Array, Array]:
+        """None."""
+        return np.zeros_like(start), np.zeros_like(start)
+
+    def evaluated(self, vector: Array, nuisance: Array) -> Evaluation:
+        """Weighted residuals of all trials."""
+        residuals = [
+            _weight(trial, fit) * (trial.force - law_force(trial, allowed, vector[0], *own))
+            for (trial, allowed, fit), own in zip(self.trials, nuisance, strict=True)
+        ]
+        return Evaluation(vector, nuisance, [], residuals)
+
+    def columns(self, at: Evaluation, warm: Columns | None = None) -> Columns:  # noqa: ARG002
+        """By the stiffness, and by rest force and onset."""
+        each = [
+            _weight(trial, fit) * law_derivatives(trial, allowed, at.vector[0], own[1])
+            for (trial, allowed, fit), own in zip(self.trials, at.nuisance, strict=True)
+        ]
+        return Columns([one[:, :1] for one in each], [one[:, 1:] for one in each])
+
+    def nuisance_columns(self, at: Evaluation) -> list[Array]:
+        """By rest force and onset."""
+        return self.columns(at).nuisance
 
 
 def _weight(trial: TrialData, fit: TrialFit) -> float:
     return 1.0 / (fit.peak * math.sqrt(trial.rows))
-
-
-def _residual(parameters: Any, rows: Triples) -> Array:
-    value = parameters.valuesdict()
-    factor = math.exp(value["log_stiffness"])
-    parts = []
-    for number, (trial, allowed, fit) in enumerate(rows):
-        model = value[f"rest_{number}"] + factor * shape_above_rest(trial, allowed, value[f"onset_{number}"])
-        parts.append(_weight(trial, fit) * (model - trial.force))
-    return np.concatenate(parts)
-
-
-def _jacobian(parameters: Any, rows: Triples) -> Array:
-    """Return the derivatives (n, p) by the parameters that vary, in lmfit's order."""
-    value = parameters.valuesdict()
-    column = {name: index for index, name in enumerate(n for n, each in parameters.items() if each.vary)}
-    jacobian = np.zeros((sum(trial.rows for trial, _, _ in rows), len(column)))
-    first = 0
-    for number, (trial, allowed, fit) in enumerate(rows):
-        block = jacobian[first : first + trial.rows]
-        first += trial.rows
-        derivatives = law_derivatives(trial, allowed, value["log_stiffness"], value[f"onset_{number}"])
-        for name, derivative in derivatives.items():
-            index = column.get(name, column.get(f"{name}_{number}"))
-            if index is not None:
-                block[:, index] = _weight(trial, fit) * derivative
-    return jacobian

@@ -1,13 +1,13 @@
-"""One filmed trial fitted by lmfit: stiffness, contact, zero, tool axis; thickness or relaxation where asked."""
+"""One filmed trial fitted: stiffness, contact, zero, tool axis; thickness or relaxation where asked."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmark.identification.sheet_model import (
     NONE,
@@ -20,10 +20,16 @@ from benchmark.identification.sheet_model import (
 from benchmark.identification.trial_features import contact_range
 from benchmark.identification.trial_fit import TrialFit
 from benchmark.response.force_curve import Array
+from benchmark.response.least_squares import Record, TrialsFit, differences
 from benchmark.response.noise import effective_rows, lag_one
 from benchmark.response.ramp_table import RampTable
 
 MM = 1e3
+CONTACT = ("log_stiffness", "onset", "zero", "axis_x", "axis_y")
+NAMES = (*CONTACT, "log_thickness", "share", "log_tau")
+"""Parameters in the order of the fit's vector; lengths in mm."""
+STEP = 1e-4
+"""By which a parameter is changed to differentiate."""
 AXIS_LIMIT = 5.0
 THICKNESS_LIMIT = math.log(2.0)
 FIRST_FORCE, FIRST_MARKER = 0.01, 0.02e-3
@@ -91,27 +97,33 @@ def fit_sheet_trial(
     known : SheetTrial, optional
         A fit with fewer free parameters, whose values and weights are the start.
     """
-    parameters = _parameters(filmed, start, free, relaxation)
+    vector, bounds = _start(filmed, start, free, relaxation)
     if known is None:
-        result = _least_squares(parameters, filmed, sheet, Weights(FIRST_FORCE * start.peak, FIRST_MARKER))
-        parameters, weights = result.params, _weights(filmed, sheet, _state(result.params), len(result.var_names))
+        first = Weights(FIRST_FORCE * start.peak, FIRST_MARKER)
+        vector = _record(filmed, sheet, first, bounds).fit(vector).vector
+        weights = _weights(filmed, sheet, _state(vector), _free(bounds).size)
     else:
         weights = known.weights
-        _begin_at(parameters, known.state)
-    result = _least_squares(parameters, filmed, sheet, weights)
-    state = _state(result.params)
+        vector[: len(CONTACT)] = _vector(known.state)[: len(CONTACT)]
+    return _sheet_trial(filmed, sheet, weights, _record(filmed, sheet, weights, bounds).fit(vector))
+
+
+def _sheet_trial(filmed: FilmedTrial, sheet: RampTable, weights: Weights, fitted: TrialsFit[Record]) -> SheetTrial:
+    """Put the parts together."""
+    state, free = _state(fitted.vector), _free(fitted.model.bounds)
+    names = [NAMES[k] for k in free]
     force, marker = _residuals(filmed, sheet, state)
-    jacobian = _jacobian(result.params, filmed, sheet, weights, result.var_names)
+    jacobian = fitted.columns.vector[0][:, free]
     covariance = _inverse(jacobian.T @ jacobian)
-    of_force = [index for index, name in enumerate(result.var_names) if not name.startswith("axis")]
+    of_force = [index for index, name in enumerate(names) if not name.startswith("axis")]
     alone = jacobian[: filmed.trial.rows, of_force]
     return SheetTrial(
         filmed.trial.name,
         filmed.trial.condition,
         state,
-        dict(zip(result.var_names, np.sqrt(np.diag(covariance)).tolist(), strict=True)),
-        _correlations(covariance, result.var_names),
-        _correlations(_inverse(alone.T @ alone), [result.var_names[index] for index in of_force]),
+        dict(zip(names, np.sqrt(np.diag(covariance)).tolist(), strict=True)),
+        _correlations(covariance, names),
+        _correlations(_inverse(alone.T @ alone), [names[index] for index in of_force]),
         float(np.sqrt(np.mean(force**2))),
         rms_distance(marker),
         weights,
@@ -123,41 +135,36 @@ def rms_distance(residual: Array) -> float:
     return float(np.sqrt(np.nanmean((residual**2).sum(axis=-1))))
 
 
-def _parameters(filmed: FilmedTrial, start: TrialFit, free: Collection[str], relaxation: Relaxation) -> Any:
-    import lmfit
-
+def _start(
+    filmed: FilmedTrial, start: TrialFit, free: Collection[str], relaxation: Relaxation
+) -> tuple[Array, tuple[Array, Array]]:
+    """Vector (8,) by `NAMES` to begin with, and its bounds; what is not fitted has equal ones."""
     allowed = contact_range(filmed.trial.depth, filmed.trial.force)
-    low, high = MM * allowed.low, MM * max(allowed.high, start.onset + 1e-6)
-    parameters = lmfit.Parameters()
-    parameters.add("log_stiffness", value=start.log_stiffness)
-    parameters.add("onset", value=float(np.clip(MM * start.onset, low + 1e-3, high - 1e-4)), min=low, max=high + 0.2)
-    parameters.add("zero", value=start.zero)
-    for name in ("axis_x", "axis_y"):
-        parameters.add(name, value=0.01, min=-AXIS_LIMIT, max=AXIS_LIMIT)
-    limit = THICKNESS_LIMIT
-    parameters.add("log_thickness", value=0.0, min=-limit, max=limit, vary="log_thickness" in free)
+    onset_low, onset_high = MM * allowed.low, MM * max(allowed.high, start.onset + 1e-6)
+    onset = float(np.clip(MM * start.onset, onset_low + 1e-3, onset_high - 1e-4))
     share = relaxation.share or (0.05 if "share" in free else 0.0)
-    parameters.add("share", value=share, min=0.0 if "share" in free else -1.0, max=0.95, vary="share" in free)
-    parameters.add("log_tau", value=math.log(relaxation.tau), min=-7.0, max=9.0, vary="log_tau" in free)
-    return parameters
+    vector = np.array([start.log_stiffness, onset, start.zero, 0.01, 0.01, 0.0, share, math.log(relaxation.tau)])
+    low = np.array([-np.inf, onset_low, -np.inf, -AXIS_LIMIT, -AXIS_LIMIT, -THICKNESS_LIMIT, 0.0, -7.0])
+    high = np.array([np.inf, onset_high + 0.2, np.inf, AXIS_LIMIT, AXIS_LIMIT, THICKNESS_LIMIT, 0.95, 9.0])
+    fixed = np.array([name not in CONTACT and name not in free for name in NAMES])
+    return vector, (np.where(fixed, vector, low), np.where(fixed, vector, high))
 
 
-def _begin_at(parameters: Any, state: SheetState) -> None:
-    values = (state.log_stiffness, MM * state.onset, state.zero, MM * state.axis[0], MM * state.axis[1])
-    for name, value in zip(("log_stiffness", "onset", "zero", "axis_x", "axis_y"), values, strict=True):
-        parameters[name].set(value=value)
+def _free(bounds: tuple[Array, Array]) -> NDArray[np.int64]:
+    """Numbers of the parameters that are fitted."""
+    return np.flatnonzero(bounds[0] < bounds[1])
 
 
-def _state(parameters: Any) -> SheetState:
-    value = parameters.valuesdict()
-    return SheetState(
-        value["log_stiffness"],
-        value["onset"] / MM,
-        value["zero"],
-        (value["axis_x"] / MM, value["axis_y"] / MM),
-        value["log_thickness"],
-        Relaxation(value["share"], math.exp(value["log_tau"])),
-    )
+def _vector(state: SheetState) -> Array:
+    relaxation = state.relaxation
+    contact = (state.log_stiffness, MM * state.onset, state.zero, MM * state.axis[0], MM * state.axis[1])
+    return np.array([*contact, state.log_thickness, relaxation.share, math.log(relaxation.tau)])
+
+
+def _state(vector: Array) -> SheetState:
+    log_stiffness, onset, zero, axis_x, axis_y, log_thickness, share, log_tau = vector.tolist()
+    axis, relaxation = (axis_x / MM, axis_y / MM), Relaxation(share, math.exp(log_tau))
+    return SheetState(log_stiffness, onset / MM, zero, axis, log_thickness, relaxation)
 
 
 def _residuals(filmed: FilmedTrial, sheet: RampTable, state: SheetState) -> tuple[Array, Array]:
@@ -165,17 +172,12 @@ def _residuals(filmed: FilmedTrial, sheet: RampTable, state: SheetState) -> tupl
     return force, sheet_markers(filmed, sheet, state) - filmed.places
 
 
-def _weighted(parameters: Any, filmed: FilmedTrial, sheet: RampTable, weights: Weights) -> Array:
-    force, marker = _residuals(filmed, sheet, _state(parameters))
-    flat = np.nan_to_num(marker.ravel() / weights.marker)
-    return np.concatenate([force / weights.force, flat])
+def _record(filmed: FilmedTrial, sheet: RampTable, weights: Weights, bounds: tuple[Array, Array]) -> Record:
+    def residual(vector: Array) -> Array:
+        force, marker = _residuals(filmed, sheet, _state(vector))
+        return -np.concatenate([force / weights.force, np.nan_to_num(marker.ravel() / weights.marker)])
 
-
-def _least_squares(parameters: Any, filmed: FilmedTrial, sheet: RampTable, weights: Weights) -> Any:
-    import lmfit
-
-    minimizer = lmfit.Minimizer(_weighted, parameters, fcn_args=(filmed, sheet, weights), calc_covar=False)
-    return minimizer.least_squares(x_scale="jac")
+    return Record(residual, lambda vector: differences(residual, vector, STEP, bounds), bounds)
 
 
 def _weights(filmed: FilmedTrial, sheet: RampTable, state: SheetState, parameters: int) -> Weights:
@@ -187,20 +189,6 @@ def _weights(filmed: FilmedTrial, sheet: RampTable, state: SheetState, parameter
     count = int(np.isfinite(marker).sum())
     frames = max(effective_rows(len(marker), lag_one(np.nanmean(marker[:, :, 0], axis=1), 1)), 2.0)
     return Weights(max(sigma, 1e-9), max(size * math.sqrt(count / (2.0 * frames)), LEAST_MARKER))
-
-
-def _jacobian(parameters: Any, filmed: FilmedTrial, sheet: RampTable, weights: Weights, names: list[str]) -> Array:
-    """Return central differences (n, p) by the free parameters, in their own units."""
-    columns = []
-    for name in names:
-        value, step = parameters[name].value, 1e-4
-        ends = []
-        for sign in (1.0, -1.0):
-            changed = parameters.copy()
-            changed[name].set(value=value + sign * step, min=-np.inf, max=np.inf)
-            ends.append(_weighted(changed, filmed, sheet, weights))
-        columns.append((ends[0] - ends[1]) / (2.0 * step))
-    return np.stack(columns, axis=1)
 
 
 def _inverse(normal: Array) -> Array:

@@ -143,7 +143,7 @@ MOST_ROWS = 2000
 
 
 def fit_trial(trial: TrialData) -> TrialFit:
-    """Fit stiffness factor, zero and contact onset of one trial by lmfit (least squares in N).
+    """Fit stiffness factor, zero and contact onset of one trial (least squares in N).
 
     Raises
     ------

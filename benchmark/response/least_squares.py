@@ -20,24 +20,36 @@ from numpy.typing import NDArray
 
 from benchmark.response.force_curve import Array
 
-DAMPING = 1e-3
-"""Of the diagonal of the normal matrix, to begin with; a step that lowers the objective takes it down to a fifth."""
 MOST_DAMPING = 1e5
 LENT = 3
 """Steps for which the derivatives of a start serve."""
 
 
 @dataclass(frozen=True)
-class Stop:
-    """A fit has converged where a step lowers the objective by less than `gain`, or by this `share` of it."""
+class Search:
+    """How a fit goes on, and when it has converged.
+
+    Attributes
+    ----------
+    most : int
+        Steps at most; with none the start is only looked up.
+    gain, share : float
+        It has converged where a step lowers the objective by less than `gain`, or by this share of it.
+    damping : float
+        Of the diagonal of the normal matrix, to begin with; a step that lowers the objective takes it to a fifth.
+    """
 
     most: int = 12
     gain: float = 0.03
     share: float = 3e-5
+    damping: float = 1e-3
 
 
-EXACT = Stop(most=200, gain=0.0, share=1e-14)
-"""Of a fit of few parameters to one record: to round-off."""
+USUAL = Search()
+SETTLED = Search(most=20, gain=1e-3, share=1e-6)
+"""Of the nuisances of a trial at parameters that stay."""
+EXACT = Search(most=200, gain=0.0, share=1e-13, damping=1.0)
+"""Of a few bounded parameters: to round-off, and in short steps first, since a long one may end in a corner."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,7 +182,7 @@ class TrialsFit(Generic[Model]):
 
 
 def least_squares(
-    model: Model, start: Array, nuisance: Array, *, warm: Columns | None = None, stop: Stop = Stop()
+    model: Model, start: Array, nuisance: Array, *, warm: Columns | None = None, search: Search = USUAL
 ) -> TrialsFit[Model]:
     """Fit a model from a start.
 
@@ -184,14 +196,14 @@ def least_squares(
         (R, q) start of the trials' nuisances.
     warm
         Derivatives near the start, some of which serve for the first steps.
-    stop
-        When the fit has converged; with `most` = 0 the start is only looked up.
+    search
+        How it goes on and when it has converged.
     """
     mean, precision = model.prior(start)
     at = model.evaluated(np.clip(start, *model.bounds), nuisance)
     value = _objective(model, at, mean, precision)
-    damping, columns = DAMPING, None
-    for turn in range(stop.most):
+    damping, columns = search.damping, None
+    for turn in range(search.most):
         if columns is None:
             columns = model.columns(at, warm if turn < LENT else None)
         tried = model.evaluated(*_moved(model, columns, at, (mean, precision), damping))
@@ -199,7 +211,7 @@ def least_squares(
         if tried_value < value:
             gain, at, value = value - tried_value, tried, tried_value
             damping, columns = damping * 0.2, None
-            if gain < max(stop.gain, stop.share * value):
+            if gain < max(search.gain, search.share * value):
                 break
         else:
             if warm is not None and turn < LENT:
@@ -265,9 +277,9 @@ def _eliminated(
     side, pull = n.T @ j, n.T @ residual - weight * own
     if held.any():
         solved = np.zeros((own.size, j.shape[1] + 1))
-        solved[~held] = np.linalg.solve(inner[np.ix_(~held, ~held)], np.column_stack([side, pull])[~held])
+        solved[~held] = _solve(inner[np.ix_(~held, ~held)], np.column_stack([side, pull])[~held])
     else:
-        solved = np.linalg.solve(inner, np.column_stack([side, pull]))
+        solved = _solve(inner, np.column_stack([side, pull]))
     matrix = j.T @ j - side.T @ solved[:, :-1]
     return _Eliminated(inner, side, pull, solved, matrix, j.T @ residual - side.T @ solved[:, -1])
 
@@ -292,13 +304,21 @@ def bounded_step(matrix: Array, slope: Array, vector: Array, damping: float, bou
         if not free.any():
             return step
         pull = slope[free] - matrix[np.ix_(free, ~free)] @ step[~free]
-        step[free] = np.linalg.solve(damped[np.ix_(free, free)], pull)
+        step[free] = _solve(damped[np.ix_(free, free)], pull)
         out = free & ((step < low) | (step > high))
         if not out.any():
             return step
         step[out] = np.clip(step, low, high)[out]
         free &= ~out
     return step
+
+
+def _solve(matrix: Array, right: Array) -> Array:
+    """The solution; the shortest one where the matrix is singular, so that what the data do not feel stays put."""
+    try:
+        return np.asarray(np.linalg.solve(matrix, right))
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.lstsq(matrix, right)[0])
 
 
 def _blocks(model: TrialsModel, columns: Columns, at: Evaluation) -> Blocks:
@@ -315,16 +335,43 @@ def _blocks(model: TrialsModel, columns: Columns, at: Evaluation) -> Blocks:
     return Blocks(np.array(matrices), np.array(slopes), np.array(misfits), np.array(sizes))
 
 
-def settled(model: TrialsModel, vector: Array, nuisance: Array, turns: int = 2) -> Array:
-    """(R, q) nuisances of the trials at a vector that stays, by so many Gauss-Newton steps."""
-    state, weight = nuisance.copy(), model.trial_precision
-    for _ in range(turns):
-        at = model.evaluated(vector, state)
-        columns = model.nuisance_columns(at)
-        for index, residual in enumerate(at.residuals):
+def settled(model: TrialsModel, vector: Array, nuisance: Array, search: Search = SETTLED) -> Array:
+    """(R, q) nuisances of the trials at a vector that stays: each trial by itself, damped until it has converged."""
+    weight, damping = model.trial_precision, np.full(len(nuisance), search.damping)
+    at = model.evaluated(vector, nuisance)
+    value = _trial_objectives(at, weight)
+    going = np.ones(len(nuisance), dtype=bool)
+    for _ in range(search.most):
+        columns, tried = model.nuisance_columns(at), at.nuisance.copy()
+        for index in np.flatnonzero(going):
             n = columns[index]
-            state[index] += np.linalg.solve(n.T @ n + np.diag(weight), n.T @ residual - weight * state[index])
-    return state
+            inner, pull = n.T @ n + np.diag(weight), n.T @ at.residuals[index] - weight * tried[index]
+            tried[index] += _solve(inner + damping[index] * np.diag(np.diag(inner)), pull)
+        other = model.evaluated(vector, tried)
+        new = _trial_objectives(other, weight)
+        better = going & (new < value)
+        gain = value - new
+        at, value = _mixed(at, other, better), np.where(better, new, value)
+        damping = np.where(better, 0.2 * damping, 12.0 * np.maximum(damping, 1e-4))
+        going &= np.where(better, gain >= np.maximum(search.gain, search.share * value), damping <= MOST_DAMPING)
+        if not going.any():
+            break
+    return at.nuisance
+
+
+def _trial_objectives(at: Evaluation, weight: Array) -> Array:
+    """(R,) half the sum of squares of each trial with its priors."""
+    data = np.array([float(r @ r) for r in at.residuals])
+    total = 0.5 * (data + np.sum(at.nuisance**2 * weight, axis=1))
+    return np.asarray(np.where(np.isfinite(total), total, np.inf))
+
+
+def _mixed(one: Evaluation, other: Evaluation, which: NDArray[np.bool_]) -> Evaluation:
+    """An evaluation with some trials (mask (R,)) from another."""
+    nuisance = np.where(which[:, None], other.nuisance, one.nuisance)
+    signals = [b if pick else a for a, b, pick in zip(one.signals, other.signals, which, strict=True)]
+    residuals = [b if pick else a for a, b, pick in zip(one.residuals, other.residuals, which, strict=True)]
+    return Evaluation(one.vector, nuisance, signals, residuals)
 
 
 @dataclass(frozen=True, eq=False)
@@ -370,9 +417,9 @@ class Record:
         """None."""
         return [np.zeros((at.residuals[0].size, 0))]
 
-    def fit(self, start: Array, stop: Stop = EXACT) -> TrialsFit[Record]:
+    def fit(self, start: Array, search: Search = EXACT) -> TrialsFit[Record]:
         """Fit from a start (p,)."""
-        return least_squares(self, start, np.zeros((1, 0)), stop=stop)
+        return least_squares(self, start, np.zeros((1, 0)), search=search)
 
 
 def differences(residual: Callable[[Array], Array], vector: Array, step: float, bounds: tuple[Array, Array]) -> Array:
@@ -380,10 +427,11 @@ def differences(residual: Callable[[Array], Array], vector: Array, step: float, 
 
     A parameter whose bounds are equal has none.
     """
-    columns = []
+    columns: list[Array | None] = []
     for k in range(vector.size):
         less, more = vector.copy(), vector.copy()
         less[k], more[k] = max(vector[k] - step, bounds[0][k]), min(vector[k] + step, bounds[1][k])
         wide = more[k] - less[k]
-        columns.append((residual(less) - residual(more)) / wide if wide > 0.0 else 0.0 * residual(vector))
-    return np.stack(columns, axis=1)
+        columns.append((residual(less) - residual(more)) / wide if wide > 0.0 else None)
+    known = next((each for each in columns if each is not None), np.zeros(0))
+    return np.stack([np.zeros_like(known) if each is None else each for each in columns], axis=1)

@@ -156,7 +156,7 @@ class RampTable:
     @property
     def reach(self) -> float:
         """Deepest depth that all curves cover, m."""
-        return min(self.curve.reach, *(each.curve.reach for each in self.by.values()))
+        return min([self.curve.reach, *(each.curve.reach for each in self.by.values())])
 
     def force(self, below: Array, changes: Mapping[str, float]) -> Array:
         """Elastic force (n,) N at stiffness factor 1, at depths below contact, m."""

@@ -92,7 +92,7 @@ def _last_state(last: LastState, layers: tuple[str, ...]) -> dict[str, Any]:
 
 
 PACKAGES = (
-    "tissuebench", "numpy", "scipy", "scikit-fem", "pypardiso", "lmfit", "statsmodels", "pandas", "pydantic", "pint",
+    "tissuebench", "numpy", "scipy", "scikit-fem", "pypardiso", "statsmodels", "pandas", "pydantic", "pint",
     "matplotlib", "pyvista",
 )  # fmt: skip
 

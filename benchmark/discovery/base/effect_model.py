@@ -14,7 +14,7 @@ from benchmark.discovery.base.trials_problem import OFFSETS, OWN, SHAPE_PRIOR, P
 from benchmark.physics import Effect, EffectParameter, Readings, catalogue
 from benchmark.physics.effect import Values
 from benchmark.response.force_curve import Array
-from benchmark.response.least_squares import Columns, Evaluation, Stop, TrialsFit, least_squares
+from benchmark.response.least_squares import Columns, Evaluation, Search, TrialsFit, least_squares
 from benchmark.response.least_squares import settled as settled_nuisances
 from benchmark.response.noise import Whitener
 from benchmark.response.pipeline import TrialPipeline
@@ -267,7 +267,7 @@ def fit(
     """
     problem = model.problem
     state = np.zeros((len(problem.trials), nuisance_count(problem))) if nuisance is None else nuisance
-    return least_squares(model, start, state, warm=warm, stop=Stop(most))
+    return least_squares(model, start, state, warm=warm, search=Search(most))
 
 
 def settled(model: Model, vector: Array, nuisance: Array) -> Array:

@@ -11,11 +11,11 @@ from scipy.stats import t as student
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.from_run.run_case import Case
 from benchmark.physics import Effect, EffectParameter
-from benchmark.response.least_squares import Record, Stop, differences
+from benchmark.response.least_squares import Record, Search, differences
 from benchmark.response.pipeline import physics_of
 from wavemodel import WaveError
 
-STOP = Stop(most=80, gain=0.0, share=1e-10)
+SEARCH = Search(most=80, gain=0.0, share=1e-10, damping=1.0)
 STEP = 1e-5
 """By which a parameter of about one is changed to differentiate."""
 FAILED = 1e3
@@ -62,7 +62,7 @@ def fit_body_effect(effect: Effect, case: Case) -> BodyEffectFit | None:
 
     bounds = coordinates.bounds
     record = Record(residual, lambda u: differences(residual, u, STEP, bounds), bounds)
-    found = [record.fit(coordinates.start(values), STOP) for values in starts]
+    found = [record.fit(coordinates.start(values), SEARCH) for values in starts]
     best = min(found, key=lambda each: each.objective)
     left = residual(best.vector)
     if not np.abs(left).max() < FAILED:

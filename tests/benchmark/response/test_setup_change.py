@@ -1,0 +1,31 @@
+import pytest
+
+from benchmark.errors import InputError
+from benchmark.files import Support, Tool, load_tissue
+from benchmark.response.setup_change import RADIUS, THICKNESS, changed_setup
+
+SETUP = (load_tissue("skin_forearm"), Tool(radius=5e-3), Support(kind="hole", hole_radius=30e-3))
+
+
+def test_the_tool_and_the_support_change_by_their_keys() -> None:
+    assert changed_setup(*SETUP, RADIUS, 0.1)[1].radius == pytest.approx(5.5e-3)
+    assert changed_setup(*SETUP, "support.hole_radius", -0.1)[2].hole_radius == pytest.approx(27e-3)
+
+
+def test_one_layer_changes_and_the_others_stay() -> None:
+    tissue, tool, support = changed_setup(*SETUP, "dermis.youngs_modulus", 0.5)
+    for before, after in zip(SETUP[0].layers, tissue.layers, strict=True):
+        assert after.youngs_modulus == pytest.approx((1.5 if before.name == "dermis" else 1.0) * before.youngs_modulus)
+    assert (tool, support) == SETUP[1:]
+
+
+def test_the_thickness_of_all_layers_changes_together() -> None:
+    layers = changed_setup(*SETUP, THICKNESS, 0.1)[0].layers
+    for before, after in zip(SETUP[0].layers, layers, strict=True):
+        assert after.thickness == pytest.approx(1.1 * before.thickness)
+
+
+@pytest.mark.parametrize("key", ["nowhere.youngs_modulus", "tool.colour", "dermis.name"])
+def test_what_is_no_number_of_the_set_up_is_refused(key) -> None:
+    with pytest.raises(InputError, match=key):
+        changed_setup(*SETUP, key, 0.1)
