@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -44,6 +45,8 @@ class FemModel:
         Keep the fields of each step instead of the peak's and the last one's.
     keeping
         Where the steps of the one load history that is followed are kept, and taken up; None keeps nothing.
+    added
+        Effects beside those that the scenario states, which the solver carries by itself.
 
     Raises
     ------
@@ -53,7 +56,14 @@ class FemModel:
         The scenario cannot be meshed or solved as it stands.
     """
 
-    def __init__(self, scenario: Scenario, *, every_field: bool = False, keeping: Keeping | None = None):
+    def __init__(
+        self,
+        scenario: Scenario,
+        *,
+        every_field: bool = False,
+        keeping: Keeping | None = None,
+        added: tuple[Given, ...] = (),
+    ):
         refuse_options(scenario, carried_keys(), fibres=True)
         self._scenario = scenario
         self._every_field = every_field
@@ -62,7 +72,9 @@ class FemModel:
         try:
             slow = scenario.fem.geometry == "surface"
             mesh_file = kept_mesh(keeping) if keeping is not None and slow else None
-            self._model = fem.prepare(problem_of(scenario), mesh_file=mesh_file)
+            carried = with_effects(_without_effects(scenario), (*given_effects(scenario), *added), scenario)
+            self._model = fem.prepare(carried.problem, mesh_file=mesh_file)
+            self._remarks = carried.remarks
         except fem.FemError as error:
             raise InputError(f"scenario {scenario.name}: {error}") from None
 
@@ -102,7 +114,7 @@ class FemModel:
             peak_step=peak,
             unknowns=model.unknowns,
             notes=self._notes(model),
-            warnings=solution.warnings,
+            warnings=(*self._remarks, *solution.warnings),
             resumed=_resumption(solution, load),
             failure=_failure(solution, load),
             last=_last(solution),
@@ -148,7 +160,20 @@ def carried_keys() -> tuple[str, ...]:
     )
 
 
+@dataclass(frozen=True)
+class FemProblem:
+    """A problem with its effects, and what a reader must know of how the FEM carries them."""
+
+    problem: fem.Problem
+    remarks: tuple[str, ...] = ()
+
+
 def problem_of(scenario: Scenario) -> fem.Problem:
+    """The scenario in the solver's terms, with the effects that it states."""
+    return with_effects(_without_effects(scenario), given_effects(scenario), scenario).problem
+
+
+def _without_effects(scenario: Scenario) -> fem.Problem:
     """The scenario in the solver's terms.
 
     A laterally endless specimen is the same everywhere, so that its axisymmetric model needs no position.
@@ -159,7 +184,7 @@ def problem_of(scenario: Scenario) -> fem.Problem:
     surface = None
     if options.surface is not None and options.surface_unit is not None:
         surface = fem.read_surface(options.surface, options.surface_unit)
-    problem = fem.Problem(
+    return fem.Problem(
         layers=tuple(fem_layer(layer, options.kinematics) for layer in scenario.tissue.layers),
         tool=fem.Tool(
             tool.radius,
@@ -178,18 +203,19 @@ def problem_of(scenario: Scenario) -> fem.Problem:
         geometry=options.geometry,
         surface=surface,
     )
-    return with_effects(problem, given_effects(scenario), scenario)
 
 
-def with_effects(problem: fem.Problem, effects: Iterable[Given], scenario: Scenario) -> fem.Problem:
+def with_effects(problem: fem.Problem, effects: Iterable[Given], scenario: Scenario) -> FemProblem:
     """A problem with the effects that the FEM carries by itself; raises UncoveredError for a term it does not have."""
+    remarks = []
     for effect, values in effects:
         if effect.fem is not None and set(effect.fem.names) & set(values):
             try:
-                problem = effect.fem.change(values, problem, scenario_context(scenario))
+                problem, remark = effect.fem.change(values, problem, scenario_context(scenario))
             except NotInFemError as error:
                 raise UncoveredError(str(error)) from None
-    return problem
+            remarks += [remark] if remark else []
+    return FemProblem(problem, tuple(remarks))
 
 
 def _resumption(solution: fem.Solution, load: fem.Load) -> Resumption | None:

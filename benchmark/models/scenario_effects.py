@@ -36,16 +36,18 @@ def scenario_context(scenario: Scenario) -> TrialContext:
     """What an effect may know of a scenario."""
     layers = specimen_layers(scenario.tissue.layers)
     thickness = math.fsum(layer.thickness for layer in layers)
-    history = scenario.load_history()
+    history, control = scenario.load_history(), scenario.load.control
+    peak = float(np.abs(history.value).max())
     return TrialContext(
         tool_radius=scenario.tool.radius,
         thickness=thickness,
-        peak_depth=0.1 * thickness,
-        peak_force=float(np.abs(history.value).max()),
+        peak_depth=0.1 * thickness if control == "force" else peak,
+        peak_force=peak,
         duration=float(history.time[-1]),
         hole_radius=(scenario.support.hole_radius or math.inf) if scenario.support.kind == "hole" else math.inf,
         layers=layers,
         contact=scenario.tool.contact,
+        control=control,
     )
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +44,8 @@ class TrialContext:
         The specimen from the surface down; empty where it is taken as one layer of `thickness`.
     contact : str
         Of the tool, as in a scenario.
+    control : str
+        What is given, "force" up to `peak_force` or "depth" up to `peak_depth`.
     """
 
     tool_radius: float
@@ -56,6 +58,7 @@ class TrialContext:
     hole_radius: float = math.inf
     layers: tuple[WaveLayer, ...] = ()
     contact: str = "rigid_bonded"
+    control: Literal["force", "depth"] = "depth"
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,14 +151,14 @@ class FemTerm:
     ----------
     names : tuple of str
         The parameters and options that it carries.
-    change : (values of those that are given, problem, context) -> problem with the effect
-        Raises `NotInFemError`.
+    change : (values of those that are given, problem, context) -> problem with the effect, remark
+        The remark is what a reader must know of it, "" without. Raises `NotInFemError`.
     elastic : bool
         Whether the press has no memory of it, so that quasi-linear effects may act on top.
     """
 
     names: tuple[str, ...]
-    change: Callable[[Values, Problem, TrialContext], Problem]
+    change: Callable[[Values, Problem, TrialContext], tuple[Problem, str]]
     elastic: bool = True
 
 

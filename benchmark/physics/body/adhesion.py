@@ -65,12 +65,12 @@ def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     return tearing + following
 
 
-def _in_fem(values: Values, problem: Problem, context: TrialContext) -> Problem:
+def _in_fem(values: Values, problem: Problem, context: TrialContext) -> tuple[Problem, str]:
     if problem.tool.contact not in ("rigid_frictionless", "rigid_frictional") or problem.kinematics != "finite":
         raise NotInFemError("adhesion_force is part of rigid_frictionless and rigid_frictional tools in finite strain")
     if problem.geometry == "surface":
         raise NotInFemError("adhesion_force is not part of the geometry surface")
-    return replace(problem, tool=replace(problem.tool, adhesion_force=values["adhesion_force"]))
+    return replace(problem, tool=replace(problem.tool, adhesion_force=values["adhesion_force"])), ""
 
 
 EFFECT = Effect(

@@ -112,7 +112,7 @@ def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     )
 
 
-def _in_fem(values: Values, problem: Problem, context: TrialContext) -> Problem:
+def _in_fem(values: Values, problem: Problem, context: TrialContext) -> tuple[Problem, str]:
     interface, clamp = (values.get(name) for name in SHEAR_LIMITS)
     if interface is not None:
         if problem.geometry != "axisymmetric" or (problem.kinematics == "linear" and interface > 0.0):
@@ -127,7 +127,7 @@ def _in_fem(values: Values, problem: Problem, context: TrialContext) -> Problem:
                 "the option physics.clamp_shear_limit is part of a hole in finite strain and axisymmetric geometry only"
             )
         problem = replace(problem, support=replace(problem.support, clamp_shear_limit=clamp))
-    return problem
+    return problem, ""
 
 
 EFFECT = Effect(

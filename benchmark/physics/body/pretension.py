@@ -118,10 +118,10 @@ def _lower_face(values: Values, face: LowerFaceMotion, press: PressHistory, cont
     return replace(face, passed=face.passed * (1.0 - share), dent=(dent, context.tool_radius))
 
 
-def _in_fem(values: Values, problem: Problem, context: TrialContext) -> Problem:
+def _in_fem(values: Values, problem: Problem, context: TrialContext) -> tuple[Problem, str]:
     if problem.geometry == "surface":
         raise NotInFemError("pretension is no part of the geometry surface, which has no plane to lie in")
-    return replace(problem, pretension=values["pretension"])
+    return replace(problem, pretension=values["pretension"]), ""
 
 
 def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from benchmark.physics.description import EffectDescription, Option, linear
-from benchmark.physics.effect import Effect, TrialContext, Values
+from benchmark.physics.effect import Array, Effect, FemTerm, TrialContext, Values
+
+if TYPE_CHECKING:
+    from fem import Problem
 
 DESCRIPTION = EffectDescription(
     slug="strain_stiffening",
@@ -33,7 +38,7 @@ DESCRIPTION = EffectDescription(
         ),
     ),
     in_wave="on top of its elastic law",
-    in_fem="Yeoh terms of the layers in finite strain, identified so that it stiffens as much; else quasi-linear",
+    in_fem="a Yeoh or Ogden term of the layers, identified so that the press stiffens as much; else quasi-linear",
 )
 
 
@@ -43,9 +48,35 @@ def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
     return {"stiffening": StrainStiffening(values["b_1"], values["b_2"], context.thickness)}
 
 
+def _in_fem(values: Values, problem: Problem, context: TrialContext) -> tuple[Problem, str]:
+    from benchmark.physics.fem_identification import stiffened
+
+    first, second = values.get("b_1", 0.0), values.get("b_2", 0.0)
+    if first == second == 0.0:
+        return problem, ""
+
+    def factor(depth: Array) -> Array:
+        x = depth / context.thickness
+        return np.asarray(1.0 + first * x + second * x**2)
+
+    peak = context.peak_force if context.control == "force" else context.peak_depth
+    found = stiffened(problem, factor, context.control, peak)
+    remark = (
+        f"strain_stiffening is the law {found.law} in every layer, within {100 * found.misfit:.2g} % of its equation"
+    )
+    return found.problem, remark
+
+
 def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     x = context.peak_depth / context.thickness
     return {"b_1": 0.02 / x, "b_2": 0.2 / x**2}, {"b_1": 0.2 / x, "b_2": 0.02 / x**2}
 
 
-EFFECT = Effect(DESCRIPTION, "b_2", body=_body, starts=_starts, amplitudes=("b_1",))
+EFFECT = Effect(
+    DESCRIPTION,
+    "b_2",
+    body=_body,
+    starts=_starts,
+    amplitudes=("b_1",),
+    fem=FemTerm(("b_1", "b_2"), _in_fem),
+)

@@ -29,7 +29,7 @@ def _description(terms: int) -> EffectDescription:
         source="Y. C. Fung, Biomechanics: Mechanical Properties of Living Tissues, section 7.6",
         parameters=tuple(parameters),
         in_wave="Prony series on top of its elastic law; a scenario's layers have series of their own (`relaxation`)",
-        in_fem="the same Prony series in every layer; quasi-linear where layers relax by themselves",
+        in_fem="a Prony series of every layer's shear, identified so that the force fades as much; else quasi-linear",
     )
 
 
@@ -52,14 +52,23 @@ def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
     return {"relaxation": Prony(tuple(shares.values()), tuple(shares))} if shares else {}
 
 
-def _in_fem(values: Values, problem: Problem, context: TrialContext) -> Problem:
+def _in_fem(values: Values, problem: Problem, context: TrialContext) -> tuple[Problem, str]:
+    from benchmark.physics.fem_identification import relaxation_factor
     from fem import PronyTerm
 
     relaxing = [layer.name for layer in problem.layers if layer.relaxation]
     if relaxing:
         raise NotInFemError(f"the layer {relaxing[0]} has a relaxation of its own")
-    terms = tuple(PronyTerm(share, tau) for tau, share in _series(values).items())
-    return replace(problem, layers=tuple(replace(layer, relaxation=terms) for layer in problem.layers))
+    series = _series(values)
+    if not series:
+        return problem, ""
+    peak = context.peak_force if context.control == "force" else context.peak_depth
+    factor = relaxation_factor(problem, sum(series.values()), context.control, peak)
+    terms = tuple(PronyTerm(factor * share, tau) for tau, share in series.items())
+    remark = (
+        f"viscoelastic_relaxation is a Prony series of every layer's shear, its shares {factor:.4g} times the force's"
+    )
+    return replace(problem, layers=tuple(replace(layer, relaxation=terms) for layer in problem.layers)), remark
 
 
 def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
