@@ -5,7 +5,7 @@ PY     := $(VENV)/bin/python
 RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
-BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-gate bench-sweep bench-discovery
+BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-gate bench-sweep bench-discovery bench-effects
 .PHONY: help run test test-slow $(BENCHES) lint types imports check docs lock clean
 
 help:
@@ -19,6 +19,7 @@ help:
 	@echo "make bench-peers      the same problems through FElupe and CalculiX, where they are installed"
 	@echo "make bench-liver      a synthetic liver from its STL file to a pressed VTU"
 	@echo "make bench-vision     frames a second of the tracker, and its memory on a long video"
+	@echo "make bench-effects    wave and finite elements with each body effect, side by side"
 	@echo "make bench-sweep      a sweep by one and by two local workers"
 	@echo "make bench-gate       the regression gate on trial: false alarms and power (hours at full length)"
 	@echo "make bench-discovery  the discovery on 150 sessions with hidden effects (hours)"
@@ -83,6 +84,9 @@ GATE_RUNS ?= 20
 bench-gate: $(DEV_STAMP)
 	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS) --together --only wave.frame fem.assembly fit
 	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS) --off 0.01 --values
+
+bench-effects: $(RUN_STAMP)
+	$(PY) -m benchmarks.effects
 
 bench-sweep: $(RUN_STAMP)
 	$(PY) -m benchmarks.sweep

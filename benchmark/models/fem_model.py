@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -46,7 +46,7 @@ class FemModel:
     keeping
         Where the steps of the one load history that is followed are kept, and taken up; None keeps nothing.
     added
-        Effects beside those that the scenario states, which the solver carries by itself.
+        Effects of a model file; those that the solver does not carry by itself are `carried.on_top`.
 
     Raises
     ------
@@ -72,9 +72,8 @@ class FemModel:
         try:
             slow = scenario.fem.geometry == "surface"
             mesh_file = kept_mesh(keeping) if keeping is not None and slow else None
-            carried = with_effects(_without_effects(scenario), (*given_effects(scenario), *added), scenario)
-            self._model = fem.prepare(carried.problem, mesh_file=mesh_file)
-            self._remarks = carried.remarks
+            self.carried = with_added_effects(with_stated_effects(scenario), added, scenario)
+            self._model = fem.prepare(self.carried.problem, mesh_file=mesh_file)
         except fem.FemError as error:
             raise InputError(f"scenario {scenario.name}: {error}") from None
 
@@ -114,7 +113,7 @@ class FemModel:
             peak_step=peak,
             unknowns=model.unknowns,
             notes=self._notes(model),
-            warnings=(*self._remarks, *solution.warnings),
+            warnings=(*self.carried.remarks, *solution.warnings),
             resumed=_resumption(solution, load),
             failure=_failure(solution, load),
             last=_last(solution),
@@ -162,15 +161,29 @@ def carried_keys() -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class FemProblem:
-    """A problem with its effects, and what a reader must know of how the FEM carries them."""
+    """A problem with the effects that the FEM carries by itself.
+
+    Attributes
+    ----------
+    problem
+        In the solver's terms.
+    remarks
+        What a reader must know of how they are carried.
+    carried
+        Slugs of the effects that are in it.
+    on_top
+        Effects of a model file that are not, each with the reason.
+    """
 
     problem: fem.Problem
     remarks: tuple[str, ...] = ()
+    carried: tuple[str, ...] = ()
+    on_top: tuple[tuple[Given, str], ...] = ()
 
 
 def problem_of(scenario: Scenario) -> fem.Problem:
     """The scenario in the solver's terms, with the effects that it states."""
-    return with_effects(_without_effects(scenario), given_effects(scenario), scenario).problem
+    return with_stated_effects(scenario).problem
 
 
 def _without_effects(scenario: Scenario) -> fem.Problem:
@@ -205,17 +218,58 @@ def _without_effects(scenario: Scenario) -> fem.Problem:
     )
 
 
-def with_effects(problem: fem.Problem, effects: Iterable[Given], scenario: Scenario) -> FemProblem:
-    """A problem with the effects that the FEM carries by itself; raises UncoveredError for a term it does not have."""
-    remarks = []
+def with_stated_effects(scenario: Scenario) -> FemProblem:
+    """The scenario's problem with what its `[physics]` states; raises UncoveredError for a term the FEM lacks."""
+    found = _carry(FemProblem(_without_effects(scenario)), given_effects(scenario), scenario)
+    for given, reason in found.on_top:
+        if _has_term(given):
+            raise UncoveredError(reason)
+    return replace(found, on_top=())
+
+
+def with_added_effects(stated: FemProblem, added: Iterable[Given], scenario: Scenario) -> FemProblem:
+    """A problem with further effects where the FEM carries them; those that it does not are `on_top`.
+
+    What acts on top needs an elastic answer below it: effects with a memory are in the FEM all or none.
+    """
+    effects = tuple(added)
+    elastic = _carry(stated, [each for each in effects if not _remembers(each)], scenario)
+    remembering = [each for each in effects if _remembers(each)]
+    whole = elastic if elastic.on_top else _carry(elastic, remembering, scenario)
+    if not whole.on_top or not remembering:
+        return whole
+    first = whole.on_top[0][0][0].slug
+    beside = f"it has a memory, and {first} acts on top of the FEM's elastic answer"
+    reasons = {effect.slug: reason for (effect, _), reason in whole.on_top}
+    return replace(
+        elastic, on_top=(*elastic.on_top, *((each, reasons.get(each[0].slug, beside)) for each in remembering))
+    )
+
+
+def _has_term(given: Given) -> bool:
+    effect, values = given
+    return effect.fem is not None and bool(set(effect.fem.names) & set(values))
+
+
+def _remembers(given: Given) -> bool:
+    return given[0].fem is not None and not given[0].fem.elastic
+
+
+def _carry(found: FemProblem, effects: Iterable[Given], scenario: Scenario) -> FemProblem:
+    """The problem with one effect after the other; an effect that the FEM does not carry is left on top."""
+    context = scenario_context(scenario)
     for effect, values in effects:
-        if effect.fem is not None and set(effect.fem.names) & set(values):
-            try:
-                problem, remark = effect.fem.change(values, problem, scenario_context(scenario))
-            except NotInFemError as error:
-                raise UncoveredError(str(error)) from None
-            remarks += [remark] if remark else []
-    return FemProblem(problem, tuple(remarks))
+        if effect.fem is None or not _has_term((effect, values)):
+            found = replace(found, on_top=(*found.on_top, ((effect, values), "the FEM has no such term")))
+            continue
+        try:
+            problem, remark = effect.fem.change(values, found.problem, context)
+        except NotInFemError as error:
+            found = replace(found, on_top=(*found.on_top, ((effect, values), str(error))))
+            continue
+        remarks = (*found.remarks, remark) if remark else found.remarks
+        found = replace(found, problem=problem, remarks=remarks, carried=(*found.carried, effect.slug))
+    return found
 
 
 def _resumption(solution: fem.Solution, load: fem.Load) -> Resumption | None:

@@ -87,12 +87,12 @@ def stiffened(problem: Problem, factor: Factor, control: Control, peak: float) -
         if misfit <= GOOD:
             break
     misfit, family, constants = min(found, key=lambda each: each[0])
+    text = family.name.format(*constants)
     if misfit > ENOUGH:
         raise NotInFemError(
-            f"no law of the layers stiffens the press as its equation says: the best, {family.name}, is "
+            f"no law of the layers stiffens the press as its equation says: the best, {text}, is "
             f"{100 * misfit:.2g} % off"
         )
-    text = family.name.format(*constants)
     return StiffenedLaw(_with_law(problem, family, constants), text, misfit)
 
 

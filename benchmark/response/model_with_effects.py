@@ -1,7 +1,8 @@
-"""A model with effects of a model file switched on: the elastic answer of the model itself, pressed with its options.
+"""A model with effects of a model file switched on: in the model itself where it carries them, else on top of it.
 
-The model is ramped once; its force over depth is the elastic law of the quasi-static press, and the layers follow the
-elastic force. Effects of the drive and of the observation belong to rig and sensors, not to a press in a scenario.
+On top, the model is ramped once; its force over depth is the elastic law of the quasi-static press, and the layers
+follow the elastic force. Effects of the drive and of the observation belong to rig and sensors, not to a press in a
+scenario.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from benchmark.model_file import RepairedModel, read_model
 from benchmark.models import Drive, Keeping, ModelResult, PreparedModel, UncoveredError, UserFile, prepare, silent
 from benchmark.models.result import OnStep
 from benchmark.models.scenario_effects import given_in_wave, scenario_context
-from benchmark.physics import Effect, catalogue, load_effects
+from benchmark.physics import Effect, TrialContext, catalogue, load_effects
 from benchmark.response.force_curve import Array
 from benchmark.response.pipeline import Added, physics_of
 from benchmark.response.ramp import depth_ramp
@@ -36,20 +37,39 @@ IN_THE_FEM = ("strain_stiffening",)
 
 @dataclass(frozen=True)
 class SwitchedOn:
-    """The options of a body from a model file, and what must be said of them.
+    """The effects of a model file that take part in a press, and what must be said of the others.
 
     Attributes
     ----------
-    physics : Physics
-    on : tuple of str
-        Slugs that take part.
+    effects : tuple of (Effect, values)
+        Which take part.
+    context : TrialContext
+        What they may know of the scenario.
     warnings : tuple of str
         Which do not, and why.
+    inside : tuple of str
+        Slugs of those that are in the model itself; the others act on top of its elastic answer.
     """
 
-    physics: Physics
-    on: tuple[str, ...]
-    warnings: tuple[str, ...]
+    effects: tuple[Added, ...]
+    context: TrialContext
+    warnings: tuple[str, ...] = ()
+    inside: tuple[str, ...] = ()
+
+    @property
+    def on(self) -> tuple[str, ...]:
+        """Slugs that take part."""
+        return tuple(effect.slug for effect, _ in self.effects)
+
+    @property
+    def on_top(self) -> tuple[Added, ...]:
+        """The effects on top of the elastic answer."""
+        return tuple(each for each in self.effects if each[0].slug not in self.inside)
+
+    @property
+    def physics(self) -> Physics:
+        """The options of the body on top."""
+        return physics_of(self.on_top, self.context)
 
 
 def load_repair(path: Path, own_effects: Path | None = None) -> RepairedModel:
@@ -69,8 +89,7 @@ def switched_on(repair: RepairedModel, scenario: Scenario, model: str) -> Switch
             warnings.append(f"the effect {effect.slug} is not switched on here: {reason}")
             continue
         on.append((effect, values))
-    slugs = tuple(effect.slug for effect, _ in on)
-    return SwitchedOn(physics_of(on, scenario_context(scenario)), slugs, tuple(warnings))
+    return SwitchedOn(tuple(on), scenario_context(scenario), tuple(warnings))
 
 
 def prepare_with_effects(
@@ -93,8 +112,41 @@ def prepare_with_effects(
     if not isinstance(own, RepairedModel):
         return prepare(model, scenario, every_field=every_field, own=own, keeping=keeping)
     refuse_options_twice(own, scenario)
-    base = prepare(model, on_its_base(own, scenario), every_field=every_field)
-    return RepairedPress(base, switched_on(own, scenario, model))
+    scenario, switched = on_its_base(own, scenario), switched_on(own, scenario, model)
+    if model == "fem":
+        return _in_fem(scenario, switched, every_field)
+    return RepairedPress(*_in_wave(scenario, switched))
+
+
+def _in_fem(scenario: Scenario, switched: SwitchedOn, every_field: bool) -> PreparedModel:
+    """The FEM with the effects that it carries by itself, the others on top."""
+    from benchmark.models.fem_model import FemModel
+
+    base = FemModel(scenario, every_field=every_field, added=switched.effects)
+    carried = base.carried
+    reasons = tuple(
+        f"the effect {effect.slug} acts on top of the FEM's elastic answer (quasi-linear): {reason}"
+        for (effect, _), reason in carried.on_top
+    )
+    inside = tuple(slug for slug in switched.on if slug in carried.carried)
+    return RepairedPress(base, replace(switched, inside=inside, warnings=(*switched.warnings, *reasons)))
+
+
+def _in_wave(scenario: Scenario, switched: SwitchedOn) -> tuple[PreparedModel, SwitchedOn]:
+    """The wave, of a sheet with the effects that it has in its own equations, the others on top.
+
+    On a base its own pretension would take its finite strain away, so that all effects are on top.
+    """
+    inside = [each for each in switched.effects if each[0].native_in_wave and scenario.support.kind == "hole"]
+    stated = {
+        key: values[parameter.name]
+        for effect, values in inside
+        for key, parameter in effect.description.keys.items()
+        if parameter.name in effect.native_in_wave and parameter.name in values
+    }
+    physics = scenario.physics.model_copy(update=stated)
+    slugs = tuple(effect.slug for effect, _ in inside if stated.keys() & effect.description.keys.keys())
+    return prepare("wave", scenario.model_copy(update={"physics": physics})), replace(switched, inside=slugs)
 
 
 def on_its_base(repair: RepairedModel, scenario: Scenario) -> Scenario:
@@ -169,8 +221,11 @@ class RepairedPress:
         UncoveredError
             A history that the options do not cover, or deeper than the model follows.
         """
+        if not self._switched.on_top:
+            reading = self._base.follow(drive, on_step)
+            return lambda: self._said(reading(), {})
         plain = self._base.run(drive, on_step)
-        if not self._switched.on or not plain.complete:
+        if not plain.complete:
             return lambda: self._said(plain, {})
         try:
             force, depth, top = self._press(drive, plain)
@@ -181,12 +236,12 @@ class RepairedPress:
 
     def _press(self, drive: Drive, plain: ModelResult) -> tuple[Array, Array, Array]:
         """(n,) force, (n,) depth and (n, L) deflections with the options."""
-        deepest = ENOUGH * float(np.abs(plain.depth).max())
+        deepest, physics = ENOUGH * float(np.abs(plain.depth).max()), self._switched.physics
         for _ in range(WIDENINGS):
             ramp = depth_ramp(self._base, deepest, STEPS)
             if ramp.failure is not None:
                 raise UncoveredError(f"the elastic model stops before {1e3 * deepest:.4g} mm: {ramp.failure}")
-            press = QuasiStaticPress(ramp.force_at, self._switched.physics)
+            press = QuasiStaticPress(ramp.force_at, physics)
             if drive.control == "force":
                 trace = drive_by_force(press, drive.time, drive.value, 0.1 * deepest)
             else:
@@ -207,6 +262,8 @@ class RepairedPress:
         notes = dict(plain.notes)
         if self._switched.on:
             notes["effects switched on"] = ", ".join(self._switched.on)
+        if self._switched.inside:
+            notes["effects in the model itself"] = ", ".join(self._switched.inside)
         fields = () if changed else plain.fields
         return replace(
             plain, **changed, notes=notes, warnings=(*plain.warnings, *self._switched.warnings), fields=fields

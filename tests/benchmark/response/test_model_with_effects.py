@@ -8,7 +8,8 @@ from benchmark.errors import InputError
 from benchmark.files import load_scenario
 from benchmark.model_file import AddedEffect, RepairedModel, Value, model_toml
 from benchmark.models import Drive, ModelResult, scenario_drive
-from benchmark.response.model_with_effects import RepairedPress, load_repair, switched_on
+from benchmark.response.model_with_effects import RepairedPress, load_repair, prepare_with_effects, switched_on
+from benchmarks.effects import VALUES, rows
 
 STIFFNESS = 1000.0
 SCENARIO = load_scenario("skin-5N", {"load.shape": "ramp_hold", "load.hold": "10 s", "load.peak": "2 N"})
@@ -90,3 +91,61 @@ def test_own_effects_are_known_by_their_file(tmp_path: Path) -> None:
         load_repair(path)
     own = Path(__file__).parents[3] / "examples/own_effect.py"
     assert load_repair(path, own).slugs == ("warming",)
+
+
+SHORT = {"load.observations": "8", "load.peak": "2 N", "fem.mesh": "coarse"}
+INSIDE = "effects in the model itself"
+SOFTENING = AddedEffect("stress_softening", {"softening": Value(0.2, ""), "softening_width": Value(0.5, "")})
+TENSION = AddedEffect("pretension", {"pretension": Value(3e3, "Pa"), "field": Value(0.0, "")})
+QUADRATIC = AddedEffect("strain_stiffening", {"b_1": Value(0.0, ""), "b_2": Value(8.0, "")})
+
+
+def _both(name: str, *effects: AddedEffect) -> tuple[ModelResult, ModelResult]:
+    scenario, model = load_scenario(name, SHORT), replace(_model(*effects), large_press="corrected")
+    fem, wave = (prepare_with_effects(m, scenario, own=model).run(scenario_drive(scenario)) for m in ("fem", "wave"))
+    return fem, wave
+
+
+@pytest.mark.parametrize(
+    ("specimen", "effect", "allowed"),
+    [
+        ("skin-5N", RELAXATION, 0.015),
+        ("skin-5N", QUADRATIC, 0.006),
+        ("skin-5N", TENSION, 0.006),
+        ("phantom", RELAXATION, 0.015),
+        ("phantom", TENSION, 0.01),
+    ],
+    ids=lambda value: getattr(value, "slug", None),
+)
+def test_the_fem_itself_has_the_effect_as_the_wave_has_it(specimen: str, effect: AddedEffect, allowed: float) -> None:
+    """Where their elastic depths are 0.4 % (skin) and 0.7 % (sheet) apart; both differ from the elastic press."""
+    fem, wave = _both(specimen, effect)
+    elastic, _ = _both(specimen)
+    peak = fem.peak_step
+    assert fem.notes[INSIDE] == effect.slug
+    assert wave.depth[peak] == pytest.approx(fem.depth[peak], rel=allowed)
+    assert abs(fem.depth[peak] / elastic.depth[peak] - 1.0) > 0.03
+
+
+def test_what_the_fem_lacks_acts_on_top_of_it_and_that_is_said() -> None:
+    fem, _ = _both("skin-5N", SOFTENING)
+    assert INSIDE not in fem.notes
+    assert any("stress_softening acts on top of the FEM's elastic answer" in text for text in fem.warnings)
+
+
+def test_beside_an_effect_on_top_only_effects_without_memory_are_in_the_fem() -> None:
+    fem, _ = _both("skin-5N", RELAXATION, SOFTENING, TENSION)
+    assert fem.notes[INSIDE] == "pretension"
+    said = [text for text in fem.warnings if "viscoelastic_relaxation acts on top" in text]
+    assert said
+    assert "stress_softening acts on top" in said[0]
+
+
+@pytest.mark.slow
+def test_wave_and_fem_agree_with_each_effect_as_without() -> None:
+    """At the peak no more than 1.3 % further apart than the elastic answers."""
+    table = list(rows(observations=12, mesh="coarse"))
+    elastic = {row.specimen: abs(row.at_peak) for row in table if row.effect == "none"}
+    assert len(table) == len(elastic) * (1 + len(VALUES))
+    for row in table:
+        assert abs(row.at_peak) <= elastic[row.specimen] + 1.3, row
