@@ -88,6 +88,40 @@ DEEP = 0.5
 IN_AIR = 0.02
 """Depths up to this share of the peak count as no press in a rest. First choice."""
 
+# ---- base: how wrong an elastic model may be, and how trials differ --------------------------------------------------
+
+SHAPE_PRIOR = {
+    "modulus": 3.0,
+    "radius": 0.058,
+    "exponent": 0.03,
+    "bend": 0.0015,
+    "turn": 0.001,
+    "width": 0.03,
+    "marker_exponent": 0.003,
+    "marker_size": 0.002,
+}
+"""Standard deviations of the base's nuisances (modulus: no bound in practice).
+
+Bend, turn, and the exponent and size of the marker field follow fits to blind nulls 84 to 99 (`docs/blind.md`): they
+are what one finite-element mesh and law differ by from another, less than real set-ups do.
+"""
+FAR_RADIUS = 0.25
+"""Relative change of the tool's radius up to which the base's second order serves. First choice."""
+LOG_PRIOR = 2.5
+"""Standard deviation of a logarithmic parameter round its start: a factor of twelve. First choice."""
+FIRST_NOISE, FIRST_MEMORY = 0.01, 0.6
+"""Noise to begin with: a share of a signal's range, and the correlation of neighbouring samples. First choice."""
+NOISY = 6.0
+"""A trial whose noise is this many times the usual one of its condition is told of. First choice."""
+ENOUGH_ALIKE = 3
+"""Trials of a condition that have a usual noise of their own; fewer share that of all. First choice."""
+LEAST_HEIGHT = 1e-3
+"""Of the deepest press, by which the depth at touch may differ between trials in any case. First choice."""
+LATE = 1.5
+"""Trials of a condition are late where their time shift is this many times its scatter. Development seeds."""
+STARTS, SECOND_START = 2, 0.7
+"""Starts that are refined, and the share of the first's promise that the second must have. Cost."""
+
 # ---- detection: is there a disagreement, and where -----------------------------------------------------------------
 
 LEVEL_SHARES = (0.7, 0.15, 0.15)
@@ -165,3 +199,16 @@ SMALL_IN_PRACTICE = 2.0
 """Of a channel's largest signal, %: what is smaller is told to be small in practice. First choice."""
 NORMAL_95 = 1.96
 """Half width of a 95 % interval in standard errors."""
+
+# ---- a finished run: no noise, so no test; what is held out decides ------------------------------------------------
+
+LEAST_LEVELS = 5
+"""Load levels that a fit of a run needs. First choice."""
+RUN_ENOUGH = 0.7
+"""Share of the gap on held-out loads that an effect must close to be the answer. First choice."""
+RUN_ALIKE = 2.0
+"""Rivals that leave no more than this many times what the best leaves there are not separable. First choice."""
+RUN_EXACT = 1e-6
+"""Share of the base's gap below which what candidates leave does not tell them apart: round-off."""
+RUN_BIC = -10.0
+"""The BIC that an effect must gain (Kass and Raftery 1995: very strong from 10 on)."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit, Model, fit, nuisance_count
 from benchmark.discovery.base.trials_problem import OWN, NoiseModel, Problem, TrialPrior, TrialRef, trial_refs
 from benchmark.discovery.trials.study import Study
@@ -16,16 +17,8 @@ from benchmark.response.fem_table import fem_or_wave_table
 from benchmark.response.force_curve import Array
 from benchmark.response.noise import fit_memory, scales
 
-FIRST_NOISE = 0.01
-"""Noise to begin with, as a share of a signal's range."""
-FIRST_MEMORY = 0.6
 WIDE = TrialPrior(2.0, 10.0, 0.2, 1e-3, 1e-2)
-BAD = 6.0
-"""A trial whose noise is this many times the usual one of its condition is told of."""
-LEAST_HEIGHT = 1e-3
-"""Of the deepest press, by which the depth at touch may differ between trials in any case."""
-ENOUGH_ALIKE = 3
-"""Trials of a condition that have a usual noise of their own; fewer share that of all."""
+"""Of trials before anything is known of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,8 +70,8 @@ def _ranges(study: Study) -> Array:
 
 
 def _first_noise(study: Study) -> NoiseModel:
-    scale = np.tile(FIRST_NOISE * _ranges(study), (study.trial_count, 1))
-    return NoiseModel((FIRST_MEMORY,) * len(study.names), scale)
+    scale = np.tile(criteria.FIRST_NOISE * _ranges(study), (study.trial_count, 1))
+    return NoiseModel((criteria.FIRST_MEMORY,) * len(study.names), scale)
 
 
 def _wide(study: Study) -> TrialPrior:
@@ -139,7 +132,7 @@ def _less_nuisances(rows: Array, signals: Array) -> Array:
 
 
 def _estimated(fitted: Fit) -> tuple[Problem, list[str]]:
-    """The problem with noise and spreads from a fit, without bad trials."""
+    """The problem with noise and spreads from a fit, and remarks on noisy trials, which count for less."""
     problem = fitted.model.problem
     errors = pure_errors(fitted)
     known = [i for i, error in enumerate(errors) if np.isfinite(error).all()]
@@ -156,7 +149,7 @@ def _estimated(fitted: Fit) -> tuple[Problem, list[str]]:
     noise = NoiseModel(tuple(memory), scale)
     worst = (scale / _usual(scale, [trial.condition for trial in problem.trials])).max(axis=1)
     lively = _spread(fitted.nuisance[:, 0]) > 0.3
-    bad = (worst > BAD) & (not lively)
+    bad = (worst > criteria.NOISY) & (not lively)
     warnings = [
         f"trial {problem.trials[i].name}: {worst[i]:.3g} times as noisy as the others" for i in np.flatnonzero(bad)
     ]
@@ -169,7 +162,7 @@ def _usual(scale: Array, condition: Sequence[int]) -> Array:
     out = np.broadcast_to(np.median(scale, axis=0), scale.shape).copy()
     for number in np.unique(numbers):
         mine = numbers == number
-        if mine.sum() >= ENOUGH_ALIKE:
+        if mine.sum() >= criteria.ENOUGH_ALIKE:
             out[mine] = np.median(scale[mine], axis=0)
     return out
 
@@ -225,6 +218,6 @@ def _spreads(fitted: Fit, scale: Array) -> TrialPrior:
         gain=max(_spread(state[:, 0]), 3e-3),
         zero=max(_size(state[:, 1]), 0.2 * noise, 1e-9),
         shift=max(_size(state[:, 2]), 0.05 * fitted.model.problem.study.raw_interval, 1e-4),
-        height=max(_spread(state[:, 3]), LEAST_HEIGHT * deepest),
+        height=max(_spread(state[:, 3]), criteria.LEAST_HEIGHT * deepest),
         offset=max(offset, 0.3 * floor, 1e-9),
     )

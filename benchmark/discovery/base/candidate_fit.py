@@ -7,18 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit, Model, White, fit, nuisance_precision
 from benchmark.discovery.base.trials_problem import Problem
 from benchmark.physics import Effect
 from benchmark.physics.effect import Values
 from benchmark.response.force_curve import Array
 
-REFINED = 2
-"""Starts that are refined."""
-WORTH = 0.7
-"""A second start is refined where it promises at least this share of the first."""
-LATE = 1.5
-"""Trials of a condition are late where their time shift is this many times its scatter."""
 SCALES = (1e-5, 10.0)
 """A screened start's amplitude is scaled within this range."""
 
@@ -43,7 +38,11 @@ def fit_candidate(base: Fit, effect: Effect, most: int = 10, known: tuple[Array,
     fits = []
     for state in (base.nuisance, *_unshifted(base)):
         starts = screened(base, model, effect, state)
-        close = [one.vector for one in starts[:REFINED] if one.won > WORTH * starts[0].won or one is starts[0]]
+        close = [
+            one.vector
+            for one in starts[: criteria.STARTS]
+            if one.won > criteria.SECOND_START * starts[0].won or one is starts[0]
+        ]
         warm = base.columns if state is base.nuisance else None
         fits += [fit(model, start, state, warm, most) for start in close]
     return min(fits, key=lambda each: each.objective)
@@ -58,7 +57,7 @@ def _unshifted(base: Fit) -> tuple[Array, ...]:
     state, late = base.nuisance.copy(), False
     for number in np.unique(groups):
         shift = base.nuisance[groups == number, 2]
-        late |= abs(shift.mean()) > LATE * max(float(shift.std()), base.model.problem.study.raw_interval)
+        late |= abs(shift.mean()) > criteria.LATE * max(float(shift.std()), base.model.problem.study.raw_interval)
         state[groups == number, 2] -= shift.mean()
     return (state,) if late else ()
 

@@ -9,8 +9,9 @@ from typing import TypeAlias
 
 import numpy as np
 
+from benchmark.discovery import criteria
 from benchmark.discovery.base.base_shape import Shape, ShapedTable
-from benchmark.discovery.base.trials_problem import OFFSETS, OWN, SHAPE_PRIOR, Problem
+from benchmark.discovery.base.trials_problem import OFFSETS, OWN, Problem
 from benchmark.physics import Effect, EffectParameter, Readings, catalogue
 from benchmark.physics.effect import Values
 from benchmark.response.force_curve import Array
@@ -19,10 +20,6 @@ from benchmark.response.least_squares import settled as settled_nuisances
 from benchmark.response.noise import Whitener
 from benchmark.response.pipeline import TrialPipeline
 
-FAR_RADIUS = 0.25
-"""Relative change of the tool's radius up to which the base's second order serves."""
-LOG_PRIOR = 2.5
-"""Standard deviation of a logarithmic parameter round its start."""
 SHAPE_STEP = 1e-3
 """By which the base's nuisances are changed to differentiate."""
 MOST = 12
@@ -96,7 +93,7 @@ class Model:
     def bounds(self) -> tuple[Array, Array]:
         """Lower and upper bounds of the vector."""
         held = dict(self.pinned)
-        reach = [FAR_RADIUS if name == "radius" else np.inf for name in self.problem.shapes]
+        reach = [criteria.FAR_RADIUS if name == "radius" else np.inf for name in self.problem.shapes]
         shapes = [(held.get(n, -far), held.get(n, far)) for n, far in zip(self.problem.shapes, reach, strict=True)]
         low = [low for low, _ in shapes] + [_inner(p, p.low) for _, p in self.parameters]
         high = [high for _, high in shapes] + [_inner(p, p.high) for _, p in self.parameters]
@@ -106,10 +103,10 @@ class Model:
         """Mean and precision (p,) of the priors; logarithmic parameters round their start."""
         mean, precision = np.zeros(self.size), np.zeros(self.size)
         for k, name in enumerate(self.problem.shapes):
-            precision[k] = getattr(SHAPE_PRIOR, name) ** -2
+            precision[k] = criteria.SHAPE_PRIOR[name] ** -2
         for k, (_, parameter) in enumerate(self.parameters, start=self.shape_count):
             if parameter.logarithmic:
-                mean[k], precision[k] = start[k], LOG_PRIOR**-2
+                mean[k], precision[k] = start[k], criteria.LOG_PRIOR**-2
             else:
                 precision[k] = (parameter.high - parameter.low) ** -2
                 mean[k] = start[k]

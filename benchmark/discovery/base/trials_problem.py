@@ -15,11 +15,6 @@ from benchmark.response.elastic_table import ElasticTable
 from benchmark.response.force_curve import Array
 from benchmark.response.noise import Whitener, whitener
 
-SHAPE_PRIOR = Shape(3.0, 0.058, 0.03, 0.0015, 0.001, 0.03, 0.003, 0.002)
-"""Standard deviations of the base's nuisances (modulus: no bound in practice).
-
-The two bends and the exponent and size of the marker field follow fits to blind nulls 84 to 99 (`docs/blind.md`).
-"""
 MARKER_SHAPES = ("width", "marker_exponent", "marker_size")
 FOLLOWED = ("modulus", "radius", "exponent", "width")
 """Nuisances in which a base may well be wrong; the others stand for its last per cent."""

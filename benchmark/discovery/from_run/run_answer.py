@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import (
     Array,
     Candidate,
@@ -30,15 +31,6 @@ from benchmark.physics import Effect
 from benchmark.response.pipeline import physics_of
 from benchmark.runs.listener import Listener
 from wavemodel.physics import Physics
-
-ENOUGH = 0.7
-"""Share of the gap on held-out loads that an effect must close to be the answer."""
-ALIKE = 2.0
-"""Rivals that leave no more than this many times what the best leaves on held-out loads are not separable from it."""
-EXACT = 1e-6
-"""Share of the base's gap below which what candidates leave does not tell them apart."""
-WORTH_NAMING = -10.0
-"""The BIC that an effect must gain (Kass and Raftery 1995: very strong from 10 on)."""
 
 
 def repair_run(
@@ -100,7 +92,7 @@ def _fits(effects: Sequence[Effect], case: Case, listener: Listener) -> tuple[Bo
 
 def _gains(fit: BodyEffectFit) -> bool:
     """Whether a fit is better than the base where it was made."""
-    return fit.delta_bic <= WORTH_NAMING
+    return fit.delta_bic <= criteria.RUN_BIC
 
 
 class _Answer:
@@ -140,7 +132,7 @@ class _Answer:
     def _verdict(self, layers: Sequence[LayerGap]) -> str:
         if max(abs(layer.peak_before) for layer in layers) < 100.0 * self.margin:
             return "no_discrepancy"
-        if self.best is None or not _gains(self.best) or (self.closed(self.best) or 0.0) < ENOUGH:
+        if self.best is None or not _gains(self.best) or (self.closed(self.best) or 0.0) < criteria.RUN_ENOUGH:
             return "outside_catalogue"
         return "conditional"
 
@@ -195,7 +187,11 @@ class _Answer:
         if self.best is None or self.verdict == "no_discrepancy":
             return ()
         left = self.gaps[self.best.effect.slug]
-        alike = [slug for slug, gap in self.gaps.items() if gap <= ALIKE * left and slug != self.best.effect.slug]
+        alike = [
+            slug
+            for slug, gap in self.gaps.items()
+            if gap <= criteria.RUN_ALIKE * left and slug != self.best.effect.slug
+        ]
         units = {parameter.name: parameter.unit for parameter in self.best.effect.description.parameters}
         estimates = tuple(
             Estimate(name, value, units[name], self.best.ci95[name]) for name, value in self.best.values.items()
@@ -206,7 +202,7 @@ class _Answer:
         """The best candidate's share of the likelihood of the held-out loads, one observation a load level."""
         levels = np.unique(np.round(self.judged.run.force[self.judged.held], 9)).size
         in_question = [fit for fit in self.fits if _gains(fit) == _gains(self.fits[0])]
-        left = np.maximum([self.gaps[fit.effect.slug] for fit in in_question], EXACT * self.before)
+        left = np.maximum([self.gaps[fit.effect.slug] for fit in in_question], criteria.RUN_EXACT * self.before)
         return float(1.0 / np.sum((left[0] / left) ** levels))
 
     def candidate(self, fit: BodyEffectFit) -> Candidate:

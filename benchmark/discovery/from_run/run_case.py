@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.from_run.finished_run import FinishedRun
 from benchmark.discovery.report.discovery_record import LayerGap
@@ -18,8 +19,6 @@ from wavemodel.physics import Physics, QuasiStaticPress
 from wavemodel.physics.force_driven import drive_by_force
 
 HALF = 0.5
-LEAST = 5
-"""Load levels that a fit needs."""
 NOTHING = Physics()
 
 
@@ -70,10 +69,10 @@ def split(run: FinishedRun, other: FinishedRun | None) -> tuple[Case, Case]:
     """
     whole = np.ones(run.force.size, dtype=bool)
     fitted = whole if other is not None else run.force <= HALF * run.force.max() * (1.0 + 1e-9)
-    if np.unique(run.force[fitted & (run.force > 0.0)]).size < LEAST or run.force.max() <= 0.0:
+    if np.unique(run.force[fitted & (run.force > 0.0)]).size < criteria.LEAST_LEVELS or run.force.max() <= 0.0:
         raise InputError(
-            f"run {run.name}: its load history has fewer than {LEAST} loads to fit; raise load.observations, or press "
-            "instead of pulling"
+            f"run {run.name}: its load history has fewer than {criteria.LEAST_LEVELS} loads to fit; raise "
+            "load.observations, or press instead of pulling"
         )
     first = _case(run, fitted, ~fitted)
     if other is None:

@@ -1,11 +1,25 @@
 """What is closed and what trials share: told from round-off and from what each has of its own."""
 
+import warnings
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from benchmark.discovery.answer.gap import share_closed, share_left, shared_misfit
+from benchmark.discovery.answer import gap as module
+from benchmark.discovery.answer.gap import (
+    HeldOut,
+    closed_overall,
+    gaps,
+    held_out_residuals,
+    share_closed,
+    share_left,
+    shared_misfit,
+    traces,
+)
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
+from benchmark.discovery.criteria import Settings
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
 
@@ -52,3 +66,96 @@ def test_noise_alone_is_not_shared(session_of):
     base = calibrate(session, prepare(session, 90)).base
     rows = sum(trial.signals.size for trial in base.model.problem.trials[::4])
     assert shared_misfit(base) == pytest.approx(0.0, abs=6.0 * np.sqrt(2.0 * rows))
+
+
+def measured(residuals, conditions, counts=None):
+    """A base and residuals (R, n, C) of its trials, as `gaps` wants them."""
+    residuals = np.asarray(residuals, dtype=float)
+    counts = np.ones(residuals.shape[1:]) if counts is None else np.asarray(counts, dtype=float)
+    trials = tuple(
+        SimpleNamespace(
+            name=f"t{k}",
+            condition=condition,
+            signals=np.full(counts.shape, 5.0),
+            count=counts,
+            motion=SimpleNamespace(time=np.arange(len(counts)), depth=np.zeros(len(counts))),
+        )
+        for k, condition in enumerate(conditions)
+    )
+    names = {number: SimpleNamespace(name=f"c{number}") for number in conditions}
+    study = SimpleNamespace(channels=("force_z", "marker_x", "marker_x")[: residuals.shape[2]], conditions=names)
+    return SimpleNamespace(model=SimpleNamespace(problem=SimpleNamespace(trials=trials, study=study)))
+
+
+def held(before, after, kind="trial"):
+    return HeldOut(list(np.asarray(before, dtype=float)), list(np.asarray(after, dtype=float)), kind)
+
+
+def floors(monkeypatch, values):
+    monkeypatch.setattr(module, "pure_errors", lambda base: list(np.asarray(values, dtype=float)))
+
+
+def test_the_gap_of_a_channel_is_its_root_mean_square_over_trials_and_samples(monkeypatch):
+    before = np.stack([np.full((4, 1), 3.0), np.full((4, 1), 4.0)])
+    after = np.stack([np.full((4, 1), 1.0), np.full((4, 1), 2.0)])
+    floors(monkeypatch, np.full((2, 4, 1), 1.0))
+    (gap,) = gaps(measured(before, (0, 0)), held(before, after, "condition"), Settings(bootstraps=20))
+    assert (gap.rmse_before, gap.rmse_after, gap.noise_floor) == pytest.approx((12.5**0.5, 2.5**0.5, 1.0))
+    assert gap.closed == pytest.approx(10.0 / 11.5, abs=1e-6)
+    assert gap.held_out == "condition"
+    low, high = gap.ci95
+    assert 8.0 / 8.0 >= high >= gap.closed >= low >= 12.0 / 15.0 - 1e-6  # one trial alone at either end
+
+
+def test_rows_without_samples_do_not_count(monkeypatch):
+    before = np.array([[[3.0], [100.0]]] * 2)
+    floors(monkeypatch, np.zeros((2, 2, 1)))
+    (gap,) = gaps(measured(before, (0, 0), [[2.0], [0.0]]), held(before, before), Settings(bootstraps=5))
+    assert gap.rmse_before == pytest.approx(3.0)
+
+
+def test_a_trial_without_mates_has_the_floor_of_the_others(monkeypatch):
+    before = np.full((3, 4, 1), 2.0)
+    error = np.full((3, 4, 1), 0.5)
+    error[2] = np.nan
+    floors(monkeypatch, error)
+    (gap,) = gaps(measured(before, (0, 0, 1)), held(before, before), Settings(bootstraps=5))
+    assert gap.noise_floor == pytest.approx(0.5)
+
+
+def test_where_no_replicates_tell_the_noise_the_whole_gap_is_unknown_and_nothing_warns(monkeypatch):
+    before = np.full((2, 4, 1), 2.0)
+    floors(monkeypatch, np.full((2, 4, 1), np.nan))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert closed_overall(measured(before, (0, 1)), held(before, 0.5 * before)) is None
+
+
+def test_channels_count_together_in_units_of_their_noise(monkeypatch):
+    before = np.full((2, 4, 2), 1.0) * [3.0, 3e-6]
+    after = np.full((2, 4, 2), 1.0) * [1.0, 3e-6]
+    floors(monkeypatch, np.full((2, 4, 2), 1.0) * [1.0, 1e-6])
+    assert closed_overall(measured(before, (0, 0)), held(before, after)) == pytest.approx(0.5, abs=1e-6)
+
+
+def test_a_condition_held_out_is_predicted_by_the_others_and_a_trial_by_its_mates(monkeypatch):
+    asked = []
+    monkeypatch.setattr(module, "_residuals", lambda fit, parts, kind: asked.append((kind, np.array(parts))) or [])
+    two, one = (measured(np.zeros((3, 4, 1)), conditions) for conditions in ((0, 0, 1), (0, 0, 0)))
+    assert held_out_residuals(two, two).kind == "condition"
+    assert held_out_residuals(one, one).kind == "trial"
+    (kind, conditions), (other, trials) = asked
+    assert (kind, other) == ("condition", "trial")
+    np.testing.assert_array_equal(conditions, [[True, True, False], [False, False, True]])
+    np.testing.assert_array_equal(trials, np.eye(3, dtype=bool))
+
+
+def test_curves_are_measured_less_residual_and_empty_where_nothing_was_seen(monkeypatch):
+    before = np.full((2, 3, 1), 2.0)
+    floors(monkeypatch, np.full((2, 3, 1), 0.5))
+    first, second = traces(measured(before, (0, 0), [[1.0], [0.0], [1.0]]), held(before, 0.5 * before))
+    np.testing.assert_allclose(first.before, 3.0)
+    np.testing.assert_allclose(first.after, 4.0)
+    np.testing.assert_allclose(first.noise, 0.5)
+    np.testing.assert_allclose(second.measured, [5.0, np.nan, 5.0])
+    assert (first.trial, second.trial, first.condition, first.channel) == ("t0", "t1", "c0", "force_z")

@@ -1,3 +1,7 @@
+"""The verdict: what each rests on, and what may never be said."""
+
+import itertools
+
 import pytest
 
 from benchmark.discovery.answer.verdict import Facts, statement, verdict
@@ -54,3 +58,58 @@ def test_too_few_trials_name_nothing():
 
 def test_parameters_that_do_not_transfer_are_conditional():
     assert verdict(facts(transfers=False)) == "conditional"
+
+
+CHOICES = {
+    "p": (0.001, 0.4),
+    "p_cells": (0.01, 0.4),
+    "enough": (True, False),
+    "effects": ((), (RELAXATION,)),
+    "lookalikes": ((), (DRAINAGE,), (DRIFT,)),
+    "left": (0.02, 0.2, 0.5),
+    "p_after": (0.6, 0.002),
+    "transfers": (True, False, None),
+}
+EVERY = [facts(**dict(zip(CHOICES, each, strict=True))) for each in itertools.product(*CHOICES.values())]
+
+
+def verdicts_where(condition):
+    return {verdict(each) for each in EVERY if condition(each)}
+
+
+def test_every_combination_of_facts_has_one_of_the_verdicts_and_a_sentence():
+    assert {verdict(each) for each in EVERY} == set(VERDICTS)
+    assert all(statement(verdict(each), each).endswith(".") for each in EVERY)
+
+
+def test_nothing_is_said_of_too_few_trials_or_of_chance():
+    assert verdicts_where(lambda each: not each.enough or each.p >= each.level) == {"no_discrepancy"}
+
+
+def test_only_one_effect_that_holds_elsewhere_and_leaves_nothing_is_named():
+    for each in EVERY:
+        if verdict(each) == "named":
+            assert each.enough
+            assert each.p < each.level
+            assert each.effects
+            assert not each.lookalikes
+            assert each.transfers is True
+            assert each.left <= 0.1 or each.p_after >= each.level
+
+
+def test_what_leaves_a_third_for_sure_is_never_an_answer():
+    left = verdicts_where(lambda each: each.effects and each.left > 0.3 and each.p_after < each.level)
+    assert left <= {"outside_catalogue", "no_discrepancy"}
+
+
+def test_an_instrument_among_the_rivals_of_tissue_asks_for_a_calibration():
+    mixed = verdicts_where(lambda each: each.effects and DRIFT in each.lookalikes)
+    assert mixed == {"instrument_first", "outside_catalogue", "no_discrepancy"}
+    assert verdict(facts(effects=(DRIFT,), lookalikes=(BY_SLUG["tool_inertia"],))) == "lookalikes"
+    assert verdict(facts(effects=(DRIFT,), lookalikes=(RELAXATION,))) == "instrument_first"
+
+
+def test_the_statement_names_effects_and_rivals():
+    made = facts(effects=(RELAXATION, DRIFT), lookalikes=(DRAINAGE,))
+    words = statement("lookalikes", made)
+    assert all(name in words for name in ("viscoelastic relaxation and force drift", "poroelastic drainage"))
