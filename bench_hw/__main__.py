@@ -1,5 +1,18 @@
-"""`python -m bench_hw`."""
+"""`python -m bench_hw`, and the command `tissuebench-bench`."""
 
-from bench_hw.cli import main
+import os
+import sys
 
-main()
+from bench_hw.safe_path import leave_current_folder, tell
+
+
+def start() -> None:
+    """Run the command line with modules from the installation alone; see `bench_hw.safe_path`."""
+    tell(leave_current_folder(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), sys.argv)
+    from bench_hw.cli import main
+
+    main()
+
+
+if __name__ == "__main__":
+    start()

@@ -1,8 +1,21 @@
-"""`python -m benchmark`."""
+"""`python -m benchmark`, and the command `tissuebench`."""
 
+import os
 import sys
 
-if __name__ == "__main__":
+
+def start() -> int:
+    """Run the command line with modules from the installation alone; see `bench_hw.safe_path`."""
+    root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    sys.path.insert(0, root)
+    from bench_hw.safe_path import leave_current_folder, tell
+
+    sys.path.remove(root)
+    tell(leave_current_folder(root), sys.argv)
     from benchmark.cli.app import main
 
-    sys.exit(main())
+    return main()
+
+
+if __name__ == "__main__":
+    sys.exit(start())

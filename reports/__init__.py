@@ -4,7 +4,7 @@ Knows nothing of solvers, wave models, devices or the harness: plain arrays, dic
 dataclasses of `reports.blocks` come in, strings and files go out. Figures live in `reports.figures`.
 """
 
-from reports.atomic import whole_folder, write_bytes, write_json, write_text
+from reports.atomic import write_bytes, write_json, write_text
 from reports.blocks import (
     Block,
     Bullets,
@@ -27,6 +27,7 @@ from reports.blocks import (
     Verdict,
 )
 from reports.page import Page, render_page, write_page
+from reports.result_folder import check_place, extended_folder, whole_folder
 from reports.tables import csv_text, write_csv
 
 __all__ = [
@@ -50,7 +51,9 @@ __all__ = [
     "Subsection",
     "Table",
     "Verdict",
+    "check_place",
     "csv_text",
+    "extended_folder",
     "render_page",
     "whole_folder",
     "write_bytes",

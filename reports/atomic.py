@@ -1,4 +1,4 @@
-"""Files and folders written whole or not at all.
+"""Files written whole or not at all; whole folders are in `reports.result_folder`.
 
 What is written goes to a temporary name beside its target and is renamed at the end, so that a reader never
 sees half a file and a failure leaves what was there before. What a file contains is not decided here.
@@ -10,9 +10,7 @@ import json
 import math
 import os
 import secrets
-import shutil
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +49,7 @@ def write_bytes(path: StrPath, data: bytes) -> Path:
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
-    _sync_folder(target.parent)
+    sync_folder(target.parent)
     return target
 
 
@@ -103,70 +101,12 @@ def plain(value: Any, where: str = "value") -> Any:
     raise TypeError(f"{where} is a {type(value).__name__}, which has no JSON form")
 
 
-@contextmanager
-def whole_folder(path: StrPath) -> Iterator[Path]:
-    """Build a folder under a temporary name beside `path` and rename it at the end.
-
-    The context manager yields the folder to fill. A folder already at `path` is replaced only when the new
-    one is complete. On any exception the temporary folder is removed and `path` stays untouched.
-
-    Parameters
-    ----------
-    path
-        The folder to make; missing parent folders are made (and removed again on an exception).
-
-    Raises
-    ------
-    FileExistsError
-        If `path` is a file.
-    OSError
-        Where the file system refuses.
-    """
-    target = Path(path).resolve()
-    if target.exists() and not target.is_dir():
-        raise FileExistsError(f"{target} is a file; a result folder needs a name that is free or a folder's")
-    made = [folder for folder in target.parents if not folder.exists()]
-    temporary = _sibling(target)
-    try:
-        temporary.mkdir(parents=True)
-        yield temporary
-        _put_in_place(temporary, target)
-    except BaseException:
-        shutil.rmtree(temporary, ignore_errors=True)
-        _remove_empty(made)
-        raise
-    _sync_folder(target.parent)
-
-
-def _put_in_place(temporary: Path, target: Path) -> None:
-    """Rename `temporary` to `target`; an old `target` steps aside first and comes back if that fails."""
-    if not target.exists():
-        temporary.rename(target)
-        return
-    retired = _sibling(target)
-    target.rename(retired)
-    try:
-        temporary.rename(target)
-    except BaseException:
-        retired.rename(target)
-        raise
-    shutil.rmtree(retired)
-
-
 def _sibling(target: Path) -> Path:
     """Return a free hidden name in the folder of `target`."""
     return target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
 
 
-def _remove_empty(folders: list[Path]) -> None:
-    """Remove the folders that are empty, innermost first."""
-    for folder in folders:
-        if not folder.is_dir() or any(folder.iterdir()):
-            return
-        folder.rmdir()
-
-
-def _sync_folder(folder: Path) -> None:
+def sync_folder(folder: Path) -> None:
     """Make a rename durable where the system lets a folder be synchronised."""
     if os.name != "posix":
         return

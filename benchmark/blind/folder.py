@@ -10,10 +10,14 @@ from typing import Any
 
 from benchmark.blind.judging import BlindRow, Judged, confusion, table, verdicts
 from benchmark.errors import InputError
-from reports import write_csv, write_json, write_text
+from benchmark.runs.destination import check_ready
+from reports import extended_folder, write_csv, write_json, write_text
+from reports.manifest import foreign_files, refuse_foreign
+from reports.result_folder import clear_leftovers
 
 SCHEMA = 1
 SETTINGS, JOURNAL, DOCUMENT = "settings.json", "cases.jsonl", "blind.json"
+FILES = (SETTINGS, DOCUMENT, "cases.csv", "confusion.csv", "table.md", JOURNAL)
 
 
 def open_folder(path: Path, settings: dict[str, Any]) -> Path:
@@ -29,17 +33,26 @@ def open_folder(path: Path, settings: dict[str, Any]) -> Path:
     InputError
         The folder holds something else, or a stopped run with other settings.
     """
-    if path.exists() and not path.is_dir():
-        raise InputError(f"--out {path} is a file; it must be a folder that is new, empty, or of a blind run")
+    check_ready(path)
     there = _settings_in(path)
-    if there is None and path.is_dir() and any(path.iterdir()):
-        raise InputError(f"--out {path} holds files that are no blind run; it must be a folder that is new or empty")
+    if there is None and (others := foreign_files(path)):
+        raise InputError(
+            f"--out {path} holds files that are no blind run ({', '.join(others[:5])}); "
+            "it must be a folder that is new or empty"
+        )
     if (path / JOURNAL).exists() and there != settings:
         raise InputError(
             f"--out {path} holds a stopped blind run with other settings ({there}); repeat that command to go on with "
             "it, or give another folder"
         )
-    write_json(path / SETTINGS, settings)
+    try:
+        refuse_foreign(path, f"--out {path}", FILES)
+    except OSError as error:
+        raise InputError(str(error)) from error
+    path.mkdir(parents=True, exist_ok=True)
+    clear_leftovers(path)
+    with extended_folder(path, growing=(JOURNAL,)) as new:
+        write_json(new / SETTINGS, settings)
     return path / JOURNAL
 
 
@@ -55,15 +68,17 @@ def finish(path: Path, settings: dict[str, Any], cases: Sequence[Judged]) -> dic
     """Write blind.json, cases.csv, confusion.csv and table.md, and end the journal; returns the document."""
     rows = table(cases)
     result = document(settings, rows, cases)
-    write_csv(path / "cases.csv", {each.name: [getattr(case, each.name) for case in cases] for each in fields(Judged)})
+    columns = {each.name: [getattr(case, each.name) for case in cases] for each in fields(Judged)}
     pairs = [(truth, said, n) for truth, names in confusion(cases).items() for said, n in names.most_common()]
-    write_csv(
-        path / "confusion.csv",
-        {name: [pair[number] for pair in pairs] for number, name in enumerate(("truth", "said_first", "cases"))},
-    )
-    write_text(path / "table.md", f"# Blind trials (synthetic), suite {settings['suite']}\n\n{text_table(rows)}\n")
-    write_json(path / DOCUMENT, result)
+    confused = {name: [pair[number] for pair in pairs] for number, name in enumerate(("truth", "said_first", "cases"))}
+    with extended_folder(path) as new:
+        write_csv(new / "cases.csv", columns)
+        write_csv(new / "confusion.csv", confused)
+        write_text(new / "table.md", f"# Blind trials (synthetic), suite {settings['suite']}\n\n{text_table(rows)}\n")
+        write_json(new / DOCUMENT, result)
     (path / JOURNAL).unlink(missing_ok=True)
+    with extended_folder(path, growing=()):
+        pass
     return result
 
 

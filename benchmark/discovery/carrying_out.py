@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from benchmark.discovery.evidence.pool import forget
 from benchmark.discovery.from_run import at_small_strain, is_run, read_run, repair_run
 from benchmark.discovery.report.discovery_files import DiscoveryOutcome, write_discovery
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
@@ -48,6 +49,7 @@ def carry_out(request: DiscoverRequest, of_session: OfSession, listener: Listene
     InputError
         Unusable input, or options that do not go together; nothing is written then.
     """
+    destination(request.out, "", (*request.paths, request.effects, request.specimen, *request.settings.values()))
     effects = (*catalogue(), *(() if request.effects is None else load_effects(request.effects)))
     if any(is_run(path) for path in request.paths):
         record = _of_runs(request, effects, listener)
@@ -56,10 +58,11 @@ def carry_out(request: DiscoverRequest, of_session: OfSession, listener: Listene
             "discover takes one session (several conditions belong into one), or one or two result folders of run"
         )
     else:
-        if request.out is not None:
-            destination(request.out, "")
         record = of_session(request, effects, listener)
-    return write_discovery(record, destination(request.out, f"{record.name}-discovery"))
+    outcome = write_discovery(record, destination(request.out, f"{record.name}-discovery"))
+    if record.store is not None:
+        forget(record.store)
+    return outcome
 
 
 def _of_runs(request: DiscoverRequest, effects: tuple[Effect, ...], listener: Listener) -> DiscoveryRecord:

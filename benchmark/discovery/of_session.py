@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -39,7 +38,6 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
     own = tuple(effect for effect in effects if effect.slug not in SLUGS)
     store = store_folder(request.out, session, request.model)
     found = _found(session, request, own, listener, store)
-    shutil.rmtree(store, ignore_errors=True)
     warnings = tuple(dict.fromkeys((*session.warnings, *said, *found.discovery.warnings)))
     return DiscoveryRecord(
         name=session.name,
@@ -53,6 +51,7 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
         seed=request.seed,
         proposal=propose(found),
         large_press="corrected",
+        store=store,
     )
 
 

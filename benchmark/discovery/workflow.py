@@ -20,7 +20,7 @@ from benchmark.discovery.detection.contrasts import contrasts
 from benchmark.discovery.detection.disagreement import Detection, combined, detect, exchangeable, smallest_visible
 from benchmark.discovery.detection.places import places
 from benchmark.discovery.discovery_result import Discovery
-from benchmark.discovery.evidence.pool import Listener, Pool, fingerprint, pool, silent
+from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fingerprint, own_code, pool, silent
 from benchmark.discovery.evidence.selection import Selection, first_gain, select, usable
 from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, remark, screen
 from benchmark.discovery.trials.preparing import prepare
@@ -97,7 +97,7 @@ def findings(
     known = (*catalogue(), *effects)
     listener("prepare", 0, 1, "")
     calibrated = calibrate(session, prepare(session, settings.rows), table_of)
-    key = fingerprint(VERSION, session.fingerprint, settings, [each.description for each in effects])
+    key = fingerprint(VERSION, code_version(), session.fingerprint, settings, [own_code(each) for each in effects])
     listener("detect", 0, 1, "")
     with pool(settings.workers, store, key, effects, listener) as work:
         selection, before = _searched(calibrated.base, known, settings, work)

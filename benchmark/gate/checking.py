@@ -11,12 +11,13 @@ from typing import Any
 from benchmark.gate.accuracy import compare_values
 from benchmark.gate.baseline import HistoryEntry, append, read_history
 from benchmark.gate.check_basis import CheckBasis, stored_baseline
-from benchmark.gate.folder import check_folder, write_check
+from benchmark.gate.folder import write_check
 from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
 from benchmark.gate.processes import Measured, Party, measure
 from benchmark.gate.timing import Judge, TimingRow
 from benchmark.gate.verdict import CheckVerdict
 from benchmark.gate.versions import Origin, gated_values, origin_of, rival, this_version
+from benchmark.runs.destination import destination
 from benchmark.runs.listener import Listener
 
 NOTABLE = 0.25
@@ -51,7 +52,7 @@ def check(request: CheckRequest, listener: Listener) -> CheckOutcome:
     OSError
         Where the file system refuses; no report is written then.
     """
-    folder = check_folder(request.out)
+    folder = destination(request.out, "check", (request.baseline_path, request.gate, request.history_path))
     plan = load_plan(request.gate)
     baseline = stored_baseline(request, plan)
     origin = origin_of(plan, request.seed)

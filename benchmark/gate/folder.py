@@ -12,18 +12,9 @@ from benchmark.gate.check_page import check_page
 from benchmark.gate.processes import Measured
 from benchmark.gate.verdict import CheckVerdict
 from benchmark.gate.versions import Origin
-from benchmark.runs.destination import destination
 from reports import whole_folder, write_csv, write_json, write_page
 
 DOCUMENT = "check.json"
-NAME = "check"
-
-
-def check_folder(out: Path | None) -> Path:
-    """Where the result goes: an earlier check may be replaced; raises InputError as `destination` does."""
-    if out is not None and (out / DOCUMENT).is_file():
-        return out
-    return destination(out, NAME)
 
 
 def write_check(

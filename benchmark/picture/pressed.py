@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -43,12 +44,20 @@ def draw_pressed(snapshot: FieldSnapshot, axis: tuple[float, float], reach: floa
         place = [repr(value) for value in (*axis, reach)]
         command = [sys.executable, "-m", "benchmark.picture.drawing", str(vtu), str(png), *place]
         try:
-            done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS, check=False)
+            done = subprocess.run(
+                command, capture_output=True, text=True, timeout=SECONDS, check=False, env=_environment()
+            )
         except (OSError, subprocess.TimeoutExpired) as error:
             return Drawn(b"", f"the drawing was given up ({type(error).__name__})")
         if done.returncode != 0 or not png.is_file():
             return Drawn(b"", _reason(done.returncode, done.stderr))
         return Drawn(png.read_bytes())
+
+
+def _environment() -> dict[str, str]:
+    """That of a process whose modules do not come from the current folder."""
+    paths = [str(Path(__file__).parents[2]), *filter(None, [os.environ.get("PYTHONPATH")])]
+    return {**os.environ, "PYTHONSAFEPATH": "1", "PYTHONPATH": os.pathsep.join(paths)}
 
 
 def _reason(code: int, said: str) -> str:

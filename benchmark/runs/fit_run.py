@@ -52,6 +52,7 @@ def fit_to_folder(
     """
     if effects is not None and model is None:
         raise InputError("--effects brings effects that a model file names: give --model with it")
+    destination(out, "", (path, model, effects, specimen, *settings.values()))
     repair = None if model is None else load_repair(model, effects)
     found = fit_trials(path, specimen, settings, listener, repair=repair)
     session, fit, warnings = found.session, found.fit, found.warnings

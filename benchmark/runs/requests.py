@@ -51,6 +51,7 @@ def carry_out(request: RunRequest, options: RunOptions, listener: Listener) -> l
         A model's process failed.
     """
     _check_together(request)
+    _check_places(request)
     if request.trials is not None:
         return [_session(request, request.trials, request.out, options, listener)]
     if request.scenario is not None and len(request.tissues) > 1:
@@ -82,6 +83,15 @@ def _check_together(request: RunRequest) -> None:
         raise InputError("--model needs a SCENARIO or --trials, so that it is clear what it is tried on")
     if request.reference is not None and len(request.tissues) > 1:
         raise InputError("--reference is the FEA of one tissue: give one --tissue with it, or none")
+
+
+def _check_places(request: RunRequest) -> None:
+    """Refuse an `--out` that would lose something, or cannot be written, before anything is computed."""
+    texts = (request.scenario, request.specimen, *request.tissues, *(request.settings or {}).values())
+    inputs = (request.trials, request.wave, request.reference, request.model, request.effects, *texts)
+    shipped = request.scenario is None and request.trials is None
+    for name in (DEFAULT_SESSION, DEFAULT_SCENARIO) if shipped else ("",):
+        destination(None if request.out is None else request.out / name, "", inputs)
 
 
 def _own(request: RunRequest, scenario: Scenario | None = None) -> Own:

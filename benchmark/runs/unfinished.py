@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import shutil
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from benchmark.errors import InputError, InterruptedRunError, SolverError
+from reports.manifest import remove_known
 
-OURS = (".kept", ".part")
+KEPT = re.compile(r"(?:fem_steps\w*|fem_steps_edge_[0-9.e+-]+|fem_mesh)\.kept(?:\.[0-9]+\.part)?")
+"""Names of the files in which the FEM keeps its steps and its mesh."""
 
 
 @contextmanager
@@ -37,13 +39,17 @@ def unfinished(folder: Path) -> Iterator[Path]:
         if path.is_dir():
             raise SolverError(f"{error}; {_left(path, folder)}") from error
         raise
-    if path.is_dir():
-        shutil.rmtree(path)
+    remove_known(path, is_kept)
+
+
+def is_kept(name: str) -> bool:
+    """Whether a file in a folder of unfinished work is ours, by its name."""
+    return KEPT.fullmatch(name) is not None
 
 
 def _refuse_other(path: Path) -> None:
     """Refuse a name that is taken by something of somebody else's, which would be removed at the end."""
-    others = path.is_dir() and any(each.is_file() and each.suffix not in OURS for each in path.rglob("*"))
+    others = path.is_dir() and any(not each.is_dir() and not is_kept(each.name) for each in path.rglob("*"))
     if others or (path.exists() and not path.is_dir()):
         raise InputError(
             f"{path} is where an unfinished run is kept, but holds something else; move it, or give another --out"

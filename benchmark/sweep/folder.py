@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -12,13 +11,18 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError
+from benchmark.runs.unfinished import is_kept
 from benchmark.sweep.journal import Journal, read_journal
 from benchmark.sweep.plan import SCHEMA, SweepPlan, differences
 from benchmark.sweep.point import PointResult
 from benchmark.sweep.table import point_columns, write_points
-from reports import write_json, write_text
+from reports import extended_folder, write_json, write_text
+from reports.manifest import MANIFEST, foreign_files, read_manifest, refuse_foreign, remove_known
+from reports.result_folder import clear_leftovers
 
 PLAN, JOURNAL, POINTS, UNFINISHED = "sweep.json", "journal.jsonl", "points.parquet", "unfinished"
+SCENARIO = "scenario.toml"
+FILES = (PLAN, POINTS, SCENARIO, "sensitivity.csv", "environment.json", "report.html")
 LEAST_PAUSE = 0.5
 SHARE = 0.02
 """`points.parquet` is written anew as points finish, but takes no more than about this share of the time."""
@@ -44,7 +48,7 @@ class SweepFolder:
         if self.finished:
             self.write_table()
         if len(self.finished) == len(self._plan.points):
-            shutil.rmtree(self.unfinished, ignore_errors=True)
+            remove_known(self.unfinished, is_kept)
 
     def add(self, row: PointResult) -> None:
         """Keep a finished point."""
@@ -66,6 +70,8 @@ class SweepFolder:
 def open_folder(path: Path, plan: SweepPlan) -> Iterator[SweepFolder]:
     """Take a new or empty folder for a sweep, or go on with the same sweep in its folder.
 
+    What somebody else put into the folder stays; a file of the sweep that was changed since is not replaced.
+
     Raises
     ------
     InputError
@@ -74,10 +80,11 @@ def open_folder(path: Path, plan: SweepPlan) -> Iterator[SweepFolder]:
     _check_holds(path, plan)
     path.mkdir(parents=True, exist_ok=True)
     with _locked(path):
-        _remove_leftovers(path)
+        clear_leftovers(path)
         if not (path / PLAN).exists():
-            write_text(path / "scenario.toml", plan.scenario.to_toml())
-            write_json(path / PLAN, plan.document)
+            with extended_folder(path, growing=(JOURNAL, UNFINISHED)) as new:
+                write_text(new / SCENARIO, plan.scenario.to_toml())
+                write_json(new / PLAN, plan.document)
         folder = SweepFolder(path, plan, Journal(path / JOURNAL))
         try:
             yield folder
@@ -99,10 +106,19 @@ def _check_holds(path: Path, plan: SweepPlan) -> None:
                 f"--out {path} holds another sweep; it differs in {', '.join(apart)}. Give another --out, or the same "
                 "command to go on with it"
             )
-        return
-    others = [each.name for each in path.iterdir() if not _is_leftover(each)] if path.is_dir() else []
-    if set(others) - {"scenario.toml"}:
-        raise InputError(f"--out {path} holds files that are not a sweep; it must be a folder that is new or empty")
+        if read_manifest(path) is None:
+            raise InputError(
+                f"--out {path} holds a sweep of an earlier version, without {MANIFEST}; move it away, or give another"
+            )
+    elif others := foreign_files(path):
+        raise InputError(
+            f"--out {path} holds files that are not a sweep ({', '.join(others[:5])}); "
+            "it must be a folder that is new or empty"
+        )
+    try:
+        refuse_foreign(path, f"--out {path}", FILES)
+    except OSError as error:
+        raise InputError(str(error)) from error
 
 
 def _read_plan(path: Path) -> Mapping[str, Any]:
@@ -113,17 +129,6 @@ def _read_plan(path: Path) -> Mapping[str, Any]:
     if not isinstance(table, dict):
         raise InputError(f"{path} is no sweep of this program: it cannot be read as JSON")
     return table
-
-
-def _is_leftover(path: Path) -> bool:
-    """Whether a file is what a crash left of a file that was being written."""
-    return path.name.startswith(".") and path.name.endswith(".part")
-
-
-def _remove_leftovers(path: Path) -> None:
-    for each in path.iterdir():
-        if _is_leftover(each):
-            each.unlink()
 
 
 @contextmanager

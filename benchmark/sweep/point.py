@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import shutil
 import threading
 import time
 from collections.abc import Mapping
@@ -15,6 +14,8 @@ import numpy as np
 from benchmark.errors import TissuebenchError
 from benchmark.files import Scenario
 from benchmark.models import Keeping, ModelResult, UncoveredError, prepare, scenario_drive
+from benchmark.runs.unfinished import is_kept
+from reports.manifest import remove_known
 
 OK, FAILED = "ok", "failed"
 MODELS = {"fem": "FEM", "wave": "wave model"}
@@ -71,7 +72,7 @@ def evaluate(task: Task) -> PointResult:
     with _ONE_AT_A_TIME, threadpool_limits(1):
         answers = {model: _ModelAnswer.of(model, task.scenario, task.keep) for model in MODELS}
     if task.keep is not None:
-        shutil.rmtree(task.keep, ignore_errors=True)
+        remove_known(task.keep, is_kept)
     results = {model: answer.result for model, answer in answers.items()}
     faults = [answer.fault for answer in answers.values() if answer.fault]
     warnings = [warning for answer in answers.values() for warning in answer.warnings]

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError
-from benchmark.runs.destination import destination
+from benchmark.runs.destination import check_ready, destination
 from benchmark.runs.document import describe_environment
 from benchmark.runs.listener import Listener
 from benchmark.sweep.design import chosen_design
@@ -20,7 +20,7 @@ from benchmark.sweep.point import FAILED, OK, PointResult, Task, failed
 from benchmark.sweep.progress import SweepProgress
 from benchmark.sweep.sensitivity import Sensitivity, sensitivity_columns, sweep_sensitivity
 from benchmark.sweep.sweep_page import sweep_page
-from reports import write_csv, write_json, write_page
+from reports import extended_folder, write_csv, write_json, write_page
 
 
 @dataclass(frozen=True)
@@ -62,11 +62,19 @@ def run_sweep(request: SweepRequest, listener: Listener) -> SweepOutcome:
         Where the file system refuses.
     """
     plan = _plan(request)
-    path = destination(None, f"{plan.scenario.name}-sweep") if request.out is None else request.out
+    path = _folder(request, plan)
     with open_folder(path, plan) as folder:
         _finish(folder, plan, request, listener)
         rows = [folder.finished[point] for point in sorted(folder.finished)]
         return _write(path, plan, rows, request)
+
+
+def _folder(request: SweepRequest, plan: SweepPlan) -> Path:
+    """Where the sweep goes."""
+    if request.out is None:
+        return destination(None, f"{plan.scenario.name}-sweep")
+    check_ready(request.out, (request.scenario, request.settings.get("tissue")))
+    return request.out
 
 
 def _plan(request: SweepRequest) -> SweepPlan:
@@ -127,10 +135,11 @@ def _write(path: Path, plan: SweepPlan, rows: Sequence[PointResult], request: Sw
     )
     environment = describe_environment(seed=request.seed)
     page = sweep_page(plan, rows, found, environment)
-    if found is not None:
-        write_csv(path / "sensitivity.csv", sensitivity_columns(found))
-    write_json(path / "environment.json", environment)
-    write_page(path / "report.html", page)
+    with extended_folder(path) as new:
+        if found is not None:
+            write_csv(new / "sensitivity.csv", sensitivity_columns(found))
+        write_json(new / "environment.json", environment)
+        write_page(new / "report.html", page)
     document = _document(plan, rows, found)
     return SweepOutcome(path, document, page.verdict.headline, any(row.status == OK for row in rows))
 

@@ -10,7 +10,7 @@ from typing import Any
 from benchmark.sweep.design import Point
 from benchmark.sweep.parameter import Parameter
 from benchmark.sweep.point import PointResult
-from reports import write_bytes
+from reports.result_folder import replace_file
 
 Columns = dict[str, list[Any]]
 
@@ -38,7 +38,7 @@ def point_columns(parameters: Sequence[Parameter], points: Sequence[Point], rows
 
 
 def write_points(path: Path, columns: Mapping[str, Sequence[Any]]) -> None:
-    """Write the columns as Parquet, whole or not at all; text, whole numbers and doubles keep their types."""
+    """Write the columns as Parquet into a folder of ours; text, whole numbers and doubles keep their types."""
     import pyarrow
     from pyarrow import parquet
 
@@ -50,4 +50,4 @@ def write_points(path: Path, columns: Mapping[str, Sequence[Any]]) -> None:
         arrays[name] = pyarrow.array(values, type=kind)
     stream = io.BytesIO()
     parquet.write_table(pyarrow.table(arrays), stream)
-    write_bytes(path, stream.getvalue())
+    replace_file(path, stream.getvalue())

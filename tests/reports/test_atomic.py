@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reports.atomic import plain, whole_folder, write_bytes, write_json, write_text
+from reports.atomic import plain, write_bytes, write_json, write_text
 
 
 def names(folder):
@@ -84,81 +84,3 @@ def test_json_names_the_place_it_cannot_write(tmp_path, value, message):
 
 def test_plain_turns_a_numpy_float_into_a_float():
     assert type(plain(np.float64(0.5))) is float
-
-
-def test_a_folder_appears_when_it_is_complete(tmp_path):
-    target = tmp_path / "deep" / "result"
-    with whole_folder(target) as folder:
-        write_text(folder / "tables" / "a.csv", "1")
-        assert not target.exists()
-        assert folder.parent == target.parent
-    assert (target / "tables" / "a.csv").read_text() == "1"
-    assert names(target.parent) == ["result"]
-
-
-def test_a_new_folder_replaces_the_whole_old_one(tmp_path):
-    target = tmp_path / "result"
-    (target / "old").mkdir(parents=True)
-    with whole_folder(target) as folder:
-        (folder / "new").touch()
-        assert (target / "old").is_dir()
-    assert names(target) == ["new"]
-    assert names(tmp_path) == ["result"]
-
-
-def fail(folder, error):
-    (folder / "new").touch()
-    raise error
-
-
-@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt])
-def test_an_exception_leaves_the_old_folder(tmp_path, error):
-    target = tmp_path / "result"
-    target.mkdir()
-    (target / "old").touch()
-    with pytest.raises(error), whole_folder(target) as folder:
-        fail(folder, error)
-    assert names(target) == ["old"]
-    assert names(tmp_path) == ["result"]
-
-
-def test_an_exception_leaves_no_new_parents(tmp_path):
-    with pytest.raises(ValueError, match="bad input"), whole_folder(tmp_path / "a" / "b" / "c"):
-        raise ValueError("bad input")
-    assert names(tmp_path) == []
-
-
-def test_an_old_folder_comes_back_if_the_new_one_cannot_take_its_place(tmp_path, monkeypatch):
-    target = tmp_path / "result"
-    target.mkdir()
-    (target / "old").touch()
-    rename = Path.rename
-
-    def refuse_the_new_one(self, to):
-        if (self / "new").exists():
-            raise OSError("no rename today")
-        return rename(self, to)
-
-    monkeypatch.setattr(Path, "rename", refuse_the_new_one)
-    with pytest.raises(OSError, match="no rename today"), whole_folder(target) as folder:
-        (folder / "new").touch()
-    assert names(target) == ["old"]
-    assert names(tmp_path) == ["result"]
-
-
-def test_a_file_is_no_place_for_a_folder(tmp_path):
-    path = write_text(tmp_path / "result", "mine")
-    with pytest.raises(FileExistsError, match="is a file"), whole_folder(path):
-        pass
-    assert path.read_text() == "mine"
-
-
-def test_a_link_to_a_folder_stays_a_link(tmp_path):
-    real = tmp_path / "real"
-    real.mkdir()
-    link = tmp_path / "latest"
-    link.symlink_to(real)
-    with whole_folder(link) as folder:
-        (folder / "new").touch()
-    assert link.is_symlink()
-    assert names(real) == ["new"]

@@ -18,7 +18,7 @@ SCALES = (1e-5, 10.0)
 """A screened start's amplitude is scaled within this range."""
 
 
-def fit_candidate(base: Fit, effect: Effect, most: int = 10, known: tuple[Array, Array] | None = None) -> Fit:
+def fit_candidate(base: Fit, effect: Effect, most: int = 10) -> Fit:
     """Fit `base` with one more effect.
 
     Parameters
@@ -29,12 +29,8 @@ def fit_candidate(base: Fit, effect: Effect, most: int = 10, known: tuple[Array,
         To add.
     most
         Steps of the refinement.
-    known
-        Vector and trial nuisances of this fit from before, which are then only looked up.
     """
     model = Model(base.model.problem, (*base.model.effects, effect))
-    if known is not None and known[0].shape == (model.size,) and known[1].shape == base.nuisance.shape:
-        return fit(model, known[0], known[1], most=0)
     fits = []
     for state in (base.nuisance, *_unshifted(base)):
         starts = screened(base, model, effect, state)

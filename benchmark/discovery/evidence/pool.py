@@ -1,24 +1,39 @@
-"""Candidate fits in processes: the same answers as one after the other, kept in a folder as they come."""
+"""Candidate fits in processes: the same answers as one after the other, kept in a folder as they come.
+
+A kept fit is the whole fit, to the last bit, so that an interrupted discovery ends with the answer it would have had.
+"""
 
 from __future__ import annotations
 
 import hashlib
-import json
+import io
 import multiprocessing
 import os
+import re
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 
 from benchmark.child_processes import end_with_parent
 from benchmark.discovery.base.candidate_fit import fit_candidate
-from benchmark.discovery.base.effect_model import Fit
+from benchmark.discovery.base.effect_model import Fit, Model
 from benchmark.physics import Effect, load_effects
+from benchmark.response.least_squares import Blocks, Columns
+from reports import write_bytes
+from reports.manifest import remove_known
+
+ARRAYS = ("vector", "nuisance", "objective", "precision", "prior_mean")
+KEPT = re.compile(r"[0-9a-f]{24}\.(?:npz|json|part)|\.[0-9a-f]{24}\.npz\.[0-9a-f]{8}\.part")
+"""Names of the files in which fits are kept, those of earlier versions among them."""
+CODE = ("benchmark", "fem", "wavemodel")
 
 Listener = Callable[[str, int, int, str], None]
 """Called with stage, done, total and the best so far."""
@@ -51,42 +66,70 @@ class Pool:
     def _made(self, jobs: Sequence[tuple[Fit, Effect]]) -> Iterator[tuple[int, Fit]]:
         waiting: dict[Future[Fit], int] = {}
         for index, (base, effect) in enumerate(jobs):
-            known = self._recall(base, effect)
-            if self.executor is None:
-                made = fit_candidate(base, effect, known=known)
-                self._keep(base, effect, made)
-                yield index, made
+            kept = self._recall(base, effect)
+            if kept is not None:
+                yield index, kept
+            elif self.executor is None:
+                yield index, self._keep(base, effect, fit_candidate(base, effect))
             else:
-                waiting[self.executor.submit(fit_candidate, base, effect, known=known)] = index
+                waiting[self.executor.submit(fit_candidate, base, effect)] = index
         for future in as_completed(waiting):
             index = waiting[future]
-            made = future.result()
-            self._keep(*jobs[index], made)
-            yield index, made
+            yield index, self._keep(*jobs[index], future.result())
 
     def _file(self, base: Fit, effect: Effect) -> Path | None:
+        """Where a fit is kept: by all that it follows from."""
         if self.store is None:
             return None
         slugs = "+".join([*(each.slug for each in base.model.effects), f"{effect.slug}-{len(effect.names)}"])
-        name = hashlib.sha256(f"{self.key} {slugs}".encode()).hexdigest()[:24]
-        return self.store / f"{name}.json"
+        name = hashlib.sha256(f"{self.key} {slugs}".encode())
+        name.update(stored(base))
+        return self.store / f"{name.hexdigest()[:24]}.npz"
 
-    def _recall(self, base: Fit, effect: Effect) -> tuple[np.ndarray, np.ndarray] | None:
+    def _recall(self, base: Fit, effect: Effect) -> Fit | None:
         file = self._file(base, effect)
         try:
-            table = json.loads(file.read_text()) if file is not None and file.is_file() else None
-            return None if table is None else (np.array(table["vector"]), np.array(table["nuisance"]))
-        except (OSError, ValueError, KeyError):
+            return None if file is None else restored(file.read_bytes(), base, effect)
+        except (OSError, ValueError, KeyError, BadZipFile):
             return None
 
-    def _keep(self, base: Fit, effect: Effect, made: Fit) -> None:
-        file = self._file(base, effect)
-        if file is None:
-            return
-        file.parent.mkdir(parents=True, exist_ok=True)
-        part = file.with_suffix(".part")
-        part.write_text(json.dumps({"vector": made.vector.tolist(), "nuisance": made.nuisance.tolist()}))
-        part.replace(file)
+    def _keep(self, base: Fit, effect: Effect, made: Fit) -> Fit:
+        """Keep a fit, and give it as it will be recalled, so that an interruption changes nothing."""
+        file, content = self._file(base, effect), stored(made)
+        if file is not None:
+            write_bytes(file, content)
+        return restored(content, base, effect)
+
+
+def stored(made: Fit) -> bytes:
+    """All of a fit but its model, to the last bit."""
+    arrays = {name: getattr(made, name) for name in ARRAYS}
+    arrays |= {f"blocks_{each.name}": getattr(made.blocks, each.name) for each in fields(Blocks)}
+    for each in fields(Columns):
+        arrays |= {f"{each.name}_{i:04d}": value for i, value in enumerate(getattr(made.columns, each.name))}
+    stream = io.BytesIO()
+    np.savez(stream, **arrays)  # its time stamps are constant: the same fit has the same bytes
+    return stream.getvalue()
+
+
+def restored(content: bytes, base: Fit, effect: Effect) -> Fit:
+    """The fit of `base` with `effect` that was `stored`."""
+    with np.load(io.BytesIO(content), allow_pickle=False) as data:
+        arrays = {name: data[name] for name in data.files}
+    trials = range(len(base.model.problem.trials))
+    plain = {name: arrays[name] for name in ARRAYS if name != "objective"}
+    return Fit(
+        model=Model(base.model.problem, (*base.model.effects, effect)),
+        objective=float(arrays["objective"]),
+        blocks=Blocks(**{each.name: arrays[f"blocks_{each.name}"] for each in fields(Blocks)}),
+        columns=Columns(**{each.name: [arrays[f"{each.name}_{i:04d}"] for i in trials] for each in fields(Columns)}),
+        **plain,
+    )
+
+
+def forget(store: Path) -> None:
+    """Remove the fits kept in a folder; anything else in it stays."""
+    remove_known(store, lambda name: KEPT.fullmatch(name) is not None)
 
 
 @contextmanager
@@ -133,3 +176,19 @@ def _prepare(files: Sequence[str]) -> None:
 def fingerprint(*parts: Any) -> str:
     """SHA-256 of the texts of some values."""
     return hashlib.sha256("\n".join(map(repr, parts)).encode()).hexdigest()
+
+
+def own_code(effect: Effect) -> tuple[str, str]:
+    """What a user's effect says of itself and the text it was loaded from."""
+    text = Path(effect.origin).read_bytes() if effect.origin else b""
+    return repr(effect.description), hashlib.sha256(text).hexdigest()
+
+
+@cache
+def code_version() -> str:
+    """Hash of the code that a fit follows from, and the versions of what it computes with."""
+    digest = hashlib.sha256(" ".join(version(name) for name in ("numpy", "scipy")).encode())
+    root = Path(__file__).parents[3]
+    for file in sorted(file for package in CODE for file in (root / package).rglob("*.py")):
+        digest.update(file.relative_to(root).as_posix().encode() + file.read_bytes())
+    return digest.hexdigest()

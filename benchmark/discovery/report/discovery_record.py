@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from benchmark.discovery.discovery_result import Array, ChannelGap, Discovery, Estimate, channel_unit
 from benchmark.model_file import AddedEffect, RepairedModel, Value
@@ -105,6 +106,8 @@ class DiscoveryRecord:
         What the page says where it is not a session's.
     large_press : str
         Elastic law of the wave under repair.
+    store : Path or None
+        Where fits are kept until the result is written.
     """
 
     name: str
@@ -120,6 +123,7 @@ class DiscoveryRecord:
     proposal: NextExperiment | None = None
     labels: Mapping[str, str] = field(default_factory=dict)
     large_press: str = "linear"
+    store: Path | None = None
 
     @property
     def named(self) -> bool:

@@ -14,7 +14,7 @@ from benchmark.runs.finished.comparison_page import changed_parameters, compare_
 from benchmark.runs.finished.saved_run import SavedRun, read_run
 from benchmark.runs.pressed import pressed_picture, read_drawn, write_drawn
 from benchmark.runs.report import run_page
-from reports import csv_text, whole_folder, write_json, write_page, write_text
+from reports import csv_text, extended_folder, whole_folder, write_json, write_page, write_text
 
 
 @dataclass(frozen=True)
@@ -34,14 +34,15 @@ def page_again(folder: Path, out: Path | None) -> ReportOutcome:
     InputError
         The folder is no result of `run`; see `read_run`.
     """
+    target = folder if out is None else destination(out, "", (folder,))
     run = read_run(folder)
     drawn = read_drawn(folder)
     picture = pressed_picture(run.record, drawn)
     page = run_page(run.record, run.environment, run.tables, run.trials, run.columns, picture)
     if out is None:
-        write_page(folder / "report.html", page)
+        with extended_folder(folder) as new:
+            write_page(new / "report.html", page)
         return ReportOutcome(folder, page.verdict.headline, run.document)
-    target = destination(out, run.record.name)
     with whole_folder(target) as new:
         for name, text in run.tables.items():
             write_text(new / "tables" / name, text)
@@ -64,6 +65,7 @@ def compare_runs(folders: Sequence[Path], out: Path | None) -> ReportOutcome:
     """
     if len({folder.resolve() for folder in folders}) < len(folders):
         raise InputError(f"report: {', '.join(map(str, folders))} are not different runs; give each one once")
+    destination(out, "", folders)
     runs = dict(zip(_labels(folders), map(read_run, folders), strict=True))
     changed, columns = (
         changed_parameters({name: run.record.scenario for name, run in runs.items()}),

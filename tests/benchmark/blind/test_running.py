@@ -58,6 +58,7 @@ def test_the_verb_counts_resumes_and_redoes(stub: Path, tmp_path: Path, capsys: 
         "cases.csv",
         "confusion.csv",
         "table.md",
+        "manifest.json",
     }
     assert len(stub.read_text().splitlines()) == 2
 

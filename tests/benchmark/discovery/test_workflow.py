@@ -1,5 +1,7 @@
 """The whole way on quick sessions, in few rows. Circular where an effect has the catalogue's own form."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -27,9 +29,9 @@ def test_damping_is_named_and_its_gap_closes(session_of, tmp_path):
     assert gap.held_out == "condition"
     assert gap.closed > 0.6
     assert said[0][0] == "prepare"
-    assert len(list(store.glob("*.json"))) > 3
+    assert len(list(store.glob("*.npz"))) > 3
     again = findings(session, settings=SETTINGS, store=store).discovery
-    assert [e.slug for e in again.effects] == [e.slug for e in answer.effects]
+    assert replace(again, seconds=0.0) == replace(answer, seconds=0.0)
     first = rivals(found)[0]
     trial = found.calibrated.problem.trials[0]
     made = expected(first, answer.conditions[0], trial.motion.time, trial.motion.depth)

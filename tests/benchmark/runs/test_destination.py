@@ -4,6 +4,7 @@ import pytest
 
 from benchmark.errors import InputError
 from benchmark.runs.destination import destination
+from reports import whole_folder
 
 
 def test_default_is_a_fresh_dated_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -15,11 +16,53 @@ def test_default_is_a_fresh_dated_folder(tmp_path: Path, monkeypatch: pytest.Mon
     assert destination(None, "skin 5/N <b>") != first
 
 
-@pytest.mark.parametrize("marker", ["results.json", "fit.json", "discovery.json"])
-def test_an_earlier_result_may_be_replaced(tmp_path: Path, marker: str) -> None:
-    (tmp_path / marker).touch()
-    (tmp_path / "report.html").touch()
-    assert destination(tmp_path, "x") == tmp_path
+def test_an_earlier_result_may_be_replaced_and_one_without_a_manifest_not(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    with whole_folder(out) as new:
+        (new / "report.html").touch()
+    assert destination(out, "x") == out
+    (out / "manifest.json").unlink()
+    with pytest.raises(InputError, match=r"report\.html and no manifest\.json: it is not a result .*earlier version"):
+        destination(out, "x")
+
+
+@pytest.mark.parametrize("out", ["session", "session/fit", "session/../session", ".", "way/out"])
+def test_an_output_in_or_around_an_input_is_refused(tmp_path: Path, out: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "session").mkdir()
+    (tmp_path / "session" / "a.csv").touch()
+    (tmp_path / "way").symlink_to("session")
+    with pytest.raises(InputError, match="which is read"):
+        destination(Path(out), "x", (Path("session"),))
+    with pytest.raises(InputError, match="which is read"):
+        destination(Path("session"), "x", ("session/a.csv", None, "skin-5N"))
+    assert destination(Path("beside"), "x", (Path("session"), "session/a.csv")) == Path("beside")
+
+
+def test_a_name_that_ships_is_no_input_in_the_way(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "skin-5N").mkdir()
+    assert destination(Path("skin-5N"), "x", ("skin-5N",)) == Path("skin-5N")
+
+
+@pytest.mark.parametrize("out", ["thesis.tex", "thesis.tex/deeper", "n" * 250])
+def test_a_place_that_cannot_be_written_is_refused_before(tmp_path: Path, out: str) -> None:
+    (tmp_path / "thesis.tex").touch()
+    with pytest.raises(InputError, match=r"is a file|cannot be written"):
+        destination(tmp_path / out, "x")
+    assert [each.name for each in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+def test_a_full_disk_is_found_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(InputError, match="cannot be written: No space left"):
+        destination(tmp_path / "new", "x")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError, match="results cannot be written: No space left"):
+        destination(None, "x")
 
 
 def test_new_and_empty_folders_are_taken(tmp_path: Path) -> None:

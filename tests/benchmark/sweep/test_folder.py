@@ -24,7 +24,7 @@ def test_points_are_in_the_table_as_they_come_and_at_the_end(plan_of, tmp_path: 
         folder.add(failed(1, "no luck"))
     assert list(pd.read_parquet(out / "points.parquet").point) == [1, 2]
     names = {path.name for path in out.iterdir()}
-    assert names == {"sweep.json", "scenario.toml", "journal.jsonl", "points.parquet"}
+    assert names == {"sweep.json", "scenario.toml", "journal.jsonl", "points.parquet", "manifest.json"}
 
 
 def test_the_same_sweep_goes_on(plan_of, tmp_path: Path) -> None:
@@ -92,10 +92,29 @@ def test_a_plan_that_is_none_is_refused(plan_of, tmp_path: Path, text: str) -> N
 
 
 def test_what_a_crash_left_half_written_is_removed(plan_of, tmp_path: Path) -> None:
+    with open_folder(tmp_path, plan_of(VARY)) as folder:
+        folder.add(ROW)
     (tmp_path / ".points.parquet.1234abcd.part").write_bytes(b"half")
-    (tmp_path / "scenario.toml").write_text("a crash came before sweep.json")
+    (tmp_path / "sweep.json").unlink()  # a crash came before it
+    ours = {"sweep.json", "scenario.toml", "journal.jsonl", "points.parquet", "manifest.json"}
     with open_folder(tmp_path, plan_of(VARY)):
-        assert {path.name for path in tmp_path.iterdir()} == {"sweep.json", "scenario.toml", "journal.jsonl"}
+        assert {path.name for path in tmp_path.iterdir()} == ours
+
+
+def test_what_is_not_of_the_sweep_stays_and_what_was_changed_is_refused(plan_of, tmp_path: Path) -> None:
+    with open_folder(tmp_path, plan_of(VARY)) as folder:
+        folder.add(ROW)
+    for name in ("notes.txt", ".mine.part", "unfinished/notes.txt"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("mine")
+    with open_folder(tmp_path, plan_of(VARY)) as folder:
+        folder.add(failed(1, "no luck"))
+        folder.add(failed(3, "no luck"))
+    assert all((tmp_path / name).read_text() == "mine" for name in ("notes.txt", ".mine.part", "unfinished/notes.txt"))
+    (tmp_path / "points.parquet").write_bytes(b"corrected by hand")
+    with pytest.raises(InputError, match=r"points\.parquet"), open_folder(tmp_path, plan_of(VARY)):
+        pass
+    assert (tmp_path / "points.parquet").read_bytes() == b"corrected by hand"
 
 
 def test_only_one_process_works_in_a_folder(plan_of, tmp_path: Path) -> None:

@@ -1,0 +1,236 @@
+"""Result folders: written whole or not at all, and never over what we did not write (see `reports.manifest`).
+
+A new result is built beside its place. An earlier one there steps aside as `.NAME.previous` and is removed, file by
+file as its manifest says, once the new one is in place. A kill in between leaves both; `recover` puts that in order.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import secrets
+import shutil
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+from reports.atomic import StrPath, sync_folder, write_bytes, write_json
+from reports.manifest import (
+    MANIFEST,
+    PROGRAM,
+    SCHEMA,
+    ForeignFilesError,
+    leftovers,
+    manifest_of,
+    read_manifest,
+    refuse_foreign,
+    remove_empty,
+    remove_ours,
+    sha256,
+)
+
+
+class KeptBesideError(OSError):
+    """A finished result could not be put in its place; it is kept beside it."""
+
+
+@contextmanager
+def whole_folder(path: StrPath) -> Iterator[Path]:
+    """Build a result folder under a temporary name beside `path`, add its manifest, and put it in place.
+
+    The context manager yields the folder to fill. An earlier result at `path` is replaced only when the new one is
+    complete. On any exception inside, the temporary folder is removed and `path` stays untouched.
+
+    Parameters
+    ----------
+    path
+        The folder to make; missing parent folders are made (and removed again on an exception).
+
+    Raises
+    ------
+    FileExistsError
+        If `path` is a file.
+    ForeignFilesError
+        If `path` holds what is not ours.
+    KeptBesideError
+        If the result is complete but its place is not free any more; it is kept beside.
+    OSError
+        Where the file system refuses.
+    """
+    target = Path(path).resolve()
+    check_place(target)
+    made = {folder for folder in target.parents if not folder.exists()}
+    temporary = _sibling(target)
+    try:
+        temporary.mkdir(parents=True)
+        yield temporary
+        write_manifest(temporary)
+    except BaseException:
+        shutil.rmtree(temporary, ignore_errors=True)
+        remove_empty(made)
+        raise
+    _put_in_place(temporary, target)
+    sync_folder(target.parent)
+
+
+def check_place(path: Path, shown: object = None) -> None:
+    """Refuse a place for a result folder that holds a file or what is not ours; `shown` is its name in messages.
+
+    What a kill left of an earlier replacement is put in order first.
+    """
+    target, name = path.resolve(), path if shown is None else shown
+    recover(target)
+    if target.exists() and not target.is_dir():
+        raise FileExistsError(f"{name} is a file; it must be a folder that is new, empty, or an earlier result")
+    if target.is_mount():
+        raise FileExistsError(f"{name} is where a disk is mounted; give a folder in it")
+    refuse_foreign(target, name)
+
+
+def recover(target: Path) -> None:
+    """Put in order what a kill left of a replacement: the earlier result comes back where the new one is not there yet.
+
+    Raises
+    ------
+    ForeignFilesError
+        `.NAME.previous` is something else, or has other files in it.
+    """
+    previous = _previous(target)
+    if not previous.is_dir():
+        return
+    if previous.is_symlink():
+        raise ForeignFilesError(f"{previous} is a link where an earlier result steps aside; move it away")
+    if not target.exists() and read_manifest(previous) is not None:
+        previous.rename(target)
+        return
+    remove_ours(previous)
+    remove_empty({previous})
+    if previous.exists():
+        raise ForeignFilesError(
+            f"{previous} is where an earlier result steps aside, but holds other files; move it away"
+        )
+
+
+def write_manifest(folder: Path, growing: Collection[str] = ()) -> None:
+    """Say that all that is in `folder` now is ours; what is `growing` by name alone."""
+    write_json(folder / MANIFEST, manifest_of(folder, growing))
+
+
+@contextmanager
+def extended_folder(path: StrPath, growing: Collection[str] | None = None) -> Iterator[Path]:
+    """Add files to a result folder that is ours or new, replacing those of the same names there.
+
+    The context manager yields a folder to fill, whose files are then put into `path` one by one. What they will be is
+    said in the manifest first, so that after a kill each file is known, old or new.
+
+    Parameters
+    ----------
+    path
+        The result folder.
+    growing
+        Files and folders in it that will change without a word in the manifest; as before by default.
+
+    Raises
+    ------
+    ForeignFilesError
+        A file of one of these names is not ours, or was changed. Others beside them stay.
+    """
+    target = Path(path).resolve()
+    temporary = _sibling(target)
+    try:
+        temporary.mkdir(parents=True)
+        yield temporary
+        refuse_foreign(target, path, manifest_of(temporary)["files"])
+        _put_into(temporary, target, growing)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def replace_file(path: Path, data: bytes) -> None:
+    """Replace a file that is ours in a result folder that is at work, without another look at the rest."""
+    _say_and_write(path.parent, {path.name: data}, _table(path.parent))
+
+
+def clear_leftovers(folder: Path) -> None:
+    """Remove what a kill left of files being written in a result folder of ours."""
+    for leftover in leftovers(folder):
+        leftover.unlink()
+
+
+def _put_into(temporary: Path, target: Path, growing: Collection[str] | None) -> None:
+    files = {name: (temporary / name).read_bytes() for name in manifest_of(temporary)["files"]}
+    table = _table(target)
+    if growing is not None:
+        table["growing"] = sorted(growing)
+    _say_and_write(target, files, table)
+
+
+def _say_and_write(folder: Path, files: Mapping[str, bytes], table: dict[str, Any]) -> None:
+    new = {name: {"size": len(data), "sha256": hashlib.sha256(data).hexdigest()} for name, data in files.items()}
+    write_json(folder / MANIFEST, {**table, "pending": new})
+    for name, data in files.items():
+        write_bytes(folder / name, data)
+    write_json(folder / MANIFEST, {**table, "files": dict(sorted({**table["files"], **new}.items()))})
+
+
+def _table(folder: Path) -> dict[str, Any]:
+    """The manifest of a folder of ours as a table; an empty one where there is none."""
+    if read_manifest(folder) is None:
+        return {"schema": SCHEMA, "program": PROGRAM, "files": {}}
+    table: dict[str, Any] = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    pending = table.pop("pending", {})
+    whole = {name: each for name, each in pending.items() if _is_whole(folder / name, each)}
+    table["files"] = {**table["files"], **whole}
+    return table
+
+
+def _is_whole(path: Path, entry: Mapping[str, Any]) -> bool:
+    return path.is_file() and sha256(path) == entry["sha256"]
+
+
+def _put_in_place(temporary: Path, target: Path) -> None:
+    """Rename `temporary` to `target`; an earlier result steps aside first and comes back if that fails."""
+    previous = _previous(target)
+    try:
+        check_place(target)
+        _step_aside(target, previous)
+        temporary.rename(target)
+    except BaseException as error:
+        if previous.exists() and not target.exists():
+            previous.rename(target)
+        kept = _free(target)
+        if temporary.exists():
+            temporary.rename(kept)
+        if isinstance(error, OSError):
+            raise KeptBesideError(f"{error}; the new result is kept in {kept}") from error
+        raise
+    if previous.exists():
+        remove_ours(previous)
+
+
+def _step_aside(target: Path, previous: Path) -> None:
+    """Take an earlier result out of the way, and back where something was added to it in the meantime."""
+    if not target.exists():
+        return
+    if not any(target.iterdir()):
+        target.rmdir()
+        return
+    target.rename(previous)
+    refuse_foreign(previous, target)
+
+
+def _previous(target: Path) -> Path:
+    """Where an earlier result steps aside; always the same, so that it is found after a kill."""
+    return target.with_name(f".{target.name}.previous")
+
+
+def _free(target: Path) -> Path:
+    """A free name beside `target` for a result that cannot be put there."""
+    return next(path for n in count(2) if not (path := target.with_name(f"{target.name}-{n}")).exists())
+
+
+def _sibling(target: Path) -> Path:
+    """A free hidden name in the folder of `target`."""
+    return target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")

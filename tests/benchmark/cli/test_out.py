@@ -1,0 +1,151 @@
+"""`--out` never loses what the program did not write: every byte of somebody else's survives every verb."""
+
+from pathlib import Path
+
+import pytest
+
+from benchmark.sessions import SHIPPED
+from reports import whole_folder
+
+PHANTOM = str(SHIPPED / "phantom")
+
+
+def tree(folder):
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def theirs(here):
+    """A folder that looks like a result, with raw data and a repository in it."""
+    folder = here / "p"
+    for name, text in {"results.json": "{}", "data/raw.csv": "x", ".git/HEAD": "ref", "check.json": "{}"}.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_computed(monkeypatch):
+    """All of this is refused before the work begins."""
+
+    def never(*_, **__):
+        raise AssertionError("it began to compute")
+
+    for name in (
+        "benchmark.runs.fit_run.fit_trials",
+        "benchmark.runs.requests.run_scenario",
+        "benchmark.runs.requests.run_session",
+        "benchmark.runs.requests.run_tissues",
+        "benchmark.discovery.of_session.findings",
+        "benchmark.reproduce.carrying_out.gather",
+        "benchmark.gate.checking._verdict",
+        "benchmark.cli.verify._run",
+        "benchmark.blind.running._work",
+        "benchmark.sweep.run._rows",
+        "benchmark.runs.finished.carrying_out.read_run",
+        "benchmark.discovery.carrying_out.read_run",
+    ):
+        monkeypatch.setattr(name, never)
+
+
+VERBS = {
+    "fit": ["fit", PHANTOM],
+    "run": ["run", "skin-5N"],
+    "run two tissues": ["run", "skin-5N", "--tissue", "skin_forearm", "--tissue", "dragon_skin_10"],
+    "run trials": ["run", "--trials", PHANTOM],
+    "discover": ["discover", PHANTOM],
+    "check": ["check"],
+    "reproduce": ["reproduce"],
+    "verify": ["verify"],
+    "blind": ["blind"],
+    "sweep": ["sweep", "skin-5N", "--vary", "tool.radius=2 mm,3 mm"],
+    "report": ["report", "a", "b"],
+    "report one": ["report", "a"],
+}
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_a_folder_of_theirs_survives(benchmark_cli, theirs, verb):
+    before = tree(theirs)
+    called = benchmark_cli(*VERBS[verb], "--out", theirs)
+    assert called.code == 2
+    assert "raw.csv" in called.err or ".git" in called.err
+    assert tree(theirs) == before
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_a_file_and_a_place_that_cannot_be_made_are_refused(benchmark_cli, here, verb):
+    (here / "thesis.tex").write_text("mine")
+    for out in ("thesis.tex", "thesis.tex/deep"):
+        called = benchmark_cli(*VERBS[verb], "--out", out)
+        assert called.code == 2
+        assert "thesis.tex" in called.err
+    assert tree(here) == {"thesis.tex": b"mine"}
+
+
+@pytest.mark.parametrize("verb", [name for name in VERBS if name not in ("blind", "sweep")])
+def test_notes_beside_a_result_of_ours_survive(benchmark_cli, here, verb):
+    with whole_folder(here / "p") as new:
+        (new / "report.html").write_text("page")
+    (here / "p" / "notes.txt").write_text("mine")
+    before = tree(here)
+    called = benchmark_cli(*VERBS[verb], "--out", "p")
+    assert called.code == 2
+    assert "notes.txt" in called.err
+    assert tree(here) == before
+
+
+def test_the_shipped_runs_look_at_both_folders_first(benchmark_cli, here):
+    late = here / "p" / "skin-5N"
+    late.mkdir(parents=True)
+    (late / "notes.txt").write_text("mine")
+    called = benchmark_cli("run", "--out", "p")
+    assert (called.code, "notes.txt" in called.err) == (2, True)
+    assert tree(here) == {"p/skin-5N/notes.txt": b"mine"}
+
+
+@pytest.mark.parametrize("out", ["S", "./S/../S", "S/fit", "link", "."])
+@pytest.mark.parametrize("verb", [["fit", "S"], ["run", "--trials", "S"], ["discover", "S"]])
+def test_a_session_is_not_written_over(benchmark_cli, here, verb, out):
+    (here / "S").mkdir()
+    (here / "S" / "trial.csv").write_text("time_s,depth_mm,force_N\n")
+    (here / "link").symlink_to("S")
+    before = tree(here)
+    called = benchmark_cli(*verb, "--out", out)
+    assert called.code == 2
+    assert "which is read" in called.err
+    assert tree(here) == before
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["discover", "press"],
+        ["report", "press"],
+        ["report", "press", "other"],
+        ["run", "press/scenario.toml"],
+        ["run", "skin-5N", "--model", "press/model.toml"],
+        ["run", "skin-5N", "--reference", "press/max_deformation.csv"],
+        ["run", "skin-5N", "--tissue", "press/tissue.toml"],
+        ["fit", PHANTOM, "--model", "press/model.toml"],
+        ["check", "--baseline", "press/baseline.json"],
+        ["sweep", "press/scenario.toml", "--vary", "tool.radius=2 mm,3 mm"],
+    ],
+)
+def test_what_is_read_from_a_result_is_not_replaced_by_the_answer(benchmark_cli, here, command):
+    shipped = Path(__file__).parents[3] / "benchmark" / "scenarios" / "skin-5N.toml"
+    with whole_folder(here / "press") as new:
+        for name in ("results.json", "model.toml", "max_deformation.csv", "tissue.toml", "baseline.json"):
+            (new / name).write_text("{}")
+        (new / "scenario.toml").write_bytes(shipped.read_bytes())
+    before = tree(here)
+    called = benchmark_cli(*command, "--out", "press")
+    assert called.code == 2
+    assert "which is read" in called.err
+    assert tree(here) == before

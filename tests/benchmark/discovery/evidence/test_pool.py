@@ -1,0 +1,140 @@
+"""A discovery that was interrupted, at whatever fit, ends with the answer it would have had, to the last bit."""
+
+from concurrent.futures import Future
+
+import numpy as np
+import pytest
+from benchmark.discovery.calibrate import calibrate
+from benchmark.discovery.candidate_fit import fit_candidate
+
+from benchmark.discovery.criteria import Settings
+from benchmark.discovery.evidence import pool as module
+from benchmark.discovery.evidence.pool import Pool, forget, restored, stored
+from benchmark.discovery.evidence.selection import select
+from benchmark.discovery.trials.preparing import prepare
+from benchmark.physics import catalogue
+
+SETTINGS = Settings(rows=60, workers=1, bootstraps=20, most_effects=2, accept_z=0.5)
+TRIED = ("viscous_damping", "dry_friction", "machine_compliance", "tool_inertia", "viscoelastic_relaxation")
+
+
+def damped(time, depth, elastic):
+    return elastic + 0.15 * np.gradient(elastic, time)
+
+
+@pytest.fixture(scope="module")
+def base(tmp_path_factory, quick_session):
+    from benchmark.files import load_session
+
+    folder = quick_session.write_session(tmp_path_factory.mktemp("pool") / "s", trials=4, noise=0.003, force=damped)
+    session = load_session(folder)
+    return calibrate(session, prepare(session, SETTINGS.rows)).base
+
+
+EFFECTS = tuple(effect for effect in catalogue() if effect.slug in TRIED)
+
+
+class Killed(BaseException):
+    """In the place of the signal."""
+
+
+def bits(selection):
+    """All that follows from a selection, to the last bit."""
+    steps = [(step.slug, stored(step.fit), step.gain.mean, step.gain.z, step.delta_bic) for step in selection.steps]
+    tried = [(each.slug, stored(each.fit), each.gain.mean, each.delta_bic) for each in selection.candidates]
+    rivals = {slug: [stored(fit) for fit in fits] for slug, fits in selection.rivals.items()}
+    return stored(selection.chosen), steps, tried, selection.lookalikes, rivals
+
+
+def counted(monkeypatch, most):
+    """Let `most` fits be made, then kill; returns the list that grows by each."""
+    made = []
+
+    def fit(base, effect):
+        if len(made) == most:
+            raise Killed
+        made.append(effect.slug)
+        return fit_candidate(base, effect)
+
+    monkeypatch.setattr(module, "fit_candidate", fit)
+    return made
+
+
+def test_killed_after_every_fit_the_answer_is_the_same(base, tmp_path, monkeypatch):
+    made = counted(monkeypatch, -1)
+    whole = bits(select(base, EFFECTS, SETTINGS, Pool(None, None, "key")))
+    total = len(made)
+    assert total > len(TRIED)
+    kills = 0
+    while True:
+        made = counted(monkeypatch, 1)
+        try:
+            answer = bits(select(base, EFFECTS, SETTINGS, Pool(None, tmp_path, "key")))
+        except Killed:
+            kills += 1
+            continue
+        break
+    assert kills >= total - 2  # a fit that is asked for twice is kept once
+    assert answer == whole
+    counted(monkeypatch, 0)
+    assert bits(select(base, EFFECTS, SETTINGS, Pool(None, tmp_path, "key"))) == whole
+
+
+class Backwards:
+    """A pool of processes whose jobs end last first; it is killed after `most`."""
+
+    def __init__(self, most):
+        self.most, self.waiting = most, []
+
+    def submit(self, work, base, effect):
+        future = Future()
+        self.waiting.append((future, work, base, effect))
+        return future
+
+    def as_completed(self, _):
+        while self.waiting:
+            if self.most == 0:
+                raise Killed
+            self.most -= 1
+            future, work, base, effect = self.waiting.pop()
+            future.set_result(work(base, effect))
+            yield future
+
+
+def test_neither_the_order_of_the_processes_nor_a_kill_among_them_matters(base, tmp_path, monkeypatch):
+    whole = bits(select(base, EFFECTS, SETTINGS, Pool(None, None, "key")))
+    for most in (2, 3, -1):
+        crew = Backwards(most)
+        monkeypatch.setattr(module, "as_completed", crew.as_completed)
+        try:
+            answer = bits(select(base, EFFECTS, SETTINGS, Pool(crew, tmp_path, "key")))
+        except Killed:
+            continue
+    assert answer == whole
+
+
+def test_a_kept_fit_is_known_by_its_base_its_key_and_its_bytes(base, tmp_path, monkeypatch):
+    effect = EFFECTS[0]
+    counted(monkeypatch, 1)
+    (made,) = Pool(None, tmp_path, "key").fits("x", [(base, effect)])
+    (file,) = tmp_path.iterdir()
+    assert stored(restored(file.read_bytes(), base, effect)) == stored(made)
+    counted(monkeypatch, 0)
+    with pytest.raises(Killed):
+        Pool(None, tmp_path, "another session, setting or version").fits("x", [(base, effect)])
+    with pytest.raises(Killed):
+        Pool(None, tmp_path, "key").fits("x", [(made, effect)])
+    file.write_bytes(file.read_bytes()[:-100])
+    with pytest.raises(Killed):
+        Pool(None, tmp_path, "key").fits("x", [(base, effect)])
+
+
+def test_only_kept_fits_are_forgotten(tmp_path):
+    kept, mine = tmp_path / f"{'a' * 24}.npz", tmp_path / "notes.txt"
+    kept.touch()
+    mine.touch()
+    forget(tmp_path)
+    assert list(tmp_path.iterdir()) == [mine]
+    mine.unlink()
+    forget(tmp_path)
+    assert not tmp_path.exists()

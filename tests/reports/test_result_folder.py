@@ -1,0 +1,331 @@
+import hashlib
+import json
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+
+from reports import result_folder
+from reports.atomic import write_text
+from reports.manifest import MANIFEST, ForeignFilesError, foreign_files
+from reports.result_folder import KeptBesideError, check_place, extended_folder, whole_folder
+
+
+def names(folder):
+    return sorted(item.name for item in folder.iterdir())
+
+
+def tree(folder):
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def make(target, **texts):
+    with whole_folder(target) as folder:
+        for name, text in texts.items():
+            write_text(folder / "tables" / name, text)
+    return target
+
+
+def test_a_folder_appears_when_it_is_complete(tmp_path):
+    target = tmp_path / "deep" / "result"
+    with whole_folder(target) as folder:
+        write_text(folder / "tables" / "a.csv", "1")
+        assert not target.exists()
+        assert folder.parent == target.parent
+    assert (target / "tables" / "a.csv").read_text() == "1"
+    assert names(target.parent) == ["result"]
+
+
+def test_the_manifest_names_every_file_with_size_and_hash(tmp_path):
+    table = json.loads((make(tmp_path / "result", a="one") / MANIFEST).read_text())
+    entry = {"size": 3, "sha256": hashlib.sha256(b"one").hexdigest()}
+    assert table == {"schema": 1, "program": "tissuebench", "files": {"tables/a": entry}}
+
+
+def test_a_new_folder_replaces_the_whole_old_one(tmp_path):
+    target = make(tmp_path / "result", old="x")
+    with whole_folder(target) as folder:
+        (folder / "new").touch()
+        assert (target / "tables" / "old").is_file()
+    assert names(target) == [MANIFEST, "new"]
+    assert names(tmp_path) == ["result"]
+
+
+def fail(folder, error):
+    (folder / "new").touch()
+    raise error
+
+
+@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt])
+def test_an_exception_leaves_the_old_folder(tmp_path, error):
+    target = make(tmp_path / "result", old="x")
+    before = tree(target)
+    with pytest.raises(error), whole_folder(target) as folder:
+        fail(folder, error)
+    assert tree(target) == before
+    assert names(tmp_path) == ["result"]
+
+
+def test_an_exception_leaves_no_new_parents(tmp_path):
+    with pytest.raises(ValueError, match="bad input"), whole_folder(tmp_path / "a" / "b" / "c"):
+        raise ValueError("bad input")
+    assert names(tmp_path) == []
+
+
+def test_an_old_folder_comes_back_and_the_new_one_is_kept_if_it_cannot_take_its_place(tmp_path, monkeypatch):
+    target = make(tmp_path / "result", old="x")
+    before = tree(target)
+    rename = Path.rename
+
+    def refuse_the_place(self, to):
+        if to == target and (self / "new").exists():
+            raise OSError("no rename today")
+        return rename(self, to)
+
+    monkeypatch.setattr(Path, "rename", refuse_the_place)
+    with pytest.raises(KeptBesideError, match=r"no rename today.*kept in .*result-2"), whole_folder(target) as folder:
+        (folder / "new").touch()
+    assert tree(target) == before
+    assert names(tmp_path) == ["result", "result-2"]
+    assert names(tmp_path / "result-2") == [MANIFEST, "new"]
+
+
+def test_a_file_is_no_place_for_a_folder(tmp_path):
+    path = write_text(tmp_path / "result", "mine")
+    with pytest.raises(FileExistsError, match="is a file"), whole_folder(path):
+        pass
+    assert path.read_text() == "mine"
+
+
+def test_a_link_to_a_folder_stays_a_link(tmp_path):
+    real = tmp_path / "real"
+    real.mkdir()
+    link = tmp_path / "latest"
+    link.symlink_to(real)
+    with whole_folder(link) as folder:
+        (folder / "new").touch()
+    assert link.is_symlink()
+    assert names(real) == [MANIFEST, "new"]
+
+
+def note(folder):
+    (folder / "notes.txt").write_text("mine")
+
+
+def raw_data(folder):
+    (folder / "data").mkdir()
+    (folder / "data" / "raw.csv").write_text("1,2")
+
+
+def repository(folder):
+    (folder / ".git").mkdir()
+    (folder / ".git" / "HEAD").write_text("ref")
+
+
+def edit(folder):
+    (folder / "tables" / "a").write_text("corrected")
+
+
+def empty_folder(folder):
+    (folder / "figures").mkdir()
+
+
+def link(folder):
+    (folder / "tables" / "a").unlink()
+    (folder / "tables" / "a").symlink_to("/etc/hostname")
+
+
+def part_of_theirs(folder):
+    (folder / ".thesis.tex.01234567.part").write_text("mine")
+
+
+def no_manifest(folder):
+    (folder / MANIFEST).unlink()
+
+
+def other_manifest(folder):
+    (folder / MANIFEST).write_text('{"name": "a web page"}')
+
+
+@pytest.mark.parametrize(
+    ("do", "named"),
+    [
+        (note, "notes.txt"),
+        (raw_data, "data/raw.csv"),
+        (repository, ".git/HEAD"),
+        (edit, "tables/a"),
+        (empty_folder, "figures"),
+        (link, "tables/a"),
+        (part_of_theirs, ".thesis.tex.01234567.part"),
+        (no_manifest, "earlier version"),
+        (other_manifest, "manifest.json"),
+    ],
+)
+def test_what_is_not_ours_is_refused_before_and_survives(tmp_path, do, named):
+    target = make(tmp_path / "result", a="1", b="2")
+    do(target)
+    before = tree(target)
+    with pytest.raises(ForeignFilesError, match=named):
+        check_place(target)
+    with pytest.raises(ForeignFilesError, match=named), whole_folder(target):
+        raise AssertionError("the work must not begin")
+    assert tree(target) == before
+    assert names(tmp_path) == ["result"]
+
+
+def test_what_comes_while_the_work_is_done_survives_and_the_result_is_kept_beside(tmp_path):
+    target = make(tmp_path / "result", a="1")
+
+    def work():
+        with whole_folder(target) as folder:
+            (folder / "new").touch()
+            note(target)
+
+    with pytest.raises(KeptBesideError, match=r"notes.txt.*result-2"):
+        work()
+    assert (target / "notes.txt").read_text() == "mine"
+    assert (target / "tables" / "a").read_text() == "1"
+    assert names(tmp_path / "result-2") == [MANIFEST, "new"]
+
+
+def test_what_comes_between_the_check_and_the_renames_survives(tmp_path, monkeypatch):
+    target = make(tmp_path / "result", a="1")
+    aside = result_folder._step_aside
+
+    def late(place, previous):
+        note(place)
+        aside(place, previous)
+
+    monkeypatch.setattr(result_folder, "_step_aside", late)
+    with pytest.raises(KeptBesideError, match=r"notes.txt"), whole_folder(target) as folder:
+        (folder / "new").touch()
+    assert (target / "notes.txt").read_text() == "mine"
+    assert names(tmp_path) == ["result", "result-2"]
+
+
+def test_a_missing_file_of_ours_is_no_obstacle(tmp_path):
+    target = make(tmp_path / "result", a="1", b="2")
+    (target / "tables" / "a").unlink()
+    make(target, c="3")
+    assert names(target / "tables") == ["c"]
+
+
+def test_folders_with_manifests_of_their_own_are_judged_by_them(tmp_path):
+    target = tmp_path / "both"
+    with whole_folder(target) as folder:
+        make(folder / "skin", a="1")
+        write_text(folder / "report.html", "page")
+    with extended_folder(target / "skin") as new:
+        write_text(new / "tables" / "a", "2")
+    assert foreign_files(target) == []
+    note(target / "skin")
+    assert foreign_files(target) == ["skin/notes.txt"]
+    (target / "skin" / "notes.txt").unlink()
+    make(target, b="3")
+    assert names(target) == [MANIFEST, "tables"]
+    assert names(tmp_path) == ["both"]
+
+
+def test_files_are_added_and_replaced_but_not_those_that_were_changed(tmp_path):
+    target = make(tmp_path / "result", a="1", b="2")
+    note(target)
+    with extended_folder(target) as new:
+        write_text(new / "tables" / "a", "again")
+        write_text(new / "more.txt", "more")
+    assert foreign_files(target) == ["notes.txt"]
+    edit(target)
+    with pytest.raises(ForeignFilesError, match="tables/a"), extended_folder(target) as new:
+        write_text(new / "tables" / "a", "lost?")
+    with pytest.raises(ForeignFilesError, match=r"notes\.txt"), extended_folder(target) as new:
+        write_text(new / "notes.txt", "lost?")
+    assert (target / "tables" / "a").read_text() == "corrected"
+    assert (target / "notes.txt").read_text() == "mine"
+
+
+STEPS = ("rename", "replace", "unlink", "rmdir", "mkdir")
+
+
+def killed_at(step, work):
+    """Whether `work` in a process of its own was ended at its `step`-th change of the file system."""
+    child = os.fork()
+    if child == 0:
+        left = [step]
+
+        def counted(method):
+            def call(self, *args, **kwargs):
+                if left[0] == 0:
+                    os._exit(9)
+                left[0] -= 1
+                return method(self, *args, **kwargs)
+
+            return call
+
+        for name in STEPS:
+            setattr(Path, name, counted(getattr(Path, name)))
+        try:
+            work()
+        finally:
+            os._exit(0)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 9
+
+
+def at_every_kill(tmp_path, prepare, work):
+    for step in range(200):
+        place = tmp_path / str(step)
+        place.mkdir()
+        prepare(place)
+        if not killed_at(step, lambda place=place: work(place)):
+            assert step > 5
+            return
+        yield place
+    raise AssertionError("it never came to its end")
+
+
+def test_no_kill_loses_the_old_result_or_stands_in_the_way_of_the_next(tmp_path):
+    def first(place):
+        make(place / "out", a="old", b="old")
+
+    def second(place):
+        make(place / "out", b="new", c="new")
+
+    first(tmp_path)
+    old = tree(tmp_path / "out")
+    shutil.rmtree(tmp_path / "out")
+    second(tmp_path)
+    new = tree(tmp_path / "out")
+    shutil.rmtree(tmp_path / "out")
+    for place in at_every_kill(tmp_path, first, second):
+        check_place(place / "out")
+        assert tree(place / "out") in (old, new)
+        assert not (place / ".out.previous").exists()
+        second(place)
+        assert tree(place / "out") == new
+
+
+def test_no_kill_makes_a_folder_that_grows_foreign(tmp_path):
+    def first(place):
+        with extended_folder(place / "out", growing=("journal",)) as new:
+            write_text(new / "a", "old")
+        write_text(place / "out" / "journal", "1")
+
+    def second(place):
+        with extended_folder(place / "out") as new:
+            write_text(new / "a", "new")
+            write_text(new / "b", "new")
+
+    for place in at_every_kill(tmp_path, first, second):
+        assert foreign_files(place / "out") == []
+        second(place)
+        result_folder.clear_leftovers(place / "out")
+        assert tree(place / "out").keys() == {"a", "b", "journal", MANIFEST}
+        assert foreign_files(place / "out") == []
+
+
+def test_a_folder_of_theirs_where_a_result_steps_aside_is_left(tmp_path):
+    aside = tmp_path / ".result.previous"
+    aside.mkdir()
+    note(aside)
+    with pytest.raises(ForeignFilesError, match=r"\.result\.previous"):
+        check_place(tmp_path / "result")
+    assert tree(aside) == {"notes.txt": b"mine"}
