@@ -11,6 +11,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from bench_hw.errors import InputError
+
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
@@ -67,6 +69,25 @@ def write_text(path: Path, text: str) -> Path:
         The folder cannot be made or written, or the disk is full.
     """
     return write_bytes(path, text.encode("utf-8"))
+
+
+def check_replaceable(path: Path, sign: bytes, kind: str) -> None:
+    """Refuse to replace a file that is not of the kind that will be written, told by `sign` in its beginning.
+
+    Raises
+    ------
+    InputError
+        The file is another, or is no file.
+    """
+    if path.is_dir():
+        raise InputError(f"{path}: is a folder; allowed: the name of a file")
+    if path.is_file():
+        with path.open("rb") as stream:
+            if sign not in stream.read(_BEGINNING):
+                raise InputError(f"{path}: the file exists and is not {kind}; nothing else is replaced, give another")
+
+
+_BEGINNING = 1 << 12
 
 
 def _sync(path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import tempfile
 import tomllib
 from dataclasses import asdict
 from pathlib import Path
@@ -140,8 +141,8 @@ class SessionFolder:
     def _check_writable(self) -> None:
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            probe = write_text(self.path / ".probe", "")
-            probe.unlink()
+            with tempfile.TemporaryFile(dir=self.path) as probe:
+                probe.write(b"x")
             free = shutil.disk_usage(self.path).free
         except OSError as error:
             raise InputError(f"{self.path}: cannot be written ({error.strerror}); give another --out") from error

@@ -105,6 +105,10 @@ def export_trial(path: Path | str, out: Path | str, options: ExportOptions | Non
     files = {name: out / f"{name}.csv" for name in tables}
     parquet = {name: out / f"{name}.parquet" for name in tables} if options.parquet else {}
     _check_free([*files.values(), *parquet.values()], options)
+    if options.frames and not options.overwrite and (out / "frames").exists():
+        raise TrialFileError(
+            out / "frames", "the pictures exist; give another folder, or `--overwrite` to replace them"
+        )
     try:
         frames = _write_frames(contents, out) if options.frames else 0
         for name, columns in tables.items():

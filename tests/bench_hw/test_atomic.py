@@ -2,7 +2,8 @@
 
 import pytest
 
-from bench_hw.atomic import replacing, write_text
+from bench_hw.atomic import check_replaceable, replacing, write_text
+from bench_hw.errors import InputError
 
 
 def test_a_file_is_made_with_its_folder_and_the_usual_permissions(tmp_path):
@@ -19,3 +20,15 @@ def test_what_was_there_stays_when_writing_fails(tmp_path):
         temporary.write_text("after, half \ud800", encoding="utf-8")
     assert path.read_text() == "before"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_only_a_file_of_the_same_kind_is_replaced(tmp_path):
+    path = tmp_path / "trial.csv"
+    check_replaceable(path, b"time_s,marker,", "a table of markers")
+    path.write_text("time_s,marker,x_mm\n")
+    check_replaceable(path, b"time_s,marker,", "a table of markers")
+    path.write_text("time_s,depth_mm,force_N\n")
+    with pytest.raises(InputError, match="is not a table of markers"):
+        check_replaceable(path, b"time_s,marker,", "a table of markers")
+    with pytest.raises(InputError, match="is a folder"):
+        check_replaceable(tmp_path, b"", "anything")

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from bench_hw.atomic import check_replaceable
 from bench_hw.errors import InputError
 from bench_hw.vision.calibration.board import Board
 from bench_hw.vision.calibration.corners import View, look_for_board, read_picture
@@ -123,6 +124,9 @@ def calibrate(order: CalibrationOrder, progress: Progress | None = None) -> Cali
         to tell the parameters, a map that held-out views contradict, or no scale in the plane's picture. No file is
         written then.
     """
+    if order.out.resolve() in [path.resolve() for path in (*order.images, order.plane or order.out.parent)]:
+        raise InputError(f"{order.out}: this file is read; allowed: another name")
+    check_replaceable(order.out, b"[matrix]", "a camera file")
     views, size = _views(order, progress)
     corners = check_number(views, order.board)
     check_variety(corners, size)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 
+from bench_hw.atomic import check_replaceable
 from bench_hw.errors import InputError
 from bench_hw.vision.camera.domain import survey_domain
 from bench_hw.vision.camera.file import read_camera
@@ -127,6 +128,15 @@ def _check(order: TrackOrder) -> None:
     for path in written:
         if path in read or written.count(path) > 1:
             raise InputError(f"{path}: this file is read or written already; allowed: another name")
+        if path.exists() and path.parent == _pictures(order.source):
+            raise InputError(f"{path}: the file exists where pictures are read; allowed: another folder")
+    check_replaceable(order.out, b"time_s,marker,", "a table of markers")
+
+
+def _pictures(source: str) -> Path | None:
+    """The folder of a source of pictures; None for a single file."""
+    path = Path(source)
+    return None if path.is_file() else (path if path.is_dir() else path.parent).resolve()
 
 
 def _about_camera(camera: Camera) -> list[str]:
