@@ -21,7 +21,7 @@ def test_a_run_leaves_every_file_of_the_contract(benchmark_cli, tmp_path: Path) 
     assert document == json.loads((out / "results.json").read_text())
     names = {path.relative_to(out).as_posix() for path in out.rglob("*") if path.is_file()}
     assert names == {
-        "results.json", "report.html", "scenario.toml", "environment.json", "fields/step_0010.vtu",
+        "manifest.json", "results.json", "report.html", "scenario.toml", "environment.json", "fields/step_0010.vtu",
         "fields/step_0020.vtu", "tables/max_deformation.csv", "tables/profile.csv", "tables/statistics.csv",
         "tables/normal_fits.csv", "tables/timing.csv", "pictures/pressed.txt", "tables/force_depth.csv",
     }  # fmt: skip

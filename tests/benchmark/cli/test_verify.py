@@ -46,7 +46,7 @@ def test_out_gets_table_and_report(benchmark_cli, tmp_path) -> None:
     called = benchmark_cli("verify", "hayes/ratio_1", "--out", tmp_path / "v", "--quiet")
     assert called.code == 0
     assert str(tmp_path / "v" / "report.html") in called.out
-    files = {"verification.json", "verification.csv", "report.html"}
+    files = {"manifest.json", "verification.json", "verification.csv", "report.html"}
     assert {path.name for path in (tmp_path / "v").iterdir()} == files
     again = benchmark_cli("verify", "hayes/ratio_2", "--out", tmp_path / "v", "--quiet")
     assert again.code == 0

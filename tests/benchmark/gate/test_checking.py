@@ -89,7 +89,14 @@ def test_unchanged_passes_and_is_written_whole(tiny_gate, request_of, tmp_path: 
         "allowed": pytest.approx(5e-3 + 1e-6), "passed": True, "reason": None,
     }  # fmt: skip
     names = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*") if path.is_file()}
-    assert names == {"check.json", "environment.json", "report.html", "tables/accuracy.csv", "tables/rounds.csv"}
+    assert names == {
+        "manifest.json",
+        "check.json",
+        "environment.json",
+        "report.html",
+        "tables/accuracy.csv",
+        "tables/rounds.csv",
+    }
     assert "Nothing got worse" in outcome.report.read_text()
 
 

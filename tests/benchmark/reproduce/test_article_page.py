@@ -34,7 +34,7 @@ def folder(evidence, figures, tmp_path_factory):
 
 def test_the_folder_is_whole(folder) -> None:
     files = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
-    assert files == {"reproduce.json", "report.html", "tables/items.csv"}
+    assert files == {"manifest.json", "reproduce.json", "report.html", "tables/items.csv"}
     found = json.loads((folder / "reproduce.json").read_text())
     assert found.keys() == {"schema", "items"}
     assert found["schema"] == 1

@@ -68,7 +68,7 @@ def test_the_folder_holds_everything(record, tmp_path: Path) -> None:
     outcome = write_discovery(replace(record, proposal=proposal), tmp_path / "new")
     names = {path.relative_to(outcome.folder).as_posix() for path in outcome.folder.rglob("*") if path.is_file()}
     assert names == {
-        "discovery.json", "environment.json", "model.toml", "next_experiment.toml", "report.html",
+        "manifest.json", "discovery.json", "environment.json", "model.toml", "next_experiment.toml", "report.html",
         "tables/where.csv", "tables/contrasts.csv", "tables/candidates.csv", "tables/gap.csv", "tables/parameters.csv",
     }  # fmt: skip
     assert outcome.headline == record.found.statement
