@@ -43,7 +43,7 @@ def nothing_is_computed(monkeypatch):
         "benchmark.runs.requests.run_session",
         "benchmark.runs.requests.run_tissues",
         "benchmark.discovery.of_session.findings",
-        "benchmark.reproduce.carrying_out.gather",
+        "benchmark.reproduce.reproduction.gather",
         "benchmark.gate.checking._verdict",
         "benchmark.cli.verify._run",
         "benchmark.blind.running._work",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmark.discovery import Settings, expected, findings, rivals
-from benchmark.discovery.candidate_fit import fit_candidate
+from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.discovery_result import CHANNELS, PHASES, VERDICTS
 
 SETTINGS = Settings(rows=90, workers=1, bootstraps=40, most_effects=1)

@@ -4,9 +4,9 @@ from concurrent.futures import Future
 
 import numpy as np
 import pytest
-from benchmark.discovery.calibrate import calibrate
-from benchmark.discovery.candidate_fit import fit_candidate
 
+from benchmark.discovery.base.calibration import calibrate
+from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence import pool as module
 from benchmark.discovery.evidence.pool import Pool, forget, restored, stored
