@@ -38,6 +38,7 @@ PALETTE: Mapping[str, Shade] = MappingProxyType(
         "finding": Shade("#8a5a00", "#e5b454"),
         "failed": Shade("#b42318", "#ff8e82"),
         "incomplete": Shade("#6e3fa8", "#c3a1f5"),
+        "unknown": Shade("#0f6673", "#74ccd8"),
     }
 )
 

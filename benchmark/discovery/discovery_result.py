@@ -12,6 +12,7 @@ Array = NDArray[np.float64]
 
 VERDICTS = (
     "no_discrepancy",
+    "cannot_tell",
     "named",
     "conditional",
     "lookalikes",
@@ -181,7 +182,7 @@ class Discovery:
     statement : str
         The answer in one sentence.
     p : float or None
-        Family-wise p of any disagreement; None where it could not be tested.
+        Family-wise p of any disagreement; None under `cannot_tell`, and where nothing is random.
     effects : tuple of NamedEffect
         Best first; under `outside_catalogue` the nearest entries, which are not named.
     where : tuple of Place

@@ -16,10 +16,12 @@ from benchmark.discovery.answer.verdict import Facts, statement, verdict
 from benchmark.discovery.base.calibration import Calibrated, calibrate
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.criteria import Settings
+from benchmark.discovery.detection.cells import reachable
 from benchmark.discovery.detection.contrasts import contrasts
 from benchmark.discovery.detection.disagreement import Detection, combined, detect, exchangeable, smallest_visible
 from benchmark.discovery.detection.places import places
 from benchmark.discovery.discovery_result import Discovery
+from benchmark.discovery.evidence.gains import conditions
 from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fingerprint, own_code, pool, silent
 from benchmark.discovery.evidence.selection import Selection, first_gain, select, usable
 from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, remark, screen
@@ -111,7 +113,8 @@ def _searched(base: Fit, known: Sequence[Effect], settings: Settings, work: Pool
     screened = screen(base, [effect for effect in known if usable(base, effect)])
     before = detect(base, settings, np.vstack([one.along for one in screened]))
     some = on_some(base, compared(base))
-    searched = known if before.p < settings.level or screened[0].won > criteria.SURE else ()
+    able = reachable(conditions(base), settings)
+    searched = known if able and (before.p < settings.level or screened[0].won > criteria.SURE) else ()
     selection = select(some, searched, settings, work, screened if some is base else ())
     return selection, replace(before, p=min(before.p, combined(1.0, 1.0, first_gain(selection))))
 
@@ -157,19 +160,20 @@ def _discovery(
     base, chosen, before = answer.base, answer.chosen, answer.before
     facts = _facts(answer, known, settings)
     word = verdict(facts)
-    nothing = word == "no_discrepancy"
+    untested = word == "cannot_tell"
+    nothing = untested or word == "no_discrepancy"
     problem, slugs = base.model.problem, tuple(effect.slug for effect in chosen.model.effects)
     closed = {slugs: closed_overall(base, answer.held)} if slugs else {}
     few = remark(len(answer.selection.base.model.problem.trials), len(problem.trials))
     return Discovery(
         verdict=word,
         statement=statement(word, facts),
-        p=before.p_cells if nothing else before.p,
+        p=None if untested else before.p_cells if nothing else before.p,
         effects=() if nothing else named_effects(answer.selection),
-        where=places(base, base if nothing else chosen, before, settings),
+        where=() if untested else places(base, base if nothing else chosen, before, settings),
         contrasts=contrasts(base, before, settings),
         gap=gaps(base, answer.held, settings),
-        smallest_visible=smallest_visible(base, before),
+        smallest_visible={} if untested else smallest_visible(base, before),
         candidates=candidates(answer.selection, closed),
         base=base_estimates(chosen),
         remains=() if nothing else remains(chosen, answer.after, settings.level),
@@ -189,7 +193,7 @@ def _facts(answer: _Answer, known: Sequence[Effect], settings: Settings) -> Fact
     return Facts(
         p=answer.before.p,
         p_cells=answer.before.p_cells,
-        enough=len(selection.base.model.problem.trials) >= criteria.ENOUGH_TRIALS,
+        enough=reachable(conditions(answer.base), settings),
         effects=tuple(selection.chosen.model.effects),
         lookalikes=tuple(by_slug[slug] for slug in sorted(alike)),
         left=answer.left,

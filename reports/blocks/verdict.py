@@ -9,7 +9,7 @@ from types import MappingProxyType
 from reports.blocks.base import one_of
 
 VERDICTS: Mapping[str, str] = MappingProxyType(
-    {"good": "Good", "finding": "Finding", "failed": "Failed", "incomplete": "Incomplete"}
+    {"good": "Good", "finding": "Finding", "failed": "Failed", "incomplete": "Incomplete", "unknown": "Unknown"}
 )
 
 
@@ -20,7 +20,7 @@ class Verdict:
     Attributes
     ----------
     status
-        `good`, `finding`, `failed` or `incomplete`.
+        `good`, `finding`, `failed`, `incomplete` or `unknown` (the data cannot tell).
     headline
         One sentence.
     points

@@ -17,7 +17,7 @@ def test_a_notice_has_words_for_its_kind(kind):
 
 
 def test_an_unknown_status_is_refused_with_those_allowed():
-    with pytest.raises(ValueError, match="'great'; allowed: good, finding, failed, incomplete"):
+    with pytest.raises(ValueError, match="'great'; allowed: good, finding, failed, incomplete, unknown"):
         Verdict("great", "")
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from reports.palette import PALETTE, contrast, css_variable, stylesheet
 
-TEXT = ("ink", "muted", "link", "good", "finding", "failed", "incomplete", "fem", "wave", "measured")
+TEXT = ("ink", "muted", "link", "good", "finding", "failed", "incomplete", "unknown", "fem", "wave", "measured")
 LINES = ("tissue", "tool", "trial")
 
 

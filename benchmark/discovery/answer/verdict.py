@@ -20,7 +20,7 @@ class Facts:
     p_cells : float
         Of any disagreement in the cells, which is what speaks where no effect does.
     enough : bool
-        Whether there are trials enough for the test to reach its level.
+        Whether the trials are such that the test can reach its level.
     effects : tuple of Effect
         Accepted.
     lookalikes : tuple of Effect
@@ -46,8 +46,10 @@ class Facts:
 
 
 def verdict(facts: Facts) -> str:
-    """One of the seven verdicts."""
-    if not facts.enough or facts.p >= facts.level:
+    """One of `VERDICTS`."""
+    if not facts.enough:
+        return "cannot_tell"
+    if facts.p >= facts.level:
         return "no_discrepancy"
     if not facts.effects:
         return "outside_catalogue" if facts.p_cells < facts.level else "no_discrepancy"
@@ -72,7 +74,10 @@ def statement(word: str, facts: Facts) -> str:
     names = " and ".join(effect.slug.replace("_", " ") for effect in facts.effects)
     alike = ", ".join(effect.slug.replace("_", " ") for effect in facts.lookalikes)
     sentences = {
-        "no_discrepancy": _nothing(facts),
+        "no_discrepancy": "No disagreement beyond the base model's own uncertainty is visible "
+        f"(p = {facts.p_cells:.2g}).",
+        "cannot_tell": "These trials cannot tell: too few trials, or none repeated, to show a disagreement at the "
+        f"{100.0 * facts.level:g} % level; nothing is named, and agreement is not shown either.",
         "named": f"The model lacks {names}: it holds on trials and on conditions that the fit has not seen.",
         "conditional": f"The model lacks {names}, as far as these conditions tell; another rate, depth or tool must "
         "show that it holds there with the same parameters.",
@@ -83,12 +88,6 @@ def statement(word: str, facts: Facts) -> str:
         f"tissue ({alike}): a calibration measurement comes first.",
     }
     return sentences[word]
-
-
-def _nothing(facts: Facts) -> str:
-    if not facts.enough:
-        return "There are too few trials to show a disagreement at the 5 % level; nothing is named."
-    return f"No disagreement beyond the base model's own uncertainty is visible (p = {facts.p_cells:.2g})."
 
 
 def _outside(names: str) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit, White, nuisance_precision
 from benchmark.discovery.base.trials_problem import Problem
+from benchmark.discovery.criteria import Settings
 from benchmark.discovery.discovery_result import Array
 
 
@@ -142,6 +143,25 @@ def flip_test(table: CellTable, flips: int, seed: int) -> FlipTest:
     size = len(table.cells)
     critical = float(np.quantile(_largest(flipped, sided), 0.95, method="higher"))
     return FlipTest(t[:size], p[:size], critical, error[:size], float(p.min()))
+
+
+def reachable(groups: np.ndarray, settings: Settings) -> bool:
+    """Whether the test of trials (R,), by their condition, can reach its level: enough of them, and some repeated."""
+    counts = np.unique(groups, return_counts=True)[1]
+    if groups.size < criteria.ENOUGH_TRIALS or counts.max() < 2:
+        return False
+    return bool(least_p(groups, settings) / criteria.LEVEL_SHARES[0] < settings.level)
+
+
+def least_p(groups: np.ndarray, settings: Settings) -> float:
+    """The smallest p that any data could have.
+
+    Flipping all trials of a condition leaves the size of a statistic as it is, so that of the 2^R patterns 2^(G - 1)
+    are as large as the data's own, from the side that counts.
+    """
+    if groups.size > criteria.ALL_FLIPS:
+        return 1.0 / (1.0 + settings.flips)
+    return float(2.0 ** (len(_members(groups)) - 1 - groups.size))
 
 
 def one_sided(rows: Array, groups: np.ndarray, flips: int, seed: int) -> Array:

@@ -13,6 +13,7 @@ from reports import Block, Bullets, Column, Download, Paragraph, Section, Subsec
 from reports.figures import Disagreement, Gap, RepairedTrace, gap_bars, repaired, where_map
 
 MOST_PANELS = 6
+UNTESTED = "Not tested: sign flips of these trials cannot reach the level."
 
 
 def comparison_section(record: DiscoveryRecord) -> Section:
@@ -78,7 +79,11 @@ def where_section(record: DiscoveryRecord) -> Section:
     """Return the map of significant cells, their table, and the contrasts."""
     found = record.found
     if not found.where:
-        nothing = f"No place in which the disagreement is more than chance ({probability(found.p)} over all places)."
+        nothing = (
+            UNTESTED
+            if found.verdict == "cannot_tell"
+            else f"No place in which the disagreement is more than chance ({probability(found.p)} over all places)."
+        )
         text = record.labels.get("where", nothing)
         return Section("Where", [Paragraph(text), *_contrasts(found.contrasts)])
     cells = [_cell(place, record) for place in found.where]
@@ -229,7 +234,11 @@ def _layers(record: DiscoveryRecord) -> Table:
 def remains_section(record: DiscoveryRecord) -> Section:
     """Return what is left unexplained, and the smallest disagreement that could have been seen."""
     remains = record.found.remains
-    blocks: list[Block] = [Bullets(remains)] if remains else [Paragraph("Nothing significant remains.")]
+    blocks: list[Block] = (
+        [Bullets(remains)]
+        if remains
+        else [Paragraph(UNTESTED if record.found.verdict == "cannot_tell" else "Nothing significant remains.")]
+    )
     if record.found.smallest_visible:
         columns = ("channel", Column("smallest visible mean residual", "", 3), "unit")
         rows = [

@@ -131,7 +131,10 @@ def _downloads(record: DiscoveryRecord, tables: Sequence[str]) -> tuple[Download
     )
 
 
+STATUS = {"no_discrepancy": "good", "named": "good", "cannot_tell": "unknown"}
+"""Of the verdicts that are no finding."""
 MEANING = {
+    "cannot_tell": "Verdict cannot_tell: no disagreement could have been significant here, whatever its size.",
     "no_discrepancy": "Verdict no_discrepancy: what is left between model and measurement is no more than chance.",
     "named": "Verdict named: one answer, and it holds on a condition that it was not fitted to.",
     "conditional": "Verdict conditional: the effect stands out here, but transfer to another condition is not shown.",
@@ -145,7 +148,7 @@ MEANING = {
 def discovery_verdict(record: DiscoveryRecord) -> Verdict:
     """Return the verdict of the page."""
     found = record.found
-    status = "good" if found.verdict in ("no_discrepancy", "named") else "finding"
+    status = STATUS.get(found.verdict, "finding")
     points = [MEANING[found.verdict]]
     if found.where:
         points.append(f"Largest disagreement: {place_words(found.where[0])}.")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from benchmark.discovery.criteria import Settings
+from benchmark.discovery.criteria import ENOUGH_TRIALS, Settings
 from benchmark.discovery.discovery_result import Candidate, Estimate, NamedEffect
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, NextExperiment
 from benchmark.discovery.report.words import effect_name
@@ -107,6 +107,7 @@ def _row(estimate: Estimate, meaning: str) -> tuple[object, ...]:
 
 
 ADVICE = {
+    "cannot_tell": f"Repeat the press: at least {ENOUGH_TRIALS} trials in all, two or more of one condition.",
     "no_discrepancy": "Nothing needs to be added. A smaller disagreement would need more trials: its size falls with "
     "the root of their number.",
     "conditional": "Measure a second condition (another rate, depth or tool) and run this again with both: only then "

@@ -68,8 +68,9 @@ def test_an_interrupted_discovery_ends_with_the_same_answer(session_of, tmp_path
 
 
 @pytest.mark.slow
-def test_few_trials_name_nothing(session_of):
-    found = findings(session_of(force=damped, trials=2), settings=SETTINGS)
-    assert found.discovery.verdict == "no_discrepancy"
-    assert found.discovery.effects == ()
-    assert "too few trials" in found.discovery.statement
+def test_few_trials_cannot_tell_whatever_they_show(session_of):
+    found = findings(session_of(force=damped, trials=2), settings=SETTINGS).discovery
+    assert found.verdict == "cannot_tell"
+    assert (found.p, found.effects, found.where, found.remains, found.smallest_visible) == (None, (), (), (), {})
+    assert "too few trials" in found.statement
+    assert found.gap[0].rmse_before > 0.0

@@ -31,6 +31,7 @@ def facts(**changes):
 CASES = {
     "named": {},
     "no_discrepancy": {"effects": (), "p": 0.4, "p_cells": 0.4},
+    "cannot_tell": {"enough": False},
     "outside_catalogue": {"left": 0.5, "p_after": 0.002},
     "lookalikes": {"lookalikes": (DRAINAGE,)},
     "instrument_first": {"lookalikes": (DRIFT,)},
@@ -50,10 +51,11 @@ def test_a_disagreement_without_an_effect_is_outside_the_catalogue():
     assert verdict(facts(effects=())) == "outside_catalogue"
 
 
-def test_too_few_trials_name_nothing():
+def test_too_few_trials_cannot_tell():
     made = facts(enough=False)
-    assert verdict(made) == "no_discrepancy"
-    assert "too few trials" in statement("no_discrepancy", made)
+    assert verdict(made) == "cannot_tell"
+    assert "too few trials" in statement("cannot_tell", made)
+    assert "nothing is named" in statement("cannot_tell", made)
 
 
 def test_parameters_that_do_not_transfer_are_conditional():
@@ -82,8 +84,9 @@ def test_every_combination_of_facts_has_one_of_the_verdicts_and_a_sentence():
     assert all(statement(verdict(each), each).endswith(".") for each in EVERY)
 
 
-def test_nothing_is_said_of_too_few_trials_or_of_chance():
-    assert verdicts_where(lambda each: not each.enough or each.p >= each.level) == {"no_discrepancy"}
+def test_nothing_is_named_of_too_few_trials_or_of_chance():
+    assert verdicts_where(lambda each: not each.enough) == {"cannot_tell"}
+    assert verdicts_where(lambda each: each.enough and each.p >= each.level) == {"no_discrepancy"}
 
 
 def test_only_one_effect_that_holds_elsewhere_and_leaves_nothing_is_named():
@@ -99,12 +102,12 @@ def test_only_one_effect_that_holds_elsewhere_and_leaves_nothing_is_named():
 
 def test_what_leaves_a_third_for_sure_is_never_an_answer():
     left = verdicts_where(lambda each: each.effects and each.left > 0.3 and each.p_after < each.level)
-    assert left <= {"outside_catalogue", "no_discrepancy"}
+    assert left == {"outside_catalogue", "no_discrepancy", "cannot_tell"}
 
 
 def test_an_instrument_among_the_rivals_of_tissue_asks_for_a_calibration():
     mixed = verdicts_where(lambda each: each.effects and DRIFT in each.lookalikes)
-    assert mixed == {"instrument_first", "outside_catalogue", "no_discrepancy"}
+    assert mixed == {"instrument_first", "outside_catalogue", "no_discrepancy", "cannot_tell"}
     assert verdict(facts(effects=(DRIFT,), lookalikes=(BY_SLUG["tool_inertia"],))) == "lookalikes"
     assert verdict(facts(effects=(DRIFT,), lookalikes=(RELAXATION,))) == "instrument_first"
 

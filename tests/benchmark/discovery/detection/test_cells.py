@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from benchmark.discovery.detection.cells import Cell, CellTable, flip_test
+from benchmark.discovery.criteria import Settings
+from benchmark.discovery.detection.cells import Cell, CellTable, flip_test, least_p, one_sided, reachable
 
 TRIALS, CELLS = 8, 24
 
@@ -100,3 +101,22 @@ def test_matched_numbers_count_from_one_side():
     along = 6.0 + rng.normal(size=(3, 10))
     found = {sign: flip_test(CellTable(base.cells, base.means, None, sign * along), 0, 0).p_any for sign in (1, -1)}
     assert found[1] < 0.01 < 0.05 < found[-1]
+
+
+LAYOUTS = [(6,), (5,), (3, 3), (2, 2, 2), (4, 2), (2, 2, 2, 2), (1,) * 6, (12,), (13,)]
+
+
+@pytest.mark.parametrize("layout", LAYOUTS, ids=str)
+def test_no_data_has_a_smaller_p_than_the_least(layout):
+    groups = np.repeat(np.arange(len(layout)), layout)
+    settings = Settings(flips=200)
+    clear = 100.0 + np.random.default_rng(0).normal(size=(1, groups.size))
+    p = float(one_sided(clear, groups, settings.flips, 0)[0])
+    assert p == pytest.approx(least_p(groups, settings))
+
+
+def test_a_test_that_cannot_reach_its_level_is_known():
+    able = [layout for layout in LAYOUTS if reachable(np.repeat(np.arange(len(layout)), layout), Settings())]
+    assert able == [(6,), (3, 3), (4, 2), (2, 2, 2, 2), (12,), (13,)]
+    assert not reachable(np.zeros(6, dtype=int), Settings(level=0.01))
+    assert reachable(np.zeros(9, dtype=int), Settings(level=0.01))

@@ -43,7 +43,7 @@ def test_every_verdict_has_its_words(record, verdict: str) -> None:
     other = replace(record, found=replace(record.found, verdict=verdict))
     shown = discovery_verdict(other)
     assert shown.points[0].startswith(f"Verdict {verdict}:")
-    assert shown.status == ("good" if verdict in ("named", "no_discrepancy") else "finding")
+    assert shown.status == {"named": "good", "no_discrepancy": "good", "cannot_tell": "unknown"}.get(verdict, "finding")
     assert next_section(other).blocks
 
 
@@ -51,6 +51,18 @@ def test_outside_the_catalogue_nothing_counts_as_named(record) -> None:
     text = _text(replace(record, found=replace(record.found, verdict="outside_catalogue")))
     assert "The nearest entries, which are not named" in text
     assert "Before" not in text[: text.index("Which effect")]
+
+
+def test_what_could_not_be_tested_is_neither_green_nor_called_nothing(empty) -> None:
+    found = replace(empty.found, verdict="cannot_tell", p=None, smallest_visible={})
+    html = render_page(discovery_page(replace(empty, found=found), ENVIRONMENT, []))
+    assert 'class="verdict unknown"' in html
+    assert ">Unknown<" in html
+    text = _text(replace(empty, found=found))
+    assert text.count("cannot reach the level") == 2
+    assert "at least 6 trials" in text
+    assert "Nothing significant remains" not in text
+    assert "more than chance" not in text
 
 
 def test_nothing_found_says_what_could_have_been_seen(empty) -> None:
