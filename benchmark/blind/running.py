@@ -22,7 +22,7 @@ from benchmark.child_processes import end_with_parent, single_threaded_children
 from benchmark.discovery.discovery_result import Discovery
 from benchmark.errors import InputError
 from benchmark.files.sessions.trials import Session
-from benchmark.sweep.journal import Journal, read_rows
+from benchmark.resumable import Journal, read_rows
 
 PRODUCT = "benchmark.discovery:discover"
 OnCase = Callable[[int, int, Judged | None], None]

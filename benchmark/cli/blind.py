@@ -43,9 +43,9 @@ def blind(
     Writes table.md, cases.csv, confusion.csv and blind.json. The same command goes on where it was stopped. Exit code
     0 whatever it finds.
     """
+    from benchmark.blind.blind_folder import confusion_text, finish, open_folder, text_table
     from benchmark.blind.cases import chosen
     from benchmark.blind.cases import suite as cases_of
-    from benchmark.blind.folder import confusion_text, finish, open_folder, text_table
     from benchmark.blind.judging import table
     from benchmark.blind.running import load_discoverer, run_cases
     from benchmark.cli.console import Console

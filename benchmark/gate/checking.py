@@ -1,8 +1,9 @@
-"""A check from request to verdict: measure, compare, write."""
+"""A check from request to result folder: measure, compare, write `check.json`, tables and report."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Any
 from benchmark.gate.accuracy import compare_values
 from benchmark.gate.baseline import HistoryEntry, append, read_history
 from benchmark.gate.check_basis import CheckBasis, stored_baseline
-from benchmark.gate.folder import write_check
+from benchmark.gate.check_page import check_page
 from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
 from benchmark.gate.processes import Measured, Party, measure
 from benchmark.gate.timing import Judge, TimingRow
@@ -19,6 +20,7 @@ from benchmark.gate.verdict import CheckVerdict
 from benchmark.gate.versions import Origin, gated_values, origin_of, rival, this_version
 from benchmark.runs.destination import destination
 from benchmark.runs.listener import Listener
+from reports import whole_folder, write_csv, write_json, write_page
 
 NOTABLE = 0.25
 """The slowdown that a check should catch; where the scatter does not allow it, the check says so."""
@@ -143,3 +145,43 @@ def _record(request: CheckRequest, origin: Origin, verdict: CheckVerdict) -> lis
     except OSError as error:
         warnings.append(f"{request.history_path}: the history cannot be written ({error.strerror or error})")
     return warnings
+
+
+DOCUMENT = "check.json"
+
+
+def write_check(
+    folder: Path, verdict: CheckVerdict, measured: Measured, history: Sequence[HistoryEntry], origin: Origin
+) -> dict[str, Any]:
+    """Write a check and return the content of `check.json`.
+
+    Raises
+    ------
+    OSError
+        Where the file system refuses; `folder` is then as it was.
+    """
+    document = {**verdict.to_dict(), "revision": origin.revision}
+    page = check_page(verdict, history, origin)
+    with whole_folder(folder) as new:
+        write_json(new / DOCUMENT, document)
+        write_json(new / "environment.json", origin.environment)
+        write_csv(new / "tables" / "accuracy.csv", _columns([row.to_dict() for row in verdict.accuracy]))
+        write_csv(new / "tables" / "rounds.csv", round_columns(measured))
+        write_page(new / "report.html", page)
+    return document
+
+
+def round_columns(measured: Measured) -> dict[str, list[Any]]:
+    """Every measured process: side, its number, quantity, and time in units of its references."""
+    rows = [
+        (side, number, quantity, math.exp(value))
+        for side, ratios in zip(("now", "against"), measured.ratios, strict=False)
+        for quantity, values in ratios.items()
+        for number, value in enumerate(values, start=1)
+    ]
+    names = ("side", "process", "quantity", "ratio")
+    return {name: [row[column] for row in rows] for column, name in enumerate(names)}
+
+
+def _columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
+    return {name: [row[name] for row in rows] for name in rows[0]}

@@ -5,8 +5,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from benchmark.models import FieldSnapshot, LastState
-from benchmark.picture import save_grid
+
+
+def save_grid(snapshot: FieldSnapshot, path: Path) -> None:
+    """Write a snapshot as VTU."""
+    import pyvista
+
+    grid = pyvista.UnstructuredGrid(
+        {snapshot.cell_type: np.asarray(snapshot.cells)}, np.asarray(snapshot.points, dtype=float)
+    )
+    for name, values in snapshot.point_data.items():
+        grid.point_data[name] = values
+    for name, values in snapshot.cell_data.items():
+        grid.cell_data[name] = values
+    grid.save(path)
+
 
 LAST = "last.vtu"
 """The last state of equilibrium of a run that stopped early."""

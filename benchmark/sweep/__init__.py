@@ -1,4 +1,5 @@
 """Sweeps: one scenario at many points of its parameters, here or on a cluster, resumable, with report.
 
-`benchmark.sweep.run` is the way in. Nothing is imported here, since each process that computes points begins here.
+`benchmark.sweep.sweep_run` is the way in. Nothing is imported here, since each process that computes points
+begins here.
 """

@@ -13,7 +13,7 @@ from benchmark.sweep.parameter import Parameter
 from benchmark.sweep.plan import SweepPlan
 from benchmark.sweep.point import FAILED, MODELS, SECONDS, PointResult, headline
 from benchmark.sweep.sensitivity import Sensitivity
-from benchmark.sweep.table import Columns, point_columns
+from benchmark.sweep.sweep_folder import Columns, point_columns
 from reports import (
     Block,
     Column,

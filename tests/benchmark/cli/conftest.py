@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import pytest
 
 from benchmark.cli.app import main
-from benchmark.picture import Drawn
+from benchmark.runs.pressed import Drawn
 
 
 @dataclass(frozen=True)

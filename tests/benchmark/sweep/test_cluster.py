@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from benchmark.resumable import read_rows
 from benchmark.sweep.cluster import ClusterError, work_on_cluster
-from benchmark.sweep.journal import read_rows
 from benchmark.sweep.local import work_locally
 from benchmark.sweep.point import OK, PointResult, Task
 

@@ -1,8 +1,9 @@
-"""A sweep from request to report: choose the points, compute what is missing, say what was found."""
+"""A sweep from request to report: choose the points, compute what is missing, say how far it is and what was found."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -10,15 +11,14 @@ from typing import Any
 from benchmark.errors import InputError
 from benchmark.runs.destination import check_ready, destination
 from benchmark.runs.document import describe_environment
-from benchmark.runs.listener import Listener
+from benchmark.runs.listener import Advance, Listener
 from benchmark.sweep.design import chosen_design
-from benchmark.sweep.folder import SweepFolder, open_folder
 from benchmark.sweep.local import usable_cores, work_locally
 from benchmark.sweep.parameter import parse_parameter
 from benchmark.sweep.plan import SweepPlan, make_plan
 from benchmark.sweep.point import FAILED, OK, PointResult, Task, failed
-from benchmark.sweep.progress import SweepProgress
 from benchmark.sweep.sensitivity import Sensitivity, sensitivity_columns, sweep_sensitivity
+from benchmark.sweep.sweep_folder import SweepFolder, open_folder
 from benchmark.sweep.sweep_page import sweep_page
 from reports import extended_folder, write_csv, write_json, write_page
 
@@ -164,3 +164,33 @@ def _document(plan: SweepPlan, rows: Sequence[PointResult], found: Sensitivity |
             "indices": [vars(index) for index in found.indices],
         }
     return document
+
+
+class SweepProgress:
+    """Counts finished points; the estimate rests on those that finished since the start of this command."""
+
+    def __init__(self, total: int, done: int, advance: Advance, clock: Callable[[], float] = time.monotonic):
+        self._total, self._before, self._advance, self._clock = total, done, advance, clock
+        self._now = self._failed = 0
+        self._started = clock()
+
+    def add(self, row: PointResult) -> None:
+        """Count a point and say so."""
+        self._now += 1
+        self._failed += row.status == FAILED
+        done = self._before + self._now
+        remarks = [_duration(self.remaining()) + " left" if done < self._total else ""]
+        remarks.append(f"{self._failed} failed" if self._failed else "")
+        self._advance("points", done, self._total, ", ".join(filter(None, remarks)))
+
+    def remaining(self) -> float:
+        """Seconds that the missing points may take."""
+        left = self._total - self._before - self._now
+        return (self._clock() - self._started) / max(self._now, 1) * left
+
+
+def _duration(seconds: float) -> str:
+    """A duration as a person says it."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

@@ -10,9 +10,9 @@ from typing import Any
 
 from benchmark.blind.judging import BlindRow, Judged, confusion, table, verdicts
 from benchmark.errors import InputError
+from benchmark.resumable import check_files
 from benchmark.runs.destination import check_ready
 from reports import extended_folder, write_csv, write_json, write_text
-from reports.manifest import foreign_files, refuse_foreign
 from reports.result_folder import clear_leftovers
 
 SCHEMA = 1
@@ -35,20 +35,12 @@ def open_folder(path: Path, settings: dict[str, Any]) -> Path:
     """
     check_ready(path)
     there = _settings_in(path)
-    if there is None and (others := foreign_files(path)):
-        raise InputError(
-            f"--out {path} holds files that are no blind run ({', '.join(others[:5])}); "
-            "it must be a folder that is new or empty"
-        )
+    check_files(path, FILES, resumed=there is not None, no="no blind run")
     if (path / JOURNAL).exists() and there != settings:
         raise InputError(
             f"--out {path} holds a stopped blind run with other settings ({there}); repeat that command to go on with "
             "it, or give another folder"
         )
-    try:
-        refuse_foreign(path, f"--out {path}", FILES)
-    except OSError as error:
-        raise InputError(str(error)) from error
     path.mkdir(parents=True, exist_ok=True)
     clear_leftovers(path)
     with extended_folder(path, growing=(JOURNAL,)) as new:

@@ -5,7 +5,7 @@ from pathlib import Path
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmark.sweep.journal import Journal, read_journal
+from benchmark.resumable import Journal, read_rows
 from benchmark.sweep.point import PointResult, failed
 
 ROWS = [
@@ -13,6 +13,10 @@ ROWS = [
     failed(2, "no\nluck"),
     PointResult(3, "ok", None, None, {"x_mm": 5e-324}),
 ]
+
+
+def read(path: Path) -> list[PointResult]:
+    return list(read_rows(path, PointResult))
 
 
 def written(path: Path, rows=ROWS) -> Path:
@@ -24,8 +28,8 @@ def written(path: Path, rows=ROWS) -> Path:
 
 
 def test_it_reads_back_exactly(tmp_path: Path) -> None:
-    assert read_journal(written(tmp_path / "j")) == {row.point: row for row in ROWS}
-    assert read_journal(tmp_path / "nowhere") == {}
+    assert read(written(tmp_path / "j")) == ROWS
+    assert read(tmp_path / "nowhere") == []
 
 
 @settings(max_examples=60, deadline=None)
@@ -36,16 +40,16 @@ def test_a_cut_anywhere_keeps_the_whole_rows_and_can_go_on(tmp_path_factory, dat
     cut = data.draw(st.integers(0, len(whole)))
     path.write_bytes(whole[:cut])
     kept = whole[:cut].count(b"\n")
-    assert read_journal(path) == {row.point: row for row in ROWS[:kept]}
+    assert read(path) == ROWS[:kept]
     missing = ROWS[kept:]
     journal = Journal(path)
     for row in missing:
         journal.add(row)
     journal.close()
-    assert read_journal(path) == {row.point: row for row in ROWS}
+    assert read(path) == ROWS
 
 
 def test_lines_of_something_else_are_passed_over(tmp_path: Path) -> None:
     path = written(tmp_path / "j")
     path.write_bytes(b'\x00\x00\n{"point": 9}\n[1]\n' + path.read_bytes())
-    assert read_journal(path) == {row.point: row for row in ROWS}
+    assert read(path) == ROWS

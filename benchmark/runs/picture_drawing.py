@@ -1,4 +1,4 @@
-"""The drawing itself: `python -m benchmark.picture.drawing IN.vtu OUT.png X Y REACH` (m).
+"""The drawing itself: `python -P picture_drawing.py IN.vtu OUT.png X Y REACH` (m).
 
 The body is shown deformed, without magnification, coloured by the deflection. An axisymmetric section is turned to
 three quarters of a round body; plane layers are shown up to REACH from the tool's axis, a body from a surface file is

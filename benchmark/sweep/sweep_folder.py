@@ -1,24 +1,67 @@
-"""The folder of a sweep: whose it is, what is finished in it, and that only one process works in it."""
+"""The folder of a sweep: whose it is, its points on disk as they finish, and that only one process works in it."""
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError
+from benchmark.resumable import Journal, check_files, read_rows
 from benchmark.runs.unfinished import is_kept
-from benchmark.sweep.journal import Journal, read_journal
+from benchmark.sweep.design import Point
+from benchmark.sweep.parameter import Parameter
 from benchmark.sweep.plan import SCHEMA, SweepPlan, differences
 from benchmark.sweep.point import PointResult
-from benchmark.sweep.table import point_columns, write_points
 from reports import extended_folder, write_json, write_text
-from reports.manifest import MANIFEST, foreign_files, read_manifest, refuse_foreign, remove_known
-from reports.result_folder import clear_leftovers
+from reports.manifest import MANIFEST, read_manifest, remove_known
+from reports.result_folder import clear_leftovers, replace_file
+
+Columns = dict[str, list[Any]]
+
+
+def point_columns(parameters: Sequence[Parameter], points: Sequence[Point], rows: Iterable[PointResult]) -> Columns:
+    """Columns of finished points in the order of their numbers.
+
+    A varied key has a column of its name with the value as `--set` takes it (a number where it has no unit), and, with
+    a unit, one with the number, `KEY_UNIT`. Results that a point does not have are None.
+    """
+    ordered = sorted(rows, key=lambda row: row.point)
+    columns: Columns = {"point": [row.point for row in ordered]}
+    for place, parameter in enumerate(parameters):
+        texts = [points[row.point - 1][place] for row in ordered]
+        if parameter.unit or parameter.numbers is None:
+            columns[parameter.key] = texts
+        if parameter.numbers is not None:
+            columns[parameter.column] = [parameter.number_of(text) for text in texts]
+    names = dict.fromkeys(name for row in ordered for name in row.values)
+    columns |= {name: [row.values.get(name) for row in ordered] for name in names}
+    columns["status"] = [row.status for row in ordered]
+    columns["reason"] = [row.reason for row in ordered]
+    columns["warnings"] = [row.warnings for row in ordered]
+    return columns
+
+
+def write_points(path: Path, columns: Mapping[str, Sequence[Any]]) -> None:
+    """Write the columns as Parquet into a folder of ours; text, whole numbers and doubles keep their types."""
+    import pyarrow
+    from pyarrow import parquet
+
+    texts = {"status", "reason", "warnings"}
+    arrays = {}
+    for name, values in columns.items():
+        word = name in texts or any(isinstance(value, str) for value in values)
+        kind = pyarrow.string() if word else pyarrow.int64() if name == "point" else pyarrow.float64()
+        arrays[name] = pyarrow.array(values, type=kind)
+    stream = io.BytesIO()
+    parquet.write_table(pyarrow.table(arrays), stream)
+    replace_file(path, stream.getvalue())
+
 
 PLAN, JOURNAL, POINTS, UNFINISHED = "sweep.json", "journal.jsonl", "points.parquet", "unfinished"
 SCENARIO = "scenario.toml"
@@ -34,7 +77,7 @@ class SweepFolder:
     def __init__(self, path: Path, plan: SweepPlan, journal: Journal):
         self.path = path
         self._plan, self._journal = plan, journal
-        self.finished: dict[int, PointResult] = read_journal(path / JOURNAL)
+        self.finished: dict[int, PointResult] = {row.point: row for row in read_rows(path / JOURNAL, PointResult)}
         self._due = 0.0
 
     @property
@@ -110,15 +153,7 @@ def _check_holds(path: Path, plan: SweepPlan) -> None:
             raise InputError(
                 f"--out {path} holds a sweep of an earlier version, without {MANIFEST}; move it away, or give another"
             )
-    elif others := foreign_files(path):
-        raise InputError(
-            f"--out {path} holds files that are not a sweep ({', '.join(others[:5])}); "
-            "it must be a folder that is new or empty"
-        )
-    try:
-        refuse_foreign(path, f"--out {path}", FILES)
-    except OSError as error:
-        raise InputError(str(error)) from error
+    check_files(path, FILES, resumed=(path / PLAN).is_file(), no="not a sweep")
 
 
 def _read_plan(path: Path) -> Mapping[str, Any]:

@@ -1,0 +1,83 @@
+"""Result folders of long computations that go on where they were stopped: whose the files are, and the journal.
+
+A journal has one line of JSON for each finished row, on disk before the next one counts. A line that a crash cut off is
+dropped when the journal is read again; its row is then computed anew.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+from benchmark.errors import InputError
+from reports.manifest import foreign_files, refuse_foreign
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+RowType = TypeVar("RowType")
+MOST_NAMED = 5
+
+
+def check_files(path: Path, files: Collection[str], *, resumed: bool, no: str) -> None:
+    """Refuse a folder in which the result's `files` are not as this program wrote them.
+
+    Parameters
+    ----------
+    path, files
+        The folder, and the files of the result in it.
+    resumed
+        Whether the folder holds such a result; what somebody else put beside it then stays.
+    no
+        What the files in another folder are, as "not a sweep".
+
+    Raises
+    ------
+    InputError
+        Naming the files.
+    """
+    if not resumed and (others := foreign_files(path)):
+        raise InputError(
+            f"--out {path} holds files that are {no} ({', '.join(others[:MOST_NAMED])}); "
+            "it must be a folder that is new or empty"
+        )
+    try:
+        refuse_foreign(path, f"--out {path}", files)
+    except OSError as error:
+        raise InputError(str(error)) from error
+
+
+def read_rows(path: Path, row_type: Callable[..., RowType]) -> Iterator[RowType]:
+    """The whole rows of a journal, made by `row_type` from their fields; none without a journal."""
+    if not path.exists():
+        return
+    whole, _, _ = path.read_bytes().rpartition(b"\n")
+    for line in whole.splitlines():
+        try:
+            yield row_type(**json.loads(line))
+        except (ValueError, TypeError):
+            continue
+
+
+class Journal:
+    """Appends finished rows, dataclasses of plain values; `close` it."""
+
+    def __init__(self, path: Path):
+        self._stream = path.open("ab")
+        if self._stream.tell():
+            self._stream.write(b"\n")  # ends a line that a crash cut off
+
+    def add(self, row: DataclassInstance) -> None:
+        """Write one row through to the disk."""
+        line = json.dumps(asdict(row), ensure_ascii=False, allow_nan=False)
+        self._stream.write(line.encode() + b"\n")
+        self._stream.flush()
+        os.fsync(self._stream.fileno())
+
+    def close(self) -> None:
+        """Close the file."""
+        self._stream.close()
