@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -67,6 +68,23 @@ class SilentListener:
         """Yield an `advance` that does nothing."""
         del title
         yield lambda *_: None
+
+
+def first_of(*places: str) -> Any:
+    """What the first of these places has, each `module:name`: another revision may keep it elsewhere.
+
+    Raises
+    ------
+    ImportError
+        None of them has it.
+    """
+    for place in places:
+        module, _, name = place.partition(":")
+        try:
+            return getattr(import_module(module), name)
+        except (ImportError, AttributeError):
+            continue
+    raise ImportError(f"this revision has none of {', '.join(places)}")
 
 
 def press_values(case: Mapping[str, Any]) -> list[GatedValue]:
@@ -187,14 +205,15 @@ def _problem(scenario: Scenario) -> fem.Problem:
 def fit(job: Job) -> Work:
     """Fit two trials of a session with a curve that is given: no finite elements in it."""
     from benchmark.files import load_session
-    from benchmark.identification import TrialData, fit_session
-    from benchmark.response import ForceCurve
 
+    force_curve = first_of("benchmark.response:ForceCurve", "benchmark.fitting:ForceCurve")
+    trial_data = first_of("benchmark.identification:TrialData", "benchmark.fitting:TrialData")
+    fit_session = first_of("benchmark.identification:fit_session", "benchmark.fitting:fit_session")
     session = load_session(Path(job["session"]))
     depth = np.linspace(0.0, 12e-3, 41)[1:]
-    curve = ForceCurve(depth, 260.0 * depth * (1.0 + (depth / 8e-3) ** 1.5))
+    curve = force_curve(depth, 260.0 * depth * (1.0 + (depth / 8e-3) ** 1.5))
     trials = [
-        TrialData(trial.name, trial.condition, trial.table.time, trial.table.depth, trial.table.force, curve)
+        trial_data(trial.name, trial.condition, trial.table.time, trial.table.depth, trial.table.force, curve)
         for trial in session.trials[:FIT_TRIALS]
     ]
     layers = session.specimen.layers

@@ -5,7 +5,8 @@ import math
 import pytest
 
 from benchmark.gate.measuring.costs import CostClock
-from benchmark.gate.measuring.references import REFERENCES
+from benchmark.gate.measuring.jobs import first_of
+from benchmark.gate.measuring.references import CALLS, REFERENCES
 from benchmark.gate.measuring.service import Service
 from benchmark.gate.plan import GatePlan, load_plan
 
@@ -78,3 +79,10 @@ def test_references_do_the_same_each_time(name: str) -> None:
     work = REFERENCES[name]()
     assert work() is None
     assert work() is None
+
+
+def test_a_name_is_found_where_a_revision_keeps_it() -> None:
+    assert first_of("benchmark.nowhere:thing", "benchmark.gate.measuring.references:CALLS") == CALLS
+    assert first_of("math:nothing", "math:pi") == math.pi
+    with pytest.raises(ImportError, match=r"benchmark\.nowhere:thing, math:nothing"):
+        first_of("benchmark.nowhere:thing", "math:nothing")
