@@ -11,7 +11,8 @@ from benchmark.cli.options import Debug, Json, Out, Quiet, Seed
 
 if TYPE_CHECKING:
     from benchmark.cli.console import Console
-    from benchmark.gate import Accepted, CheckOutcome
+    from benchmark.gate.accepting import Accepted
+    from benchmark.gate.checking import CheckOutcome
 
 Baseline = Annotated[
     Path | None,
@@ -49,14 +50,15 @@ def check(
 
     The first baseline is made with --accept; without one the exit code is 3.
     """
-    from benchmark import gate as gates
     from benchmark.cli.console import Console
+    from benchmark.gate import accepting, checking
+    from benchmark.gate.plan import CheckRequest
 
     console = Console(quiet=quiet)
-    request = gates.CheckRequest(baseline, against, gate, history, out, seed)
+    request = CheckRequest(baseline, against, gate, history, out, seed)
     if accept:
-        return _show_accepted(gates.accept(request, console), console, as_json=json)
-    return _show_check(gates.check(request, console), console, as_json=json)
+        return _show_accepted(accepting.accept(request, console), console, as_json=json)
+    return _show_check(checking.check(request, console), console, as_json=json)
 
 
 def _show_accepted(accepted: Accepted, console: Console, *, as_json: bool) -> int:

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from benchmark.errors import InputError, NotComparableError
-from benchmark.gate import CheckRequest, accept, check
+from benchmark.gate.accepting import accept
+from benchmark.gate.checking import check
 from benchmark.gate.measuring.jobs import SilentListener
-from benchmark.gate.plan import load_plan
+from benchmark.gate.plan import CheckRequest, load_plan
 from benchmark.gate.versions import PRODUCT, subject
 
 AUTHOR = ("-c", "user.name=test", "-c", "user.email=test@localhost")

@@ -9,12 +9,12 @@ from typing import Self
 import pytest
 
 from benchmark.errors import InputError, NotComparableError, SolverError
-from benchmark.gate import CheckRequest, accept, check
+from benchmark.gate.accepting import accept
 from benchmark.gate.baseline import read_baseline, read_history
-from benchmark.gate.checking import remarks
+from benchmark.gate.checking import check, remarks
 from benchmark.gate.measuring.costs import CostClock
 from benchmark.gate.measuring.service import Service
-from benchmark.gate.plan import GatePlan
+from benchmark.gate.plan import CheckRequest, GatePlan
 from benchmark.gate.processes import Measured
 from benchmark.gate.timing import TimingRow
 
