@@ -8,7 +8,6 @@ from __future__ import annotations
 import hashlib
 import io
 import multiprocessing
-import os
 import re
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
@@ -22,7 +21,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from benchmark.child_processes import end_with_parent
+from benchmark.child_processes import end_with_parent, single_threaded_children
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.base.effect_model import Fit, Model
 from benchmark.physics import Effect, load_effects
@@ -154,17 +153,11 @@ def pool(workers: int, store: Path | None, key: str, own: Sequence[Effect], list
         return
     files = tuple(dict.fromkeys(effect.origin for effect in own if effect.origin))
     context = multiprocessing.get_context("spawn")
-    before = {name: os.environ.get(name) for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
-    os.environ.update(dict.fromkeys(before, "1"))
-    try:
-        with ProcessPoolExecutor(workers, context, initializer=_prepare, initargs=(files,)) as executor:
-            yield Pool(executor, store, key, listener)
-    finally:
-        for variable, value in before.items():
-            if value is None:
-                os.environ.pop(variable, None)
-            else:
-                os.environ[variable] = value
+    with (
+        single_threaded_children(),
+        ProcessPoolExecutor(workers, context, initializer=_prepare, initargs=(files,)) as executor,
+    ):
+        yield Pool(executor, store, key, listener)
 
 
 def _prepare(files: Sequence[str]) -> None:
