@@ -64,36 +64,36 @@ docs: $(DEV_STAMP)
 	$(PY) -m mkdocs build --quiet
 
 bench-wave: $(RUN_STAMP)
-	$(PY) -m benchmarks.wave
+	$(PY) -m tests.performance.wave
 
 bench-accuracy: $(RUN_STAMP)
-	$(PY) -m benchmarks.wave.linear
-	$(PY) -m benchmarks.wave.tissues
+	$(PY) -m tests.performance.wave.linear
+	$(PY) -m tests.performance.wave.tissues
 
 bench-peers: $(DEV_STAMP)
-	$(PY) -m benchmarks.peers
+	$(PY) -m tests.performance.peers
 
 bench-liver: $(RUN_STAMP)
-	$(PY) -m benchmarks.liver results/liver
+	$(PY) -m tests.performance.liver results/liver
 
 bench-vision: $(RUN_STAMP)
-	$(PY) -m benchmarks.vision
+	$(PY) -m tests.performance.vision
 
 # GATE_RUNS=3 for a short one.
 GATE_RUNS ?= 20
 bench-gate: $(DEV_STAMP)
-	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS) --together --only wave.frame fem.assembly fit
-	$(PY) -m benchmarks.gate_trial --runs $(GATE_RUNS) --off 0.01 --values
+	$(PY) -m tests.performance.gate_trial --runs $(GATE_RUNS) --together --only wave.frame fem.assembly fit
+	$(PY) -m tests.performance.gate_trial --runs $(GATE_RUNS) --off 0.01 --values
 
 bench-effects: $(RUN_STAMP)
-	$(PY) -m benchmarks.effects
+	$(PY) -m tests.performance.effects
 
 bench-sweep: $(RUN_STAMP)
-	$(PY) -m benchmarks.sweep
+	$(PY) -m tests.performance.sweep
 
-# The table goes to benchmarks/discovery; the same command goes on where it was stopped.
+# The table goes to tests/performance/discovery; the same command goes on where it was stopped.
 bench-discovery: $(RUN_STAMP)
-	$(PY) -m benchmark blind --suite first --out benchmarks/discovery
+	$(PY) -m benchmark blind --suite first --out tests/performance/discovery
 
 # Needs uv (`pip install uv`). Only names and versions are written, no addresses.
 lock:

@@ -1,4 +1,4 @@
-"""The trial of the gate (benchmarks/gate_trial): its faults are real, and it counts right."""
+"""The trial of the gate (tests/performance/gate_trial): its faults are real, and it counts right."""
 
 import ast
 import json
@@ -10,10 +10,10 @@ from types import SimpleNamespace
 import pytest
 
 from benchmark.gate.versions import PRODUCT
-from benchmarks.gate_trial import __main__ as trial
-from benchmarks.gate_trial.copies import GATE, Check, values_gate
-from benchmarks.gate_trial.faults import HOWS, Fault, deflections, slowdowns
-from benchmarks.gate_trial.summary import summary
+from tests.performance.gate_trial import __main__ as trial
+from tests.performance.gate_trial.copies import GATE, Check, values_gate
+from tests.performance.gate_trial.faults import HOWS, Fault, deflections, slowdowns
+from tests.performance.gate_trial.summary import summary
 
 
 @pytest.mark.parametrize("how", HOWS)

@@ -9,7 +9,7 @@ from benchmark.files import load_scenario
 from benchmark.model_file import AddedEffect, RepairedModel, Value, model_toml
 from benchmark.models import Drive, ModelResult, scenario_drive
 from benchmark.response.model_with_effects import RepairedPress, load_repair, prepare_with_effects, switched_on
-from benchmarks.effects import VALUES, rows
+from tests.performance.effects import VALUES, rows
 
 STIFFNESS = 1000.0
 SCENARIO = load_scenario("skin-5N", {"load.shape": "ramp_hold", "load.hold": "10 s", "load.peak": "2 N"})

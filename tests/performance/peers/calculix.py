@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.peers.case import LAYERS, POISSON, Case
+from tests.performance.peers.case import LAYERS, POISSON, Case
 
 # CalculiX wants an axisymmetric model's axis along y, and forces of the whole circumference.
 QUAD8 = [0, 1, 2, 3, 4, 5, 6, 7]

@@ -1,4 +1,4 @@
-"""One case through this project's solver: `python -m benchmarks.peers.ours case.npz result.npz`."""
+"""One case through this project's solver: `python -m tests.performance.peers.ours case.npz result.npz`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 import fem
-from benchmarks.peers.case import LAYERS, POISSON, Case, load_case
 from fem.assembly import (
     ElementGeometry,
     System,
@@ -23,6 +22,7 @@ from fem.linear_solver import make_solver
 from fem.mesh import Mesh, SolidMesh
 from fem.solving import Equilibrium, NewtonSettings, Stepper
 from fem.threads import suited_threads
+from tests.performance.peers.case import LAYERS, POISSON, Case, load_case
 
 
 def hexahedra(case: Case) -> ElementGeometry:

@@ -1,4 +1,4 @@
-"""A sweep by one and by two local workers in turn: `python -m benchmarks.sweep --points 200 --repeats 2`.
+"""A sweep by one and by two local workers in turn: `python -m tests.performance.sweep --points 200 --repeats 2`.
 
 Wall times count the turns of other programs. So the CPU time of every process is told too, and what it says of two free
 cores: command before and after the points, then the longest of the workers, as if nothing of the command ran beside

@@ -11,18 +11,18 @@ from __future__ import annotations
 import argparse
 import os
 
-from benchmarks.peers.bars import Bar, bars
-from benchmarks.peers.case import Case
-from benchmarks.peers.cases import CASES
-from benchmarks.peers.comparison import Compared, compare
-from benchmarks.peers.running import programs, run_in_turn
+from tests.performance.peers.bars import Bar, bars
+from tests.performance.peers.case import Case
+from tests.performance.peers.cases import CASES
+from tests.performance.peers.comparison import Compared, compare
+from tests.performance.peers.running import programs, run_in_turn
 
 FELUPE_LIMIT = 60_000  # unknowns beyond which FElupe's solve takes minutes
 
 
 def main() -> int:
     """Run all cases; 1 where a program disagrees with ours beyond its bar."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.peers", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tests.performance.peers", description=__doc__)
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--threads", type=int, default=2, help="for every program; 1 on a busy machine")
     parser.add_argument("--cases", nargs="*", choices=list(CASES), default=list(CASES))

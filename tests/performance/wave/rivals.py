@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import diags_array, eye_array, kron
 from scipy.sparse.linalg import spsolve
 
-from benchmarks.wave.job import DENSITY, LAYERS, POISSON_RATIO, RADIUS, Reference, reference
+from tests.performance.wave.job import DENSITY, LAYERS, POISSON_RATIO, RADIUS, Reference, reference
 
 Frame = Callable[[float], np.ndarray]
 MOST_BYTES = 1e9

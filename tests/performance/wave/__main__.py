@@ -1,4 +1,4 @@
-"""Print the speed of the waves and of what else a user would pick: `python -m benchmarks.wave` (`make bench-wave`)."""
+"""Print the speed of the waves and of what else a user would pick: `make bench-wave`."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import os
 for _name in ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ[_name] = "1"  # before NumPy is loaded
 
-from benchmarks.wave.frames import WINDOW, rows  # noqa: E402
-from benchmarks.wave.job import FORCE, RADIUS, REACH, reference  # noqa: E402
-from benchmarks.wave.triangle import PEAKS, STEPS, triangle  # noqa: E402
+from tests.performance.wave.frames import WINDOW, rows  # noqa: E402
+from tests.performance.wave.job import FORCE, RADIUS, REACH, reference  # noqa: E402
+from tests.performance.wave.triangle import PEAKS, STEPS, triangle  # noqa: E402
 
 SEVERAL_LAYERS = 3
 

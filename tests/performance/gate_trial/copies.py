@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.gate_trial.faults import Fault
+from tests.performance.gate_trial.faults import Fault
 
-PRODUCT = Path(__file__).resolve().parents[2]
+PRODUCT = Path(__file__).resolve().parents[3]
 GATE = Path("benchmark/gate/default.toml")
 PACKAGES = ("benchmark", "fem", "wavemodel", "bench_hw", "reports")
 AUTHOR = ("-c", "user.name=gate trial", "-c", "user.email=gate-trial@localhost")

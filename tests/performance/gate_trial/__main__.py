@@ -1,6 +1,6 @@
 """Put the regression gate on trial: unchanged copies of the product, and copies that were made slower or wrong.
 
-    python -m benchmarks.gate_trial --runs 20 --together --log trial.jsonl
+    python -m tests.performance.gate_trial --runs 20 --together --log trial.jsonl
 
 Unchanged and faulty copies take turns, so that all meet the same states of the machine. With `--against` each copy is
 compared with the commit it was made from, without it with a baseline that is stored once at the beginning.
@@ -18,10 +18,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from benchmarks.gate_trial.copies import PRODUCT, make_copy, make_faulty, run_check, values_gate
-from benchmarks.gate_trial.faults import HOWS, Fault, deflections, slowdowns
-from benchmarks.gate_trial.log import Log
-from benchmarks.gate_trial.summary import TOGETHER, UNCHANGED, summary
+from tests.performance.gate_trial.copies import PRODUCT, make_copy, make_faulty, run_check, values_gate
+from tests.performance.gate_trial.faults import HOWS, Fault, deflections, slowdowns
+from tests.performance.gate_trial.log import Log
+from tests.performance.gate_trial.summary import TOGETHER, UNCHANGED, summary
 
 BASELINE = "tissuebench-baseline.json"
 

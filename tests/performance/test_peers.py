@@ -6,10 +6,10 @@ import shutil
 import numpy as np
 import pytest
 
-from benchmarks.peers.bars import Bar, bars
-from benchmarks.peers.cases import axisymmetric_case, block_case
-from benchmarks.peers.comparison import compare
-from benchmarks.peers.running import Timing, run_in_turn
+from tests.performance.peers.bars import Bar, bars
+from tests.performance.peers.cases import axisymmetric_case, block_case
+from tests.performance.peers.comparison import compare
+from tests.performance.peers.running import Timing, run_in_turn
 
 needs_felupe = pytest.mark.skipif(importlib.util.find_spec("felupe") is None, reason="felupe is not installed")
 needs_calculix = pytest.mark.skipif(shutil.which("ccx") is None, reason="Debian's calculix-ccx is not installed")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.peers.comparison import Compared
+from tests.performance.peers.comparison import Compared
 
 Cases = Mapping[str, Mapping[str, Compared]]
 

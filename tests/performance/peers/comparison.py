@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.peers.running import Timing
+from tests.performance.peers.running import Timing
 
 PARTS = ("process", "cpu", "solve")
 

@@ -9,9 +9,9 @@ from functools import partial
 
 import numpy as np
 
-from benchmarks.wave import rivals
-from benchmarks.wave.job import FORCE, RADIUS, Reference, errors, vertices, wave_layers
-from benchmarks.wave.timing import Times, microseconds
+from tests.performance.wave import rivals
+from tests.performance.wave.job import FORCE, RADIUS, Reference, errors, vertices, wave_layers
+from tests.performance.wave.timing import Times, microseconds
 from wavemodel import DiscTool, LayeredWave, Prony
 from wavemodel.control import Grid, InteractiveTissue, layered_body
 from wavemodel.control.fading import Fading

@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 import fem
-from benchmarks.wave.job import RADIUS, fem_model, wave_layers
+from tests.performance.wave.job import RADIUS, fem_model, wave_layers
 from wavemodel import DiscTool, LayeredWave
 
 T = TypeVar("T")

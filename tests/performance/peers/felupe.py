@@ -1,4 +1,4 @@
-"""One case through FElupe with Pardiso: `python -m benchmarks.peers.felupe case.npz result.npz`."""
+"""One case through FElupe with Pardiso: `python -m tests.performance.peers.felupe case.npz result.npz`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import felupe
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from benchmarks.peers.case import LAYERS, POISSON, Case, load_case
+from tests.performance.peers.case import LAYERS, POISSON, Case, load_case
 
 try:
     from pypardiso import spsolve as direct

@@ -1,4 +1,4 @@
-"""Print the linear wave, nothing calibrated, against the linear finite elements: `python -m benchmarks.wave.linear`.
+"""Print the linear wave, nothing calibrated, against the linear finite elements: `make bench-accuracy`.
 
 Three layers of skin on a bonded base: tools of 1 to 5 mm, fat of 3 to 20 mm, Poisson ratios of 0.45 to 0.499, fine
 mesh; all of the wave's set-up is automatic. Under a pressure the force is given, under a rigid tool the depth.
@@ -19,7 +19,7 @@ import numpy as np  # noqa: E402
 
 import fem  # noqa: E402
 from benchmark.models.radii import profile_radii  # noqa: E402
-from benchmarks.wave.job import DENSITY, LAYERS  # noqa: E402
+from tests.performance.wave.job import DENSITY, LAYERS  # noqa: E402
 from wavemodel import DiscTool, LayeredWave, WaveLayer  # noqa: E402
 
 RADII, FATS, RATIOS = (1e-3, 2e-3, 5e-3), (3e-3, 10e-3, 20e-3), (0.45, 0.48, 0.499)

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from benchmarks.gate_trial.copies import Check
+from tests.performance.gate_trial.copies import Check
 
 
 class Log:

@@ -1,4 +1,4 @@
-"""A synthetic liver-shaped body from its STL file to a pressed VTU: `python -m benchmarks.liver FOLDER`.
+"""A synthetic liver-shaped body from its STL file to a pressed VTU: `python -m tests.performance.liver FOLDER`.
 
 The shape is made here from a sphere (it is nobody's liver): a thick right lobe, a thin left one, a hollow
 underside. Three layers count inwards from its surface: capsule, outer and inner tissue.

@@ -1,4 +1,4 @@
-"""How fast markers are tracked, and what memory a long video takes: `python -m benchmarks.vision` (make bench-vision).
+"""How fast markers are tracked, and what memory a long video takes: `make bench-vision`.
 
 18 markers at 640 x 480 in pictures of the simulated camera (noise 4, the published lens), one thread. Printed, never
 asserted: wall times suffer from whoever else runs on the machine, so CPU time stands beside them.

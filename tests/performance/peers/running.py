@@ -16,10 +16,10 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.peers import calculix
-from benchmarks.peers.case import Case
+from tests.performance.peers import calculix
+from tests.performance.peers.case import Case
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 
 
@@ -69,7 +69,7 @@ def _run(program: str, case: Case, folder: Path, environment: Mapping[str, str])
         found = calculix.read_displacements(folder / "case.dat", len(case.nodes))
         return Timing(process, cpu, calculix.total_seconds(output), found[:, : case.nodes.shape[1]])
     out = folder / f"{program}.npz"
-    command = [sys.executable, "-m", f"benchmarks.peers.{program}", str(folder / "case.npz"), str(out)]
+    command = [sys.executable, "-m", f"tests.performance.peers.{program}", str(folder / "case.npz"), str(out)]
     subprocess.run(command, check=True, cwd=ROOT, env=environment, stdout=subprocess.DEVNULL)
     process, cpu = time.perf_counter() - start, _children_seconds() - cpu
     with np.load(out) as data:

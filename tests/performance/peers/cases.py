@@ -9,12 +9,12 @@ from types import MappingProxyType
 import numpy as np
 
 import fem
-from benchmarks.peers.case import LAYERS, POISSON, Case
 from fem.assembly.solid_element import SOLID_ELEMENTS
 from fem.contact.solid import uniform_pressure
 from fem.contact.uniform_pressure import UniformPressure
 from fem.layout import lay_out
 from fem.mesh import DiscGrid, Feature, Sizing, build_block, graded_line
+from tests.performance.peers.case import LAYERS, POISSON, Case
 
 TOOL_RADIUS = 5.0e-3
 BORDER = 30.0e-3

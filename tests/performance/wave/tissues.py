@@ -1,4 +1,4 @@
-"""Print the wave in finite strain against the finite elements, tissue by tissue: `python -m benchmarks.wave.tissues`.
+"""Print the wave in finite strain against the finite elements, tissue by tissue: `make bench-accuracy`.
 
 Every shipped skin on its base and the phantom's sheet over its hole, from nothing to 5 N or to the tissue's
 `max_force` (and the soft ones beyond it, to 5 N), elastic, on the fine mesh. What counts is each load step up to 0.3 of

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from benchmarks.wave.linear import Case, Errors, cases, compare, row
+from tests.performance.wave.linear import Case, Errors, cases, compare, row
 
 
 @pytest.mark.slow

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.wave.tissues import Comparison, compare, row, shipped
+from tests.performance.wave.tissues import Comparison, compare, row, shipped
 
 PRESSES = {press.name: press for press in shipped()}
 

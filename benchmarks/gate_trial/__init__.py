@@ -1,1 +1,0 @@
-"""The trial of the regression gate: `python -m benchmarks.gate_trial --help`."""
