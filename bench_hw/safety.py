@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bench_hw.devices.netft_status import describe, is_fault, is_saturated
 from bench_hw.devices.protocols import ForceBlock
+from bench_hw.devices.rdt import describe, is_fault, is_saturated
 from bench_hw.errors import DeviceError
 
 CAMERA_SILENT = 1.0

@@ -22,8 +22,7 @@ from reports.blocks import (
     Subsection,
     Verdict,
 )
-from reports.live import scripts
-from reports.rendering import environment
+from reports.rendering import environment, scripts
 
 
 @dataclass(frozen=True)

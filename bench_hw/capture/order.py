@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from bench_hw.errors import InputError
-from bench_hw.motion.loading import LoadedProtocol
-from bench_hw.rig.loading import LoadedRig
+from bench_hw.motion.protocol_file import LoadedProtocol
+from bench_hw.rig.rig_file import LoadedRig
 
 
 @dataclass(frozen=True, slots=True)

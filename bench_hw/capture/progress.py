@@ -1,14 +1,22 @@
-"""What a person sees while trials are recorded: a live line on a terminal, plain lines otherwise, or nothing."""
+"""What a person sees while trials are recorded, and how they stop it.
+
+A live line on a terminal, plain lines otherwise, or nothing; Ctrl-C as a flag that the capture looks at once a turn, so
+that no exchange with a device is cut in two.
+"""
 
 from __future__ import annotations
 
+import signal
 import sys
-from contextlib import AbstractContextManager, nullcontext
+import threading
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, TextIO
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
+
 
 _PLAIN_PERIOD = 1.0
 
@@ -141,3 +149,30 @@ def choose_progress(quiet: bool) -> Progress:
     if quiet:
         return Silent()
     return LiveLine() if sys.stderr.isatty() else PlainLines()
+
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+@contextmanager
+def stop_on_signals() -> Iterator[threading.Event]:
+    """Give an event that SIGINT (Ctrl-C) and SIGTERM set; outside the main thread it is never set.
+
+    A second signal raises `KeyboardInterrupt` wherever the program is, in case it hangs.
+    """
+    stop = threading.Event()
+
+    def note(*_: object) -> None:
+        if stop.is_set():
+            raise KeyboardInterrupt
+        stop.set()
+
+    if threading.current_thread() is not threading.main_thread():
+        yield stop
+        return
+    before = {number: signal.signal(number, note) for number in _SIGNALS}
+    try:
+        yield stop
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

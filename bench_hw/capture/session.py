@@ -12,14 +12,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench_hw.capture import camera_file
-from bench_hw.capture.folder import SessionFolder
-from bench_hw.capture.interrupt import stop_on_signals
+from bench_hw.capture import session_folder as camera_file
 from bench_hw.capture.loop import Surroundings
 from bench_hw.capture.order import CaptureOrder, check_order
-from bench_hw.capture.progress import Progress, Snapshot
-from bench_hw.capture.trial import Fault, TrialOutcome, record_trial
-from bench_hw.capture.zero import find_zero, go_home
+from bench_hw.capture.progress import Progress, Snapshot, stop_on_signals
+from bench_hw.capture.session_folder import SessionFolder
+from bench_hw.capture.trial import Fault, TrialOutcome, find_zero, go_home, record_trial
 from bench_hw.clock import Clock, MonotonicClock, SimulatedClock, wait_until
 from bench_hw.errors import DeviceError, InputError
 from bench_hw.motion.plan import plan

@@ -1,21 +1,22 @@
-"""One trial: the protocol carried out and recorded.
+"""One trial: depth zero found, the tool brought to where a trial begins, the protocol carried out and recorded.
 
 Whatever goes wrong, the tool is sent back first; then the fault is written, recording goes on for a moment so
-that the file shows the tool going back, and the file is closed.
+that the file shows the tool going back, and the file is closed. Moves before the first trial are not recorded.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from bench_hw.capture.loop import RETRACT_TIME, Loop, Surroundings
+from bench_hw.capture.loop import RETRACT_TIME, Loop, Recorder, Surroundings
+from bench_hw.capture.order import CaptureOrder, check_depths
 from bench_hw.capture.progress import Snapshot
-from bench_hw.capture.recording import Recorder
 from bench_hw.errors import BenchError, TrialFileError
-from bench_hw.motion.protocol import Protocol
-from bench_hw.motion.steps import MotionError, carry_out
+from bench_hw.motion.protocol_file import Protocol
+from bench_hw.motion.steps import Action, MotionError, Observation, carry_out, go_to
 from bench_hw.rig.bench import Bench
 from bench_hw.safety import SafetyError
 from bench_hw.trial_file.records import TrialWriter
@@ -110,3 +111,70 @@ def _kind(error: BaseException) -> str:
         return error.kind
     named = {MotionError: "motion", TrialFileError: "disk", OSError: "disk"}
     return next((kind for known, kind in named.items() if isinstance(error, known)), "unexpected")
+
+
+_SPEED = 5e-3
+_HOME_TIME = 10.0
+
+
+def find_zero(bench: Bench, order: CaptureOrder, around: Surroundings) -> float:
+    """Find the position (m) of depth zero and bring the tool to where a trial begins.
+
+    The rig's `actuator.contact` if it says so; else where the protocol's own approach touches, tried once;
+    else fully retracted.
+
+    Raises
+    ------
+    BenchError
+        Nothing is touched, a depth would be outside the travel, or anything unsafe; the tool was sent back.
+    """
+    contact, protocol = order.rig.rig.actuator.contact, order.protocol.protocol
+    if contact is None and protocol.approach is not None:
+        bench.zero_force()
+        around.progress.say("touching once to find depth zero (the rig file gives no actuator.contact)")
+        alone = protocol.model_copy(update={"segments": (protocol.approach,)})
+        start = bench.actuator.position()
+        contact = move(bench, around, start, lambda now: carry_out(alone, now)).zero
+    elif contact is None:
+        around.progress.say("depth is counted from fully retracted: no actuator.contact and no approach")
+        contact = 0.0
+    low, high = order.rig.rig.travel
+    begin = min(max(contact + protocol.rest_depth, low), high)
+    speed = min(_SPEED, order.rig.rig.actuator.max_speed)
+    move(bench, around, contact, lambda now: go_to(begin, speed, now))
+    check_depths(order, contact)
+    return contact
+
+
+def move(
+    bench: Bench, around: Surroundings, zero: float, script: Callable[[Observation], Iterator[Action]]
+) -> Observation:
+    """Carry a motion out without recording it, watched like a trial; give what was seen last.
+
+    Raises
+    ------
+    BenchError
+        Whatever went wrong; the tool was sent back.
+    """
+    loop = Loop(bench, around, None, zero, Snapshot())
+    try:
+        loop.run(script(loop.now))
+    except BaseException as error:
+        end_safely(loop, error, None, around)
+        raise
+    return loop.now
+
+
+def go_home(bench: Bench, around: Surroundings) -> None:
+    """Send the tool to the lower end of its travel and wait until it is there, 10 s at most.
+
+    Raises
+    ------
+    DeviceError
+        The actuator is lost.
+    """
+    low = around.limits.travel[0]
+    bench.actuator.retract()
+    end = around.clock.now() + _HOME_TIME
+    while around.clock.now() < end and bench.actuator.position() > low + bench.actuator.uncertainty:
+        around.clock.sleep(0.02)

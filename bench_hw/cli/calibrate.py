@@ -11,7 +11,7 @@ import typer
 from bench_hw.cli._report import Debug, Json, Quiet, print_json, reporting
 
 if TYPE_CHECKING:
-    from bench_hw.vision.calibration.run import CalibrationOutcome
+    from bench_hw.vision.calibration.camera_calibration import CalibrationOutcome
 
 
 def register(app: typer.Typer) -> None:
@@ -43,8 +43,8 @@ def calibrate(
     """
     with reporting(debug):
         from bench_hw.vision.calibration.board import parse_corners
-        from bench_hw.vision.calibration.run import CalibrationOrder
-        from bench_hw.vision.calibration.run import calibrate as run
+        from bench_hw.vision.calibration.camera_calibration import CalibrationOrder
+        from bench_hw.vision.calibration.camera_calibration import calibrate as run
         from bench_hw.vision.messages import hush
 
         hush()

@@ -13,7 +13,7 @@ from bench_hw.errors import DeviceError, InputError
 
 if TYPE_CHECKING:
     from bench_hw.capture.session import SessionOutcome
-    from bench_hw.motion.loading import LoadedProtocol
+    from bench_hw.motion.protocol_file import LoadedProtocol
 
 
 def register(app: typer.Typer) -> None:
@@ -48,7 +48,7 @@ def capture(
     the tool going back; what was recorded is in the file, with the fault named in it (exit 5).
     """
     with reporting(debug):
-        from bench_hw.motion.loading import load_protocol
+        from bench_hw.motion.protocol_file import load_protocol
 
         loaded = load_protocol(protocol)
         if dry_run:
@@ -59,7 +59,7 @@ def capture(
         from bench_hw.capture.order import CaptureOrder
         from bench_hw.capture.progress import choose_progress
         from bench_hw.capture.session import capture as record
-        from bench_hw.rig.loading import load_rig
+        from bench_hw.rig.rig_file import load_rig
 
         order = CaptureOrder(
             loaded, load_rig(rig), out, trials, condition, specimen, fast, append, pause_s, seed, _pairs(settings or [])
@@ -71,8 +71,7 @@ def capture(
 
 
 def _dry_run(loaded: LoadedProtocol, trials: int, plot: Path | None, *, as_json: bool) -> None:
-    from bench_hw.motion.plan import plan
-    from bench_hw.motion.preview import drawing, summary, write_plot
+    from bench_hw.motion.plan import drawing, plan, summary, write_plot
 
     planned = plan(loaded.protocol)
     written = None if plot is None else str(write_plot(planned, plot))

@@ -32,7 +32,7 @@ def devices(
     to be the one it names; exit 5 if one is not usable.
     """
     with reporting(debug):
-        from bench_hw.rig.loading import load_rig
+        from bench_hw.rig.rig_file import load_rig
         from bench_hw.rig.survey import survey, survey_rig
 
         findings = survey_rig(load_rig(Path(rig))) if rig else survey(host or None, http_port)

@@ -11,8 +11,7 @@ from bench_hw.cli._report import Debug, Json, Quiet, print_json, reporting
 from bench_hw.errors import InputError
 
 if TYPE_CHECKING:
-    from bench_hw.tables.foreign import ForeignFormat
-    from bench_hw.tables.importing import Imported, ImportPlan
+    from bench_hw.tables.importing import ForeignFormat, Imported, ImportPlan
 
 SCHEMA = 1
 _DELIMITERS = {"tab": "\t", "comma": ",", "semicolon": ";"}
@@ -81,9 +80,8 @@ def import_(
 ) -> None:
     """Turn CSV files of any rig into trial tables; the help text is `_HELP`."""
     with reporting(debug):
-        from bench_hw.tables.foreign import ForeignFormat
-        from bench_hw.tables.importing import ImportPlan
-        from bench_hw.tables.mapping import parse_map, parse_rate
+        from bench_hw.tables.importing import ForeignFormat, ImportPlan
+        from bench_hw.tables.units import parse_map, parse_rate
 
         layout = ForeignFormat(
             delimiter=_DELIMITERS.get(delimiter, delimiter),

@@ -48,10 +48,10 @@ def netft(
         import numpy as np
 
         from bench_hw.clock import MonotonicClock
-        from bench_hw.devices.netft_wire import rate_of
-        from bench_hw.simulated.faults import StreamFaults, parse_positions
-        from bench_hw.simulated.loads import swinging
+        from bench_hw.devices.rdt import rate_of
         from bench_hw.simulated.netft_box import BoxSettings, NetFTBox
+        from bench_hw.simulated.rdt_stream import StreamFaults, parse_positions
+        from bench_hw.simulated.specimen import swinging
 
         faults = StreamFaults(loss, parse_positions(drop), parse_positions(duplicate), parse_positions(reorder))
         settings = BoxSettings(serial, rate=rate_of(rate_hz), first_sequence=first_sequence, faults=faults)
@@ -86,9 +86,9 @@ def camera(
 
         from bench_hw.clock import MonotonicClock
         from bench_hw.simulated.camera_server import CameraServer, CameraSettings, write_pictures
-        from bench_hw.simulated.faults import parse_positions
-        from bench_hw.simulated.loads import pressed_sheet
         from bench_hw.simulated.picture import CameraModel, Painter
+        from bench_hw.simulated.rdt_stream import parse_positions
+        from bench_hw.simulated.specimen import pressed_sheet
 
         of_noise, of_chance = np.random.default_rng(seed).spawn(2)
         painter = Painter(CameraModel(size=_size(size), noise=noise, blur=blur), of_noise)
@@ -132,8 +132,8 @@ def session(
         from bench_hw.capture.progress import choose_progress
         from bench_hw.capture.session import capture
         from bench_hw.cli.capture import report_outcome
-        from bench_hw.motion.loading import load_protocol
-        from bench_hw.rig.loading import simulated_rig
+        from bench_hw.motion.protocol_file import load_protocol
+        from bench_hw.rig.rig_file import simulated_rig
         from bench_hw.simulated.tabulated import TabulatedSpecimen, read_sheet
 
         sheet = TabulatedSpecimen(read_sheet(specimen)) if specimen else None
@@ -147,7 +147,7 @@ def session(
 
 
 def _serve(duration: float | None) -> None:
-    from bench_hw.capture.interrupt import stop_on_signals
+    from bench_hw.capture.progress import stop_on_signals
 
     with stop_on_signals() as stop:
         stop.wait(duration)

@@ -13,8 +13,8 @@ import typer
 from bench_hw.cli._report import Debug, Json, Quiet, print_json, reporting
 
 if TYPE_CHECKING:
-    from bench_hw.vision.tracking.outcome import TrackOutcome
-    from bench_hw.vision.tracking.run import Progress
+    from bench_hw.vision.tracking.film import Progress
+    from bench_hw.vision.tracking.pipeline import TrackOutcome
 
 _PLAIN_STEP = 500
 
@@ -51,10 +51,10 @@ def track(
     a wrong camera file or size, another number of markers, or a jump of half the spacing or more.
     """
     with reporting(debug):
-        from bench_hw.vision.markers.model import parse_layout
+        from bench_hw.vision.markers.grid import parse_layout
         from bench_hw.vision.messages import hush
-        from bench_hw.vision.tracking.run import TrackOrder
-        from bench_hw.vision.tracking.run import track as run
+        from bench_hw.vision.tracking.film import TrackOrder
+        from bench_hw.vision.tracking.film import track as run
 
         hush()
         layout = parse_layout(grid) if grid else None

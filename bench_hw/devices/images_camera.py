@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from bench_hw.clock import Clock, MonotonicClock
-from bench_hw.devices._context import Connection
-from bench_hw.devices.frame_count import FrameCounter
-from bench_hw.devices.protocols import CameraHealth, DeviceInfo, Frame
+from bench_hw.devices.grabbing import FrameCounter
+from bench_hw.devices.protocols import CameraHealth, Connection, DeviceInfo, Frame
 from bench_hw.errors import DeviceError
 
 _FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}

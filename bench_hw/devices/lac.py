@@ -1,8 +1,7 @@
 """`LacActuator`: a linear actuator with potentiometer feedback (Actuonix L16) on its LAC board.
 
 The board takes a target and a speed and moves by itself; the driver turns metres into counts, keeps the
-travel limits in the board and in software, and checks each answer. The packets are in `lac_wire`, the USB
-link in `lac_usb`.
+travel limits in the board and in software, and checks each answer. Packets and USB link are in `lac_usb`.
 """
 
 from __future__ import annotations
@@ -10,10 +9,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from bench_hw.devices._context import Connection
-from bench_hw.devices.lac_usb import WHERE, LacLink
-from bench_hw.devices.lac_wire import COUNTS, GUARDED, LARGEST, Code
-from bench_hw.devices.protocols import DeviceInfo
+from bench_hw.devices.lac_usb import COUNTS, GUARDED, LARGEST, WHERE, Code, LacLink
+from bench_hw.devices.protocols import Connection, DeviceInfo
 from bench_hw.errors import DeviceError
 
 if TYPE_CHECKING:

@@ -1,22 +1,86 @@
-"""The USB link to a LAC board through pyusb: find it, exchange packets, check each answer.
+"""The USB link to an Actuonix LAC board: 3-byte packets `<BH` of a code and a value from 0 to 1023, answers checked.
 
-A backend can be given, so that the simulated board runs the same code without libusb. What the commands mean
-is in `lac`.
+Every command is echoed, except that `SET_POSITION` and `GET_FEEDBACK` are answered with the present position in the
+value. Source: Actuonix, "USB Control and Configuration of the LAC". pyusb finds the board; a backend can be given, so
+that the simulated board runs the same code without libusb. Millimetres and travel limits are in `lac`.
 """
 
 from __future__ import annotations
 
 import errno
+import struct
+from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
-from bench_hw.devices import lac_wire
-from bench_hw.devices.lac_wire import ANSWERED_WITH_POSITION, Code
 from bench_hw.errors import DeviceError
 
 if TYPE_CHECKING:
     from usb.backend import IBackend
 
-WHERE = f"LAC board (USB {lac_wire.VENDOR:04X}:{lac_wire.PRODUCT:04X})"
+
+VENDOR = 0x04D8
+PRODUCT = 0xFC5F
+ENDPOINT_OUT = 0x01
+ENDPOINT_IN = 0x81
+PACKET = struct.Struct("<BH")
+LARGEST = 1023
+"""Largest value of any command."""
+COUNTS = 1024
+"""Counts over the full stroke: one count is stroke / 1024."""
+
+
+class Code(IntEnum):
+    """The board's commands."""
+
+    SET_ACCURACY = 0x01
+    SET_RETRACT_LIMIT = 0x02
+    SET_EXTEND_LIMIT = 0x03
+    SET_MOVEMENT_THRESHOLD = 0x04
+    SET_STALL_TIME = 0x05
+    SET_PWM_THRESHOLD = 0x06
+    SET_DERIVATIVE_THRESHOLD = 0x07
+    SET_DERIVATIVE_MAXIMUM = 0x08
+    SET_DERIVATIVE_MINIMUM = 0x09
+    SET_PWM_MAXIMUM = 0x0A
+    SET_PWM_MINIMUM = 0x0B
+    SET_PROPORTIONAL_GAIN = 0x0C
+    SET_DERIVATIVE_GAIN = 0x0D
+    SET_AVERAGE_RC = 0x0E
+    SET_AVERAGE_ADC = 0x0F
+    GET_FEEDBACK = 0x10
+    SET_POSITION = 0x20
+    SET_SPEED = 0x21
+    DISABLE_MANUAL = 0x30
+    RESET = 0xFF
+
+
+ANSWERED_WITH_POSITION = frozenset({Code.SET_POSITION, Code.GET_FEEDBACK})
+GUARDED = frozenset({Code.DISABLE_MANUAL, Code.RESET})
+"""Commands that write the board's EEPROM or throw its settings away."""
+
+
+def packet(code: Code, value: int = 0) -> bytes:
+    """Give the 3 bytes of a command.
+
+    Raises
+    ------
+    ValueError
+        `value` is outside 0 to 1023.
+    """
+    if not 0 <= value <= LARGEST:
+        raise ValueError(f"{code.name} = {value}: allowed are 0 to {LARGEST}")
+    return PACKET.pack(code, value)
+
+
+def parse(data: bytes) -> tuple[int, int] | None:
+    """Read code and value of a packet; None if it is not 3 bytes."""
+    if len(data) != PACKET.size:
+        return None
+    code, value = PACKET.unpack(data)
+    return int(code), int(value)
+
+
+WHERE = f"LAC board (USB {VENDOR:04X}:{PRODUCT:04X})"
 _FLUSH_MS = 2
 _MOST_STALE = 16
 
@@ -61,7 +125,7 @@ class LacLink:
 
         try:
             self._write(code, value)
-            data = bytes(self._device.read(lac_wire.ENDPOINT_IN, lac_wire.PACKET.size, self._timeout_ms))
+            data = bytes(self._device.read(ENDPOINT_IN, PACKET.size, self._timeout_ms))
         except usb.core.USBError as error:
             self._flush()
             raise _failed(code, error) from error
@@ -93,17 +157,17 @@ class LacLink:
         usb.util.dispose_resources(self._device)
 
     def _write(self, code: Code, value: int) -> None:
-        self._device.write(lac_wire.ENDPOINT_OUT, lac_wire.packet(code, value), self._timeout_ms)
+        self._device.write(ENDPOINT_OUT, packet(code, value), self._timeout_ms)
 
     def _checked(self, code: Code, value: int, data: bytes) -> int:
-        answer = lac_wire.parse(data)
-        good = answer is not None and answer[0] == code and answer[1] <= lac_wire.LARGEST
+        answer = parse(data)
+        good = answer is not None and answer[0] == code and answer[1] <= LARGEST
         if good and answer is not None and (code in ANSWERED_WITH_POSITION or answer[1] == value):
             return answer[1]
         self._flush()
         raise DeviceError(
             f"{WHERE}: {code.name} = {value} was answered with {data.hex(' ') or 'nothing'}; "
-            f"expected {lac_wire.packet(code, value).hex(' ')}"
+            f"expected {packet(code, value).hex(' ')}"
             + (" or another position" if code in ANSWERED_WITH_POSITION else "")
         )
 
@@ -112,7 +176,7 @@ class LacLink:
 
         for _ in range(_MOST_STALE):
             try:
-                self._device.read(lac_wire.ENDPOINT_IN, lac_wire.PACKET.size, _FLUSH_MS)
+                self._device.read(ENDPOINT_IN, PACKET.size, _FLUSH_MS)
             except usb.core.USBError:
                 return
 
@@ -121,9 +185,7 @@ def _find(serial: str | None, backend: IBackend | None) -> Any:
     import usb.core
 
     try:
-        found = list(
-            usb.core.find(find_all=True, idVendor=lac_wire.VENDOR, idProduct=lac_wire.PRODUCT, backend=backend)
-        )
+        found = list(usb.core.find(find_all=True, idVendor=VENDOR, idProduct=PRODUCT, backend=backend))
     except usb.core.NoBackendError as error:
         raise DeviceError(f"{WHERE}: libusb is missing; install it (Debian: apt install libusb-1.0-0)") from error
     except usb.core.USBError as error:

@@ -1,7 +1,7 @@
 """`NetFTSensor`: an ATI force/torque sensor behind a Net F/T box, streaming over UDP (RDT).
 
-The bytes are in `netft_wire`, the socket in `netft_socket`, the web interface in `netft_config`, the counting
-in `sequence`. `read` drains the socket to the newest record, so that no queue can grow stale.
+Bytes, counters and stamps are in `rdt`, the socket and the web interface in `netft_network`. `read` drains the
+socket to the newest record, so that no queue can grow stale.
 """
 
 from __future__ import annotations
@@ -14,15 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench_hw.clock import Clock, MonotonicClock, wait_until
-from bench_hw.devices import netft_config, netft_wire
-from bench_hw.devices._context import Connection
-from bench_hw.devices.netft_config import NetFTConfiguration
-from bench_hw.devices.netft_socket import RdtSocket
-from bench_hw.devices.netft_status import describe, is_fault
-from bench_hw.devices.netft_wire import Command
-from bench_hw.devices.protocols import DeviceInfo, ForceBlock, StreamHealth
-from bench_hw.devices.sequence import SequenceTracker
-from bench_hw.devices.stamps import back_dated
+from bench_hw.devices import netft_network, rdt
+from bench_hw.devices.netft_network import NetFTConfiguration, RdtSocket
+from bench_hw.devices.protocols import Connection, DeviceInfo, ForceBlock, StreamHealth
+from bench_hw.devices.rdt import Command, SequenceTracker, back_dated, describe, is_fault
 from bench_hw.errors import DeviceError
 
 _START_ATTEMPTS = 3
@@ -32,7 +27,7 @@ _DATAGRAM_TIME = 0.01
 
 def _records_per_datagram(rate: int) -> int:
     """Buffer size of buffered mode: a datagram each 10 ms or more often, so that a force limit is seen in time."""
-    return min(max(1, round(rate * _DATAGRAM_TIME)), netft_wire.LARGEST_BUFFER)
+    return min(max(1, round(rate * _DATAGRAM_TIME)), rdt.LARGEST_BUFFER)
 
 
 class NetFTSensor(Connection):
@@ -63,8 +58,8 @@ class NetFTSensor(Connection):
         rate: float = 1000.0,
         mode: Literal["realtime", "buffered"] = "realtime",
         serial: str | None = None,
-        http_port: int = netft_wire.HTTP_PORT,
-        rdt_port: int = netft_wire.RDT_PORT,
+        http_port: int = rdt.HTTP_PORT,
+        rdt_port: int = rdt.RDT_PORT,
         clock: Clock | None = None,
         timeout: float = 2.0,
     ) -> None:
@@ -123,7 +118,7 @@ class NetFTSensor(Connection):
             a rate that does not read back.
         """
         self.close()
-        found = netft_config.read_configuration(self._host, self._http_port, self._timeout)
+        found = netft_network.read_configuration(self._host, self._http_port, self._timeout)
         self._check(found)
         self._configuration = self._with_rate()
         self._socket = RdtSocket(self._host, self._rdt_port)
@@ -196,12 +191,12 @@ class NetFTSensor(Connection):
     def _with_rate(self) -> NetFTConfiguration:
         asked = round(self._wanted_rate)
         try:
-            expected = netft_wire.rate_of(asked)
+            expected = rdt.rate_of(asked)
         except ValueError as error:
             raise DeviceError(f"force sensor at {self._where()}: {error}") from error
         buffer = _records_per_datagram(expected) if self._mode == "buffered" else None
-        netft_config.set_rate(self._host, self._http_port, asked, self._timeout, buffer)
-        found = netft_config.read_configuration(self._host, self._http_port, self._timeout)
+        netft_network.set_rate(self._host, self._http_port, asked, self._timeout, buffer)
+        found = netft_network.read_configuration(self._host, self._http_port, self._timeout)
         if found.rate != expected:
             raise DeviceError(
                 f"force sensor at {self._where()}: rate reads back as {found.rate} Hz after asking for "
@@ -217,19 +212,19 @@ class NetFTSensor(Connection):
         datagrams = self._opened().receive()
         if not datagrams:
             return ForceBlock.empty()
-        return self._block(np.frombuffer(b"".join(datagrams), netft_wire.RECORD), self._clock.now())
+        return self._block(np.frombuffer(b"".join(datagrams), rdt.RECORD), self._clock.now())
 
     def _block(self, records: NDArray[np.void], now: float) -> ForceBlock:
-        rdt = records["rdt_sequence"].astype(np.uint32)
-        ft = records["ft_sequence"].astype(np.uint32)
-        keep, sequence = self._tracker.accept(rdt, ft)
+        number = records["rdt_sequence"].astype(np.uint32)
+        sample = records["ft_sequence"].astype(np.uint32)
+        keep, sequence = self._tracker.accept(number, sample)
         if not keep.any():
             return ForceBlock.empty()
         time = back_dated(now, self._previous, sequence[keep], self._period())
         self._previous = float(time[-1])
         counts = records["counts"][keep].astype(np.int32)
         status = records["status"][keep].astype(np.uint32)
-        return ForceBlock(time, self._scaled(counts), rdt[keep], ft[keep], status, counts)
+        return ForceBlock(time, self._scaled(counts), number[keep], sample[keep], status, counts)
 
     def _scaled(self, counts: NDArray[np.int32]) -> NDArray[np.float64]:
         found = self._connected()
@@ -238,7 +233,7 @@ class NetFTSensor(Connection):
         return scaled
 
     def _period(self) -> float:
-        return netft_wire.divider_of(self._connected().rate) / netft_wire.INTERNAL_RATE
+        return rdt.divider_of(self._connected().rate) / rdt.INTERNAL_RATE
 
     def _opened(self) -> RdtSocket:
         if self._socket is None:

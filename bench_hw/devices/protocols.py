@@ -7,6 +7,7 @@ waits: it gives what has come since the last call, stamped on the bench's clock.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import TracebackType
@@ -289,3 +290,24 @@ class Camera(Protocol):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None: ...
+
+
+class Connection(ABC):
+    """Something that is connected explicitly and always let go."""
+
+    @abstractmethod
+    def connect(self) -> None:
+        """Open the device."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Let go of the device."""
+
+    def __enter__(self) -> Self:
+        self.connect()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

@@ -11,10 +11,9 @@ from contextlib import ExitStack
 from typing import Any
 
 from bench_hw.clock import Clock, MonotonicClock
-from bench_hw.devices._context import Connection
 from bench_hw.devices.grabbing import Grabber, Taken
-from bench_hw.devices.protocols import CameraHealth, DeviceInfo, Frame
-from bench_hw.devices.webcam_controls import LOCKED
+from bench_hw.devices.protocols import CameraHealth, Connection, DeviceInfo, Frame
+from bench_hw.devices.webcam import LOCKED
 from bench_hw.errors import DeviceError
 
 MISSING = "linuxpy is not installed: pip install 'tissuebench[v4l2]', or set driver = \"opencv\" under [camera]"

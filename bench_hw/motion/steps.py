@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import singledispatch
 
 from bench_hw.errors import DeviceError
-from bench_hw.motion.protocol import Approach, Cycle, Move, Protocol, Retract, Wait
+from bench_hw.motion.protocol_file import Approach, Cycle, Move, Protocol, Retract, Wait
 
 _PATIENCE = 3.0
 _GRACE = 2.0

@@ -1,5 +1,5 @@
 """The rig: which devices a bench has, what is safe on it, and how they are opened.
 
-`schema` is what a rig file may say, `loading` finds and reads it, `opening` makes the drivers (and the twins of
-simulated devices), `bench` is what they are together.
+`rig_file` is what a rig file may say and how it is read, `opening` makes the drivers (and the twins of simulated
+devices), `bench` is what they are together, `survey` looks for devices.
 """

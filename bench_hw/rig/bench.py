@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from numpy import float64
     from numpy.typing import NDArray
 
-    from bench_hw.rig.schema import Rig
-    from bench_hw.simulated.switched_on import Twins
+    from bench_hw.rig.rig_file import Rig
+    from bench_hw.simulated.twins import Twins
 
 
 @dataclass(slots=True)

@@ -10,13 +10,20 @@ from bench_hw.clock import Clock
 from bench_hw.configuration import read_toml
 from bench_hw.devices import protocols
 from bench_hw.errors import DeviceError, InputError
-from bench_hw.rig import schema
+from bench_hw.rig import rig_file as schema
 from bench_hw.rig.bench import Bench
-from bench_hw.rig.loading import LoadedRig
+from bench_hw.rig.rig_file import LoadedRig, Rig, SimulatedCamera, SimulatedForce
+from bench_hw.simulated.camera_server import CameraSettings
+from bench_hw.simulated.netft_box import BoxSettings
+from bench_hw.simulated.picture import CameraModel
+from bench_hw.simulated.rdt_stream import StreamFaults, parse_positions
+from bench_hw.simulated.sensor import SensorModel
+from bench_hw.simulated.specimen import SheetSpecimen, Specimen
+from bench_hw.simulated.twins import FOR_EVER, TimedFault, TwinSettings
 
 if TYPE_CHECKING:
     from bench_hw.simulated.specimen import Specimen
-    from bench_hw.simulated.switched_on import Twins
+    from bench_hw.simulated.twins import Twins
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,8 +90,7 @@ def _(device: schema.NetFTForce, context: Opening) -> protocols.ForceSensor:
 
 @open_force.register
 def _(device: schema.DaqForce, context: Opening) -> protocols.ForceSensor:
-    from bench_hw.devices.daq import DaqForceSensor
-    from bench_hw.devices.nidaqmx_source import NidaqmxSource
+    from bench_hw.devices.daq import DaqForceSensor, NidaqmxSource
 
     path = context.loaded.resolve(device.calibration)
     source = NidaqmxSource(device.device)
@@ -187,8 +193,8 @@ def _check_calibration(loaded: LoadedRig) -> None:
 
 
 def _switch_on(rig: schema.Rig, clock: Clock, specimen: Specimen | None, seed: int | None) -> Twins:
-    from bench_hw.rig.twin_settings import faults_of, settings_of
-    from bench_hw.simulated.switched_on import switch_on
+    from bench_hw.rig.opening import faults_of, settings_of
+    from bench_hw.simulated.twins import switch_on
 
     try:
         twins = switch_on(settings_of(rig, specimen, seed), clock)
@@ -200,3 +206,54 @@ def _switch_on(rig: schema.Rig, clock: Clock, specimen: Specimen | None, seed: i
         twins.close()
         raise
     return twins
+
+
+def settings_of(rig: Rig, specimen: Specimen | None = None, seed: int | None = None) -> TwinSettings:
+    """Give the settings of a rig's twins."""
+    return TwinSettings(
+        specimen=SheetSpecimen() if specimen is None else specimen,
+        stroke=rig.actuator.stroke,
+        max_speed=rig.actuator.max_speed,
+        contact=rig.simulation.contact,
+        seed=rig.simulation.seed if seed is None else seed,
+        box=_box(rig),
+        camera=_camera(rig),
+        picture=optics_of(rig),
+    )
+
+
+def optics_of(rig: Rig) -> CameraModel:
+    """Give the optics of a rig's simulated camera (the usual ones if it has none)."""
+    camera = rig.camera
+    if not isinstance(camera, SimulatedCamera):
+        return CameraModel()
+    usual = CameraModel()
+    return CameraModel(
+        size=camera.size,
+        focal_length=camera.focal_px or usual.focal_length * camera.size[0] / usual.size[0],
+        distance=camera.distance,
+        distortion=camera.distortion or usual.distortion,
+        noise=camera.noise,
+        blur=camera.blur,
+        lighting=camera.lighting,
+    )
+
+
+def faults_of(rig: Rig) -> list[TimedFault]:
+    """Give the faults that a rig's simulated devices are to show."""
+    return [TimedFault(fault.kind, fault.at, fault.duration or FOR_EVER) for fault in rig.simulation.faults]
+
+
+def _box(rig: Rig) -> BoxSettings | None:
+    force = rig.force
+    if not isinstance(force, SimulatedForce):
+        return None
+    sensor = SensorModel(press_axis=force.press_axis, force_noise=force.noise, torque_noise=0.01 * force.noise)
+    return BoxSettings(sensor=sensor, faults=StreamFaults(loss=force.loss, drop=parse_positions(force.drop)))
+
+
+def _camera(rig: Rig) -> CameraSettings | None:
+    camera = rig.camera
+    if not isinstance(camera, SimulatedCamera):
+        return None
+    return CameraSettings(rate=camera.rate, jitter=camera.jitter, loss=camera.loss, quality=camera.quality)

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from bench_hw.clock import MonotonicClock
-from bench_hw.devices import netft_config
+from bench_hw.devices import netft_network
 from bench_hw.errors import BenchError, DeviceError
-from bench_hw.rig import schema
-from bench_hw.rig.loading import LoadedRig
+from bench_hw.rig import rig_file as schema
+from bench_hw.rig.rig_file import LoadedRig
 
 _QUICK = 0.5
 
@@ -69,15 +69,14 @@ def _of_rig(name: str, device: Any, loaded: LoadedRig) -> Finding:
 
 
 def _look_netft(device: schema.NetFTForce, loaded: LoadedRig) -> str:
-    found = netft_config.read_configuration(device.host, device.http_port, 2.0)
+    found = netft_network.read_configuration(device.host, device.http_port, 2.0)
     if device.serial is not None and device.serial != found.serial:
         raise DeviceError(f"serial {found.serial!r} at {device.host}; {loaded.path} asks for {device.serial!r}")
     return f"{found.product}, serial {found.serial}, {found.rate} Hz"
 
 
 def _look_daq(device: schema.DaqForce, loaded: LoadedRig) -> str:
-    from bench_hw.devices.daq import DaqForceSensor
-    from bench_hw.devices.nidaqmx_source import MISSING, NidaqmxSource
+    from bench_hw.devices.daq import MISSING, DaqForceSensor, NidaqmxSource
 
     sensor = DaqForceSensor(NidaqmxSource(device.device), loaded.resolve(device.calibration), serial=device.serial)
     with sensor:
@@ -113,7 +112,7 @@ _LOOK: dict[type, Callable[[Any, LoadedRig], str]] = {
 
 def _netft(host: str, http_port: int) -> Finding:
     try:
-        found = netft_config.read_configuration(host, http_port, _QUICK)
+        found = netft_network.read_configuration(host, http_port, _QUICK)
     except DeviceError as error:
         return Finding("force", "netft", False, f"no Net F/T box at {host}", str(error))
     return Finding("force", "netft", True, f"{found.product}, serial {found.serial}, {found.rate} Hz at {host}")

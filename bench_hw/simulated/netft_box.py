@@ -1,7 +1,7 @@
 """`NetFTBox`: a simulated Net F/T box on loopback: RDT over UDP, configuration over HTTP, faults on demand.
 
-One client at a time, as the real box: a later request takes the stream over. The box works at each tick of
-its clock, in a thread of its own in real time and inside `sleep` in simulated time.
+One client at a time, as the real box: a later request takes the stream over. The box works at each tick of its clock,
+in a thread of its own in real time and inside `sleep` in simulated time. Its records are made in `rdt_stream`.
 """
 
 from __future__ import annotations
@@ -11,18 +11,81 @@ import socket
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from urllib.parse import parse_qs, urlsplit
+from xml.sax.saxutils import escape
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bench_hw.clock import Cancel, Clock
-from bench_hw.devices import netft_wire
-from bench_hw.devices.netft_wire import INTERNAL_RATE, Command, Status
-from bench_hw.simulated.faults import StreamFaults
-from bench_hw.simulated.netft_page import PageServer, configuration_page
-from bench_hw.simulated.rdt_stream import RdtStream, StreamSettings
+from bench_hw.devices import rdt
+from bench_hw.devices.rdt import INTERNAL_RATE, Command, Status
+from bench_hw.simulated.rdt_stream import RdtStream, StreamFaults, StreamSettings
 from bench_hw.simulated.sensor import SensorModel
 from bench_hw.simulated.specimen import FloatArray
+
+Page = Callable[[str, dict[str, str]], str | None]
+"""Path and query of a request to the text of the page; None for a page there is not."""
+
+
+def configuration_page(values: dict[str, str]) -> str:
+    """Write `netftapi2.xml` from element names and their texts."""
+    lines = [f"<{name}>{escape(text)}</{name}>" for name, text in values.items()]
+    return "\r\n".join(['<?xml version="1.0" encoding="UTF-8"?>', "<netft>", *lines, "</netft>", ""])
+
+
+class PageServer:
+    """An HTTP server on loopback in its own threads.
+
+    Parameters
+    ----------
+    page : Page
+        What to answer.
+    port : int
+        Port; 0 lets the system choose.
+    """
+
+    def __init__(self, page: Page, port: int = 0) -> None:
+        self._server = ThreadingHTTPServer(("127.0.0.1", port), _handler(page))
+        self._server.daemon_threads = True
+        self._thread = threading.Thread(
+            target=self._server.serve_forever, kwargs={"poll_interval": 0.05}, name="pages", daemon=True
+        )
+        self._thread.start()
+
+    @property
+    def port(self) -> int:
+        """The port it listens on."""
+        return int(self._server.server_address[1])
+
+    def close(self) -> None:
+        """Stop answering and free the port."""
+        self._server.shutdown()
+        self._server.server_close()
+        self._thread.join(timeout=5.0)
+
+
+def _handler(page: Page) -> type[BaseHTTPRequestHandler]:
+    class Handler(BaseHTTPRequestHandler):
+        timeout = 5.0
+
+        def do_GET(self) -> None:
+            parts = urlsplit(self.path)
+            query = {name: values[-1] for name, values in parse_qs(parts.query).items()}
+            text = page(parts.path, query)
+            body = (text or "no such page").encode()
+            self.send_response(200 if text is not None else 404)
+            self.send_header("Content-Type", "text/xml" if parts.path.endswith(".xml") else "text/html")
+            self.send_header("Content-Length", str(len(body)))
+            self.end_headers()
+            self.wfile.write(body)
+
+        def log_message(self, format: str, *args: object) -> None:
+            """Say nothing: this runs inside tests and other programs."""
+
+    return Handler
+
 
 TICK = 1e-3
 _LARGEST_COUNT = 2**31 - 1
@@ -178,7 +241,7 @@ class NetFTBox:
         with contextlib.suppress(BlockingIOError):
             while True:
                 datagram, client = self._socket.recvfrom(2048)
-                request = netft_wire.parse_request(datagram)
+                request = rdt.parse_request(datagram)
                 if request is not None:
                     self._obey(*request, client, now)
 
@@ -187,7 +250,7 @@ class NetFTBox:
             self._end_stream()
             buffered = command is Command.START_BUFFERED
             size = self._buffer if buffered else 1
-            divider = netft_wire.divider_of(self._rate)
+            divider = rdt.divider_of(self._rate)
             settings = StreamSettings(divider, size, count, self._settings.first_sequence)
             self._client = client
             self._stream = RdtStream(settings, now, self._measure, self._settings.faults, self._rng)
@@ -221,8 +284,8 @@ class NetFTBox:
             return None
         with self._lock:
             if (rate := _number(query.get("comrdtrate", ""), INTERNAL_RATE)) is not None:
-                self._rate = netft_wire.rate_of(rate)
-            if (size := _number(query.get("comrdtbsiz", ""), netft_wire.LARGEST_BUFFER)) is not None:
+                self._rate = rdt.rate_of(rate)
+            if (size := _number(query.get("comrdtbsiz", ""), rdt.LARGEST_BUFFER)) is not None:
                 self._buffer = size
         return "<html><body>Communication settings</body></html>"
 

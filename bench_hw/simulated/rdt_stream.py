@@ -1,18 +1,66 @@
-"""The records one client of the simulated box gets: which are due, in which order, in which datagrams.
+"""The records one client of the simulated box gets: which are due, in which order and datagrams, with which faults.
 
-Pure but for its random generator: no sockets, no clock.
+Faults come by position in the stream (counted from 1) or by chance. Pure but for its random generator: no sockets, no
+clock.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bench_hw.devices.netft_wire import INTERNAL_RATE, RECORD
-from bench_hw.simulated.faults import StreamFaults
+from bench_hw.devices.rdt import INTERNAL_RATE, RECORD
+from bench_hw.errors import InputError
+
+
+@dataclass(frozen=True, slots=True)
+class StreamFaults:
+    """Faults of a stream of records.
+
+    Parameters
+    ----------
+    loss : float
+        Chance that a record is lost, 0 to 1.
+    drop, duplicate, reorder : frozenset of int
+        Positions that are lost, sent twice, or sent after the record that follows.
+    duplication, reordering : float
+        The same by chance, 0 to 1.
+    """
+
+    loss: float = 0.0
+    drop: frozenset[int] = field(default_factory=frozenset)
+    duplicate: frozenset[int] = field(default_factory=frozenset)
+    reorder: frozenset[int] = field(default_factory=frozenset)
+    duplication: float = 0.0
+    reordering: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("loss", "duplication", "reordering"):
+            if not 0.0 <= getattr(self, name) <= 1.0:
+                raise InputError(f"{name} = {getattr(self, name)}: allowed are 0 to 1")
+
+
+def parse_positions(text: str) -> frozenset[int]:
+    """Read positions like `200-202,500`.
+
+    Raises
+    ------
+    InputError
+        Not numbers and ranges separated by commas, below 1, or a range that runs backwards.
+    """
+    return frozenset(position for part in text.split(",") if part.strip() for position in _range(part.strip()))
+
+
+def _range(part: str) -> Iterable[int]:
+    first, dash, last = part.partition("-")
+    ends = (first, last if dash else first)
+    if not all(end.strip().isdecimal() for end in ends) or not 1 <= int(ends[0]) <= int(ends[1]) <= 10_000_000:
+        raise InputError(f"positions {part!r}: allowed are numbers from 1 and ranges like 200-202")
+    return range(int(ends[0]), int(ends[1]) + 1)
+
 
 MODULUS = 2**32
 Measure = Callable[[NDArray[np.float64]], tuple[NDArray[np.int32], NDArray[np.uint32]]]

@@ -1,11 +1,12 @@
 """What lies under the tool: the history of depth in, force and marker positions out.
 
-Anything callable like `Specimen` can be put under the virtual bench. `SheetSpecimen` is a simple one, made to
-exercise the bench and not to be a model of tissue.
+Anything callable like `Specimen` can be put under the virtual bench. `SheetSpecimen` is a simple one, made to exercise
+the bench and not to be a model of tissue. `swinging` and `pressed_sheet` load a device simulated on its own.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Protocol
@@ -149,3 +150,34 @@ class SheetSpecimen:
         slope = self.sinking * pressed[:, None] * 4.0 / self.hole_radius**2 * share
         moved = rest * (1.0 + 0.5 * self.thickness * slope)[..., None]
         return np.concatenate([moved, sunk[..., None]], axis=-1)
+
+
+PERIOD = 4.0
+"""Period of the slow swing, s."""
+
+
+def swinging(peak: float) -> Callable[[FloatArray], FloatArray]:
+    """Give a press force that swings between 0 and `peak` (N) every four seconds; instants (n,) to (n, 3)."""
+
+    def load(instants: FloatArray) -> FloatArray:
+        force = np.zeros((len(instants), 3))
+        force[:, 2] = peak * _swing(instants)
+        return force
+
+    return load
+
+
+def pressed_sheet(depth: float = 2e-3) -> Callable[[float], FloatArray]:
+    """Give the markers (m, 3), m, of a sheet pressed between 0 and `depth` (m) every four seconds."""
+    specimen = SheetSpecimen()
+
+    def markers(time: float) -> FloatArray:
+        instants = np.array([time])
+        answer: FloatArray = specimen(instants, depth * _swing(instants), 0).markers[0]
+        return answer
+
+    return markers
+
+
+def _swing(instants: FloatArray) -> FloatArray:
+    return np.asarray(0.5 - 0.5 * np.cos(2.0 * np.pi / PERIOD * instants))

@@ -1,12 +1,17 @@
-"""Cells to numbers, and the checks every measured table passes: finite, long enough, time that increases.
+"""A CSV file as columns of numbers: bytes decoded, header checked, cells split, turned into numbers and checked.
 
-Every refusal names the file, the line, the column, the cell and what is allowed.
+A body that holds nothing but digits, signs, points, exponents and commas is parsed by NumPy as a whole; anything else
+(text columns, quotes, every kind of error) is split cell by cell. Every refusal names the file, the line, the column,
+the cell and what is allowed. What the numbers mean is for `measurement`.
 """
 
 from __future__ import annotations
 
+import csv
+import io
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,9 +19,146 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
-from bench_hw.tables.model import MINIMUM_ROWS, FloatArray
-from bench_hw.tables.source import Source, numeric_matrix, text_columns
-from bench_hw.tables.units import split_unit
+from bench_hw.tables.units import FloatArray, split_unit
+
+MINIMUM_ROWS = 20
+"""A measured table with fewer rows than this is refused."""
+
+_NUMERIC_BYTES = b"0123456789+-.eE,\n \t"
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    r"""A CSV file, decoded.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    names : tuple of str
+        The column names, blanks around them taken off.
+    body : str
+        The text below the header, with `\n` at the ends of lines.
+    """
+
+    path: Path
+    names: tuple[str, ...]
+    body: str
+
+
+def read_source(path: Path, required: Sequence[str]) -> Source:
+    """Read and decode a file and check its header.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        UTF-8 with or without a byte-order mark, lines ending in LF or CRLF, cells separated by commas.
+    required : sequence of str
+        The columns that must be there.
+
+    Raises
+    ------
+    TableError
+        The file is missing, unreadable, empty or no UTF-8; a column is missing, doubled or without a name.
+    """
+    text = _decoded(path, _bytes_of(path)).replace("\r\n", "\n").replace("\r", "\n")
+    if not text.strip():
+        raise TableError(path, "the file is empty", f"a header with {', '.join(required)} and rows of numbers")
+    header, _, body = text.partition("\n")
+    names = tuple(name for _, cells in _records(path, header, 1) for name in cells)
+    _check_names(path, names, required)
+    return Source(path, names, body)
+
+
+def _bytes_of(path: Path) -> bytes:
+    allowed = "the path of a readable CSV file"
+    try:
+        return path.read_bytes()
+    except FileNotFoundError as error:
+        raise TableError(path, "no such file", allowed) from error
+    except OSError as error:
+        raise TableError(path, f"the file cannot be read ({error.strerror})", allowed) from error
+
+
+def _decoded(path: Path, raw: bytes) -> str:
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        row = raw.count(b"\n", 0, error.start) + 1
+        value = f"byte 0x{raw[error.start]:02x}"
+        raise TableError(path, "the file is no UTF-8 text", "UTF-8", row=row, value=value) from error
+
+
+def _check_names(path: Path, names: tuple[str, ...], required: Sequence[str]) -> None:
+    listed = ", ".join(repr(name) for name in names)
+    for name in required:
+        if name not in names:
+            allowed = f"a header, separated by commas, with {', '.join(required)} (it has {listed})"
+            raise TableError(path, "the column is missing", allowed, row=1, column=name)
+    for name, count in Counter(names).items():
+        if not name:
+            raise TableError(path, "a column has no name", "a name for every column", row=1, column=name)
+        if count > 1:
+            raise TableError(path, f"the column is there {count} times", "each name once", row=1, column=name)
+
+
+def numeric_matrix(source: Source) -> FloatArray | None:
+    """Parse a body that is numbers throughout; None where it is not, or where anything is odd.
+
+    Returns
+    -------
+    ndarray, shape (rows, columns), or None
+        Row i stands in line i + 2 of the file.
+    """
+    body = source.body.rstrip("\n")
+    if not body.isascii() or body.encode().translate(None, _NUMERIC_BYTES) or not body:
+        return None
+    try:
+        matrix = np.loadtxt(io.StringIO(body), delimiter=",", comments=None, ndmin=2)
+    except ValueError:
+        return None
+    as_written = (body.count("\n") + 1, len(source.names))
+    return matrix if matrix.shape == as_written else None
+
+
+def text_columns(source: Source) -> tuple[list[tuple[str, ...]], list[int]]:
+    """Split the body into columns of cells, blanks around them taken off.
+
+    Returns
+    -------
+    columns : list of tuples of str
+        One tuple of cells per column of the header.
+    lines : list of int
+        The line of the file each row stands in.
+
+    Raises
+    ------
+    TableError
+        A row that is blank, has too few or too many cells, or is longer than a line.
+    """
+    rows, lines = [], []
+    for line, cells in _records(source.path, source.body.rstrip(), 2):
+        if len(cells) != len(source.names):
+            problem = f"the row has {len(cells)} cells" if cells else "the row is blank"
+            raise TableError(source.path, problem, f"{len(source.names)} cells, as in the header", row=line)
+        rows.append(cells)
+        lines.append(line)
+    return (list(zip(*rows, strict=True)) if rows else [() for _ in source.names]), lines
+
+
+def _records(path: Path, text: str, first_line: int) -> Iterator[tuple[int, list[str]]]:
+    """Split text into records with their lines; one that goes on over the end of its line is refused."""
+    reader = csv.reader(io.StringIO(text, newline=""), strict=True)
+    line = first_line - 1
+    try:
+        for line, cells in enumerate(reader, start=first_line):
+            if reader.line_num != line - first_line + 1:
+                raise csv.Error("a quoted cell goes on over the end of the line")
+            yield line, [cell.strip() for cell in cells]
+    except csv.Error as error:
+        allowed = "cells separated by commas, one line per row"
+        raise TableError(path, f"the row cannot be split ({error})", allowed, row=line + 1) from error
+
 
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 

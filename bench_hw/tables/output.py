@@ -12,7 +12,7 @@ import numpy as np
 from bench_hw.atomic import write_text
 from bench_hw.errors import TableError
 from bench_hw.tables.columns import check_increasing, check_row_count
-from bench_hw.tables.model import FloatArray
+from bench_hw.tables.units import FloatArray
 
 
 def write_columns(

@@ -1,5 +1,6 @@
 """Native trial files: one `.mcap` a trial, written to survive a kill, read without inventing anything."""
 
+from bench_hw.trial_file.reading import read_trial_mcap
 from bench_hw.trial_file.records import (
     DepthRecord,
     EventRecord,
@@ -8,7 +9,6 @@ from bench_hw.trial_file.records import (
     TrialHeader,
     TrialWriter,
 )
-from bench_hw.trial_file.trial_table import read_trial_mcap
 from bench_hw.trial_file.writer import open_trial
 
 __all__ = [

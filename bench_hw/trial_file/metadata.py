@@ -12,9 +12,8 @@ import zlib
 from collections.abc import Mapping
 from typing import get_args
 
-from bench_hw.trial_file.encoding import NANOSECONDS, nanoseconds
+from bench_hw.trial_file.encoding import CHANNELS, NANOSECONDS, nanoseconds
 from bench_hw.trial_file.records import PressAxis, TrialHeader
-from bench_hw.trial_file.schemas import CHANNELS
 
 TRIAL = "tissuebench.trial"
 RECOVERY = "tissuebench.recovery"

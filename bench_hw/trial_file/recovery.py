@@ -7,11 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from bench_hw.errors import TrialFileError
-from bench_hw.trial_file.chunks import ChunkedWriter
-from bench_hw.trial_file.messages import read_messages
+from bench_hw.trial_file.mcap_output import ChunkedWriter, NewFile, sync_folder
 from bench_hw.trial_file.metadata import RECOVERY, TRIAL, sealed
-from bench_hw.trial_file.scan import Scan, scan_trial
-from bench_hw.trial_file.stream import NewFile, sync_folder
+from bench_hw.trial_file.scan import Scan, read_messages, scan_trial
 from bench_hw.trial_file.writer import PART, SUFFIX
 
 SCHEMA = 1

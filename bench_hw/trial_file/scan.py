@@ -1,23 +1,24 @@
-"""A whole trial file looked through once: what is whole in it, what is damaged, what is missing.
+"""A whole trial file looked through once: what is whole in it, what is damaged, what is missing; and its messages.
 
-Only what is proved counts: messages from chunks whose CRC fits, metadata that carry their own checksum, a
-summary whose CRC fits. Messages outside chunks have no checksum and are not taken.
+Only what is proved counts: messages from chunks whose CRC fits, metadata that carry their own checksum, a summary
+whose CRC fits. Messages outside chunks have no checksum and are not taken. The first chunk defines the channels; where
+it is damaged, the summary or the trial's metadata still know.
 """
 
 from __future__ import annotations
 
+import json
 import mmap
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from bench_hw.errors import TrialFileError
-from bench_hw.trial_file.definitions import known_channels
-from bench_hw.trial_file.framing import Frame
+from bench_hw.trial_file.encoding import CHANNELS, ChannelInfo
+from bench_hw.trial_file.mcap_records import Frame, RawMessage, Summary, UnreadableError, read_chunk, read_summary
 from bench_hw.trial_file.metadata import RECOVERY, TRIAL
-from bench_hw.trial_file.parsing import read_summary
-from bench_hw.trial_file.schemas import ChannelInfo
 from bench_hw.trial_file.walk import Damage, Walk, walk_through
 
 
@@ -144,3 +145,58 @@ def _missing_end(walk: Walk, size: int) -> Damage:
         reason = "the recording stops without its end, what came after is missing"
         return Damage(size, size, reason)
     return Damage(walk.data_end, size, "the summary at the end of the file is damaged or cut")
+
+
+def known_channels(walk: Walk, summary: Summary | None) -> dict[int, ChannelInfo]:
+    """Give the channels by their numbers.
+
+    Parameters
+    ----------
+    walk : Walk
+        What was met in the data.
+    summary : Summary or None
+        The summary, where it is whole.
+    """
+    from mcap.records import Channel, Schema
+
+    records = () if summary is None else summary.records
+    schemas = {record.id: record for record in records if isinstance(record, Schema)} | walk.schemas
+    channels = {record.id: record for record in records if isinstance(record, Channel)} | walk.channels
+    known = _from_metadata(walk.metadata.get(TRIAL, {}))
+    return known | {number: _info(channel, schemas) for number, channel in channels.items()}
+
+
+def _from_metadata(entries: Mapping[str, str]) -> dict[int, ChannelInfo]:
+    ours = {info.topic: info for info in CHANNELS.values()}
+    topics = json.loads(entries.get("channels", "{}"))
+    return {int(number): ours[topic] for number, topic in topics.items() if topic in ours}
+
+
+def _info(channel: Any, schemas: Mapping[int, Any]) -> ChannelInfo:
+    schema = schemas.get(channel.schema_id)
+    return ChannelInfo(
+        topic=channel.topic,
+        schema_name="" if schema is None else schema.name,
+        schema_data=b"" if schema is None else schema.data,
+        schema_encoding="" if schema is None else schema.encoding,
+        message_encoding=channel.message_encoding,
+        metadata=tuple(channel.metadata.items()),
+    )
+
+
+def read_messages(scan: Scan, topics: Collection[str] | None = None) -> Iterator[RawMessage]:
+    """Give the messages of some topics (all if None) from the chunks that are whole, in the file's order.
+
+    Raises
+    ------
+    TrialFileError
+        The file cannot be read, or has changed since it was looked through.
+    """
+    wanted = {n for n, info in scan.channels.items() if topics is None or info.topic in topics}
+    with opened(scan.path) as buffer:
+        for frame in scan.chunks:
+            try:
+                contents = read_chunk(buffer, frame)
+            except UnreadableError as error:
+                raise TrialFileError(scan.path, "the file has changed while it was read") from error
+            yield from (message for message in contents.messages if message.channel in wanted)

@@ -1,9 +1,9 @@
-"""What sequence numbers say: which records are lost, late, doubled, and where a device began anew.
+"""What sequence numbers and time stamps say: records lost, late or doubled, restarts, usual intervals and gaps.
 
-The rule of the RDT protocol: the step from one number to the next, modulo 2^32, is 1 when all is well, 0 for
-a duplicate, below 2^31 a gap, and otherwise backwards. A step backwards by more than `LATEST` numbers is no
-late datagram but a restart of the counter; so is a step back to 1 or 0 whose sample is newer. The same rule
-counts the live stream in `bench_hw.devices.sequence`; here it judges whole columns.
+The rule of the RDT protocol: the step from one number to the next, modulo 2^32, is 1 when all is well, 0 for a
+duplicate, below 2^31 a gap, and otherwise backwards. A step backwards by more than `LATEST` numbers is no late
+datagram but a restart of the counter; so is a step back to 1 or 0 whose sample is newer. The same rule counts the live
+stream in `bench_hw.devices.rdt`; here it judges whole columns.
 """
 
 from __future__ import annotations
@@ -89,3 +89,21 @@ def _signed_steps(numbers: IntArray) -> IntArray:
     """Give the steps modulo 2^32, from -2^31 up to 2^31 - 1; 1 in the first row."""
     step: IntArray = np.diff(numbers, prepend=numbers[:1] - 1)
     return (step + MODULUS // 2) % MODULUS - MODULUS // 2
+
+
+FloatArray = NDArray[np.float64]
+
+GAP_PERIODS = 1.5
+"""An interval longer than this many periods is a gap in the frames of a camera."""
+SHORTEST_GAP = 0.05
+"""No interval shorter than this (s) is called a gap in force or depth: it is how old force data may be."""
+
+
+def usual_interval(time: FloatArray) -> float:
+    """Give the median interval of time stamps of shape (n,), s; NaN for fewer than two."""
+    return float(np.median(np.diff(time))) if len(time) > 1 else float("nan")
+
+
+def longest_allowed(time: FloatArray, shortest_gap: float = SHORTEST_GAP) -> float:
+    """Give the interval (s) above which two neighbours of a channel are not neighbours any more."""
+    return max(GAP_PERIODS * usual_interval(time), shortest_gap) if len(time) > 1 else shortest_gap

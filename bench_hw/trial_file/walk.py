@@ -7,18 +7,20 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
-from bench_hw.trial_file.framing import (
+from bench_hw.trial_file.mcap_records import (
     CHUNK,
     DATA_END,
     MAGIC,
     METADATA,
     Buffer,
     Frame,
+    UnreadableError,
     frame_at,
     next_frame,
+    parse_record,
+    read_chunk,
 )
 from bench_hw.trial_file.metadata import RECOVERY, TRIAL, is_sealed
-from bench_hw.trial_file.parsing import UnreadableError, parse_record, read_chunk
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,7 @@ from pydantic_core import PydanticCustomError
 from pydantic_core.core_schema import SerializationInfo, ValidationInfo
 
 from bench_hw.tables import TableError
-from bench_hw.tables.columns import check_increasing, read_columns
-from bench_hw.tables.source import read_source
+from bench_hw.tables.columns import check_increasing, read_columns, read_source
 from bench_hw.tables.units import to_si
 from benchmark.errors import InputError
 from benchmark.files import units

@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from bench_hw.errors import TableError
-from bench_hw.tables.columns import numbers_of
-from bench_hw.tables.source import read_source, text_columns
+from bench_hw.tables.columns import numbers_of, read_source, text_columns
 from benchmark.errors import InputError
 from benchmark.files import Scenario
 from benchmark.models.prepare import scenario_drive

@@ -18,8 +18,7 @@ from benchmark.runs.report.deformation_section import layer_deformations
 from benchmark.runs.report.published_section import LABELS, published_animation
 from benchmark.runs.report.statistics_section import normal_fits
 from reports import Block, Download, Fact, Figure, Notice, Page, Paragraph, Section, Subsection, Table, Verdict
-from reports.figures.marker_circle import Ring, marker_circle
-from reports.figures.markers import circle_radius, marker_motion
+from reports.figures.markers import Ring, circle_radius, marker_circle, marker_motion
 
 ITEMS = "tables/items.csv"
 SAME = "as above"

@@ -11,14 +11,13 @@ import numpy as np
 
 from bench_hw.errors import BenchError, TrialFileError
 from bench_hw.tables import MarkerTable
-from bench_hw.vision.camera.file import read_camera
-from bench_hw.vision.camera.model import Camera
-from bench_hw.vision.camera.plane import distance_of
+from bench_hw.vision.camera.camera_file import read_camera
+from bench_hw.vision.camera.pinhole import Camera, distance_of
 from bench_hw.vision.displacement.tracks import tracks_of
-from bench_hw.vision.frames.trial import TrialFrames
-from bench_hw.vision.markers.model import Layout
-from bench_hw.vision.tracking.outcome import TrackOutcome
-from bench_hw.vision.tracking.run import TrackOrder, track
+from bench_hw.vision.frames.opening import TrialFrames
+from bench_hw.vision.markers.grid import Layout
+from bench_hw.vision.tracking.film import TrackOrder, track
+from bench_hw.vision.tracking.pipeline import TrackOutcome
 from benchmark.errors import InputError
 from benchmark.files import Session, Trial
 from benchmark.files.sessions.trials import read_markers

@@ -27,13 +27,13 @@ import numpy as np
 from bench_hw.capture.order import CaptureOrder
 from bench_hw.capture.progress import Silent
 from bench_hw.capture.session import capture
-from bench_hw.motion.loading import load_protocol
-from bench_hw.rig.loading import LoadedRig, simulated_rig
+from bench_hw.motion.protocol_file import load_protocol
+from bench_hw.rig.rig_file import LoadedRig, simulated_rig
 from bench_hw.simulated.specimen import MarkerGrid
 from bench_hw.simulated.tabulated import SheetTable, TabulatedSpecimen, write_sheet
 from bench_hw.tables import write_trial_csv
 from bench_hw.trial_file import read_trial_mcap
-from bench_hw.vision.tracking.run import TrackOrder, track
+from bench_hw.vision.tracking.film import TrackOrder, track
 from benchmark.errors import SolverError
 from benchmark.sessions.phantom_sheet import RELAXATION, hidden_sheet
 from benchmark.sessions.phantom_text import session_text, truth_text

@@ -27,7 +27,7 @@ from reports import (
     Table,
     Verdict,
 )
-from reports.figures.parameters import ParameterAxis, over_parameters
+from reports.figures.studies import ParameterAxis, over_parameters
 from reports.formatting import format_number
 
 MOST_WARNINGS = 5

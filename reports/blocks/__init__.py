@@ -4,13 +4,24 @@ A block type is a dataclass here and a template of its own in `templates/blocks/
 of it. How blocks become HTML is in `reports.page`, `reports.rendering` and the templates.
 """
 
-from reports.blocks.base import Block, Section, Subsection
-from reports.blocks.facts import Fact, Facts, KeyFigure, KeyFigures
-from reports.blocks.figure import Figure, Panel, Picture
-from reports.blocks.live import Live, LiveAxes, LiveBody, LiveFace, LiveLine, LivePlot
+from reports.blocks.figure import Figure, Live, LiveAxes, LiveBody, LiveFace, LiveLine, LivePlot, Panel, Picture
 from reports.blocks.table import Column, Download, Downloads, Table
-from reports.blocks.text import NOTICES, Bullets, Listing, Notice, Paragraph
-from reports.blocks.verdict import VERDICTS, Verdict
+from reports.blocks.text import (
+    NOTICES,
+    VERDICTS,
+    Block,
+    Bullets,
+    Fact,
+    Facts,
+    KeyFigure,
+    KeyFigures,
+    Listing,
+    Notice,
+    Paragraph,
+    Section,
+    Subsection,
+    Verdict,
+)
 
 __all__ = [
     "NOTICES",

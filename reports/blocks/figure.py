@@ -1,14 +1,139 @@
-"""Figures: pictures with captions and descriptions in words."""
+"""Figures: pictures with captions and descriptions in words, and what they become where JavaScript runs.
+
+Plots to zoom and bodies to turn are plain data; `templates/live.js` draws them. The picture itself stays the one for
+paper and for readers without JavaScript.
+"""
 
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from reports.blocks.base import Block
-from reports.blocks.live import Live
+from reports.blocks.text import Block
+
+DIGITS = 6
+
+
+@dataclass(frozen=True)
+class LiveLine:
+    """A line: its name in the legend, abscissa and ordinate (n,) with NaN for no value, and its look.
+
+    `colour` is a name of `reports.palette`; `dash` holds lengths in line widths, none for a solid line.
+    """
+
+    name: str
+    x: Iterable[float]
+    y: Iterable[float]
+    colour: str
+    dash: Sequence[float] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain lists."""
+        dash = ",".join(f"{2.0 * part:g}px" for part in self.dash) or "solid"
+        return {"name": self.name, "x": plain(self.x), "y": plain(self.y), "colour": self.colour, "dash": dash}
+
+
+@dataclass(frozen=True)
+class LiveAxes:
+    """Lines over one ordinate; `downwards` where it points down, as a dent does."""
+
+    label: str
+    lines: Sequence[LiveLine]
+    downwards: bool = False
+
+
+@dataclass(frozen=True)
+class LivePlot:
+    """A plot to zoom.
+
+    Attributes
+    ----------
+    x_label
+        What the abscissa is, with its unit.
+    axes
+        One above the other, over the same abscissa.
+    marks
+        Places on the abscissa with a name, such as the tool's edge.
+    """
+
+    kind: ClassVar[str] = "plot"
+    x_label: str
+    axes: Sequence[LiveAxes]
+    marks: Sequence[tuple[float, str]] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain lists and tables."""
+        axes = [
+            {"label": each.label, "downwards": each.downwards, "lines": [line.to_dict() for line in each.lines]}
+            for each in self.axes
+        ]
+        return {"kind": self.kind, "x_label": self.x_label, "axes": axes, "marks": [list(mark) for mark in self.marks]}
+
+
+@dataclass(frozen=True)
+class LiveFace:
+    """The top face of a layer: its height in mm over the radius and the value that colours it, (m,) each.
+
+    `below` is the height of what ends the layer downwards; without it only the face is shown.
+    """
+
+    name: str
+    height: Iterable[float]
+    value: Iterable[float]
+    below: Iterable[float] | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain lists."""
+        below = None if self.below is None else plain(self.below)
+        return {"name": self.name, "height": plain(self.height), "value": plain(self.value), "below": below}
+
+
+@dataclass(frozen=True)
+class LiveBody:
+    """A body of revolution to turn, three quarters of it.
+
+    Attributes
+    ----------
+    radius
+        (m,) distances in mm from the axis, rising.
+    faces
+        Of the layers from the surface down.
+    value_label
+        What colours the faces, with its unit.
+    limit
+        The largest value of the scale; the smallest is zero.
+    ring
+        Radius in mm of a circle on the surface, the tool's edge.
+    """
+
+    kind: ClassVar[str] = "body"
+    radius: Iterable[float]
+    faces: Sequence[LiveFace]
+    value_label: str
+    limit: float
+    ring: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain lists and tables."""
+        return {
+            "kind": self.kind,
+            "radius": plain(self.radius),
+            "faces": [face.to_dict() for face in self.faces],
+            "value_label": self.value_label,
+            "limit": self.limit,
+            "ring": self.ring,
+        }
+
+
+Live = LivePlot | LiveBody
+
+
+def plain(values: Iterable[float]) -> list[float | None]:
+    """Numbers with six digits, as many as a screen shows; None for NaN."""
+    return [float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None for value in map(float, values)]
 
 
 @dataclass(frozen=True)

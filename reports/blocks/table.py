@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from reports.blocks.base import Block
+from reports.blocks.text import Block
 
 
 @dataclass(frozen=True)

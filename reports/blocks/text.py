@@ -1,4 +1,4 @@
-"""Blocks of words: paragraphs, lists, notices, listings."""
+"""The base of all blocks, sections, and blocks of words and single values: notices, lists, facts, the verdict."""
 
 from __future__ import annotations
 
@@ -7,7 +7,37 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import ClassVar
 
-from reports.blocks.base import Block, one_of
+
+@dataclass(frozen=True)
+class Block:
+    """Base of everything a section can hold."""
+
+    template: ClassVar[str]
+    counter: ClassVar[str] = ""
+
+
+@dataclass(frozen=True)
+class Subsection(Block):
+    """Blocks under a heading of their own inside a section."""
+
+    template: ClassVar[str] = "subsection"
+    title: str
+    blocks: Sequence[Block]
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the page: heading and blocks."""
+
+    title: str
+    blocks: Sequence[Block]
+
+
+def one_of(name: str, value: str, allowed: Mapping[str, str]) -> None:
+    """Refuse a word that is not allowed."""
+    if value not in allowed:
+        raise ValueError(f"{name} is {value!r}; allowed: {', '.join(allowed)}")
+
 
 NOTICES: Mapping[str, str] = MappingProxyType(
     {
@@ -72,3 +102,70 @@ class Listing(Block):
     text: str
     caption: str
     folded: bool = True
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A named value as text, e.g. scenario, date, versions."""
+
+    name: str
+    value: str
+
+
+@dataclass(frozen=True)
+class Facts(Block):
+    """Named values under each other."""
+
+    template: ClassVar[str] = "facts"
+    items: Sequence[Fact]
+
+
+@dataclass(frozen=True)
+class KeyFigure:
+    """One number worth large type: what it is, its value and unit, and against what it holds."""
+
+    label: str
+    value: float | str
+    unit: str = ""
+    note: str = ""
+    digits: int = 3
+
+
+@dataclass(frozen=True)
+class KeyFigures(Block):
+    """Key figures side by side."""
+
+    template: ClassVar[str] = "key_figures"
+    items: Sequence[KeyFigure]
+
+
+VERDICTS: Mapping[str, str] = MappingProxyType(
+    {"good": "Good", "finding": "Finding", "failed": "Failed", "incomplete": "Incomplete", "unknown": "Unknown"}
+)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the reader must know first.
+
+    Attributes
+    ----------
+    status
+        `good`, `finding`, `failed`, `incomplete` or `unknown` (the data cannot tell).
+    headline
+        One sentence.
+    points
+        The lines under it.
+    """
+
+    status: str
+    headline: str
+    points: Sequence[str] = ()
+
+    def __post_init__(self) -> None:
+        one_of("Verdict status", self.status, VERDICTS)
+
+    @property
+    def label(self) -> str:
+        """The status as a word."""
+        return VERDICTS[self.status]

@@ -10,8 +10,7 @@ import numpy as np
 
 from reports.blocks import Figure, Panel
 from reports.figures.arrays import Floats, matrix, optional_matrix
-from reports.figures.pair import DEFAULT, Pair
-from reports.figures.style import SMALL, Stroke, draw, heading, legend_above
+from reports.figures.style import DEFAULT, SMALL, Pair, Stroke, draw, heading, legend_above
 from reports.formatting import format_number
 
 if TYPE_CHECKING:

@@ -1,24 +1,27 @@
-"""The one look of all figures: sizes, type, strokes, and the canvas they are drawn on.
+"""The one look of all figures: sizes, type, strokes, the canvas, and the marks and lines that several figures share.
 
-matplotlib is used through its object interface only and imported when something is drawn. One unit of a
-drawing is one CSS pixel at natural size.
+matplotlib is used through its object interface only and imported when something is drawn. One unit of a drawing is one
+CSS pixel at natural size. `Pair` says how the two models of a comparison are drawn and called.
 """
 
 from __future__ import annotations
 
 import io
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from reports.figures.theme import themed
+from reports.blocks import LiveLine
+from reports.figures.arrays import Floats, stopped_at
 from reports.formatting import shortened
-from reports.palette import PALETTE
+from reports.palette import PALETTE, name_of
+from reports.svg import themed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Drawing
+
 
 LineStyle = str | tuple[float, tuple[float, ...]]
 INK, MUTED, GRID, PAPER = (PALETTE[name].light for name in ("ink", "muted", "grid", "paper"))
@@ -150,3 +153,86 @@ def legend_above(axes: Axes, columns: int = 4) -> None:
 def zero_line(axes: Axes) -> None:
     """Draw the line of zero difference."""
     axes.axhline(0, color=MUTED, linewidth=0.9, zorder=1)
+
+
+LABEL_LENGTH = 24
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The reference (drawn as the FEM) and the fast model beside it (drawn as the wave)."""
+
+    fem: Stroke = FEM
+    wave: Stroke = WAVE
+
+    @classmethod
+    def named(cls, fem: str | None = None, wave: str | None = None) -> Pair:
+        """Return the pair with names of its own; None keeps the name."""
+        return cls(_named(FEM, fem), _named(WAVE, wave))
+
+    def stroke(self, name: str, other: Stroke) -> Stroke:
+        """Return the look of the model `fem` or `wave`; of any other series that of `other`, under its own name."""
+        return {"fem": self.fem, "wave": self.wave}.get(name) or replace(other, label=name, name=name)
+
+    def caption(self, both: bool, fem: str = "solid", wave: str = "dashed") -> str:
+        """Say which line is which model, or that the second one has no values."""
+        if both:
+            return f"{self.fem.name} ({fem}) and {self.wave.name} ({wave})"
+        return f"{self.fem.name} alone; the {self.wave.name} has no values here"
+
+
+DEFAULT = Pair()
+
+
+def _named(stroke: Stroke, name: str | None) -> Stroke:
+    return stroke if name is None else replace(stroke, label=shortened(name, LABEL_LENGTH), name=name)
+
+
+_DOTTED = (0, (1, 2))
+_SMALL_NOTE: Mapping[str, Any] = MappingProxyType({"textcoords": "offset points", "color": MUTED, "fontsize": "small"})
+
+
+def model_line(axes: Axes, x: Floats, y: Floats, stroke: Stroke, stops: bool = True) -> None:
+    """Draw a model's line, with a cross where only NaN follows because the model stopped.
+
+    Without `stops`, NaN at the end means that there is nothing to draw, not that the model stopped.
+    """
+    axes.plot(x, y, color=stroke.colour, linestyle=stroke.line, label=stroke.label, zorder=3)
+    last = stopped_at(y) if stops else None
+    if last is not None:
+        stop_mark(axes, float(x[last]), float(y[last]), stroke)
+
+
+def stop_mark(axes: Axes, x: float, y: float, stroke: Stroke) -> None:
+    """Draw a cross where a model stopped, and say so beside it."""
+    look: dict[str, Any] = {"marker": "X", "markersize": 9, "markeredgecolor": PAPER, "linestyle": "", "zorder": 4}
+    axes.plot(x, y, color=stroke.colour, **look)
+    place: dict[str, Any] = {"xytext": (8, 0), "textcoords": "offset points", "va": "center"}
+    axes.annotate(f"{stroke.label} stopped", (x, y), color=stroke.colour, **place)
+
+
+def planned_line(axes: Axes, y: float, text: str) -> None:
+    """Draw a horizontal reference line with its name above its left end."""
+    axes.axhline(y, color=MUTED, linewidth=1, linestyle=_DOTTED, zorder=1)
+    axes.annotate(text, (0.01, y), xycoords=("axes fraction", "data"), xytext=(0, 3), **_SMALL_NOTE)
+
+
+def edge_line(axes: Axes, x: float, text: str) -> None:
+    """Draw a vertical reference line with its name along it."""
+    axes.axvline(x, color=MUTED, linewidth=1, linestyle=_DOTTED, zorder=1)
+    along: dict[str, Any] = {"rotation": 90, "va": "bottom", **_SMALL_NOTE}
+    axes.annotate(text, (x, 0.04), xycoords=("data", "axes fraction"), xytext=(3, 0), **along)
+
+
+def live_line(name: str, x: Floats, y: Floats, colour: str, line: LineStyle) -> LiveLine:
+    """Return a line drawn in a light shade of the palette, solid or in dashes."""
+    dash = () if isinstance(line, str) else line[1]
+    return LiveLine(name, x, y, name_of(colour), dash)
+
+
+def model_lines(pair: Pair, x: Floats, fem: Floats, wave: Floats | None) -> list[LiveLine]:
+    """Return both models' lines; the second only where there is one."""
+    lines = [live_line(pair.fem.label, x, fem, pair.fem.colour, pair.fem.line)]
+    if wave is not None:
+        lines.append(live_line(pair.wave.label, x, wave, pair.wave.colour, pair.wave.line))
+    return lines

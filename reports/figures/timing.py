@@ -1,17 +1,15 @@
-"""Wall time of each model's repeats on a logarithmic axis."""
+"""Compute time: wall time of each model's repeats, and how it grows with unknowns."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from reports.blocks import Figure
 from reports.figures.arrays import Floats, column
-from reports.figures.pair import DEFAULT, Pair
-from reports.figures.style import INK, MUTED, TRIAL, WIDE, Stroke, draw
+from reports.figures.style import DEFAULT, INK, MEASURED, MUTED, TRIAL, WIDE, Pair, Stroke, draw, legend_above
 from reports.formatting import format_number
 
 if TYPE_CHECKING:
@@ -48,13 +46,13 @@ def timing(
         raise ValueError("wall_s is empty; the wall seconds of at least one model are needed")
     setups = {name: float(_times(f"set-up of {name}", [value])[0]) for name, value in (setup_s or {}).items()}
     quotes = {label: float(_times(label, [value])[0]) for label, value in (quoted_s or {}).items()}
-    labels = [*(_stroke(name, pair).label for name in walls), *quotes]
+    labels = [*(pair.stroke(name, TRIAL).label for name in walls), *quotes]
 
     def paint(drawing: Drawing) -> None:
         axes = drawing.subplots()
         _seconds_axis(axes, np.concatenate([*walls.values(), [*setups.values()], [*quotes.values()]]))
         for row, (name, values) in enumerate(walls.items()):
-            _paint_row(axes, row, values, _stroke(name, pair), setups.get(name))
+            _paint_row(axes, row, values, pair.stroke(name, TRIAL), setups.get(name))
         for row, value in enumerate(quotes.values(), len(walls)):
             axes.plot(value, row, marker="x", color=INK, markersize=7, markeredgewidth=1.6, linestyle="")
             _write(axes, value, row, f"{format_number(value, 3, trim=True)} s as printed")
@@ -102,14 +100,10 @@ def _times(name: str, values: Any) -> Floats:
     return times
 
 
-def _stroke(name: str, pair: Pair) -> Stroke:
-    return {"fem": pair.fem, "wave": pair.wave}.get(name, replace(TRIAL, label=name, name=name))
-
-
 def _words(walls: Mapping[str, Floats], pair: Pair) -> str:
     """Say what the figure shows."""
     return " ".join(
-        f"{_stroke(name, pair).label}: median {_read(np.median(values))} s of {values.size} repeats, "
+        f"{pair.stroke(name, TRIAL).label}: median {_read(np.median(values))} s of {values.size} repeats, "
         f"from {_read(values.min())} to {_read(values.max())} s."
         for name, values in walls.items()
     )
@@ -117,3 +111,51 @@ def _words(walls: Mapping[str, Floats], pair: Pair) -> str:
 
 def _read(value: Any) -> str:
     return format_number(float(value), 3)
+
+
+def growth(runs: Mapping[str, tuple[Any, Any]], pair: Pair = DEFAULT) -> Figure:
+    """Draw wall time per load step over unknowns.
+
+    Parameters
+    ----------
+    runs
+        Model (`fem` and `wave` get their looks) to its unknowns and its wall ms per load step, (n,) each, all above 0.
+    pair
+        What `fem` and `wave` are called.
+
+    Raises
+    ------
+    ValueError
+        Without a run, for arrays of other lengths, or a value that is not above zero.
+    """
+    if not runs:
+        raise ValueError("runs is empty; at least one model is needed")
+    lines = [(pair.stroke(name, MEASURED), *_checked(name, *values)) for name, values in runs.items()]
+
+    def paint(drawing: Drawing) -> None:
+        axes = drawing.subplots()
+        for stroke, unknowns, wall in lines:
+            order = unknowns.argsort(kind="stable")
+            axes.plot(
+                unknowns[order], wall[order], color=stroke.colour, linestyle=stroke.line, marker=stroke.marker,
+                label=stroke.label,
+            )  # fmt: skip
+        axes.set(xscale="log", yscale="log", xlabel="unknowns", ylabel="wall time per load step (ms)")
+        axes.tick_params(which="minor", length=0)
+        legend_above(axes)
+
+    words = " ".join(
+        f"{stroke.name}: {format_number(float(wall.min()), 3)} to {format_number(float(wall.max()), 3)} ms a step from "
+        f"{int(unknowns.min())} to {int(unknowns.max())} unknowns."
+        for stroke, unknowns, wall in lines
+    )
+    caption = "Wall milliseconds per load step over the number of unknowns, a dot a run, one thread."
+    return Figure.of(draw(paint, WIDE, 350), caption, words, "Growth of compute time")
+
+
+def _checked(name: str, unknowns: Any, wall: Any) -> tuple[Floats, Floats]:
+    across = column(f"unknowns of {name}", unknowns)
+    up = column(f"wall time of {name}", wall, len(across))
+    if not across.size or not (across > 0).all() or not (up > 0).all():
+        raise ValueError(f"unknowns and wall time of {name}: at least one run, all values above zero")
+    return across, up

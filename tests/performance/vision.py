@@ -18,10 +18,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from bench_hw.simulated.loads import pressed_sheet
 from bench_hw.simulated.picture import CameraModel, Painter
-from bench_hw.vision.camera.file import write_camera
-from bench_hw.vision.camera.model import Camera, Plane
+from bench_hw.simulated.specimen import pressed_sheet
+from bench_hw.vision.camera.camera_file import write_camera
+from bench_hw.vision.camera.pinhole import Camera, Plane
 from bench_hw.vision.markers import detect_grid
 from bench_hw.vision.tracking import METHODS, TrackOrder, track
 

@@ -23,9 +23,9 @@ from reports import (
     Verdict,
     figures,
 )
-from reports.figures.growth import growth
-from reports.figures.overlay import overlay
 from reports.figures.pressed_layers import pressed_layers
+from reports.figures.studies import overlay
+from reports.figures.timing import growth
 
 LAYERS = ("epidermis", "dermis", "subcutaneous fat")
 TOOL_RADIUS = 5.0

@@ -1,8 +1,11 @@
+"""A picture that no lines can draw stands in the page as data."""
+
+import base64
 import dataclasses
 
 import pytest
 
-from reports import Column, Download, Figure, Notice, Panel, Table, Verdict
+from reports import Column, Download, Figure, Notice, Page, Panel, Picture, Section, Table, Verdict, render_page
 from reports.blocks import NOTICES, VERDICTS
 
 
@@ -48,3 +51,13 @@ def test_a_figure_of_one_picture():
 def test_blocks_cannot_be_changed():
     with pytest.raises(dataclasses.FrozenInstanceError):
         Notice("warning", "a").text = "b"
+
+
+PNG = b"\x89PNG\r\n\x1a\nbytes"
+
+
+def test_a_picture_is_part_of_the_page():
+    figure = Figure((Picture(PNG, 'a "pressed" <body>'),), "what is seen", "Body")
+    page = render_page(Page(title="t", verdict=Verdict("good", "fine"), sections=[Section("S", [figure])]))
+    assert f'src="data:image/png;base64,{base64.b64encode(PNG).decode()}"' in page
+    assert 'alt="a &#34;pressed&#34; &lt;body&gt;"' in page

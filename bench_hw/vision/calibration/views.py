@@ -8,11 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from bench_hw.errors import InputError
-from bench_hw.vision.calibration.board import Board
-from bench_hw.vision.calibration.corners import View
-from bench_hw.vision.calibration.fit import NAMES, Fit
-from bench_hw.vision.calibration.map_error import MapError
-from bench_hw.vision.camera.model import FloatArray
+from bench_hw.vision.calibration.board import Board, View
+from bench_hw.vision.calibration.fit import NAMES, Fit, MapError
+from bench_hw.vision.camera.pinhole import FloatArray
 
 FEWEST_VIEWS = 20
 FEWEST_DIFFERENT = 10

@@ -1,13 +1,30 @@
 """Tracks to displacements, fits, circles and the article's Table 1: pure functions on arrays, SI units."""
 
-from bench_hw.vision.displacement.block import Block, inner_nine
-from bench_hw.vision.displacement.circle import Circles, fit_circles
-from bench_hw.vision.displacement.maximum import MaximumRadius, largest_sample, maximum_radius
-from bench_hw.vision.displacement.parabola import ParabolaFits, fit_parabolas
-from bench_hw.vision.displacement.published import PublishedVariables, published_variables
-from bench_hw.vision.displacement.smoothing import moving_average
-from bench_hw.vision.displacement.sound import SoundVariables, side_by_side, sound_variables
-from bench_hw.vision.displacement.tracks import Tracks, deformation_window, displacements, tracks_of
+from bench_hw.vision.displacement.fits import (
+    Circles,
+    MaximumRadius,
+    ParabolaFits,
+    fit_circles,
+    fit_parabolas,
+    largest_sample,
+    maximum_radius,
+)
+from bench_hw.vision.displacement.table_1 import (
+    PublishedVariables,
+    SoundVariables,
+    published_variables,
+    side_by_side,
+    sound_variables,
+)
+from bench_hw.vision.displacement.tracks import (
+    Block,
+    Tracks,
+    deformation_window,
+    displacements,
+    inner_nine,
+    moving_average,
+    tracks_of,
+)
 
 __all__ = [
     "Block",

@@ -1,14 +1,16 @@
-"""Tracks as an array over frames and markers, and how far each marker is from where it rested."""
+"""Tracks as an array over frames and markers: displacements, the block of markers around the tool, moving averages."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from bench_hw.errors import InputError
-from bench_hw.tables.model import MarkerTable
+from bench_hw.tables.measurement import MarkerTable
 
 FloatArray = NDArray[np.float64]
 
@@ -95,3 +97,111 @@ def deformation_window(size: FloatArray, share: float = 0.05) -> slice:
     low, high = float(np.min(size[known])), float(np.max(size[known]))
     above = np.flatnonzero(known & (np.nan_to_num(size, nan=-np.inf) > low + share * (high - low)))
     return slice(int(above[0]), int(above[-1]) + 1) if len(above) else slice(0, 0)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Block:
+    """A 3 x 3 block of a grid.
+
+    Parameters
+    ----------
+    centre : int
+        Number of its middle marker, the article's star.
+    nine : ndarray of int, shape (9,)
+        Row by row.
+    ring : ndarray of int, shape (8,)
+        Without the middle one.
+    """
+
+    centre: int
+    nine: NDArray[np.int64]
+    ring: NDArray[np.int64]
+
+
+def inner_nine(rest: FloatArray, rows: int, columns: int, centre: int | None = None) -> Block:
+    """Choose the 3 x 3 block whose middle is nearest the tool axis, which is the origin; ties towards -x.
+
+    Parameters
+    ----------
+    rest : ndarray, shape (rows * columns, 2)
+        Where the markers rest, m, numbered row by row.
+    rows, columns : int
+        The grid's layout, at least 3 each.
+    centre : int, optional
+        Number of the middle marker instead.
+
+    Raises
+    ------
+    InputError
+        No 3 x 3 block fits the grid or lies around that marker, or no marker that could be one was seen.
+    """
+    if rest.shape != (rows * columns, 2) or min(rows, columns) < 3:
+        raise InputError(f"{len(rest)} markers as {rows} x {columns}: allowed is a full grid of at least 3 x 3")
+    number = np.arange(rows * columns).reshape(rows, columns)
+    inner = number[1:-1, 1:-1].ravel()
+    if centre is None:
+        centre = _nearest(rest, inner)
+    elif centre not in inner:
+        raise InputError(f"centre marker {centre}: allowed are those with neighbours all round, {inner.tolist()}")
+    row, column = divmod(centre, columns)
+    nine = number[row - 1 : row + 2, column - 1 : column + 2].ravel()
+    return Block(centre, nine, nine[nine != centre])
+
+
+def _nearest(rest: FloatArray, inner: NDArray[np.int64]) -> int:
+    distance = np.hypot(rest[inner, 0], rest[inner, 1])
+    if not np.isfinite(distance).any():
+        raise InputError("none of the inner markers was ever seen; allowed: at least one")
+    nearest = float(np.nanmin(distance))
+    tied = inner[distance <= nearest * 1.02 + 1e-12]
+    return int(tied[np.argmin(rest[tied, 0])])
+
+
+Mode = Literal["none", "centred", "causal"]
+PAPER_WINDOW = 10
+"""Section 3.2.5 of the article: "a window size of 10 and a denominator coefficient of 1"."""
+
+
+def moving_average(values: FloatArray, window: int = PAPER_WINDOW, mode: Mode = "centred") -> FloatArray:
+    """Average over frames.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n, ...)
+        NaN where not known; an average with a NaN in its window is NaN.
+    window : int
+        Frames.
+    mode : str
+        `centred`: as many frames before as after, the outermost two with half weight where the window is even, a
+        shorter window towards the ends; no delay. `causal`: the article's filter (MATLAB's `filter`, which takes
+        zeros for what was before the first frame); it delays by (window - 1) / 2 frames and flattens a peak.
+        `none`: nothing.
+
+    Raises
+    ------
+    InputError
+        A window below 1, or another mode.
+    """
+    if window < 1:
+        raise InputError(f"a moving average of {window} frames; allowed: at least 1")
+    if mode == "none" or window == 1:
+        return values.copy()
+    if mode == "causal":
+        padded = np.concatenate([np.zeros((window - 1, *values.shape[1:])), values])
+        return np.asarray(sliding_window_view(padded, window, axis=0).mean(axis=-1))
+    if mode == "centred":
+        return _centred(values, window)
+    raise InputError(f"moving average {mode!r}; allowed: none, centred, causal")
+
+
+def _centred(values: FloatArray, window: int) -> FloatArray:
+    half = window // 2
+    weights = np.ones(2 * half + 1)
+    if window % 2 == 0:
+        weights[[0, -1]] = 0.5
+    result = values.copy()
+    for row in range(len(values)):
+        reach = min(half, row, len(values) - 1 - row)
+        part = weights if reach == half else np.ones(2 * reach + 1)
+        result[row] = np.tensordot(part / part.sum(), values[row - reach : row + reach + 1], axes=1)
+    return result

@@ -1,14 +1,296 @@
-"""From a path to the source of its pictures."""
+"""The pictures of a trial, a video, a folder or a pattern of files: each a `FrameSource`, found by `open_frames`.
+
+Videos are read through OpenCV's own FFmpeg; a trial's pictures have the camera's own instants on the trial's clock.
+"""
 
 from __future__ import annotations
 
+import glob
+import math
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
-from bench_hw.errors import InputError
-from bench_hw.vision.frames.model import FrameSource
-from bench_hw.vision.frames.pictures import PictureFrames, is_pictures
-from bench_hw.vision.frames.trial import TrialFrames
-from bench_hw.vision.frames.video import VideoFrames
+import cv2
+import numpy as np
+
+from bench_hw.errors import InputError, TrialFileError
+from bench_hw.trial_file.encoding import CAMERA, NANOSECONDS, decode_frame, nanoseconds
+from bench_hw.trial_file.metadata import read_header
+from bench_hw.trial_file.scan import read_messages, scan_trial
+from bench_hw.vision.frames.source import Frame, FrameSource, decode_grey, to_grey
+
+KINDS = {
+    ".png": "png",
+    ".jpg": "jpeg",
+    ".jpeg": "jpeg",
+    ".tif": "tiff",
+    ".tiff": "tiff",
+    ".bmp": "bmp",
+    ".pgm": "pgm",
+    ".webp": "webp",
+}
+USUAL_RATE = 30.0
+"""Pictures per second where nobody said, Hz: the paper's webcam."""
+_NUMBERED = re.compile(r"%0?\d*d")
+
+
+class PictureFrames:
+    """Pictures in the natural order of their names.
+
+    Parameters
+    ----------
+    place : str
+        A folder, one picture, a pattern with `*` or `?`, or a numbered one (`frame_%04d.png`).
+    rate : float, optional
+        Pictures per second, Hz; 30 without it, which is then noted.
+
+    Raises
+    ------
+    InputError
+        There is no picture.
+    """
+
+    def __init__(self, place: str, rate: float | None = None) -> None:
+        self._place = place
+        self._rate = rate or USUAL_RATE
+        self._assumed = rate is None
+        self._files = sorted(_files(place), key=_natural)
+        if not self._files:
+            raise InputError(f"{place}: no pictures; allowed endings: {', '.join(KINDS)}")
+
+    @property
+    def name(self) -> str:
+        """The folder or pattern."""
+        return self._place
+
+    @property
+    def synthetic(self) -> bool:
+        """Nobody knows of bare pictures."""
+        return False
+
+    @property
+    def expected(self) -> int | None:
+        """How many there are."""
+        return len(self._files)
+
+    @property
+    def rate(self) -> float | None:
+        """Pictures per second, Hz."""
+        return self._rate
+
+    def frames(self) -> Iterator[Frame]:
+        """Give the pictures, number / rate as time."""
+        for number, file in enumerate(self._files):
+            yield Frame(number, number / self._rate, decode_grey(file.read_bytes(), KINDS[file.suffix.lower()]))
+
+    def notes(self) -> tuple[str, ...]:
+        """Say what was assumed."""
+        return (f"{self._rate:g} pictures a second are assumed; `--fps` says otherwise",) if self._assumed else ()
+
+
+def is_pictures(place: str) -> bool:
+    """Say whether a place is a folder, a pattern or a single picture."""
+    path = Path(place)
+    return path.is_dir() or _is_pattern(place) or path.suffix.lower() in KINDS
+
+
+def _is_pattern(place: str) -> bool:
+    return not Path(place).exists() and (any(sign in place for sign in "*?[") or bool(_NUMBERED.search(place)))
+
+
+def _files(place: str) -> list[Path]:
+    path = Path(place)
+    if path.is_dir():
+        found = list(path.iterdir())
+    elif _is_pattern(place):
+        found = [Path(name) for name in glob.glob(_NUMBERED.sub("[0-9]*", place))]  # noqa: PTH207 - any folder
+    else:
+        found = [path]
+    return [file for file in found if file.is_file() and file.suffix.lower() in KINDS]
+
+
+def _natural(path: Path) -> list[tuple[int, int, str]]:
+    """Order by the numbers in a name as numbers: 2 before 10."""
+    parts = re.split(r"(\d+)", path.name)
+    return [(0, int(part), "") if part.isdigit() else (1, 0, part) for part in parts]
+
+
+_RATES = (0.01, 100_000.0)
+_GREY = cv2.VideoWriter.fourcc(*"Y800")
+"""FFmpeg's pixels of one byte of grey: they need no way through colour and back."""
+
+
+class VideoFrames:
+    """Pictures of a video.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    rate : float, optional
+        Pictures per second instead of the file's own, Hz.
+
+    Raises
+    ------
+    InputError
+        No such file, no video, or one that does not say how fast it is.
+    """
+
+    def __init__(self, path: Path, rate: float | None = None) -> None:
+        self._path = path
+        if not path.is_file():
+            raise InputError(f"{path}: no such file; allowed: a trial, a video, or a folder of pictures")
+        video = self._opened()
+        self._rate = rate or float(video.get(cv2.CAP_PROP_FPS))
+        count = video.get(cv2.CAP_PROP_FRAME_COUNT)
+        video.release()
+        self._expected = int(count) if 0 < count < 1e9 else None
+        self._given: int | None = None
+        if not (math.isfinite(self._rate) and _RATES[0] <= self._rate <= _RATES[1]):
+            raise InputError(f"{path}: the video has no usable rate ({self._rate:g} Hz); give `--fps`")
+
+    @property
+    def name(self) -> str:
+        """The file."""
+        return str(self._path)
+
+    @property
+    def synthetic(self) -> bool:
+        """Nobody knows of a bare video."""
+        return False
+
+    @property
+    def expected(self) -> int | None:
+        """How many pictures the file says it has."""
+        return self._expected
+
+    @property
+    def rate(self) -> float | None:
+        """Pictures per second, Hz."""
+        return self._rate
+
+    def frames(self) -> Iterator[Frame]:
+        """Give the pictures up to the last that can be read, number / rate as time.
+
+        Raises
+        ------
+        InputError
+            There is none.
+        """
+        video, number = self._opened(), 0
+        try:
+            while True:
+                there, picture = video.read()
+                if not there or picture is None:
+                    break
+                yield Frame(number, number / self._rate, to_grey(np.asarray(picture, dtype=np.uint8)))
+                number += 1
+        finally:
+            video.release()
+        self._given = number
+        if number == 0:
+            raise InputError(f"{self._path}: the video has no picture that can be read")
+
+    def notes(self) -> tuple[str, ...]:
+        """Say if the video ended early."""
+        if self._given is None or self._expected is None or self._given >= self._expected:
+            return ()
+        return (f"the video ends after {self._given} of the {self._expected} pictures it should have",)
+
+    def _opened(self) -> cv2.VideoCapture:
+        try:
+            video = cv2.VideoCapture(str(self._path), cv2.CAP_FFMPEG)
+        except cv2.error as error:
+            raise InputError(f"{self._path}: no video that can be read ({error.err})") from error
+        if not video.isOpened():
+            raise InputError(
+                f"{self._path}: no video that can be read (cut, empty or of another kind); "
+                "allowed: what OpenCV's FFmpeg reads, such as .avi, .mkv, .mp4"
+            )
+        if int(video.get(cv2.CAP_PROP_CODEC_PIXEL_FORMAT)) == _GREY:
+            video.set(cv2.CAP_PROP_CONVERT_RGB, 0)
+        return video
+
+
+class TrialFrames:
+    """Pictures of a trial; of a damaged one those that are whole.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        `NAME.mcap`, or one that is cut.
+
+    Raises
+    ------
+    TrialFileError
+        The file cannot be read, is no trial, or has no pictures.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._scan = scan_trial(path)
+        self._path = path
+        self._problems: list[str] = [f"the trial is not complete: {damage}" for damage in self._scan.damages[:3]]
+        self._problems += self._scan.losses()
+        self._late = 0
+        counts = [n for number, n in self._scan.rows.items() if self._topic(number) == CAMERA.topic]
+        self._count = sum(counts)
+        if not self._count:
+            raise TrialFileError(path, "the trial has no pictures; allowed: one recorded with a camera")
+        try:
+            header = None if self._scan.header is None else read_header(self._scan.header)
+        except (ValueError, KeyError) as error:
+            raise TrialFileError(path, f"the trial's metadata cannot be read ({error})") from error
+        if header is None:
+            self._problems.append("no copy of the trial's metadata is whole: times are the raw clock's")
+        self._epoch = 0 if header is None else nanoseconds(header.clock_epoch)
+        self._synthetic = header is not None and header.synthetic
+
+    @property
+    def name(self) -> str:
+        """The file."""
+        return str(self._path)
+
+    @property
+    def synthetic(self) -> bool:
+        """Whether a device of the trial was simulated."""
+        return self._synthetic
+
+    @property
+    def expected(self) -> int | None:
+        """How many pictures the file holds."""
+        return self._count
+
+    @property
+    def rate(self) -> float | None:
+        """None: each picture has its own time."""
+        return None
+
+    def frames(self) -> Iterator[Frame]:
+        """Give the pictures; one whose time does not increase is left out and noted."""
+        self._late, last = 0, -float("inf")
+        for number, message in enumerate(read_messages(self._scan, (CAMERA.topic,))):
+            time = (message.time - self._epoch) / NANOSECONDS
+            if time <= last:
+                self._late += 1
+                continue
+            last = time
+            try:
+                record = decode_frame(time, message.data)
+                picture = decode_grey(record.data, record.format)
+            except (ValueError, KeyError, TypeError):
+                picture = None
+            yield Frame(number, time, picture)
+
+    def notes(self) -> tuple[str, ...]:
+        """Say what is damaged or late."""
+        late = [f"{self._late} pictures are left out: their time does not increase"] if self._late else []
+        return (*self._problems, *late)
+
+    def _topic(self, number: int) -> str:
+        info = self._scan.channels.get(number)
+        return "" if info is None else info.topic
+
 
 _TRIALS = (".mcap", ".mcap.part")
 

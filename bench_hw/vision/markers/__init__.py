@@ -1,9 +1,8 @@
 """Markers in one picture: found from nothing (`detect_grid`), or measured where they are about (`MarkerEdges`)."""
 
 from bench_hw.vision.markers.detection import GridError, detect_grid
-from bench_hw.vision.markers.model import PAPER_LAYOUT, Blobs, Grid, Layout, parse_layout
+from bench_hw.vision.markers.grid import PAPER_LAYOUT, Blobs, Grid, Layout, Sighting, parse_layout
 from bench_hw.vision.markers.radial import MarkerEdges
-from bench_hw.vision.markers.sighting import Sighting
 
 __all__ = [
     "PAPER_LAYOUT",

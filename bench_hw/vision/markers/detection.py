@@ -1,15 +1,170 @@
-"""The grid of markers in a picture about which nothing is known yet."""
+"""The grid of markers in a picture about which nothing is known yet: dark spots, their rows and columns, their numbers.
+
+Spots come from an adaptive threshold: coarse, fast, and proof against uneven light; they are good to a twentieth of a
+pixel, and `radial` begins there. Rows and columns are followed from neighbour to neighbour, so that the grid may be
+bent or turned.
+"""
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterator
 
+import cv2
 import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from bench_hw.errors import InputError
-from bench_hw.vision.markers.blobs import LOWEST_CONTRAST, contrast_of, find_blobs
-from bench_hw.vision.markers.lattice import arrange, neighbour_distance
-from bench_hw.vision.markers.model import PAPER_LAYOUT, Blobs, FloatArray, Grid, IntArray, Layout, Picture
+from bench_hw.vision.markers.grid import PAPER_LAYOUT, Blobs, FloatArray, Grid, IntArray, Layout, Picture
+
+SMALLEST_AREA = 20.0
+"""Square pixels: below a radius of 2.5 pixels there is no edge to measure."""
+LOWEST_CONTRAST = 20.0
+"""Grey levels between paper and ink; less is no marker but noise or shade."""
+_THRESHOLD_SHARE = 0.2
+_LEAST_OFFSET = 6.0
+_FILL = (0.55, 0.95)
+_LONGEST_SIDES = 1.8
+
+
+def contrast_of(grey: Picture) -> float:
+    """Give how far the darkest spots lie below the bright part of a picture, grey levels."""
+    dark, bright = np.percentile(grey[::2, ::2], (0.5, 90.0))
+    return float(bright - dark)
+
+
+def find_blobs(grey: Picture, block: int, contrast: float, areas: tuple[float, float] | None = None) -> Blobs:
+    """Find dark spots about as wide as high that do not touch the picture's border.
+
+    Parameters
+    ----------
+    grey : ndarray of uint8, shape (height, width)
+        The picture.
+    block : int
+        Side of the square whose mean a pixel is compared with, pixels; at least three marker radii.
+    contrast : float
+        Between paper and ink, grey levels: a pixel counts as dark a fifth of it below the mean.
+    areas : tuple of 2 floats, optional
+        Least and greatest area, square pixels.
+
+    Returns
+    -------
+    Blobs
+        In the order of their labels (by their uppermost pixel).
+    """
+    smooth = cv2.GaussianBlur(grey, (5, 5), 0)
+    offset = max(_LEAST_OFFSET, _THRESHOLD_SHARE * contrast)
+    mode, kind = cv2.ADAPTIVE_THRESH_MEAN_C, cv2.THRESH_BINARY_INV
+    dark = cv2.adaptiveThreshold(smooth, 255, mode, kind, block | 1, offset)
+    _, _, stats, centroids = cv2.connectedComponentsWithStats(dark, connectivity=4)
+    box, area = stats[1:, :4].astype(np.float64), stats[1:, cv2.CC_STAT_AREA].astype(np.float64)
+    low, high = areas or (SMALLEST_AREA, grey.size / 16.0)
+    good = (area >= low) & (area <= high) & _compact(box, area) & _inside(box, grey.shape)
+    return Blobs(np.asarray(centroids[1:][good], dtype=np.float64), area[good])
+
+
+def _compact(box: FloatArray, area: FloatArray) -> NDArray[np.bool_]:
+    """Neither long nor ragged nor hollow: a disc fills 0.785 of its box."""
+    width, height = box[:, 2], box[:, 3]
+    fill = area / (width * height)
+    sides = np.maximum(width, height) / np.minimum(width, height)
+    return (fill > _FILL[0]) & (fill < _FILL[1]) & (sides < _LONGEST_SIDES)
+
+
+def _inside(box: FloatArray, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    left, top, width, height = box.T
+    return np.asarray((left > 0) & (top > 0) & (left + width < shape[1]) & (top + height < shape[0]))
+
+
+_NEAR = (0.7, 1.3)
+_CATCH = 0.35
+_SIDES = ((0, 1), (0, -1), (1, 0), (-1, 0))
+
+
+def neighbour_distance(points: FloatArray) -> float:
+    """Give the median distance of points (n, 2) from their nearest neighbours; infinite for a single one."""
+    if len(points) < 2:
+        return float("inf")
+    distance, _ = cKDTree(points).query(points, k=2)
+    return float(np.median(distance[:, 1]))
+
+
+def arrange(points: FloatArray) -> IntArray:
+    """Give each point its row and column in the largest grid they form.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 2)
+        In pixels, undistorted best.
+
+    Returns
+    -------
+    ndarray of int, shape (n, 2)
+        Row (downwards) and column (to the right), from 0; -1 for points outside the grid.
+    """
+    index = np.full((len(points), 2), -1, dtype=np.int64)
+    axes = _axes(points)
+    if axes is None:
+        return index
+    largest: dict[int, tuple[int, int]] = {}
+    from_middle = np.argsort(np.hypot(*(points - np.median(points, axis=0)).T)).tolist()
+    tree, left = cKDTree(points), dict.fromkeys(from_middle)
+    while len(left) > len(largest):
+        found = _grow(points, tree, axes, next(iter(left)))
+        left = {point: None for point in left if point not in found}
+        largest = max(largest, found, key=len)
+    members = np.array(sorted(largest), dtype=np.int64)
+    places = np.array([largest[member] for member in members.tolist()], dtype=np.int64)
+    index[members] = places - places.min(axis=0)
+    return index
+
+
+def _axes(points: FloatArray) -> FloatArray | None:
+    """The usual steps down a row and along a column, shape (2, 2) by row; None where there is no grid."""
+    spacing = neighbour_distance(points)
+    if not np.isfinite(spacing) or spacing <= 0.0:
+        return None
+    pairs = cKDTree(points).query_pairs(_NEAR[1] * spacing, output_type="ndarray")
+    steps = points[pairs[:, 1]] - points[pairs[:, 0]]
+    steps = steps[np.hypot(steps[:, 0], steps[:, 1]) > _NEAR[0] * spacing]
+    if len(steps) < 2:
+        return None
+    turn = np.angle(np.exp(4j * np.arctan2(steps[:, 1], steps[:, 0])).sum()) / 4.0
+    along = np.array([np.cos(turn), np.sin(turn)])
+    across = np.array([-along[1], along[0]])
+    return np.stack([_usual(steps, across, spacing), _usual(steps, along, spacing)])
+
+
+def _usual(steps: FloatArray, direction: FloatArray, spacing: float) -> FloatArray:
+    """The median of the steps that go more or less in a direction, either way."""
+    share = steps @ direction
+    chosen: NDArray[np.bool_] = np.abs(share) > 0.85 * np.hypot(steps[:, 0], steps[:, 1])
+    if not chosen.any():
+        return direction * spacing
+    return np.asarray(np.median(steps[chosen] * np.sign(share[chosen])[:, None], axis=0))
+
+
+def _grow(points: FloatArray, tree: cKDTree, axes: FloatArray, seed: int) -> dict[int, tuple[int, int]]:
+    """From a point to its neighbours and on; the step there is the one that led here, where there is one."""
+    reach = _CATCH * float(np.hypot(*axes.T).min())
+    found, taken = {seed: (0, 0)}, {(0, 0)}
+    queue = deque([(seed, axes)])
+    while queue:
+        at, steps = queue.popleft()
+        for side in _SIDES:
+            place = (found[at][0] + side[0], found[at][1] + side[1])
+            distance, near = tree.query(points[at] + np.array(side) @ steps)
+            if place in taken or near in found or distance > reach:
+                continue
+            found[int(near)] = place
+            taken.add(place)
+            kind = 0 if side[0] else 1
+            new = steps.copy()
+            new[kind] = 0.5 * (steps[kind] + (points[near] - points[at]) * sum(side))
+            queue.append((int(near), new))
+    return found
+
 
 Straighten = Callable[[FloatArray], FloatArray]
 """Turns pixels (n, 2) into undistorted pixels; NaN where there are none."""

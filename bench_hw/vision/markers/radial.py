@@ -6,19 +6,68 @@ centroid of the area is the centre of any marker shape, where an ellipse or circ
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import TypeVar
+
 import numpy as np
 from numpy.typing import NDArray
 
-from bench_hw.vision.camera.distortion import jacobian
-from bench_hw.vision.camera.inverse import undistort, undistort_near
-from bench_hw.vision.camera.model import Camera
-from bench_hw.vision.markers.centroid import area_centroids, fan_centroids
-from bench_hw.vision.markers.edges import Edges, find_edges
-from bench_hw.vision.markers.look import Look
-from bench_hw.vision.markers.model import FloatArray, Grid, IntArray, Picture
-from bench_hw.vision.markers.outline import compare, outline_basis, taken_anew
-from bench_hw.vision.markers.rays import ray_fan, sample
-from bench_hw.vision.markers.sighting import Sighting
+from bench_hw.vision.camera.distortion import jacobian, undistort, undistort_near
+from bench_hw.vision.camera.pinhole import Camera
+from bench_hw.vision.markers.edges import Edges, find_edges, ray_fan, sample
+from bench_hw.vision.markers.grid import FloatArray, Grid, IntArray, Picture, Sighting
+from bench_hw.vision.markers.outline import Outlines, area_centroids, compare, fan_centroids, outline_basis, taken_anew
+
+Scalar = TypeVar("Scalar", np.float64, np.bool_)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Look:
+    """Edges and outlines of some markers.
+
+    Parameters
+    ----------
+    middles : ndarray, shape (k, 2)
+        Where the rays began, pixels.
+    edges : Edges
+        As found.
+    outlines : Outlines
+        As judged and filled.
+    pixels : ndarray, shape (k, 2)
+        Area centroids of the outlines.
+    """
+
+    middles: FloatArray
+    edges: Edges
+    outlines: Outlines
+    pixels: FloatArray
+
+    def with_part(self, part: Look, where: IntArray) -> Look:
+        """Give it with the markers `where` as in another look, of just those."""
+        edges, new = self.edges, part.edges
+        return Look(
+            _joined(self.middles, part.middles, where),
+            Edges(
+                _joined(edges.radius, new.radius, where),
+                _joined(edges.there, new.there, where),
+                _joined(edges.contrast, new.contrast, where),
+                _joined(edges.tilt, new.tilt, where),
+                _joined(edges.tilt_std, new.tilt_std, where),
+                _joined(edges.noise, new.noise, where),
+            ),
+            Outlines(
+                _joined(self.outlines.radius, part.outlines.radius, where),
+                _joined(self.outlines.sound, part.outlines.sound, where),
+            ),
+            _joined(self.pixels, part.pixels, where),
+        )
+
+
+def _joined(whole: NDArray[Scalar], part: NDArray[Scalar], where: IntArray) -> NDArray[Scalar]:
+    result = whole.copy()
+    result[where] = part
+    return result
+
 
 LEAST_SHARE = 0.85
 """A marker counts as seen where at least this share of its rays has a sound edge."""

@@ -1,7 +1,12 @@
-"""Which of the spots seen now is which marker: optimal assignment to where each was seen last.
+"""Which of the spots seen now is which marker, and when that cannot be told.
 
-The gate is just under half the spacing: beyond that a spot could as well be the neighbour. There is no
-extrapolation of motion through gaps; where two markers and spots compete, what the markers around did decides.
+Spots are assigned to where each marker was seen last (optimal assignment). The gate is just under half the spacing:
+beyond that a spot could as well be the neighbour. There is no extrapolation of motion through gaps; where two markers
+and spots compete, what the markers around did decides.
+
+A regular grid that jumps by a spacing looks nearly the same, with every marker in its neighbour's place. What gives it
+away is its border: another shift than the small one explains more of the spots. And while a marker is hidden the sheet
+may move on by as much; so one that comes back must have moved, since it went, about as its neighbours have.
 """
 
 from __future__ import annotations
@@ -10,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from bench_hw.vision.markers.model import FloatArray, IntArray
+from bench_hw.errors import InputError
+from bench_hw.vision.markers.grid import FloatArray, IntArray, Sighting
 
 GATE = 0.49
 """Farthest a marker may be from where it was last seen, in spacings."""
@@ -97,3 +103,98 @@ def doubles(places: FloatArray, starts: FloatArray, closest: float) -> NDArray[n
             owner = link(starts[members], places[members][:1], np.inf)
             wrong[members[owner < 0]] = True
     return wrong
+
+
+_AGREE = 0.2
+_LEAST_SHARE = 0.6
+
+
+class JumpError(InputError):
+    """The grid jumped too far to tell its markers apart."""
+
+
+def rigid_jump(last: FloatArray, spots: FloatArray, spacing: float) -> FloatArray | None:
+    """Find out whether the grid jumped.
+
+    Parameters
+    ----------
+    last : ndarray, shape (m, 2)
+        Where each marker was last seen.
+    spots : ndarray, shape (k, 2)
+        All that is seen now, each once, in the same units.
+    spacing : float
+        Distance of neighbours.
+
+    Returns
+    -------
+    ndarray, shape (2,), or None
+        The shift, at least half the spacing, if it explains more than half of the markers and more of them than
+        any shorter one does; None otherwise.
+    """
+    if len(spots) < _LEAST_SHARE * len(last):
+        return None
+    shifts = (spots[:, None, :] - last[None, :, :]).reshape(-1, 2)
+    apart = shifts[:, None, :] - shifts[None, :, :]
+    agree = np.hypot(apart[:, :, 0], apart[:, :, 1]) < _AGREE * spacing
+    pairs = agree.reshape(len(shifts), len(spots), len(last))
+    agreeing = np.minimum(pairs.any(axis=2).sum(axis=1), pairs.any(axis=1).sum(axis=1))
+    short = np.hypot(shifts[:, 0], shifts[:, 1]) < GATE * spacing
+    best = int(np.argmax(agreeing))
+    rival = int(agreeing[short].max()) if short.any() else 0
+    if short[best] or agreeing[best] <= rival or agreeing[best] < _LEAST_SHARE * len(last):
+        return None
+    return np.asarray(np.median(shifts[agree[best]], axis=0))
+
+
+def refuse_jump(last: FloatArray, spots: FloatArray, spacing: float) -> None:
+    """Raise `JumpError` if the grid jumped."""
+    shift = rigid_jump(last, spots, spacing)
+    if shift is not None:
+        raise JumpError(
+            f"the whole grid jumped by ({shift[0]:.1f}, {shift[1]:.1f}) px since it was last seen, "
+            f"{float(np.hypot(*shift)) / spacing:.2f} of the marker spacing: its markers cannot be told apart; "
+            "allowed: less than half the spacing from picture to picture"
+        )
+
+
+class Absences:
+    """Remembers, for each marker that is away, where all were when it went.
+
+    Parameters
+    ----------
+    limit : float
+        How far a marker's way may be from its neighbours' one, pixels.
+    """
+
+    def __init__(self, limit: float) -> None:
+        self._limit = limit
+        self._when_it_went: dict[int, FloatArray] = {}
+
+    def checked(self, sighting: Sighting) -> Sighting:
+        """Give a sighting without the markers that came back to a place that is not theirs."""
+        seen = sighting.seen
+        back = [marker for marker in self._when_it_went if seen[marker]]
+        if not back:
+            return sighting
+        witnesses = np.array([m for m in np.flatnonzero(seen).tolist() if m not in self._when_it_went], dtype=np.int64)
+        wrong = [marker for marker in back if not self._agrees(marker, sighting.pixels, witnesses)]
+        chosen = np.ones(len(seen), dtype=bool)
+        chosen[wrong] = False
+        return sighting.kept(chosen & seen) if wrong else sighting
+
+    def note(self, sighting: Sighting, last: FloatArray) -> None:
+        """Take down who went and who is back; `last` (m, 2) is where each was seen last, pixels."""
+        for marker, seen in enumerate(sighting.seen.tolist()):
+            if seen:
+                self._when_it_went.pop(marker, None)
+            elif marker not in self._when_it_went:
+                self._when_it_went[marker] = last.copy()
+
+    def _agrees(self, marker: int, places: FloatArray, witnesses: IntArray) -> bool:
+        """Whether its way is that of the nearest markers that were never away; true if there are none."""
+        if not len(witnesses):
+            return True
+        before = self._when_it_went[marker]
+        way = places - before
+        near = witnesses[np.argsort(np.hypot(*(before[witnesses] - before[marker]).T))[:_WITNESSES]]
+        return bool(np.hypot(*(way[marker] - np.median(way[near], axis=0))) < self._limit)

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from bench_hw.atomic import write_bytes
 from bench_hw.errors import InputError
-from bench_hw.vision.markers.model import FloatArray, Picture
-from bench_hw.vision.markers.sighting import Sighting
+from bench_hw.vision.markers.grid import FloatArray, Picture, Sighting
 
 _GREEN, _RED, _BLUE, _AMBER = (60, 180, 0), (40, 40, 220), (200, 110, 0), (0, 140, 255)
 _SHIFT = 4

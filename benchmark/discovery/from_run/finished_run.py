@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
-from bench_hw.tables.columns import numbers_of
-from bench_hw.tables.source import read_source, text_columns
+from bench_hw.tables.columns import numbers_of, read_source, text_columns
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
 from benchmark.models import Drive, read_reference

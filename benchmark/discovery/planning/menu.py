@@ -10,7 +10,7 @@ import numpy as np
 
 from bench_hw.configuration import validated
 from bench_hw.motion.plan import Plan, plan
-from bench_hw.motion.protocol import Protocol
+from bench_hw.motion.protocol_file import Protocol
 from benchmark.discovery.discovery_result import Array
 
 AIR = -2e-3

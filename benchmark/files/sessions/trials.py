@@ -91,7 +91,7 @@ def is_synthetic(path: Path) -> bool:
     """Whether a native trial file says that simulated devices made it; a CSV file cannot say."""
     if path.suffix.lower() != ".mcap":
         return False
-    from bench_hw.trial_file.contents import read_contents
+    from bench_hw.trial_file.reading import read_contents
 
     header = read_contents(path, ()).header
     return header is not None and header.synthetic

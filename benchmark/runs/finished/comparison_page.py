@@ -15,7 +15,7 @@ from benchmark.runs.record import RunRecord
 from benchmark.runs.report.run_page import run_verdict
 from benchmark.runs.report.values import MM, peak_errors
 from reports import Block, Column, Download, Fact, Notice, Page, Paragraph, Section, Table, Verdict
-from reports.figures.overlay import overlay
+from reports.figures.studies import overlay
 
 Columns: TypeAlias = Mapping[str, Sequence[Any]]
 

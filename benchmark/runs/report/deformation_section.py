@@ -10,10 +10,9 @@ from benchmark.runs.record import RunRecord
 from benchmark.runs.report.values import MM, fem_mm, pair_names, peak_errors, profile_mm, wave_mm
 from benchmark.runs.tables import percent_errors
 from reports import Block, Column, Download, Figure, Notice, Section, Table
-from reports.figures.force_depth import force_depth
-from reports.figures.max_deformation import max_deformation
+from reports.figures.deflection import max_deformation, profile
+from reports.figures.load_curves import force_depth
 from reports.figures.pressed_layers import pressed_layers
-from reports.figures.profile import profile
 
 
 def deformation_section(record: RunRecord, picture: Block | None = None) -> Section:

@@ -12,7 +12,7 @@ from benchmark.runs.record import RunRecord
 from benchmark.runs.report.values import MM, padded, pair_names
 from reports import Block, Column, Fact, Facts, Listing, Paragraph, Section, Table
 from reports.figures.layer_stack import StackLayer, layer_stack
-from reports.figures.load_history import load_history
+from reports.figures.load_curves import load_history
 
 CONTACTS = {
     "uniform_pressure": "uniform pressure",

@@ -9,9 +9,9 @@ from benchmark.comparison import LayerComparison, describe_equivalence, describe
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.values import fem_mm, pair_names, wave_mm
 from reports import Block, Column, Download, Figure, Paragraph, Section, Subsection, Table
-from reports.figures.growth import growth
 from reports.figures.normal_fit import Normal, normal_fit
-from reports.figures.pair import Pair
+from reports.figures.style import Pair
+from reports.figures.timing import growth
 
 INTRODUCTION = (
     "The observations are each layer's maximum deformations over the load history. The two-sample t-test is the one "

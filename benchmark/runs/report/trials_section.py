@@ -14,11 +14,10 @@ from benchmark.runs.report.film_section import FilmPart, film_part
 from benchmark.runs.report.values import MM, measured_headline
 from benchmark.side_by_side import SideBySide
 from reports import Block, Bullets, Column, Download, Notice, Paragraph, Section, Table
-from reports.figures.fitted_parameters import FittedParameter as Dot
-from reports.figures.fitted_parameters import fitted_parameters
-from reports.figures.measured import measured
-from reports.figures.pair import Pair
-from reports.figures.trials import TrialCurve
+from reports.figures.measured import TrialCurve, measured
+from reports.figures.rows import FittedParameter as Dot
+from reports.figures.rows import fitted_parameters
+from reports.figures.style import Pair
 
 
 @dataclass(frozen=True)

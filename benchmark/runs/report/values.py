@@ -8,7 +8,7 @@ from benchmark.identification import SessionFit, SheetFit
 from benchmark.models import Array, ModelResult
 from benchmark.runs.measured import MeasuredComparison
 from benchmark.runs.record import RunRecord
-from reports.figures.pair import Pair
+from reports.figures.style import Pair
 
 MM = 1e3
 

@@ -10,8 +10,8 @@ import pytest
 from bench_hw.capture.order import CaptureOrder
 from bench_hw.capture.progress import Snapshot
 from bench_hw.capture.session import SessionOutcome, capture
-from bench_hw.motion.loading import LoadedProtocol, load_protocol
-from bench_hw.rig.loading import simulated_rig
+from bench_hw.motion.protocol_file import LoadedProtocol, load_protocol
+from bench_hw.rig.rig_file import simulated_rig
 
 PRESS = """
 schema = 1

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from bench_hw.capture import trial as trial_module
-from bench_hw.capture.folder import SessionFolder
-from bench_hw.capture.interrupt import stop_on_signals
+from bench_hw.capture.progress import stop_on_signals
+from bench_hw.capture.session_folder import SessionFolder
 from bench_hw.devices.lac import LacActuator
 from bench_hw.errors import DeviceError, TrialFileError
 from bench_hw.simulated.netft_box import NetFTBox
-from bench_hw.simulated.switched_on import Twins
+from bench_hw.simulated.twins import Twins
 from bench_hw.trial_file import read_trial_mcap
 from bench_hw.trial_file.inspection import inspect_trial
 
@@ -155,7 +155,7 @@ def test_a_session_file_that_cannot_be_written_leaves_the_trial_and_no_tool_in_t
     sent = []
     retract = LacActuator.retract
     monkeypatch.setattr(LacActuator, "retract", lambda self: (sent.append("back"), retract(self)))
-    monkeypatch.setattr("bench_hw.capture.folder.write_text", refuse_session_file)
+    monkeypatch.setattr("bench_hw.capture.session_folder.write_text", refuse_session_file)
     with pytest.raises(OSError, match="No space left"):
         record(trials=2)
     assert sent

@@ -10,8 +10,8 @@ from bench_hw.capture.progress import Silent, Snapshot
 from bench_hw.capture.trial import end_safely
 from bench_hw.clock import MonotonicClock
 from bench_hw.motion.steps import go_to
-from bench_hw.rig.loading import simulated_rig
 from bench_hw.rig.opening import open_bench
+from bench_hw.rig.rig_file import simulated_rig
 from bench_hw.safety import SafetyError, SafetyLimits
 from bench_hw.simulated.specimen import SheetSpecimen
 

@@ -16,8 +16,8 @@ import pytest
 from bench_hw.capture.order import CaptureOrder
 from bench_hw.capture.progress import Silent
 from bench_hw.capture.session import capture
-from bench_hw.motion.loading import load_protocol
-from bench_hw.rig.loading import load_rig
+from bench_hw.motion.protocol_file import load_protocol
+from bench_hw.rig.rig_file import load_rig
 from bench_hw.trial_file import read_trial_mcap
 from bench_hw.trial_file.inspection import inspect_trial
 

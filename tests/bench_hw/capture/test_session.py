@@ -10,8 +10,8 @@ import pytest
 from bench_hw.capture.order import check_order
 from bench_hw.capture.session import capture
 from bench_hw.errors import DeviceError, InputError
-from bench_hw.motion.loading import load_protocol
-from bench_hw.rig.loading import load_rig
+from bench_hw.motion.protocol_file import load_protocol
+from bench_hw.rig.rig_file import load_rig
 from bench_hw.simulated.specimen import Response
 from bench_hw.trial_file import read_trial_mcap
 from bench_hw.trial_file.inspection import inspect_trial

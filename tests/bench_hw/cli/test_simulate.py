@@ -11,7 +11,7 @@ import time
 import cv2
 import pytest
 
-from bench_hw.devices.netft_wire import parse_records
+from bench_hw.devices.rdt import parse_records
 
 PORTS = re.compile(r"http://127\.0\.0\.1:(\d+)/.*RDT on UDP (\d+)")
 

@@ -9,13 +9,11 @@ import numpy as np
 import pytest
 
 from bench_hw.clock import SimulatedClock
-from bench_hw.simulated.bench import VirtualBench
-from bench_hw.simulated.lac_board import LacBoard
-from bench_hw.simulated.lac_usb import LacUsbBackend
-from bench_hw.simulated.motion import ActuatorMotion
+from bench_hw.simulated.lac_board import LacBoard, LacUsbBackend
 from bench_hw.simulated.netft_box import BoxSettings, NetFTBox
 from bench_hw.simulated.sensor import SensorModel
 from bench_hw.simulated.specimen import SheetSpecimen
+from bench_hw.simulated.virtual_bench import ActuatorMotion, VirtualBench
 
 STROKE = 0.050
 

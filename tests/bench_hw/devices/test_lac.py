@@ -4,9 +4,9 @@ import pytest
 import usb.core
 
 from bench_hw.devices.lac import LacActuator
-from bench_hw.devices.lac_wire import GUARDED, LARGEST, Code, packet, parse
+from bench_hw.devices.lac_usb import GUARDED, LARGEST, Code, packet, parse
 from bench_hw.errors import DeviceError
-from bench_hw.simulated.lac_usb import LacUsbBackend
+from bench_hw.simulated.lac_board import LacUsbBackend
 
 COUNT = 0.050 / 1024
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from bench_hw.devices.netft import NetFTSensor
-from bench_hw.devices.netft_wire import RECORD
+from bench_hw.devices.rdt import RECORD
 from bench_hw.errors import DeviceError
-from bench_hw.simulated.faults import StreamFaults
+from bench_hw.simulated.rdt_stream import StreamFaults
 
 
 def sensor_of(box, clock, **options):
@@ -81,7 +81,7 @@ def test_another_serial_number_is_refused(make_box, clock):
 
 def test_a_rate_that_does_not_read_back_is_refused(make_box, clock, monkeypatch):
     box = make_box()
-    monkeypatch.setattr("bench_hw.devices.netft.netft_config.set_rate", lambda *_: None)
+    monkeypatch.setattr("bench_hw.devices.netft.netft_network.set_rate", lambda *_: None)
     with pytest.raises(DeviceError, match="reads back as 7000 Hz after asking for 1000 Hz; expected 1000 Hz"):
         sensor_of(box, clock).connect()
 

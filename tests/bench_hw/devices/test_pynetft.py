@@ -6,7 +6,7 @@ import pytest
 
 from bench_hw.clock import MonotonicClock
 from bench_hw.devices.netft import NetFTSensor
-from bench_hw.simulated.faults import StreamFaults
+from bench_hw.simulated.rdt_stream import StreamFaults
 
 pynetft = pytest.importorskip("pynetft")
 

@@ -2,10 +2,8 @@
 
 import pytest
 
-from bench_hw.motion.loading import load_protocol, shipped
-from bench_hw.motion.plan import plan
-from bench_hw.motion.preview import drawing, summary, write_plot
-from bench_hw.motion.protocol import Protocol
+from bench_hw.motion.plan import drawing, plan, summary, write_plot
+from bench_hw.motion.protocol_file import Protocol, load_protocol, shipped
 
 
 def protocol(*segments):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from bench_hw.motion.protocol import Protocol
+from bench_hw.motion.protocol_file import Protocol
 from bench_hw.motion.steps import Halt, MotionError, MoveTo, Note, Observation, carry_out, go_to
 
 CONTACT, STIFFNESS, STEP = 0.010, 1000.0, 1e-3

@@ -8,8 +8,8 @@ import pytest
 from bench_hw.clock import SimulatedClock
 from bench_hw.devices.protocols import ForceBlock
 from bench_hw.errors import DeviceError, InputError
-from bench_hw.rig.loading import load_rig, simulated_rig
 from bench_hw.rig.opening import open_bench
+from bench_hw.rig.rig_file import load_rig, simulated_rig
 
 
 def connect(loaded, clock=None):

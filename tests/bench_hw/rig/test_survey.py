@@ -3,7 +3,7 @@
 import pytest
 
 from bench_hw.rig import survey as module
-from bench_hw.rig.loading import load_rig
+from bench_hw.rig.rig_file import load_rig
 from bench_hw.rig.survey import survey, survey_rig
 
 

@@ -3,10 +3,9 @@
 import pytest
 
 from bench_hw.clock import SimulatedClock
-from bench_hw.simulated.bench import VirtualBench
 from bench_hw.simulated.lac_board import LacBoard
-from bench_hw.simulated.motion import ActuatorMotion
 from bench_hw.simulated.specimen import SheetSpecimen
+from bench_hw.simulated.virtual_bench import ActuatorMotion, VirtualBench
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bench_hw.clock import SimulatedClock
-from bench_hw.devices.netft_wire import parse_records
+from bench_hw.devices.rdt import parse_records
 from bench_hw.simulated.netft_box import BoxSettings, NetFTBox
 from bench_hw.simulated.sensor import SensorModel
 

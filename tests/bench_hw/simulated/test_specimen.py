@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench_hw.simulated.specimen import MarkerGrid, SheetSpecimen
+from bench_hw.simulated.specimen import MarkerGrid, SheetSpecimen, pressed_sheet, swinging
 
 SHEET = SheetSpecimen(stiffness=600.0, stiffening_depth=6e-3, damping=20.0)
 
@@ -57,3 +57,15 @@ def test_session_keys_are_those_of_a_session_file():
     keys = SHEET.session_keys()
     assert keys["support"] == {"kind": "hole", "hole_radius": "30 mm"}
     assert keys["camera"] == {"marker_rows": 3, "marker_columns": 6, "marker_spacing": "8 mm"}
+
+
+def test_the_press_swings_between_nothing_and_its_peak():
+    force = swinging(2.0)(np.array([0.0, 1.0, 2.0, 3.0, 4.0]))
+    assert force[:, 2] == pytest.approx([0.0, 1.0, 2.0, 1.0, 0.0], abs=1e-12)
+    assert not force[:, :2].any()
+
+
+def test_the_sheet_is_deepest_in_mid_swing():
+    markers = pressed_sheet(2e-3)
+    assert markers(0.0)[:, 2].max() == 0.0
+    assert markers(2.0)[:, 2].max() > markers(1.0)[:, 2].max() > 0.0

@@ -8,8 +8,8 @@ import pytest
 from mcap.reader import make_reader
 
 from bench_hw.errors import TrialFileError
-from bench_hw.trial_file.framing import CHUNK, frame_at
 from bench_hw.trial_file.inspection import inspect_trial
+from bench_hw.trial_file.mcap_records import CHUNK, frame_at
 from bench_hw.trial_file.recovery import recover_trial
 from bench_hw.trial_file.scan import scan_trial
 

@@ -11,10 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench_hw.trial_file.contents import read_contents
 from bench_hw.trial_file.inspection import inspect_trial
+from bench_hw.trial_file.reading import read_contents, read_trial_mcap
 from bench_hw.trial_file.recovery import recover_trial
-from bench_hw.trial_file.trial_table import read_trial_mcap
 
 RECORDER = """
 import mmap, os, struct, sys, time

@@ -5,8 +5,8 @@ import os
 import pytest
 
 from bench_hw.errors import TrialFileError
+from bench_hw.trial_file.mcap_output import NewFile
 from bench_hw.trial_file.recovery import recover_trial
-from bench_hw.trial_file.stream import NewFile
 
 
 @pytest.mark.parametrize("existing", ["new.mcap", "new.mcap.part"])

@@ -15,7 +15,7 @@ from bench_hw.vision.displacement import (
     maximum_radius,
     moving_average,
 )
-from bench_hw.vision.displacement.maximum import largest_sample
+from bench_hw.vision.displacement.fits import largest_sample
 from bench_hw.vision.markers import detect_grid
 from bench_hw.vision.tracking import METHODS
 

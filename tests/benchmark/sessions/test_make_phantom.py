@@ -3,7 +3,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bench_hw.vision.camera.file import read_camera
+from bench_hw.vision.camera.camera_file import read_camera
 from benchmark.files import load_session
 from benchmark.sessions import SHIPPED
 from benchmark.sessions.make_phantom import DISTORTION, PRESSES, SEED, drawn_trials

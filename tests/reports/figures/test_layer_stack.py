@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reports.figures import StackLayer, layer_stack
-from reports.figures.section import Section, spread
+from reports.figures.layer_stack import Section, spread
 
 SKIN = [StackLayer("epidermis", 0.1, 1500.0), StackLayer("dermis", 1.6, 300.0), StackLayer("fat", 10.0, 3.2)]
 

@@ -1,7 +1,10 @@
+"""Compute time over unknowns."""
+
 import numpy as np
 import pytest
 
 from reports.figures import timing
+from reports.figures.timing import growth
 
 
 def test_median_and_repeats_are_told(texts):
@@ -35,3 +38,16 @@ def test_another_model_keeps_its_name(texts):
 def test_times_that_are_none_are_refused(walls, message):
     with pytest.raises(ValueError, match=message):
         timing(walls)
+
+
+def test_every_model_is_named_with_its_span() -> None:
+    figure = growth({"fem": ([500, 1300], [12.0, 30.0]), "wave": ([3000, 900], [0.04, 0.03])})
+    alt = figure.panels[0].alt
+    assert "FEM: 12.0 to 30.0 ms a step from 500 to 1300 unknowns." in alt
+    assert "wave model: 0.0300 to 0.0400 ms a step from 900 to 3000 unknowns." in alt
+
+
+@pytest.mark.parametrize("runs", [{}, {"fem": ([0], [1.0])}, {"fem": ([10], [-1.0])}, {"fem": ([], [])}])
+def test_what_has_no_place_on_logarithmic_axes_is_refused(runs: dict) -> None:
+    with pytest.raises(ValueError, match=r"at least one|above zero"):
+        growth(runs)

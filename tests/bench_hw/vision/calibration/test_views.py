@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from bench_hw.errors import InputError
-from bench_hw.vision.calibration.corners import View
-from bench_hw.vision.calibration.fit import Fit, fit_camera
-from bench_hw.vision.calibration.map_error import MapError
+from bench_hw.vision.calibration.board import View
+from bench_hw.vision.calibration.fit import Fit, MapError, fit_camera
 from bench_hw.vision.calibration.views import (
     check_fit,
     check_map,

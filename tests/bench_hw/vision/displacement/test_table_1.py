@@ -13,7 +13,7 @@ from bench_hw.vision.displacement import (
     side_by_side,
     sound_variables,
 )
-from bench_hw.vision.displacement.published import evaluate
+from bench_hw.vision.displacement.table_1 import evaluate
 
 PAPER_O, PAPER_P = (-8.393e-6, 0.002, 1.3322), (-8.1904e-6, 0.002, 0.9876)
 D, A = 14.3321, 23.6053

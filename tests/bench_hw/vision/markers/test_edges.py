@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import erf
 
-from bench_hw.vision.markers.edges import find_edges
-from bench_hw.vision.markers.rays import ray_fan, sample
+from bench_hw.vision.markers.edges import find_edges, ray_fan, sample
 
 FAN = ray_fan(10.0, 70.0)
 

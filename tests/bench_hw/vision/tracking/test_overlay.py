@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from bench_hw.errors import InputError
-from bench_hw.vision.markers.sighting import Sighting
+from bench_hw.vision.markers.grid import Sighting
 from bench_hw.vision.tracking.overlay import Still, draw, overlay_video
 
 GREY = np.full((120, 160), 200, np.uint8)

@@ -5,7 +5,7 @@ import pytest
 from typer.testing import CliRunner
 
 from bench_hw.cli import app
-from bench_hw.motion.loading import load_protocol
+from bench_hw.motion.protocol_file import load_protocol
 from benchmark.discovery.planning.menu import (
     Usual,
     menu,

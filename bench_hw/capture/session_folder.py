@@ -1,0 +1,231 @@
+"""`SessionFolder`: the files of a session around its trials, each written whole or not at all.
+
+Among them the `camera.toml`: the rig's own, or the true optics of a simulated camera.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tempfile
+import tomllib
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from bench_hw.atomic import write_text
+from bench_hw.capture.order import CaptureOrder
+from bench_hw.configuration import read_toml
+from bench_hw.devices.protocols import DeviceInfo
+from bench_hw.errors import InputError
+from bench_hw.rig.rig_file import LoadedRig, Rig, SimulatedCamera
+
+SESSION_FILE = "session.toml"
+LOG_FILE = "capture.json"
+SCHEMA = 1
+
+
+class SessionFolder:
+    """A session's folder.
+
+    Parameters
+    ----------
+    order : CaptureOrder
+        What was asked for; its `out` is the folder.
+
+    Raises
+    ------
+    InputError
+        The folder holds something already (and nothing is to be appended), is no folder, or cannot be written;
+        or there is no session to append to.
+    """
+
+    def __init__(self, order: CaptureOrder) -> None:
+        self.path = order.out
+        self._session = self._existing() if order.append else {}
+        self._log: list[dict[str, Any]] = []
+        if not order.append and self.path.exists():
+            self._check_empty()
+        self._made = not self.path.exists()
+        self._check_writable()
+
+    def next_trial(self) -> str:
+        """Give the name of the next trial, `trial_001` being the first."""
+        names = {path.name.split(".")[0] for path in self.path.glob("trial_*.mcap*")}
+        number = 1
+        while f"trial_{number:03d}" in names:
+            number += 1
+        return f"trial_{number:03d}"
+
+    def begin(self, order: CaptureOrder, keys: dict[str, Any]) -> None:
+        """Prepare the session's entries; nothing is written before the first trial is whole."""
+        if self._session:
+            return
+        self._session = {"schema": SCHEMA, "name": self.path.resolve().name}
+        if order.specimen:
+            self._session["specimen"] = order.specimen
+        if order.rig.rig.simulated:
+            self._session["synthetic"] = True
+        _merge(self._session, keys)
+        for key, value in order.session_keys.items():
+            _merge(self._session, _nested(key, value))
+
+    def add_trial(self, file: Path, condition: str) -> None:
+        """Add a trial to `session.toml`.
+
+        Raises
+        ------
+        OSError
+            It cannot be written.
+        """
+        import tomli_w
+
+        trials = [*self._session.get("trials", []), {"file": file.name, "condition": condition}]
+        self._session = {**{key: value for key, value in self._session.items() if key != "trials"}, "trials": trials}
+        write_text(self.path / SESSION_FILE, tomli_w.dumps(self._session))
+
+    def write_log(self, order: CaptureOrder, devices: dict[str, DeviceInfo], entry: dict[str, Any]) -> None:
+        """Note a trial, good or not, with the devices that made it, in `capture.json`.
+
+        Raises
+        ------
+        OSError
+            It cannot be written.
+        """
+        self._log.append(entry)
+        written = {
+            "schema": SCHEMA,
+            "rig": order.rig.rig.name,
+            "protocol": order.protocol.protocol.name,
+            "synthetic": order.rig.rig.simulated,
+            "devices": {name: asdict(info) for name, info in devices.items()},
+            "trials": self._log,
+        }
+        write_text(self.path / self._log_name(), json.dumps(written, indent=2) + "\n")
+
+    def keep(self, name: str, text: str) -> None:
+        """Write a text file beside the trials.
+
+        Raises
+        ------
+        OSError
+            It cannot be written.
+        """
+        write_text(self.path / name, text)
+
+    def abandon(self) -> None:
+        """Take the folder away again if it was made here and nothing is in it."""
+        if self._made and self.path.is_dir() and not any(self.path.iterdir()):
+            self.path.rmdir()
+
+    def _log_name(self) -> str:
+        """`capture.json`, or the next free name where an earlier capture left its own."""
+        if not hasattr(self, "_chosen_log"):
+            number = 1
+            while (self.path / _numbered(number)).exists():
+                number += 1
+            self._chosen_log = _numbered(number)
+        return self._chosen_log
+
+    def _existing(self) -> dict[str, Any]:
+        path = self.path / SESSION_FILE
+        if not path.is_file():
+            raise InputError(f"{path}: there is no session to append to; leave --append out for a new one")
+        return read_toml(path)[0]
+
+    def _check_empty(self) -> None:
+        if not self.path.is_dir():
+            raise InputError(f"{self.path}: is no folder; give another --out")
+        if any(self.path.iterdir()):
+            raise InputError(
+                f"{self.path}: is not empty and nothing in it is overwritten; give another --out, or --append to "
+                "add trials to its session"
+            )
+
+    def _check_writable(self) -> None:
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile(dir=self.path) as probe:
+                probe.write(b"x")
+            free = shutil.disk_usage(self.path).free
+        except OSError as error:
+            raise InputError(f"{self.path}: cannot be written ({error.strerror}); give another --out") from error
+        if free < _LEAST_FREE:
+            raise InputError(
+                f"{self.path}: {free / 1e6:.0f} MB free on that disk; allowed is {_LEAST_FREE / 1e6:.0f} MB or more"
+            )
+
+
+_LEAST_FREE = 20_000_000
+
+
+def _numbered(number: int) -> str:
+    return LOG_FILE if number == 1 else f"capture-{number}.json"
+
+
+def _nested(key: str, value: str) -> dict[str, Any]:
+    first, dot, rest = key.partition(".")
+    return {first: _nested(rest, value) if dot else _plain(value)}
+
+
+def _plain(text: str) -> Any:
+    """A number, truth value or list as TOML reads it, else the text."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
+
+
+def _merge(into: dict[str, Any], more: dict[str, Any]) -> None:
+    for key, value in more.items():
+        if isinstance(value, dict) and isinstance(into.get(key), dict):
+            _merge(into[key], value)
+        else:
+            into[key] = value
+
+
+NAME = "camera.toml"
+
+
+def camera_text(loaded: LoadedRig) -> str | None:
+    """Give the text of the session's `camera.toml`; None if the camera is not calibrated.
+
+    Raises
+    ------
+    OSError
+        The rig's calibration cannot be read.
+    """
+    camera = loaded.rig.camera
+    if camera is None:
+        return None
+    if camera.calibration is not None:
+        return loaded.resolve(camera.calibration).read_text(encoding="utf-8")
+    return _of_simulated(loaded) if isinstance(camera, SimulatedCamera) else None
+
+
+def place(rig: Rig) -> dict[str, str]:
+    """Give what a session file says of where the camera is: known of a simulated one only."""
+    camera = rig.camera
+    return {"distance": f"{camera.distance * 1e3:g} mm"} if isinstance(camera, SimulatedCamera) else {}
+
+
+def _of_simulated(loaded: LoadedRig) -> str:
+    import tomli_w
+
+    from bench_hw.rig.opening import optics_of
+
+    optics = optics_of(loaded.rig)
+    centre = [(optics.size[0] - 1) / 2.0, (optics.size[1] - 1) / 2.0]
+    content: dict[str, Any] = {
+        "schema": 1,
+        "image_size": list(optics.size),
+        "matrix": {"fx": optics.focal_length, "fy": optics.focal_length, "cx": centre[0], "cy": centre[1]},
+        "distortion": dict(zip(("k1", "k2", "p1", "p2", "k3"), optics.distortion, strict=True)),
+        "plane": {
+            "mm_per_px": optics.distance * 1e3 / optics.focal_length,
+            "mm_per_px_std": 0.0,
+            "origin_px": centre,
+        },
+        "quality": {"views": 0, "reprojection_rms_px": 0.0, "map_error_rms_px": 0.0},
+    }
+    return "# The true optics of the simulated camera; not measured.\n" + tomli_w.dumps(content)

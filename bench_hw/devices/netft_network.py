@@ -1,0 +1,291 @@
+"""How a Net F/T box is reached: its XML configuration over HTTP, its datagrams over UDP. What they mean is in `rdt`.
+
+XML comes from a device on the network, so it is read with defusedxml, with a time-out and a limit on its size. The
+socket never waits.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import http.client
+import socket
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from bench_hw.devices import rdt
+from bench_hw.devices.rdt import Command
+from bench_hw.errors import DeviceError
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+
+CONFIGURATION_PAGE = "/netftapi2.xml"
+_LARGEST_PAGE = 1_000_000
+_FORCE_UNITS = {"N": 1.0, "kN": 1e3, "lbf": 4.4482216152605, "klbf": 4448.2216152605, "kgf": 9.80665}
+_TORQUE_UNITS = {
+    "Nm": 1.0,
+    "Nmm": 1e-3,
+    "kNm": 1e3,
+    "lbfin": 0.1129848290276167,
+    "lbfft": 1.3558179483314004,
+    "kgfcm": 0.0980665,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class NetFTConfiguration:
+    """What the box says of itself.
+
+    Parameters
+    ----------
+    product, serial : str
+        Product name and serial number of the active calibration.
+    newton_per_count, newton_metre_per_count : float
+        Scale of force and torque counts, units included.
+    ranges : tuple of 6 floats
+        Largest magnitudes of Fx..Tz, N and N m; NaN where the box does not say.
+    rate : int
+        RDT output rate, Hz.
+    buffer : int
+        Records in one datagram of buffered mode; 0 if the box does not say.
+    status : int
+        Status word of the moment.
+    enabled : bool
+        Whether RDT is switched on.
+    fingerprint : str
+        SHA-256 of everything that turns counts into newtons.
+    """
+
+    product: str
+    serial: str
+    newton_per_count: float
+    newton_metre_per_count: float
+    ranges: tuple[float, ...]
+    rate: int
+    buffer: int
+    status: int
+    enabled: bool
+    fingerprint: str
+
+
+def fetch(host: str, port: int, path: str, timeout: float) -> bytes:
+    """GET one page of the box.
+
+    Raises
+    ------
+    DeviceError
+        No connection, no answer in time, another status than 200 or 302, or a page above 1 MB.
+    """
+    where = f"force sensor at http://{host}:{port}{path}"
+    connection = http.client.HTTPConnection(host, port, timeout=timeout)
+    try:
+        connection.request("GET", path)
+        answer = connection.getresponse()
+        page = answer.read(_LARGEST_PAGE + 1)
+    except (OSError, http.client.HTTPException) as error:
+        reason = str(error) or type(error).__name__
+        raise DeviceError(
+            f"{where}: no answer ({reason}) within {timeout:g} s; check host, http_port, cable and power"
+        ) from error
+    finally:
+        connection.close()
+    if answer.status not in (200, 302):
+        raise DeviceError(f"{where}: answered with status {answer.status}; allowed is 200")
+    if len(page) > _LARGEST_PAGE:
+        raise DeviceError(f"{where}: the page is larger than {_LARGEST_PAGE} bytes; this is no Net F/T box")
+    return page
+
+
+def read_configuration(host: str, port: int, timeout: float) -> NetFTConfiguration:
+    """Read and understand the box's configuration.
+
+    Raises
+    ------
+    DeviceError
+        As `fetch`; or the page is no Net F/T configuration.
+    """
+    return parse_configuration(fetch(host, port, CONFIGURATION_PAGE, timeout), f"{host}:{port}")
+
+
+def set_rate(host: str, port: int, rate: int, timeout: float, buffer: int | None = None) -> None:
+    """Ask for an RDT output rate (Hz), and for a number of records in a datagram of buffered mode.
+
+    Read the configuration to see what became of it.
+
+    Raises
+    ------
+    DeviceError
+        As `fetch`.
+    """
+    size = "" if buffer is None else f"&comrdtbsiz={buffer}"
+    fetch(host, port, f"/comm.cgi?comrdtrate={rate}{size}", timeout)
+
+
+def parse_configuration(page: bytes, source: str) -> NetFTConfiguration:
+    """Understand `netftapi2.xml`.
+
+    Raises
+    ------
+    DeviceError
+        Not well-formed, another root element, a value that is missing or no number, an unknown unit.
+    """
+    root = _root(page, source)
+    fields = _Fields(root, source)
+    force, torque = fields.positive("cfgcpf"), fields.positive("cfgcpt")
+    newton = fields.unit("scfgfu", _FORCE_UNITS)
+    newton_metre = fields.unit("scfgtu", _TORQUE_UNITS)
+    described = "|".join(fields.text(key) for key in ("cfgcalsn", "cfgcpf", "cfgcpt", "scfgfu", "scfgtu"))
+    return NetFTConfiguration(
+        product=fields.text("prodname"),
+        serial=fields.text("cfgcalsn"),
+        newton_per_count=newton / force,
+        newton_metre_per_count=newton_metre / torque,
+        ranges=_ranges(fields.text("cfgmr"), newton, newton_metre),
+        rate=int(fields.positive("comrdtrate")),
+        buffer=fields.integer("comrdtbsiz", 10),
+        status=fields.integer("runstat", 16),
+        enabled=fields.text("comrdte").lower() not in ("disabled", "0"),
+        fingerprint=hashlib.sha256(described.encode()).hexdigest(),
+    )
+
+
+def _root(page: bytes, source: str) -> Element:
+    import defusedxml.ElementTree
+
+    try:
+        root: Element = defusedxml.ElementTree.fromstring(page)
+    except Exception as error:
+        raise DeviceError(f"force sensor at {source}: its configuration is no XML ({error})") from error
+    if root.tag.lower() != "netft":
+        raise DeviceError(f"force sensor at {source}: root element <{root.tag[:40]}>; allowed is <netft>")
+    return root
+
+
+class _Fields:
+    """The page's elements by name."""
+
+    def __init__(self, root: Element, source: str) -> None:
+        self._values = {element.tag.lower(): (element.text or "").strip() for element in root.iter()}
+        self._source = source
+
+    def text(self, key: str) -> str:
+        return self._values.get(key, "")
+
+    def positive(self, key: str) -> float:
+        try:
+            value = float(self.text(key))
+        except ValueError:
+            value = 0.0
+        if not 0.0 < value < float("inf"):
+            raise self._wrong(key, "a positive number")
+        return value
+
+    def integer(self, key: str, base: int) -> int:
+        text = self.text(key)
+        try:
+            return int(text, base) if text else 0
+        except ValueError:
+            raise self._wrong(key, f"an integer to base {base}") from None
+
+    def unit(self, key: str, units: dict[str, float]) -> float:
+        name = self.text(key).replace("-", "").replace("\N{MIDDLE DOT}", "").replace("*", "")
+        if name not in units:
+            raise self._wrong(key, " or ".join(units))
+        return units[name]
+
+    def _wrong(self, key: str, allowed: str) -> DeviceError:
+        return DeviceError(f"force sensor at {self._source}: {key} = {self.text(key)[:40]!r}; allowed is {allowed}")
+
+
+def _ranges(text: str, newton: float, newton_metre: float) -> tuple[float, ...]:
+    try:
+        values = [float(part) for part in text.split(";") if part.strip()]
+    except ValueError:
+        values = []
+    if len(values) != 6:
+        return (float("nan"),) * 6
+    return tuple(value * (newton if axis < 3 else newton_metre) for axis, value in enumerate(values))
+
+
+_LARGEST_DATAGRAM = 65_536
+_RECEIVE_BUFFER = 4 * 1024 * 1024
+_MOST_DATAGRAMS = 8192
+
+
+class RdtSocket:
+    """A socket connected to one box: the kernel drops what other hosts send.
+
+    Parameters
+    ----------
+    host : str
+        Address of the box.
+    port : int
+        Its RDT port.
+
+    Raises
+    ------
+    DeviceError
+        The address means nothing or cannot be reached.
+    """
+
+    def __init__(self, host: str, port: int) -> None:
+        self.where = f"{host}:{port}"
+        self.malformed = 0
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER)
+            self._socket.connect((host, port))
+            self._socket.setblocking(False)
+        except OSError as error:
+            self._socket.close()
+            raise self._failed(error) from error
+
+    def send(self, command: Command) -> None:
+        """Send one request.
+
+        Raises
+        ------
+        DeviceError
+            The box or the network refuses it.
+        """
+        try:
+            self._socket.send(rdt.request(command))
+        except OSError as error:
+            raise self._failed(error) from error
+
+    def receive(self) -> list[bytes]:
+        """Give every datagram of whole records that has come, oldest first; others are counted `malformed`.
+
+        Raises
+        ------
+        DeviceError
+            The box refuses datagrams, or the network is down.
+        """
+        received: list[bytes] = []
+        for _ in range(_MOST_DATAGRAMS):
+            try:
+                datagram = self._socket.recv(_LARGEST_DATAGRAM)
+            except BlockingIOError:
+                break
+            except OSError as error:
+                raise self._failed(error) from error
+            if datagram and len(datagram) % rdt.RECORD.itemsize == 0:
+                received.append(datagram)
+            else:
+                self.malformed += 1
+        return received
+
+    def close(self) -> None:
+        """Ask the box to stop, if it still listens, and close."""
+        try:
+            self._socket.send(rdt.request(Command.STOP))
+        except OSError:
+            pass  # gone already: there is nobody to stop
+        finally:
+            self._socket.close()
+
+    def _failed(self, error: OSError) -> DeviceError:
+        if isinstance(error, ConnectionRefusedError):
+            return DeviceError(f"force sensor at {self.where}: refuses datagrams; check rdt_port and power")
+        return DeviceError(f"force sensor at {self.where}: {error.strerror or error}")

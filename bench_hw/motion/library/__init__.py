@@ -1,1 +1,0 @@
-"""The shipped protocols of motion, a TOML file each."""

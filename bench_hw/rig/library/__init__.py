@@ -1,1 +1,0 @@
-"""The shipped rigs, a TOML file each."""

@@ -1,0 +1,159 @@
+"""`VirtualBench`: a specimen under a tool on an actuator, as it was at every instant; the twins ask it.
+
+Nothing runs by itself: whoever asks for an instant moves the bench on to it, in steps of `step`. Safe to ask from
+several threads. The actuator moves towards its target at its speed, with limited acceleration, and stops as soon as
+its own reading, in whole counts, is inside the dead band around the target, as the LAC board does.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from dataclasses import dataclass
+
+import numpy as np
+
+from bench_hw.simulated.specimen import FloatArray, Specimen
+
+
+@dataclass(slots=True)
+class ActuatorMotion:
+    """State of the moving part; lengths from fully retracted.
+
+    Parameters
+    ----------
+    stroke : float
+        Mechanical end, m.
+    acceleration : float
+        Largest acceleration, m/s^2.
+    position, velocity : float
+        m and m/s.
+    target : float
+        Where it was sent, m.
+    speed : float
+        Speed it was set to, m/s.
+    dead_band : float
+        It stands while its reading is this close to the target, m.
+    resolution : float
+        One count of its reading, m; 0 reads exactly.
+    """
+
+    stroke: float
+    acceleration: float = 0.5
+    position: float = 0.0
+    velocity: float = 0.0
+    target: float = 0.0
+    speed: float = 0.020
+    dead_band: float = 0.0
+    resolution: float = 0.0
+
+    def step(self, duration: float) -> None:
+        """Move on by `duration` seconds."""
+        wanted = self._wanted_velocity()
+        change = self.acceleration * duration
+        self.velocity += min(max(wanted - self.velocity, -change), change)
+        self.position += self.velocity * duration
+        if not 0.0 <= self.position <= self.stroke:
+            self.position, self.velocity = min(max(self.position, 0.0), self.stroke), 0.0
+
+    def reading(self) -> float:
+        """Position as the board reads it, m: the nearest whole count."""
+        return round(self.position / self.resolution) * self.resolution if self.resolution else self.position
+
+    def _wanted_velocity(self) -> float:
+        error = self.target - self.position
+        if abs(self.target - self.reading()) <= self.dead_band + 1e-12:
+            return 0.0
+        braking = math.sqrt(2.0 * self.acceleration * abs(error))
+        return math.copysign(min(self.speed, braking), error)
+
+
+_FIRST_CAPACITY = 4096
+
+
+class VirtualBench:
+    """The physics that the twins share.
+
+    Parameters
+    ----------
+    specimen : Specimen
+        What is pressed.
+    motion : ActuatorMotion
+        What moves the tool; changed only under `lock`.
+    contact : float
+        Position of the actuator at which the tool meets the resting specimen, m.
+    start : float
+        Reading of the bench's clock now, s.
+    step : float
+        Length of a step of the physics, s.
+    """
+
+    def __init__(
+        self,
+        specimen: Specimen,
+        motion: ActuatorMotion,
+        *,
+        contact: float,
+        start: float = 0.0,
+        step: float = 1e-3,
+    ) -> None:
+        self.lock = threading.RLock()
+        self.motion = motion
+        self._specimen, self._contact = specimen, contact
+        self._start, self._step = start, step
+        self._rows = 1
+        self._time = np.zeros(_FIRST_CAPACITY)
+        self._depth = np.zeros(_FIRST_CAPACITY)
+        self._force = np.zeros((_FIRST_CAPACITY, 3))
+        self._depth[0] = motion.position - contact
+        self._respond(0)
+
+    def advance(self, now: float) -> None:
+        """Move the bench on to the reading `now`; earlier readings change nothing."""
+        with self.lock:
+            due = int((now - self._start) / self._step + 1e-6) + 1
+            if due <= self._rows:
+                return
+            first = self._rows
+            self._reserve(due)
+            for row in range(first, due):
+                self.motion.step(self._step)
+                self._depth[row] = self.motion.position - self._contact
+            self._time[first:due] = self._step * np.arange(first, due)
+            self._rows = due
+            self._respond(first)
+
+    def force_at(self, instants: FloatArray) -> FloatArray:
+        """Force on the tool (n, 3), N (sideways x and y, press), at `instants` (n,), s of the clock, not decreasing."""
+        with self.lock:
+            self.advance(float(instants[-1]))
+            since = instants - self._start
+            first = max(0, int(since[0] / self._step) - 1)
+            rows = slice(first, self._rows)
+            columns = [np.interp(since, self._time[rows], self._force[rows, axis]) for axis in range(3)]
+            return np.stack(columns, axis=-1)
+
+    def markers_at(self, now: float) -> FloatArray:
+        """Markers (m, 3) on the lower face at the reading `now`, m: x, y and how far each has sunk."""
+        with self.lock:
+            self.advance(now)
+            row = min(self._rows - 1, max(0, int((now - self._start) / self._step + 0.5)))
+            markers: FloatArray = self._specimen(self._time[: row + 1], self._depth[: row + 1], row).markers[0]
+            return markers
+
+    def depth(self) -> float:
+        """Depth of the tool's face below the resting surface, m."""
+        with self.lock:
+            return float(self._depth[self._rows - 1])
+
+    def _respond(self, first: int) -> None:
+        answer = self._specimen(self._time[: self._rows], self._depth[: self._rows], first)
+        self._force[first : self._rows] = answer.force
+
+    def _reserve(self, rows: int) -> None:
+        capacity = len(self._time)
+        if rows > capacity:
+            more = max(rows, 2 * capacity) - capacity
+            self._time = np.concatenate([self._time, np.zeros(more)])
+            self._depth = np.concatenate([self._depth, np.zeros(more)])
+            self._force = np.concatenate([self._force, np.zeros((more, 3))])

@@ -1,0 +1,98 @@
+"""What a rig file may say."""
+
+import pytest
+
+from bench_hw.errors import InputError
+from bench_hw.rig.rig_file import load_rig, shipped_rigs, simulated_rig
+
+FORCE = '[force]\nkind = "netft"\nhost = "192.0.2.10"\n'
+ACTUATOR = '[actuator]\nkind = "lac"\nstroke = "50 mm"\n'
+HEAD = 'schema = 1\nname = "bench-1"\n'
+
+
+@pytest.fixture
+def load(tmp_path):
+    def load(text):
+        path = tmp_path / "rig.toml"
+        path.write_text(text)
+        return load_rig(path).rig
+
+    return load
+
+
+def test_the_documented_file(load):
+    rig = load(
+        HEAD
+        + FORCE
+        + 'rate = "1000 Hz"\nmode = "realtime"\nbias = false\nserial = "FT12345"\npress_axis = "-z"\n'
+        + ACTUATOR
+        + '[camera]\nkind = "webcam"\nrate = "30 Hz"\nsize = [640, 480]\ncalibration = "camera.toml"\n'
+        + '[safety]\nforce_limit = "6 N"\nforce_stale = "50 ms"\ntravel = ["0 mm", "20 mm"]\n'
+    )
+    assert (rig.force.http_port, rig.force.rdt_port, rig.force.rate) == (80, 49152, 1000.0)
+    assert (rig.actuator.stroke, rig.travel) == (pytest.approx(0.05), pytest.approx((0.0, 0.02)))
+    assert (rig.safety.force_limit, rig.safety.force_stale) == (6.0, pytest.approx(0.05))
+    assert rig.camera.size == (640, 480)
+    assert not rig.simulated
+
+
+def test_what_is_left_out_has_safe_defaults(load):
+    rig = load(HEAD + FORCE + ACTUATOR)
+    assert (rig.safety.force_limit, rig.safety.force_stale) == (6.0, 0.05)
+    assert rig.travel == (0.0, pytest.approx(0.05))
+    assert rig.camera is None
+
+
+def test_a_daq_names_its_calibration(load):
+    rig = load(HEAD + '[force]\nkind = "daq"\ndevice = "Dev1/ai0:5"\ncalibration = "FT12345.cal"\n' + ACTUATOR)
+    assert rig.force.calibration == "FT12345.cal"
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (HEAD + ACTUATOR, "force: is missing"),
+        (HEAD + FORCE + "colour = 1\n" + ACTUATOR, "colour: is unknown here"),
+        (HEAD + FORCE + 'rate = "8 kHz"\n' + ACTUATOR, "less than or equal to 7000"),
+        (HEAD + FORCE + 'press_axis = "z"\n' + ACTUATOR, "press_axis"),
+        (HEAD + FORCE + "http_port = 99999\n" + ACTUATOR, "http_port"),
+        (HEAD + FORCE.replace("netft", "scale") + ACTUATOR, "force"),
+        (HEAD + FORCE + ACTUATOR + 'contact = "60 mm"\n', "outside safety.travel"),
+        (HEAD + FORCE + ACTUATOR + '[safety]\ntravel = ["5 mm", "60 mm"]\n', "allowed is 0 <= low < high <= stroke"),
+        (HEAD + FORCE + ACTUATOR + '[safety]\ntravel = ["9 mm", "5 mm"]\n', "5 mm"),
+        (HEAD + FORCE + ACTUATOR + '[safety]\nforce_limit = "0 N"\n', "greater than 0"),
+        (HEAD + FORCE + ACTUATOR + '[camera]\nkind = "simulated"\n', "knows nothing of a real tool"),
+        (HEAD + '[force]\nkind = "simulated"\n' + ACTUATOR, "could not protect the specimen"),
+        ("schema = 3\n" + FORCE + ACTUATOR, "schema"),
+    ],
+)
+def test_refuses_with_file_and_key(load, text, says):
+    with pytest.raises(InputError, match=says) as caught:
+        load(text)
+    assert "rig.toml" in str(caught.value)
+
+
+def test_a_real_force_sensor_may_stand_beside_a_simulated_actuator(load):
+    rig = load(HEAD + FORCE + ACTUATOR.replace("lac", "simulated"))
+    assert rig.simulated
+    assert not rig.all_simulated
+
+
+def test_the_shipped_rig_is_all_simulated():
+    assert "simulated" in shipped_rigs()
+    loaded = load_rig("simulated")
+    assert loaded.rig.all_simulated
+    assert 'name = "simulated"' in loaded.text
+
+
+def test_changes_to_the_shipped_rig_are_checked_and_stand_in_its_text():
+    loaded = simulated_rig({"force": {"rate": "500 Hz"}, "camera": None})
+    assert (loaded.rig.force.rate, loaded.rig.camera) == (500.0, None)
+    assert "500 Hz" in loaded.text
+    with pytest.raises(InputError, match="colour"):
+        simulated_rig({"force": {"colour": 1}})
+
+
+def test_an_unknown_name_lists_the_shipped_ones():
+    with pytest.raises(InputError, match=r"rig 'simulatd'.*simulated"):
+        load_rig("simulatd")
