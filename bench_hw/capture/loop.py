@@ -12,9 +12,9 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from bench_hw.capture.progress import Progress, Snapshot
+from bench_hw.capture.progress import CaptureState, ProgressDisplay
 from bench_hw.clock import Clock
-from bench_hw.devices.protocols import ForceBlock, Frame
+from bench_hw.devices.protocols import CameraFrame, ForceBlock
 from bench_hw.errors import BenchError, DeviceError
 from bench_hw.motion.steps import Action, Halt, MotionError, MoveTo, Note, Observation
 from bench_hw.rig.bench import Bench
@@ -66,7 +66,7 @@ class Recorder:
         depth_of_target = None if target is None else target - self._zero
         self._writer.write_depth(DepthRecord(time, position - self._zero, counts, depth_of_target))
 
-    def frames(self, frames: Iterable[Frame]) -> None:
+    def frames(self, frames: Iterable[CameraFrame]) -> None:
         """Write pictures."""
         for frame in frames:
             self._writer.write_frame(FrameRecord(frame.time, frame.number, frame.data, frame.format))
@@ -83,7 +83,7 @@ _EARLY = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
-class Surroundings:
+class LoopContext:
     """What a loop works with besides the devices.
 
     Parameters
@@ -94,7 +94,7 @@ class Surroundings:
         What is safe.
     stop : threading.Event
         Set by Ctrl-C.
-    progress : Progress
+    progress : ProgressDisplay
         What a person sees.
     turn : float
         Rest between two turns, s.
@@ -103,7 +103,7 @@ class Surroundings:
     clock: Clock
     limits: SafetyLimits
     stop: threading.Event
-    progress: Progress
+    progress: ProgressDisplay
     turn: float = 1e-3
 
 
@@ -114,25 +114,25 @@ class Loop:
     ----------
     bench : Bench
         The connected, streaming devices.
-    around : Surroundings
+    context : LoopContext
         Clock, limits, stop flag and progress.
     recorder : Recorder or None
         Where samples go; None records nothing.
     zero : float
         Position of the actuator that is depth zero, m.
-    snapshot : Snapshot
+    snapshot : CaptureState
         The state to show.
     """
 
     def __init__(
-        self, bench: Bench, around: Surroundings, recorder: Recorder | None, zero: float, snapshot: Snapshot
+        self, bench: Bench, context: LoopContext, recorder: Recorder | None, zero: float, snapshot: CaptureState
     ) -> None:
-        self._bench, self._around, self._recorder = bench, around, recorder
-        self._zero, self._snapshot, self._clock = zero, snapshot, around.clock
+        self._bench, self._context, self._recorder = bench, context, recorder
+        self._zero, self._snapshot, self._clock = zero, snapshot, context.clock
         self._began = self._next_position = self._clock.now()
         self._target: float | None = None
-        self._monitor = SafetyMonitor(around.limits, self._began, bench.actuator.uncertainty)
-        self.now = Observation(self._began, 0.0, 0.0, zero, bench.actuator.uncertainty, around.limits.travel)
+        self._monitor = SafetyMonitor(context.limits, self._began, bench.actuator.uncertainty)
+        self.now = Observation(self._began, 0.0, 0.0, zero, bench.actuator.uncertainty, context.limits.travel)
 
     def run(self, script: Iterator[Action]) -> None:
         """Turn until the script ends.
@@ -147,7 +147,7 @@ class Loop:
             self._turn()
             if not self._obey(script):
                 return
-            self._clock.sleep(self._around.turn)
+            self._clock.sleep(self._context.turn)
 
     def send_back(self) -> str:
         """Send the tool back at once; while the actuator is lost, go on recording and try again.
@@ -166,7 +166,7 @@ class Loop:
                     return str(error)
                 self.coast(_RETRACT_PAUSE)
             else:
-                self._target = self._around.limits.travel[0]
+                self._target = self._context.limits.travel[0]
                 return ""
 
     def coast(self, duration: float) -> None:
@@ -178,7 +178,7 @@ class Loop:
                     part()
                 except BenchError:
                     continue  # that something is wrong is known already
-            self._clock.sleep(self._around.turn)
+            self._clock.sleep(self._context.turn)
 
     def _drain(self) -> None:
         with self._blaming("force_lost"):
@@ -188,7 +188,7 @@ class Loop:
                 self._bench.camera.read()
 
     def _turn(self) -> None:
-        if self._around.stop.is_set():
+        if self._context.stop.is_set():
             raise SafetyError("interrupted", "stopped by Ctrl-C", self._clock.now())
         self._force()
         self._confirmed(lambda: self._monitor.check_fresh(self._clock.now()), self._force)
@@ -274,7 +274,7 @@ class Loop:
         shown.elapsed = self.now.time - self._began
         shown.depth, shown.press = self.now.position - self._zero, self.now.press
         shown.lost = self._bench.force.health.lost
-        self._around.progress.update(shown)
+        self._context.progress.update(shown)
 
     @contextmanager
     def _blaming(self, kind: str) -> Iterator[None]:

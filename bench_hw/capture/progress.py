@@ -22,7 +22,7 @@ _PLAIN_PERIOD = 1.0
 
 
 @dataclass(slots=True)
-class Snapshot:
+class CaptureState:
     """The state of the capture, brought up to date by its loop.
 
     Parameters
@@ -56,10 +56,10 @@ class Snapshot:
         )
 
 
-class Progress(Protocol):
+class ProgressDisplay(Protocol):
     """Something that shows snapshots; cheap, as it is called at every turn."""
 
-    def update(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: CaptureState) -> None:
         """Show a snapshot, or skip it."""
         ...
 
@@ -75,7 +75,7 @@ class Progress(Protocol):
 class Silent:
     """Shows nothing."""
 
-    def update(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: CaptureState) -> None:
         """Skip it."""
 
     def say(self, text: str) -> None:
@@ -99,7 +99,7 @@ class PlainLines:
         self._stream = stream or sys.stderr
         self._shown: tuple[int, int] = (0, -1)
 
-    def update(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: CaptureState) -> None:
         """Write a line if another second of the trial has begun."""
         second = (snapshot.trial, int(snapshot.elapsed / _PLAIN_PERIOD))
         if second != self._shown:
@@ -115,18 +115,18 @@ class PlainLines:
         return nullcontext()
 
 
-class LiveLine:
+class TerminalLine:
     """One line on a terminal that is drawn anew eight times a second, by a thread of rich's."""
 
     def __init__(self) -> None:
         from rich.console import Console
         from rich.live import Live
 
-        self._snapshot = Snapshot()
+        self._snapshot = CaptureState()
         self._console = Console(stderr=True)
         self._live = Live(console=self._console, get_renderable=self._draw, refresh_per_second=8, redirect_stdout=False)
 
-    def update(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: CaptureState) -> None:
         """Remember it for the next drawing."""
         self._snapshot = snapshot
 
@@ -144,11 +144,11 @@ class LiveLine:
         return Text(self._snapshot.line() if self._snapshot.trials else "", no_wrap=True, overflow="ellipsis")
 
 
-def choose_progress(quiet: bool) -> Progress:
+def choose_progress(quiet: bool) -> ProgressDisplay:
     """Give what suits the place: nothing, a live line on a terminal, or plain lines."""
     if quiet:
         return Silent()
-    return LiveLine() if sys.stderr.isatty() else PlainLines()
+    return TerminalLine() if sys.stderr.isatty() else PlainLines()
 
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)

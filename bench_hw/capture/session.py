@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench_hw.capture import session_folder as camera_file
-from bench_hw.capture.loop import Surroundings
+from bench_hw.capture.loop import LoopContext
 from bench_hw.capture.order import CaptureOrder, check_order
-from bench_hw.capture.progress import Progress, Snapshot, stop_on_signals
+from bench_hw.capture.progress import CaptureState, ProgressDisplay, stop_on_signals
 from bench_hw.capture.session_folder import SessionFolder
 from bench_hw.capture.trial import Fault, TrialOutcome, find_zero, go_home, record_trial
 from bench_hw.clock import Clock, MonotonicClock, SimulatedClock, wait_until
@@ -45,14 +45,14 @@ class SessionOutcome:
     fault: Fault | None
 
 
-def capture(order: CaptureOrder, progress: Progress, *, specimen: Specimen | None = None) -> SessionOutcome:
+def capture(order: CaptureOrder, progress: ProgressDisplay, *, specimen: Specimen | None = None) -> SessionOutcome:
     """Record a session.
 
     Parameters
     ----------
     order : CaptureOrder
         What is asked for.
-    progress : Progress
+    progress : ProgressDisplay
         What a person sees.
     specimen : Specimen, optional
         What lies under a simulated tool.
@@ -80,14 +80,14 @@ def capture(order: CaptureOrder, progress: Progress, *, specimen: Specimen | Non
             _short_turns(),
             open_bench(order.rig, clock, specimen=specimen, seed=order.seed) as bench,
         ):
-            return _Session(order, folder, bench, _surroundings(order, bench, clock, stop, progress)).run()
+            return _Session(order, folder, bench, _loop_context(order, bench, clock, stop, progress)).run()
     finally:
         folder.abandon()
 
 
 class _Session:
-    def __init__(self, order: CaptureOrder, folder: SessionFolder, bench: Bench, around: Surroundings) -> None:
-        self._order, self._folder, self._bench, self._around = order, folder, bench, around
+    def __init__(self, order: CaptureOrder, folder: SessionFolder, bench: Bench, context: LoopContext) -> None:
+        self._order, self._folder, self._bench, self._context = order, folder, bench, context
         self._condition = order.condition or order.protocol.protocol.name
         self._done: list[Path] = []
         self._calibrations: dict[str, str] = {}
@@ -95,14 +95,14 @@ class _Session:
 
     def run(self) -> SessionOutcome:
         self._bench.start()
-        with self._around.progress.showing():
-            zero = find_zero(self._bench, self._order, self._around)
+        with self._context.progress.showing():
+            zero = find_zero(self._bench, self._order, self._context)
             try:
                 self._begin_files()
                 fault = self._record_all(zero)
             finally:  # also when a file between two trials cannot be written: the tool never stays
                 with suppress(DeviceError):
-                    go_home(self._bench, self._around)
+                    go_home(self._bench, self._context)
         return SessionOutcome(self._folder.path, tuple(self._done), fault)
 
     def _record_all(self, zero: float) -> Fault | None:
@@ -121,8 +121,8 @@ class _Session:
         name = self._folder.next_trial()
         header = self._header(name, zero)
         writer = open_trial(self._folder.path / f"{name}.mcap", header, background=not self._order.fast)
-        snapshot = Snapshot(number, self._order.trials, planned=plan(protocol).duration)
-        outcome = record_trial(self._bench, protocol, writer, zero, self._around, snapshot)
+        snapshot = CaptureState(number, self._order.trials, planned=plan(protocol).duration)
+        outcome = record_trial(self._bench, protocol, writer, zero, self._context, snapshot)
         self._note(outcome, header)
         return outcome
 
@@ -174,7 +174,7 @@ class _Session:
         return TrialHeader(
             name=name,
             started=datetime.now(UTC).isoformat(),
-            clock_epoch=self._around.clock.now(),
+            clock_epoch=self._context.clock.now(),
             press_axis=order.rig.rig.force.press_axis,
             protocol=order.protocol.protocol.name,
             protocol_text=order.protocol.text,
@@ -186,12 +186,12 @@ class _Session:
 
     def _rest(self) -> bool:
         """Wait between two trials; False if that was interrupted."""
-        return not wait_until(self._around.clock, self._around.stop.is_set, self._order.pause, interval=0.05)
+        return not wait_until(self._context.clock, self._context.stop.is_set, self._order.pause, interval=0.05)
 
 
-def _surroundings(
-    order: CaptureOrder, bench: Bench, clock: Clock, stop: threading.Event, progress: Progress
-) -> Surroundings:
+def _loop_context(
+    order: CaptureOrder, bench: Bench, clock: Clock, stop: threading.Event, progress: ProgressDisplay
+) -> LoopContext:
     rig = order.rig.rig
     if bench.force.latency > _LARGEST_LATENCY * rig.safety.force_stale:
         raise InputError(
@@ -201,7 +201,7 @@ def _surroundings(
     limits = SafetyLimits(
         rig.safety.force_limit, rig.safety.force_stale, bench.travel, tuple(bench.force.ranges.tolist())
     )
-    return Surroundings(clock, limits, stop, progress, _SIMULATED_TURN if order.fast else _TURN)
+    return LoopContext(clock, limits, stop, progress, _SIMULATED_TURN if order.fast else _TURN)
 
 
 @contextmanager

@@ -18,7 +18,7 @@ from bench_hw.capture.order import CaptureOrder
 from bench_hw.configuration import read_toml
 from bench_hw.devices.protocols import DeviceInfo
 from bench_hw.errors import InputError
-from bench_hw.rig.rig_file import LoadedRig, Rig, SimulatedCamera
+from bench_hw.rig.rig_file import LoadedRig, Rig, SimulatedCameraConfig
 
 SESSION_FILE = "session.toml"
 LOG_FILE = "capture.json"
@@ -200,13 +200,13 @@ def camera_text(loaded: LoadedRig) -> str | None:
         return None
     if camera.calibration is not None:
         return loaded.resolve(camera.calibration).read_text(encoding="utf-8")
-    return _of_simulated(loaded) if isinstance(camera, SimulatedCamera) else None
+    return _of_simulated(loaded) if isinstance(camera, SimulatedCameraConfig) else None
 
 
 def place(rig: Rig) -> dict[str, str]:
     """Give what a session file says of where the camera is: known of a simulated one only."""
     camera = rig.camera
-    return {"distance": f"{camera.distance * 1e3:g} mm"} if isinstance(camera, SimulatedCamera) else {}
+    return {"distance": f"{camera.distance * 1e3:g} mm"} if isinstance(camera, SimulatedCameraConfig) else {}
 
 
 def _of_simulated(loaded: LoadedRig) -> str:

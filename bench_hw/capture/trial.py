@@ -11,9 +11,9 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from bench_hw.capture.loop import RETRACT_TIME, Loop, Recorder, Surroundings
+from bench_hw.capture.loop import RETRACT_TIME, Loop, LoopContext, Recorder
 from bench_hw.capture.order import CaptureOrder, check_depths
-from bench_hw.capture.progress import Snapshot
+from bench_hw.capture.progress import CaptureState
 from bench_hw.errors import BenchError, TrialFileError
 from bench_hw.motion.protocol_file import Protocol
 from bench_hw.motion.steps import Action, MotionError, Observation, carry_out, go_to
@@ -43,7 +43,7 @@ class TrialOutcome:
 
 
 def record_trial(
-    bench: Bench, protocol: Protocol, writer: TrialWriter, zero: float, around: Surroundings, snapshot: Snapshot
+    bench: Bench, protocol: Protocol, writer: TrialWriter, zero: float, context: LoopContext, snapshot: CaptureState
 ) -> TrialOutcome:
     """Carry a protocol out and record it.
 
@@ -57,9 +57,9 @@ def record_trial(
         The trial's file; closed here, whatever happens.
     zero : float
         Position of the actuator that is depth zero, m.
-    around : Surroundings
+    context : LoopContext
         Clock, limits, stop flag and progress.
-    snapshot : Snapshot
+    snapshot : CaptureState
         The state to show.
 
     Returns
@@ -68,12 +68,12 @@ def record_trial(
         Its `fault` is None only if the protocol came to its end and the file is whole.
     """
     recorder = Recorder(writer, zero)
-    loop = Loop(bench, around, recorder, zero, snapshot)
+    loop = Loop(bench, context, recorder, zero, snapshot)
     fault = None
     try:
         loop.run(carry_out(protocol, loop.now))
     except BaseException as error:
-        fault = end_safely(loop, error, recorder, around)
+        fault = end_safely(loop, error, recorder, context)
         if not isinstance(error, BenchError | OSError):
             _close(writer)
             raise
@@ -81,7 +81,7 @@ def record_trial(
     return TrialOutcome(path, fault or problem)
 
 
-def end_safely(loop: Loop, error: BaseException, recorder: Recorder | None, around: Surroundings) -> Fault:
+def end_safely(loop: Loop, error: BaseException, recorder: Recorder | None, context: LoopContext) -> Fault:
     """Send the tool back, write the fault down and let the recording show the way back; give the fault."""
     problem = loop.send_back()
     ending = "the tool was sent back"
@@ -91,10 +91,10 @@ def end_safely(loop: Loop, error: BaseException, recorder: Recorder | None, arou
             "turn it back by hand"
         )
     fault = Fault(_kind(error), f"{str(error) or type(error).__name__}; {ending}", not problem)
-    around.progress.say(f"fault ({fault.kind}): {fault.message}")
+    context.progress.say(f"fault ({fault.kind}): {fault.message}")
     if recorder is not None:
         with suppress(TrialFileError):
-            recorder.event(around.clock.now(), fault.kind, fault.message, "fault")
+            recorder.event(context.clock.now(), fault.kind, fault.message, "fault")
         loop.coast(_COAST)
     return fault
 
@@ -117,7 +117,7 @@ _SPEED = 5e-3
 _HOME_TIME = 10.0
 
 
-def find_zero(bench: Bench, order: CaptureOrder, around: Surroundings) -> float:
+def find_zero(bench: Bench, order: CaptureOrder, context: LoopContext) -> float:
     """Find the position (m) of depth zero and bring the tool to where a trial begins.
 
     The rig's `actuator.contact` if it says so; else where the protocol's own approach touches, tried once;
@@ -131,23 +131,23 @@ def find_zero(bench: Bench, order: CaptureOrder, around: Surroundings) -> float:
     contact, protocol = order.rig.rig.actuator.contact, order.protocol.protocol
     if contact is None and protocol.approach is not None:
         bench.zero_force()
-        around.progress.say("touching once to find depth zero (the rig file gives no actuator.contact)")
+        context.progress.say("touching once to find depth zero (the rig file gives no actuator.contact)")
         alone = protocol.model_copy(update={"segments": (protocol.approach,)})
         start = bench.actuator.position()
-        contact = move(bench, around, start, lambda now: carry_out(alone, now)).zero
+        contact = move(bench, context, start, lambda now: carry_out(alone, now)).zero
     elif contact is None:
-        around.progress.say("depth is counted from fully retracted: no actuator.contact and no approach")
+        context.progress.say("depth is counted from fully retracted: no actuator.contact and no approach")
         contact = 0.0
     low, high = order.rig.rig.travel
     begin = min(max(contact + protocol.rest_depth, low), high)
     speed = min(_SPEED, order.rig.rig.actuator.max_speed)
-    move(bench, around, contact, lambda now: go_to(begin, speed, now))
+    move(bench, context, contact, lambda now: go_to(begin, speed, now))
     check_depths(order, contact)
     return contact
 
 
 def move(
-    bench: Bench, around: Surroundings, zero: float, script: Callable[[Observation], Iterator[Action]]
+    bench: Bench, context: LoopContext, zero: float, script: Callable[[Observation], Iterator[Action]]
 ) -> Observation:
     """Carry a motion out without recording it, watched like a trial; give what was seen last.
 
@@ -156,16 +156,16 @@ def move(
     BenchError
         Whatever went wrong; the tool was sent back.
     """
-    loop = Loop(bench, around, None, zero, Snapshot())
+    loop = Loop(bench, context, None, zero, CaptureState())
     try:
         loop.run(script(loop.now))
     except BaseException as error:
-        end_safely(loop, error, None, around)
+        end_safely(loop, error, None, context)
         raise
     return loop.now
 
 
-def go_home(bench: Bench, around: Surroundings) -> None:
+def go_home(bench: Bench, context: LoopContext) -> None:
     """Send the tool to the lower end of its travel and wait until it is there, 10 s at most.
 
     Raises
@@ -173,8 +173,8 @@ def go_home(bench: Bench, around: Surroundings) -> None:
     DeviceError
         The actuator is lost.
     """
-    low = around.limits.travel[0]
+    low = context.limits.travel[0]
     bench.actuator.retract()
-    end = around.clock.now() + _HOME_TIME
-    while around.clock.now() < end and bench.actuator.position() > low + bench.actuator.uncertainty:
-        around.clock.sleep(0.02)
+    end = context.clock.now() + _HOME_TIME
+    while context.clock.now() < end and bench.actuator.position() > low + bench.actuator.uncertainty:
+        context.clock.sleep(0.02)

@@ -6,22 +6,22 @@ so that importing this package loads no device library.
 
 from bench_hw.devices.protocols import (
     Actuator,
-    Camera,
+    CameraDriver,
+    CameraFrame,
     CameraHealth,
     DeviceInfo,
     ForceBlock,
     ForceSensor,
-    Frame,
     StreamHealth,
 )
 
 __all__ = [
     "Actuator",
-    "Camera",
+    "CameraDriver",
+    "CameraFrame",
     "CameraHealth",
     "DeviceInfo",
     "ForceBlock",
     "ForceSensor",
-    "Frame",
     "StreamHealth",
 ]

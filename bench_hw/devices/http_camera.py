@@ -15,7 +15,7 @@ from urllib.parse import urlsplit
 
 from bench_hw.clock import Clock, MonotonicClock
 from bench_hw.devices.grabbing import FrameCounter
-from bench_hw.devices.protocols import CameraHealth, Connection, DeviceInfo, Frame
+from bench_hw.devices.protocols import CameraFrame, CameraHealth, Connection, DeviceInfo
 from bench_hw.errors import DeviceError
 
 _LARGEST_PART = 32 * 1024 * 1024
@@ -180,7 +180,7 @@ class HttpCamera(Connection):
         self.read()
         self._counter = FrameCounter(1.0 / self._rate)
 
-    def read(self) -> list[Frame]:
+    def read(self) -> list[CameraFrame]:
         """Give the frames that are whole since the last call; never waits.
 
         Raises
@@ -188,7 +188,7 @@ class HttpCamera(Connection):
         DeviceError
             Not connected, the stream ended, or its bytes make no sense.
         """
-        frames: list[Frame] = []
+        frames: list[CameraFrame] = []
         for _ in range(_MOST_CHUNKS):
             data = self._receive()
             if data is None:
@@ -243,7 +243,7 @@ class HttpCamera(Connection):
             raise DeviceError(f"camera at {self._url}: the stream ended")
         return data
 
-    def _frames(self, data: bytes) -> list[Frame]:
+    def _frames(self, data: bytes) -> list[CameraFrame]:
         now = self._clock.now()
         try:
             parts = self._parser.feed(data)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from bench_hw.clock import Clock, MonotonicClock
 from bench_hw.devices.grabbing import FrameCounter
-from bench_hw.devices.protocols import CameraHealth, Connection, DeviceInfo, Frame
+from bench_hw.devices.protocols import CameraFrame, CameraHealth, Connection, DeviceInfo
 from bench_hw.errors import DeviceError
 
 _FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}
@@ -73,7 +73,7 @@ class ImagesCamera(Connection):
         self._begun, self._next = self._clock.now(), 0
         self._counter = FrameCounter(1.0 / self._rate)
 
-    def read(self) -> list[Frame]:
+    def read(self) -> list[CameraFrame]:
         """Give the pictures that are due, stamped when they were; none after the last.
 
         Raises
@@ -96,7 +96,7 @@ class ImagesCamera(Connection):
         """Let go of the folder; may be repeated."""
         self.stop()
 
-    def _frame(self, k: int) -> Frame:
+    def _frame(self, k: int) -> CameraFrame:
         assert self._begun is not None
         path = self._files[k]
         try:

@@ -1,4 +1,4 @@
-"""What a force sensor, an actuator and a camera are to the bench, whatever is behind them.
+"""What a force sensor, an actuator and a camera are to the bench, whatever is behind them; the base of their drivers.
 
 Connecting is explicit: a driver that was only constructed has touched nothing. `connect` either leaves a
 device that answered and is the right one, or raises `DeviceError` and leaves nothing open. `read` never
@@ -104,13 +104,31 @@ class StreamHealth:
     malformed: int = 0
 
 
-class ForceSensor(Protocol):
-    """A six-axis force/torque sensor that streams."""
+class Device(Protocol):
+    """What every driver is: connected explicitly, checked to be the right device, always let go."""
 
     @property
     def info(self) -> DeviceInfo:
         """What the connected device said of itself."""
         ...
+
+    def connect(self) -> None:
+        """Find the device, check that it is the right one, set it up and read the settings back; nothing moves."""
+        ...
+
+    def close(self) -> None:
+        """Let go of the device; may be repeated."""
+        ...
+
+    def __enter__(self) -> Self: ...
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None: ...
+
+
+class ForceSensor(Device, Protocol):
+    """A six-axis force/torque sensor that streams."""
 
     @property
     def rate(self) -> float:
@@ -132,10 +150,6 @@ class ForceSensor(Protocol):
         """Counts of the stream since `start`."""
         ...
 
-    def connect(self) -> None:
-        """Find the device, check that it is the right one, set it up and read the settings back."""
-        ...
-
     def start(self) -> None:
         """Begin to stream; returns when the first sample has come."""
         ...
@@ -152,24 +166,9 @@ class ForceSensor(Protocol):
         """End the stream."""
         ...
 
-    def close(self) -> None:
-        """Let go of the device; may be repeated."""
-        ...
 
-    def __enter__(self) -> Self: ...
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None: ...
-
-
-class Actuator(Protocol):
+class Actuator(Device, Protocol):
     """A linear actuator; positions in metres from fully retracted, positive towards the specimen."""
-
-    @property
-    def info(self) -> DeviceInfo:
-        """What the connected device said of itself."""
-        ...
 
     @property
     def uncertainty(self) -> float:
@@ -179,10 +178,6 @@ class Actuator(Protocol):
     @property
     def counts(self) -> int | None:
         """The device's own reading behind the last position; None if it has none."""
-        ...
-
-    def connect(self) -> None:
-        """Find the device, check that it is the right one and read its position; nothing moves."""
         ...
 
     def set_limits(self, low: float, high: float) -> tuple[float, float]:
@@ -205,19 +200,9 @@ class Actuator(Protocol):
         """Start moving to the lower limit at full speed; one attempt, reconnecting if need be."""
         ...
 
-    def close(self) -> None:
-        """Let go of the device; may be repeated."""
-        ...
-
-    def __enter__(self) -> Self: ...
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None: ...
-
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class CameraFrame:
     """One picture as the camera encoded it.
 
     Parameters
@@ -247,13 +232,8 @@ class CameraHealth:
     frozen: int = 0
 
 
-class Camera(Protocol):
+class CameraDriver(Device, Protocol):
     """A camera that gives encoded pictures."""
-
-    @property
-    def info(self) -> DeviceInfo:
-        """What the connected device said of itself."""
-        ...
 
     @property
     def rate(self) -> float:
@@ -265,31 +245,17 @@ class Camera(Protocol):
         """Counts of the stream since `start`."""
         ...
 
-    def connect(self) -> None:
-        """Open the camera, lock what must not move by itself and read the settings back."""
-        ...
-
     def start(self) -> None:
         """Begin to take frames; numbers begin at 0."""
         ...
 
-    def read(self) -> list[Frame]:
+    def read(self) -> list[CameraFrame]:
         """Give the frames that have come since the last call; never waits."""
         ...
 
     def stop(self) -> None:
         """Stop taking frames."""
         ...
-
-    def close(self) -> None:
-        """Let go of the camera; may be repeated."""
-        ...
-
-    def __enter__(self) -> Self: ...
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None: ...
 
 
 class Connection(ABC):

@@ -10,14 +10,11 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
 from typing import Any
 
-from bench_hw.clock import Clock, MonotonicClock
-from bench_hw.devices.grabbing import Grabber, Taken
-from bench_hw.devices.protocols import CameraHealth, Connection, DeviceInfo, Frame
-from bench_hw.devices.webcam import LOCKED
+from bench_hw.clock import Clock
+from bench_hw.devices.grabbing import STAMP_TOLERANCE, GrabbedCamera, Taken
 from bench_hw.errors import DeviceError
 
 MISSING = "linuxpy is not installed: pip install 'tissuebench[v4l2]', or set driver = \"opencv\" under [camera]"
-_STAMP_TOLERANCE = 0.5
 _AUTOMATICS = {
     "exposure": (("auto_exposure", "exposure_auto"), 1, ("exposure_time_absolute", "exposure_absolute")),
     "focus": (("focus_automatic_continuous", "focus_auto"), 0, ("focus_absolute",)),
@@ -45,23 +42,17 @@ def open_linuxpy(device: int | str) -> tuple[Any, Any]:
     return opened, VideoCapture(opened)
 
 
-class V4l2Camera(Connection):
+class V4l2Camera(GrabbedCamera):
     """Driver of a webcam by V4L2.
 
     Parameters
     ----------
     device : int or str
         Number or path of the camera.
-    rate : float
-        Frames per second wanted, Hz.
-    size : tuple of 2 ints
-        Width and height wanted, pixels.
-    controls : Mapping[str, float], optional
-        Values to lock `exposure`, `focus` and `white_balance` at, in the camera's own units.
+    rate, size, controls, clock
+        As in `GrabbedCamera`.
     open_camera : callable, optional
         Gives linuxpy's device and capture.
-    clock : Clock, optional
-        The bench's clock.
     """
 
     def __init__(
@@ -74,30 +65,10 @@ class V4l2Camera(Connection):
         open_camera: Callable[[int | str], tuple[Any, Any]] = open_linuxpy,
         clock: Clock | None = None,
     ) -> None:
-        self._device, self._rate, self._size = device, rate, size
-        self._controls = LOCKED if controls is None else controls
-        self._open_camera = open_camera
-        self._clock = clock or MonotonicClock()
+        super().__init__(f"webcam {device} (V4L2)", rate, size, controls, clock)
+        self._device, self._open_camera = device, open_camera
         self._opened = ExitStack()
-        self._capture: Any = None
         self._frames: Iterator[Any] = iter(())
-        self._settings: dict[str, str] = {}
-        self._grabber: Grabber | None = None
-
-    @property
-    def info(self) -> DeviceInfo:
-        """Name of the device and the settings as read back."""
-        return DeviceInfo(self._where(), settings=self._settings)
-
-    @property
-    def rate(self) -> float:
-        """Frames per second wanted, Hz; what comes is recorded, not assumed."""
-        return self._rate
-
-    @property
-    def health(self) -> CameraHealth:
-        """Counts since `start`."""
-        return CameraHealth() if self._grabber is None else self._grabber.health
 
     def connect(self) -> None:
         """Open the camera, set size and rate, lock the controls and read all back.
@@ -118,33 +89,8 @@ class V4l2Camera(Connection):
                     name: self._lock(device, name, value) for name, value in self._controls.items()
                 }
             except OSError as error:
-                raise DeviceError(f"{self._where()}: {error.strerror or error}") from error
+                raise DeviceError(f"{self._where}: {error.strerror or error}") from error
             self._opened, self._capture = stack.pop_all(), capture
-
-    def start(self) -> None:
-        """Begin to take frames in a thread; numbers begin at 0.
-
-        Raises
-        ------
-        DeviceError
-            Not connected.
-        """
-        if self._capture is None:
-            raise DeviceError(f"{self._where()}: not connected")
-        self.stop()
-        self._capture.open()
-        self._frames = iter(self._capture)
-        self._grabber = Grabber(self._take, 1.0 / self._rate, self._where())
-
-    def read(self) -> list[Frame]:
-        """Give the frames taken since the last call; never waits.
-
-        Raises
-        ------
-        DeviceError
-            The camera stopped giving frames.
-        """
-        return [] if self._grabber is None else self._grabber.read()
 
     def stop(self) -> None:
         """Stop taking frames."""
@@ -158,24 +104,23 @@ class V4l2Camera(Connection):
         self._capture = None
         self._opened.close()
 
+    def _begin(self) -> None:
+        self._capture.open()
+        self._frames = iter(self._capture)
+
     def _take(self) -> Taken:
         frame = next(self._frames)
         now = self._clock.now()
         own = float(frame.timestamp)
-        return Taken(own if now - _STAMP_TOLERANCE < own <= now else now, bytes(frame), int(frame.frame_nb))
+        return Taken(own if now - STAMP_TOLERANCE < own <= now else now, bytes(frame), int(frame.frame_nb))
 
     def _read_back(self, capture: Any) -> dict[str, str]:
         found = capture.get_format()
-        if (found.width, found.height) != tuple(self._size):
-            raise DeviceError(
-                f"{self._where()}: gives {found.width} x {found.height} pixels; the rig asks for "
-                f"{self._size[0]} x {self._size[1]}"
-            )
-        return {"size": f"{found.width} x {found.height}", "rate": f"{float(capture.get_fps()):g} Hz"}
+        return {"size": self._checked_size(found.width, found.height), "rate": f"{float(capture.get_fps()):g} Hz"}
 
     def _lock(self, device: Any, name: str, value: float) -> str:
         if name not in _AUTOMATICS:
-            raise DeviceError(f"{self._where()}: control {name!r}; allowed are {', '.join(_AUTOMATICS)}")
+            raise DeviceError(f"{self._where}: control {name!r}; allowed are {', '.join(_AUTOMATICS)}")
         automatics, off, controls = _AUTOMATICS[name]
         self._set(device, automatics, off)
         return f"{self._set(device, controls, round(value)):g}"
@@ -187,11 +132,8 @@ class V4l2Camera(Connection):
                 control.value = value
                 if int(control.value) != value:
                     raise DeviceError(
-                        f"{self._where()}: {name} cannot be set to {value} (reads back {control.value}); choose "
+                        f"{self._where}: {name} cannot be set to {value} (reads back {control.value}); choose "
                         "another value under [camera.controls]"
                     )
                 return float(control.value)
-        raise DeviceError(f"{self._where()}: has no control {' or '.join(names)}; leave it out of [camera.controls]")
-
-    def _where(self) -> str:
-        return f"webcam {self._device} (V4L2)"
+        raise DeviceError(f"{self._where}: has no control {' or '.join(names)}; leave it out of [camera.controls]")

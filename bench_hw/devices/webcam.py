@@ -14,15 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from bench_hw.clock import Clock, MonotonicClock
-from bench_hw.devices.grabbing import Grabber, Taken
-from bench_hw.devices.protocols import CameraHealth, Connection, DeviceInfo, Frame
+from bench_hw.clock import Clock
+from bench_hw.devices.grabbing import STAMP_TOLERANCE, GrabbedCamera, Taken
 from bench_hw.errors import DeviceError
 
-LOCKED: Mapping[str, float] = {"exposure": 156.0, "focus": 60.0, "white_balance": 4500.0}
-"""Values a webcam is locked at unless the rig says others (V4L2 units: 0.1 ms, steps, kelvin)."""
 _MANUAL_EXPOSURE = 1.0
 _TOLERANCE = 0.02
+_JPEG_QUALITY = 95
+_JPEG_START = b"\xff\xd8"
 
 
 def open_device(device: int | str) -> Any:
@@ -35,83 +34,17 @@ def open_device(device: int | str) -> Any:
     return cv2.VideoCapture(device, backend)
 
 
-def set_up(capture: Any, where: str, size: tuple[int, int], rate: float) -> dict[str, str]:
-    """Ask for MJPG, size and rate; give what reads back.
-
-    Raises
-    ------
-    DeviceError
-        The size reads back as another one.
-    """
-    import cv2
-
-    capture.set(cv2.CAP_PROP_FOURCC, cv2.VideoWriter.fourcc(*"MJPG"))
-    capture.set(cv2.CAP_PROP_FRAME_WIDTH, size[0])
-    capture.set(cv2.CAP_PROP_FRAME_HEIGHT, size[1])
-    capture.set(cv2.CAP_PROP_FPS, rate)
-    capture.set(cv2.CAP_PROP_CONVERT_RGB, 0)
-    found = (int(capture.get(cv2.CAP_PROP_FRAME_WIDTH)), int(capture.get(cv2.CAP_PROP_FRAME_HEIGHT)))
-    if found != tuple(size):
-        raise DeviceError(f"{where}: gives {found[0]} x {found[1]} pixels; the rig asks for {size[0]} x {size[1]}")
-    return {"size": f"{found[0]} x {found[1]}", "rate": f"{capture.get(cv2.CAP_PROP_FPS):g} Hz"}
-
-
-def lock(capture: Any, where: str, controls: Mapping[str, float]) -> dict[str, str]:
-    """Switch the automatics off, set each control and read it back.
-
-    Raises
-    ------
-    DeviceError
-        A control is unknown, or does not read back within 2 %.
-    """
-    return {name: _lock_one(capture, where, name, value) for name, value in controls.items()}
-
-
-def _lock_one(capture: Any, where: str, name: str, value: float) -> str:
-    import cv2
-
-    known = {
-        "exposure": (cv2.CAP_PROP_AUTO_EXPOSURE, _MANUAL_EXPOSURE, cv2.CAP_PROP_EXPOSURE),
-        "focus": (cv2.CAP_PROP_AUTOFOCUS, 0.0, cv2.CAP_PROP_FOCUS),
-        "white_balance": (cv2.CAP_PROP_AUTO_WB, 0.0, cv2.CAP_PROP_WB_TEMPERATURE),
-    }
-    if name not in known:
-        raise DeviceError(f"{where}: control {name!r}; allowed are {', '.join(known)}")
-    automatic, off, control = known[name]
-    capture.set(automatic, off)
-    capture.set(control, value)
-    found_automatic, found = float(capture.get(automatic)), float(capture.get(control))
-    if found_automatic != off or abs(found - value) > _TOLERANCE * max(1.0, abs(value)):
-        raise DeviceError(
-            f"{where}: {name} cannot be locked at {value:g} (reads back {found:g}, "
-            f"automatic {found_automatic:g}); choose another value under [camera.controls], or leave {name} out there"
-        )
-    return f"{found:g}"
-
-
-_STAMP_TOLERANCE = 0.5
-_JPEG_QUALITY = 95
-_JPEG_START = b"\xff\xd8"
-
-
-class WebcamCamera(Connection):
+class WebcamCamera(GrabbedCamera):
     """Driver of a webcam.
 
     Parameters
     ----------
     device : int or str
         Number of the camera, or anything else `cv2.VideoCapture` opens.
-    rate : float
-        Frames per second wanted, Hz.
-    size : tuple of 2 ints
-        Width and height wanted, pixels.
-    controls : Mapping[str, float], optional
-        Values to lock `exposure`, `focus` and `white_balance` at, in the camera's own units; {} locks nothing
-        (a stream or a file has no controls).
+    rate, size, controls, clock
+        As in `GrabbedCamera`; controls {} locks nothing (a stream or a file has no controls).
     open_capture : callable, optional
         Gives an opened `cv2.VideoCapture` for `device`.
-    clock : Clock, optional
-        The bench's clock.
     """
 
     def __init__(
@@ -124,29 +57,9 @@ class WebcamCamera(Connection):
         open_capture: Callable[[int | str], Any] = open_device,
         clock: Clock | None = None,
     ) -> None:
-        self._device, self._rate, self._size = device, rate, size
-        self._controls = LOCKED if controls is None else controls
-        self._open_capture = open_capture
-        self._clock = clock or MonotonicClock()
-        self._capture: Any = None
-        self._settings: dict[str, str] = {}
-        self._grabber: Grabber | None = None
+        super().__init__(f"webcam {device}", rate, size, controls, clock)
+        self._device, self._open_capture = device, open_capture
         self._last = -math.inf
-
-    @property
-    def info(self) -> DeviceInfo:
-        """Name of the device and the settings as read back."""
-        return DeviceInfo(self._where(), settings=self._settings)
-
-    @property
-    def rate(self) -> float:
-        """Frames per second wanted, Hz; what comes is recorded, not assumed."""
-        return self._rate
-
-    @property
-    def health(self) -> CameraHealth:
-        """Counts since `start`."""
-        return CameraHealth() if self._grabber is None else self._grabber.health
 
     def connect(self) -> None:
         """Open the camera, set size and rate, lock the controls, read all back and take one frame.
@@ -160,43 +73,13 @@ class WebcamCamera(Connection):
         self._capture = self._open_capture(self._device)
         try:
             if not self._capture.isOpened():
-                raise DeviceError(f"{self._where()}: cannot be opened; check the cable and that nothing else uses it")
-            self._settings = set_up(self._capture, self._where(), self._size, self._rate)
-            self._settings |= lock(self._capture, self._where(), self._controls)
+                raise DeviceError(f"{self._where}: cannot be opened; check the cable and that nothing else uses it")
+            self._settings = self._set_up() | {name: self._lock(name, value) for name, value in self._controls.items()}
             if not self._capture.grab():
-                raise DeviceError(f"{self._where()}: gives no picture")
+                raise DeviceError(f"{self._where}: gives no picture")
         except BaseException:
             self.close()
             raise
-
-    def start(self) -> None:
-        """Begin to grab in a thread; numbers begin at 0.
-
-        Raises
-        ------
-        DeviceError
-            Not connected.
-        """
-        if self._capture is None:
-            raise DeviceError(f"{self._where()}: not connected")
-        self.stop()
-        self._last = -math.inf
-        self._grabber = Grabber(self._take, 1.0 / self._rate, self._where())
-
-    def read(self) -> list[Frame]:
-        """Give the frames grabbed since the last call; never waits.
-
-        Raises
-        ------
-        DeviceError
-            The camera stopped giving pictures.
-        """
-        return [] if self._grabber is None else self._grabber.read()
-
-    def stop(self) -> None:
-        """Stop grabbing."""
-        if self._grabber is not None:
-            self._grabber.stop()
 
     def close(self) -> None:
         """Stop and release the camera; may be repeated."""
@@ -204,6 +87,44 @@ class WebcamCamera(Connection):
         if self._capture is not None:
             self._capture.release()
             self._capture = None
+
+    def _set_up(self) -> dict[str, str]:
+        """Ask for MJPG, size and rate; give what reads back."""
+        import cv2
+
+        capture = self._capture
+        capture.set(cv2.CAP_PROP_FOURCC, cv2.VideoWriter.fourcc(*"MJPG"))
+        capture.set(cv2.CAP_PROP_FRAME_WIDTH, self._size[0])
+        capture.set(cv2.CAP_PROP_FRAME_HEIGHT, self._size[1])
+        capture.set(cv2.CAP_PROP_FPS, self._rate)
+        capture.set(cv2.CAP_PROP_CONVERT_RGB, 0)
+        found = (int(capture.get(cv2.CAP_PROP_FRAME_WIDTH)), int(capture.get(cv2.CAP_PROP_FRAME_HEIGHT)))
+        return {"size": self._checked_size(*found), "rate": f"{capture.get(cv2.CAP_PROP_FPS):g} Hz"}
+
+    def _lock(self, name: str, value: float) -> str:
+        """Switch an automatic off, set its control and read it back within 2 %."""
+        import cv2
+
+        known = {
+            "exposure": (cv2.CAP_PROP_AUTO_EXPOSURE, _MANUAL_EXPOSURE, cv2.CAP_PROP_EXPOSURE),
+            "focus": (cv2.CAP_PROP_AUTOFOCUS, 0.0, cv2.CAP_PROP_FOCUS),
+            "white_balance": (cv2.CAP_PROP_AUTO_WB, 0.0, cv2.CAP_PROP_WB_TEMPERATURE),
+        }
+        if name not in known:
+            raise DeviceError(f"{self._where}: control {name!r}; allowed are {', '.join(known)}")
+        automatic, off, control = known[name]
+        self._capture.set(automatic, off)
+        self._capture.set(control, value)
+        found_automatic, found = (float(self._capture.get(which)) for which in (automatic, control))
+        if found_automatic != off or abs(found - value) > _TOLERANCE * max(1.0, abs(value)):
+            raise DeviceError(
+                f"{self._where}: {name} cannot be locked at {value:g} (reads back {found:g}, automatic "
+                f"{found_automatic:g}); choose another value under [camera.controls], or leave {name} out there"
+            )
+        return f"{found:g}"
+
+    def _begin(self) -> None:
+        self._last = -math.inf
 
     def _take(self) -> Taken | None:
         if not self._capture.grab():
@@ -219,7 +140,7 @@ class WebcamCamera(Connection):
         import cv2
 
         own = float(self._capture.get(cv2.CAP_PROP_POS_MSEC)) / 1000.0
-        plausible = own > max(0.0, self._last) and after_grab - _STAMP_TOLERANCE < own <= after_grab
+        plausible = own > max(0.0, self._last) and after_grab - STAMP_TOLERANCE < own <= after_grab
         return own if plausible else after_grab
 
     def _encoded(self) -> bytes | None:
@@ -232,6 +153,3 @@ class WebcamCamera(Connection):
         if min(picture.shape[:2]) == 1 and flat[:2].tobytes() == _JPEG_START:
             return flat.tobytes()
         return bytes(cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, _JPEG_QUALITY])[1])
-
-    def _where(self) -> str:
-        return f"webcam {self._device}"

@@ -49,7 +49,7 @@ class PlannedStep:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class MotionPlan:
     """A protocol's dry run."""
 
     name: str
@@ -71,7 +71,7 @@ class Plan:
         return max((step.depth_to for step in self.steps), default=0.0)
 
 
-def plan(protocol: Protocol, start_depth: float | None = None) -> Plan:
+def plan(protocol: Protocol, start_depth: float | None = None) -> MotionPlan:
     """Work out a protocol's motion.
 
     Parameters
@@ -90,7 +90,7 @@ def plan(protocol: Protocol, start_depth: float | None = None) -> Plan:
                 continue
             steps.append(PlannedStep(number, segment.kind, time, duration, depth, target, assumed))
             time, depth = time + duration, target
-    return Plan(protocol.name, tuple(steps))
+    return MotionPlan(protocol.name, tuple(steps))
 
 
 Piece = tuple[float, float, bool]
@@ -135,7 +135,7 @@ def _(segment: Cycle, depth: float) -> Iterator[Piece]:
 _WIDTH, _HEIGHT = 64, 11
 
 
-def summary(plan: Plan, trials: int = 1) -> list[str]:
+def summary(plan: MotionPlan, trials: int = 1) -> list[str]:
     """Say each step and the sum of times, a line each."""
     lines = [f"{plan.name}: {plan.duration:.1f} s a trial, {trials} trial(s): {plan.duration * trials:.1f} s in all"]
     for step in plan.steps:
@@ -150,7 +150,7 @@ def summary(plan: Plan, trials: int = 1) -> list[str]:
     return lines
 
 
-def drawing(plan: Plan) -> list[str]:
+def drawing(plan: MotionPlan) -> list[str]:
     """Draw depth over time with characters, depth downwards."""
     depths = [_depth_at(plan, (column + 0.5) / _WIDTH * plan.duration) for column in range(_WIDTH)]
     low, high = min(depths), max(depths)
@@ -163,7 +163,7 @@ def drawing(plan: Plan) -> list[str]:
     return [*lines, " " * 11 + "+" + "-" * _WIDTH, f"{'0':>12}{plan.duration:>{_WIDTH}.1f} s"]
 
 
-def write_plot(plan: Plan, path: Path) -> Path:
+def write_plot(plan: MotionPlan, path: Path) -> Path:
     """Write depth over time as an SVG picture, whole or not at all.
 
     Raises
@@ -190,7 +190,7 @@ def write_plot(plan: Plan, path: Path) -> Path:
     return write_bytes(path, picture.getvalue())
 
 
-def _depth_at(plan: Plan, time: float) -> float:
+def _depth_at(plan: MotionPlan, time: float) -> float:
     for step in plan.steps:
         if time <= step.start + step.duration and step.duration > 0.0:
             share = (time - step.start) / step.duration

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
-from bench_hw.devices.protocols import Actuator, Camera, DeviceInfo, ForceBlock, ForceSensor
+from bench_hw.devices.protocols import Actuator, CameraDriver, DeviceInfo, ForceBlock, ForceSensor
 
 if TYPE_CHECKING:
     from numpy import float64
@@ -29,7 +29,7 @@ class Bench:
         The force sensor.
     actuator : Actuator
         The actuator.
-    camera : Camera or None
+    camera : CameraDriver or None
         The camera, if the rig has one.
     twins : Twins or None
         The simulated devices behind the drivers, if any.
@@ -40,7 +40,7 @@ class Bench:
     rig: Rig
     force: ForceSensor
     actuator: Actuator
-    camera: Camera | None = None
+    camera: CameraDriver | None = None
     twins: Twins | None = None
     travel: tuple[float, float] = (0.0, 0.0)
     _infos: dict[str, DeviceInfo] = field(default_factory=dict)

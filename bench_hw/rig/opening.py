@@ -12,7 +12,7 @@ from bench_hw.devices import protocols
 from bench_hw.errors import DeviceError, InputError
 from bench_hw.rig import rig_file as schema
 from bench_hw.rig.bench import Bench
-from bench_hw.rig.rig_file import LoadedRig, Rig, SimulatedCamera, SimulatedForce
+from bench_hw.rig.rig_file import LoadedRig, Rig, SimulatedCameraConfig, SimulatedForceConfig
 from bench_hw.simulated.camera_server import CameraSettings
 from bench_hw.simulated.netft_box import BoxSettings
 from bench_hw.simulated.picture import CameraModel
@@ -74,7 +74,7 @@ def open_force(device: object, context: Opening) -> protocols.ForceSensor:  # no
 
 
 @open_force.register
-def _(device: schema.NetFTForce, context: Opening) -> protocols.ForceSensor:
+def _(device: schema.NetFTConfig, context: Opening) -> protocols.ForceSensor:
     from bench_hw.devices.netft import NetFTSensor
 
     return NetFTSensor(
@@ -89,7 +89,7 @@ def _(device: schema.NetFTForce, context: Opening) -> protocols.ForceSensor:
 
 
 @open_force.register
-def _(device: schema.DaqForce, context: Opening) -> protocols.ForceSensor:
+def _(device: schema.DaqConfig, context: Opening) -> protocols.ForceSensor:
     from bench_hw.devices.daq import DaqForceSensor, NidaqmxSource
 
     path = context.loaded.resolve(device.calibration)
@@ -98,7 +98,7 @@ def _(device: schema.DaqForce, context: Opening) -> protocols.ForceSensor:
 
 
 @open_force.register
-def _(device: schema.SimulatedForce, context: Opening) -> protocols.ForceSensor:
+def _(device: schema.SimulatedForceConfig, context: Opening) -> protocols.ForceSensor:
     from bench_hw.devices.netft import NetFTSensor
 
     box = context.switched_on().box
@@ -120,9 +120,9 @@ def open_actuator(device: object, context: Opening) -> protocols.Actuator:  # no
     raise TypeError(f"no driver for {type(device).__name__}")
 
 
-@open_actuator.register(schema.LacActuator)
-@open_actuator.register(schema.SimulatedActuator)
-def _(device: schema.LacActuator | schema.SimulatedActuator, context: Opening) -> protocols.Actuator:
+@open_actuator.register(schema.LacConfig)
+@open_actuator.register(schema.SimulatedActuatorConfig)
+def _(device: schema.LacConfig | schema.SimulatedActuatorConfig, context: Opening) -> protocols.Actuator:
     from bench_hw.devices.lac import LacActuator
 
     return LacActuator(
@@ -135,13 +135,13 @@ def _(device: schema.LacActuator | schema.SimulatedActuator, context: Opening) -
 
 
 @singledispatch
-def open_camera(device: object, context: Opening) -> protocols.Camera:  # noqa: ARG001
+def open_camera(device: object, context: Opening) -> protocols.CameraDriver:  # noqa: ARG001
     """Make the driver of a camera."""
     raise TypeError(f"no driver for {type(device).__name__}")
 
 
 @open_camera.register
-def _(device: schema.WebcamCamera, context: Opening) -> protocols.Camera:
+def _(device: schema.WebcamConfig, context: Opening) -> protocols.CameraDriver:
     if device.driver == "v4l2":
         from bench_hw.devices.v4l2_camera import V4l2Camera
 
@@ -156,21 +156,21 @@ def _(device: schema.WebcamCamera, context: Opening) -> protocols.Camera:
 
 
 @open_camera.register
-def _(device: schema.HttpCamera, context: Opening) -> protocols.Camera:
+def _(device: schema.HttpCameraConfig, context: Opening) -> protocols.CameraDriver:
     from bench_hw.devices.http_camera import HttpCamera
 
     return HttpCamera(device.url, rate=device.rate, clock=context.clock)
 
 
 @open_camera.register
-def _(device: schema.ImagesCamera, context: Opening) -> protocols.Camera:
+def _(device: schema.ImagesCameraConfig, context: Opening) -> protocols.CameraDriver:
     from bench_hw.devices.images_camera import ImagesCamera
 
     return ImagesCamera(context.loaded.resolve(device.folder), rate=device.rate, clock=context.clock)
 
 
 @open_camera.register
-def _(device: schema.SimulatedCamera, context: Opening) -> protocols.Camera:
+def _(device: schema.SimulatedCameraConfig, context: Opening) -> protocols.CameraDriver:
     from bench_hw.devices.http_camera import HttpCamera
 
     server = context.switched_on().camera
@@ -225,7 +225,7 @@ def settings_of(rig: Rig, specimen: Specimen | None = None, seed: int | None = N
 def optics_of(rig: Rig) -> CameraModel:
     """Give the optics of a rig's simulated camera (the usual ones if it has none)."""
     camera = rig.camera
-    if not isinstance(camera, SimulatedCamera):
+    if not isinstance(camera, SimulatedCameraConfig):
         return CameraModel()
     usual = CameraModel()
     return CameraModel(
@@ -246,7 +246,7 @@ def faults_of(rig: Rig) -> list[TimedFault]:
 
 def _box(rig: Rig) -> BoxSettings | None:
     force = rig.force
-    if not isinstance(force, SimulatedForce):
+    if not isinstance(force, SimulatedForceConfig):
         return None
     sensor = SensorModel(press_axis=force.press_axis, force_noise=force.noise, torque_noise=0.01 * force.noise)
     return BoxSettings(sensor=sensor, faults=StreamFaults(loss=force.loss, drop=parse_positions(force.drop)))
@@ -254,6 +254,6 @@ def _box(rig: Rig) -> BoxSettings | None:
 
 def _camera(rig: Rig) -> CameraSettings | None:
     camera = rig.camera
-    if not isinstance(camera, SimulatedCamera):
+    if not isinstance(camera, SimulatedCameraConfig):
         return None
     return CameraSettings(rate=camera.rate, jitter=camera.jitter, loss=camera.loss, quality=camera.quality)

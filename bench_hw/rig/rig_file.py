@@ -34,7 +34,7 @@ class _Force(_Strict):
     press_axis: Axis = "-z"
 
 
-class NetFTForce(_Force):
+class NetFTConfig(_Force):
     """A Net F/T box."""
 
     kind: Literal["netft"]
@@ -44,7 +44,7 @@ class NetFTForce(_Force):
     mode: Literal["realtime", "buffered"] = "realtime"
 
 
-class DaqForce(_Force):
+class DaqConfig(_Force):
     """A transducer on a DAQ."""
 
     kind: Literal["daq"]
@@ -52,7 +52,7 @@ class DaqForce(_Force):
     calibration: Text
 
 
-class SimulatedForce(_Force):
+class SimulatedForceConfig(_Force):
     """A simulated Net F/T box on loopback."""
 
     kind: Literal["simulated"]
@@ -73,13 +73,13 @@ class _Actuator(_Strict):
     rate: Annotated[Frequency, Field(ge=1.0, le=500.0)] = 100.0
 
 
-class LacActuator(_Actuator):
+class LacConfig(_Actuator):
     """A LAC board on USB."""
 
     kind: Literal["lac"]
 
 
-class SimulatedActuator(_Actuator):
+class SimulatedActuatorConfig(_Actuator):
     """A simulated LAC board."""
 
     kind: Literal["simulated"]
@@ -93,7 +93,7 @@ class _Camera(_Strict):
     calibration: Text | None = None
 
 
-class WebcamCamera(_Camera):
+class WebcamConfig(_Camera):
     """A webcam through OpenCV, or through linuxpy for real frame numbers (`driver = "v4l2"`)."""
 
     kind: Literal["webcam"]
@@ -102,21 +102,21 @@ class WebcamCamera(_Camera):
     controls: dict[str, float] | None = None
 
 
-class HttpCamera(_Camera):
+class HttpCameraConfig(_Camera):
     """An MJPEG stream."""
 
     kind: Literal["http"]
     url: Text
 
 
-class ImagesCamera(_Camera):
+class ImagesCameraConfig(_Camera):
     """A folder of pictures."""
 
     kind: Literal["images"]
     folder: Text
 
 
-class SimulatedCamera(_Camera):
+class SimulatedCameraConfig(_Camera):
     """A simulated webcam as an MJPEG stream on loopback: its optics (OpenCV's k1, k2, p1, p2, k3) and its JPEG."""
 
     kind: Literal["simulated"]
@@ -139,7 +139,7 @@ class Safety(_Strict):
     travel: tuple[Length, Length] | None = None
 
 
-class Fault(_Strict):
+class ScheduledFault(_Strict):
     """A fault that simulated devices show at a time after the bench was switched on."""
 
     kind: Literal[
@@ -161,12 +161,14 @@ class Simulation(_Strict):
 
     seed: Annotated[int, Field(ge=0, strict=True)] = 0
     contact: Annotated[Length, Field(ge=0.0)] = 5e-3
-    faults: tuple[Fault, ...] = ()
+    faults: tuple[ScheduledFault, ...] = ()
 
 
-ForceDevice = Annotated[NetFTForce | DaqForce | SimulatedForce, Field(discriminator="kind")]
-ActuatorDevice = Annotated[LacActuator | SimulatedActuator, Field(discriminator="kind")]
-CameraDevice = Annotated[WebcamCamera | HttpCamera | ImagesCamera | SimulatedCamera, Field(discriminator="kind")]
+ForceConfig = Annotated[NetFTConfig | DaqConfig | SimulatedForceConfig, Field(discriminator="kind")]
+ActuatorConfig = Annotated[LacConfig | SimulatedActuatorConfig, Field(discriminator="kind")]
+CameraConfig = Annotated[
+    WebcamConfig | HttpCameraConfig | ImagesCameraConfig | SimulatedCameraConfig, Field(discriminator="kind")
+]
 
 
 class Rig(_Strict):
@@ -174,9 +176,9 @@ class Rig(_Strict):
 
     schema_version: Annotated[Literal[1], Field(alias="schema")]
     name: Text
-    force: ForceDevice
-    actuator: ActuatorDevice
-    camera: CameraDevice | None = None
+    force: ForceConfig
+    actuator: ActuatorConfig
+    camera: CameraConfig | None = None
     safety: Safety = Safety()
     simulation: Simulation = Simulation()
 

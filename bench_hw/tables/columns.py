@@ -28,7 +28,7 @@ _NUMERIC_BYTES = b"0123456789+-.eE,\n \t"
 
 
 @dataclass(frozen=True, eq=False)
-class Source:
+class CsvText:
     r"""A CSV file, decoded.
 
     Parameters
@@ -46,7 +46,7 @@ class Source:
     body: str
 
 
-def read_source(path: Path, required: Sequence[str]) -> Source:
+def read_source(path: Path, required: Sequence[str]) -> CsvText:
     """Read and decode a file and check its header.
 
     Parameters
@@ -67,7 +67,7 @@ def read_source(path: Path, required: Sequence[str]) -> Source:
     header, _, body = text.partition("\n")
     names = tuple(name for _, cells in _records(path, header, 1) for name in cells)
     _check_names(path, names, required)
-    return Source(path, names, body)
+    return CsvText(path, names, body)
 
 
 def _bytes_of(path: Path) -> bytes:
@@ -102,7 +102,7 @@ def _check_names(path: Path, names: tuple[str, ...], required: Sequence[str]) ->
             raise TableError(path, f"the column is there {count} times", "each name once", row=1, column=name)
 
 
-def numeric_matrix(source: Source) -> FloatArray | None:
+def numeric_matrix(source: CsvText) -> FloatArray | None:
     """Parse a body that is numbers throughout; None where it is not, or where anything is odd.
 
     Returns
@@ -121,7 +121,7 @@ def numeric_matrix(source: Source) -> FloatArray | None:
     return matrix if matrix.shape == as_written else None
 
 
-def text_columns(source: Source) -> tuple[list[tuple[str, ...]], list[int]]:
+def text_columns(source: CsvText) -> tuple[list[tuple[str, ...]], list[int]]:
     """Split the body into columns of cells, blanks around them taken off.
 
     Returns
@@ -164,7 +164,7 @@ _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
 @dataclass(frozen=True, eq=False)
-class Columns:
+class NumericColumns:
     """The numeric columns of a file.
 
     Parameters
@@ -182,12 +182,12 @@ class Columns:
     lines: NDArray[np.int64]
 
 
-def read_columns(source: Source, required: Sequence[str], may_be_empty: Collection[str] = ()) -> Columns:
+def read_columns(source: CsvText, required: Sequence[str], may_be_empty: Collection[str] = ()) -> NumericColumns:
     """Turn a file's cells into numbers.
 
     Parameters
     ----------
-    source : Source
+    source : CsvText
         The file.
     required : sequence of str
         Columns that must be numbers throughout; so must every column whose name ends in a unit. Another
@@ -206,7 +206,7 @@ def read_columns(source: Source, required: Sequence[str], may_be_empty: Collecti
         values = {name: matrix[:, index] for index, name in enumerate(source.names)}
         for name, column in values.items():
             _check_finite(source.path, name, column, lines)
-        return Columns(source.path, values, lines)
+        return NumericColumns(source.path, values, lines)
     columns, line_list = text_columns(source)
     lines = np.array(line_list, dtype=np.int64)
     values = {}
@@ -214,7 +214,7 @@ def read_columns(source: Source, required: Sequence[str], may_be_empty: Collecti
         strict = name in required or name in may_be_empty or split_unit(name)[1] != ""
         if strict or all(map(_NUMBER.fullmatch, cells)):
             values[name] = numbers_of(source.path, name, cells, lines, empty=name in may_be_empty)
-    return Columns(source.path, values, lines)
+    return NumericColumns(source.path, values, lines)
 
 
 def numbers_of(path: Path, name: str, cells: Sequence[str], lines: NDArray[np.int64], *, empty: bool) -> FloatArray:

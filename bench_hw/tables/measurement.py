@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
-from bench_hw.tables.columns import Columns, check_increasing, check_row_count, read_columns, read_source
+from bench_hw.tables.columns import NumericColumns, check_increasing, check_row_count, read_columns, read_source
 from bench_hw.tables.output import write_columns
 from bench_hw.tables.units import FloatArray, from_si, join_unit, split_unit, to_si
 
@@ -191,7 +191,7 @@ def read_marker_csv(path: Path | str) -> MarkerTable:
     )
 
 
-def _marker_numbers(columns: Columns) -> IntArray:
+def _marker_numbers(columns: NumericColumns) -> IntArray:
     values = columns.values["marker"]
     wrong = np.flatnonzero((values != np.floor(values)) | (values < 0) | (values > _LAST_MARKER))
     if len(wrong):
@@ -201,7 +201,7 @@ def _marker_numbers(columns: Columns) -> IntArray:
     return values.astype(np.int64)
 
 
-def _check_pairs(columns: Columns) -> None:
+def _check_pairs(columns: NumericColumns) -> None:
     x_empty, y_empty = (np.isnan(columns.values[name]) for name in ("x_mm", "y_mm"))
     wrong = np.flatnonzero(x_empty != y_empty)
     if len(wrong):
@@ -210,7 +210,7 @@ def _check_pairs(columns: Columns) -> None:
         raise TableError(columns.path, "one coordinate is empty", allowed, row=row, column=name)
 
 
-def _check_order(columns: Columns, marker: IntArray) -> None:
+def _check_order(columns: NumericColumns, marker: IntArray) -> None:
     time = columns.values["time_s"]
     order = np.argsort(marker, kind="stable")
     same = np.diff(marker[order]) == 0

@@ -143,7 +143,7 @@ def _write_frames(contents: TrialContents, folder: Path) -> int:
     return count
 
 
-def _write_parquet(file: Path, columns: Columns) -> None:
+def _write_parquet(file: Path, columns: ExportColumns) -> None:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -152,14 +152,14 @@ def _write_parquet(file: Path, columns: Columns) -> None:
         pq.write_table(table, temporary)
 
 
-Columns = Mapping[str, NDArray[Any]]
+ExportColumns = Mapping[str, NDArray[Any]]
 _ENDINGS = {"jpeg": "jpg", "png": "png", "webp": "webp"}
 _ROUNDED = ("depth_mm", "target_mm")
 
 
 def trial_tables(
     contents: TrialContents, press_axis: PressAxis | None = None, *, with_files: bool = False
-) -> tuple[dict[str, Columns], list[str]]:
+) -> tuple[dict[str, ExportColumns], list[str]]:
     """Give the tables of a trial by name, and a sentence for each thing that is not in them.
 
     Parameters
@@ -186,7 +186,7 @@ def trial_tables(
     return tables, warnings
 
 
-def _force_table(contents: TrialContents) -> Columns:
+def _force_table(contents: TrialContents) -> ExportColumns:
     force = contents.force
     vectors = {
         **{f"force_{axis}_N": force.force[:, index] for index, axis in enumerate("xyz")},
@@ -200,7 +200,7 @@ def _force_table(contents: TrialContents) -> Columns:
     return {"time_s": force.time, **vectors, **numbers}
 
 
-def _depth_table(contents: TrialContents) -> Columns:
+def _depth_table(contents: TrialContents) -> ExportColumns:
     depth = contents.depth
     return {
         "time_s": depth.time,
@@ -210,7 +210,7 @@ def _depth_table(contents: TrialContents) -> Columns:
     }
 
 
-def _camera_table(contents: TrialContents, with_files: bool) -> Columns:
+def _camera_table(contents: TrialContents, with_files: bool) -> ExportColumns:
     camera = contents.camera
     columns = {
         "time_s": camera.time,
@@ -229,7 +229,7 @@ def frame_name(row: int, kind: str) -> str:
     return f"frames/{row:06d}.{_ENDINGS.get(kind, 'bin')}"
 
 
-def text_cells(columns: Columns) -> dict[str, list[str]]:
+def text_cells(columns: ExportColumns) -> dict[str, list[str]]:
     """Give the columns as CSV cells: numbers exactly, depths with 12 digits, nothing for NaN."""
     return {name: _cells(name, column) for name, column in columns.items()}
 

@@ -35,7 +35,7 @@ Buffer = bytes | mmap.mmap
 
 
 @dataclass(frozen=True)
-class Frame:
+class RecordExtent:
     """The extent of one record.
 
     Parameters
@@ -54,7 +54,7 @@ class Frame:
     sound: bool = True
 
 
-def frame_at(buffer: Buffer, start: int) -> Frame | None:
+def frame_at(buffer: Buffer, start: int) -> RecordExtent | None:
     """Give the record that begins at a byte, or None where there is none that fits into the file."""
     head = buffer[start : start + _RECORD_HEAD]
     if len(head) < _RECORD_HEAD:
@@ -63,9 +63,9 @@ def frame_at(buffer: Buffer, start: int) -> Frame | None:
     chunk_end = _chunk_end(buffer, start)
     if chunk_end is not None:
         sound = opcode == CHUNK and end == chunk_end == _end_by_inside(buffer, start)
-        return Frame(start, chunk_end, CHUNK, sound)
+        return RecordExtent(start, chunk_end, CHUNK, sound)
     known = 0 < opcode <= _LAST_OPCODE and end <= len(buffer)
-    return Frame(start, end, opcode) if known else None
+    return RecordExtent(start, end, opcode) if known else None
 
 
 def _end_by_head(buffer: Buffer, start: int) -> int:
@@ -130,7 +130,7 @@ class UnreadableError(ValueError):
     """A record that is not what it says it is."""
 
 
-def parse_record(buffer: Buffer, frame: Frame) -> Any:
+def parse_record(buffer: Buffer, frame: RecordExtent) -> Any:
     """Give the library's object for a record.
 
     Raises
@@ -182,7 +182,7 @@ class ChunkContents(NamedTuple):
     messages: list[RawMessage]
 
 
-def read_chunk(buffer: Buffer, frame: Frame) -> ChunkContents:
+def read_chunk(buffer: Buffer, frame: RecordExtent) -> ChunkContents:
     """Give the contents of a chunk, proved by its CRC.
 
     Raises
@@ -222,7 +222,7 @@ def _contents(data: bytes) -> ChunkContents:
             message = RawMessage(channel, sequence, time, published, data[body + _MESSAGE_HEAD.size : at])
             contents.messages.append(message)
         elif opcode in (SCHEMA, CHANNEL):
-            record = parse_record(data, Frame(start, at, opcode))
+            record = parse_record(data, RecordExtent(start, at, opcode))
             (contents.schemas if opcode == SCHEMA else contents.channels)[record.id] = record
     return contents
 

@@ -17,7 +17,7 @@ _LISTED_DAMAGES = 5
 
 
 @dataclass(frozen=True)
-class Recovery:
+class RecoveryOutcome:
     """What a recovery kept and what it could not.
 
     Parameters
@@ -52,7 +52,7 @@ class Recovery:
         }
 
 
-def recover_trial(path: Path | str, out: Path | str) -> Recovery:
+def recover_trial(path: Path | str, out: Path | str) -> RecoveryOutcome:
     """Write everything that is whole in a trial file into a new one; the original is only read.
 
     Messages keep their bytes, times, sequence numbers and order. The new file is a trial like any other; where
@@ -88,7 +88,7 @@ def recover_trial(path: Path | str, out: Path | str) -> Recovery:
         raise TrialFileError(out, f"the recovered trial cannot be written ({error})") from error
     finally:
         part.unlink(missing_ok=True)
-    return Recovery(out, scan.whole, reason, kept, scan.lost_bytes)
+    return RecoveryOutcome(out, scan.whole, reason, kept, scan.lost_bytes)
 
 
 def _check_free(out: Path, part: Path) -> None:

@@ -17,7 +17,14 @@ from typing import Any
 
 from bench_hw.errors import TrialFileError
 from bench_hw.trial_file.encoding import CHANNELS, ChannelInfo
-from bench_hw.trial_file.mcap_records import Frame, RawMessage, Summary, UnreadableError, read_chunk, read_summary
+from bench_hw.trial_file.mcap_records import (
+    RawMessage,
+    RecordExtent,
+    Summary,
+    UnreadableError,
+    read_chunk,
+    read_summary,
+)
 from bench_hw.trial_file.metadata import RECOVERY, TRIAL
 from bench_hw.trial_file.walk import Damage, Walk, walk_through
 
@@ -30,7 +37,7 @@ class Scan:
     ----------
     path : pathlib.Path
         The file.
-    chunks : tuple of Frame
+    chunks : tuple of RecordExtent
         The chunks that are whole, in the file's order.
     channels : Mapping[int, ChannelInfo]
         By their numbers in this file.
@@ -49,7 +56,7 @@ class Scan:
     """
 
     path: Path
-    chunks: tuple[Frame, ...]
+    chunks: tuple[RecordExtent, ...]
     channels: Mapping[int, ChannelInfo]
     rows: Mapping[int, int]
     expected: Mapping[int, int] | None

@@ -13,7 +13,7 @@ from bench_hw.trial_file.mcap_records import (
     MAGIC,
     METADATA,
     Buffer,
-    Frame,
+    RecordExtent,
     UnreadableError,
     frame_at,
     next_frame,
@@ -41,7 +41,7 @@ class Walk:
 
     Parameters
     ----------
-    chunks : list of Frame
+    chunks : list of RecordExtent
         The chunks that are whole.
     damages : list of Damage
         What is not, up to the end of the data.
@@ -55,7 +55,7 @@ class Walk:
         Where the data end, None where that was not met.
     """
 
-    chunks: list[Frame] = field(default_factory=list)
+    chunks: list[RecordExtent] = field(default_factory=list)
     damages: list[Damage] = field(default_factory=list)
     rows: Counter[int] = field(default_factory=Counter)
     schemas: dict[int, Any] = field(default_factory=dict)
@@ -99,7 +99,7 @@ def _skip(walk: Walk, buffer: Buffer, start: int, reason: str, end: int | None =
     return at
 
 
-def _take(walk: Walk, buffer: Buffer, frame: Frame) -> int:
+def _take(walk: Walk, buffer: Buffer, frame: RecordExtent) -> int:
     try:
         _use(walk, buffer, frame)
     except UnreadableError as error:
@@ -110,7 +110,7 @@ def _take(walk: Walk, buffer: Buffer, frame: Frame) -> int:
     return frame.end
 
 
-def _use(walk: Walk, buffer: Buffer, frame: Frame) -> None:
+def _use(walk: Walk, buffer: Buffer, frame: RecordExtent) -> None:
     if frame.opcode == CHUNK:
         _use_chunk(walk, buffer, frame)
         return
@@ -133,7 +133,7 @@ def _crc(buffer: Buffer, end: int) -> int:
         return zlib.crc32(part)
 
 
-def _use_chunk(walk: Walk, buffer: Buffer, frame: Frame) -> None:
+def _use_chunk(walk: Walk, buffer: Buffer, frame: RecordExtent) -> None:
     contents = read_chunk(buffer, frame)
     walk.schemas |= contents.schemas
     walk.channels |= contents.channels

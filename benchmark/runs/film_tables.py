@@ -10,7 +10,7 @@ import numpy as np
 
 from bench_hw.errors import BenchError
 from bench_hw.vision.displacement import (
-    Block,
+    MarkerBlock,
     deformation_window,
     displacements,
     fit_circles,
@@ -38,7 +38,7 @@ class Motion:
         From where each was first seen, m; NaN where not seen. As the camera sees it, perspective included.
     rest : (m, 2) array
         m.
-    block : Block or None
+    block : MarkerBlock or None
         The nine markers around the tool; None on a grid without such.
     radius_nine, radius_ring : (f,) array
         Of the circle through the nine, and through the ring of eight, m.
@@ -52,7 +52,7 @@ class Motion:
     time: Array
     moved: Array
     rest: Array
-    block: Block | None
+    block: MarkerBlock | None
     radius_nine: Array
     radius_ring: Array
     centre: Array

@@ -11,16 +11,16 @@ from reports.figures.markers import circle_radius, marker_motion
 from reports.figures.measured import TrialCurve, measured
 from reports.figures.normal_fit import Normal, normal_fit
 from reports.figures.pressed_layers import moving_surface
-from reports.figures.rows import FittedParameter, Gap, RankedCandidate, fitted_parameters, gap_bars, ranking
+from reports.figures.rows import GapRow, ParameterRow, RankedCandidate, fitted_parameters, gap_bars, ranking
 from reports.figures.style import Pair
 from reports.figures.timing import timing
 
 __all__ = [
     "Disagreement",
-    "FittedParameter",
-    "Gap",
+    "GapRow",
     "Normal",
     "Pair",
+    "ParameterRow",
     "RankedCandidate",
     "RepairedTrace",
     "StackLayer",

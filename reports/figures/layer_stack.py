@@ -48,7 +48,7 @@ class StackLayer:
 
 
 @dataclass(frozen=True)
-class Section:
+class CrossSection:
     """What is drawn: layers between `faces` in mm of depth, shape (L + 1,), and how wide, in mm."""
 
     layers: Sequence[StackLayer]
@@ -59,7 +59,9 @@ class Section:
     hole_radius: float | None
 
     @classmethod
-    def of(cls, layers: Sequence[StackLayer], tool_radius: float, support: str, hole_radius: float | None) -> Section:
+    def of(
+        cls, layers: Sequence[StackLayer], tool_radius: float, support: str, hole_radius: float | None
+    ) -> CrossSection:
         """Return the section of a stack; an endless layer is drawn as deep as makes a good picture."""
         endless = support == "half_space" or layers[-1].thickness_mm is None
         given = [layer.thickness_mm or 0.0 for layer in layers]
@@ -101,7 +103,7 @@ class Section:
         return self.section_height + _ABOVE + _BELOW
 
 
-def paint_section(drawing: Drawing, section: Section) -> None:
+def paint_section(drawing: Drawing, section: CrossSection) -> None:
     """Draw a section with its depth axis on the left and the names of its layers on the right."""
     height = section.picture_height
     axes = drawing.add_axes((_LEFT / WIDE, _BELOW / height, _SECTION / WIDE, section.section_height / height))
@@ -116,7 +118,7 @@ def paint_section(drawing: Drawing, section: Section) -> None:
     _label_layers(axes, section)
 
 
-def _paint_layers(axes: Axes, section: Section) -> None:
+def _paint_layers(axes: Axes, section: CrossSection) -> None:
     """Fill the layers, the stiffer the stronger, by the logarithm of Young's modulus."""
     stiffness = np.log([layer.youngs_modulus_kPa for layer in section.layers])
     shades = 0.2 + 0.55 * (stiffness - stiffness.min()) / (np.ptp(stiffness) or 1.0)
@@ -125,7 +127,7 @@ def _paint_layers(axes: Axes, section: Section) -> None:
         axes.axhline(top, color=_TISSUE, linewidth=1, zorder=2)
 
 
-def _paint_tool(axes: Axes, section: Section) -> None:
+def _paint_tool(axes: Axes, section: CrossSection) -> None:
     from matplotlib.patches import Rectangle
 
     radius, height = section.tool_radius, 0.82 * section.top
@@ -141,7 +143,7 @@ def _paint_tool(axes: Axes, section: Section) -> None:
     axes.axvline(0, color=PAPER, linewidth=0.9, linestyle=(0, (6, 3, 1, 3)), zorder=4)
 
 
-def _paint_support(axes: Axes, section: Section) -> None:
+def _paint_support(axes: Axes, section: CrossSection) -> None:
     """Hatch the rigid base, with its hole; an endless layer ends in a dotted line instead."""
     depth, width = section.depth, section.half_width
     if section.endless:
@@ -155,7 +157,7 @@ def _paint_support(axes: Axes, section: Section) -> None:
         axes.plot([left, right], [depth, depth], color=INK, linewidth=1.6)
 
 
-def _label_layers(axes: Axes, section: Section) -> None:
+def _label_layers(axes: Axes, section: CrossSection) -> None:
     """Write names, thickness and stiffness beside the layers, moved apart where layers are thin."""
     scale = section.section_height / (section.top + section.bottom)
     middles = 0.5 * (section.faces[:-1] + section.faces[1:])
@@ -229,7 +231,7 @@ def layer_stack(
         Without a layer, for a thickness, modulus or radius that is not above zero, or another support.
     """
     _check(layers, tool_radius_mm, support, hole_radius_mm)
-    section = Section.of(layers, tool_radius_mm, support, hole_radius_mm)
+    section = CrossSection.of(layers, tool_radius_mm, support, hole_radius_mm)
     held = _support_words(support, hole_radius_mm)
     caption = f"Cross-section through the tool axis, thicknesses to scale, stronger colour where stiffer; {held}."
     if abs(section.stretch - 1) > 0.05:

@@ -22,7 +22,7 @@ _TWO_SIDED = 1.96
 
 
 @dataclass(frozen=True)
-class FittedParameter:
+class ParameterRow:
     """A fitted value in `unit` with the ends of its 95 % interval, None where the fit gives no interval."""
 
     name: str
@@ -46,7 +46,7 @@ class FittedParameter:
         return " ".join([*parts, *([self.unit] if self.unit else [])])
 
 
-def fitted_parameters(parameters: Sequence[FittedParameter]) -> Figure:
+def fitted_parameters(parameters: Sequence[ParameterRow]) -> Figure:
     """Draw each parameter's value and 95 % interval, those of one unit on one axis.
 
     The axis is logarithmic where all values of the unit are positive and they span more than a factor of 30.
@@ -59,7 +59,7 @@ def fitted_parameters(parameters: Sequence[FittedParameter]) -> Figure:
     """
     if not parameters:
         raise ValueError("parameters is empty; at least one fitted parameter is needed")
-    groups: dict[str, list[FittedParameter]] = {}
+    groups: dict[str, list[ParameterRow]] = {}
     for parameter in parameters:
         groups.setdefault(parameter.unit, []).append(parameter)
 
@@ -77,7 +77,7 @@ def fitted_parameters(parameters: Sequence[FittedParameter]) -> Figure:
     return Figure.of(draw(paint, WIDE, height), caption, words, "Fitted parameters")
 
 
-def _paint_group(axes: Axes, unit: str, group: Sequence[FittedParameter]) -> None:
+def _paint_group(axes: Axes, unit: str, group: Sequence[ParameterRow]) -> None:
     for row, parameter in enumerate(group):
         _paint_parameter(axes, row, parameter)
     _scale(axes, group)
@@ -87,7 +87,7 @@ def _paint_group(axes: Axes, unit: str, group: Sequence[FittedParameter]) -> Non
         axes.locator_params(axis="x", nbins=3)
 
 
-def _paint_parameter(axes: Axes, row: int, parameter: FittedParameter) -> None:
+def _paint_parameter(axes: Axes, row: int, parameter: ParameterRow) -> None:
     colour = FEM.colour if parameter.identifiable else MUTED
     if parameter.interval is not None:
         _interval(axes, row, parameter.interval, colour)
@@ -95,7 +95,7 @@ def _paint_parameter(axes: Axes, row: int, parameter: FittedParameter) -> None:
     _note(axes, row, parameter.text() + ("" if parameter.identifiable else "\nnot identifiable"))
 
 
-def _scale(axes: Axes, group: Sequence[FittedParameter]) -> None:
+def _scale(axes: Axes, group: Sequence[ParameterRow]) -> None:
     """Choose the scale of an axis, with some room at its ends."""
     ends = [end for item in group for end in (item.value, *(item.interval or ()))]
     numbers = np.array([end for end in ends if np.isfinite(end)])
@@ -193,7 +193,7 @@ def _paint_candidate(axes: Axes, row: int, candidate: RankedCandidate, gains: bo
 
 
 @dataclass(frozen=True)
-class Gap:
+class GapRow:
     """Root mean squares in `unit`; the floor is None where there are no replicates."""
 
     name: str
@@ -207,7 +207,7 @@ class Gap:
         return f"{format_number(self.before, 3)} → {format_number(self.after, 3)} {self.unit}"
 
 
-def gap_bars(gaps: Sequence[Gap], held_out: str) -> Figure:
+def gap_bars(gaps: Sequence[GapRow], held_out: str) -> Figure:
     """Draw a pair of bars a gap, in % of what was left before.
 
     Parameters
@@ -241,7 +241,7 @@ def gap_bars(gaps: Sequence[Gap], held_out: str) -> Figure:
     return Figure.of(draw(paint, WIDE, 100 + 52 * len(gaps)), caption, words, "The gap")
 
 
-def _paint_gap(axes: Axes, row: int, gap: Gap) -> None:
+def _paint_gap(axes: Axes, row: int, gap: GapRow) -> None:
     label = row == 0
     for value, stroke, offset in ((gap.before, BEFORE, -0.17), (gap.after, AFTER, 0.17)):
         axes.barh(
@@ -254,7 +254,7 @@ def _paint_gap(axes: Axes, row: int, gap: Gap) -> None:
     _note(axes, row, gap.text(), "small")
 
 
-def _floor(gap: Gap) -> str:
+def _floor(gap: GapRow) -> str:
     return "" if gap.floor is None else f", floor {format_number(gap.floor, 3)} {gap.unit}"
 
 

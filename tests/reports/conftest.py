@@ -146,10 +146,10 @@ def single_figures() -> dict[str, object]:
         "measured_conditions": figures.measured(trial_curves(12, ("5 mm tool", "3 mm tool", "over the hole"))),
         "fitted_parameters": figures.fitted_parameters(
             [
-                figures.FittedParameter("youngs_modulus", 45.2, "kPa", 44.1, 46.3),
-                figures.FittedParameter("dermis.youngs_modulus", 310.0, "kPa", None, None, identifiable=False),
-                figures.FittedParameter("contact_onset", 0.031, "mm", 0.024, 0.038),
-                figures.FittedParameter("force_zero", -0.004, "N", -0.009, 0.001),
+                figures.ParameterRow("youngs_modulus", 45.2, "kPa", 44.1, 46.3),
+                figures.ParameterRow("dermis.youngs_modulus", 310.0, "kPa", None, None, identifiable=False),
+                figures.ParameterRow("contact_onset", 0.031, "mm", 0.024, 0.038),
+                figures.ParameterRow("force_zero", -0.004, "N", -0.009, 0.001),
             ]
         ),
     }

@@ -81,7 +81,7 @@ Picture = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class View:
+class BoardView:
     """A picture of the board.
 
     Parameters
@@ -117,20 +117,20 @@ def read_picture(path: Path) -> Picture:
     return np.asarray(picture, dtype=np.uint8)
 
 
-def look_for_board(grey: Picture, board: Board, name: str) -> View:
+def look_for_board(grey: Picture, board: Board, name: str) -> BoardView:
     """Find the board in a picture; a view without corners says why not."""
     corners = _accurate_corners(grey, board)
     if corners is None:
         edge = typical_edge(grey)
         if edge > WIDEST_EDGE:
-            return View(name, None, f"blurred (edges {edge:.0f} px wide)")
+            return BoardView(name, None, f"blurred (edges {edge:.0f} px wide)")
         other = _other_board(grey, board)
         if other:
-            return View(name, None, other)
+            return BoardView(name, None, other)
         corners = _tolerant_corners(grey, board)
     if corners is None:
-        return View(name, None, "no board")
-    return View(name, None, reason) if (reason := _flaw(grey, board, corners)) else View(name, corners)
+        return BoardView(name, None, "no board")
+    return BoardView(name, None, reason) if (reason := _flaw(grey, board, corners)) else BoardView(name, corners)
 
 
 def _accurate_corners(grey: Picture, board: Board) -> FloatArray | None:

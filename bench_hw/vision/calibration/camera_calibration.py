@@ -9,8 +9,8 @@ from typing import Any
 
 from bench_hw.atomic import check_replaceable
 from bench_hw.errors import InputError
-from bench_hw.vision.calibration.board import Board, View, look_for_board, read_picture
-from bench_hw.vision.calibration.fit import NAMES, Fit, MapError, fit_camera, held_out_map_error
+from bench_hw.vision.calibration.board import Board, BoardView, look_for_board, read_picture
+from bench_hw.vision.calibration.fit import NAMES, CameraFit, MapError, fit_camera, held_out_map_error
 from bench_hw.vision.calibration.scale import PlaneScale, measure_plane
 from bench_hw.vision.calibration.views import (
     check_fit,
@@ -21,7 +21,7 @@ from bench_hw.vision.calibration.views import (
     explain,
 )
 from bench_hw.vision.camera.camera_file import camera_tables, write_camera
-from bench_hw.vision.camera.pinhole import Camera, Domain, Plane, Quality, survey_domain
+from bench_hw.vision.camera.pinhole import Camera, InvertibleDomain, Plane, Quality, survey_domain
 
 Progress = Callable[[int, int | None], None]
 """Called after each picture with how many are done and how many there are."""
@@ -72,11 +72,11 @@ class CalibrationOutcome:
         The file.
     camera : Camera
         What it says.
-    fit : Fit
+    fit : CameraFit
         With the parameters' deviations.
     error : MapError
         Of the map.
-    domain : Domain
+    domain : InvertibleDomain
         Where the distortion can be inverted.
     warnings : tuple of str
         A sentence each.
@@ -84,9 +84,9 @@ class CalibrationOutcome:
 
     out: Path
     camera: Camera
-    fit: Fit
+    fit: CameraFit
     error: MapError
-    domain: Domain
+    domain: InvertibleDomain
     warnings: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
@@ -145,9 +145,9 @@ def calibrate(order: CalibrationOrder, progress: Progress | None = None) -> Cali
     return CalibrationOutcome(order.out, camera, fit, error, domain, tuple(warnings))
 
 
-def _views(order: CalibrationOrder, progress: Progress | None) -> tuple[list[View], tuple[int, int]]:
+def _views(order: CalibrationOrder, progress: Progress | None) -> tuple[list[BoardView], tuple[int, int]]:
     """Look at all pictures; they must be of one size."""
-    views: list[View] = []
+    views: list[BoardView] = []
     size: tuple[int, int] | None = None
     for number, path in enumerate(order.images):
         grey = read_picture(path)
@@ -181,7 +181,9 @@ def _origin(text: str, camera: Camera, scale: PlaneScale) -> tuple[float, float]
         raise InputError(f"origin {text!r}: allowed are axis, plane, or X,Y in undistorted pixels") from None
 
 
-def _remarks(fit: Fit, order: CalibrationOrder, domain: Domain, scale: PlaneScale | None) -> dict[str, str]:
+def _remarks(
+    fit: CameraFit, order: CalibrationOrder, domain: InvertibleDomain, scale: PlaneScale | None
+) -> dict[str, str]:
     deviations = ", ".join(f"{name} {value:.2g}" for name, value in zip(NAMES, fit.deviations, strict=True) if value)
     remarks = {"standard deviations": deviations, "domain": str(domain)}
     if scale is not None:

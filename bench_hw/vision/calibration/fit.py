@@ -23,7 +23,7 @@ NAMES = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Fit:
+class CameraFit:
     """A camera and how well the corners determine it.
 
     Parameters
@@ -44,7 +44,7 @@ class Fit:
     normals: FloatArray
 
 
-def fit_camera(corners: Sequence[FloatArray], board: Board, size: tuple[int, int], free_k3: bool = False) -> Fit:
+def fit_camera(corners: Sequence[FloatArray], board: Board, size: tuple[int, int], free_k3: bool = False) -> CameraFit:
     """Fit matrix and distortion to corners.
 
     Parameters
@@ -78,7 +78,7 @@ def fit_camera(corners: Sequence[FloatArray], board: Board, size: tuple[int, int
         distortion=(k1, k2, p1, p2, k3),
     )
     normals = np.array([cv2.Rodrigues(np.asarray(turn))[0][:, 2] for turn in turns])
-    return Fit(camera, np.ravel(deviations)[:9].astype(np.float64), float(rms), normals)
+    return CameraFit(camera, np.ravel(deviations)[:9].astype(np.float64), float(rms), normals)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from bench_hw.errors import InputError
-from bench_hw.vision.calibration.board import Board, View
-from bench_hw.vision.calibration.fit import NAMES, Fit, MapError
+from bench_hw.vision.calibration.board import Board, BoardView
+from bench_hw.vision.calibration.fit import NAMES, CameraFit, MapError
 from bench_hw.vision.camera.pinhole import FloatArray
 
 FEWEST_VIEWS = 20
@@ -30,7 +30,7 @@ _GOOD_COVERAGE = 0.6
 _FIELDS = (8, 6)
 
 
-def check_number(views: Sequence[View], board: Board) -> list[FloatArray]:
+def check_number(views: Sequence[BoardView], board: Board) -> list[FloatArray]:
     """Give the corners of the views that can be used.
 
     Raises
@@ -48,7 +48,7 @@ def check_number(views: Sequence[View], board: Board) -> list[FloatArray]:
     )
 
 
-def explain(views: Sequence[View]) -> list[str]:
+def explain(views: Sequence[BoardView]) -> list[str]:
     """Say for each reason which views cannot be used."""
     names = defaultdict(list)
     for view in views:
@@ -57,7 +57,7 @@ def explain(views: Sequence[View]) -> list[str]:
     return [f"{reason} in {len(group)}, such as {group[0].name}" + _detail(group[0]) for reason, group in names.items()]
 
 
-def _detail(view: View) -> str:
+def _detail(view: BoardView) -> str:
     _, bracket, detail = view.reason.partition(" (")
     return f" ({detail}" if bracket else ""
 
@@ -88,7 +88,7 @@ def _apart(one: FloatArray, other: FloatArray) -> float:
     return float(np.sqrt(min((straight**2).sum(axis=1).mean(), (turned**2).sum(axis=1).mean())))
 
 
-def check_fit(fit: Fit) -> None:
+def check_fit(fit: CameraFit) -> None:
     """Refuse a camera whose focal length or centre the views leave open.
 
     Raises

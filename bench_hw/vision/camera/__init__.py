@@ -2,11 +2,11 @@
 
 from bench_hw.vision.camera.camera_file import read_camera, write_camera
 from bench_hw.vision.camera.distortion import distort, undistort
-from bench_hw.vision.camera.pinhole import Camera, Domain, Plane, Quality, from_plane, survey_domain, to_plane
+from bench_hw.vision.camera.pinhole import Camera, InvertibleDomain, Plane, Quality, from_plane, survey_domain, to_plane
 
 __all__ = [
     "Camera",
-    "Domain",
+    "InvertibleDomain",
     "Plane",
     "Quality",
     "distort",

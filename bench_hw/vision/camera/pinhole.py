@@ -179,7 +179,7 @@ _GRID_STEP = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Domain:
+class InvertibleDomain:
     """The part of a picture in which pixels have undistorted places.
 
     Parameters
@@ -208,7 +208,7 @@ class Domain:
         )
 
 
-def survey_domain(camera: Camera) -> Domain:
+def survey_domain(camera: Camera) -> InvertibleDomain:
     """Find out where a camera's distortion can be inverted, on a grid of 4 pixels that includes the border."""
     width, height = camera.size
     x = np.unique(np.append(np.arange(0, width, _GRID_STEP), width - 1))
@@ -217,7 +217,7 @@ def survey_domain(camera: Camera) -> Domain:
     inside = invertible(camera, pixels)
     outside = pixels[~inside] - np.asarray(camera.centre)
     nearest = float(np.hypot(outside[:, 0], outside[:, 1]).min()) if len(outside) else float("inf")
-    return Domain(float(inside.mean()), nearest)
+    return InvertibleDomain(float(inside.mean()), nearest)
 
 
 def invertible(camera: Camera, pixels: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -17,7 +17,7 @@ from bench_hw.vision.displacement.table_1 import (
     sound_variables,
 )
 from bench_hw.vision.displacement.tracks import (
-    Block,
+    MarkerBlock,
     Tracks,
     deformation_window,
     displacements,
@@ -27,8 +27,8 @@ from bench_hw.vision.displacement.tracks import (
 )
 
 __all__ = [
-    "Block",
     "Circles",
+    "MarkerBlock",
     "MaximumRadius",
     "ParabolaFits",
     "PublishedVariables",

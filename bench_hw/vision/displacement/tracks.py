@@ -100,7 +100,7 @@ def deformation_window(size: FloatArray, share: float = 0.05) -> slice:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Block:
+class MarkerBlock:
     """A 3 x 3 block of a grid.
 
     Parameters
@@ -118,7 +118,7 @@ class Block:
     ring: NDArray[np.int64]
 
 
-def inner_nine(rest: FloatArray, rows: int, columns: int, centre: int | None = None) -> Block:
+def inner_nine(rest: FloatArray, rows: int, columns: int, centre: int | None = None) -> MarkerBlock:
     """Choose the 3 x 3 block whose middle is nearest the tool axis, which is the origin; ties towards -x.
 
     Parameters
@@ -145,7 +145,7 @@ def inner_nine(rest: FloatArray, rows: int, columns: int, centre: int | None = N
         raise InputError(f"centre marker {centre}: allowed are those with neighbours all round, {inner.tolist()}")
     row, column = divmod(centre, columns)
     nine = number[row - 1 : row + 2, column - 1 : column + 2].ravel()
-    return Block(centre, nine, nine[nine != centre])
+    return MarkerBlock(centre, nine, nine[nine != centre])
 
 
 def _nearest(rest: FloatArray, inner: NDArray[np.int64]) -> int:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from bench_hw.errors import InputError
-from bench_hw.vision.markers.grid import PAPER_LAYOUT, Blobs, FloatArray, Grid, IntArray, Layout, Picture
+from bench_hw.vision.markers.grid import PAPER_LAYOUT, Blobs, DetectedGrid, FloatArray, IntArray, Layout, Picture
 
 SMALLEST_AREA = 20.0
 """Square pixels: below a radius of 2.5 pixels there is no edge to measure."""
@@ -191,7 +191,7 @@ class GridError(InputError):
         self.found = found
 
 
-def detect_grid(grey: Picture, layout: Layout | None = None, straight: Straighten | None = None) -> Grid:
+def detect_grid(grey: Picture, layout: Layout | None = None, straight: Straighten | None = None) -> DetectedGrid:
     """Find the grid of markers in a picture.
 
     Parameters
@@ -238,7 +238,7 @@ def _candidates(grey: Picture, contrast: float) -> Iterator[Blobs]:
             blobs = blobs.subset(np.delete(np.arange(len(blobs)), same))
 
 
-def _grid(blobs: Blobs, layout: Layout | None, straight: Straighten | None) -> Grid:
+def _grid(blobs: Blobs, layout: Layout | None, straight: Straighten | None) -> DetectedGrid:
     points = blobs.centres if straight is None else straight(blobs.centres)
     known = np.asarray(np.isfinite(points).all(axis=1))
     index = arrange(points[known])
@@ -250,7 +250,7 @@ def _grid(blobs: Blobs, layout: Layout | None, straight: Straighten | None) -> G
     if len(blobs) != wanted or not fits:
         raise GridError(_refusal(index, rows, columns, layout, int((~known).sum())), len(blobs))
     order = np.lexsort((index[:, 1], index[:, 0]))
-    return Grid(
+    return DetectedGrid(
         layout=Layout(rows, columns),
         centres=blobs.centres[order],
         radius=float(np.sqrt(np.median(blobs.area) / np.pi)),

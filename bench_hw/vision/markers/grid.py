@@ -82,7 +82,7 @@ class Blobs:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Grid:
+class DetectedGrid:
     """The markers of a picture in the order of their numbers.
 
     Parameters

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from bench_hw.vision.camera.distortion import jacobian, undistort, undistort_near
 from bench_hw.vision.camera.pinhole import Camera
 from bench_hw.vision.markers.edges import Edges, find_edges, ray_fan, sample
-from bench_hw.vision.markers.grid import FloatArray, Grid, IntArray, Picture, Sighting
+from bench_hw.vision.markers.grid import DetectedGrid, FloatArray, IntArray, Picture, Sighting
 from bench_hw.vision.markers.outline import Outlines, area_centroids, compare, fan_centroids, outline_basis, taken_anew
 
 Scalar = TypeVar("Scalar", np.float64, np.bool_)
@@ -96,13 +96,13 @@ class MarkerEdges:
     ----------
     grey : ndarray of uint8, shape (height, width)
         The picture the grid was found in.
-    grid : Grid
+    grid : DetectedGrid
         The markers.
     camera : Camera
         Whose distortion is taken off the edges.
     """
 
-    def __init__(self, grey: Picture, grid: Grid, camera: Camera) -> None:
+    def __init__(self, grey: Picture, grid: DetectedGrid, camera: Camera) -> None:
         count = len(grid.centres)
         self._camera = camera
         self._fan = ray_fan(grid.radius, grid.spacing)

@@ -18,7 +18,7 @@ from bench_hw.vision.camera.pinhole import Camera, survey_domain
 from bench_hw.vision.frames.opening import open_frames
 from bench_hw.vision.frames.source import Frame
 from bench_hw.vision.markers.detection import GridError, detect_grid
-from bench_hw.vision.markers.grid import Grid, Layout, Picture
+from bench_hw.vision.markers.grid import DetectedGrid, Layout, Picture
 from bench_hw.vision.tracking.methods import METHODS
 from bench_hw.vision.tracking.overlay import Still, overlay_video
 from bench_hw.vision.tracking.pipeline import Pipeline, Sinks, TrackOutcome
@@ -160,14 +160,14 @@ class Beginning:
         The first picture with it.
     grey : ndarray of uint8, shape (height, width)
         That picture.
-    grid : Grid
+    grid : DetectedGrid
         The markers in it.
     """
 
     before: tuple[Frame, ...]
     frame: Frame
     grey: Picture
-    grid: Grid
+    grid: DetectedGrid
 
 
 def find_beginning(frames: Iterator[Frame], camera: Camera, layout: Layout | None, name: str) -> Beginning:

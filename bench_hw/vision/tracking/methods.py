@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from bench_hw.vision.camera.distortion import distort
 from bench_hw.vision.camera.pinhole import Camera
 from bench_hw.vision.markers.detection import contrast_of, find_blobs
-from bench_hw.vision.markers.grid import FloatArray, Grid, Picture, Sighting
+from bench_hw.vision.markers.grid import DetectedGrid, FloatArray, Picture, Sighting
 from bench_hw.vision.markers.radial import MarkerEdges
 from bench_hw.vision.tracking.linking import GATE, Absences, doubles, link, refuse_jump
 
@@ -35,13 +35,13 @@ class SubpixelTracker:
     ----------
     grey : ndarray of uint8, shape (height, width)
         The picture the grid was found in.
-    grid : Grid
+    grid : DetectedGrid
         The markers; their numbers are theirs for good.
     camera : Camera
         Whose distortion is taken off.
     """
 
-    def __init__(self, grey: Picture, grid: Grid, camera: Camera) -> None:
+    def __init__(self, grey: Picture, grid: DetectedGrid, camera: Camera) -> None:
         self._edges = MarkerEdges(grey, grid, camera)
         self._last = grid.centres.copy()
         self._everyone = np.arange(len(grid.centres))
@@ -118,13 +118,13 @@ class PaperTracker:
     ----------
     grey : ndarray of uint8, shape (height, width)
         The picture the grid was found in.
-    grid : Grid
+    grid : DetectedGrid
         The markers.
     camera : Camera
         Whose distortion is taken off the pictures.
     """
 
-    def __init__(self, grey: Picture, grid: Grid, camera: Camera) -> None:  # noqa: ARG002 - as every tracker
+    def __init__(self, grey: Picture, grid: DetectedGrid, camera: Camera) -> None:  # noqa: ARG002 - as every tracker
         self._camera, self._grid = camera, grid
         matrix, lens = camera.matrix, np.array(camera.distortion)
         self._maps = cv2.initUndistortRectifyMap(matrix, lens, np.eye(3), matrix, camera.size, cv2.CV_32FC1)
@@ -215,7 +215,7 @@ class Tracker(Protocol):
 class TrackerMaker(Protocol):
     """Makes a tracker from the picture in which the grid was found."""
 
-    def __call__(self, grey: Picture, grid: Grid, camera: Camera) -> Tracker:
+    def __call__(self, grey: Picture, grid: DetectedGrid, camera: Camera) -> Tracker:
         """Make it."""
         ...
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from bench_hw.vision.camera.pinhole import Camera
 from bench_hw.vision.frames.source import Frame, FrameSource
-from bench_hw.vision.markers.grid import FloatArray, Grid, IntArray, Picture, Sighting, unseen
+from bench_hw.vision.markers.grid import DetectedGrid, FloatArray, IntArray, Picture, Sighting, unseen
 from bench_hw.vision.tracking.linking import JumpError
 from bench_hw.vision.tracking.methods import Tracker
 from bench_hw.vision.tracking.overlay import OverlayVideo, Still, draw
@@ -74,7 +74,7 @@ class TrackOutcome:
         The table.
     method : str
         How the markers were found.
-    grid : Grid
+    grid : DetectedGrid
         The markers at the beginning.
     tally : Tally
         Counts.
@@ -86,7 +86,7 @@ class TrackOutcome:
 
     out: Path
     method: str
-    grid: Grid
+    grid: DetectedGrid
     tally: Tally
     synthetic: bool
     warnings: tuple[str, ...]
@@ -129,7 +129,7 @@ class Pipeline:
         Where they come from.
     camera : Camera
         Whose size they must have.
-    grid : Grid
+    grid : DetectedGrid
         The markers in the picture the tracking began with.
     tracker : Tracker
         What finds them.
@@ -140,7 +140,7 @@ class Pipeline:
     """
 
     def __init__(
-        self, source: FrameSource, camera: Camera, grid: Grid, tracker: Tracker, places: Places, sinks: Sinks
+        self, source: FrameSource, camera: Camera, grid: DetectedGrid, tracker: Tracker, places: Places, sinks: Sinks
     ) -> None:
         self._source, self._camera, self._grid = source, camera, grid
         self._tracker, self._places, self._sinks = tracker, places, sinks

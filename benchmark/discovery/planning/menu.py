@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from bench_hw.configuration import validated
-from bench_hw.motion.plan import Plan, plan
+from bench_hw.motion.plan import MotionPlan, plan
 from bench_hw.motion.protocol_file import Protocol
 from benchmark.discovery.discovery_result import Array
 
@@ -176,6 +176,6 @@ def protocol_toml(experiment: Experiment) -> str:
     return tomli_w.dumps(table)
 
 
-def dry_run(experiment: Experiment) -> Plan:
+def dry_run(experiment: Experiment) -> MotionPlan:
     """Where the tool would be when."""
     return plan(validated(Protocol, experiment.table(), experiment.name))

@@ -10,7 +10,7 @@ from benchmark.discovery.discovery_result import PHASES, ChannelGap, Contrast, P
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
 from benchmark.discovery.report.words import HELD_OUT, channel_name, phase_name, probability, sized
 from reports import Block, Bullets, Column, Download, Paragraph, Section, Subsection, Table
-from reports.figures import Disagreement, Gap, RepairedTrace, gap_bars, repaired, where_map
+from reports.figures import Disagreement, GapRow, RepairedTrace, gap_bars, repaired, where_map
 
 MOST_PANELS = 6
 UNTESTED = "Not tested: sign flips of these trials cannot reach the level."
@@ -157,7 +157,9 @@ def gap_section(record: DiscoveryRecord) -> Section:
         blocks.append(gap_bars(bars, record.labels.get("held_out", words)))
     blocks.append(_gap_table(record))
     if record.layers:
-        layers = [Gap(each.layer, 1e3 * each.rmse_before, 1e3 * each.rmse_after, None, "mm") for each in record.layers]
+        layers = [
+            GapRow(each.layer, 1e3 * each.rmse_before, 1e3 * each.rmse_after, None, "mm") for each in record.layers
+        ]
         if all(layer.before > 0 for layer in layers):
             blocks.append(
                 gap_bars(layers, "the loads that the fit has not seen, a layer's deflection on the tool axis")
@@ -166,10 +168,10 @@ def gap_section(record: DiscoveryRecord) -> Section:
     return Section("The gap, before and after", blocks)
 
 
-def _bar(gap: ChannelGap) -> Gap:
+def _bar(gap: ChannelGap) -> GapRow:
     unit, scale = channel_unit(gap.channel)
     floor = scale * gap.noise_floor if gap.noise_floor > 0.0 else None
-    return Gap(channel_name(gap.channel), scale * gap.rmse_before, scale * gap.rmse_after, floor, unit)
+    return GapRow(channel_name(gap.channel), scale * gap.rmse_before, scale * gap.rmse_after, floor, unit)
 
 
 def _gap_table(record: DiscoveryRecord) -> Table:

@@ -15,8 +15,7 @@ from benchmark.runs.report.values import MM, measured_headline
 from benchmark.side_by_side import SideBySide
 from reports import Block, Bullets, Column, Download, Notice, Paragraph, Section, Table
 from reports.figures.measured import TrialCurve, measured
-from reports.figures.rows import FittedParameter as Dot
-from reports.figures.rows import fitted_parameters
+from reports.figures.rows import ParameterRow, fitted_parameters
 from reports.figures.style import Pair
 
 
@@ -137,7 +136,7 @@ def fit_section(parameters: Sequence[FittedParameter], notes: Sequence[str]) -> 
     ]
     figure = fitted_parameters(
         [
-            Dot(each.name, each.value or 0.0, each.unit, each.ci95_low, each.ci95_high, each.identifiable)
+            ParameterRow(each.name, each.value or 0.0, each.unit, each.ci95_low, each.ci95_high, each.identifiable)
             for each in fitted
         ]
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from bench_hw.capture.order import CaptureOrder
-from bench_hw.capture.progress import Snapshot
+from bench_hw.capture.progress import CaptureState
 from bench_hw.capture.session import SessionOutcome, capture
 from bench_hw.motion.protocol_file import LoadedProtocol, load_protocol
 from bench_hw.rig.rig_file import simulated_rig
@@ -42,7 +42,7 @@ speed = "10 mm/s"
 class Watcher:
     """A progress that remembers what is said and can act at each turn."""
 
-    act: Callable[[Snapshot], None] = lambda snapshot: None
+    act: Callable[[CaptureState], None] = lambda snapshot: None
     said: list[str] = field(default_factory=list)
     turns: int = 0
 

@@ -3,9 +3,9 @@
 import io
 import sys
 
-from bench_hw.capture.progress import LiveLine, PlainLines, Silent, Snapshot, choose_progress
+from bench_hw.capture.progress import CaptureState, PlainLines, Silent, TerminalLine, choose_progress
 
-SHOWN = Snapshot(2, 10, "3 of 5: move", 4.2, 8.0, 1.5e-3, 0.75, lost=3)
+SHOWN = CaptureState(2, 10, "3 of 5: move", 4.2, 8.0, 1.5e-3, 0.75, lost=3)
 
 
 def test_a_snapshot_in_one_line():
@@ -22,12 +22,12 @@ def test_plain_lines_come_once_a_second():
     progress = PlainLines(stream)
     with progress.showing():
         for tenth in range(25):
-            progress.update(Snapshot(1, 1, "press", tenth / 10, 8.0))
+            progress.update(CaptureState(1, 1, "press", tenth / 10, 8.0))
     assert stream.getvalue().count("\n") == 3
 
 
 def test_a_live_line_is_drawn_from_the_last_snapshot(monkeypatch, capsys):
-    progress = LiveLine()
+    progress = TerminalLine()
     with progress.showing():
         progress.update(SHOWN)
         progress.say("fault (force_limit): [too] much")
@@ -40,4 +40,4 @@ def test_the_choice_suits_the_place(monkeypatch):
     monkeypatch.setattr(sys.stderr, "isatty", lambda: False, raising=False)
     assert isinstance(choose_progress(quiet=False), PlainLines)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
-    assert isinstance(choose_progress(quiet=False), LiveLine)
+    assert isinstance(choose_progress(quiet=False), TerminalLine)

@@ -5,8 +5,8 @@ import threading
 import numpy as np
 import pytest
 
-from bench_hw.capture.loop import Loop, Surroundings
-from bench_hw.capture.progress import Silent, Snapshot
+from bench_hw.capture.loop import Loop, LoopContext
+from bench_hw.capture.progress import CaptureState, Silent
 from bench_hw.capture.trial import end_safely
 from bench_hw.clock import MonotonicClock
 from bench_hw.motion.steps import go_to
@@ -50,12 +50,12 @@ class Timed:
 def reaction(bench, timed, clock, switched_on):
     """One press over the limit: seconds from the first sample over it to the command to go back."""
     limits = SafetyLimits(LIMIT, 0.5, bench.travel, tuple(bench.force.ranges.tolist()))
-    around = Surroundings(clock, limits, threading.Event(), Silent())
+    context = LoopContext(clock, limits, threading.Event(), Silent())
     timed.over = timed.sent_back = None
-    loop = Loop(bench, around, None, 0.0, Snapshot())
+    loop = Loop(bench, context, None, 0.0, CaptureState())
     with pytest.raises(SafetyError, match="is above the limit") as caught:
         loop.run(go_to(0.009, 0.010, loop.now))
-    end_safely(loop, caught.value, None, around)
+    end_safely(loop, caught.value, None, context)
     clock.sleep(0.3)
     return timed.sent_back - (switched_on + timed.over)
 

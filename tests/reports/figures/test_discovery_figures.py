@@ -7,7 +7,7 @@ import pytest
 
 from reports.figures import (
     Disagreement,
-    Gap,
+    GapRow,
     RankedCandidate,
     RepairedTrace,
     gap_bars,
@@ -78,9 +78,9 @@ def test_without_a_gain_the_share_of_the_gap_is_drawn(texts) -> None:
 
 
 def test_the_gap_names_both_sizes_and_the_floor(texts) -> None:
-    figure = gap_bars([Gap("press force", 0.21, 0.035, 0.03, "N")], "held-out trials")
+    figure = gap_bars([GapRow("press force", 0.21, 0.035, 0.03, "N")], "held-out trials")
     found = texts(figure.panels[0].svg)
     assert {"Before", "After", "Floor", "0.210 → 0.0350 N"} <= set(found)
     assert "floor 0.0300 N" in figure.panels[0].alt
     with pytest.raises(ValueError, match="something left before"):
-        gap_bars([Gap("a", 0.0, 0.0, None, "N")], "x")
+        gap_bars([GapRow("a", 0.0, 0.0, None, "N")], "x")

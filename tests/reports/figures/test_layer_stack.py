@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reports.figures import StackLayer, layer_stack
-from reports.figures.layer_stack import Section, spread
+from reports.figures.layer_stack import CrossSection, spread
 
 SKIN = [StackLayer("epidermis", 0.1, 1500.0), StackLayer("dermis", 1.6, 300.0), StackLayer("fat", 10.0, 3.2)]
 
@@ -27,7 +27,7 @@ def test_layers_are_drawn_to_scale(lines):
 
 
 def test_width_and_depth_have_one_scale_where_that_makes_a_picture():
-    assert Section.of(SKIN, 5.0, "bonded", None).stretch == pytest.approx(1.0)
+    assert CrossSection.of(SKIN, 5.0, "bonded", None).stretch == pytest.approx(1.0)
     assert "vertical scale" not in layer_stack(SKIN, 5.0).caption
 
 
@@ -39,7 +39,7 @@ def test_a_stretched_picture_says_so():
 
 def test_many_thin_layers_get_a_picture_tall_enough_for_their_names(texts):
     many = [StackLayer(f"a layer of number {number}", 0.1, 10.0 + number) for number in range(12)]
-    assert Section.of(many, 5.0, "bonded", None).picture_height > 12 * 40
+    assert CrossSection.of(many, 5.0, "bonded", None).picture_height > 12 * 40
     assert "a layer of number 11" in texts(layer_stack(many, 5.0).panels[0].svg)
 
 
@@ -64,7 +64,7 @@ def test_an_endless_layer_is_called_so(texts):
 
 
 def test_a_half_space_ignores_the_thickness_of_its_last_layer():
-    deep = Section.of([*SKIN[:2], StackLayer("fat", 1e4, 3.2)], 5.0, "half_space", None)
+    deep = CrossSection.of([*SKIN[:2], StackLayer("fat", 1e4, 3.2)], 5.0, "half_space", None)
     assert deep.depth < 50
 
 

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from reports.figures import FittedParameter, fitted_parameters
+from reports.figures import ParameterRow, fitted_parameters
 
-MODULUS = FittedParameter("youngs_modulus", 45.2, "kPa", 44.1, 46.3)
+MODULUS = ParameterRow("youngs_modulus", 45.2, "kPa", 44.1, 46.3)
 
 
 def test_values_and_intervals_are_written(texts):
@@ -19,25 +19,23 @@ def test_the_interval_lies_around_the_dot(lines):
 
 
 def test_each_unit_has_an_axis_of_its_own(texts):
-    found = texts(
-        fitted_parameters([MODULUS, FittedParameter("onset", 0.1, "mm"), FittedParameter("g", 0.3)]).panels[0].svg
-    )
+    found = texts(fitted_parameters([MODULUS, ParameterRow("onset", 0.1, "mm"), ParameterRow("g", 0.3)]).panels[0].svg)
     assert {"value (kPa)", "value (mm)", "value (without unit)"} <= set(found)
 
 
 def test_what_is_not_identifiable_is_said(texts):
-    figure = fitted_parameters([FittedParameter("e_2", 310.0, "kPa", identifiable=False)])
+    figure = fitted_parameters([ParameterRow("e_2", 310.0, "kPa", identifiable=False)])
     assert "not identifiable" in texts(figure.panels[0].svg)
     assert "does not identify" in figure.caption
 
 
 @pytest.mark.parametrize("ends", [(None, None), (1.0, None), (float("nan"), 2.0), (-np.inf, np.inf)])
 def test_half_an_interval_is_none(ends):
-    assert FittedParameter("a", 1.5, "", *ends).interval is None
+    assert ParameterRow("a", 1.5, "", *ends).interval is None
 
 
 def test_a_wide_span_of_positive_values_is_logarithmic(texts):
-    wide = fitted_parameters([FittedParameter("a", 1.0, "kPa"), FittedParameter("b", 1000.0, "kPa")])
+    wide = fitted_parameters([ParameterRow("a", 1.0, "kPa"), ParameterRow("b", 1000.0, "kPa")])
     assert "500" not in texts(wide.panels[0].svg)
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from bench_hw.errors import InputError
-from bench_hw.vision.calibration.board import View
-from bench_hw.vision.calibration.fit import Fit, MapError, fit_camera
+from bench_hw.vision.calibration.board import BoardView
+from bench_hw.vision.calibration.fit import CameraFit, MapError, fit_camera
 from bench_hw.vision.calibration.views import (
     check_fit,
     check_map,
@@ -22,15 +22,15 @@ def good(boards, seen_corners):
 
 
 def test_too_few_views_are_refused_with_the_reasons(good, board):
-    views = [View(f"{n}.png", corners) for n, corners in enumerate(good[:12])]
-    views += [View(f"b{n}.png", None, "blurred (edges 12.0 px wide)") for n in range(9)]
-    views += [View("other.png", None, "a board with 8x5 inner corners")]
+    views = [BoardView(f"{n}.png", corners) for n, corners in enumerate(good[:12])]
+    views += [BoardView(f"b{n}.png", None, "blurred (edges 12.0 px wide)") for n in range(9)]
+    views += [BoardView("other.png", None, "a board with 8x5 inner corners")]
     with pytest.raises(InputError) as refused:
         check_number(views, board)
     for part in ("12 of 22 pictures", "at least 20", "blurred in 9, such as b0.png (edges 12.0 px wide)", "8x5 inner"):
         assert part in str(refused.value)
     assert len(explain(views)) == 2
-    assert len(check_number([View("a", corners) for corners in good], board)) == 22
+    assert len(check_number([BoardView("a", corners) for corners in good], board)) == 22
 
 
 def test_the_same_view_again_and_again_is_refused(good, seen_corners, lens):
@@ -56,7 +56,7 @@ def test_parameters_that_stay_open_are_refused(good, board, lens):
     deviations = fit.deviations.copy()
     deviations[2] = 5.0
     with pytest.raises(InputError, match=r"the camera's cx: 32\d\.\d \+- 5\.0 px; allowed: \+- 3\.1 px"):
-        check_fit(Fit(fit.camera, deviations, fit.reprojection_rms, fit.normals))
+        check_fit(CameraFit(fit.camera, deviations, fit.reprojection_rms, fit.normals))
 
 
 def test_a_map_that_held_out_views_contradict_is_refused():
