@@ -10,21 +10,49 @@ from __future__ import annotations
 import math
 import re
 import tomllib
+from collections.abc import Mapping
 from functools import lru_cache
+from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
-from pydantic import BeforeValidator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
 
 from bench_hw.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from pydantic import BaseModel, ValidationError
+Model = TypeVar("Model", bound=BaseModel)
+_QUANTITY = re.compile(r"\s*(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>[^\d\s+\-].*)", re.DOTALL)
 
 
-Model = TypeVar("Model", bound="BaseModel")
+class StrictModel(BaseModel):
+    """Base of what a file may say: unknown keys are refused, nothing is changed afterwards."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+def shipped_files(package: str) -> dict[str, Path]:
+    """Give the TOML files in a package's `library`: name to path."""
+    folder = Path(str(files(package) / "library"))
+    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
+
+
+def find_file(kind: str, name_or_path: str | Path, shipped: Mapping[str, Path]) -> Path:
+    """Give the path of a file by its path or its shipped name; `kind` says what it is, for the error.
+
+    Raises
+    ------
+    InputError
+        No such file or shipped name.
+    """
+    path = Path(name_or_path)
+    if path.is_file():
+        return path
+    if str(name_or_path) not in shipped:
+        raise InputError(f"{kind} {str(name_or_path)!r}: no such file; shipped are {', '.join(shipped)}")
+    return shipped[str(name_or_path)]
 
 
 def read_toml(path: Path) -> tuple[dict[str, Any], str]:
@@ -68,8 +96,6 @@ def validated(model: type[Model], tables: dict[str, Any], source: str) -> Model:
     InputError
         A key is missing, unknown or has a value that is not allowed; the message names each.
     """
-    from pydantic import ValidationError
-
     try:
         return model.model_validate(tables)
     except ValidationError as error:
@@ -91,9 +117,6 @@ def _mistake(part: Any) -> str:
     value = repr(part["input"])
     shown = "" if value in reason or len(value) > 60 else f" = {value}"
     return f"key {key}{shown}: {reason}"
-
-
-_QUANTITY = re.compile(r"\s*(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>[^\d\s+\-].*)", re.DOTALL)
 
 
 @lru_cache(maxsize=1)

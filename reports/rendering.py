@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from jinja2 import Environment
     from markupsafe import Markup
 
+_FOLD_FROM = 17
+
 
 @dataclass(frozen=True)
 class Scripts:
@@ -77,9 +79,6 @@ def _plotly() -> bytes:
 
 def _source(script: bytes) -> str:
     return f"'sha256-{base64.b64encode(hashlib.sha256(script).digest()).decode('ascii')}'"
-
-
-_FOLD_FROM = 17
 
 
 def environment() -> Environment:

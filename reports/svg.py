@@ -16,6 +16,10 @@ SVG_NAMESPACE = "http://www.w3.org/2000/svg"
 _FORBIDDEN = frozenset({"script", "foreignObject", "iframe", "image", "animate", "set", "style"})
 _REFERENCE = re.compile(r"url\(#([^)]+)\)")
 _FETCH = re.compile(r"url\(\s*(?!['\"]?#)|@import|javascript:", re.IGNORECASE)
+_COLOUR = re.compile(r"#[0-9a-fA-F]{6}\b")
+_FAMILY = re.compile(r"font-family:[^;]*;?\s*")
+_DECIMAL = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
+_ROUNDED = ("d", "x", "y", "width", "height", "points")
 
 
 def parse(svg: str) -> ElementTree.Element:
@@ -127,12 +131,6 @@ def _refuse_active(element: ElementTree.Element) -> None:
 def _local(name: str) -> str:
     """Return a name without its namespace."""
     return name.rsplit("}", 1)[-1]
-
-
-_COLOUR = re.compile(r"#[0-9a-fA-F]{6}\b")
-_FAMILY = re.compile(r"font-family:[^;]*;?\s*")
-_DECIMAL = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
-_ROUNDED = ("d", "x", "y", "width", "height", "points")
 
 
 def themed(raw: str) -> str:

@@ -21,6 +21,11 @@ from bench_hw.rig.bench import Bench
 from bench_hw.safety import SafetyError, SafetyLimits, SafetyMonitor
 from bench_hw.trial_file.records import DepthRecord, EventRecord, ForceRecord, FrameRecord, Level, TrialWriter
 
+RETRACT_TIME = 3.0
+"""How long the tool's way back is tried for while the actuator is lost, s."""
+_RETRACT_PAUSE = 0.05
+_EARLY = 1e-6
+
 
 class Recorder:
     """Writes one trial.
@@ -74,12 +79,6 @@ class Recorder:
     def event(self, time: float, kind: str, message: str, level: Level = "info") -> None:
         """Write something that happened."""
         self._writer.write_event(EventRecord(time, kind, message, level))
-
-
-RETRACT_TIME = 3.0
-"""How long the tool's way back is tried for while the actuator is lost, s."""
-_RETRACT_PAUSE = 0.05
-_EARLY = 1e-6
 
 
 @dataclass(frozen=True, slots=True)

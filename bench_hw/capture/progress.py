@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 
 _PLAIN_PERIOD = 1.0
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 @dataclass(slots=True)
@@ -149,9 +150,6 @@ def choose_progress(quiet: bool) -> ProgressDisplay:
     if quiet:
         return Silent()
     return TerminalLine() if sys.stderr.isatty() else PlainLines()
-
-
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 @contextmanager

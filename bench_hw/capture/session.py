@@ -12,11 +12,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench_hw.capture import session_folder as camera_file
 from bench_hw.capture.loop import LoopContext
 from bench_hw.capture.order import CaptureOrder, check_order
 from bench_hw.capture.progress import CaptureState, ProgressDisplay, stop_on_signals
-from bench_hw.capture.session_folder import SessionFolder
+from bench_hw.capture.session_folder import CAMERA_FILE, SessionFolder, camera_place, camera_text
 from bench_hw.capture.trial import Fault, TrialOutcome, find_zero, go_home, record_trial
 from bench_hw.clock import Clock, MonotonicClock, SimulatedClock, wait_until
 from bench_hw.errors import DeviceError, InputError
@@ -158,13 +157,13 @@ class _Session:
             keys = getattr(self._bench.twins.settings.specimen, "session_keys", dict)()
         if order.rig.rig.camera is None:
             keys.pop("camera", None)
-        text = camera_file.camera_text(order.rig)
+        text = camera_text(order.rig)
         if text is not None:
             self._calibrations["camera"] = hashlib.sha256(text.encode()).hexdigest()
             if not order.append:
-                self._folder.keep(camera_file.NAME, text)
+                self._folder.keep(CAMERA_FILE, text)
             if "camera" in keys:
-                keys["camera"] |= {"file": camera_file.NAME} | camera_file.place(order.rig.rig)
+                keys["camera"] |= {"file": CAMERA_FILE} | camera_place(order.rig.rig)
         self._folder.begin(order, keys)
 
     def _header(self, name: str, zero: float) -> TrialHeader:

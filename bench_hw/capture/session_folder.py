@@ -22,7 +22,9 @@ from bench_hw.rig.rig_file import LoadedRig, Rig, SimulatedCameraConfig
 
 SESSION_FILE = "session.toml"
 LOG_FILE = "capture.json"
+CAMERA_FILE = "camera.toml"
 SCHEMA = 1
+_LEAST_FREE = 20_000_000
 
 
 class SessionFolder:
@@ -156,9 +158,6 @@ class SessionFolder:
             )
 
 
-_LEAST_FREE = 20_000_000
-
-
 def _numbered(number: int) -> str:
     return LOG_FILE if number == 1 else f"capture-{number}.json"
 
@@ -184,9 +183,6 @@ def _merge(into: dict[str, Any], more: dict[str, Any]) -> None:
             into[key] = value
 
 
-NAME = "camera.toml"
-
-
 def camera_text(loaded: LoadedRig) -> str | None:
     """Give the text of the session's `camera.toml`; None if the camera is not calibrated.
 
@@ -203,7 +199,7 @@ def camera_text(loaded: LoadedRig) -> str | None:
     return _of_simulated(loaded) if isinstance(camera, SimulatedCameraConfig) else None
 
 
-def place(rig: Rig) -> dict[str, str]:
+def camera_place(rig: Rig) -> dict[str, str]:
     """Give what a session file says of where the camera is: known of a simulated one only."""
     camera = rig.camera
     return {"distance": f"{camera.distance * 1e3:g} mm"} if isinstance(camera, SimulatedCameraConfig) else {}
@@ -212,20 +208,13 @@ def place(rig: Rig) -> dict[str, str]:
 def _of_simulated(loaded: LoadedRig) -> str:
     import tomli_w
 
-    from bench_hw.rig.opening import optics_of
+    from bench_hw.rig.simulation import optics_of
+    from bench_hw.vision.camera.camera_file import camera_tables
+    from bench_hw.vision.camera.pinhole import Camera, Plane, Quality
 
     optics = optics_of(loaded.rig)
-    centre = [(optics.size[0] - 1) / 2.0, (optics.size[1] - 1) / 2.0]
-    content: dict[str, Any] = {
-        "schema": 1,
-        "image_size": list(optics.size),
-        "matrix": {"fx": optics.focal_length, "fy": optics.focal_length, "cx": centre[0], "cy": centre[1]},
-        "distortion": dict(zip(("k1", "k2", "p1", "p2", "k3"), optics.distortion, strict=True)),
-        "plane": {
-            "mm_per_px": optics.distance * 1e3 / optics.focal_length,
-            "mm_per_px_std": 0.0,
-            "origin_px": centre,
-        },
-        "quality": {"views": 0, "reprojection_rms_px": 0.0, "map_error_rms_px": 0.0},
-    }
-    return "# The true optics of the simulated camera; not measured.\n" + tomli_w.dumps(content)
+    focal, (width, height) = optics.focal_length, optics.size
+    centre = ((width - 1) / 2.0, (height - 1) / 2.0)
+    plane = Plane(optics.distance / focal, 0.0, centre)
+    camera = Camera(optics.size, (focal, focal), centre, optics.distortion, plane, Quality(0, 0.0, 0.0))
+    return "# The true optics of the simulated camera; not measured.\n" + tomli_w.dumps(camera_tables(camera))

@@ -23,6 +23,8 @@ from bench_hw.trial_file.records import TrialWriter
 
 _COAST = 1.0
 """How long recording goes on after a fault, s."""
+_SPEED = 5e-3
+_HOME_TIME = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,10 +113,6 @@ def _kind(error: BaseException) -> str:
         return error.kind
     named = {MotionError: "motion", TrialFileError: "disk", OSError: "disk"}
     return next((kind for known, kind in named.items() if isinstance(error, known)), "unexpected")
-
-
-_SPEED = 5e-3
-_HOME_TIME = 10.0
 
 
 def find_zero(bench: Bench, order: CaptureOrder, context: LoopContext) -> float:

@@ -42,12 +42,12 @@ def calibrate(
     Exit 2 and no file: too few views, views too alike, another board, blurred, a plane without board or ruler.
     """
     with reporting(debug):
+        from bench_hw.vision import silence_opencv
         from bench_hw.vision.calibration.board import parse_corners
         from bench_hw.vision.calibration.camera_calibration import CalibrationOrder
         from bench_hw.vision.calibration.camera_calibration import calibrate as run
-        from bench_hw.vision.messages import hush
 
-        hush()
+        silence_opencv()
         board = parse_corners(corners, square_mm / 1e3)
         order = CalibrationOrder(tuple(images), board, out, plane, mark_mm / 1e3, origin, free_k3)
         outcome = run(order)

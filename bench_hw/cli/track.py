@@ -13,7 +13,7 @@ import typer
 from bench_hw.cli._report import Debug, Json, Quiet, print_json, reporting
 
 if TYPE_CHECKING:
-    from bench_hw.vision.tracking.film import Progress
+    from bench_hw.vision import Progress
     from bench_hw.vision.tracking.pipeline import TrackOutcome
 
 _PLAIN_STEP = 500
@@ -51,12 +51,12 @@ def track(
     a wrong camera file or size, another number of markers, or a jump of half the spacing or more.
     """
     with reporting(debug):
+        from bench_hw.vision import silence_opencv
         from bench_hw.vision.markers.grid import parse_layout
-        from bench_hw.vision.messages import hush
         from bench_hw.vision.tracking.film import TrackOrder
         from bench_hw.vision.tracking.film import track as run
 
-        hush()
+        silence_opencv()
         layout = parse_layout(grid) if grid else None
         order = TrackOrder(source, camera, out, method, layout, fps, pixels, sinking, recentre, overlay, still)
         with _progress(quiet or as_json) as progress:

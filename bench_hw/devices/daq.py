@@ -23,6 +23,8 @@ from bench_hw.errors import DeviceError
 SATURATED_ABOVE = 0.98
 """Share of the full scale above which a gauge voltage counts as saturated."""
 _BIAS_TIME = 0.1
+MISSING = "nidaqmx is not installed: pip install 'tissuebench[daq]', and install NI's NI-DAQmx driver"
+_BUFFERED_SECONDS = 10
 
 
 class VoltageSource(Protocol):
@@ -194,10 +196,6 @@ class DaqForceSensor(Connection):
         if self._calibration is None:
             raise DeviceError(f"{self._source.name}: not connected")
         return self._calibration
-
-
-MISSING = "nidaqmx is not installed: pip install 'tissuebench[daq]', and install NI's NI-DAQmx driver"
-_BUFFERED_SECONDS = 10
 
 
 class NidaqmxSource:

@@ -17,6 +17,11 @@ from bench_hw.errors import DeviceError
 
 LARGEST_GAP = 1.5
 """Periods between two stamps above which frames were dropped."""
+LOCKED: Mapping[str, float] = {"exposure": 156.0, "focus": 60.0, "white_balance": 4500.0}
+"""Values a webcam is locked at unless the rig says others (V4L2 units: 0.1 ms, steps, kelvin)."""
+STAMP_TOLERANCE = 0.5
+"""A camera's own stamp is believed if it is at most this old when the frame is taken, s."""
+_JOIN_TIMEOUT = 2.0
 
 
 class FrameCounter:
@@ -59,13 +64,6 @@ class FrameCounter:
         gap = time - self._last.time
         periods = round(gap / self._period) if gap > LARGEST_GAP * self._period else 1
         return self._last.number + periods
-
-
-LOCKED: Mapping[str, float] = {"exposure": 156.0, "focus": 60.0, "white_balance": 4500.0}
-"""Values a webcam is locked at unless the rig says others (V4L2 units: 0.1 ms, steps, kelvin)."""
-STAMP_TOLERANCE = 0.5
-"""A camera's own stamp is believed if it is at most this old when the frame is taken, s."""
-_JOIN_TIMEOUT = 2.0
 
 
 class Taken(NamedTuple):

@@ -20,6 +20,8 @@ from bench_hw.errors import DeviceError
 
 _LARGEST_PART = 32 * 1024 * 1024
 _LARGEST_HEAD = 16 * 1024
+_CHUNK = 1 << 18
+_MOST_CHUNKS = 64
 
 
 class StreamError(ValueError):
@@ -99,10 +101,6 @@ def _header(head: bytes) -> dict[str, str]:
     lines = head.decode("latin-1").split("\r\n")
     pairs = (line.partition(":") for line in lines if ":" in line)
     return {name.strip().lower(): value.strip() for name, _, value in pairs}
-
-
-_CHUNK = 1 << 18
-_MOST_CHUNKS = 64
 
 
 class HttpCamera(Connection):

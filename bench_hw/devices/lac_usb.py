@@ -27,6 +27,9 @@ LARGEST = 1023
 """Largest value of any command."""
 COUNTS = 1024
 """Counts over the full stroke: one count is stroke / 1024."""
+WHERE = f"LAC board (USB {VENDOR:04X}:{PRODUCT:04X})"
+_FLUSH_MS = 2
+_MOST_STALE = 16
 
 
 class Code(IntEnum):
@@ -78,11 +81,6 @@ def parse(data: bytes) -> tuple[int, int] | None:
         return None
     code, value = PACKET.unpack(data)
     return int(code), int(value)
-
-
-WHERE = f"LAC board (USB {VENDOR:04X}:{PRODUCT:04X})"
-_FLUSH_MS = 2
-_MOST_STALE = 16
 
 
 class LacLink:

@@ -31,6 +31,9 @@ _TORQUE_UNITS = {
     "lbfft": 1.3558179483314004,
     "kgfcm": 0.0980665,
 }
+_LARGEST_DATAGRAM = 65_536
+_RECEIVE_BUFFER = 4 * 1024 * 1024
+_MOST_DATAGRAMS = 8192
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,11 +209,6 @@ def _ranges(text: str, newton: float, newton_metre: float) -> tuple[float, ...]:
     if len(values) != 6:
         return (float("nan"),) * 6
     return tuple(value * (newton if axis < 3 else newton_metre) for axis, value in enumerate(values))
-
-
-_LARGEST_DATAGRAM = 65_536
-_RECEIVE_BUFFER = 4 * 1024 * 1024
-_MOST_DATAGRAMS = 8192
 
 
 class RdtSocket:

@@ -33,6 +33,28 @@ INTERNAL_RATE = 7000
 
 LARGEST_BUFFER = 40
 """Most records in a datagram of buffered mode."""
+_BITS = {
+    30: "CPU or RAM error",
+    29: "digital board error",
+    28: "analog board error",
+    27: "serial link error",
+    26: "program memory error",
+    25: "halted by a configuration error",
+    24: "settings not valid",
+    23: "settings do not fit the calibration",
+    22: "network failure",
+    20: "RDT failure",
+    17: "transducer saturated",
+    16: "condition latched",
+    1: "analog board watchdog",
+    0: "excessive gauge current",
+}
+MODULUS = 2**32
+HALF = MODULUS // 2
+WINDOW = 256
+"""How late (in records) one may be and still be called late; further back is a restart."""
+TICK = 1e-6
+"""Least distance between two stamps, s."""
 
 
 class Command(IntEnum):
@@ -105,22 +127,6 @@ def divider_of(rate: int) -> int:
     return INTERNAL_RATE // rate
 
 
-_BITS = {
-    30: "CPU or RAM error",
-    29: "digital board error",
-    28: "analog board error",
-    27: "serial link error",
-    26: "program memory error",
-    25: "halted by a configuration error",
-    24: "settings not valid",
-    23: "settings do not fit the calibration",
-    22: "network failure",
-    20: "RDT failure",
-    17: "transducer saturated",
-    16: "condition latched",
-    1: "analog board watchdog",
-    0: "excessive gauge current",
-}
 _HARMLESS = Status.ERROR | Status.LATCH
 
 
@@ -139,12 +145,6 @@ def describe(status: int) -> str:
     named = [text for bit, text in _BITS.items() if status >> bit & 1]
     other = status & ~_HARMLESS & ~sum(1 << bit for bit in _BITS)
     return ", ".join(named + ([f"other bits {other:#x}"] if other else [])) or "healthy"
-
-
-MODULUS = 2**32
-HALF = MODULUS // 2
-WINDOW = 256
-"""How late (in records) one may be and still be called late; further back is a restart."""
 
 
 class SequenceTracker:
@@ -252,10 +252,6 @@ class SequenceTracker:
         self._base += (self._last or 0) + 1 - sequence
         self._missing.clear()
         return self._accept_one(sequence, sample)
-
-
-TICK = 1e-6
-"""Least distance between two stamps, s."""
 
 
 def back_dated(now: float, previous: float, sequence: NDArray[np.int64], period: float) -> NDArray[np.float64]:

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 ASSUMED_STIFFNESS = 1000.0
 """Press force per depth assumed for moves to a force, N/m."""
+Piece = tuple[float, float, bool]
+_WIDTH, _HEIGHT = 64, 11
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,9 +95,6 @@ def plan(protocol: Protocol, start_depth: float | None = None) -> MotionPlan:
     return MotionPlan(protocol.name, tuple(steps))
 
 
-Piece = tuple[float, float, bool]
-
-
 @singledispatch
 def _pieces(segment: object, depth: float) -> Iterator[Piece]:  # noqa: ARG001 - the dispatch's signature
     """Duration (s), depth at the end (m) and whether assumed, of each straight piece of a segment."""
@@ -130,9 +129,6 @@ def _(segment: Cycle, depth: float) -> Iterator[Piece]:
     for _number in range(segment.count):
         yield abs(second - first) / segment.speed, second, False
         yield abs(second - first) / segment.speed, first, False
-
-
-_WIDTH, _HEIGHT = 64, 11
 
 
 def summary(plan: MotionPlan, trials: int = 1) -> list[str]:

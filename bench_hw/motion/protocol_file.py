@@ -7,14 +7,22 @@ contact; positive into the specimen. A `hold` after a `move` to a force holds th
 from __future__ import annotations
 
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
-from bench_hw.configuration import Duration, Force, Length, Speed, read_toml, validated
-from bench_hw.errors import InputError
+from bench_hw.configuration import (
+    Duration,
+    Force,
+    Length,
+    Speed,
+    StrictModel,
+    find_file,
+    read_toml,
+    shipped_files,
+    validated,
+)
 
 CLEARANCE = 2e-3
 """Distance to the specimen between trials of a protocol without a retraction, m."""
@@ -24,18 +32,14 @@ Time = Annotated[Duration, Field(gt=0.0, le=86_400.0)]
 Push = Annotated[Force, Field(gt=0.0, le=100.0)]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Wait(_Strict):
+class Wait(StrictModel):
     """Stay where the tool is: `rest` in air, `hold` in the specimen."""
 
     kind: Literal["rest", "hold"]
     duration: Time
 
 
-class Approach(_Strict):
+class Approach(StrictModel):
     """Go down until the press force reaches `touch_force`; that place becomes depth zero."""
 
     kind: Literal["approach"]
@@ -44,7 +48,7 @@ class Approach(_Strict):
     max_depth: Annotated[Length, Field(gt=0.0, le=0.1)]
 
 
-class Move(_Strict):
+class Move(StrictModel):
     """Go to a depth, or up or down until the press force is reached."""
 
     kind: Literal["move"]
@@ -59,7 +63,7 @@ class Move(_Strict):
         return self
 
 
-class Cycle(_Strict):
+class Cycle(StrictModel):
     """Go to the first depth, then `count` times to the second and back."""
 
     kind: Literal["cycle"]
@@ -74,7 +78,7 @@ class Cycle(_Strict):
         return self
 
 
-class Retract(_Strict):
+class Retract(StrictModel):
     """Go back to a depth, usually a negative one (in air)."""
 
     kind: Literal["retract"]
@@ -85,7 +89,7 @@ class Retract(_Strict):
 Segment = Annotated[Wait | Approach | Move | Cycle | Retract, Field(discriminator="kind")]
 
 
-class Protocol(_Strict):
+class Protocol(StrictModel):
     """A whole protocol.
 
     `setup` is what a person must do first (another tool, a rigid block, a picture of a ruler): it is shown
@@ -95,7 +99,7 @@ class Protocol(_Strict):
     schema_version: Annotated[Literal[1], Field(alias="schema")]
     name: Annotated[str, Field(min_length=1, max_length=100)]
     description: str = ""
-    setup: dict[str, Any] = {}
+    setup: dict[str, Any] = Field(default_factory=dict)
     segments: Annotated[tuple[Segment, ...], Field(min_length=1, max_length=10_000)]
 
     @property
@@ -140,8 +144,7 @@ class LoadedProtocol:
 
 def shipped() -> dict[str, Path]:
     """Give the shipped protocols: name to path."""
-    folder = Path(str(files("bench_hw.motion") / "library"))
-    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
+    return shipped_files("bench_hw.motion")
 
 
 def load_protocol(name_or_path: str | Path) -> LoadedProtocol:
@@ -152,18 +155,6 @@ def load_protocol(name_or_path: str | Path) -> LoadedProtocol:
     InputError
         No such file or shipped name, or the file says something that is not allowed.
     """
-    from bench_hw.motion.protocol_file import Protocol
-
-    path = _find(str(name_or_path))
+    path = find_file("protocol", name_or_path, shipped())
     tables, text = read_toml(path)
     return LoadedProtocol(validated(Protocol, tables, str(path)), text, path)
-
-
-def _find(name: str) -> Path:
-    known = shipped()
-    if name in known and not Path(name).is_file():
-        return known[name]
-    path = Path(name)
-    if not path.is_file():
-        raise InputError(f"protocol {name!r}: no such file; shipped are {', '.join(known)}")
-    return path

@@ -10,16 +10,9 @@ from bench_hw.clock import Clock
 from bench_hw.configuration import read_toml
 from bench_hw.devices import protocols
 from bench_hw.errors import DeviceError, InputError
-from bench_hw.rig import rig_file as schema
+from bench_hw.rig import rig_file
 from bench_hw.rig.bench import Bench
-from bench_hw.rig.rig_file import LoadedRig, Rig, SimulatedCameraConfig, SimulatedForceConfig
-from bench_hw.simulated.camera_server import CameraSettings
-from bench_hw.simulated.netft_box import BoxSettings
-from bench_hw.simulated.picture import CameraModel
-from bench_hw.simulated.rdt_stream import StreamFaults, parse_positions
-from bench_hw.simulated.sensor import SensorModel
-from bench_hw.simulated.specimen import SheetSpecimen, Specimen
-from bench_hw.simulated.twins import FOR_EVER, TimedFault, TwinSettings
+from bench_hw.rig.rig_file import LoadedRig
 
 if TYPE_CHECKING:
     from bench_hw.simulated.specimen import Specimen
@@ -61,7 +54,7 @@ def open_bench(loaded: LoadedRig, clock: Clock, *, specimen: Specimen | None = N
     """
     rig = loaded.rig
     _check_calibration(loaded)
-    twins = _switch_on(rig, clock, specimen, seed) if rig.simulated else None
+    twins = _twins(rig, clock, specimen, seed) if rig.simulated else None
     context = Opening(loaded, clock, twins)
     camera = None if rig.camera is None else open_camera(rig.camera, context)
     return Bench(rig, open_force(rig.force, context), open_actuator(rig.actuator, context), camera, twins)
@@ -74,7 +67,7 @@ def open_force(device: object, context: Opening) -> protocols.ForceSensor:  # no
 
 
 @open_force.register
-def _(device: schema.NetFTConfig, context: Opening) -> protocols.ForceSensor:
+def _(device: rig_file.NetFTConfig, context: Opening) -> protocols.ForceSensor:
     from bench_hw.devices.netft import NetFTSensor
 
     return NetFTSensor(
@@ -89,7 +82,7 @@ def _(device: schema.NetFTConfig, context: Opening) -> protocols.ForceSensor:
 
 
 @open_force.register
-def _(device: schema.DaqConfig, context: Opening) -> protocols.ForceSensor:
+def _(device: rig_file.DaqConfig, context: Opening) -> protocols.ForceSensor:
     from bench_hw.devices.daq import DaqForceSensor, NidaqmxSource
 
     path = context.loaded.resolve(device.calibration)
@@ -98,7 +91,7 @@ def _(device: schema.DaqConfig, context: Opening) -> protocols.ForceSensor:
 
 
 @open_force.register
-def _(device: schema.SimulatedForceConfig, context: Opening) -> protocols.ForceSensor:
+def _(device: rig_file.SimulatedForceConfig, context: Opening) -> protocols.ForceSensor:
     from bench_hw.devices.netft import NetFTSensor
 
     box = context.switched_on().box
@@ -120,9 +113,9 @@ def open_actuator(device: object, context: Opening) -> protocols.Actuator:  # no
     raise TypeError(f"no driver for {type(device).__name__}")
 
 
-@open_actuator.register(schema.LacConfig)
-@open_actuator.register(schema.SimulatedActuatorConfig)
-def _(device: schema.LacConfig | schema.SimulatedActuatorConfig, context: Opening) -> protocols.Actuator:
+@open_actuator.register(rig_file.LacConfig)
+@open_actuator.register(rig_file.SimulatedActuatorConfig)
+def _(device: rig_file.LacConfig | rig_file.SimulatedActuatorConfig, context: Opening) -> protocols.Actuator:
     from bench_hw.devices.lac import LacActuator
 
     return LacActuator(
@@ -141,7 +134,7 @@ def open_camera(device: object, context: Opening) -> protocols.CameraDriver:  # 
 
 
 @open_camera.register
-def _(device: schema.WebcamConfig, context: Opening) -> protocols.CameraDriver:
+def _(device: rig_file.WebcamConfig, context: Opening) -> protocols.CameraDriver:
     if device.driver == "v4l2":
         from bench_hw.devices.v4l2_camera import V4l2Camera
 
@@ -156,21 +149,21 @@ def _(device: schema.WebcamConfig, context: Opening) -> protocols.CameraDriver:
 
 
 @open_camera.register
-def _(device: schema.HttpCameraConfig, context: Opening) -> protocols.CameraDriver:
+def _(device: rig_file.HttpCameraConfig, context: Opening) -> protocols.CameraDriver:
     from bench_hw.devices.http_camera import HttpCamera
 
     return HttpCamera(device.url, rate=device.rate, clock=context.clock)
 
 
 @open_camera.register
-def _(device: schema.ImagesCameraConfig, context: Opening) -> protocols.CameraDriver:
+def _(device: rig_file.ImagesCameraConfig, context: Opening) -> protocols.CameraDriver:
     from bench_hw.devices.images_camera import ImagesCamera
 
     return ImagesCamera(context.loaded.resolve(device.folder), rate=device.rate, clock=context.clock)
 
 
 @open_camera.register
-def _(device: schema.SimulatedCameraConfig, context: Opening) -> protocols.CameraDriver:
+def _(device: rig_file.SimulatedCameraConfig, context: Opening) -> protocols.CameraDriver:
     from bench_hw.devices.http_camera import HttpCamera
 
     server = context.switched_on().camera
@@ -192,68 +185,7 @@ def _check_calibration(loaded: LoadedRig) -> None:
         raise DeviceError(f"{where}: made for pictures of {size} pixels; the rig asks for {list(camera.size)}")
 
 
-def _switch_on(rig: schema.Rig, clock: Clock, specimen: Specimen | None, seed: int | None) -> Twins:
-    from bench_hw.rig.opening import faults_of, settings_of
-    from bench_hw.simulated.twins import switch_on
+def _twins(rig: rig_file.Rig, clock: Clock, specimen: Specimen | None, seed: int | None) -> Twins:
+    from bench_hw.rig.simulation import switch_on_twins
 
-    try:
-        twins = switch_on(settings_of(rig, specimen, seed), clock)
-    except OSError as error:
-        raise DeviceError(f"simulated devices: {error}") from error
-    try:
-        twins.schedule(faults_of(rig))
-    except BaseException:
-        twins.close()
-        raise
-    return twins
-
-
-def settings_of(rig: Rig, specimen: Specimen | None = None, seed: int | None = None) -> TwinSettings:
-    """Give the settings of a rig's twins."""
-    return TwinSettings(
-        specimen=SheetSpecimen() if specimen is None else specimen,
-        stroke=rig.actuator.stroke,
-        max_speed=rig.actuator.max_speed,
-        contact=rig.simulation.contact,
-        seed=rig.simulation.seed if seed is None else seed,
-        box=_box(rig),
-        camera=_camera(rig),
-        picture=optics_of(rig),
-    )
-
-
-def optics_of(rig: Rig) -> CameraModel:
-    """Give the optics of a rig's simulated camera (the usual ones if it has none)."""
-    camera = rig.camera
-    if not isinstance(camera, SimulatedCameraConfig):
-        return CameraModel()
-    usual = CameraModel()
-    return CameraModel(
-        size=camera.size,
-        focal_length=camera.focal_px or usual.focal_length * camera.size[0] / usual.size[0],
-        distance=camera.distance,
-        distortion=camera.distortion or usual.distortion,
-        noise=camera.noise,
-        blur=camera.blur,
-        lighting=camera.lighting,
-    )
-
-
-def faults_of(rig: Rig) -> list[TimedFault]:
-    """Give the faults that a rig's simulated devices are to show."""
-    return [TimedFault(fault.kind, fault.at, fault.duration or FOR_EVER) for fault in rig.simulation.faults]
-
-
-def _box(rig: Rig) -> BoxSettings | None:
-    force = rig.force
-    if not isinstance(force, SimulatedForceConfig):
-        return None
-    sensor = SensorModel(press_axis=force.press_axis, force_noise=force.noise, torque_noise=0.01 * force.noise)
-    return BoxSettings(sensor=sensor, faults=StreamFaults(loss=force.loss, drop=parse_positions(force.drop)))
-
-
-def _camera(rig: Rig) -> CameraSettings | None:
-    camera = rig.camera
-    if not isinstance(camera, SimulatedCameraConfig):
-        return None
-    return CameraSettings(rate=camera.rate, jitter=camera.jitter, loss=camera.loss, quality=camera.quality)
+    return switch_on_twins(rig, clock, specimen, seed)

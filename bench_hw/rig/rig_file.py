@@ -4,14 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
-from bench_hw.configuration import Duration, Force, Frequency, Length, Speed, read_toml, validated
-from bench_hw.errors import InputError
+from bench_hw.configuration import (
+    Duration,
+    Force,
+    Frequency,
+    Length,
+    Speed,
+    StrictModel,
+    find_file,
+    read_toml,
+    shipped_files,
+    validated,
+)
 
 Axis = Literal["+x", "-x", "+y", "-y", "+z", "-z"]
 Port = Annotated[int, Field(ge=1, le=65_535, strict=True)]
@@ -21,11 +30,7 @@ Size = Annotated[int, Field(ge=16, le=10_000, strict=True)]
 Frames = Annotated[Frequency, Field(ge=0.1, le=1000.0)]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class _Force(_Strict):
+class _Force(StrictModel):
     """What every force sensor has."""
 
     rate: Annotated[Frequency, Field(ge=1.0, le=7000.0)] = 1000.0
@@ -62,7 +67,7 @@ class SimulatedForceConfig(_Force):
     drop: str = ""
 
 
-class _Actuator(_Strict):
+class _Actuator(StrictModel):
     """What every actuator has; `contact` is the position at which the tool meets the specimen."""
 
     stroke: Annotated[Length, Field(gt=0.0, le=1.0)]
@@ -85,7 +90,7 @@ class SimulatedActuatorConfig(_Actuator):
     kind: Literal["simulated"]
 
 
-class _Camera(_Strict):
+class _Camera(StrictModel):
     """What every camera has."""
 
     rate: Frames = 30.0
@@ -131,7 +136,7 @@ class SimulatedCameraConfig(_Camera):
     loss: Share = 0.0
 
 
-class Safety(_Strict):
+class Safety(StrictModel):
     """The limits; `travel` are positions of the actuator from fully retracted (default: the whole stroke)."""
 
     force_limit: Annotated[Force, Field(gt=0.0, le=1000.0)] = 6.0
@@ -139,7 +144,7 @@ class Safety(_Strict):
     travel: tuple[Length, Length] | None = None
 
 
-class ScheduledFault(_Strict):
+class ScheduledFault(StrictModel):
     """A fault that simulated devices show at a time after the bench was switched on."""
 
     kind: Literal[
@@ -156,7 +161,7 @@ class ScheduledFault(_Strict):
     duration: Annotated[Duration, Field(gt=0.0)] | None = None
 
 
-class Simulation(_Strict):
+class Simulation(StrictModel):
     """What is common to the simulated devices."""
 
     seed: Annotated[int, Field(ge=0, strict=True)] = 0
@@ -171,7 +176,7 @@ CameraConfig = Annotated[
 ]
 
 
-class Rig(_Strict):
+class Rig(StrictModel):
     """A whole rig file."""
 
     schema_version: Annotated[Literal[1], Field(alias="schema")]
@@ -238,8 +243,7 @@ class LoadedRig:
 
 def shipped_rigs() -> dict[str, Path]:
     """Give the shipped rigs: name to path."""
-    folder = Path(str(files("bench_hw.rig") / "library"))
-    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
+    return shipped_files("bench_hw.rig")
 
 
 def load_rig(name_or_path: str | Path) -> LoadedRig:
@@ -250,15 +254,7 @@ def load_rig(name_or_path: str | Path) -> LoadedRig:
     InputError
         No such file or shipped name, or the file says something that is not allowed.
     """
-    from bench_hw.rig.rig_file import Rig
-
-    name = str(name_or_path)
-    path = Path(name)
-    if not path.is_file():
-        known = shipped_rigs()
-        if name not in known:
-            raise InputError(f"rig {name!r}: no such file; shipped are {', '.join(known)}")
-        path = known[name]
+    path = find_file("rig", name_or_path, shipped_rigs())
     tables, text = read_toml(path)
     return LoadedRig(validated(Rig, tables, str(path)), text, path)
 
@@ -272,8 +268,6 @@ def simulated_rig(changes: Mapping[str, Mapping[str, Any] | None]) -> LoadedRig:
         A key or value that a rig file may not have.
     """
     import tomli_w
-
-    from bench_hw.rig.rig_file import Rig
 
     path = shipped_rigs()["simulated"]
     tables, _ = read_toml(path)

@@ -12,7 +12,7 @@ from typing import Any
 from bench_hw.clock import MonotonicClock
 from bench_hw.devices import netft_network
 from bench_hw.errors import BenchError, DeviceError
-from bench_hw.rig import rig_file as schema
+from bench_hw.rig import rig_file
 from bench_hw.rig.rig_file import LoadedRig
 
 _QUICK = 0.5
@@ -68,14 +68,14 @@ def _of_rig(name: str, device: Any, loaded: LoadedRig) -> Finding:
         return Finding(name, device.kind, False, "not usable", str(error))
 
 
-def _look_netft(device: schema.NetFTConfig, loaded: LoadedRig) -> str:
+def _look_netft(device: rig_file.NetFTConfig, loaded: LoadedRig) -> str:
     found = netft_network.read_configuration(device.host, device.http_port, 2.0)
     if device.serial is not None and device.serial != found.serial:
         raise DeviceError(f"serial {found.serial!r} at {device.host}; {loaded.path} asks for {device.serial!r}")
     return f"{found.product}, serial {found.serial}, {found.rate} Hz"
 
 
-def _look_daq(device: schema.DaqConfig, loaded: LoadedRig) -> str:
+def _look_daq(device: rig_file.DaqConfig, loaded: LoadedRig) -> str:
     from bench_hw.devices.daq import MISSING, DaqForceSensor, NidaqmxSource
 
     sensor = DaqForceSensor(NidaqmxSource(device.device), loaded.resolve(device.calibration), serial=device.serial)
@@ -85,7 +85,7 @@ def _look_daq(device: schema.DaqConfig, loaded: LoadedRig) -> str:
         return f"calibration of serial {sensor.info.serial}; inputs {device.device} are tried by capture"
 
 
-def _look_actuator(device: schema.LacConfig, loaded: LoadedRig) -> str:
+def _look_actuator(device: rig_file.LacConfig, loaded: LoadedRig) -> str:
     from bench_hw.rig.opening import Opening, open_actuator
 
     with open_actuator(device, Opening(loaded, MonotonicClock())) as actuator:
@@ -101,12 +101,12 @@ def _look_camera(device: Any, loaded: LoadedRig) -> str:
 
 
 _LOOK: dict[type, Callable[[Any, LoadedRig], str]] = {
-    schema.NetFTConfig: _look_netft,
-    schema.DaqConfig: _look_daq,
-    schema.LacConfig: _look_actuator,
-    schema.WebcamConfig: _look_camera,
-    schema.HttpCameraConfig: _look_camera,
-    schema.ImagesCameraConfig: _look_camera,
+    rig_file.NetFTConfig: _look_netft,
+    rig_file.DaqConfig: _look_daq,
+    rig_file.LacConfig: _look_actuator,
+    rig_file.WebcamConfig: _look_camera,
+    rig_file.HttpCameraConfig: _look_camera,
+    rig_file.ImagesCameraConfig: _look_camera,
 }
 
 

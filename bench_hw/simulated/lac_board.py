@@ -26,6 +26,11 @@ FACTORY = {
     Code.SET_SPEED: LARGEST,
 }
 """Settings at power-on and after RESET."""
+_GET_DESCRIPTOR = 0x06
+_STRING = 0x03
+_LANGUAGE = 0x0409
+_SERIAL_INDEX = 3
+_TIMEOUT, _NO_DEVICE = -7, -4
 
 
 class LacBoard:
@@ -100,13 +105,6 @@ class LacBoard:
 
 
 # ruff: noqa: ARG002 - the signatures are pyusb's
-
-
-_GET_DESCRIPTOR = 0x06
-_STRING = 0x03
-_LANGUAGE = 0x0409
-_SERIAL_INDEX = 3
-_TIMEOUT, _NO_DEVICE = -7, -4
 
 
 class LacUsbBackend(IBackend):  # type: ignore[misc]

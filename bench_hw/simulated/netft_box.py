@@ -27,6 +27,8 @@ from bench_hw.simulated.specimen import FloatArray
 
 Page = Callable[[str, dict[str, str]], str | None]
 """Path and query of a request to the text of the page; None for a page there is not."""
+TICK = 1e-3
+_LARGEST_COUNT = 2**31 - 1
 
 
 def configuration_page(values: dict[str, str]) -> str:
@@ -85,10 +87,6 @@ def _handler(page: Page) -> type[BaseHTTPRequestHandler]:
             """Say nothing: this runs inside tests and other programs."""
 
     return Handler
-
-
-TICK = 1e-3
-_LARGEST_COUNT = 2**31 - 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,10 @@ from numpy.typing import NDArray
 from bench_hw.devices.rdt import INTERNAL_RATE, RECORD
 from bench_hw.errors import InputError
 
+MODULUS = 2**32
+Measure = Callable[[NDArray[np.float64]], tuple[NDArray[np.int32], NDArray[np.uint32]]]
+"""Instants (n,) of the clock, s, to counts (n, 6) and status words (n,)."""
+
 
 @dataclass(frozen=True, slots=True)
 class StreamFaults:
@@ -60,11 +64,6 @@ def _range(part: str) -> Iterable[int]:
     if not all(end.strip().isdecimal() for end in ends) or not 1 <= int(ends[0]) <= int(ends[1]) <= 10_000_000:
         raise InputError(f"positions {part!r}: allowed are numbers from 1 and ranges like 200-202")
     return range(int(ends[0]), int(ends[1]) + 1)
-
-
-MODULUS = 2**32
-Measure = Callable[[NDArray[np.float64]], tuple[NDArray[np.int32], NDArray[np.uint32]]]
-"""Instants (n,) of the clock, s, to counts (n, 6) and status words (n,)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
+PERIOD = 4.0
+"""Period of the slow swing, s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,10 +152,6 @@ class SheetSpecimen:
         slope = self.sinking * pressed[:, None] * 4.0 / self.hole_radius**2 * share
         moved = rest * (1.0 + 0.5 * self.thickness * slope)[..., None]
         return np.concatenate([moved, sunk[..., None]], axis=-1)
-
-
-PERIOD = 4.0
-"""Period of the slow swing, s."""
 
 
 def swinging(peak: float) -> Callable[[FloatArray], FloatArray]:

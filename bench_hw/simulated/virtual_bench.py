@@ -15,6 +15,8 @@ import numpy as np
 
 from bench_hw.simulated.specimen import FloatArray, Specimen
 
+_FIRST_CAPACITY = 4096
+
 
 @dataclass(slots=True)
 class ActuatorMotion:
@@ -66,9 +68,6 @@ class ActuatorMotion:
             return 0.0
         braking = math.sqrt(2.0 * self.acceleration * abs(error))
         return math.copysign(min(self.speed, braking), error)
-
-
-_FIRST_CAPACITY = 4096
 
 
 class VirtualBench:

@@ -25,6 +25,7 @@ MINIMUM_ROWS = 20
 """A measured table with fewer rows than this is refused."""
 
 _NUMERIC_BYTES = b"0123456789+-.eE,\n \t"
+_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,9 +159,6 @@ def _records(path: Path, text: str, first_line: int) -> Iterator[tuple[int, list
     except csv.Error as error:
         allowed = "cells separated by commas, one line per row"
         raise TableError(path, f"the row cannot be split ({error})", allowed, row=line + 1) from error
-
-
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,6 +21,8 @@ from bench_hw.tables.output import write_columns
 from bench_hw.tables.units import ColumnMap, FloatArray
 
 _DELIMITERS = (",", ";", "\t", "|")
+SCHEMA = 1
+_TIME = "time_s"
 
 
 @dataclass(frozen=True)
@@ -125,10 +127,6 @@ def _cells(path: Path, number: int, line: str, delimiter: str) -> list[str]:
         problem = f"the row cannot be split ({error})"
         raise TableError(path, problem, f"cells separated by {delimiter!r}", row=number) from error
     return [cell.strip() for cell in cells]
-
-
-SCHEMA = 1
-_TIME = "time_s"
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,10 @@ from bench_hw.tables.output import write_columns
 from bench_hw.tables.units import FloatArray, from_si, join_unit, split_unit, to_si
 
 IntArray = NDArray[np.int64]
+TRIAL_COLUMNS = ("time_s", "depth_mm", "force_N")
+MARKER_COLUMNS = ("time_s", "marker", "x_mm", "y_mm")
+_MAY_BE_EMPTY = ("x_mm", "y_mm", "confidence")
+_LAST_MARKER = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,9 +75,6 @@ class MarkerTable:
     x: FloatArray
     y: FloatArray
     source: str = ""
-
-
-TRIAL_COLUMNS = ("time_s", "depth_mm", "force_N")
 
 
 def read_trial_csv(path: Path | str) -> TrialTable:
@@ -146,11 +147,6 @@ def write_trial_csv(path: Path | str, table: TrialTable) -> Path:
         unit = table.extra_units.get(name, "")
         columns[join_unit(name, unit)] = from_si(numbers, unit)
     return write_columns(Path(path), columns, increasing="time_s", exact=("time_s",))
-
-
-MARKER_COLUMNS = ("time_s", "marker", "x_mm", "y_mm")
-_MAY_BE_EMPTY = ("x_mm", "y_mm", "confidence")
-_LAST_MARKER = 1_000_000
 
 
 def read_marker_csv(path: Path | str) -> MarkerTable:

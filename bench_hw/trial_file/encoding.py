@@ -20,6 +20,10 @@ _INTEGER = {"type": "integer"}
 _NUMBER = {"type": ["number", "null"]}
 _TIME = {"type": "object", "title": "time", "properties": {"sec": _INTEGER, "nsec": _INTEGER}}
 _AXES = {"type": "object", "properties": {"x": _NUMBER, "y": _NUMBER, "z": _NUMBER}}
+Record = ForceRecord | DepthRecord | FrameRecord | EventRecord
+NANOSECONDS = 1_000_000_000
+_LEVELS: dict[Level, int] = {"info": 2, "warning": 3, "fault": 4}
+_LEVEL_NAMES: dict[int, Level] = {number: name for name, number in _LEVELS.items()}
 
 
 @dataclass(frozen=True)
@@ -114,12 +118,6 @@ EVENTS = _channel(
 )
 CHANNELS: dict[int, ChannelInfo] = {1: FORCE, 2: DEPTH, 3: CAMERA, 4: EVENTS}
 """The channels of every trial this bench writes, by their number in the file."""
-
-
-Record = ForceRecord | DepthRecord | FrameRecord | EventRecord
-NANOSECONDS = 1_000_000_000
-_LEVELS: dict[Level, int] = {"info": 2, "warning": 3, "fault": 4}
-_LEVEL_NAMES: dict[int, Level] = {number: name for name, number in _LEVELS.items()}
 
 
 def nanoseconds(time: float) -> int:

@@ -19,6 +19,9 @@ from bench_hw.trial_file.records import PressAxis
 from bench_hw.trial_file.scan import read_messages
 
 SCHEMA = 1
+ExportColumns = Mapping[str, NDArray[Any]]
+_ENDINGS = {"jpeg": "jpg", "png": "png", "webp": "webp"}
+_ROUNDED = ("depth_mm", "target_mm")
 
 
 @dataclass(frozen=True)
@@ -150,11 +153,6 @@ def _write_parquet(file: Path, columns: ExportColumns) -> None:
     table = pa.table({name: pa.array(column, from_pandas=True) for name, column in columns.items()})
     with replacing(file) as temporary:
         pq.write_table(table, temporary)
-
-
-ExportColumns = Mapping[str, NDArray[Any]]
-_ENDINGS = {"jpeg": "jpg", "png": "png", "webp": "webp"}
-_ROUNDED = ("depth_mm", "target_mm")
 
 
 def trial_tables(

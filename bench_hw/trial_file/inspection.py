@@ -16,6 +16,13 @@ from bench_hw.trial_file.sequence import SHORTEST_GAP, check_sequence, longest_a
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+SCHEMA = 1
+DRIFT_WINDOW = 0.5
+"""Time at the start and at the end of a trial over which the force is compared, s."""
+DRIFT_ROWS = 10
+"""Fewest rows at either end from which a drift is told."""
+SAME_DEPTH = 0.2e-3
+"""Depths at start and end that are this close (m) count as the same: the actuator's own accuracy."""
 
 
 @dataclass(frozen=True)
@@ -143,15 +150,6 @@ def _steps(numbers: IntArray) -> IntArray:
 def _rate(time: FloatArray, step: IntArray) -> float | None:
     span = float(time[-1] - time[0])
     return float(step.sum()) / span if span > 0.0 else None
-
-
-SCHEMA = 1
-DRIFT_WINDOW = 0.5
-"""Time at the start and at the end of a trial over which the force is compared, s."""
-DRIFT_ROWS = 10
-"""Fewest rows at either end from which a drift is told."""
-SAME_DEPTH = 0.2e-3
-"""Depths at start and end that are this close (m) count as the same: the actuator's own accuracy."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,6 +18,12 @@ from bench_hw.trial_file.encoding import NANOSECONDS, ChannelInfo
 
 SYNC_PERIOD = 0.2
 """Time between syncs to the disk, s."""
+CHUNK_SIZE = 64 * 1024
+CHUNK_SPAN = NANOSECONDS // 5
+"""Longest recorded time in one chunk, ns."""
+METADATA_SPAN = 5 * NANOSECONDS
+"""Recorded time between repetitions of the metadata, ns."""
+PROFILE = "tissuebench"
 
 
 class NewFile:
@@ -109,14 +115,6 @@ def sync_folder(folder: Path) -> None:
         os.fsync(handle)
     finally:
         os.close(handle)
-
-
-CHUNK_SIZE = 64 * 1024
-CHUNK_SPAN = NANOSECONDS // 5
-"""Longest recorded time in one chunk, ns."""
-METADATA_SPAN = 5 * NANOSECONDS
-"""Recorded time between repetitions of the metadata, ns."""
-PROFILE = "tissuebench"
 
 
 class ChunkedWriter:

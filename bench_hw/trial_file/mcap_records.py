@@ -32,6 +32,11 @@ _COMPRESSION = b"\x04\x00\x00\x00zstd"
 _DATA_END_HEAD = b"\x0f\x04\x00\x00\x00\x00\x00\x00\x00"
 
 Buffer = bytes | mmap.mmap
+_LARGEST_CHUNK = 256 * 1024 * 1024
+_FOOTER_BYTES = 29
+_FOOTER_CRC_AT = 25
+_HEAD = struct.Struct("<BQ")
+_MESSAGE_HEAD = struct.Struct("<HIQQ")
 
 
 @dataclass(frozen=True)
@@ -117,13 +122,6 @@ def _next_data_end(buffer: Buffer, start: int) -> int | None:
             return at
         at = buffer.find(_DATA_END_HEAD, at + 1)
     return None
-
-
-_LARGEST_CHUNK = 256 * 1024 * 1024
-_FOOTER_BYTES = 29
-_FOOTER_CRC_AT = 25
-_HEAD = struct.Struct("<BQ")
-_MESSAGE_HEAD = struct.Struct("<HIQQ")
 
 
 class UnreadableError(ValueError):

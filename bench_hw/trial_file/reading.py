@@ -33,9 +33,8 @@ from bench_hw.trial_file.encoding import (
     nanoseconds,
 )
 from bench_hw.trial_file.mcap_records import RawMessage
-from bench_hw.trial_file.metadata import read_header
 from bench_hw.trial_file.records import DepthRecord, EventRecord, ForceRecord, PressAxis, TrialHeader
-from bench_hw.trial_file.scan import Scan, read_messages, scan_trial
+from bench_hw.trial_file.scan import Scan, read_messages, scan_trial, trial_header
 from bench_hw.trial_file.sequence import check_sequence, longest_allowed
 
 FloatArray = NDArray[np.float64]
@@ -117,7 +116,7 @@ def read_contents(path: Path, topics: Collection[str] = TOPICS) -> TrialContents
         The file cannot be read, is no trial, or was written by another schema.
     """
     scan = scan_trial(path)
-    header = _header(scan)
+    header = trial_header(scan)
     epoch = 0 if header is None else nanoseconds(header.clock_epoch)
     rows: dict[str, list[Any]] = {topic: [] for topic in _DECODERS}
     for message in read_messages(scan, topics):
@@ -131,15 +130,6 @@ def read_contents(path: Path, topics: Collection[str] = TOPICS) -> TrialContents
         _camera_columns(rows[CAMERA.topic]),
         tuple(rows[EVENTS.topic]),
     )
-
-
-def _header(scan: Scan) -> TrialHeader | None:
-    if scan.header is None:
-        return None
-    try:
-        return read_header(scan.header)
-    except (ValueError, KeyError) as error:
-        raise TrialFileError(scan.path, f"the trial's metadata cannot be read ({error})") from error
 
 
 def _depth_row(time: float, message: RawMessage) -> tuple[DepthRecord, int]:

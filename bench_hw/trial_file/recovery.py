@@ -10,7 +10,7 @@ from bench_hw.errors import TrialFileError
 from bench_hw.trial_file.mcap_output import ChunkedWriter, NewFile, sync_folder
 from bench_hw.trial_file.metadata import RECOVERY, TRIAL, sealed
 from bench_hw.trial_file.scan import Scan, read_messages, scan_trial
-from bench_hw.trial_file.writer import PART, SUFFIX
+from bench_hw.trial_file.writer import part_of
 
 SCHEMA = 1
 _LISTED_DAMAGES = 5
@@ -77,8 +77,7 @@ def recover_trial(path: Path | str, out: Path | str) -> RecoveryOutcome:
     reason = _reason(scan)
     if not kept:
         raise TrialFileError(path, f"nothing can be kept ({reason or 'the trial has no records'})")
-    part = out.with_name(out.name + PART)
-    _check_free(out, part)
+    part = part_of(out)
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
         _copy(scan, part, reason)
@@ -89,14 +88,6 @@ def recover_trial(path: Path | str, out: Path | str) -> RecoveryOutcome:
     finally:
         part.unlink(missing_ok=True)
     return RecoveryOutcome(out, scan.whole, reason, kept, scan.lost_bytes)
-
-
-def _check_free(out: Path, part: Path) -> None:
-    if out.suffix != SUFFIX:
-        raise TrialFileError(out, f"a trial file is named NAME{SUFFIX}")
-    for existing in (out, part):
-        if existing.exists():
-            raise TrialFileError(existing, "the file exists and is not overwritten; give another name")
 
 
 def _copy(scan: Scan, part: Path, reason: str) -> None:

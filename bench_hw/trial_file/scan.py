@@ -25,7 +25,8 @@ from bench_hw.trial_file.mcap_records import (
     read_chunk,
     read_summary,
 )
-from bench_hw.trial_file.metadata import RECOVERY, TRIAL
+from bench_hw.trial_file.metadata import RECOVERY, TRIAL, read_header
+from bench_hw.trial_file.records import TrialHeader
 from bench_hw.trial_file.walk import Damage, Walk, walk_through
 
 
@@ -207,3 +208,19 @@ def read_messages(scan: Scan, topics: Collection[str] | None = None) -> Iterator
             except UnreadableError as error:
                 raise TrialFileError(scan.path, "the file has changed while it was read") from error
             yield from (message for message in contents.messages if message.channel in wanted)
+
+
+def trial_header(scan: Scan) -> TrialHeader | None:
+    """Give what the file says about itself; None where no copy of it is whole.
+
+    Raises
+    ------
+    TrialFileError
+        It was written by another schema.
+    """
+    if scan.header is None:
+        return None
+    try:
+        return read_header(scan.header)
+    except (ValueError, KeyError) as error:
+        raise TrialFileError(scan.path, f"the trial's metadata cannot be read ({error})") from error

@@ -18,6 +18,11 @@ IntArray = NDArray[np.int64]
 MODULUS = 2**32
 LATEST = 256
 """How many numbers back a record may come and still count as late."""
+FloatArray = NDArray[np.float64]
+GAP_PERIODS = 1.5
+"""An interval longer than this many periods is a gap in the frames of a camera."""
+SHORTEST_GAP = 0.05
+"""No interval shorter than this (s) is called a gap in force or depth: it is how old force data may be."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,14 +94,6 @@ def _signed_steps(numbers: IntArray) -> IntArray:
     """Give the steps modulo 2^32, from -2^31 up to 2^31 - 1; 1 in the first row."""
     step: IntArray = np.diff(numbers, prepend=numbers[:1] - 1)
     return (step + MODULUS // 2) % MODULUS - MODULUS // 2
-
-
-FloatArray = NDArray[np.float64]
-
-GAP_PERIODS = 1.5
-"""An interval longer than this many periods is a gap in the frames of a camera."""
-SHORTEST_GAP = 0.05
-"""No interval shorter than this (s) is called a gap in force or depth: it is how old force data may be."""
 
 
 def usual_interval(time: FloatArray) -> float:

@@ -25,6 +25,11 @@ SUFFIX = ".mcap"
 PART = ".part"
 _FLUSH_PERIOD = 0.2
 _LAST_TIME = 1.8e10
+DRAIN_PERIOD = 0.05
+"""Time between two looks at the queue, s."""
+LARGEST_BACKLOG = 256 * 1024 * 1024
+"""Bytes that may wait before the disk is called too slow."""
+_RECORD_BYTES = 400
 
 
 def open_trial(path: Path | str, header: TrialHeader, background: bool = True) -> TrialWriter:
@@ -52,12 +57,7 @@ def open_trial(path: Path | str, header: TrialHeader, background: bool = True) -
         Another ending than `.mcap`, the trial or its `.part` exists, the folder cannot be written.
     """
     path = Path(path)
-    if path.suffix != SUFFIX:
-        raise TrialFileError(path, f"a trial file is named NAME{SUFFIX}")
-    part = path.with_name(path.name + PART)
-    for existing in (path, part):
-        if existing.exists():
-            raise TrialFileError(existing, "the file exists and is not overwritten; give another name")
+    part = part_of(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         file = NewFile(part)
@@ -66,6 +66,23 @@ def open_trial(path: Path | str, header: TrialHeader, background: bool = True) -
         problem = f"the file cannot be created ({error.strerror}); give a folder that can be written"
         raise TrialFileError(part, problem) from error
     return McapTrialWriter(path, file, chunks, background)
+
+
+def part_of(path: Path) -> Path:
+    """Give the name under which a new trial file is written until it is whole.
+
+    Raises
+    ------
+    TrialFileError
+        Another ending than `.mcap`, or the trial or its `.part` exists.
+    """
+    if path.suffix != SUFFIX:
+        raise TrialFileError(path, f"a trial file is named NAME{SUFFIX}")
+    part = path.with_name(path.name + PART)
+    for existing in (path, part):
+        if existing.exists():
+            raise TrialFileError(existing, "the file exists and is not overwritten; give another name")
+    return part
 
 
 def _begun(file: NewFile, header: TrialHeader) -> ChunkedWriter:
@@ -219,13 +236,6 @@ class McapTrialWriter:
             "make room or give another folder, and use `recover` on it"
         )
         return TrialFileError(self._file.path, problem)
-
-
-DRAIN_PERIOD = 0.05
-"""Time between two looks at the queue, s."""
-LARGEST_BACKLOG = 256 * 1024 * 1024
-"""Bytes that may wait before the disk is called too slow."""
-_RECORD_BYTES = 400
 
 
 class Backlog:

@@ -15,6 +15,7 @@ from typing import Any, ClassVar
 from reports.blocks.text import Block
 
 DIGITS = 6
+SIGNATURES = {b"\x89PNG\r\n\x1a\n": "image/png", b"GIF87a": "image/gif", b"GIF89a": "image/gif"}
 
 
 @dataclass(frozen=True)
@@ -144,9 +145,6 @@ class Panel:
     alt: str
     title: str = ""
     live: Live | None = None
-
-
-SIGNATURES = {b"\x89PNG\r\n\x1a\n": "image/png", b"GIF87a": "image/gif", b"GIF89a": "image/gif"}
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,19 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import ClassVar
 
+NOTICES: Mapping[str, str] = MappingProxyType(
+    {
+        "warning": "Warning",
+        "finding": "Finding",
+        "synthetic": "Synthetic data",
+        "circular": "Circular comparison",
+        "assumption": "Assumption",
+    }
+)
+VERDICTS: Mapping[str, str] = MappingProxyType(
+    {"good": "Good", "finding": "Finding", "failed": "Failed", "incomplete": "Incomplete", "unknown": "Unknown"}
+)
+
 
 @dataclass(frozen=True)
 class Block:
@@ -37,17 +50,6 @@ def one_of(name: str, value: str, allowed: Mapping[str, str]) -> None:
     """Refuse a word that is not allowed."""
     if value not in allowed:
         raise ValueError(f"{name} is {value!r}; allowed: {', '.join(allowed)}")
-
-
-NOTICES: Mapping[str, str] = MappingProxyType(
-    {
-        "warning": "Warning",
-        "finding": "Finding",
-        "synthetic": "Synthetic data",
-        "circular": "Circular comparison",
-        "assumption": "Assumption",
-    }
-)
 
 
 @dataclass(frozen=True)
@@ -137,11 +139,6 @@ class KeyFigures(Block):
 
     template: ClassVar[str] = "key_figures"
     items: Sequence[KeyFigure]
-
-
-VERDICTS: Mapping[str, str] = MappingProxyType(
-    {"good": "Good", "finding": "Finding", "failed": "Failed", "incomplete": "Incomplete", "unknown": "Unknown"}
-)
 
 
 @dataclass(frozen=True)

@@ -72,19 +72,9 @@ def max_deformation(
     error = None if wave is None else optional_matrix("percent_error", percent_error, shape)
     scale = shared_limits([*fem.T, *([] if wave is None else wave.T)])
     error_scale = None if error is None else shared_limits(list(error.T))
+    errors = [(layer_of(error, place), error_scale) for place in range(len(layer_names))]
     layers = [
-        _LoadPanel(
-            name,
-            place,
-            x,
-            x_label,
-            fem[:, place],
-            layer_of(wave, place),
-            layer_of(error, place),
-            scale,
-            error_scale,
-            pair,
-        )
+        _LoadPanel(name, place, x, fem[:, place], layer_of(wave, place), scale, pair, x_label, *errors[place])
         for place, name in enumerate(layer_names)
     ]
     height = 290 if error is None else 380
@@ -94,19 +84,37 @@ def max_deformation(
 
 
 @dataclass(frozen=True)
-class _LoadPanel:
-    """One panel."""
+class _LayerPanel:
+    """One panel: a layer's name, its abscissa and both models' deflections, shape (n,) each."""
 
     name: str
     place: int
     x: Floats
-    x_label: str
     fem: Floats
     wave: Floats | None
-    error: Floats | None
     scale: Limits
-    error_scale: Limits
     pair: Pair
+
+    def paint_models(self, axes: Axes, stops: bool = True) -> None:
+        """Draw both models' lines on the vertical scale that the panels share."""
+        model_line(axes, self.x, self.fem, self.pair.fem, stops)
+        if self.wave is not None:
+            model_line(axes, self.x, self.wave, self.pair.wave, stops)
+        axes.set_ylim(*(self.scale or (None, None)))
+
+    def name_panel(self, axes: Axes) -> None:
+        """Write the layer's name and the legend above."""
+        heading(axes, self.name, self.place, room=24)
+        legend_above(axes)
+
+
+@dataclass(frozen=True)
+class _LoadPanel(_LayerPanel):
+    """A layer's top face over the load history, the error below."""
+
+    x_label: str
+    error: Floats | None
+    error_scale: Limits
 
     def paint(self, drawing: Drawing) -> None:
         """Draw the deflections and, under them, the error."""
@@ -115,14 +123,10 @@ class _LoadPanel:
         else:
             top, bottom = drawing.subplots(2, 1, sharex=True, height_ratios=(2.3, 1))
             self._paint_error(bottom, self.error)
-        model_line(top, self.x, self.fem, self.pair.fem)
-        if self.wave is not None:
-            model_line(top, self.x, self.wave, self.pair.wave)
-        top.set_ylim(*(self.scale or (None, None)))
+        self.paint_models(top)
         top.set_ylabel("deflection (mm)")
         bottom.set_xlabel(self.x_label)
-        heading(top, self.name, self.place, room=24)
-        legend_above(top)
+        self.name_panel(top)
 
     def _paint_error(self, axes: Axes, error: Floats) -> None:
         zero_line(axes)
@@ -195,7 +199,7 @@ def profile(
     columns = None if wave is None else wave.T
     scale = shared_limits([*fem, *([] if wave is None else wave)])
     layers = [
-        _ProfilePanel(name, place, radius, fem[place], layer_of(columns, place), tool_radius_mm, scale, pair)
+        _ProfilePanel(name, place, radius, fem[place], layer_of(columns, place), scale, pair, tool_radius_mm)
         for place, name in enumerate(layer_names)
     ]
     panels = [Panel(draw(layer.paint, SMALL, 290), layer.words(), layer.name, layer.live()) for layer in layers]
@@ -203,37 +207,26 @@ def profile(
 
 
 @dataclass(frozen=True)
-class _ProfilePanel:
-    """One panel."""
+class _ProfilePanel(_LayerPanel):
+    """A layer's top face over the radius at peak load."""
 
-    name: str
-    place: int
-    radius: Floats
-    fem: Floats
-    wave: Floats | None
     tool_radius: float | None
-    scale: tuple[float, float] | None
-    pair: Pair
 
     def paint(self, drawing: Drawing) -> None:
         """Draw the dent, the surface at the top."""
         axes = drawing.subplots()
         zero_line(axes)
-        model_line(axes, self.radius, self.fem, self.pair.fem, stops=False)
-        if self.wave is not None:
-            model_line(axes, self.radius, self.wave, self.pair.wave, stops=False)
-        axes.set_ylim(*(self.scale or (None, None)))
+        self.paint_models(axes, stops=False)
         axes.invert_yaxis()
-        axes.set_xlim(float(self.radius.min()), float(self.radius.max()))
+        axes.set_xlim(float(self.x.min()), float(self.x.max()))
         if self.tool_radius is not None:
             edge_line(axes, self.tool_radius, "tool edge")
         axes.set(xlabel="distance from the tool axis (mm)", ylabel="deflection (mm)")
-        heading(axes, self.name, self.place, room=24)
-        legend_above(axes)
+        self.name_panel(axes)
 
     def live(self) -> LivePlot:
         """The same dent, to zoom."""
-        lines = model_lines(self.pair, self.radius, self.fem, self.wave)
+        lines = model_lines(self.pair, self.x, self.fem, self.wave)
         marks = [] if self.tool_radius is None else [(self.tool_radius, "tool edge")]
         axes = LiveAxes("deflection (mm)", lines, downwards=True)
         return LivePlot("distance from the tool axis (mm)", (axes,), marks)

@@ -37,6 +37,9 @@ if TYPE_CHECKING:
 
 _FIELD = 0.92
 _STRONGEST = 0.75
+BEFORE = Stroke("Before", WAVE.colour, WAVE.line, "s", "the model before")
+AFTER = Stroke("After", FEM.colour, "-", "o", "the model after")
+_BAND = 2.0
 
 
 @dataclass(frozen=True)
@@ -188,11 +191,6 @@ def _two_lines(name: str) -> str:
 
 def _read(value: float) -> str:
     return format_number(float(value), 2)
-
-
-BEFORE = Stroke("Before", WAVE.colour, WAVE.line, "s", "the model before")
-AFTER = Stroke("After", FEM.colour, "-", "o", "the model after")
-_BAND = 2.0
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ __all__ = ["StackLayer", "layer_stack"]
 
 _TISSUE, _TOOL = PALETTE["tissue"].light, PALETTE["tool"].light
 _LEFT, _SECTION, _BELOW, _ABOVE, _LABEL = 58.0, 345.0, 50.0, 8.0, 40.0
+_SUPPORTS = ("bonded", "hole", "half_space")
 
 
 @dataclass(frozen=True)
@@ -201,9 +202,6 @@ def spread(wanted: Floats, gap: float, low: float, high: float) -> Floats:
     down = np.maximum.accumulate(wanted - offsets)
     up = np.minimum.accumulate((wanted - offsets)[::-1])[::-1]
     return np.clip(0.5 * (down + up), low, high - offsets[-1]) + offsets
-
-
-_SUPPORTS = ("bonded", "hole", "half_space")
 
 
 def layer_stack(

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 _AXIS = {"force": "force (N)", "depth": "depth (mm)"}
 _OTHER = {"force": "depth", "depth": "force"}
+Curve = tuple[Floats, Floats]
 
 
 def load_history(
@@ -88,9 +89,6 @@ def load_history(
         f" The {stroke.label} stopped early." for values, stroke in answers if stopped_at(values) is not None
     )
     return Figure.of(draw(paint, WIDE, 420 if answers else 260), caption, words, "Load history")
-
-
-Curve = tuple[Floats, Floats]
 
 
 def force_depth(

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 
 HEIGHT = 230
+SURFACE_WIDTH, SURFACE_HEIGHT, DPI = 4.2, 3.4, 80
+FRAMES_PER_SECOND = 12
 
 
 def pressed_layers(
@@ -154,10 +156,6 @@ def _caption(endless: bool) -> str:
     text = "The layers at peak load without magnification, the tool's width above them; to turn where JavaScript runs, "
     text += "with faces coloured by deflection and layers taken off by their names. Sideways displacement is not drawn."
     return text + (" Of the last layer only the top face is drawn." if endless else "")
-
-
-SURFACE_WIDTH, SURFACE_HEIGHT, DPI = 4.2, 3.4, 80
-FRAMES_PER_SECOND = 12
 
 
 def moving_surface(

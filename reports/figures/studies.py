@@ -42,6 +42,7 @@ LOOKS: Sequence[tuple[str, LineStyle]] = tuple(
     for name in ("fem", "wave", "incomplete", "good", "ink", "tissue")
 )
 """Colour and dash of each line, in order; they repeat after eighteen."""
+MOST_DOTS = 400
 
 
 def overlay(
@@ -131,9 +132,6 @@ def _largest(values: Floats) -> str:
     if not np.isfinite(values).any():
         return "without values"
     return format_number(float(values[int(np.nanargmax(np.abs(values)))]))
-
-
-MOST_DOTS = 400
 
 
 @dataclass(frozen=True)

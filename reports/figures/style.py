@@ -27,24 +27,6 @@ LineStyle = str | tuple[float, tuple[float, ...]]
 INK, MUTED, GRID, PAPER = (PALETTE[name].light for name in ("ink", "muted", "grid", "paper"))
 WIDE, SMALL = 600, 340
 _TYPE_WIDE, _TYPE_SMALL = 13.2, 11.0  # wide pictures shrink on a narrow page
-
-
-@dataclass(frozen=True)
-class Stroke:
-    """How a series is drawn, never by colour alone: its label, colour, line style, marker and name in a sentence."""
-
-    label: str
-    colour: str
-    line: LineStyle
-    marker: str
-    name: str
-
-
-FEM = Stroke("FEM", PALETTE["fem"].light, "-", "o", "FEM")
-WAVE = Stroke("Wave", PALETTE["wave"].light, (0, (4, 1.8)), "s", "wave model")
-MEASURED = Stroke("Measured", PALETTE["measured"].light, "-", "D", "measured")
-TRIAL = Stroke("Trial", PALETTE["trial"].light, "-", "o", "trial")
-
 _SETTINGS: Mapping[Any, Any] = MappingProxyType(
     {
         "svg.fonttype": "none",
@@ -95,6 +77,26 @@ _SETTINGS: Mapping[Any, Any] = MappingProxyType(
         "figure.constrained_layout.h_pad": 0.04,
     }
 )
+LABEL_LENGTH = 24
+_DOTTED = (0, (1, 2))
+_SMALL_NOTE: Mapping[str, Any] = MappingProxyType({"textcoords": "offset points", "color": MUTED, "fontsize": "small"})
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """How a series is drawn, never by colour alone: its label, colour, line style, marker and name in a sentence."""
+
+    label: str
+    colour: str
+    line: LineStyle
+    marker: str
+    name: str
+
+
+FEM = Stroke("FEM", PALETTE["fem"].light, "-", "o", "FEM")
+WAVE = Stroke("Wave", PALETTE["wave"].light, (0, (4, 1.8)), "s", "wave model")
+MEASURED = Stroke("Measured", PALETTE["measured"].light, "-", "D", "measured")
+TRIAL = Stroke("Trial", PALETTE["trial"].light, "-", "o", "trial")
 
 
 def draw(paint: Callable[[Drawing], None], width: float = WIDE, height: float = 360, placed: bool = False) -> str:
@@ -155,9 +157,6 @@ def zero_line(axes: Axes) -> None:
     axes.axhline(0, color=MUTED, linewidth=0.9, zorder=1)
 
 
-LABEL_LENGTH = 24
-
-
 @dataclass(frozen=True)
 class Pair:
     """The reference (drawn as the FEM) and the fast model beside it (drawn as the wave)."""
@@ -186,10 +185,6 @@ DEFAULT = Pair()
 
 def _named(stroke: Stroke, name: str | None) -> Stroke:
     return stroke if name is None else replace(stroke, label=shortened(name, LABEL_LENGTH), name=name)
-
-
-_DOTTED = (0, (1, 2))
-_SMALL_NOTE: Mapping[str, Any] = MappingProxyType({"textcoords": "offset points", "color": MUTED, "fontsize": "small"})
 
 
 def model_line(axes: Axes, x: Floats, y: Floats, stroke: Stroke, stops: bool = True) -> None:

@@ -18,6 +18,16 @@ from bench_hw.errors import InputError
 from bench_hw.vision.camera.pinhole import FloatArray
 
 _CORNERS = (3, 100)
+WIDEST_EDGE = 7.0
+"""Pixels from a tenth to nine tenths of an edge; wider is blurred (a sharp webcam picture has 2 to 3)."""
+LEAST_CONTRAST = 25.0
+"""Grey levels between black and white squares."""
+_SMALLEST_PROBE = (3, 3)
+_ACCURATE = cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_ACCURACY
+_TOLERANT = cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_NORMALIZE_IMAGE
+_REFINED = (5, 5)
+_UNTIL = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-4)
+Picture = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,19 +75,6 @@ def parse_corners(text: str, square: float) -> Board:
     if not (columns.strip().isdecimal() and rows.strip().isdecimal()):
         raise InputError(f"corners {text!r}: allowed is COLUMNSxROWS of inner corners, for instance 9x6")
     return Board(int(columns), int(rows), square)
-
-
-WIDEST_EDGE = 7.0
-"""Pixels from a tenth to nine tenths of an edge; wider is blurred (a sharp webcam picture has 2 to 3)."""
-LEAST_CONTRAST = 25.0
-"""Grey levels between black and white squares."""
-_SMALLEST_PROBE = (3, 3)
-_ACCURATE = cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_ACCURACY
-_TOLERANT = cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_NORMALIZE_IMAGE
-_REFINED = (5, 5)
-_UNTIL = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-4)
-
-Picture = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from bench_hw.atomic import check_replaceable
 from bench_hw.errors import InputError
+from bench_hw.vision import Progress
 from bench_hw.vision.calibration.board import Board, BoardView, look_for_board, read_picture
 from bench_hw.vision.calibration.fit import NAMES, CameraFit, MapError, fit_camera, held_out_map_error
 from bench_hw.vision.calibration.scale import PlaneScale, measure_plane
@@ -22,9 +22,6 @@ from bench_hw.vision.calibration.views import (
 )
 from bench_hw.vision.camera.camera_file import camera_tables, write_camera
 from bench_hw.vision.camera.pinhole import Camera, InvertibleDomain, Plane, Quality, survey_domain
-
-Progress = Callable[[int, int | None], None]
-"""Called after each picture with how many are done and how many there are."""
 
 USUAL_MARK = 1e-3
 """Distance of a ruler's finest marks, m."""

@@ -20,6 +20,10 @@ from bench_hw.vision.calibration.board import Board
 from bench_hw.vision.camera.pinhole import Camera, FloatArray
 
 NAMES = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
+GROUPS = 5
+_STEP, _NEARBY = 16, 24.0
+_FIELDS = 4
+_FEWEST_CORNERS = 10
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -118,12 +122,6 @@ def fit_similarity(originals: FloatArray, points: FloatArray) -> Similarity:
     variance = float(np.sum(np.abs(left) ** 2)) / (2 * len(z) - 4)
     residuals = np.stack([left.real, left.imag], axis=1)
     return Similarity(float(abs(factor)), float(np.sqrt(variance / power)), turned_over, residuals)
-
-
-GROUPS = 5
-_STEP, _NEARBY = 16, 24.0
-_FIELDS = 4
-_FEWEST_CORNERS = 10
 
 
 def all_pixels(size: tuple[int, int]) -> FloatArray:

@@ -26,6 +26,8 @@ _LARGEST_STD, _SYSTEMATIC = 3e-3, 2e-4
 """Of the scale: a less certain one is refused, and a more certain one than the second is not believed."""
 _ROUNDS, _WEAKEST, _CROSSED = 3, 0.05, 0.4
 _LEAST_CONTRAST = 25.0
+LARGEST_TILT = np.radians(2.0)
+"""A plane tilted by more than this against the picture is warned of."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,10 +142,6 @@ def _phase_slope(marks: FloatArray, wave: FloatArray) -> tuple[FloatArray, float
     count = max(2.0, np.sqrt(12.0) * spread / period)
     std = float(np.sqrt(np.average(left**2, weights=weight) / count)) / (2.0 * np.pi * spread)
     return wave * period * slope / (2.0 * np.pi), std, middle
-
-
-LARGEST_TILT = np.radians(2.0)
-"""A plane tilted by more than this against the picture is warned of."""
 
 
 @dataclass(frozen=True, slots=True)

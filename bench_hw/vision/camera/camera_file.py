@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tomli_w
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from bench_hw.atomic import write_text
-from bench_hw.configuration import read_toml, validated
+from bench_hw.configuration import StrictModel, read_toml, validated
 from bench_hw.vision.camera.pinhole import Camera, Plane, Quality
 
 SCHEMA = 1
@@ -20,18 +20,14 @@ NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 Pixels = Annotated[int, Field(ge=16, le=32_000, strict=True)]
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class _Matrix(_Table):
+class _Matrix(StrictModel):
     fx: Positive
     fy: Positive
     cx: Number
     cy: Number
 
 
-class _Distortion(_Table):
+class _Distortion(StrictModel):
     k1: Number
     k2: Number
     p1: Number
@@ -39,19 +35,19 @@ class _Distortion(_Table):
     k3: Number = 0.0
 
 
-class _Plane(_Table):
+class _Plane(StrictModel):
     mm_per_px: Positive | None = None
     mm_per_px_std: NotNegative = 0.0
     origin_px: tuple[Number, Number] | None = None
 
 
-class _Quality(_Table):
+class _Quality(StrictModel):
     views: Annotated[int, Field(ge=0)]
     reprojection_rms_px: NotNegative
     map_error_rms_px: NotNegative
 
 
-class _File(_Table):
+class _File(StrictModel):
     schema_: Annotated[Literal[1], Field(alias="schema")]
     image_size: tuple[Pixels, Pixels]
     matrix: _Matrix

@@ -18,6 +18,12 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 Coefficients = tuple[float, float, float, float, float]
+TOLERANCE = 1e-12
+"""Largest residual of an inverse that counts as found, normalised (6e-10 pixels at a focal length of 600)."""
+_STEPS = 60
+_LONGEST_STEP = 0.1
+_ALONG = np.linspace(0.0, 1.0, 33)[1:]
+_BATCH = 4096
 
 
 class Jacobian(NamedTuple):
@@ -71,14 +77,6 @@ def jacobian(points: FloatArray, coefficients: Coefficients) -> Jacobian:
         x * y * slope + 2.0 * (p1 * x + p2 * y),
         radial + y * y * slope + 6.0 * p1 * y + 2.0 * p2 * x,
     )
-
-
-TOLERANCE = 1e-12
-"""Largest residual of an inverse that counts as found, normalised (6e-10 pixels at a focal length of 600)."""
-_STEPS = 60
-_LONGEST_STEP = 0.1
-_ALONG = np.linspace(0.0, 1.0, 33)[1:]
-_BATCH = 4096
 
 
 def undistort(points: FloatArray, coefficients: Coefficients) -> FloatArray:

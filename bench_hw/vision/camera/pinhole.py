@@ -19,6 +19,7 @@ from bench_hw.errors import InputError
 from bench_hw.vision.camera.distortion import undistort
 
 FloatArray = NDArray[np.float64]
+_GRID_STEP = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,9 +174,6 @@ def from_plane(camera: Camera, places: FloatArray, sunk: FloatArray | float = 0.
 
 def _origin(camera: Camera) -> FloatArray:
     return camera.to_normalised(np.asarray(plane_of(camera).origin))
-
-
-_GRID_STEP = 4
 
 
 @dataclass(frozen=True, slots=True)

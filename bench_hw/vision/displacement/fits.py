@@ -19,6 +19,10 @@ from bench_hw.errors import InputError
 from bench_hw.vision.displacement.tracks import FloatArray
 
 _FEWEST = 4
+_REACHES = (2, 3, 4, 6, 8, 11, 15, 20, 27, 36, 48)
+_CONFIDENCE = 2.0
+_TOO_LARGE = 3.0
+"""The largest sample is too large by up to so many standard deviations."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -117,12 +121,6 @@ def fit_circles(points: FloatArray) -> Circles:
     centre[whole] = middle[whole, 0] + offset
     radius[whole] = np.sqrt(solved[:, 2] + (offset**2).sum(axis=1))
     return Circles(centre, radius)
-
-
-_REACHES = (2, 3, 4, 6, 8, 11, 15, 20, 27, 36, 48)
-_CONFIDENCE = 2.0
-_TOO_LARGE = 3.0
-"""The largest sample is too large by up to so many standard deviations."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,6 +29,9 @@ from bench_hw.vision.displacement.tracks import FloatArray
 Coefficients = tuple[float, float, float]
 PAPER_C2 = 85.56
 """c^2 as printed, m^2/s^2."""
+SHAPE = 4.0 * (16.0 / np.pi**3) ** 2
+"""B over d: the first sine's share of a product of parabolas."""
+_ROUNDS = 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,11 +128,6 @@ def _with_square(parabola: Coefficients, a: float) -> float:
 def _alone(parabola: Coefficients, a: float) -> float:
     second, first, constant = parabola
     return second * a**3 / 3.0 + first * a**2 / 2.0 + constant * a
-
-
-SHAPE = 4.0 * (16.0 / np.pi**3) ** 2
-"""B over d: the first sine's share of a product of parabolas."""
-_ROUNDS = 50
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,9 @@ from bench_hw.errors import InputError
 from bench_hw.tables.measurement import MarkerTable
 
 FloatArray = NDArray[np.float64]
+Mode = Literal["none", "centred", "causal"]
+PAPER_WINDOW = 10
+"""Section 3.2.5 of the article: "a window size of 10 and a denominator coefficient of 1"."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -155,11 +158,6 @@ def _nearest(rest: FloatArray, inner: NDArray[np.int64]) -> int:
     nearest = float(np.nanmin(distance))
     tied = inner[distance <= nearest * 1.02 + 1e-12]
     return int(tied[np.argmin(rest[tied, 0])])
-
-
-Mode = Literal["none", "centred", "causal"]
-PAPER_WINDOW = 10
-"""Section 3.2.5 of the article: "a window size of 10 and a denominator coefficient of 1"."""
 
 
 def moving_average(values: FloatArray, window: int = PAPER_WINDOW, mode: Mode = "centred") -> FloatArray:

@@ -16,8 +16,7 @@ import numpy as np
 
 from bench_hw.errors import InputError, TrialFileError
 from bench_hw.trial_file.encoding import CAMERA, NANOSECONDS, decode_frame, nanoseconds
-from bench_hw.trial_file.metadata import read_header
-from bench_hw.trial_file.scan import read_messages, scan_trial
+from bench_hw.trial_file.scan import read_messages, scan_trial, trial_header
 from bench_hw.vision.frames.source import Frame, FrameSource, decode_grey, to_grey
 
 KINDS = {
@@ -33,6 +32,33 @@ KINDS = {
 USUAL_RATE = 30.0
 """Pictures per second where nobody said, Hz: the paper's webcam."""
 _NUMBERED = re.compile(r"%0?\d*d")
+_RATES = (0.01, 100_000.0)
+_GREY = cv2.VideoWriter.fourcc(*"Y800")
+"""FFmpeg's pixels of one byte of grey: they need no way through colour and back."""
+_TRIALS = (".mcap", ".mcap.part")
+
+
+def open_frames(place: str, rate: float | None = None) -> FrameSource:
+    """Open a trial, a video, a folder or a pattern of pictures.
+
+    Parameters
+    ----------
+    place : str
+        `NAME.mcap` (also one that is cut, or `.mcap.part`), a video file, a folder of pictures, or a pattern
+        such as `frames/*.png` or `frames/%06d.png`.
+    rate : float, optional
+        Pictures per second, Hz; for videos and pictures only.
+
+    Raises
+    ------
+    InputError
+        There is nothing that can be read, or a rate is given for a trial.
+    """
+    if place.endswith(_TRIALS):
+        if rate is not None:
+            raise InputError(f"{place}: `--fps` is for videos and pictures; a trial has the camera's own times")
+        return TrialFrames(Path(place))
+    return PictureFrames(place, rate) if is_pictures(place) else VideoFrames(Path(place), rate)
 
 
 class PictureFrames:
@@ -52,41 +78,21 @@ class PictureFrames:
     """
 
     def __init__(self, place: str, rate: float | None = None) -> None:
-        self._place = place
-        self._rate = rate or USUAL_RATE
         self._assumed = rate is None
         self._files = sorted(_files(place), key=_natural)
+        self.name, self.synthetic, self.expected = place, False, len(self._files)
+        self.rate = rate or USUAL_RATE
         if not self._files:
             raise InputError(f"{place}: no pictures; allowed endings: {', '.join(KINDS)}")
-
-    @property
-    def name(self) -> str:
-        """The folder or pattern."""
-        return self._place
-
-    @property
-    def synthetic(self) -> bool:
-        """Nobody knows of bare pictures."""
-        return False
-
-    @property
-    def expected(self) -> int | None:
-        """How many there are."""
-        return len(self._files)
-
-    @property
-    def rate(self) -> float | None:
-        """Pictures per second, Hz."""
-        return self._rate
 
     def frames(self) -> Iterator[Frame]:
         """Give the pictures, number / rate as time."""
         for number, file in enumerate(self._files):
-            yield Frame(number, number / self._rate, decode_grey(file.read_bytes(), KINDS[file.suffix.lower()]))
+            yield Frame(number, number / self.rate, decode_grey(file.read_bytes(), KINDS[file.suffix.lower()]))
 
     def notes(self) -> tuple[str, ...]:
         """Say what was assumed."""
-        return (f"{self._rate:g} pictures a second are assumed; `--fps` says otherwise",) if self._assumed else ()
+        return (f"{self.rate:g} pictures a second are assumed; `--fps` says otherwise",) if self._assumed else ()
 
 
 def is_pictures(place: str) -> bool:
@@ -116,11 +122,6 @@ def _natural(path: Path) -> list[tuple[int, int, str]]:
     return [(0, int(part), "") if part.isdigit() else (1, 0, part) for part in parts]
 
 
-_RATES = (0.01, 100_000.0)
-_GREY = cv2.VideoWriter.fourcc(*"Y800")
-"""FFmpeg's pixels of one byte of grey: they need no way through colour and back."""
-
-
 class VideoFrames:
     """Pictures of a video.
 
@@ -139,36 +140,17 @@ class VideoFrames:
 
     def __init__(self, path: Path, rate: float | None = None) -> None:
         self._path = path
+        self.name, self.synthetic = str(path), False
         if not path.is_file():
             raise InputError(f"{path}: no such file; allowed: a trial, a video, or a folder of pictures")
         video = self._opened()
-        self._rate = rate or float(video.get(cv2.CAP_PROP_FPS))
+        self.rate = rate or float(video.get(cv2.CAP_PROP_FPS))
         count = video.get(cv2.CAP_PROP_FRAME_COUNT)
         video.release()
-        self._expected = int(count) if 0 < count < 1e9 else None
+        self.expected = int(count) if 0 < count < 1e9 else None
         self._given: int | None = None
-        if not (math.isfinite(self._rate) and _RATES[0] <= self._rate <= _RATES[1]):
-            raise InputError(f"{path}: the video has no usable rate ({self._rate:g} Hz); give `--fps`")
-
-    @property
-    def name(self) -> str:
-        """The file."""
-        return str(self._path)
-
-    @property
-    def synthetic(self) -> bool:
-        """Nobody knows of a bare video."""
-        return False
-
-    @property
-    def expected(self) -> int | None:
-        """How many pictures the file says it has."""
-        return self._expected
-
-    @property
-    def rate(self) -> float | None:
-        """Pictures per second, Hz."""
-        return self._rate
+        if not (math.isfinite(self.rate) and _RATES[0] <= self.rate <= _RATES[1]):
+            raise InputError(f"{path}: the video has no usable rate ({self.rate:g} Hz); give `--fps`")
 
     def frames(self) -> Iterator[Frame]:
         """Give the pictures up to the last that can be read, number / rate as time.
@@ -184,7 +166,7 @@ class VideoFrames:
                 there, picture = video.read()
                 if not there or picture is None:
                     break
-                yield Frame(number, number / self._rate, to_grey(np.asarray(picture, dtype=np.uint8)))
+                yield Frame(number, number / self.rate, to_grey(np.asarray(picture, dtype=np.uint8)))
                 number += 1
         finally:
             video.release()
@@ -194,9 +176,9 @@ class VideoFrames:
 
     def notes(self) -> tuple[str, ...]:
         """Say if the video ended early."""
-        if self._given is None or self._expected is None or self._given >= self._expected:
+        if self._given is None or self.expected is None or self._given >= self.expected:
             return ()
-        return (f"the video ends after {self._given} of the {self._expected} pictures it should have",)
+        return (f"the video ends after {self._given} of the {self.expected} pictures it should have",)
 
     def _opened(self) -> cv2.VideoCapture:
         try:
@@ -229,42 +211,19 @@ class TrialFrames:
 
     def __init__(self, path: Path) -> None:
         self._scan = scan_trial(path)
-        self._path = path
+        self.name, self.rate = str(path), None
         self._problems: list[str] = [f"the trial is not complete: {damage}" for damage in self._scan.damages[:3]]
         self._problems += self._scan.losses()
         self._late = 0
         counts = [n for number, n in self._scan.rows.items() if self._topic(number) == CAMERA.topic]
-        self._count = sum(counts)
-        if not self._count:
+        self.expected = sum(counts)
+        if not self.expected:
             raise TrialFileError(path, "the trial has no pictures; allowed: one recorded with a camera")
-        try:
-            header = None if self._scan.header is None else read_header(self._scan.header)
-        except (ValueError, KeyError) as error:
-            raise TrialFileError(path, f"the trial's metadata cannot be read ({error})") from error
+        header = trial_header(self._scan)
         if header is None:
             self._problems.append("no copy of the trial's metadata is whole: times are the raw clock's")
         self._epoch = 0 if header is None else nanoseconds(header.clock_epoch)
-        self._synthetic = header is not None and header.synthetic
-
-    @property
-    def name(self) -> str:
-        """The file."""
-        return str(self._path)
-
-    @property
-    def synthetic(self) -> bool:
-        """Whether a device of the trial was simulated."""
-        return self._synthetic
-
-    @property
-    def expected(self) -> int | None:
-        """How many pictures the file holds."""
-        return self._count
-
-    @property
-    def rate(self) -> float | None:
-        """None: each picture has its own time."""
-        return None
+        self.synthetic = header is not None and header.synthetic
 
     def frames(self) -> Iterator[Frame]:
         """Give the pictures; one whose time does not increase is left out and noted."""
@@ -290,29 +249,3 @@ class TrialFrames:
     def _topic(self, number: int) -> str:
         info = self._scan.channels.get(number)
         return "" if info is None else info.topic
-
-
-_TRIALS = (".mcap", ".mcap.part")
-
-
-def open_frames(place: str, rate: float | None = None) -> FrameSource:
-    """Open a trial, a video, a folder or a pattern of pictures.
-
-    Parameters
-    ----------
-    place : str
-        `NAME.mcap` (also one that is cut, or `.mcap.part`), a video file, a folder of pictures, or a pattern
-        such as `frames/*.png` or `frames/%06d.png`.
-    rate : float, optional
-        Pictures per second, Hz; for videos and pictures only.
-
-    Raises
-    ------
-    InputError
-        There is nothing that can be read, or a rate is given for a trial.
-    """
-    if place.endswith(_TRIALS):
-        if rate is not None:
-            raise InputError(f"{place}: `--fps` is for videos and pictures; a trial has the camera's own times")
-        return TrialFrames(Path(place))
-    return PictureFrames(place, rate) if is_pictures(place) else VideoFrames(Path(place), rate)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Picture = NDArray[np.uint8]
+_ENDS = {"jpeg": b"\xff\xd9", "png": b"IEND\xaeB`\x82"}
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -62,9 +63,6 @@ class FrameSource(Protocol):
     def notes(self) -> tuple[str, ...]:
         """Say what was wrong with the source, a sentence each; complete once all pictures are given."""
         ...
-
-
-_ENDS = {"jpeg": b"\xff\xd9", "png": b"IEND\xaeB`\x82"}
 
 
 def decode_grey(data: bytes, kind: str) -> Picture | None:

@@ -26,6 +26,15 @@ _THRESHOLD_SHARE = 0.2
 _LEAST_OFFSET = 6.0
 _FILL = (0.55, 0.95)
 _LONGEST_SIDES = 1.8
+_NEAR = (0.7, 1.3)
+_CATCH = 0.35
+_SIDES = ((0, 1), (0, -1), (1, 0), (-1, 0))
+Straighten = Callable[[FloatArray], FloatArray]
+"""Turns pixels (n, 2) into undistorted pixels; NaN where there are none."""
+_BLOCK_SHARES = (1 / 24, 1 / 12, 1 / 6, 1 / 3)
+_SAME_SIZE = 2.2
+_GROUPS = 3
+_LISTED = 4
 
 
 def contrast_of(grey: Picture) -> float:
@@ -75,11 +84,6 @@ def _compact(box: FloatArray, area: FloatArray) -> NDArray[np.bool_]:
 def _inside(box: FloatArray, shape: tuple[int, ...]) -> NDArray[np.bool_]:
     left, top, width, height = box.T
     return np.asarray((left > 0) & (top > 0) & (left + width < shape[1]) & (top + height < shape[0]))
-
-
-_NEAR = (0.7, 1.3)
-_CATCH = 0.35
-_SIDES = ((0, 1), (0, -1), (1, 0), (-1, 0))
 
 
 def neighbour_distance(points: FloatArray) -> float:
@@ -164,15 +168,6 @@ def _grow(points: FloatArray, tree: cKDTree, axes: FloatArray, seed: int) -> dic
             new[kind] = 0.5 * (steps[kind] + (points[near] - points[at]) * sum(side))
             queue.append((int(near), new))
     return found
-
-
-Straighten = Callable[[FloatArray], FloatArray]
-"""Turns pixels (n, 2) into undistorted pixels; NaN where there are none."""
-
-_BLOCK_SHARES = (1 / 24, 1 / 12, 1 / 6, 1 / 3)
-_SAME_SIZE = 2.2
-_GROUPS = 3
-_LISTED = 4
 
 
 class GridError(InputError):

@@ -19,6 +19,15 @@ _LEAST_REACH = 4.0
 _OUTER_WIDTH = 1.25
 _SMOOTHING = 0.8
 _RAYS = (40, 96)
+Level = TypeVar("Level", np.float32, np.float64)
+RAY_CONTRAST = 0.5
+"""A ray counts where ink and paper differ by this share of what is usual for its marker..."""
+STRANGE_PAPER = 0.2
+"""... and its paper is as bright as elsewhere around the marker, within this share of the contrast..."""
+_SPREADS = 4.0
+"""... or within so many usual deviations, if those are more."""
+_EDGE_WIDTH = 3.0
+"""Contrast over the slope of a smoothed edge, pixels: of a webcam's sharpness."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -115,18 +124,6 @@ def _window(middles: FloatArray, reach: float, size: int) -> tuple[int, int]:
     """The part of the picture that is needed, a pixel wider than the samples, at least one pixel."""
     first = int(np.clip(np.floor(middles.min() - reach) - 1, 0, size - 1))
     return first, int(np.clip(np.ceil(middles.max() + reach) + 2, first + 1, size))
-
-
-Level = TypeVar("Level", np.float32, np.float64)
-
-RAY_CONTRAST = 0.5
-"""A ray counts where ink and paper differ by this share of what is usual for its marker..."""
-STRANGE_PAPER = 0.2
-"""... and its paper is as bright as elsewhere around the marker, within this share of the contrast..."""
-_SPREADS = 4.0
-"""... or within so many usual deviations, if those are more."""
-_EDGE_WIDTH = 3.0
-"""Contrast over the slope of a smoothed edge, pixels: of a webcam's sharpness."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -15,6 +15,17 @@ from numpy.typing import NDArray
 from bench_hw.vision.markers.edges import Edges, RayFan
 from bench_hw.vision.markers.grid import FloatArray
 
+_STRAY, _LEAST_STRAY = (0.03, 0.06), (0.25, 0.5)
+"""How far an edge may at least and at most be from where it should be: share of the radius, pixels; the larger."""
+_DEVIATIONS = 4.5
+_UNKNOWN = 8.0
+"""Between the two, so many standard deviations of an edge."""
+_WIDER = 3
+"""So many rays beside a covered stretch are not trusted either."""
+_FEWEST_RAYS = 10
+_ROUNDS = 8
+_NEW_GROWTH, _NEW_ROUNDNESS = 0.15, 0.2
+
 
 def area_centroids(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Give the centroids and areas of polygons.
@@ -71,18 +82,6 @@ def fan_centroids(radius: FloatArray, directions: FloatArray) -> FloatArray:
 
 def _next(values: FloatArray) -> FloatArray:
     return np.concatenate([values[:, 1:], values[:, :1]], axis=1)
-
-
-_STRAY, _LEAST_STRAY = (0.03, 0.06), (0.25, 0.5)
-"""How far an edge may at least and at most be from where it should be: share of the radius, pixels; the larger."""
-_DEVIATIONS = 4.5
-_UNKNOWN = 8.0
-"""Between the two, so many standard deviations of an edge."""
-_WIDER = 3
-"""So many rays beside a covered stretch are not trusted either."""
-_FEWEST_RAYS = 10
-_ROUNDS = 8
-_NEW_GROWTH, _NEW_ROUNDNESS = 0.15, 0.2
 
 
 @dataclass(frozen=True, eq=False, slots=True)

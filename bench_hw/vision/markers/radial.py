@@ -19,6 +19,24 @@ from bench_hw.vision.markers.grid import DetectedGrid, FloatArray, IntArray, Pic
 from bench_hw.vision.markers.outline import Outlines, area_centroids, compare, fan_centroids, outline_basis, taken_anew
 
 Scalar = TypeVar("Scalar", np.float64, np.bool_)
+LEAST_SHARE = 0.85
+"""A marker counts as seen where at least this share of its rays has a sound edge."""
+LEAST_CONTRAST = 0.4
+"""... and where its contrast is at least this share of what it was at first."""
+RADIUS_RANGE = (0.6, 1.6)
+"""... and its radius within this range of its first one."""
+_RECENTRE = 0.1
+_PASSES = 3
+_HALF_SHARE = 0.375
+_WHOLE_SHARE = 0.98
+_LEARNING = 0.05
+_LAST_STEP = 3e-4
+"""Where a Newton step from the linear guess stops: less than 1e-4 pixel is left of it."""
+_OTHER_LIGHT, _SURE = 0.02, 4.0
+"""A change of the tilt of light beyond this share of the contrast, and so many standard deviations, is real."""
+_SLACK, _MORE_SLACK, _MOST_SLACK = 0.03, 0.003, 0.1
+"""How much an outline may change from one picture to the next, for each picture it is not seen, and at most."""
+_FIRST_SLACK = 0.3
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -67,26 +85,6 @@ def _joined(whole: NDArray[Scalar], part: NDArray[Scalar], where: IntArray) -> N
     result = whole.copy()
     result[where] = part
     return result
-
-
-LEAST_SHARE = 0.85
-"""A marker counts as seen where at least this share of its rays has a sound edge."""
-LEAST_CONTRAST = 0.4
-"""... and where its contrast is at least this share of what it was at first."""
-RADIUS_RANGE = (0.6, 1.6)
-"""... and its radius within this range of its first one."""
-_RECENTRE = 0.1
-_PASSES = 3
-_HALF_SHARE = 0.375
-_WHOLE_SHARE = 0.98
-_LEARNING = 0.05
-_LAST_STEP = 3e-4
-"""Where a Newton step from the linear guess stops: less than 1e-4 pixel is left of it."""
-_OTHER_LIGHT, _SURE = 0.02, 4.0
-"""A change of the tilt of light beyond this share of the contrast, and so many standard deviations, is real."""
-_SLACK, _MORE_SLACK, _MOST_SLACK = 0.03, 0.003, 0.1
-"""How much an outline may change from one picture to the next, for each picture it is not seen, and at most."""
-_FIRST_SLACK = 0.3
 
 
 class MarkerEdges:

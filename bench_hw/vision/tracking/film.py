@@ -5,7 +5,7 @@ The first picture that shows the whole grid gives every marker its number for go
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
 from itertools import chain
@@ -13,6 +13,7 @@ from pathlib import Path
 
 from bench_hw.atomic import check_replaceable
 from bench_hw.errors import InputError
+from bench_hw.vision import Progress
 from bench_hw.vision.camera.camera_file import read_camera
 from bench_hw.vision.camera.pinhole import Camera, survey_domain
 from bench_hw.vision.frames.opening import open_frames
@@ -24,8 +25,8 @@ from bench_hw.vision.tracking.overlay import Still, overlay_video
 from bench_hw.vision.tracking.pipeline import Pipeline, Sinks, TrackOutcome
 from bench_hw.vision.tracking.places import Places, read_sinking, table_of_tracks
 
-Progress = Callable[[int, int | None], None]
-"""Called after each picture with how many are done and how many there should be."""
+FIRST_PICTURES = 30
+"""In so many pictures the grid is looked for; a second of the paper's video."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,10 +143,6 @@ def _pictures(source: str) -> Path | None:
 def _about_camera(camera: Camera) -> list[str]:
     domain = survey_domain(camera)
     return [] if domain.whole else [f"the camera file: {domain}"]
-
-
-FIRST_PICTURES = 30
-"""In so many pictures the grid is looked for; a second of the paper's video."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

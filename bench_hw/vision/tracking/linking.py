@@ -22,6 +22,8 @@ GATE = 0.49
 """Farthest a marker may be from where it was last seen, in spacings."""
 _WITNESSES = 4
 _FORBIDDEN = 1e9
+_AGREE = 0.2
+_LEAST_SHARE = 0.6
 
 
 def link(last: FloatArray, spots: FloatArray, gate: float) -> IntArray:
@@ -103,10 +105,6 @@ def doubles(places: FloatArray, starts: FloatArray, closest: float) -> NDArray[n
             owner = link(starts[members], places[members][:1], np.inf)
             wrong[members[owner < 0]] = True
     return wrong
-
-
-_AGREE = 0.2
-_LEAST_SHARE = 0.6
 
 
 class JumpError(InputError):

@@ -26,6 +26,12 @@ from bench_hw.vision.tracking.linking import GATE, Absences, doubles, link, refu
 _BLOCK = 6.0
 _AREAS = (0.35, 2.6)
 _CLOSEST = 0.5
+RADIUS_RANGE = (0.6, 1.5)
+"""Circles that are looked for, in radii of the markers."""
+VOTES = 0.13
+"""Votes a circle needs, as a share of the pixels on its circumference: as eager as the article's pictures show."""
+_CANNY = 100.0
+_CLOSEST_CIRCLES = 1.0
 
 
 class SubpixelTracker:
@@ -101,14 +107,6 @@ class SubpixelTracker:
             return np.zeros(len(spots), dtype=bool)
         gap = spots[:, None, :] - seen[None, :, :]
         return np.asarray(np.hypot(gap[:, :, 0], gap[:, :, 1]).min(axis=1) < 0.5 * _CLOSEST * self._spacing)
-
-
-RADIUS_RANGE = (0.6, 1.5)
-"""Circles that are looked for, in radii of the markers."""
-VOTES = 0.13
-"""Votes a circle needs, as a share of the pixels on its circumference: as eager as the article's pictures show."""
-_CANNY = 100.0
-_CLOSEST_CIRCLES = 1.0
 
 
 class PaperTracker:
