@@ -1,7 +1,7 @@
 """The one monotonic clock of a bench, real or simulated.
 
 Every driver, twin and recorder takes its clock as an argument. With `MonotonicClock` the bench runs in real
-time; with `SimulatedClock` nothing sleeps: whoever waits moves time on, and the twins that subscribed do
+time; with `SimulatedClock` nothing sleeps: a wait moves time on, and the twins that subscribed do
 their work at each step, so a session of minutes takes seconds and tests wait for nothing.
 """
 
@@ -77,7 +77,7 @@ class MonotonicClock:
 
 
 class SimulatedClock:
-    """Time that passes only when somebody sleeps on it; single-threaded and repeatable.
+    """Time that passes only during `sleep`; single-threaded and repeatable.
 
     Parameters
     ----------

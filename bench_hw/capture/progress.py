@@ -117,7 +117,7 @@ class PlainLines:
 
 
 class TerminalLine:
-    """One line on a terminal that is drawn anew eight times a second, by a thread of rich's."""
+    """One line on a terminal redrawn eight times a second by rich's thread."""
 
     def __init__(self) -> None:
         from rich.console import Console

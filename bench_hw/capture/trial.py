@@ -84,7 +84,7 @@ def record_trial(
 
 
 def end_safely(loop: Loop, error: BaseException, recorder: Recorder | None, context: LoopContext) -> Fault:
-    """Send the tool back, write the fault down and let the recording show the way back; give the fault."""
+    """Send the tool back, note the fault and keep recording for a moment; give the fault."""
     problem = loop.send_back()
     ending = "the tool was sent back"
     if problem:

@@ -156,7 +156,7 @@ class LacActuator(Connection):
         self._counts = self.command(Code.SET_POSITION, min(max(here, self._limits[0]), self._limits[1]))
 
     def retract(self) -> None:
-        """Start moving to the lower limit at full speed; looks for the board anew if it was lost.
+        """Start moving to the lower limit at full speed; searches for the board again if it was lost.
 
         Raises
         ------

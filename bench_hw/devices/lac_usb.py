@@ -145,7 +145,7 @@ class LacLink:
             raise _failed(code, error) from error
 
     def flush(self) -> None:
-        """Throw away answers that nobody read."""
+        """Discard unread answers."""
         self._flush()
 
     def close(self) -> None:

@@ -114,7 +114,7 @@ def read_configuration(host: str, port: int, timeout: float) -> NetFTConfigurati
 def set_rate(host: str, port: int, rate: int, timeout: float, buffer: int | None = None) -> None:
     """Ask for an RDT output rate (Hz), and for a number of records in a datagram of buffered mode.
 
-    Read the configuration to see what became of it.
+    Read the configuration to see the effect.
 
     Raises
     ------
@@ -279,7 +279,7 @@ class RdtSocket:
         try:
             self._socket.send(rdt.request(Command.STOP))
         except OSError:
-            pass  # gone already: there is nobody to stop
+            pass  # gone already: nothing to stop
         finally:
             self._socket.close()
 

@@ -91,7 +91,7 @@ class StreamHealth:
     """What became of a stream of numbered samples since `start`.
 
     `lost` are records that never came, `reordered` came late (and are not lost), `duplicates` came twice and
-    were dropped, `restarts` are counters that began anew, `stalls` are records whose sample number stood
+    were dropped, `restarts` are counters that restarted, `stalls` are records whose sample number stood
     still, `malformed` are datagrams that are no records.
     """
 

@@ -233,7 +233,7 @@ class SequenceTracker:
 
     def _backward(self, sequence: int, sample: int, distance: int) -> tuple[bool, int]:
         unwrapped = self._base + (self._last or 0) - distance
-        if distance > WINDOW or self._began_anew(sequence, sample):
+        if distance > WINDOW or self._restarted(sequence, sample):
             return self._restart(sequence, sample)
         if unwrapped not in self._missing:
             return self._duplicate(unwrapped)
@@ -243,7 +243,7 @@ class SequenceTracker:
         self._counts["received"] += 1
         return True, unwrapped
 
-    def _began_anew(self, sequence: int, sample: int) -> bool:
+    def _restarted(self, sequence: int, sample: int) -> bool:
         """Tell a counter that begins at 1 again soon after it began: its sample is newer than the last."""
         return sequence <= 1 and 0 < (sample - self._last_ft) % MODULUS < HALF
 

@@ -211,7 +211,7 @@ class NetFTBox:
                 self._stream.freeze(frozen)
 
     def restart(self) -> None:
-        """Begin the counters anew while the stream goes on."""
+        """Restart the counters while the stream continues."""
         with self._lock:
             if self._stream is not None:
                 self._stream.restart()

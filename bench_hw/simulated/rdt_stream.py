@@ -134,7 +134,7 @@ class RdtStream:
         self._began += duration
 
     def restart(self) -> None:
-        """Begin both counters anew, as after a loss of power."""
+        """Restart both counters, as after a loss of power."""
         self._shift = -self._position
 
     def freeze(self, frozen: bool) -> None:

@@ -60,7 +60,7 @@ def read_source(path: Path, required: Sequence[str]) -> CsvText:
     Raises
     ------
     TableError
-        The file is missing, unreadable, empty or no UTF-8; a column is missing, doubled or without a name.
+        The file is missing, unreadable, empty or no UTF-8; a column is missing, duplicated or unnamed.
     """
     text = _decoded(path, _bytes_of(path)).replace("\r\n", "\n").replace("\r", "\n")
     if not text.strip():
@@ -148,13 +148,13 @@ def text_columns(source: CsvText) -> tuple[list[tuple[str, ...]], list[int]]:
 
 
 def _records(path: Path, text: str, first_line: int) -> Iterator[tuple[int, list[str]]]:
-    """Split text into records with their lines; one that goes on over the end of its line is refused."""
+    """Split text into records with their lines; one that spans several lines is refused."""
     reader = csv.reader(io.StringIO(text, newline=""), strict=True)
     line = first_line - 1
     try:
         for line, cells in enumerate(reader, start=first_line):
             if reader.line_num != line - first_line + 1:
-                raise csv.Error("a quoted cell goes on over the end of the line")
+                raise csv.Error("a quoted cell spans several lines")
             yield line, [cell.strip() for cell in cells]
     except csv.Error as error:
         allowed = "cells separated by commas, one line per row"

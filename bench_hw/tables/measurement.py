@@ -97,7 +97,7 @@ def read_trial_csv(path: Path | str) -> TrialTable:
     Raises
     ------
     TableError
-        Missing or empty file, missing or doubled column, ragged or blank row, text, NaN or an infinite number
+        Missing or empty file, missing or duplicated column, ragged or blank row, text, NaN or an infinite number
         in a numeric column, time that does not increase, fewer than 20 rows.
     """
     path = Path(path)

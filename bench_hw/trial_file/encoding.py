@@ -2,7 +2,7 @@
 
 Pictures and events follow Foxglove's well-known schemas, so that Foxglove shows them; force and depth have schemas of
 their own, raw counts beside SI values. Every message is one JSON object in UTF-8. A number that is not finite is
-written as `null` and read as NaN: JSON has no other word for it, and a zero would be wrong.
+written as `null` and read as NaN: JSON has no NaN, and a zero would be wrong.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ class ChannelReport:
         Places where records are lost, or where none came for longer than 1.5 periods (and 50 ms, but for the
         camera).
     reordered, duplicates, restarts : int
-        Records that came late, came twice; places where the device began to count anew.
+        Late records, duplicates, and restarts of the device's counter.
     details : Mapping[str, int | float | None]
         What only this kind of channel has, under names with units.
     """

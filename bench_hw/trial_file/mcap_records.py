@@ -1,9 +1,9 @@
 """The records of an MCAP file: where they begin and end, and what they hold, also in a file that is cut or damaged.
 
-A record is an opcode, a length and contents. A damaged length would lead astray, so a chunk, which holds all that was
-measured, is also recognised by its own inside: the name of its compression stands at a fixed place, followed by the
-length of its data. Contents count only where their CRC fits. Each record is handed to the mcap library alone, so that
-a damaged inner length cannot reach into the next one. The way from record to record is in `walk`.
+A record is an opcode, a length and contents. A damaged length would misplace the next record, so a chunk, which holds
+all that was measured, is also recognised by its own inside: the name of its compression stands at a fixed place,
+followed by the length of its data. Contents count only where their CRC fits. Each record is handed to the mcap library
+alone, so that a damaged inner length cannot reach into the next one. The way from record to record is in `walk`.
 """
 
 from __future__ import annotations
@@ -209,11 +209,11 @@ def _contents(data: bytes) -> ChunkContents:
     at = 0
     while at < len(data):
         if at + _HEAD.size > len(data):
-            raise UnreadableError("a record goes on over its end")
+            raise UnreadableError("a record runs past its end")
         opcode, length = _HEAD.unpack_from(data, at)
         start, at = at, at + _HEAD.size + length
         if at > len(data) or (opcode == MESSAGE and length < _MESSAGE_HEAD.size):
-            raise UnreadableError("a record goes on over its end")
+            raise UnreadableError("a record runs past its end")
         if opcode == MESSAGE:
             body = start + _HEAD.size
             channel, sequence, time, published = _MESSAGE_HEAD.unpack_from(data, body)

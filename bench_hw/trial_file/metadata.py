@@ -1,7 +1,7 @@
 """What a trial file says about itself: the header's fields as MCAP metadata, guarded by a checksum.
 
 MCAP protects chunks by a CRC but not metadata, and a flipped digit of a serial number or a flipped sign of
-the press axis would be a silent lie. So each metadata record carries the CRC-32 of its own entries, is
+the press axis would go unnoticed. So each metadata record carries the CRC-32 of its own entries, is
 repeated along the file, and counts only where its checksum fits.
 """
 

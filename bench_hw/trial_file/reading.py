@@ -3,8 +3,7 @@
 The rows of the trial table are the force sensor's own samples at their own time stamps; nothing is resampled and no
 force is made up. Depth, which the actuator reports more slowly, is interpolated linearly between the two positions
 around each force sample, and only where they are neighbours: over a gap in the positions, before the first and after
-the last there is no row. Rows that are late, doubled, saturated or faulty are left out; what is left out is a gap in
-the table.
+the last there is no row. Late, duplicate, saturated or faulty rows are left out and leave a gap in the table.
 """
 
 from __future__ import annotations

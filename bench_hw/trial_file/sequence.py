@@ -1,4 +1,4 @@
-"""What sequence numbers and time stamps say: records lost, late or doubled, restarts, usual intervals and gaps.
+"""What sequence numbers and time stamps say: records lost, late or duplicated, restarts, usual intervals and gaps.
 
 The rule of the RDT protocol: the step from one number to the next, modulo 2^32, is 1 when all is well, 0 for a
 duplicate, below 2^31 a gap, and otherwise backwards. A step backwards by more than `LATEST` numbers is no late
@@ -40,9 +40,9 @@ class SequenceCheck:
     duplicates : int
         Records that came twice.
     restarts : int
-        Places at which the counter began anew; what was lost there is not known.
+        Restarts of the counter; what was lost there is unknown.
     in_order : ndarray of bool, shape (n,)
-        Rows that are neither late nor doubled.
+        Rows that are neither late nor duplicates.
     step : ndarray of int, shape (n,)
         Numbers since the row before; 1 where all is well, and in the first row.
     """

@@ -12,7 +12,7 @@ import os
 from collections.abc import Callable
 
 Progress = Callable[[int, int | None], None]
-"""Called after each picture with how many are done and how many there should be, None if nobody knows."""
+"""Called after each picture with how many are done and how many there should be, None if unknown."""
 
 
 def silence_opencv() -> None:

@@ -146,7 +146,7 @@ def _phase_slope(marks: FloatArray, wave: FloatArray) -> tuple[FloatArray, float
 
 @dataclass(frozen=True, slots=True)
 class PlaneScale:
-    """What a picture tells about the marker plane.
+    """The scale of the marker plane, from one picture.
 
     Parameters
     ----------

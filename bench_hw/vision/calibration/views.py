@@ -132,7 +132,7 @@ def check_map(error: MapError) -> None:
 
 
 def coverage_warnings(corners: Sequence[FloatArray], size: tuple[int, int], error: MapError) -> list[str]:
-    """Say what the views leave to be wished for."""
+    """Warn of poor coverage and of errors that are larger than good."""
     fields = np.unique(np.floor(np.concatenate(list(corners)) / size * _FIELDS).astype(int), axis=0)
     share = len(fields) / (_FIELDS[0] * _FIELDS[1])
     warnings = []

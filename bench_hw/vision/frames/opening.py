@@ -30,7 +30,7 @@ KINDS = {
     ".webp": "webp",
 }
 USUAL_RATE = 30.0
-"""Pictures per second where nobody said, Hz: the paper's webcam."""
+"""Pictures per second where none is given, Hz: the paper's webcam."""
 _NUMBERED = re.compile(r"%0?\d*d")
 _RATES = (0.01, 100_000.0)
 _GREY = cv2.VideoWriter.fourcc(*"Y800")

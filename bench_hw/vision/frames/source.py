@@ -48,7 +48,7 @@ class FrameSource(Protocol):
 
     @property
     def expected(self) -> int | None:
-        """How many pictures there should be, None if nobody knows."""
+        """How many pictures there should be, None if unknown."""
         ...
 
     @property

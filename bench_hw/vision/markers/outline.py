@@ -1,6 +1,6 @@
 """A marker's outline against the one it had, and its centroid.
 
-From picture to picture an outline shifts, and grows and is drawn out a little: five numbers (constant, cosine, sine
+From picture to picture an outline shifts, grows and stretches a little: five numbers (constant, cosine, sine
 and their second harmonics of the ray's angle). What strays from that is something else in front of the marker; the
 covered edges are filled in. Areas and centroids are by Green's theorem.
 """
@@ -123,7 +123,7 @@ def compare(edges: Edges, before: FloatArray, basis: FloatArray, slack: FloatArr
     basis : ndarray, shape (rays, 5)
         From `outline_basis`.
     slack : ndarray, shape (m,)
-        How much each may have grown or been drawn out since, as a share of its radius.
+        How much each may have grown or stretched since, as a share of its radius.
     noise : ndarray, shape (m,)
         Standard deviation of an edge, pixels; infinite where the outline before is a mere circle.
     """
@@ -189,11 +189,11 @@ def _fit(change: FloatArray, weight: FloatArray, basis: FloatArray) -> FloatArra
     return np.asarray(np.linalg.solve(normal, right[:, :, None])[:, :, 0])
 
 
-def taken_anew(edges: Edges, outlines: Outlines, before: FloatArray, basis: FloatArray) -> Outlines:
+def accept_new_outlines(edges: Edges, outlines: Outlines, before: FloatArray, basis: FloatArray) -> Outlines:
     """Take outlines as they are in a picture in which most of them are other than before.
 
     Then it is not that something has come in front of a marker: the focus or the exposure has changed. Only markers
-    that are seen all round, are round and about as large as before are taken so.
+    that are wholly visible, round and about as large as before are accepted.
 
     Parameters
     ----------

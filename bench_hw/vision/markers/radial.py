@@ -16,7 +16,14 @@ from bench_hw.vision.camera.distortion import jacobian, undistort, undistort_nea
 from bench_hw.vision.camera.pinhole import Camera
 from bench_hw.vision.markers.edges import Edges, find_edges, ray_fan, sample
 from bench_hw.vision.markers.grid import DetectedGrid, FloatArray, IntArray, Picture, Sighting
-from bench_hw.vision.markers.outline import Outlines, area_centroids, compare, fan_centroids, outline_basis, taken_anew
+from bench_hw.vision.markers.outline import (
+    Outlines,
+    accept_new_outlines,
+    area_centroids,
+    compare,
+    fan_centroids,
+    outline_basis,
+)
 
 Scalar = TypeVar("Scalar", np.float64, np.bool_)
 LEAST_SHARE = 0.85
@@ -163,7 +170,7 @@ class MarkerEdges:
         edges = find_edges(sample(grey, middles, self._fan), self._fan, tilt)
         outlines = compare(edges, self._outline[which], self._basis, self._slack[which], self._noise[which])
         if len(which) == len(self._outline):
-            outlines = taken_anew(edges, outlines, self._outline, self._basis)
+            outlines = accept_new_outlines(edges, outlines, self._outline, self._basis)
         offsets = fan_centroids(outlines.radius, self._fan.directions)
         return Look(middles, edges, outlines, middles + np.nan_to_num(offsets))
 
@@ -220,7 +227,7 @@ class MarkerEdges:
 
 
 def _in_other_light(edges: Edges, tilt: FloatArray) -> NDArray[np.bool_]:
-    """Which markers, seen all round, lie in light that is not what was learned: a shadow has come near."""
+    """Which wholly visible markers lie in other light than was learned, as near a shadow."""
     change = np.abs(edges.tilt - tilt).max(axis=1)
     real = change > np.maximum(_OTHER_LIGHT * edges.contrast, _SURE * edges.tilt_std)
     return np.asarray(real & edges.there.all(axis=1))

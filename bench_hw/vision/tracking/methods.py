@@ -63,7 +63,7 @@ class SubpixelTracker:
         Returns
         -------
         Sighting
-            Markers that are covered, out of the picture or not to be told apart are unseen.
+            Markers that are covered, out of the picture or ambiguous are unseen.
 
         Raises
         ------

@@ -148,12 +148,12 @@ class Pipeline:
         self.tally = Tally(len(grid.centres), grid.strays)
 
     def pass_over(self, frame: Frame) -> None:
-        """Take a picture from before the beginning: nobody is seen in it."""
+        """Take a picture from before the beginning: no marker is seen in it."""
         self.tally.before += 1
         self._finish(frame, unseen(len(self._grid.centres)))
 
     def take(self, frame: Frame) -> None:
-        """Take a picture; one that cannot be decoded, or has another size, shows nobody.
+        """Take a picture; one that cannot be decoded, or has another size, shows no marker.
 
         Raises
         ------

@@ -38,7 +38,7 @@ class Sinking:
     histories: dict[int, tuple[FloatArray, FloatArray]]
 
     def at(self, time: float, count: int) -> FloatArray:
-        """Give how far markers 0 to `count` - 1 have sunk at an instant (s), m; NaN where nobody knows."""
+        """Give how far markers 0 to `count` - 1 have sunk at an instant (s), m; NaN where unknown."""
         return np.array([self._one(marker, time) for marker in range(count)])
 
     def _one(self, marker: int, time: float) -> float:
@@ -84,7 +84,7 @@ class Places:
     pixels : bool
         Undistorted pixels instead of millimetres.
     sinking : Sinking, optional
-        With it, perspective is corrected, and a marker whose depth nobody knows has no place.
+        With it, perspective is corrected, and a marker of unknown depth has no place.
     recentre : bool
         Take the middle of the markers of the first picture as the origin.
 

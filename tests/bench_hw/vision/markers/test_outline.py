@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bench_hw.vision.markers.edges import Edges, ray_fan
-from bench_hw.vision.markers.outline import area_centroids, compare, fan_centroids, outline_basis, taken_anew
+from bench_hw.vision.markers.outline import accept_new_outlines, area_centroids, compare, fan_centroids, outline_basis
 
 far = st.floats(-1e3, 1e3)
 
@@ -97,10 +97,10 @@ def test_if_most_outlines_are_new_they_are_taken_and_if_one_is_it_is_not():
     slack, noise = np.repeat(SLACK, 4), np.repeat(NOISE, 4)
     judged = compare(edges(new), before, BASIS, slack, noise)
     assert judged.share[:3].max() < 0.9
-    assert np.array_equal(taken_anew(edges(new), judged, before, BASIS).radius, new)
+    assert np.array_equal(accept_new_outlines(edges(new), judged, before, BASIS).radius, new)
     new[1:3] = before[1:3]
     judged = compare(edges(new), before, BASIS, slack, noise)
-    assert taken_anew(edges(new), judged, before, BASIS).share[0] == judged.share[0] < 0.9
+    assert accept_new_outlines(edges(new), judged, before, BASIS).share[0] == judged.share[0] < 0.9
 
 
 def test_nothing_seen_is_no_error():
