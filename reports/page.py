@@ -1,28 +1,45 @@
 """Pages: one offline HTML file, readable without JavaScript, verdict first.
 
-The look is in `templates/`, what a page holds in `reports.blocks`.
+What a page holds is in `reports.blocks`, the look in `templates/`: everything in them is escaped and nothing undefined.
+The scripts (one copy of plotly, and what draws with it) stand in the page itself, and its policy lets nothing else run.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import base64
+import gzip
+import hashlib
+import json
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources import files
+from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from reports import formatting, palette, svg
 from reports.atomic import StrPath, write_text
 from reports.blocks import (
     Block,
+    Column,
     Download,
     Downloads,
     Fact,
     Figure,
     KeyFigure,
+    Live,
     Notice,
+    Picture,
     Section,
     Subsection,
+    Table,
     Verdict,
 )
-from reports.rendering import environment, scripts
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+    from markupsafe import Markup
 
 
 @dataclass(frozen=True)
@@ -133,3 +150,134 @@ def render_page(page: Page) -> str:
 def write_page(path: StrPath, page: Page) -> Path:
     """Write `render_page(page)` to a file, whole or not at all, and return its path."""
     return write_text(path, render_page(page))
+
+
+_FOLD_FROM = 17
+
+
+@dataclass(frozen=True)
+class Scripts:
+    """What a page embeds.
+
+    Attributes
+    ----------
+    library
+        plotly.js, compressed (gzip) and in base64.
+    loader
+        The script that unpacks and uses it.
+    policy
+        The sources of the content security policy that let exactly these two run.
+    """
+
+    library: str
+    loader: str
+    policy: str
+
+
+@cache
+def scripts() -> Scripts:
+    """Return the scripts; read and compressed once in a process.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If plotly is not installed.
+    """
+    library = _plotly()
+    loader = files("reports").joinpath("templates", "live.js").read_text("utf-8")
+    packed = base64.b64encode(gzip.compress(library, compresslevel=9, mtime=0)).decode("ascii")
+    return Scripts(packed, loader, f"{_source(library)} {_source(loader.encode())}")
+
+
+def embedded_json(live: Live, title: str = "") -> str:
+    """Return data with a title as JSON that can stand in a page's script element."""
+    table = {"title": title, **live.to_dict()}
+    return json.dumps(table, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+
+
+def _plotly() -> bytes:
+    """The library's file, without importing the package it comes in."""
+    found = find_spec("plotly")
+    if found is None or found.origin is None:
+        raise ModuleNotFoundError("plotly is not installed; a page with plots to zoom embeds it")
+    return (Path(found.origin).parent / "package_data" / "plotly.min.js").read_bytes()
+
+
+def _source(script: bytes) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(script).digest()).decode('ascii')}'"
+
+
+def environment() -> Environment:
+    """Return the template environment: everything escaped, nothing undefined."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    templates = Environment(
+        loader=PackageLoader("reports", "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    templates.filters |= {
+        "number": formatting.format_cell,
+        "panels": _embedded_panels,
+        "grid": _table_grid,
+        "data_link": _data_link,
+    }
+    templates.globals["palette_css"] = palette.stylesheet()
+    return templates
+
+
+def _embedded_panels(figure: Figure, number: int) -> Iterator[tuple[Markup, Markup | None]]:
+    """Yield the pictures of a figure, as inline SVG or as an image whose data is in the page, and live data as JSON."""
+    from markupsafe import Markup
+
+    for position, panel in enumerate(figure.panels):
+        if isinstance(panel, Picture):
+            yield Markup('<img src="{}" alt="{}">').format(panel.address, panel.alt), None
+            continue
+        title = panel.title or figure.title or f"Figure {number}"
+        # embed() has parsed the SVG, refused anything active and escaped every text in it.
+        drawing = Markup(svg.embed(panel.svg, f"f{number}-{position}-", title, panel.alt))
+        yield drawing, _data(panel.live, panel.title if len(figure.panels) > 1 else "")
+
+
+def _data(live: Live | None, title: str) -> Markup | None:
+    """Return live data for a script element."""
+    from markupsafe import Markup
+
+    return None if live is None else Markup(embedded_json(live, title))
+
+
+def _table_grid(table: Table) -> dict[str, Any]:
+    """Return what the table template shows: columns, and rows of (text, padding, is number)."""
+    columns = [column if isinstance(column, Column) else Column(column) for column in table.columns]
+    shown = table.rows[: table.limit]
+    by_column = [_column_cells([row[index] for row in shown], column) for index, column in enumerate(columns)]
+    return {
+        "columns": columns,
+        "numeric": [any(number for _, _, number in cells) for cells in by_column],
+        "rows": list(zip(*by_column, strict=True)),
+        "hidden": len(table.rows) - len(shown),
+        "folded": len(table.rows) >= _FOLD_FROM if table.folded is None else table.folded,
+    }
+
+
+def _column_cells(values: Sequence[Any], column: Column) -> list[tuple[str, str, bool]]:
+    """Return text, padding and whether it is a number for each cell of a column.
+
+    A column whose numbers are all exact within its digits (settings, counts) shows no zeros after the last one.
+    """
+    numbers = [formatting.is_number(value) for value in values]
+    pairs = list(zip(values, numbers, strict=True))
+    exact = all(formatting.is_exact(value, column.digits) for value, number in pairs if number)
+    texts = [formatting.format_cell(value, column.digits, trim=exact) for value in values]
+    padding = formatting.decimal_padding([text if number else "" for text, number in zip(texts, numbers, strict=True)])
+    return list(zip(texts, padding, numbers, strict=True))
+
+
+def _data_link(download: Download) -> str:
+    """Return an embedded file as a `data:` link."""
+    content = download.content or b""
+    data = content.encode("utf-8") if isinstance(content, str) else content
+    return f"data:{download.media_type};base64,{base64.b64encode(data).decode('ascii')}"

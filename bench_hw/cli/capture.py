@@ -61,13 +61,11 @@ def capture(
         from bench_hw.capture.session import capture as record
         from bench_hw.rig.rig_file import load_rig
 
-        order = CaptureOrder(
-            loaded, load_rig(rig), out, trials, condition, specimen, fast, append, pause_s, seed, _pairs(settings or [])
-        )
+        keys = _pairs(settings or [])
+        order = CaptureOrder(loaded, load_rig(rig), out, trials, condition, specimen, fast, append, pause_s, seed, keys)
         progress = choose_progress(quiet or as_json)
         _say_setup(loaded, progress.say)
-        outcome = record(order, progress)
-        report_outcome(outcome, as_json=as_json, quiet=quiet)
+        report_outcome(record(order, progress), as_json=as_json, quiet=quiet)
 
 
 def _dry_run(loaded: LoadedProtocol, trials: int, plot: Path | None, *, as_json: bool) -> None:

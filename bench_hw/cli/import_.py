@@ -83,15 +83,8 @@ def import_(
         from bench_hw.tables.importing import ForeignFormat, ImportPlan
         from bench_hw.tables.units import parse_map, parse_rate
 
-        layout = ForeignFormat(
-            delimiter=_DELIMITERS.get(delimiter, delimiter),
-            decimal=_decimal(decimal),
-            encoding=encoding,
-            skip_lines=skip_lines,
-            header=not no_header,
-            skip_rows=skip_rows,
-            comment=comment,
-        )
+        sign = _DELIMITERS.get(delimiter, delimiter)
+        layout = ForeignFormat(sign, _decimal(decimal), encoding, skip_lines, not no_header, skip_rows, comment)
         plan = ImportPlan(
             maps=tuple(parse_map(text) for text in column_map or ()),
             negate=frozenset(negate or ()),

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -93,14 +95,13 @@ def camera(
         of_noise, of_chance = np.random.default_rng(seed).spawn(2)
         painter = Painter(CameraModel(size=_size(size), noise=noise, blur=blur), of_noise)
         markers = pressed_sheet()
+        take = partial(_picture, painter.paint, markers)
         if images is not None:
-            paths = write_pictures(images, lambda t: painter.paint(markers(t)), [k / rate_hz for k in range(frames)])
+            paths = write_pictures(images, take, [k / rate_hz for k in range(frames)])
             return _counted(len(paths), 0, f"pictures in {images}", as_json=as_json, quiet=quiet)
-        settings = CameraSettings(
-            rate_hz, jitter_s, loss=loss, drop=parse_positions(drop), freeze=parse_positions(freeze)
-        )
-        clock = MonotonicClock()
-        with CameraServer(lambda t: painter.paint(markers(t)), clock, settings, of_chance, port=port) as server:
+        dropped, frozen = parse_positions(drop), parse_positions(freeze)
+        settings = CameraSettings(rate_hz, jitter_s, loss=loss, drop=dropped, freeze=frozen)
+        with CameraServer(take, MonotonicClock(), settings, of_chance, port=port) as server:
             _say(f"camera: {server.url}", quiet)
             _serve(duration_s)
         return _counted(server.sent, server.dropped, "frames", as_json=as_json, quiet=quiet)
@@ -144,6 +145,10 @@ def session(
         )
         outcome = capture(order, choose_progress(quiet or as_json), specimen=sheet)
         report_outcome(outcome, as_json=as_json, quiet=quiet)
+
+
+def _picture(paint: Callable[[Any], Any], markers: Callable[[float], Any], time: float) -> Any:
+    return paint(markers(time))
 
 
 def _serve(duration: float | None) -> None:

@@ -1,7 +1,7 @@
 """What a page is made of: sections and blocks, as plain frozen dataclasses.
 
 A block type is a dataclass here and a template of its own in `templates/blocks/`; the page asks nothing else
-of it. How blocks become HTML is in `reports.page`, `reports.rendering` and the templates.
+of it. How blocks become HTML is in `reports.page` and the templates.
 """
 
 from reports.blocks.figure import Figure, Live, LiveAxes, LiveBody, LiveFace, LiveLine, LivePlot, Panel, Picture
