@@ -6,12 +6,15 @@ The trial file being recorded is no such file (it must survive a kill in the mid
 from __future__ import annotations
 
 import os
-import tempfile
+import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from bench_hw.errors import InputError
+
+_BEGINNING = 1 << 12
+"""Bytes in which the sign of a file's kind must stand."""
 
 
 @contextmanager
@@ -34,13 +37,10 @@ def replacing(path: Path) -> Iterator[Path]:
         The folder cannot be made or written.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent)
-    os.close(handle)
-    temporary = Path(name)
+    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.tmp")
     try:
         yield temporary
         _sync(temporary)
-        temporary.chmod(0o666 & ~_umask())
         temporary.replace(path)
     except BaseException:
         temporary.unlink(missing_ok=True)
@@ -87,18 +87,9 @@ def check_replaceable(path: Path, sign: bytes, kind: str) -> None:
                 raise InputError(f"{path}: the file exists and is not {kind}; nothing else is replaced, give another")
 
 
-_BEGINNING = 1 << 12
-
-
 def _sync(path: Path) -> None:
     handle = os.open(path, os.O_RDWR)
     try:
         os.fsync(handle)
     finally:
         os.close(handle)
-
-
-def _umask() -> int:
-    mask = os.umask(0o077)
-    os.umask(mask)
-    return mask
