@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from benchmark.identification.trial_data import TrialData
 from benchmark.identification.trial_features import ContactRange, Start, shape_above_rest
 from benchmark.response.force_curve import Array
-from benchmark.response.least_squares import Record, TrialsFit
+from benchmark.response.least_squares import TrialsFit, fit_record
 from benchmark.response.noise import effective_rows, lag_one
+from benchmark.response.trials_model import Record
 
 AT_BOUND = 1e-3
 """An onset or rest force within this fraction of its range from an end of it is put at that end."""
@@ -70,12 +71,12 @@ def minimise(trial: TrialData, allowed: ContactRange, start: Start, contact_fixe
     if contact_fixed:
         low[1:] = high[1:] = vector[1:]
     vector[1:] = np.clip(vector[1:], *inside(low[1:], high[1:]))
-    fitted = _record(trial, allowed, low, high).fit(vector)
+    fitted = fit_record(_record(trial, allowed, low, high), vector)
     ends = np.array([at_end(*each) for each in zip(fitted.vector, low, high, strict=True)])
     fixed = np.isfinite(ends) & (low < high)
     if fixed.any():
         low[fixed] = high[fixed] = ends[fixed]
-        fitted = _record(trial, allowed, low, high).fit(fitted.vector)
+        fitted = fit_record(_record(trial, allowed, low, high), fitted.vector)
     return _law_fit(fitted, trial, allowed, low < high)
 
 

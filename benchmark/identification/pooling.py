@@ -17,7 +17,8 @@ from benchmark.identification.trial_data import TrialData, reduced
 from benchmark.identification.trial_features import ContactRange
 from benchmark.identification.trial_fit import TrialFit
 from benchmark.response.force_curve import Array
-from benchmark.response.least_squares import EXACT, Columns, Evaluation, least_squares
+from benchmark.response.least_squares import EXACT, least_squares
+from benchmark.response.trials_model import Columns, Evaluation
 
 BETWEEN_TRIALS = "t interval of the mean logarithm, the trial as the unit"
 LEAST_FREEDOM = 2.0
@@ -161,7 +162,7 @@ def fit_jointly(trials: Triples, pooled: PooledStiffness) -> JointFit:
 class _CommonStiffness:
     """One stiffness factor, by its logarithm, and the rest force and onset of each trial as nuisances in their range.
 
-    A `benchmark.response.least_squares.TrialsModel`.
+    A `benchmark.response.trials_model.TrialsModel`.
     """
 
     trials: tuple[tuple[TrialData, ContactRange, TrialFit], ...]

@@ -20,9 +20,10 @@ from benchmark.identification.sheet_model import (
 from benchmark.identification.trial_features import contact_range
 from benchmark.identification.trial_fit import TrialFit
 from benchmark.response.force_curve import Array
-from benchmark.response.least_squares import Record, TrialsFit, differences
+from benchmark.response.least_squares import TrialsFit, fit_record
 from benchmark.response.noise import effective_rows, lag_one
 from benchmark.response.ramp_table import RampTable
+from benchmark.response.trials_model import Record, differences
 
 MM = 1e3
 CONTACT = ("log_stiffness", "onset", "zero", "axis_x", "axis_y")
@@ -100,12 +101,12 @@ def fit_sheet_trial(
     vector, bounds = _start(filmed, start, free, relaxation)
     if known is None:
         first = Weights(FIRST_FORCE * start.peak, FIRST_MARKER)
-        vector = _record(filmed, sheet, first, bounds).fit(vector).vector
+        vector = fit_record(_record(filmed, sheet, first, bounds), vector).vector
         weights = _weights(filmed, sheet, _state(vector), _free(bounds).size)
     else:
         weights = known.weights
         vector[: len(CONTACT)] = _vector(known.state)[: len(CONTACT)]
-    return _sheet_trial(filmed, sheet, weights, _record(filmed, sheet, weights, bounds).fit(vector))
+    return _sheet_trial(filmed, sheet, weights, fit_record(_record(filmed, sheet, weights, bounds), vector))
 
 
 def _sheet_trial(filmed: FilmedTrial, sheet: RampTable, weights: Weights, fitted: TrialsFit[Record]) -> SheetTrial:

@@ -15,10 +15,11 @@ from benchmark.discovery.base.trials_problem import OFFSETS, OWN, Problem
 from benchmark.physics import Effect, EffectParameter, Readings, catalogue
 from benchmark.physics.effect import Values
 from benchmark.response.force_curve import Array
-from benchmark.response.least_squares import Columns, Evaluation, Search, TrialsFit, least_squares
+from benchmark.response.least_squares import Search, TrialsFit, least_squares
 from benchmark.response.least_squares import settled as settled_nuisances
 from benchmark.response.noise import Whitener
 from benchmark.response.pipeline import TrialPipeline
+from benchmark.response.trials_model import Columns, Evaluation
 
 SHAPE_STEP = 1e-3
 """By which the base's nuisances are changed to differentiate."""
@@ -52,7 +53,7 @@ class White:
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """Base and effects for a problem; a `benchmark.response.least_squares.TrialsModel`.
+    """Base and effects for a problem; a `benchmark.response.trials_model.TrialsModel`.
 
     The vector is the shape nuisances of the base, then each effect's parameters; logarithmic ones by their logarithm.
     `pinned` nuisances stay at their values.

@@ -25,7 +25,8 @@ from benchmark.child_processes import end_with_parent, single_threaded_children
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.base.effect_model import Fit, Model
 from benchmark.physics import Effect, load_effects
-from benchmark.response.least_squares import Blocks, Columns
+from benchmark.response.least_squares import Blocks
+from benchmark.response.trials_model import Columns
 from reports import write_bytes
 from reports.manifest import remove_known
 

@@ -11,8 +11,9 @@ from scipy.stats import t as student
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.from_run.run_case import Case
 from benchmark.physics import Effect, EffectParameter
-from benchmark.response.least_squares import Record, Search, differences
+from benchmark.response.least_squares import Search, fit_record
 from benchmark.response.pipeline import physics_of
+from benchmark.response.trials_model import Record, differences
 from wavemodel import WaveError
 
 SEARCH = Search(most=80, gain=0.0, share=1e-10, damping=1.0)
@@ -62,7 +63,7 @@ def fit_body_effect(effect: Effect, case: Case) -> BodyEffectFit | None:
 
     bounds = coordinates.bounds
     record = Record(residual, lambda u: differences(residual, u, STEP, bounds), bounds)
-    found = [record.fit(coordinates.start(values), SEARCH) for values in starts]
+    found = [fit_record(record, coordinates.start(values), SEARCH) for values in starts]
     best = min(found, key=lambda each: each.objective)
     left = residual(best.vector)
     if not np.abs(left).max() < FAILED:

@@ -110,7 +110,7 @@ def _far(result: ModelResult, radius: float) -> float:
 
 def fit_values(case: Mapping[str, Any]) -> list[GatedValue]:
     """Pooled stiffness factor, and the medians of contact onset and force zero over the trials of a session."""
-    from benchmark.runs.session_run import fit_trials
+    from benchmark.runs.fit_run import fit_trials
 
     fit = fit_trials(Path(case["session"]), None, {}, SilentListener(), films=False).fit
     return [

@@ -6,16 +6,8 @@ import numpy as np
 import pytest
 import scipy
 
-from benchmark.response.least_squares import (
-    EXACT,
-    Columns,
-    Evaluation,
-    Record,
-    Search,
-    differences,
-    least_squares,
-    settled,
-)
+from benchmark.response.least_squares import EXACT, Search, fit_record, least_squares, settled
+from benchmark.response.trials_model import Columns, Evaluation, Record, differences
 
 TIME = np.linspace(0.0, 1.0, 40)
 TIGHT = Search(most=50, gain=0.0, share=1e-14)
@@ -125,7 +117,7 @@ def rosenbrock(vector):
 def test_a_record_ends_where_scipy_ends_also_at_a_bound(high) -> None:
     bounds = np.array([-2.0, -2.0]), np.array([high, 2.0])
     record = Record(rosenbrock, lambda v: differences(rosenbrock, v, 1e-6, bounds), bounds)
-    fitted = record.fit(np.array([-1.2, 1.0]))
+    fitted = fit_record(record, np.array([-1.2, 1.0]))
     other = scipy.optimize.least_squares(rosenbrock, [-1.2, 1.0], bounds=bounds, xtol=1e-15, ftol=1e-15)
     assert fitted.vector == pytest.approx(other.x, abs=1e-6)
     assert fitted.nuisance.shape == (1, 0)
@@ -133,7 +125,9 @@ def test_a_record_ends_where_scipy_ends_also_at_a_bound(high) -> None:
 
 def test_a_fixed_parameter_stays_and_has_no_derivative() -> None:
     bounds = np.array([0.5, -2.0]), np.array([0.5, 2.0])
-    fitted = Record(rosenbrock, lambda v: differences(rosenbrock, v, 1e-6, bounds), bounds).fit(np.array([0.5, 1.0]))
+    fitted = fit_record(
+        Record(rosenbrock, lambda v: differences(rosenbrock, v, 1e-6, bounds), bounds), np.array([0.5, 1.0])
+    )
     assert fitted.vector == pytest.approx([0.5, 0.25], abs=1e-9)
     assert (fitted.columns.vector[0][:, 0] == 0.0).all()
 
@@ -143,7 +137,9 @@ def test_what_the_data_do_not_feel_stays_where_it_began() -> None:
         return np.ones(5) - vector[0] * np.arange(5)
 
     bounds = np.full(2, -np.inf), np.full(2, np.inf)
-    fitted = Record(residual, lambda v: differences(residual, v, 1e-6, bounds), bounds).fit(np.array([0.0, 0.7]))
+    fitted = fit_record(
+        Record(residual, lambda v: differences(residual, v, 1e-6, bounds), bounds), np.array([0.0, 0.7])
+    )
     assert fitted.vector[0] == pytest.approx(10.0 / 30.0)
     assert fitted.vector[1] == 0.7
 
