@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.discovery.base.base_shape import Shape
-from benchmark.discovery.trials.study import ConditionData, Study
+from benchmark.discovery.trials.study import Study
 from benchmark.physics import Motion
 from benchmark.response.elastic_table import ElasticTable
 from benchmark.response.force_curve import Array
@@ -132,8 +132,3 @@ def only(problem: Problem, trials: Sequence[int]) -> Problem:
     """The problem of some of its trials, whose nuisances are then in the same order."""
     noise = NoiseModel(problem.noise.memory, problem.noise.scale[list(trials)])
     return replace(problem, trials=tuple(problem.trials[i] for i in trials), noise=noise)
-
-
-def condition_of(problem: Problem, index: int) -> ConditionData:
-    """The condition of a trial."""
-    return problem.study.conditions[problem.trials[index].condition]
