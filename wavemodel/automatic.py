@@ -34,7 +34,7 @@ def far_field(laminate: Laminate, radius: float, distance: FloatArray) -> FloatA
     return relative
 
 
-def window(laminate: Laminate, radius: float) -> float:
+def automatic_window(laminate: Laminate, radius: float) -> float:
     """Side of the square window, m: the border costs at most `BORDER_COST` of the peak anywhere in it."""
     nearest = PROFILE_RADII * radius
     distance = np.linspace(nearest, nearest + REACH * laminate.height, SAMPLES)
@@ -57,6 +57,6 @@ def _last_above(level: float, distance: FloatArray, field: FloatArray) -> float:
     return float(distance[min(above[-1] + 1, distance.size - 1)] if above.size else distance[0])
 
 
-def modes(side: float, radius: float) -> int:
+def enough_modes(side: float, radius: float) -> int:
     """N for a window (m) and a tool (m): the load's smooth part, up to k a = 12, fits below the cut-off."""
     return int(np.clip(np.ceil(RESOLUTION * side / (np.pi * radius)), FEWEST_MODES, MOST_MODES))

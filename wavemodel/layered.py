@@ -11,7 +11,6 @@ from functools import cached_property
 
 import numpy as np
 
-from wavemodel import notices
 from wavemodel.arrays import FloatArray
 from wavemodel.dynamics import first_frequency, modal_system, ringing
 from wavemodel.elastic_law import ElasticLaw
@@ -25,6 +24,7 @@ from wavemodel.integrators.prony import Prony
 from wavemodel.integrators.quasi_static import StaticBody, quasi_static
 from wavemodel.layers.laminate import BASES
 from wavemodel.memory import one_series, series_of, shared, static_body
+from wavemodel.notices import notices
 from wavemodel.options import large_press_of, options_of, with_slip
 from wavemodel.physics.body import Physics
 from wavemodel.physics.in_plane_stress import InPlaneStress, in_plane_stress
@@ -200,7 +200,7 @@ class LayeredWave:
             layer_names=tuple(layer.name for layer in self.layers),
             top_deflection=history.top_deflection,
             integrator=method,
-            warnings=notices.notices(self.press, history, method, added),
+            warnings=notices(self.press, history, method, added),
             _press=self.press,
             _history=history,
         )

@@ -14,8 +14,8 @@ from wavemodel.arrays import FloatArray
 from wavemodel.integrators.creep import creep
 from wavemodel.integrators.layerwise import LayerwiseBody
 from wavemodel.integrators.prony import Prony
-from wavemodel.layers import fading
 from wavemodel.layers.compliance import exact_faces, quadratic_faces
+from wavemodel.layers.fading import StackCreep, stack_creep
 from wavemodel.layers.lag_nodes import LagNodes, lag_nodes
 from wavemodel.layers.laminate import Laminate
 from wavemodel.layers.stacking import layer_faces
@@ -27,8 +27,8 @@ from wavemodel.remainder import Remainder, deflections, less_half_space, work
 class _Creep:
     """What creeps: the modes and, where there is one, the remainder with the half-space in it."""
 
-    modal: fading.Fading
-    sharp: fading.Fading | None
+    modal: StackCreep
+    sharp: StackCreep | None
     surface_rate: FloatArray
     surface_weight: FloatArray
     surface_instant: float
@@ -83,16 +83,16 @@ def layerwise(
 def _creep(press: Press, whole: Laminate, series: Sequence[Prony], retardation: float) -> _Creep:
     stack, rest = press.modal_stack, press.field.rest
     k = press.field.domain.wavenumber
-    modal = fading.fading(layer_faces(stack, quadratic_faces(k, stack)), stack.base, series, retardation)
+    modal = stack_creep(layer_faces(stack, quadratic_faces(k, stack)), stack.base, series, retardation)
     sharp = None
     if rest is not None:
         q = np.maximum(rest.spectrum.wavenumber, press.field.domain.lowest)
-        sharp = fading.fading(exact_faces(q, whole), stack.base, series, retardation)
+        sharp = stack_creep(exact_faces(q, whole), stack.base, series, retardation)
     surface = creep(series[0], retardation)
     return _Creep(modal, sharp, 1.0 / surface.time, surface.weight, surface.instant)
 
 
-def _by_node(made: fading.Fading, nodes: LagNodes) -> FloatArray:
+def _by_node(made: StackCreep, nodes: LagNodes) -> FloatArray:
     """(B, n, L, 2, 2): what comes at once, and each shared lag."""
     shared = np.einsum("nmM,nmlij->Mnlij", nodes.share(made.rate), made.faces, optimize=True)
     return np.concatenate([made.instant[None], shared])

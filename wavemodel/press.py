@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from wavemodel import automatic, subdivision
+from wavemodel import subdivision
 from wavemodel.arrays import FloatArray
+from wavemodel.automatic import automatic_window, border_cost
 from wavemodel.domains.domain import Domain
 from wavemodel.errors import WaveError
 from wavemodel.field import Field
@@ -84,7 +85,7 @@ def prepare(layers: Sequence[WaveLayer], tool: DiscTool, base: str, settings: Se
     whole = laminate(layers, subdivision.uniform([1] * len(layers)), base, None if stress is None else stress.mean)
     domain, taper = _window(whole, tool, settings)
     chosen = settings.window is not None and base == "bonded"
-    border = automatic.border_cost(whole, tool.radius, domain.width) if chosen else 0.0
+    border = border_cost(whole, tool.radius, domain.width) if chosen else 0.0
     stack, mistake = _sublayers(layers, whole, settings, _yardstick(whole, tool, taper, domain))
     basis = _basis(whole, tool, settings)
     rest = remainder(whole, basis, taper, domain) if taper.active else None
@@ -102,7 +103,7 @@ def _seen_by_modes(stack: Laminate, domain: Domain, stress: InPlaneStress | None
 def _window(whole: Laminate, tool: DiscTool, settings: Settings) -> tuple[Domain, Taper]:
     if settings.window is None and whole.base == "free":
         raise WaveError("window: needed with a free lower face, where an endless specimen has nothing to rest on")
-    side = automatic.window(whole, tool.radius) if settings.window is None else settings.window
+    side = automatic_window(whole, tool.radius) if settings.window is None else settings.window
     return window_of(settings, tool.radius, side)
 
 

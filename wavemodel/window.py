@@ -4,7 +4,7 @@ from math import hypot
 
 import numpy as np
 
-from wavemodel import automatic
+from wavemodel.automatic import enough_modes
 from wavemodel.domains.disc import Disc
 from wavemodel.domains.domain import Domain
 from wavemodel.domains.rectangle import Rectangle
@@ -40,7 +40,7 @@ def window_of(settings: Settings, radius: float, width: float) -> tuple[Domain, 
 
 
 def _rectangle(settings: Settings, radius: float, width: float) -> tuple[Domain, Taper]:
-    count = automatic.modes(width, radius) if settings.modes is None else settings.modes
+    count = enough_modes(width, radius) if settings.modes is None else settings.modes
     taper = Taper(count * np.pi / width, settings.corrected)
     directed = settings.pretension is not None and settings.pretension.directed
     cutoff = taper.limit if taper.active else np.inf
@@ -49,7 +49,7 @@ def _rectangle(settings: Settings, radius: float, width: float) -> tuple[Domain,
 
 def _disc(settings: Settings, radius: float, width: float) -> tuple[Domain, Taper]:
     border = 0.5 * width
-    count = automatic.modes(border, radius) if settings.modes is None else settings.modes
+    count = enough_modes(border, radius) if settings.modes is None else settings.modes
     return Disc(border, count, settings.place), Taper(count * np.pi / border, settings.corrected)
 
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import expm
 
 from wavemodel import Damping, DiscTool, LayeredWave, NotCoveredError, Prony, WaveError, WaveLayer
-from wavemodel.layers import quadratic
+from wavemodel.layers.quadratic import quadratic_stiffness
 from wavemodel.layers.vibration import assemble
 
 SERIES = [None, Prony((0.3,), (0.5,)), Prony((0.2, 0.25), (0.1, 4.0))]
@@ -21,7 +21,7 @@ def few_modes(layers, **options):
 def dense_history(wave, k, load, eta, step, force):
     """Top deflections (n, L) of one wavenumber: every branch of every sub-layer as states of one exponential."""
     stack = wave.press.stack
-    blocks = quadratic.stiffness(np.array([k]), stack)[0]
+    blocks = quadratic_stiffness(np.array([k]), stack)[0]
     layer = np.searchsorted(stack.top_of_layer, np.arange(stack.sublayers), side="right") - 1
     whole = assemble(blocks[None], stack.base)[0]
     d, branches = whole.shape[0], []

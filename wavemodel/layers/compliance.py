@@ -12,8 +12,9 @@ from typing import TypeAlias
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.layers import exact, quadratic
+from wavemodel.layers.exact import exact_stiffness
 from wavemodel.layers.laminate import Laminate
+from wavemodel.layers.quadratic import quadratic_stiffness
 from wavemodel.layers.stacking import inverse, stacked
 
 FaceStiffness: TypeAlias = Callable[[FloatArray, Laminate], FloatArray]
@@ -49,7 +50,7 @@ class Compliance:
 
 def quadratic_faces(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
     """Quadratic sub-layers, their middle nodes condensed: (n, S, 4, 4) in Pa/m."""
-    full = quadratic.stiffness(wavenumber, laminate)
+    full = quadratic_stiffness(wavenumber, laminate)
     outer, to_mid, mid = full[..., :4, :4], full[..., :4, 4:], full[..., 4:, 4:]
     return outer - to_mid @ inverse(mid) @ np.swapaxes(to_mid, -1, -2)
 
@@ -58,7 +59,7 @@ def exact_faces(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
     """Exact static sub-layers: (n, S, 4, 4) in Pa/m."""
     if laminate.tension is not None:
         return doubled_faces(wavenumber, laminate)
-    return exact.stiffness(wavenumber, laminate)
+    return exact_stiffness(wavenumber, laminate)
 
 
 def doubled_faces(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:

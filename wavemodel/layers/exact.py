@@ -16,7 +16,7 @@ from wavemodel.arrays import FloatArray
 from wavemodel.layers.laminate import Laminate
 
 
-def stiffness(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
+def exact_stiffness(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
     """Exact static K(k) of every sub-layer.
 
     Parameters
@@ -39,7 +39,7 @@ def stiffness(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
     kappa = (lame + 3.0 * shear) / (lame + shear)
     even, odd = _families(half, tanh, sech2, kappa)
     scale = (k * shear)[..., None, None]
-    return _faces(scale * even, scale * odd)
+    return _both_faces(scale * even, scale * odd)
 
 
 def _families(
@@ -59,7 +59,7 @@ def _families(
     return even, odd
 
 
-def _faces(even: FloatArray, odd: FloatArray) -> FloatArray:
+def _both_faces(even: FloatArray, odd: FloatArray) -> FloatArray:
     """4 x 4 stiffness of upper and lower face from the two families.
 
     The even family has U alike and W opposite on the two faces, the odd one the other way round.

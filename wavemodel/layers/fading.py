@@ -23,7 +23,7 @@ from wavemodel.integrators.prony import Prony
 
 
 @dataclass(frozen=True)
-class Fading:
+class StackCreep:
     """Compliance of n wavenumbers as an instant part and m lags each.
 
     Attributes
@@ -41,7 +41,7 @@ class Fading:
     faces: FloatArray
 
 
-def fading(layers: FloatArray, base: str, series: Sequence[Prony], retardation: float) -> Fading:
+def stack_creep(layers: FloatArray, base: str, series: Sequence[Prony], retardation: float) -> StackCreep:
     """Creep of a stack.
 
     Parameters
@@ -70,7 +70,7 @@ def fading(layers: FloatArray, base: str, series: Sequence[Prony], retardation: 
     instant = np.zeros_like(stiffness)
     if retardation == 0.0:
         instant[:] = np.linalg.inv(stiffness)
-    return Fading(
+    return StackCreep(
         instant[:, : 2 * layers.shape[1], :2].reshape(-1, layers.shape[1], 2, 2),
         rate,
         tops[..., None] * (moved[..., :2] / rate[..., None])[:, :, None, None],

@@ -26,7 +26,7 @@ SHAPE_SLOPE = np.array([[-3.0, -1.0, 4.0], [1.0, 3.0, -4.0], [-4.0, 4.0, 0.0]]) 
 """int N_i N'_j dz; of third degree, so two Gauss points are exact."""
 
 
-def stiffness(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
+def quadratic_stiffness(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
     """K(k) of every sub-layer.
 
     Parameters
@@ -59,7 +59,7 @@ def stiffness(wavenumber: FloatArray, laminate: Laminate) -> FloatArray:
     return out
 
 
-def mass(laminate: Laminate) -> FloatArray:
+def consistent_mass(laminate: Laminate) -> FloatArray:
     """Consistent mass of every sub-layer, the same for every k.
 
     Returns

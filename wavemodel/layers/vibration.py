@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.layers import quadratic
 from wavemodel.layers.laminate import Laminate
+from wavemodel.layers.quadratic import consistent_mass, quadratic_stiffness
 
 
 @dataclass(frozen=True)
@@ -49,8 +49,8 @@ def assemble(blocks: FloatArray, base: str) -> FloatArray:
 
 def vibration(wavenumber: FloatArray, laminate: Laminate) -> Vibration:
     """Modes of the stack at wavenumbers (n,), rad/m."""
-    stiffness = assemble(quadratic.stiffness(wavenumber, laminate), laminate.base)
-    mass = assemble(quadratic.mass(laminate), laminate.base)
+    stiffness = assemble(quadratic_stiffness(wavenumber, laminate), laminate.base)
+    mass = assemble(consistent_mass(laminate), laminate.base)
     root = np.linalg.cholesky(stiffness)
     half = np.linalg.solve(root, np.broadcast_to(mass, stiffness.shape))
     scaled = np.linalg.solve(root, np.swapaxes(half, -1, -2))

@@ -3,7 +3,7 @@ import pytest
 from scipy.linalg import cholesky, expm
 
 from wavemodel import Damping, DiscTool, LayeredWave, Prony, WaveError
-from wavemodel.layers import quadratic
+from wavemodel.layers.quadratic import consistent_mass, quadratic_stiffness
 from wavemodel.layers.vibration import assemble
 
 TRIANGLE = np.concatenate([np.arange(1, 26), np.arange(24, -1, -1)]) / 25.0
@@ -28,8 +28,8 @@ def dense_history(wave, k, load, damping, step, force):
     With K = R'R the state is (R q, M^1/2 q'), in which the undamped system is a rotation.
     """
     stack = wave.press.stack
-    stiffness = assemble(quadratic.stiffness(np.array([k]), stack), stack.base)[0]
-    mass = assemble(quadratic.mass(stack), stack.base)
+    stiffness = assemble(quadratic_stiffness(np.array([k]), stack), stack.base)[0]
+    mass = assemble(consistent_mass(stack), stack.base)
     root, weight = cholesky(stiffness), cholesky(mass)
     d = root.shape[0]
     swap = root @ np.linalg.inv(weight)

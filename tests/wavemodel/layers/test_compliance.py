@@ -44,10 +44,10 @@ def test_a_homogeneous_stack_is_a_half_space_at_large_wavenumbers(skin):
 
 
 def test_condensation_leaves_the_energy_of_the_middle_node_out(skin):
-    from wavemodel.layers import quadratic
+    from wavemodel.layers.quadratic import quadratic_stiffness
 
     stack = halves(skin(), 1)
-    full = quadratic.stiffness(np.array([300.0]), stack)[0, 2]
+    full = quadratic_stiffness(np.array([300.0]), stack)[0, 2]
     condensed = quadratic_faces(np.array([300.0]), stack)[0, 2]
     outer = np.array([1.0, -0.3, 0.2, 0.7])
     middle = -np.linalg.solve(full[4:, 4:], full[4:, :4] @ outer)

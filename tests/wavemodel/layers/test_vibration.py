@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from wavemodel import WaveLayer
-from wavemodel.layers import quadratic
 from wavemodel.layers.compliance import compliance
 from wavemodel.layers.laminate import laminate
+from wavemodel.layers.quadratic import consistent_mass, quadratic_stiffness
 from wavemodel.layers.vibration import assemble, vibration
 
 
@@ -20,8 +20,8 @@ def test_static_answers_of_the_modes_add_up_to_the_compliance(skin, base):
 def test_rayleigh_quotients_of_the_shapes_are_the_frequencies(skin):
     stack = laminate(skin(), [(1.0,)] * 3, "bonded")
     k = np.array([150.0])
-    stiffness = assemble(quadratic.stiffness(k, stack), "bonded")[0]
-    mass = assemble(quadratic.mass(stack), "bonded")
+    stiffness = assemble(quadratic_stiffness(k, stack), "bonded")[0]
+    mass = assemble(consistent_mass(stack), "bonded")
     squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real
     np.testing.assert_allclose(np.sort(vibration(k, stack).frequency[0]), np.sqrt(np.sort(squares)), rtol=1e-6)
 
@@ -39,6 +39,6 @@ def test_one_layer_moving_as_one_is_the_membrane_of_eq_1():
     stack = laminate([layer], [(1.0,)], "free")
     k = np.array([133.0, 188.0])
     rigid = np.array([0.0, 1.0, 0.0, 1.0, 0.0, 1.0])
-    stiffness = np.einsum("i,nij,j->n", rigid, quadratic.stiffness(k, stack)[:, 0], rigid)
-    mass = rigid @ quadratic.mass(stack)[0] @ rigid
+    stiffness = np.einsum("i,nij,j->n", rigid, quadratic_stiffness(k, stack)[:, 0], rigid)
+    mass = rigid @ consistent_mass(stack)[0] @ rigid
     np.testing.assert_allclose(stiffness / mass, layer.shear_modulus / layer.density * k**2)

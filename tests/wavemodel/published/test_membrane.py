@@ -5,8 +5,8 @@ from scipy.integrate import dblquad
 from wavemodel import Damping, PublishedWave, WaveError, WaveLayer
 from wavemodel.domains.rectangle import Rectangle
 from wavemodel.integrators.oscillators import oscillator_step
-from wavemodel.layers import quadratic
 from wavemodel.layers.laminate import laminate
+from wavemodel.layers.quadratic import consistent_mass, quadratic_stiffness
 from wavemodel.published import printed
 
 
@@ -89,8 +89,8 @@ def test_it_is_the_one_layer_one_mode_special_case_of_the_layered_wave():
     stack = laminate([layer], [(1.0,)], "free")
     domain = Rectangle(paper.side, paper.side, 1)
     rigid = np.array([0.0, 1.0, 0.0, 1.0, 0.0, 1.0])
-    stiffness = rigid @ quadratic.stiffness(domain.wavenumber, stack)[0, 0] @ rigid
-    mass = rigid @ quadratic.mass(stack)[0] @ rigid
+    stiffness = rigid @ quadratic_stiffness(domain.wavenumber, stack)[0, 0] @ rigid
+    mass = rigid @ consistent_mass(stack)[0] @ rigid
     step = oscillator_step(np.array([np.sqrt(stiffness / mass)]), Damping(), 1e-4)
     amplitude, velocity = paper.coefficient[0].copy(), np.zeros(1)
     middle = np.array([0.5 * paper.side])
