@@ -4,22 +4,21 @@
 loaded when first used, so that importing the package costs nothing.
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING
+
+from wavemodel.lazy import loader
 
 if TYPE_CHECKING:
     from wavemodel.errors import NotCoveredError, WaveError
-    from wavemodel.integrators.damping import Damping
-    from wavemodel.integrators.prony import Prony
-    from wavemodel.layered import LayeredWave
+    from wavemodel.integrators.viscoelastic import Damping, Prony
+    from wavemodel.layered.layered_wave import LayeredWave
+    from wavemodel.layered.shear_limit import ShearLimit
     from wavemodel.markers import marker_motion
-    from wavemodel.physics.body import Physics
     from wavemodel.physics.in_plane_stress import InPlaneStress
-    from wavemodel.physics.quasi_static_press import QuasiStaticPress
-    from wavemodel.plate.model import PlateWave
-    from wavemodel.plate.solution import PlateSolution
+    from wavemodel.physics.quasi_static_press import Physics, QuasiStaticPress
     from wavemodel.published.membrane import PublishedWave
-    from wavemodel.shear_limit import ShearLimit
+    from wavemodel.sheet.plate_wave import PlateWave
+    from wavemodel.sheet.solution import PlateSolution
     from wavemodel.solution import WaveSolution
     from wavemodel.specimen import DiscTool, WaveLayer
 
@@ -42,27 +41,19 @@ __all__ = [
     "marker_motion",
 ]
 
-_HOMES = {
-    "Damping": "wavemodel.integrators.damping",
-    "DiscTool": "wavemodel.specimen",
-    "LayeredWave": "wavemodel.layered",
-    "NotCoveredError": "wavemodel.errors",
-    "PlateSolution": "wavemodel.plate.solution",
-    "PlateWave": "wavemodel.plate.model",
-    "Prony": "wavemodel.integrators.prony",
-    "PublishedWave": "wavemodel.published.membrane",
-    "InPlaneStress": "wavemodel.physics.in_plane_stress",
-    "Physics": "wavemodel.physics.body",
-    "QuasiStaticPress": "wavemodel.physics.quasi_static_press",
-    "ShearLimit": "wavemodel.shear_limit",
-    "WaveError": "wavemodel.errors",
-    "WaveLayer": "wavemodel.specimen",
-    "WaveSolution": "wavemodel.solution",
-    "marker_motion": "wavemodel.markers",
-}
-
-
-def __getattr__(name: str) -> object:
-    if name not in _HOMES:
-        raise AttributeError(f"module 'wavemodel' has no attribute {name!r}")
-    return getattr(import_module(_HOMES[name]), name)
+__getattr__ = loader(
+    __name__,
+    {
+        "errors": "NotCoveredError WaveError",
+        "integrators.viscoelastic": "Damping Prony",
+        "layered.layered_wave": "LayeredWave",
+        "layered.shear_limit": "ShearLimit",
+        "markers": "marker_motion",
+        "physics": "InPlaneStress Physics QuasiStaticPress",
+        "published": "PublishedWave",
+        "sheet.plate_wave": "PlateWave",
+        "sheet.solution": "PlateSolution",
+        "solution": "WaveSolution",
+        "specimen": "DiscTool WaveLayer",
+    },
+)

@@ -6,10 +6,10 @@ import numpy as np
 
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import NotCoveredError
-from wavemodel.field import Snapshot
-from wavemodel.in_plane import InPlane, away
-from wavemodel.integrators.history import History
-from wavemodel.press import Press
+from wavemodel.integrators.load_history import History
+from wavemodel.layered.field import Snapshot
+from wavemodel.layered.in_plane import InPlane, away
+from wavemodel.layered.press import Press
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,7 @@ from benchmark.response.force_curve import Array
 from benchmark.response.pipeline import Added, physics_of
 from benchmark.response.ramp import depth_ramp
 from wavemodel import WaveError
-from wavemodel.physics import Physics, QuasiStaticPress
-from wavemodel.physics.force_driven import drive_by_force
+from wavemodel.physics import Physics, QuasiStaticPress, drive_by_force
 
 STEPS = 40
 ENOUGH = 1.02

@@ -14,7 +14,7 @@ from benchmarks.wave.job import FORCE, RADIUS, Reference, errors, vertices, wave
 from benchmarks.wave.timing import Times, microseconds
 from wavemodel import DiscTool, LayeredWave, Prony
 from wavemodel.control import Grid, InteractiveTissue, layered_body
-from wavemodel.control.fading import Fading
+from wavemodel.control.contact_memory import Fading
 
 COUNTS, MODES, WINDOW = (25, 100, 512), (8, 16, 32), 60e-3
 DISC, DISC_MODES = 90e-3, 24

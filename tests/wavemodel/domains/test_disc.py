@@ -8,10 +8,10 @@ from scipy.special import j0
 
 from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveError
 from wavemodel.domains.disc import Disc
-from wavemodel.domains.endless import endless
-from wavemodel.layers.compliance import compliance, exact_faces
-from wavemodel.layers.laminate import laminate
-from wavemodel.loads.uniform import uniform_pressure
+from wavemodel.domains.domain import endless
+from wavemodel.layered.stack.compliance import compliance, exact_faces
+from wavemodel.layered.stack.laminate import laminate
+from wavemodel.layered.tractions import uniform_pressure
 
 TOOL, BORDER, MODES = 5e-3, 45e-3, 400
 RADII = np.linspace(0.0, 20e-3, 41)

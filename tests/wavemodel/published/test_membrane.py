@@ -1,3 +1,5 @@
+"""WRITE"""
+
 import numpy as np
 import pytest
 from scipy.integrate import dblquad
@@ -5,9 +7,9 @@ from scipy.integrate import dblquad
 from wavemodel import Damping, PublishedWave, WaveError, WaveLayer
 from wavemodel.domains.rectangle import Rectangle
 from wavemodel.integrators.oscillators import oscillator_step
-from wavemodel.layers.laminate import laminate
-from wavemodel.layers.quadratic import consistent_mass, quadratic_stiffness
-from wavemodel.published import printed
+from wavemodel.layered.stack.laminate import laminate
+from wavemodel.layered.stack.sublayers import consistent_mass, quadratic_stiffness
+from wavemodel.published import printed, table_one
 
 
 def test_b_11_of_the_equations_and_of_the_slip():
@@ -98,3 +100,10 @@ def test_it_is_the_one_layer_one_mode_special_case_of_the_layered_wave():
         step.advance(amplitude, velocity, 0.0, 0.0)
         mode = amplitude[0] * (domain.sines(np.zeros(1)) @ domain.sines(np.zeros(1)).T)[0, 0]
         assert mode == pytest.approx(paper.deflection(middle, middle, n * 1e-4)[0, 0], abs=1e-12)
+
+
+def test_what_agrees_and_what_does_not():
+    rows = table_one()
+    assert [row.agrees for row in rows] == [False, True, False, True]
+    assert [row.value for row in rows] == pytest.approx([9.24986, 1.74092, 31.7788, 39.20117], rel=1e-5)
+    assert all(row.reason for row in rows)

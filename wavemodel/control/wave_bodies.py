@@ -1,0 +1,102 @@
+"""The layered wave under interactive tools: linear, or with its large-press correction."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from wavemodel.arrays import FloatArray
+from wavemodel.control.interactive_tissue import Grid
+from wavemodel.control.pressed_body import RadialPatch, RoundBody, radii_of
+from wavemodel.errors import require_positive
+from wavemodel.layered.layered_wave import LayeredWave
+from wavemodel.sheet.plate_wave import PlateWave
+
+
+def layered_body(wave: LayeredWave, grid: Grid) -> RoundBody:
+    """Tabulate a wave round its tool; the patch is as wide as the wave's window.
+
+    A linear wave answers several tools together: each is as deep as it is told under the forces of all. With the
+    large-press correction the patches of several tools just add up. A linear press may be as deep as the stack is high.
+
+    Parameters
+    ----------
+    wave
+        Its window and tool.
+    grid
+        Vertices that the patch will move.
+    """
+    large, reach = wave.law.large, wave.press.field.domain.reach
+    radii = radii_of(reach)
+    unit = replace(wave.press.field, large=None).along_x(wave.static_state(1.0), radii)[None]
+    fields = unit if large is None else np.concatenate([unit, large.at_radius(radii)])
+
+    def weigh(elastic: float, out: FloatArray) -> None:
+        out[0] = elastic
+        if large is not None:
+            out[1:] = large.weights_at(elastic)
+
+    return RoundBody(
+        patch=RadialPatch(fields, reach, grid.most_vertices(reach)),
+        weigh=weigh,
+        fields=fields.shape[0],
+        layers=len(wave.layers),
+        tool_radius=wave.tool.radius,
+        reach=reach,
+        deepest=wave.press.stack.height if large is None else large.deepest,
+        force_of=lambda depth: float(wave.law(np.asarray(depth))),
+        depth_of=lambda force: float(wave.law.depth_at(np.asarray(force))),
+        surface=unit[0, 0] if large is None else None,
+    )
+
+
+LEVELS = 48
+"""Depths at which the sheet's field is tabulated; linear between them."""
+
+
+def sheet_body(wave: PlateWave, grid: Grid, deepest: float) -> RoundBody:
+    """Tabulate a sheet up to a depth; the patch is as wide as the hole, and patches of several tools just add up.
+
+    Parameters
+    ----------
+    wave
+        The sheet.
+    grid
+        Vertices that the patch will move.
+    deepest
+        Largest depth, m.
+
+    Raises
+    ------
+    WaveError
+        If the sheet has no equilibrium so deep.
+    """
+    require_positive("deepest", deepest, "m")
+    reach = wave.hole_radius
+    radii = radii_of(reach)
+    depths = np.linspace(0.0, deepest, LEVELS + 1)[1:]
+    forces = wave.force_of_depth(depths)
+    fields = np.stack([wave.field(depth, radii)[1, :-1] for depth in depths.tolist()])
+    known, pressed = np.append(0.0, depths), np.append(0.0, forces)
+
+    def depth_of(force: float) -> float:
+        return float(np.interp(force, pressed, known))
+
+    def weigh(elastic: float, out: FloatArray) -> None:
+        place = depth_of(elastic) / deepest * LEVELS
+        low = min(int(place), LEVELS - 1)
+        out[:] = 0.0
+        out[low] = place - low
+        if low:
+            out[low - 1] = 1.0 - (place - low)
+
+    return RoundBody(
+        patch=RadialPatch(fields, reach, grid.most_vertices(reach)),
+        weigh=weigh,
+        fields=LEVELS,
+        layers=len(wave.layers),
+        tool_radius=wave.tool.radius,
+        reach=reach,
+        deepest=deepest,
+        force_of=lambda depth: float(np.interp(depth, known, pressed)),
+        depth_of=depth_of,
+    )
