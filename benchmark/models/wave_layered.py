@@ -11,7 +11,7 @@ from benchmark.models.frames import vertices
 from benchmark.models.result import Drive, Picture, UncoveredError
 from benchmark.models.scenario_effects import wave_physics, wave_slip
 from benchmark.models.wave_parts import PreparedWave, Solution, law_warnings, wave_layers, wave_relaxation, wave_tool
-from wavemodel import LayeredWave, NotCoveredError, WaveError
+from wavemodel import LayeredWave, NotCoveredError, WaveDiscretisation, WaveError
 
 STRAINS = {
     "linear": "small strain",
@@ -63,9 +63,8 @@ def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) ->
     wave = LayeredWave(
         wave_layers(scenario.tissue.layers),
         wave_tool(scenario),
+        discretisation=WaveDiscretisation(window=scenario.wave.window, modes=scenario.wave.modes),
         support=scenario.support.kind,
-        window=scenario.wave.window,
-        modes=scenario.wave.modes,
         relaxation=wave_relaxation(scenario),
         large_press=large_press,
         pretension=scenario.physics.pretension,
@@ -92,7 +91,7 @@ def _picture(wave: LayeredWave, tool_radius: float, drive: Drive) -> Picture:
     """What draws the faces at the peak of a load history."""
     positions = vertices(tool_radius, 0.5 * wave.window)
     surface = wave.surface(positions, positions)
-    state = wave.run(drive.control, drive.time, drive.value).snapshot(int(np.abs(drive.value).argmax()))
+    state = wave.run(drive.control, drive.time, drive.value).faces.snapshot(int(np.abs(drive.value).argmax()))
     return lambda: surface.frame(state)
 
 

@@ -9,7 +9,7 @@ from benchmark.models.coverage import relaxation_warnings
 from benchmark.models.result import UncoveredError
 from benchmark.models.scenario_effects import wave_physics
 from benchmark.models.wave_parts import PreparedWave, law_warnings, wave_layers, wave_relaxation, wave_tool
-from wavemodel import PlateWave, Prony, WaveError
+from wavemodel import PlateSettings, PlateWave, Prony, WaveError
 
 MODEL = "sheet over a hole, finite deflection with its local tension"
 CALIBRATED = (
@@ -40,11 +40,12 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
         wave_tool(scenario),
         scenario.support.kind,
         hole,
-        options.modes if explicit else None,
+        PlateSettings(
+            modes=options.modes if explicit else None, reach=FIRST_REACH * hole if hole is not None else None
+        ),
         pretension=stress * sum(layer.thickness for layer in scenario.tissue.layers),
         relaxation=series,
         physics=wave_physics(scenario),
-        reach=FIRST_REACH * hole if hole is not None else None,
     )
     peak = np.array([abs(load.peak)])
     try:

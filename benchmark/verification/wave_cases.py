@@ -10,7 +10,7 @@ import numpy as np
 from benchmark.models import Array
 from fem.verification import Case, Quantity, hayes, layered
 from fem.verification.layered_elasticity import axis_deflection
-from wavemodel import Damping, DiscTool, LayeredWave, WaveLayer
+from wavemodel import Damping, DiscTool, LayeredWave, WaveDiscretisation, WaveLayer
 
 STACK = "skin_bonded"
 STATIC_PERCENT, CREEP_PERCENT = 0.1, 0.1
@@ -75,4 +75,10 @@ def _skin(damping: Damping, integrator: str, domain: str = "rectangle") -> Layer
     stack = layered.STACKS[STACK]
     rows = zip(stack.thickness.tolist(), stack.youngs_modulus.tolist(), stack.poisson_ratio.tolist(), strict=True)
     layers = [WaveLayer(f"layer {n}", t, DENSITY, modulus, nu) for n, (t, modulus, nu) in enumerate(rows)]
-    return LayeredWave(layers, DiscTool(layered.RADIUS), domain=domain, integrator=integrator, damping=damping)
+    return LayeredWave(
+        layers,
+        DiscTool(layered.RADIUS),
+        discretisation=WaveDiscretisation(domain=domain),
+        integrator=integrator,
+        damping=damping,
+    )

@@ -13,8 +13,10 @@ from wavemodel import (
     DiscTool,
     LayeredWave,
     NotCoveredError,
+    PlateSettings,
     PlateWave,
     Prony,
+    WaveDiscretisation,
     WaveError,
     WaveLayer,
     marker_motion,
@@ -23,8 +25,9 @@ from wavemodel import (
 POINTS = np.array([[0.0, 0.0], [2e-3, 0.0], [0.0, -5e-3], [6e-3, 4.5e-3]])
 
 
-def pressed(layers, **options):
-    wave = LayeredWave(layers, DiscTool(5e-3), **options)
+def pressed(layers, window=None, **options):
+    modes = WaveDiscretisation(window=window)
+    wave = LayeredWave(layers, DiscTool(5e-3), **{"discretisation": modes, **options})
     return wave.run("force", np.array([10.0, 20.0]), np.array([0.05, 0.1]))
 
 
@@ -71,7 +74,8 @@ def test_nothing_moves_on_a_bonded_base_and_nothing_is_said_outside_the_window(s
 def test_a_free_lower_face_moves_by_the_slope_of_the_plate(skin):
     """u = -c grad w with c half the thickness, well away from the tool (Kirchhoff)."""
     layers = skin(fat=1e-3, poisson_ratio=0.3)[2:]
-    solution = pressed(layers, support="free", window=120e-3, modes=48, integrator="quasi_static")
+    modes = WaveDiscretisation(window=120e-3, modes=48)
+    solution = pressed(layers, support="free", discretisation=modes, integrator="quasi_static")
     r, h = 25e-3, 0.1e-3
     moved = marker_motion(solution, np.array([[r, 0.0]]))[0]
     slope = np.diff(solution.profile(-1, np.array([r - h, r + h]))[0])[0] / (2 * h)
@@ -88,11 +92,11 @@ def test_motion_follows_the_force_and_fades_with_the_layers(skin):
 
 
 def test_under_a_sheet_markers_move_as_its_lower_face(silicone):
-    solution = PlateWave(silicone(), DiscTool(5e-3, "rigid_bonded"), hole_radius=30e-3, reach=3e-3).run(
-        "depth", np.ones(1), np.array([3e-3])
-    )
+    solution = PlateWave(
+        silicone(), DiscTool(5e-3, "rigid_bonded"), settings=PlateSettings(reach=3e-3), hole_radius=30e-3
+    ).run("depth", np.ones(1), np.array([3e-3]))
     points = np.array([[6e-3, 8e-3], [-6e-3, 8e-3], [0.0, 31e-3]])
-    outwards = solution.lower_face(0, np.array([10e-3]))[0, 0]
+    outwards = solution.faces.lower_face(0, np.array([10e-3]))[0, 0]
     expected = outwards * points[:2] / 10e-3
     np.testing.assert_allclose(marker_motion(solution, points)[:2], expected, rtol=1e-12)
     assert np.isnan(marker_motion(solution, points)[2]).all()
@@ -104,7 +108,12 @@ def test_with_inertia_a_slow_press_moves_as_one_without(skin, base, face):
     time, force, found = np.array([20.0, 40.0]), np.array([0.05, 0.1]), []
     for integrator in ("exact", "quasi_static"):
         wave = LayeredWave(
-            skin(), DiscTool(5e-3), base, 60e-3, 24, integrator=integrator, damping=Damping(mass_rate=50.0)
+            skin(),
+            DiscTool(5e-3),
+            base,
+            WaveDiscretisation(window=60e-3, modes=24),
+            integrator=integrator,
+            damping=Damping(mass_rate=50.0),
         )
         found.append(marker_motion(wave.run("force", time, force), POINTS, face=face))
     np.testing.assert_allclose(found[0], found[1], atol=3e-3 * np.abs(found[1]).max())
@@ -113,10 +122,14 @@ def test_with_inertia_a_slow_press_moves_as_one_without(skin, base, face):
 
 def test_with_inertia_each_step_is_that_of_the_run_so_far(skin):
     """The oscillators of a fast press: another than the static motion, and the same after any later load."""
-    wave = LayeredWave(skin(), DiscTool(5e-3), integrator="exact", window=60e-3, modes=24)
+    wave = LayeredWave(
+        skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=60e-3, modes=24), integrator="exact"
+    )
     time, force = np.array([1e-3, 2e-3, 3e-3]), np.array([0.1, 0.1, 0.02])
     run = wave.run("force", time, force)
-    at_rest = LayeredWave(skin(), DiscTool(5e-3), window=60e-3, modes=24, integrator="quasi_static")
+    at_rest = LayeredWave(
+        skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=60e-3, modes=24), integrator="quasi_static"
+    )
     static = marker_motion(at_rest.run("force", time, force), POINTS, 1, 1)
     moved = marker_motion(run, POINTS, 1, 1)
     np.testing.assert_allclose(moved, marker_motion(wave.run("force", time[:2], force[:2]), POINTS, -1, 1), rtol=1e-12)
@@ -141,7 +154,9 @@ def test_a_large_press_moves_markers_as_finite_strain_does(tissue, contact, with
     points = np.stack([0.6 * radii, -0.8 * radii], axis=1)
     errors = {}
     for word in ("corrected", "linear"):
-        wave = LayeredWave(layers, DiscTool(5e-3, contact), window=120e-3, large_press=word)
+        wave = LayeredWave(
+            layers, DiscTool(5e-3, contact), discretisation=WaveDiscretisation(window=120e-3), large_press=word
+        )
         forces = np.array(sorted({one["force"] for one in levels}))
         run = wave.run("force", np.arange(1.0, 3.0), forces)
         errors[word] = 0.0

@@ -1,4 +1,4 @@
-"""The vertices of a tissue's surface, and the window of them that one contact moves."""
+"""Tools on a tissue's vertices, frame after frame: touch, press, move, let go, several at once, and force out."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -6,10 +6,15 @@ from functools import cached_property
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.control.contact_memory import Fading
+from wavemodel.control.contact_relaxation import ContactRelaxation
 from wavemodel.control.pressed_body import Body
 from wavemodel.errors import WaveError, require_positive
-from wavemodel.integrators.viscoelastic import NO_FADING, Prony
+from wavemodel.integrators.viscoelastic import ELASTIC, Prony
+
+SWEEPS, CLOSE = 200, 1e-12
+"""For tools that feel each other."""
+GONE = 1e-9
+"""Of the elastic force at release: what is less is at rest."""
 
 
 @dataclass(frozen=True)
@@ -71,12 +76,6 @@ class Grid:
         return max(int(first), 0), min(int(last) + 1, count)
 
 
-SWEEPS, CLOSE = 200, 1e-12
-"""For tools that feel each other."""
-GONE = 1e-9
-"""Of the elastic force at release: what is less is at rest."""
-
-
 @dataclass
 class _Contact:
     """One tool: idle, pressed to a depth, or let go and returning."""
@@ -107,7 +106,7 @@ class InteractiveTissue:
     contacts
         Most tools at once.
     series
-        Fading memory of the tissue.
+        ContactRelaxation memory of the tissue.
     retardation
         Kelvin-Voigt time, s.
 
@@ -123,14 +122,14 @@ class InteractiveTissue:
     """
 
     def __init__(
-        self, body: Body, grid: Grid, contacts: int = 4, *, series: Prony = NO_FADING, retardation: float = 0.0
+        self, body: Body, grid: Grid, contacts: int = 4, *, series: Prony = ELASTIC, retardation: float = 0.0
     ) -> None:
         if contacts < 1:
             raise WaveError(f"contacts = {contacts} is not allowed: at least 1")
         self.body, self.grid = body, grid
         self.force: FloatArray = np.zeros(contacts)
         self._contacts = [_Contact() for _ in range(contacts)]
-        self._fading = Fading(contacts, series, retardation)
+        self._relaxation = ContactRelaxation(contacts, series, retardation)
         self._out = np.zeros((body.layers, grid.x.size, grid.y.size))
         self._dx, self._dy = np.empty(grid.x.size), np.empty(grid.y.size)
 
@@ -159,7 +158,7 @@ class InteractiveTissue:
     def release(self, contact: int, steps: int | None = None) -> None:
         """Let go: the surface returns to its shape in so many frames, or in physical time where `steps` is None.
 
-        In physical time a body returns as its memory fades (at once where nothing fades), the published membrane in
+        In physical time a body returns as it creeps back (at once where nothing relaxes), the published membrane in
         what is left of a quarter of its period.
 
         Raises
@@ -199,7 +198,7 @@ class InteractiveTissue:
         self._press()
         for index, tool in enumerate(self._contacts):
             pressed = tool.phase == "pressed"
-            self.force[index] = self.body.reaction(self._fading.held(index, tool.elastic, dt)) if pressed else 0.0
+            self.force[index] = self.body.reaction(self._relaxation.held(index, tool.elastic, dt)) if pressed else 0.0
         self._draw()
         return self._out
 
@@ -227,7 +226,7 @@ class InteractiveTissue:
     def _return(self, index: int, tool: _Contact, dt: float) -> None:
         alone = self.body.return_time(tool.start)
         if tool.steps is None and alone is None:
-            tool.elastic = self._fading.free(index, dt)
+            tool.elastic = self._relaxation.free(index, dt)
             done = abs(tool.elastic) <= GONE * abs(tool.start)
         else:
             tool.share += 1.0 / tool.steps if tool.steps is not None else dt / max(alone or 0.0, 1e-300)
@@ -235,7 +234,7 @@ class InteractiveTissue:
             tool.elastic = 0.0 if done else self.body.returning(tool.start, tool.share)
         if done:
             tool.elastic, tool.phase = 0.0, "idle"
-            self._fading.forget(index)
+            self._relaxation.forget(index)
 
     def _press(self) -> None:
         """Elastic forces that bring each pressed tool to its depth under the forces of all; no tool pulls."""

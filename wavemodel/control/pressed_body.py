@@ -1,4 +1,7 @@
-"""What a tool can press interactively: depth and elastic force, each from the other, and the patch that they move."""
+"""Bodies that a tool presses interactively; here the one whose patch is round, a sum of radial fields.
+
+A body gives depth and elastic force, each from the other, and the patch of vertices that they move.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -8,6 +11,9 @@ import numpy as np
 
 from wavemodel.arrays import FloatArray, IntArray
 from wavemodel.errors import WaveError
+
+RADII = 2048
+Number: TypeAlias = Callable[[float], float]
 
 
 class Body(Protocol):
@@ -42,7 +48,7 @@ class Body(Protocol):
         ...
 
     def reaction(self, elastic: float) -> float:
-        """Force on the tool where nothing fades, N; NaN where the model has none."""
+        """Force on the tool where nothing relaxes, N; NaN where the model has none."""
         ...
 
     def between(self, distance: float) -> float:
@@ -54,15 +60,12 @@ class Body(Protocol):
         ...
 
     def return_time(self, elastic: float) -> float | None:
-        """Time that the body takes to return by itself, s; None where its fading memory decides."""
+        """Time that the body takes to return by itself, s; None where its relaxation decides."""
         ...
 
     def add(self, elastic: float, dx: FloatArray, dy: FloatArray, out: FloatArray) -> None:
         """Add the patch to `out` (L, p, q), vertices at dx (p,) and dy (q,) from the contact, m; allocates nothing."""
         ...
-
-
-RADII = 2048
 
 
 def radii_of(reach: float) -> FloatArray:
@@ -141,9 +144,6 @@ class RadialPatch:
         out += value.reshape(out.shape)
 
 
-Number: TypeAlias = Callable[[float], float]
-
-
 @dataclass(frozen=True)
 class RoundBody:
     """A `Body` of a disc-shaped tool.
@@ -205,7 +205,7 @@ class RoundBody:
         return self.force_of((1.0 - share) * self.depth_of(elastic))
 
     def return_time(self, elastic: float) -> float | None:
-        """See `Body.return_time`: its fading memory decides."""
+        """See `Body.return_time`: its relaxation decides."""
         del elastic
         return None
 

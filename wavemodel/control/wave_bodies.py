@@ -1,4 +1,7 @@
-"""The layered wave under interactive tools: linear, or with its large-press correction."""
+"""The wave models under interactive tools, tabulated round the tool: the layered wave, and the sheet over a hole.
+
+The layered wave is linear or at finite strain; the sheet's patch is as wide as its hole and moves along with the tool.
+"""
 
 from dataclasses import replace
 
@@ -10,6 +13,9 @@ from wavemodel.control.pressed_body import RadialPatch, RoundBody, radii_of
 from wavemodel.errors import require_positive
 from wavemodel.layered.layered_wave import LayeredWave
 from wavemodel.sheet.plate_wave import PlateWave
+
+LEVELS = 48
+"""Depths at which the sheet's field is tabulated; linear between them."""
 
 
 def layered_body(wave: LayeredWave, grid: Grid) -> RoundBody:
@@ -49,10 +55,6 @@ def layered_body(wave: LayeredWave, grid: Grid) -> RoundBody:
     )
 
 
-LEVELS = 48
-"""Depths at which the sheet's field is tabulated; linear between them."""
-
-
 def sheet_body(wave: PlateWave, grid: Grid, deepest: float) -> RoundBody:
     """Tabulate a sheet up to a depth; the patch is as wide as the hole, and patches of several tools just add up.
 
@@ -71,32 +73,30 @@ def sheet_body(wave: PlateWave, grid: Grid, deepest: float) -> RoundBody:
         If the sheet has no equilibrium so deep.
     """
     require_positive("deepest", deepest, "m")
-    reach = wave.hole_radius
-    radii = radii_of(reach)
-    depths = np.linspace(0.0, deepest, LEVELS + 1)[1:]
-    forces = wave.force_of_depth(depths)
-    fields = np.stack([wave.field(depth, radii)[1, :-1] for depth in depths.tolist()])
-    known, pressed = np.append(0.0, depths), np.append(0.0, forces)
+    reach, depths = wave.hole_radius, np.linspace(0.0, deepest, LEVELS + 1)
+    forces, radii = np.append(0.0, wave.force_of_depth(depths[1:])), radii_of(reach)
+    fields = np.stack([wave.field(depth, radii)[1, :-1] for depth in depths[1:].tolist()])
 
     def depth_of(force: float) -> float:
-        return float(np.interp(force, pressed, known))
-
-    def weigh(elastic: float, out: FloatArray) -> None:
-        place = depth_of(elastic) / deepest * LEVELS
-        low = min(int(place), LEVELS - 1)
-        out[:] = 0.0
-        out[low] = place - low
-        if low:
-            out[low - 1] = 1.0 - (place - low)
+        return float(np.interp(force, forces, depths))
 
     return RoundBody(
         patch=RadialPatch(fields, reach, grid.most_vertices(reach)),
-        weigh=weigh,
+        weigh=lambda elastic, out: _weigh_levels(depth_of(elastic) / deepest * LEVELS, out),
         fields=LEVELS,
         layers=len(wave.layers),
         tool_radius=wave.tool.radius,
         reach=reach,
         deepest=deepest,
-        force_of=lambda depth: float(np.interp(depth, known, pressed)),
+        force_of=lambda depth: float(np.interp(depth, depths, forces)),
         depth_of=depth_of,
     )
+
+
+def _weigh_levels(place: float, out: FloatArray) -> None:
+    """Weights (LEVELS,) of the two levels that a place lies between; the level of no depth is not kept."""
+    low = min(int(place), LEVELS - 1)
+    out[:] = 0.0
+    out[low] = place - low
+    if low:
+        out[low - 1] = 1.0 - (place - low)

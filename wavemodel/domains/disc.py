@@ -1,8 +1,9 @@
 """The disc with Bessel modes: S = J_n(k r) cos(n theta), zero on the border, theta counted from the load's place.
 
-Under a load in the middle only n = 0 takes part: one mode where the rectangle needs a row of them. Off the middle every
-n does. Under a load in the middle the disc has the face of `Endless`, whose integral over k it replaces by the sum over
-the roots of J_0(k R) = 0; with R to infinity they are the same.
+Under a load in the middle only n = 0 takes part: one mode where the rectangle needs a row of them, and a vertex of a
+grid is looked up by its distance, so that the eight vertices that symmetry makes alike are worked out once. Off the
+middle every n does. Under a load in the middle the disc has the face of `Endless`, whose integral over k it replaces by
+the sum over the roots of J_0(k R) = 0; with R to infinity they are the same.
 """
 
 from dataclasses import dataclass
@@ -17,6 +18,8 @@ from wavemodel.errors import NotCoveredError, WaveError, require_positive
 
 MOST_NUMBERS = 1.5e8
 """Of a table: 1.2 GB."""
+SAME = 12
+"""Decimals of a metre to which vertices equally far from the middle count as one."""
 
 
 @dataclass(frozen=True)
@@ -77,10 +80,6 @@ def require_room(modes: int, vertices: int) -> None:
             f"surface: {vertices} different vertices times {modes} modes of the disc are more than "
             f"{MOST_NUMBERS:.3g} numbers; take fewer, a tool in the middle, or the domain 'rectangle'"
         )
-
-
-SAME = 12
-"""Decimals of a metre to which vertices equally far from the middle count as one."""
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,8 @@
-"""What a domain is: a window in the plane with eigenfunctions S, lap S = -k^2 S, zero on its border.
+"""Domains: a window in the plane with eigenfunctions S, lap S = -k^2 S, zero on its border; or no border at all.
 
-Points are counted from the load's place, which need not be the middle of the window.
+Points are counted from the load's place, which need not be the middle of the window. In the laterally endless specimen
+S = J_0(k r) with every k: a field with amplitudes A(k) under a unit load is int A(k) J_0(k r) k dk / (2 pi). The
+specimen is endless unless the support says otherwise, so this is what a window is measured against.
 """
 
 from dataclasses import dataclass
@@ -10,6 +12,10 @@ import numpy as np
 from scipy.special import j0
 
 from wavemodel.arrays import BoolArray, FloatArray
+
+NODES_PER_PANEL = 8
+PHASE_PER_PANEL = 8.0
+"""Radians that the integrand may turn within a panel of eight Gauss points (error near 1e-7)."""
 
 
 class Tables(Protocol):
@@ -89,11 +95,6 @@ class Domain(Protocol):
             If a vertex is outside the window.
         """
         ...
-
-
-NODES_PER_PANEL = 8
-PHASE_PER_PANEL = 8.0
-"""Radians that the integrand may turn within a panel of eight Gauss points (error near 1e-7)."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,8 @@
 """The rectangle with sines, eq. (2) of the paper: S = sin(m pi x / a) sin(n pi y / b), zero on the border.
 
-Here are the eigenfunctions, their wavenumbers, the projection of a load and the synthesis of a field. The origin of
-positions handed in is the place of the load, by default the centre of the rectangle.
+Here are the eigenfunctions, their wavenumbers, the projection of a load and the synthesis of a field, on a grid of
+vertices as U = Sx A Sy' per layer in memory made beforehand. The origin of positions handed in is the place of the
+load, by default the centre of the rectangle.
 """
 
 from dataclasses import dataclass

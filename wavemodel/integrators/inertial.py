@@ -46,7 +46,7 @@ class ModalSystem:
     damping
         Of the modes; its stiffness part also of the remainder.
     series
-        Fading memory of all layers alike, also of the remainder.
+        Relaxation of all layers alike, also of the remainder.
     """
 
     frequency: FloatArray

@@ -1,4 +1,10 @@
-"""First-order lag, time x' + x = F: creep of a Kelvin-Voigt solid, and the piece that all fading memory is made of."""
+"""First-order lags, time x' + x = F, and the linear answers that are sums of them: relaxation and creep.
+
+With the transform G(s) = 1 - sum_j g_j / (1 + s tau_j) + eta s of force over depth (a Prony series and a Kelvin-Voigt
+time eta), creep is 1 / G(s): the same solid driven by force instead of depth. Its poles lie one below each rate
+1 / tau_j (and with eta one above the fastest); each adds a lag of weight 1 / (lambda G'(-lambda)), all positive
+(B. Gross, Mathematical Structure of the Theories of Viscoelasticity, 1953).
+"""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -8,7 +14,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from wavemodel.arrays import FloatArray, NumberArray
-from wavemodel.integrators.scan import fading_sum
+from wavemodel.integrators.scan import decaying_sum
 from wavemodel.integrators.viscoelastic import Prony
 
 
@@ -48,7 +54,7 @@ def lagged(ratio: NumberArray, force: FloatArray, last: float = 0.0, start: floa
     """
     step = lag_step(ratio)
     before = np.concatenate([[last], force[:-1]])
-    return fading_sum(ratio, step.first * before + step.last * force, start)
+    return decaying_sum(ratio, step.first * before + step.last * force, start)
 
 
 @dataclass(frozen=True)
@@ -128,7 +134,7 @@ def relaxation(series: Prony, retardation: float = 0.0) -> LagSum:
     Parameters
     ----------
     series
-        Fading memory.
+        Relaxation.
     retardation
         Kelvin-Voigt time eta, s.
     """

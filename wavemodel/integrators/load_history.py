@@ -1,4 +1,4 @@
-"""What drives a run: a history of force or depth, linear between its instants."""
+"""The history of force or depth that drives a run, linear between its instants, and what an integrator hands back."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

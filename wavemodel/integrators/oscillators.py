@@ -1,4 +1,4 @@
-"""Damped oscillators under a force that is linear within each step, exactly.
+"""Damped oscillators, with or without relaxation, under a force that is linear within each step, exactly.
 
 u'' / w^2 + c u' / w^2 + u = F(t) with v = u' / w; c = mass_rate + stiffness_time w^2. The linear force has the
 particular solution u_p = F - c F' / w^2, v_p = F' / w; what is left over is free and moves by
@@ -8,6 +8,15 @@ particular solution u_p = F - c F' / w^2, v_p = F' / w; what is left over is fre
 
 or its overdamped form, written with decaying exponentials only: nothing overflows for rates from 1 to 1e10 per
 second, and without damping the step is a rotation.
+
+With a Prony series too an oscillator answers a force by 1 / f(s),
+
+    f(s) = s^2 / w^2 + c s / w^2 + 1 - sum_j g_j / (1 + s tau_j).
+
+Below each rate r_j = 1 / tau_j lies at least one real pole -lambda_j; the two that are left follow from the sum and the
+product of all, without cancellation: s^2 + (c + sum (r_j - lambda_j)) s + w^2 (1 - sum g_j) prod (r_j / lambda_j).
+In partial fractions the real poles are lags and the pair is an oscillator without relaxation, of which position and
+speed are read. Without a series the pair is the oscillator itself.
 """
 
 from dataclasses import dataclass
@@ -17,6 +26,10 @@ import numpy as np
 from wavemodel.arrays import FloatArray
 from wavemodel.integrators.lags import LagStep, lag_step
 from wavemodel.integrators.viscoelastic import Damping, Prony
+
+HALVINGS = 200
+CLOSE = 1e-15
+"""The search for a pole stops when its bracket is so small (relatively)."""
 
 
 @dataclass(frozen=True)
@@ -93,11 +106,6 @@ def _creeping(
     return slow * (1.0 - 0.5 * fade), slow * spread * frequency
 
 
-HALVINGS = 200
-CLOSE = 1e-15
-"""The search for a pole stops when its bracket is so small (relatively)."""
-
-
 @dataclass(frozen=True)
 class Poles:
     """Partial fractions of N oscillators.
@@ -141,8 +149,8 @@ def _real_rates(frequency: FloatArray, drag: FloatArray, strength: FloatArray, r
     high = np.broadcast_to(rate[:, None], low.shape).copy()
     for _ in range(HALVINGS if rate.size else 0):
         middle = 0.5 * (low + high)
-        fading = np.einsum("j,jin->in", strength * rate, 1.0 / (rate[:, None, None] - middle))
-        above = (middle - drag) * middle / frequency**2 + 1.0 - fading > 0.0
+        relaxed = np.einsum("j,jin->in", strength * rate, 1.0 / (rate[:, None, None] - middle))
+        above = (middle - drag) * middle / frequency**2 + 1.0 - relaxed > 0.0
         low, high = np.where(above, middle, low), np.where(above, high, middle)
         if np.all(high - low <= CLOSE * high):
             break

@@ -1,7 +1,8 @@
-"""Presses that are slow against the first frequency: inertia left out, damping by stiffness and fading memory kept.
+"""Presses that are slow against the first frequency: inertia left out, damping by stiffness and relaxation kept.
 
-The first frequency of skin on a base is a few hundred hertz, a press takes seconds. Where all layers fade alike every
-mode is in the same state, x(t) times its static answer, and the whole history is one scalar.
+The first frequency of skin on a base is a few hundred hertz, a press takes seconds. Where all layers relax alike every
+mode is in the same state, x(t) times its static answer, and the whole history is one scalar. Where each relaxes in its
+own way there is one field for each of a few shared lags.
 """
 
 from dataclasses import dataclass
@@ -13,7 +14,7 @@ import numpy as np
 from wavemodel.arrays import FloatArray, NumberArray
 from wavemodel.integrators.lags import LagSum, creep, relaxation
 from wavemodel.integrators.load_history import History, Load
-from wavemodel.integrators.viscoelastic import NO_FADING, Prony
+from wavemodel.integrators.viscoelastic import ELASTIC, Prony
 
 
 class StaticBody(Protocol):
@@ -45,7 +46,7 @@ class SharedBody:
     compliance
         Initial depth per force, m/N.
     series
-        Fading memory.
+        Relaxation.
     retardation
         Kelvin-Voigt time, s.
     """
@@ -53,7 +54,7 @@ class SharedBody:
     unit: FloatArray
     axis: FloatArray
     compliance: float
-    series: Prony = NO_FADING
+    series: Prony = ELASTIC
     retardation: float = 0.0
 
     def follow(self, load: Load) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -1,7 +1,4 @@
-"""Fading memory as a Prony series, G(t) / G(0) = 1 - sum_j g_j (1 - e^(-t / tau_j)).
-
-The moduli of a material are its initial ones, G(0); after a long time 1 - sum g_j of them is left.
-"""
+"""Viscoelastic material: relaxation by a Prony series, and damping proportional to mass and stiffness."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,14 +6,15 @@ from functools import cached_property
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.errors import WaveError, require_positive
+from wavemodel.errors import WaveError, require_not_negative, require_positive
 
 
 @dataclass(frozen=True)
 class Prony:
-    """Relaxation of shear and bulk modulus alike (Poisson's ratio stays).
+    """Relaxation of shear and bulk modulus alike: G(t) / G(0) = 1 - sum_j g_j (1 - e^(-t / tau_j)).
 
-    Source: Simo and Hughes, Computational Inelasticity, chapter 10 (generalised Maxwell solid).
+    The moduli of a material are its initial ones, G(0); after a long time 1 - sum g_j of them is left. Poisson's ratio
+    stays. Source: Simo and Hughes, Computational Inelasticity, chapter 10 (generalised Maxwell solid).
 
     Attributes
     ----------
@@ -70,7 +68,7 @@ class Prony:
         return out
 
 
-NO_FADING = Prony()
+ELASTIC = Prony()
 """An elastic material."""
 
 
@@ -95,9 +93,5 @@ class Damping:
     stiffness_time: float = 0.0
 
     def __post_init__(self) -> None:
-        for name, value, unit in (
-            ("mass_rate", self.mass_rate, "1/s"),
-            ("stiffness_time", self.stiffness_time, "s"),
-        ):
-            if not 0.0 <= value < float("inf"):
-                raise WaveError(f"damping {name} = {value:g} {unit} is not allowed: finite and not negative")
+        require_not_negative("damping mass_rate", self.mass_rate, "1/s")
+        require_not_negative("damping stiffness_time", self.stiffness_time, "s")

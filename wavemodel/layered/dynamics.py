@@ -4,12 +4,12 @@ import numpy as np
 
 from wavemodel.integrators.inertial import ModalSystem
 from wavemodel.integrators.load_history import Load
-from wavemodel.integrators.viscoelastic import NO_FADING, Damping, Prony
+from wavemodel.integrators.viscoelastic import ELASTIC, Damping, Prony
 from wavemodel.layered.press import Press
 from wavemodel.layered.stack.vibration import vibration
 
 
-def modal_system(press: Press, rigid: bool, damping: Damping, series: Prony = NO_FADING) -> ModalSystem:
+def modal_system(press: Press, rigid: bool, damping: Damping, series: Prony = ELASTIC) -> ModalSystem:
     """The d oscillators of each of the K wavenumbers of a press, driven by its force.
 
     A state is scaled to its static value under unit force. The depth of a rigid tool is the mean of the surface's

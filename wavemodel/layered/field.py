@@ -6,8 +6,7 @@ import numpy as np
 
 from wavemodel.arrays import FloatArray
 from wavemodel.domains.domain import Domain
-from wavemodel.errors import WaveError
-from wavemodel.layered.finite_strain.correction import LargePress
+from wavemodel.layered.finite_strain.correction import FiniteStrainLaw
 from wavemodel.layered.remainder import Remainder, deflections
 from wavemodel.layered.tractions import Traction
 
@@ -45,7 +44,7 @@ class Field:
         Contact traction of unit force.
     rest
         Static remainder by the initial moduli, or None where the modes carry the whole load.
-    fading
+    creeping
         With layers that creep each in its own way the B fields of the remainder.
     large
         Correction of a large press, or None.
@@ -54,8 +53,8 @@ class Field:
     domain: Domain
     traction: Traction
     rest: Remainder | None
-    fading: tuple[Remainder, ...] = ()
-    large: LargePress | None = None
+    creeping: tuple[Remainder, ...] = ()
+    large: FiniteStrainLaw | None = None
 
     def remainder(self, radius: FloatArray, layers: int) -> FloatArray:
         """(L, R) deflection that the remainder adds per force at radii (R,), m/N."""
@@ -65,7 +64,7 @@ class Field:
 
     def remainders(self, radius: FloatArray) -> FloatArray:
         """(B, L, R) deflection that each field of the remainder adds per force at radii (R,), m/N."""
-        return deflections(self.fading, self.traction.coefficients, radius)
+        return deflections(self.creeping, self.traction.coefficients, radius)
 
     def _sharp(self, state: Snapshot, radius: FloatArray, layers: int) -> FloatArray:
         if np.ndim(state.remainder) == 0:
@@ -75,15 +74,7 @@ class Field:
         return np.asarray(np.tensordot(state.remainder, self.remainders(radius), axes=1))
 
     def along_x(self, state: Snapshot, radius: FloatArray) -> FloatArray:
-        """(L, R) deflection at radii (R,) along +x, m; NaN outside the window.
-
-        Raises
-        ------
-        WaveError
-            If a radius is negative or not a number.
-        """
-        if not np.all(radius >= 0.0):
-            raise WaveError("profile: a radius that is negative or not a number is not allowed")
+        """(L, R) deflection at radii (R,) along +x, m; NaN outside the window."""
         points = np.stack([radius, np.zeros_like(radius)], axis=1)
         inside = self.domain.holds(points)
         out = np.full((state.amplitude.shape[0], radius.size), np.nan)

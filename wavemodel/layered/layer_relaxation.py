@@ -1,4 +1,9 @@
-"""Which layer fades how, and the body without inertia that follows from it."""
+"""Which layer relaxes how, and the static answer of a press on them as fields of a few shared lags.
+
+The contact traction of a rigid tool is that of the initial moduli throughout. Its work, and with it the tool's depth,
+is stationary against what creep shifts it by; the face under the tool does not stay quite flat: where one layer loses
+half of its modulus and its neighbour a fifth, the depth is 0.3 % and the face 3 % off.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -10,7 +15,7 @@ from wavemodel.arrays import FloatArray
 from wavemodel.errors import NotCoveredError, WaveError
 from wavemodel.integrators.lags import creep
 from wavemodel.integrators.quasi_static import LayerwiseBody, SharedBody, StaticBody
-from wavemodel.integrators.viscoelastic import NO_FADING, Damping, Prony
+from wavemodel.integrators.viscoelastic import ELASTIC, Damping, Prony
 from wavemodel.layered import subdivision
 from wavemodel.layered.press import Press
 from wavemodel.layered.remainder import Remainder, deflections, less_half_space, work
@@ -29,14 +34,14 @@ def series_of(relaxation: Prony | Sequence[Prony | None] | None, layers: int) ->
         If their number is not that of the layers.
     """
     if relaxation is None:
-        return (NO_FADING,) * layers
+        return (ELASTIC,) * layers
     if isinstance(relaxation, Prony):
         return (relaxation,) * layers
     if len(relaxation) != layers:
         raise WaveError(
             f"relaxation: {len(relaxation)} series for {layers} layers; one (or None) for each, or one for all"
         )
-    return tuple(one or NO_FADING for one in relaxation)
+    return tuple(one or ELASTIC for one in relaxation)
 
 
 def shared(series: tuple[Prony, ...]) -> Prony | None:
@@ -71,7 +76,7 @@ def static_body(
     stack = press.stack
     tension = None if stack.tension is None else stack.tension[stack.top_of_layer]
     whole = laminate(layers, subdivision.uniform([1] * len(layers)), stack.base, tension)
-    return layerwise(press, whole, rigid, series, retardation)
+    return layer_creep(press, whole, rigid, series, retardation)
 
 
 @dataclass(frozen=True)
@@ -90,7 +95,7 @@ class _Creep:
         return lag_nodes(np.concatenate([self.modal.rate.ravel(), *sharp]))
 
 
-def layerwise(
+def layer_creep(
     press: Press, whole: Laminate, rigid: bool, series: Sequence[Prony], retardation: float
 ) -> tuple[LayerwiseBody, Press]:
     """Set up creep by layers.
@@ -128,7 +133,7 @@ def layerwise(
             modal = work(press.load[:, None], faces[b, :, 0], press.share * weight)
             depth[b] = modal[0, 0] + coefficients @ one.flexibility @ coefficients
     body = LayerwiseBody(np.ascontiguousarray(np.swapaxes(unit, 1, 2)), axis, depth, nodes.rate)
-    return body, replace(press, field=replace(press.field, fading=rests))
+    return body, replace(press, field=replace(press.field, creeping=rests))
 
 
 def _creep(press: Press, whole: Laminate, series: Sequence[Prony], retardation: float) -> _Creep:

@@ -17,17 +17,18 @@ from wavemodel.integrators.inertial import ModalSystem, integrate
 from wavemodel.integrators.load_history import History, Load, checked_load
 from wavemodel.integrators.quasi_static import StaticBody, quasi_static
 from wavemodel.integrators.viscoelastic import Damping, Prony
-from wavemodel.layered.body_options import large_press_of, options_of, with_slip
+from wavemodel.layered.body_options import finite_strain_of, options_of, with_slip
 from wavemodel.layered.dynamics import first_frequency, modal_system, ringing
+from wavemodel.layered.face_motion import LayeredFaces
 from wavemodel.layered.field import Snapshot
 from wavemodel.layered.layer_relaxation import one_series, series_of, shared, static_body
 from wavemodel.layered.notices import notices
 from wavemodel.layered.press import Press, prepare
 from wavemodel.layered.shear_limit import ShearLimit
 from wavemodel.layered.stack.laminate import BASES
-from wavemodel.layered.static_runs import ElasticLaw, large_press_run, options_run
+from wavemodel.layered.static_runs import ElasticLaw, finite_strain_run, options_run
 from wavemodel.layered.surface import Surface, surface
-from wavemodel.layered.window import Settings
+from wavemodel.layered.window import WaveDiscretisation
 from wavemodel.physics.in_plane_stress import InPlaneStress, in_plane_stress
 from wavemodel.physics.quasi_static_press import Physics
 from wavemodel.solution import WaveSolution
@@ -49,22 +50,8 @@ class LayeredWave:
         Uniform pressure, or rigid and flat, frictionless or bonded.
     support
         "bonded", or "free" (nothing under the lower face, the window's border simply supported).
-    window
-        Side of the square window, or diameter of the round one, m. None: so wide that the border costs at most 0.1 % of
-        the peak in it.
-    domain
-        "rectangle" with sines, or "disc" with Bessel modes: N of them for a tool in its middle, all directions for one
-        off it.
-    place
-        (x, y) of the tool from the middle of the window, m. Off the middle even modes take part too.
-    modes
-        N, for m, n = 1..N, or N along a radius of the disc. None: as many as carry the smooth part of the load, k a up
-        to 12.
-    sublayers
-        Number of equal sub-layers in each layer. None: as many as it takes for 0.05 % of each layer's peak.
-    static_correction
-        Whether what the modes leave out of the load is answered statically (see `wavemodel.layered.remainder`).
-        None: from 8 modes up.
+    discretisation
+        Window, modes and sub-layers; found automatically by default.
     integrator
         "exact" (with inertia), "quasi_static" (without), or "auto": quasi-static where the load is slow against
         the first frequency, and always under depth control, whose data are measured and would be differentiated
@@ -72,12 +59,12 @@ class LayeredWave:
     damping
         Proportional to mass and stiffness; none by default.
     relaxation
-        Fading memory: one series for all layers, or one (or None) for each; E is then the initial modulus. None: the
+        Prony series: for all layers, or one (or None) for each; E is then the initial modulus. None: the
         layers are elastic. Series that differ are followed without inertia.
     pretension
         In-plane tensile stress before the press, Pa: one for all layers, one for x and one for y, or an
         `InPlaneStress` with one for each layer. Where x and y differ, the sharp part of the field close to the tool
-        (see `static_correction`) takes their mean.
+        (see `WaveDiscretisation.static_correction`) takes their mean.
     large_press
         "linear", or "corrected": the elastic answer is that of a neo-Hookean stack with these moduli under finite
         strain, worked out once in the wave's own modes (see `wavemodel.layered.finite_strain`) to 0.4 of the stack; no
@@ -112,13 +99,8 @@ class LayeredWave:
         layers: Sequence[WaveLayer],
         tool: DiscTool,
         support: str = "bonded",
-        window: float | None = None,
-        modes: int | None = None,
+        discretisation: WaveDiscretisation = WaveDiscretisation(),  # noqa: B008 (frozen)
         *,
-        domain: str = "rectangle",
-        place: tuple[float, float] = (0.0, 0.0),
-        sublayers: Sequence[int] | None = None,
-        static_correction: bool | None = None,
         integrator: str = "auto",
         damping: Damping | None = None,
         relaxation: Prony | Sequence[Prony | None] | None = None,
@@ -129,20 +111,17 @@ class LayeredWave:
     ) -> None:
         if integrator not in INTEGRATORS:
             raise WaveError(f"integrator = {integrator!r} is not allowed: one of {', '.join(INTEGRATORS)}")
-        counts = None if sublayers is None else tuple(sublayers)
-        settings = Settings(
-            window, modes, counts, static_correction, in_plane_stress(pretension, len(layers)), place, domain
-        )
         self.layers, self.tool = tuple(layers), tool
         self.integrator, self.damping = integrator, damping or Damping()
         self.relaxation = series_of(relaxation, len(self.layers))
-        elastic = prepare(self.layers, tool, _base(support), settings)
+        stress = in_plane_stress(pretension, len(layers))
+        elastic = prepare(self.layers, tool, _base(support), discretisation, stress)
         self.body: StaticBody
         self.press: Press
         self.body, self.press = static_body(elastic, self.layers, tool.rigid, self.relaxation, self.damping)
         self.first_frequency: float = first_frequency(self.press)
         self.options = options_of(with_slip(physics, slip, self.press), self.relaxation, self.damping, integrator)
-        large = large_press_of(large_press, self.press, tool, integrator)
+        large = finite_strain_of(large_press, self.press, tool, integrator)
         self.press = replace(self.press, field=replace(self.press.field, large=large))
         self.law = ElasticLaw(self.press.compliance, large)
         if integrator == "exact":
@@ -169,7 +148,7 @@ class LayeredWave:
         """Modes carried, times the unknowns through the thickness."""
         return self.press.field.domain.pairs * self.press.stack.unknowns_per_mode
 
-    def run(self, control: str, time: FloatArray, value: FloatArray) -> WaveSolution:
+    def run(self, control: str, time: FloatArray, value: FloatArray) -> WaveSolution[LayeredFaces]:
         """Go through a load history from rest.
 
         Parameters
@@ -198,15 +177,14 @@ class LayeredWave:
             top_deflection=history.top_deflection,
             integrator=method,
             warnings=notices(self.press, history, method, added),
-            _press=self.press,
-            _history=history,
+            faces=LayeredFaces(self.press, history),
         )
 
     def _static_run(self, load: Load) -> History:
         if self.options is not None:
             return options_run(load, self.press, self.law, self.options)
         if self.law.large is not None:
-            return large_press_run(load, self.body, self.law)
+            return finite_strain_run(load, self.body, self.law)
         return quasi_static(load, self.body)
 
     def static_state(self, force: float) -> Snapshot:

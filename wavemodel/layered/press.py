@@ -1,4 +1,4 @@
-"""What a press is put together from, before the contact traction is known: the modes' part and the remainder's."""
+"""The set-up of one tool on one stack: window, modes, sub-layers, contact traction and static answer."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -22,7 +22,7 @@ from wavemodel.layered.tractions import (
     punch_tractions,
     solve_contact,
 )
-from wavemodel.layered.window import Settings, Taper, automatic_window, border_cost, window_of
+from wavemodel.layered.window import Taper, WaveDiscretisation, automatic_window, border_cost, window_of
 from wavemodel.physics.in_plane_stress import InPlaneStress
 from wavemodel.specimen import DiscTool, WaveLayer
 
@@ -123,8 +123,14 @@ class Press:
     flexibility: FloatArray | None = None
 
 
-def prepare(layers: Sequence[WaveLayer], tool: DiscTool, base: str, settings: Settings) -> Press:
-    """Set up a press; see `Settings` for what may be left to it.
+def prepare(
+    layers: Sequence[WaveLayer],
+    tool: DiscTool,
+    base: str,
+    chosen: WaveDiscretisation,
+    stress: InPlaneStress | None = None,
+) -> Press:
+    """Set up a press; see `WaveDiscretisation` for what may be left to it. `stress` is that before the press.
 
     Raises
     ------
@@ -134,13 +140,12 @@ def prepare(layers: Sequence[WaveLayer], tool: DiscTool, base: str, settings: Se
     NotCoveredError
         If the tool's contact is not covered.
     """
-    stress = settings.pretension
     whole = laminate(layers, subdivision.uniform([1] * len(layers)), base, None if stress is None else stress.mean)
-    domain, taper = _window(whole, tool, settings)
-    chosen = settings.window is not None and base == "bonded"
-    border = border_cost(whole, tool.radius, domain.width) if chosen else 0.0
-    stack, mistake = _sublayers(layers, whole, settings, _yardstick(whole, tool, taper, domain))
-    basis = _basis(whole, tool, settings)
+    domain, taper = _window(whole, tool, chosen, stress is not None and stress.directed)
+    narrow = chosen.window is not None and base == "bonded"
+    border = border_cost(whole, tool.radius, domain.width) if narrow else 0.0
+    stack, mistake = _sublayers(layers, whole, chosen, _yardstick(whole, tool, taper, domain))
+    basis = _basis(whole, tool, chosen)
     rest = remainder(whole, basis, taper, domain) if taper.active else None
     modal = _seen_by_modes(stack, domain, stress)
     return _assemble(stack, modal, (mistake, border), parts(modal, domain, basis, taper, rest), tool.rigid)
@@ -153,11 +158,11 @@ def _seen_by_modes(stack: Laminate, domain: Domain, stress: InPlaneStress | None
     return replace(stack, tension=np.repeat(stress.along(domain.direction), counts, axis=1))
 
 
-def _window(whole: Laminate, tool: DiscTool, settings: Settings) -> tuple[Domain, Taper]:
-    if settings.window is None and whole.base == "free":
+def _window(whole: Laminate, tool: DiscTool, chosen: WaveDiscretisation, directed: bool) -> tuple[Domain, Taper]:
+    if chosen.window is None and whole.base == "free":
         raise WaveError("window: needed with a free lower face, where an endless specimen has nothing to rest on")
-    side = automatic_window(whole, tool.radius) if settings.window is None else settings.window
-    return window_of(settings, tool.radius, side)
+    side = automatic_window(whole, tool.radius) if chosen.window is None else chosen.window
+    return window_of(chosen, tool.radius, side, directed=directed)
 
 
 def _yardstick(whole: Laminate, tool: DiscTool, taper: Taper, domain: Domain) -> subdivision.Yardstick:
@@ -166,10 +171,10 @@ def _yardstick(whole: Laminate, tool: DiscTool, taper: Taper, domain: Domain) ->
     return subdivision.yardstick(whole, Traction(basis, basis.net_force), taper, domain.lowest)
 
 
-def _basis(whole: Laminate, tool: DiscTool, settings: Settings) -> TractionBasis:
+def _basis(whole: Laminate, tool: DiscTool, chosen: WaveDiscretisation) -> TractionBasis:
     if not tool.rigid:
         return UniformPressure(tool.radius)
-    if not settings.corrected:
+    if not chosen.corrected:
         raise WaveError(
             "static_correction: needed under a rigid tool (and with it at least 8 modes), for no number of modes "
             "resolves the traction at the tool's edge"
@@ -178,15 +183,15 @@ def _basis(whole: Laminate, tool: DiscTool, settings: Settings) -> TractionBasis
 
 
 def _sublayers(
-    layers: Sequence[WaveLayer], whole: Laminate, settings: Settings, measure: subdivision.Yardstick
+    layers: Sequence[WaveLayer], whole: Laminate, chosen: WaveDiscretisation, measure: subdivision.Yardstick
 ) -> tuple[Laminate, float]:
-    if settings.sublayers is None:
+    if chosen.sublayers is None:
         fractions = subdivision.automatic(layers, whole.base, measure, whole.tension)
-    elif len(settings.sublayers) == len(layers):
-        fractions = subdivision.uniform(settings.sublayers)
+    elif len(chosen.sublayers) == len(layers):
+        fractions = subdivision.uniform(chosen.sublayers)
     else:
         raise WaveError(
-            f"sublayers = {settings.sublayers} is not allowed: one number for each of the {len(layers)} layers"
+            f"sublayers = {chosen.sublayers} is not allowed: one number for each of the {len(layers)} layers"
         )
     stack = laminate(layers, fractions, whole.base, whole.tension)
     return stack, subdivision.error(stack, measure)

@@ -1,4 +1,8 @@
-"""The elastic law of a tool on a stack, force over depth: linear, or corrected for a large press."""
+"""The elastic law of a tool on a stack, and runs without inertia on it: at finite strain, and with options of the body.
+
+What relaxes is the elastic force (quasi-linear viscoelasticity); the field is that of the elastic body at the depth
+where the tissue stands.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -7,7 +11,7 @@ import numpy as np
 from wavemodel.arrays import FloatArray
 from wavemodel.integrators.load_history import History, Load
 from wavemodel.integrators.quasi_static import StaticBody, quasi_static
-from wavemodel.layered.finite_strain.correction import LargePress
+from wavemodel.layered.finite_strain.correction import FiniteStrainLaw
 from wavemodel.layered.press import Press
 from wavemodel.physics.quasi_static_press import Physics, driven
 
@@ -25,7 +29,7 @@ class ElasticLaw:
     """
 
     compliance: float
-    large: LargePress | None = None
+    large: FiniteStrainLaw | None = None
 
     def __call__(self, depth: FloatArray) -> FloatArray:
         """(...) force at depths (...), N.
@@ -44,7 +48,7 @@ class ElasticLaw:
         return force * self.compliance if self.large is None else self.large.depth_at(force)
 
 
-def large_press_run(load: Load, body: StaticBody, law: ElasticLaw) -> History:
+def finite_strain_run(load: Load, body: StaticBody, law: ElasticLaw) -> History:
     """Run a history with a large-press correction; the elastic force is taken as linear in each step.
 
     Raises

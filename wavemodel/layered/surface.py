@@ -8,7 +8,7 @@ import numpy as np
 from wavemodel.arrays import FloatArray
 from wavemodel.domains.domain import Tables
 from wavemodel.layered.field import Field, Snapshot
-from wavemodel.layered.finite_strain.correction import LargePress
+from wavemodel.layered.finite_strain.correction import FiniteStrainLaw
 
 REMAINDER_RADII, LARGE_RADII = 512, 2048
 
@@ -27,7 +27,7 @@ class Surface:
         Tables of the modes.
     remainder
         (P L, Q) deflection that the static remainder adds per force, m/N.
-    fading
+    creeping
         (B, P L, Q) that of each field of the remainder, where layers creep each in its own way; else of none.
     large
         (B, P L, Q) what each field of a large-press correction adds, m; of none without one.
@@ -36,7 +36,7 @@ class Surface:
     field: Field
     modes: Tables
     remainder: FloatArray
-    fading: FloatArray
+    creeping: FloatArray
     large: FloatArray
     _memory: "_Memory"
 
@@ -46,7 +46,7 @@ class Surface:
         beside = self.field.rest is not None
         if beside:
             if isinstance(state.remainder, np.ndarray) and state.remainder.ndim:
-                np.dot(state.remainder, self.fading.reshape(self.fading.shape[0], -1), out=memory.out.reshape(-1))
+                np.dot(state.remainder, self.creeping.reshape(self.creeping.shape[0], -1), out=memory.out.reshape(-1))
             else:
                 np.multiply(self.remainder, state.remainder, out=memory.out)
         self.modes.write(state.amplitude, memory.out, add=beside)
@@ -97,7 +97,7 @@ def surface(field: Field, x: FloatArray, y: FloatArray, layers: int) -> Surface:
         field,
         modes,
         _remainder(field, distance, lambda radius: field.remainder(radius, layers)[None])[0],
-        _remainder(field, distance, field.remainders) if field.fading else np.empty((0, 0, 0)),
+        _remainder(field, distance, field.remainders) if field.creeping else np.empty((0, 0, 0)),
         _large(field.large, distance) if field.large else np.empty((0, 0, 0)),
         _memory(field, layers, (x.size, y.size)),
     )
@@ -114,7 +114,7 @@ def _remainder(field: Field, distance: FloatArray, deflection: Callable[[FloatAr
     return _spread(deflection(radius), radius, distance)
 
 
-def _large(correction: LargePress, distance: FloatArray) -> FloatArray:
+def _large(correction: FiniteStrainLaw, distance: FloatArray) -> FloatArray:
     """(B, P L, Q) by interpolation between many radii."""
     radius = np.linspace(0.0, float(distance.max()), LARGE_RADII)
     return _spread(correction.at_radius(radius), radius, distance)

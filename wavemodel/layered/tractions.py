@@ -1,4 +1,16 @@
-"""The half-space that every stack looks like at large wavenumbers."""
+"""Contact tractions of unit force under a disc-shaped tool: radial functions whose Hankel transforms are known.
+
+A uniform pressure has 2 J_1(k a) / (k a). Under a rigid flat tool the tractions are solved for so that the face under
+it moves as one. With s = sqrt(1 - (r/a)^2) the normal tractions P_2n(s) / s (n = 0 the flat punch on a half-space) have
+the transforms j_2n(k a), and shear tractions of the same singularity j_2n+1(k a), the spherical Bessel functions. On a
+half-space, which every stack looks like at large wavenumbers, the normal ones displace the face by P_2n(s), so that
+their flexibility is diagonal there; layers fill in the rest. Polynomials in s crowd at the tool's edge, where a thin
+stiff layer concentrates the traction.
+
+Galerkin's condition, that every function does the same work on the displacement as on a rigid motion, gives a
+symmetric system. The work of its solution is stationary, so the tool's depth per force converges twice as fast as the
+tractions do.
+"""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -8,6 +20,8 @@ from scipy.special import eval_legendre, gammaln, hyp2f1, j1, spherical_jn
 
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import NotCoveredError
+
+FEWEST_FUNCTIONS, MOST_FUNCTIONS = 8, 32
 
 
 @dataclass(frozen=True)
@@ -142,9 +156,6 @@ class UniformPressure:
 def uniform_pressure(radius: float) -> Traction:
     """Uniform pressure of unit force on a disc of the given radius, m."""
     return Traction(UniformPressure(radius), np.ones(1))
-
-
-FEWEST_FUNCTIONS, MOST_FUNCTIONS = 8, 32
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,12 @@
-"""What the user of a layered wave may fix; what is None is found automatically."""
+"""The window of a press: its domain and modes, chosen or following the tool and the stack, and their share of the load.
+
+A window with zero border equals the endless specimen under loads of alternating sign at every multiple of its side
+a, so what its border costs is read off the endless response g: near the border at most g(a/2), on the axis 4 g(a).
+
+The load's smooth part, a share s(k) of its transform, is carried by the modes; the sharp rest, 1 - s(k), that no mode
+of the window resolves, acts only close to the tool and is answered statically (`remainder`). s falls from one to zero
+below the largest wavenumber of the modes, smoothly, so that the rest stays local.
+"""
 
 from dataclasses import dataclass
 from math import hypot, isfinite
@@ -14,11 +22,22 @@ from wavemodel.errors import WaveError, require_positive
 from wavemodel.layered.stack.compliance import compliance, exact_faces
 from wavemodel.layered.stack.laminate import Laminate
 from wavemodel.layered.tractions import uniform_pressure
-from wavemodel.physics.in_plane_stress import InPlaneStress
 
 CENTRE, WIDTH = 0.65, 0.14
 LOCAL = 4.5
 """The remainder has decayed (by exp(-LOCAL^2 / 4), to below 1 %) LOCAL / (WIDTH limit) away from the tool."""
+DOMAINS = ("rectangle", "disc")
+FEWEST_FOR_CORRECTION = 8
+"""With fewer modes the smooth part of a load, which the modes carry, would be next to nothing."""
+BORDER_COST = 0.001
+"""Of the peak, wherever the profile is printed; the contract is 0.005."""
+PROFILE_RADII = 4.25
+"""The window reaches at least this many tool radii to each side: the profile needs four."""
+RESOLUTION = 12.0
+"""Largest wavenumber of the modes times the tool's radius."""
+FEWEST_MODES, MOST_MODES = 24, 512
+REACH, SAMPLES = 8.0, 161
+"""The far field is looked at over so many heights of the stack, at so many distances."""
 
 
 @dataclass(frozen=True)
@@ -54,31 +73,28 @@ class Taper:
         return LOCAL / (WIDTH * self.limit)
 
 
-DOMAINS = ("rectangle", "disc")
-FEWEST_FOR_CORRECTION = 8
-"""With fewer modes the smooth part of a load, which the modes carry, would be next to nothing."""
-
-
 @dataclass(frozen=True)
-class Settings:
-    """Set-up of a layered wave.
+class WaveDiscretisation:
+    """Window, modes and sub-layers of a layered wave; what is None is found automatically.
 
     Attributes
     ----------
     window
-        Side of the square window, or diameter of the round one, m.
+        Side of the square window, or diameter of the round one, m. None: so wide that the border costs at most 0.1 % of
+        the peak in it.
     modes
-        N: m, n = 1..N, or as many along a radius of the disc.
-    sublayers
-        Number of equal sub-layers in each layer.
-    static_correction
-        Whether what the modes leave out of the load is answered statically. None: from 8 modes up.
-    place
-        (x, y) of the tool from the middle of the window, m.
+        N, for m, n = 1..N, or N along a radius of the disc. None: as many as carry the smooth part of the load, k a up
+        to 12.
     domain
-        One of `DOMAINS`.
-    pretension
-        In-plane stress of the layers before the press; None: none.
+        "rectangle" with sines, or "disc" with Bessel modes: N of them for a tool in its middle, all directions for one
+        off it.
+    place
+        (x, y) of the tool from the middle of the window, m. Off the middle even modes take part too.
+    sublayers
+        Number of equal sub-layers in each layer. None: as many as it takes for 0.05 % of each layer's peak.
+    static_correction
+        Whether what the modes leave out of the load is answered statically (see `wavemodel.layered.remainder`).
+        None: from 8 modes up.
 
     Raises
     ------
@@ -89,13 +105,14 @@ class Settings:
 
     window: float | None = None
     modes: int | None = None
+    domain: str = "rectangle"
+    place: tuple[float, float] = (0.0, 0.0)
     sublayers: tuple[int, ...] | None = None
     static_correction: bool | None = None
-    pretension: InPlaneStress | None = None
-    place: tuple[float, float] = (0.0, 0.0)
-    domain: str = "rectangle"
 
     def __post_init__(self) -> None:
+        if self.sublayers is not None:
+            object.__setattr__(self, "sublayers", tuple(self.sublayers))
         if self.domain not in DOMAINS:
             raise WaveError(f"domain = {self.domain!r} is not allowed: one of {', '.join(DOMAINS)}")
         if self.window is not None:
@@ -119,17 +136,21 @@ class Settings:
         return self.static_correction
 
 
-def window_of(settings: Settings, radius: float, width: float) -> tuple[Domain, Taper]:
+def window_of(
+    chosen: WaveDiscretisation, radius: float, width: float, *, directed: bool = False
+) -> tuple[Domain, Taper]:
     """Lay a window round a tool.
 
     Parameters
     ----------
-    settings
+    chosen
         Domain, place and modes.
     radius
         Of the tool, m.
     width
         Side of the square, or diameter of the disc, m.
+    directed
+        Whether modes of one wavenumber but of different directions count as different.
 
     Returns
     -------
@@ -141,47 +162,29 @@ def window_of(settings: Settings, radius: float, width: float) -> tuple[Domain, 
     WaveError
         If the tool does not fit.
     """
-    _require_room(settings, radius, width)
-    return (_disc if settings.domain == "disc" else _rectangle)(settings, radius, width)
-
-
-def _rectangle(settings: Settings, radius: float, width: float) -> tuple[Domain, Taper]:
-    count = enough_modes(width, radius) if settings.modes is None else settings.modes
-    taper = Taper(count * np.pi / width, settings.corrected)
-    directed = settings.pretension is not None and settings.pretension.directed
+    _require_room(chosen, radius, width)
+    round_window = chosen.domain == "disc"
+    span = 0.5 * width if round_window else width
+    count = enough_modes(span, radius) if chosen.modes is None else chosen.modes
+    taper = Taper(count * np.pi / span, chosen.corrected)
+    if round_window:
+        return Disc(span, count, chosen.place), taper
     cutoff = taper.limit if taper.active else np.inf
-    return Rectangle(width, width, count, cutoff=cutoff, directed=directed, place=settings.place), taper
+    return Rectangle(width, width, count, cutoff=cutoff, directed=directed, place=chosen.place), taper
 
 
-def _disc(settings: Settings, radius: float, width: float) -> tuple[Domain, Taper]:
-    border = 0.5 * width
-    count = enough_modes(border, radius) if settings.modes is None else settings.modes
-    return Disc(border, count, settings.place), Taper(count * np.pi / border, settings.corrected)
-
-
-def _require_room(settings: Settings, radius: float, width: float) -> None:
+def _require_room(chosen: WaveDiscretisation, radius: float, width: float) -> None:
     if radius >= 0.5 * width:
         raise WaveError(
             f"window = {width * 1e3:g} mm is not allowed with a tool of {radius * 1e3:g} mm radius: "
             "it must be wider than the tool"
         )
-    furthest = hypot(*settings.place) if settings.domain == "disc" else max(map(abs, settings.place))
+    furthest = hypot(*chosen.place) if chosen.domain == "disc" else max(map(abs, chosen.place))
     if furthest + radius > 0.5 * width:
         raise WaveError(
             f"place = {furthest * 1e3:g} mm from the middle is not allowed: the tool of {radius * 1e3:g} mm "
             f"radius must be inside the window of {width * 1e3:g} mm"
         )
-
-
-BORDER_COST = 0.001
-"""Of the peak, wherever the profile is printed; the contract is 0.005."""
-PROFILE_RADII = 4.25
-"""The window reaches at least this many tool radii to each side: the profile needs four."""
-RESOLUTION = 12.0
-"""Largest wavenumber of the modes times the tool's radius."""
-FEWEST_MODES, MOST_MODES = 24, 512
-REACH, SAMPLES = 8.0, 161
-"""The far field is looked at over so many heights of the stack, at so many distances."""
 
 
 def far_field(laminate: Laminate, radius: float, distance: FloatArray) -> FloatArray:

@@ -1,12 +1,13 @@
-"""Adhesion: the tissue holds the tool when it is lifted, until the pull is too much."""
+"""Options of the surface under the tool: adhesion when it is lifted, dry friction, permanent set."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from wavemodel.arrays import BoolArray, FloatArray
-from wavemodel.integrators.scan import FADED, fading_sum
-from wavemodel.physics.load_segment import Course, Memory, require
+from wavemodel.errors import require_between
+from wavemodel.integrators.scan import DECAYED, decaying_sum
+from wavemodel.physics.load_segment import LoadSegment, Memory
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class Adhesion:
     force: float = 0.0
 
     def __post_init__(self) -> None:
-        require("adhesion", "force", self.force, "N", 0.0, 1e3)
+        require_between("adhesion", "force", self.force, "N", 0.0, 1e3)
 
     def touching(self, depth: FloatArray, pull: FloatArray, held: bool) -> BoolArray:
         """(n,) whether tool and tissue are in contact.
@@ -70,20 +71,20 @@ class DryFriction:
     coefficient: float = 0.0
 
     def __post_init__(self) -> None:
-        require("dry friction", "force", self.force, "N", 0.0, 1e3)
-        require("dry friction", "length", self.length, "m", 1e-9, 1.0)
-        require("dry friction", "coefficient", self.coefficient, "", 0.0, 10.0)
+        require_between("dry friction", "force", self.force, "N", 0.0, 1e3)
+        require_between("dry friction", "length", self.length, "m", 1e-9, 1.0)
+        require_between("dry friction", "coefficient", self.coefficient, "", 0.0, 10.0)
 
-    def act(self, course: Course, memory: Memory) -> tuple[FloatArray, Memory]:
-        """(n,) friction that acts beside the elastic force of the course."""
-        depth = np.where(course.touching, course.depth, 0.0)
-        last, start = memory or (float(depth[0]) if course.endless else 0.0, 0.0)
+    def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
+        """(n,) friction that acts beside the elastic force of the segment."""
+        depth = np.where(segment.touching, segment.depth, 0.0)
+        last, start = memory or (float(depth[0]) if segment.endless else 0.0, 0.0)
         moved = np.diff(depth, prepend=last)
-        left = np.diff(course.touching, prepend=True) & ~course.touching
-        way = np.where(left, FADED, np.where(course.touching, np.abs(moved) / self.length, 0.0))
-        limit = np.where(course.touching, self.force + self.coefficient * np.abs(course.force), 0.0)
-        friction = fading_sum(way, -np.expm1(-way) * np.sign(moved) * limit, start)
-        friction = np.where(course.touching, friction, 0.0)
+        left = np.diff(segment.touching, prepend=True) & ~segment.touching
+        way = np.where(left, DECAYED, np.where(segment.touching, np.abs(moved) / self.length, 0.0))
+        limit = np.where(segment.touching, self.force + self.coefficient * np.abs(segment.force), 0.0)
+        friction = decaying_sum(way, -np.expm1(-way) * np.sign(moved) * limit, start)
+        friction = np.where(segment.touching, friction, 0.0)
         return friction, (float(depth[-1]), float(friction[-1]))
 
 
@@ -107,8 +108,8 @@ class PermanentSet:
     onset: float = 0.0
 
     def __post_init__(self) -> None:
-        require("permanent set", "fraction", self.fraction, "", 0.0, 0.95)
-        require("permanent set", "onset", self.onset, "m", 0.0, 10.0)
+        require_between("permanent set", "fraction", self.fraction, "", 0.0, 0.95)
+        require_between("permanent set", "onset", self.onset, "m", 0.0, 10.0)
 
     def meet(self, depth: FloatArray, memory: Memory) -> tuple[FloatArray, FloatArray, Memory]:
         """Depth below the surface (n,) that the tool (n,) meets, the surface (n,), m, and the memory."""

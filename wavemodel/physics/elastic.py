@@ -1,4 +1,4 @@
-"""Strain stiffening: the force grows faster with depth than the base law."""
+"""Options that change the elastic force of a body: stiffening, pretension, a floor, interface slip, softening."""
 
 from dataclasses import dataclass
 
@@ -6,8 +6,12 @@ import numpy as np
 from scipy.special import erf
 
 from wavemodel.arrays import FloatArray
+from wavemodel.errors import require_between
 from wavemodel.integrators.scan import bounded_sum
-from wavemodel.physics.load_segment import Course, Memory, require
+from wavemodel.physics.load_segment import LoadSegment, Memory
+
+LENGTH = 1e-3
+"""m, where the stiffness of a floor is told."""
 
 
 @dataclass(frozen=True)
@@ -30,14 +34,14 @@ class StrainStiffening:
     length: float = 1e-2
 
     def __post_init__(self) -> None:
-        require("strain stiffening", "linear", self.linear, "", 0.0, 1e4)
-        require("strain stiffening", "quadratic", self.quadratic, "", 0.0, 1e4)
-        require("strain stiffening", "length", self.length, "m", 1e-6, 10.0)
+        require_between("strain stiffening", "linear", self.linear, "", 0.0, 1e4)
+        require_between("strain stiffening", "quadratic", self.quadratic, "", 0.0, 1e4)
+        require_between("strain stiffening", "length", self.length, "m", 1e-6, 10.0)
 
-    def act(self, course: Course, memory: Memory) -> tuple[FloatArray, Memory]:
+    def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
         """(n,) force."""
-        x = abs(course.depth) / self.length
-        return course.force * (1.0 + x * (self.linear + self.quadratic * x)), memory
+        x = abs(segment.depth) / self.length
+        return segment.force * (1.0 + x * (self.linear + self.quadratic * x)), memory
 
 
 @dataclass(frozen=True)
@@ -53,7 +57,7 @@ class Pretension:
     stiffness: float
 
     def __post_init__(self) -> None:
-        require("pretension", "stiffness", self.stiffness, "N/m", 0.0, 1e6)
+        require_between("pretension", "stiffness", self.stiffness, "N/m", 0.0, 1e6)
 
     @classmethod
     def of_membrane(cls, tension: float, tool_radius: float, hole_radius: float) -> "Pretension":
@@ -66,17 +70,13 @@ class Pretension:
         tool_radius, hole_radius
             a and R in m, 0 < a < R.
         """
-        require("pretension", "tension", tension, "N/m", 0.0, 1e6)
-        require("pretension", "tool radius", tool_radius, "m", 0.0, 0.999 * hole_radius, open_low=True)
+        require_between("pretension", "tension", tension, "N/m", 0.0, 1e6)
+        require_between("pretension", "tool radius", tool_radius, "m", 0.0, 0.999 * hole_radius, open_low=True)
         return cls(float(2.0 * np.pi * tension / np.log(hole_radius / tool_radius)))
 
-    def act(self, course: Course, memory: Memory) -> tuple[FloatArray, Memory]:
+    def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
         """(n,) force."""
-        return course.force + np.where(course.touching, self.stiffness * course.depth, 0.0), memory
-
-
-LENGTH = 1e-3
-"""m, where the stiffness of a floor is told."""
+        return segment.force + np.where(segment.touching, self.stiffness * segment.depth, 0.0), memory
 
 
 @dataclass(frozen=True)
@@ -100,14 +100,14 @@ class Floor:
     power: float = 1.0
 
     def __post_init__(self) -> None:
-        require("floor", "depth", self.depth, "m", 0.0, 10.0)
-        require("floor", "stiffness", self.stiffness, "N/m", 0.0, 1e8)
-        require("floor", "power", self.power, "", 1.0, 3.0)
+        require_between("floor", "depth", self.depth, "m", 0.0, 10.0)
+        require_between("floor", "stiffness", self.stiffness, "N/m", 0.0, 1e8)
+        require_between("floor", "power", self.power, "", 1.0, 3.0)
 
-    def act(self, course: Course, memory: Memory) -> tuple[FloatArray, Memory]:
+    def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
         """(n,) force."""
-        beyond = np.maximum(course.depth - self.depth, 0.0) / LENGTH
-        return course.force + self.stiffness * LENGTH * beyond**self.power, memory
+        beyond = np.maximum(segment.depth - self.depth, 0.0) / LENGTH
+        return segment.force + self.stiffness * LENGTH * beyond**self.power, memory
 
 
 @dataclass(frozen=True)
@@ -129,8 +129,8 @@ class InterfaceSlip:
     share: float
 
     def __post_init__(self) -> None:
-        require("interface slip", "limit", self.limit, "N", 0.0, 1e6, open_low=True)
-        require("interface slip", "share", self.share, "", 0.0, 1.0)
+        require_between("interface slip", "limit", self.limit, "N", 0.0, 1e6, open_low=True)
+        require_between("interface slip", "share", self.share, "", 0.0, 1.0)
 
     @classmethod
     def at_shear(cls, shear_limit: float, shear_per_force: float, share: float) -> "InterfaceSlip":
@@ -145,21 +145,21 @@ class InterfaceSlip:
         share
             As above.
         """
-        require("interface slip", "shear limit", shear_limit, "Pa", 0.0, 1e12, open_low=True)
-        require("interface slip", "shear per force", shear_per_force, "Pa/N", 0.0, 1e12, open_low=True)
+        require_between("interface slip", "shear limit", shear_limit, "Pa", 0.0, 1e12, open_low=True)
+        require_between("interface slip", "shear per force", shear_per_force, "Pa/N", 0.0, 1e12, open_low=True)
         return cls(shear_limit / shear_per_force, share)
 
-    def act(self, course: Course, memory: Memory) -> tuple[FloatArray, Memory]:
+    def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
         """(n,) force."""
-        carried, memory = self.carried(course, memory)
-        return course.force + self.share * (carried - course.force), memory
+        carried, memory = self.carried(segment, memory)
+        return segment.force + self.share * (carried - segment.force), memory
 
-    def carried(self, course: Course, memory: Memory) -> tuple[FloatArray, Memory]:
+    def carried(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
         """(n,) force of a body that slid as a whole; over the elastic force: how far in-plane motion is passed on."""
         last, start = memory or (0.0, 0.0)
-        held = np.where(course.touching, self.limit, 0.0)
-        carried = bounded_sum(np.diff(course.force, prepend=last), held, start)
-        return carried, (float(course.force[-1]), float(carried[-1]))
+        held = np.where(segment.touching, self.limit, 0.0)
+        carried = bounded_sum(np.diff(segment.force, prepend=last), held, start)
+        return carried, (float(segment.force[-1]), float(carried[-1]))
 
 
 @dataclass(frozen=True)
@@ -182,12 +182,12 @@ class StressSoftening:
     width: float = 0.5
 
     def __post_init__(self) -> None:
-        require("stress softening", "strength", self.strength, "", 0.0, 0.99)
-        require("stress softening", "width", self.width, "", 0.01, 100.0)
+        require_between("stress softening", "strength", self.strength, "", 0.0, 0.99)
+        require_between("stress softening", "width", self.width, "", 0.01, 100.0)
 
-    def act(self, course: Course, memory: Memory) -> tuple[FloatArray, Memory]:
+    def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
         """(n,) force."""
-        energy = np.maximum(course.depth, 0.0) * course.force
+        energy = np.maximum(segment.depth, 0.0) * segment.force
         largest = np.maximum.accumulate(np.maximum(energy, memory[0] if memory else 0.0))
         given_back = 1.0 - np.divide(energy, largest, out=np.ones_like(energy), where=largest > 0.0)
-        return course.force * (1.0 - self.strength * erf(given_back / self.width)), (float(largest[-1]),)
+        return segment.force * (1.0 - self.strength * erf(given_back / self.width)), (float(largest[-1]),)

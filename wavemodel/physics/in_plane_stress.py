@@ -1,4 +1,4 @@
-"""Pretension of layers: tensile stress in the plane before the press, not necessarily the same along x and y."""
+"""Tensile stress in the plane before the press, not necessarily the same along x and y: of layers, and of a sheet."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.errors import WaveError
-from wavemodel.physics.load_segment import require
+from wavemodel.errors import WaveError, require_between
 
 
 @dataclass(frozen=True)
@@ -29,7 +28,7 @@ class InPlaneStress:
     def __post_init__(self) -> None:
         for axis, values in (("x", self.x), ("y", self.y)):
             for index, value in enumerate(values):
-                require("pretension", f"{axis}[{index}]", value, "Pa", 0.0, 1e8)
+                require_between("pretension", f"{axis}[{index}]", value, "Pa", 0.0, 1e8)
 
     @property
     def directed(self) -> bool:
@@ -85,7 +84,7 @@ class AnisotropicTension:
     ratio: float
 
     def __post_init__(self) -> None:
-        require("anisotropy", "ratio", self.ratio, "", 0.01, 100.0)
+        require_between("anisotropy", "ratio", self.ratio, "", 0.01, 100.0)
 
     def radius(self, x: FloatArray, y: FloatArray) -> FloatArray:
         """(...) radius r' in m at which the isotropic dent is read for points (...), m from the tool axis."""

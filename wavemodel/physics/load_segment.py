@@ -1,17 +1,16 @@
-"""A piece of a press as the options of a body see it, and what an option is."""
+"""A piece of a load history as the options of a body see it, and what an option is."""
 
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
 from wavemodel.arrays import BoolArray, FloatArray
-from wavemodel.errors import WaveError
 
 Memory: TypeAlias = tuple[float, ...]
 """What an option remembers between two pieces of a history; empty before the first."""
 
 
 @dataclass(frozen=True)
-class Course:
+class LoadSegment:
     """n successive samples.
 
     Attributes
@@ -41,23 +40,6 @@ class Course:
 class Option(Protocol):
     """One effect: it changes the force, knowing its own past."""
 
-    def act(self, course: Course, memory: Memory) -> tuple[FloatArray, Memory]:
+    def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
         """(n,) force with the effect, and the memory after the last sample."""
         ...
-
-
-def require(
-    option: str, name: str, value: float, unit: str, low: float, high: float, *, open_low: bool = False
-) -> None:
-    """Refuse a parameter outside its bounds.
-
-    Raises
-    ------
-    WaveError
-        If `value` is not a number from `low` (excluded if `open_low`) to `high`, both included.
-    """
-    if (low < value if open_low else low <= value) and value <= high:
-        return
-    bound = f"above {low:g}" if open_low else f"{low:g}"
-    text = f"{value:g} {unit}".strip()
-    raise WaveError(f"{option}: {name} = {text} is not allowed: {bound} to {high:g}{' ' + unit if unit else ''}")

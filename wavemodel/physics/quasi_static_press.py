@@ -1,4 +1,9 @@
-"""Which effects a body has: all of them off by default."""
+"""A press without inertia on a body with options: from a history of depth to force, and back.
+
+The elastic law is handed in as a function, so that any model of a specimen (layers on a base, a sheet over a hole, a
+fitted curve) takes the same options. A history of depth is worked out as a whole, without a loop over its samples;
+driven by force, each instant is solved for the depth at which the body answers with that force.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
@@ -13,8 +18,14 @@ from wavemodel.integrators.load_history import Load, checked_load
 from wavemodel.integrators.viscoelastic import Prony
 from wavemodel.physics.contact import Adhesion, DryFriction, PermanentSet
 from wavemodel.physics.elastic import Floor, InterfaceSlip, Pretension, StrainStiffening, StressSoftening
-from wavemodel.physics.load_segment import Course, Memory, Option
+from wavemodel.physics.load_segment import LoadSegment, Memory, Option
 from wavemodel.physics.time_dependent import PoroelasticDrainage, Relaxation, ViscousDamping
+
+ForceLaw: TypeAlias = Callable[[FloatArray], FloatArray]
+"""Depths (n,) of 0 and more, m, to forces (n,), N: rising, zero at zero. It raises `WaveError` beyond its range."""
+WIDENINGS = 60
+EXACT = 1e-13
+"""Of the force, and of the depth (relatively), to which a step is solved."""
 
 
 @dataclass(frozen=True)
@@ -22,8 +33,8 @@ class Physics:
     """Options of a body on top of an elastic law f(d), acting in this order.
 
     The tool meets the surface where `permanent_set` left it; `adhesion` says whether they touch. The elastic force is
-    f, changed by `stiffening`, `pretension`, `floor`, `slip` and `softening`. It fades by `relaxation` and `drainage`,
-    and `damping` and `friction` act beside it. A tool that is not held cannot be pulled.
+    f, changed by `stiffening`, `pretension`, `floor`, `slip` and `softening`. It relaxes by `relaxation` and
+    `drainage`, and `damping` and `friction` act beside it. A tool that is not held cannot be pulled.
 
     Attributes
     ----------
@@ -50,8 +61,8 @@ class Physics:
         return tuple(option for option in chosen if option is not None)
 
     @property
-    def fading(self) -> tuple[Option, ...]:
-        """What lets the force fade, in order."""
+    def relaxing(self) -> tuple[Option, ...]:
+        """What lets the force relax, in order."""
         relaxation = None if self.relaxation is None else Relaxation(self.relaxation)
         return tuple(option for option in (relaxation, self.drainage) if option is not None)
 
@@ -59,10 +70,6 @@ class Physics:
     def beside(self) -> tuple[Option, ...]:
         """What acts beside the elastic force."""
         return tuple(option for option in (self.damping, self.friction) if option is not None)
-
-
-ForceLaw: TypeAlias = Callable[[FloatArray], FloatArray]
-"""Depths (n,) of 0 and more, m, to forces (n,), N: rising, zero at zero. It raises `WaveError` beyond its range."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +94,7 @@ class Trace:
     force
         (n,) on the tool, N.
     elastic
-        (n,) elastic part of the force, before it fades, N.
+        (n,) elastic part of the force, before it relaxes, N.
     touching
         (n,) whether tool and tissue are in contact.
     """
@@ -144,7 +151,7 @@ class QuasiStaticPress:
 
     def rest(self) -> PressState:
         """The untouched body."""
-        count = len(self.physics.elastic) + len(self.physics.fading) + len(self.physics.beside)
+        count = len(self.physics.elastic) + len(self.physics.relaxing) + len(self.physics.beside)
         return PressState(False, (), ((),) * count)
 
     def follow(
@@ -155,7 +162,7 @@ class QuasiStaticPress:
         Parameters
         ----------
         duration
-            (n,) of the steps that end at the samples, s; see `Course`.
+            (n,) of the steps that end at the samples, s; see `LoadSegment`.
         depth
             (n,) of the tool, m.
         state
@@ -167,8 +174,8 @@ class QuasiStaticPress:
         start = self._touched(duration, met, state.touching, held)
         memories = iter(state.options)
         elastic, first = _chain(self.physics.elastic, start, memories)
-        faded, second = _chain(self.physics.fading, elastic, memories)
-        force, third = faded.force, []
+        relaxed, second = _chain(self.physics.relaxing, elastic, memories)
+        force, third = relaxed.force, []
         for option in self.physics.beside:
             part, memory = option.act(elastic, next(memories))
             force = force + part
@@ -183,12 +190,12 @@ class QuasiStaticPress:
     def _adhesion(self) -> Adhesion:
         return self.physics.adhesion or Adhesion()
 
-    def _touched(self, duration: FloatArray, met: FloatArray, before: bool, held: bool) -> Course:
+    def _touched(self, duration: FloatArray, met: FloatArray, before: bool, held: bool) -> LoadSegment:
         """Contact and the elastic force of the bare law; pulled, the law is that of the press with its sign."""
         reach = np.abs(met) if held or self._adhesion.force > 0.0 else np.maximum(met, 0.0)
         size = self.law(reach)
         touching = np.ones_like(met, dtype=np.bool_) if held else self._touching(met, size, before)
-        return Course(duration, met, np.where(touching, np.copysign(size, met), 0.0), touching)
+        return LoadSegment(duration, met, np.where(touching, np.copysign(size, met), 0.0), touching)
 
     def _touching(self, met: FloatArray, pull: FloatArray, before: bool) -> BoolArray:
         if self._adhesion.force == 0.0:
@@ -196,19 +203,16 @@ class QuasiStaticPress:
         return self._adhesion.touching(met, pull, before)
 
 
-def _chain(options: tuple[Option, ...], course: Course, memories: Iterator[Memory]) -> tuple[Course, list[Memory]]:
+def _chain(
+    options: tuple[Option, ...], segment: LoadSegment, memories: Iterator[Memory]
+) -> tuple[LoadSegment, list[Memory]]:
     """Options one after the other."""
     after = []
     for option in options:
-        force, memory = option.act(course, next(memories))
-        course = replace(course, force=force)
+        force, memory = option.act(segment, next(memories))
+        segment = replace(segment, force=force)
         after.append(memory)
-    return course, after
-
-
-WIDENINGS = 60
-EXACT = 1e-13
-"""Of the force, and of the depth (relatively), to which a step is solved."""
+    return segment, after
 
 
 def driven(load: Load, law: ForceLaw, physics: Physics, scale: float) -> Trace:

@@ -1,13 +1,18 @@
-"""Relaxation: the elastic force fades with a Prony series (quasi-linear viscoelasticity)."""
+"""Options that depend on time: relaxation by a Prony series, poroelastic drainage, viscous damping."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from wavemodel.arrays import FloatArray
+from wavemodel.errors import require_between
 from wavemodel.integrators.lags import LagMemory, lagged, relaxation, slopes
 from wavemodel.integrators.viscoelastic import Prony
-from wavemodel.physics.load_segment import Course, Memory, require
+from wavemodel.physics.load_segment import LoadSegment, Memory
+
+TERMS = 12
+SMALLEST = 0.05
+"""A dome's contact is taken as no smaller than this share of the tool's radius."""
 
 
 @dataclass(frozen=True)
@@ -24,19 +29,14 @@ class Relaxation:
 
     series: Prony
 
-    def act(self, course: Course, memory: Memory) -> tuple[FloatArray, Memory]:
+    def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
         """(n,) force."""
         law = relaxation(self.series)
-        start = law.rest(float(course.force[0]) if course.endless else 0.0)
+        start = law.rest(float(segment.force[0]) if segment.endless else 0.0)
         if memory:
             start = LagMemory(memory[0], np.array(memory[1:]))
-        force, end = law.follow(course.duration, course.force, start)
+        force, end = law.follow(segment.duration, segment.force, start)
         return force, (end.last, *end.state.tolist())
-
-
-TERMS = 12
-SMALLEST = 0.05
-"""A dome's contact is taken as no smaller than this share of the tool's radius."""
 
 
 @dataclass(frozen=True)
@@ -66,11 +66,11 @@ class PoroelasticDrainage:
     dome: float | None = None
 
     def __post_init__(self) -> None:
-        require("drainage", "strength", self.strength, "", 0.0, 0.99)
-        require("drainage", "diffusivity", self.diffusivity, "m2/s", 1e-15, 1.0)
-        require("drainage", "radius", self.radius, "m", 1e-6, 1.0)
+        require_between("drainage", "strength", self.strength, "", 0.0, 0.99)
+        require_between("drainage", "diffusivity", self.diffusivity, "m2/s", 1e-15, 1.0)
+        require_between("drainage", "radius", self.radius, "m", 1e-6, 1.0)
         if self.dome is not None:
-            require("drainage", "dome", self.dome, "m", 1e-6, 1e3)
+            require_between("drainage", "dome", self.dome, "m", 1e-6, 1e3)
 
     def contact_radius(self, depth: FloatArray) -> FloatArray:
         """(n,) a in m at depths (n,), m."""
@@ -79,16 +79,16 @@ class PoroelasticDrainage:
         contact = np.sqrt(2.0 * self.dome * np.maximum(depth, 0.0))
         return np.asarray(np.clip(contact, SMALLEST * self.radius, self.radius))
 
-    def act(self, course: Course, memory: Memory) -> tuple[FloatArray, Memory]:
+    def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
         """(n,) force; exact for f linear in xi within each step."""
         rate, weight = _spectrum()
-        first = float(course.force[0]) if course.endless else 0.0
+        first = float(segment.force[0]) if segment.endless else 0.0
         last, *state = memory or (first,) * (TERMS + 1)
-        step = course.duration * self.diffusivity / self.contact_radius(course.depth) ** 2
+        step = segment.duration * self.diffusivity / self.contact_radius(segment.depth) ** 2
         pairs = zip(rate.tolist(), state, strict=True)
-        lags = np.array([lagged(step * one, course.force, last, start) for one, start in pairs])
+        lags = np.array([lagged(step * one, segment.force, last, start) for one, start in pairs])
         drained = self.strength * (weight @ lags)
-        return course.force - drained, (float(course.force[-1]), *lags[:, -1].tolist())
+        return segment.force - drained, (float(segment.force[-1]), *lags[:, -1].tolist())
 
 
 def _spectrum() -> tuple[FloatArray, FloatArray]:
@@ -115,10 +115,10 @@ class ViscousDamping:
     retardation: float
 
     def __post_init__(self) -> None:
-        require("viscous damping", "retardation", self.retardation, "s", 0.0, 1e4)
+        require_between("viscous damping", "retardation", self.retardation, "s", 0.0, 1e4)
 
-    def act(self, course: Course, memory: Memory) -> tuple[FloatArray, Memory]:
-        """(n,) force that the damping adds to the elastic force of the course."""
-        last = memory[0] if memory else float(course.force[0]) if course.endless else 0.0
-        rate = slopes(course.duration, course.force, last)
-        return np.where(course.touching, self.retardation * rate, 0.0), (float(course.force[-1]),)
+    def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
+        """(n,) force that the damping adds to the elastic force of the segment."""
+        last = memory[0] if memory else float(segment.force[0]) if segment.endless else 0.0
+        rate = slopes(segment.duration, segment.force, last)
+        return np.where(segment.touching, self.retardation * rate, 0.0), (float(segment.force[-1]),)

@@ -5,6 +5,19 @@ the sheet still turns, slides and sinks. In small strain that is exact layered e
 sides of the edge are matched to the plate between tool and clamp, with no displacement of the held face and no traction
 on what is free. What follows is the compliance of the edge, the (u, phi, w) of the plate's end under the loads that it
 puts on the edge; the plate in between is then clamped elastically instead of stiffly.
+
+At large turns the sheet turns about the corner of its support, on the face that is held, so what the edge's compliance
+C relates is the displacement of the section's point there,
+
+    c(u, phi, w) = (u + z sin(phi), phi, w + z (cos(phi) - 1)) = C p + psi(m) k,
+
+and the loads p that do work on it. The second term is the softening of the material at the corner of a bonded tool,
+that no small-strain theory has: an extra turn psi about a ring inside the tool, k = (0, 1, -x) about the neutral plane,
+that grows as the cube of the moment m = k . p there,
+
+    psi = A m^3 / (1 + (m / M)^2),      m in units of D / h.
+
+A, M and x / h are three numbers without dimension, identified once from finite elements: `TOOL_SOFTENING`.
 """
 
 from collections.abc import Sequence

@@ -1,12 +1,13 @@
-"""Waves along a strip: the layered sheet in exact small-strain elasticity, quadratic through thin sub-layers.
+"""Waves along a strip and round an edge: the layered sheet in exact small-strain elasticity.
 
-For an in-plane function S with lap S = s^2 S the displacement is u = U(z) grad S / s, w = W(z) S, the vector waves of
-the layered model at imaginary wavenumber. Stacked over the sub-layers, phi = (U, W) obeys
+Through the thickness it is quadratic in thin sub-layers. For an in-plane function S with lap S = s^2 S the displacement
+is u = U(z) grad S / s, w = W(z) S, the vector waves of the layered model at imaginary wavenumber. Stacked over the
+sub-layers, phi = (U, W) obeys
 
     (s^2 E0 + s (E1' - E1) - E2) phi = 0,
 
 whose roots with Re s > 0 are end effects: they decay within the sheet's thickness. Roots at zero are the plate's own
-solutions (`far_field`).
+solutions (`Strip.chain`). Round the axis S is a modified Bessel function of s r, inwards I_0, outwards K_0.
 """
 
 from collections.abc import Sequence

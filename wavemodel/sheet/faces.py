@@ -1,4 +1,13 @@
-"""What the faces of the layers do in a state of the sheet: from unknowns to numbers at points."""
+"""What the faces of the layers do in a state of the sheet: from unknowns to numbers at points.
+
+A pressure dents the face that it acts on beyond the bending and shear of the sheet. In small strain that is the layered
+elasticity of the sheet with both faces free, less what the plate already has:
+
+    w_face(k) - (1 + top k^2) (1 + bulge k^2) / (D k^4) - 1 / (S k^2),
+
+with the bulge of that face and of the top one, on which the pressure works. The plate's terms cancel at small k; what
+is left is as local as the sheet is thin.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +23,71 @@ from wavemodel.layered.tractions import HalfSpace, UniformPressure
 from wavemodel.sheet.edge import Edge
 from wavemodel.sheet.section import Section
 from wavemodel.sheet.sheet import Sheet, face_bulge
-from wavemodel.specimen import WaveLayer
+from wavemodel.specimen import DiscTool, WaveLayer
+
+SMALLEST = 0.15
+"""k h below which the difference is taken as constant: it is, and the digits of its terms cancel."""
+SHARPEST, REACH = 400.0, 3.0
+
+
+@dataclass(frozen=True)
+class Indentation:
+    """Answer to a pressure of unit force.
+
+    Attributes
+    ----------
+    spectrum
+        q wavenumbers.
+    faces
+        (q, L + 1) deflection of the faces, m/Pa, less the half-space's on the surface.
+    load
+        UniformPressure of the tool.
+    body
+        The half-space.
+    reach
+        Beyond this radius (m) there is none.
+    """
+
+    spectrum: Endless
+    faces: FloatArray
+    load: UniformPressure
+    body: HalfSpace
+    reach: float
+
+    def deflection(self, radius: FloatArray) -> FloatArray:
+        """(L + 1, R) per force at radii (R,), m/N."""
+        near = np.minimum(radius, self.reach)
+        transform = self.load.transform(self.spectrum.wavenumber)[:, 0, 1]
+        out = self.spectrum.at_radius(self.faces.T * transform, near)
+        out[0] += self.load.half_space_deflection(self.body, near)[:, 0]
+        out[:, radius > self.reach] = 0.0
+        return out
+
+
+def indentation(layers: Sequence[WaveLayer], section: Section, bulge: FloatArray, radius: float) -> Indentation:
+    """Set up the indentation under a pressure on a disc.
+
+    Parameters
+    ----------
+    layers, section
+        The sheet.
+    bulge
+        (L + 1,) deflection of the faces per curvature, m2.
+    radius
+        Of the disc, m.
+    """
+    stack = laminate(layers, [(1.0,)] * len(layers), "free")
+    reach = radius + REACH * section.thickness
+    spectrum = endless(max(SHARPEST / radius, 30.0 / section.thickness), reach + radius)
+    k = spectrum.wavenumber
+    resolved = np.maximum(k, SMALLEST / section.thickness)
+    exact = every_face(stack, exact_faces(resolved, stack))[:, :, 1, 1]
+    square = resolved[:, None] ** 2
+    bent = (1.0 + bulge[0] * square) * (1.0 + bulge * square) / (section.bending * square**2)
+    faces = exact - bent - 1.0 / (section.shear * square)
+    body = HalfSpace.of(float(stack.shear_modulus[0]), float(stack.lame_modulus[0]))
+    faces[:, 0] -= body.normal / k
+    return Indentation(spectrum, faces, UniformPressure(radius), body, reach)
 
 
 @dataclass(frozen=True)
@@ -28,18 +101,38 @@ class Faces:
     ----------
     sheet
         The sheet.
+    dent
+        What a pressure adds; None under a rigid tool.
     """
 
     sheet: Sheet
+    dent: Indentation | None = None
 
-    def displacement(self, state: FloatArray, depth: float, radius: FloatArray) -> FloatArray:
-        """(2, L + 1, R): outwards and downwards, m, at radii (R,) from nought to the hole's edge."""
+    def displacement(self, state: FloatArray, depth: float, radius: FloatArray, force: float = 0.0) -> FloatArray:
+        """(2, L + 1, R): outwards and downwards, m, at radii (R,) from nought to the hole's edge.
+
+        Parameters
+        ----------
+        state
+            Unknowns of the sheet.
+        depth, force
+            Of a rigid tool (m), and of a pressure (N).
+        radius
+            In m.
+        """
         inner = self.sheet.functions.inner
         free = radius >= inner
         out = np.empty((2, self.sheet.section.faces.size, radius.size))
         out[..., free] = self._free(state, radius[free])
         out[..., ~free] = self._under_tool(state, depth, radius[~free])
+        if self.dent is not None:
+            out[1] += force * (self.dent.deflection(radius) if radius.any() else self._axis_dent)
         return out
+
+    @cached_property
+    def _axis_dent(self) -> FloatArray:
+        """(L + 1, 1) per force on the axis, m/N."""
+        return np.zeros((1, 1)) if self.dent is None else self.dent.deflection(np.zeros(1))
 
     def linear(self, radius: FloatArray) -> FloatArray:
         """(2, L + 1, R, N + 1): the same for small deflections, per unknown and, last, per depth of a rigid tool."""
@@ -118,66 +211,7 @@ class Faces:
         return face_bulge(self.sheet.clamp, self.sheet.section)
 
 
-SMALLEST = 0.15
-"""k h below which the difference is taken as constant: it is, and the digits of its terms cancel."""
-SHARPEST, REACH = 400.0, 3.0
-
-
-@dataclass(frozen=True)
-class Indentation:
-    """Answer to a pressure of unit force.
-
-    Attributes
-    ----------
-    spectrum
-        q wavenumbers.
-    faces
-        (q, L + 1) deflection of the faces, m/Pa, less the half-space's on the surface.
-    load
-        UniformPressure of the tool.
-    body
-        The half-space.
-    reach
-        Beyond this radius (m) there is none.
-    """
-
-    spectrum: Endless
-    faces: FloatArray
-    load: UniformPressure
-    body: HalfSpace
-    reach: float
-
-    def deflection(self, radius: FloatArray) -> FloatArray:
-        """(L + 1, R) per force at radii (R,), m/N."""
-        near = np.minimum(radius, self.reach)
-        transform = self.load.transform(self.spectrum.wavenumber)[:, 0, 1]
-        out = self.spectrum.at_radius(self.faces.T * transform, near)
-        out[0] += self.load.half_space_deflection(self.body, near)[:, 0]
-        out[:, radius > self.reach] = 0.0
-        return out
-
-
-def indentation(layers: Sequence[WaveLayer], section: Section, bulge: FloatArray, radius: float) -> Indentation:
-    """Set up the indentation under a pressure on a disc.
-
-    Parameters
-    ----------
-    layers, section
-        The sheet.
-    bulge
-        (L + 1,) deflection of the faces per curvature, m2.
-    radius
-        Of the disc, m.
-    """
-    stack = laminate(layers, [(1.0,)] * len(layers), "free")
-    reach = radius + REACH * section.thickness
-    spectrum = endless(max(SHARPEST / radius, 30.0 / section.thickness), reach + radius)
-    k = spectrum.wavenumber
-    resolved = np.maximum(k, SMALLEST / section.thickness)
-    exact = every_face(stack, exact_faces(resolved, stack))[:, :, 1, 1]
-    square = resolved[:, None] ** 2
-    bent = (1.0 + bulge[0] * square) * (1.0 + bulge * square) / (section.bending * square**2)
-    faces = exact - bent - 1.0 / (section.shear * square)
-    body = HalfSpace.of(float(stack.shear_modulus[0]), float(stack.lame_modulus[0]))
-    faces[:, 0] -= body.normal / k
-    return Indentation(spectrum, faces, UniformPressure(radius), body, reach)
+def faces_of(layers: Sequence[WaveLayer], tool: DiscTool, sheet: Sheet) -> Faces:
+    """The faces of a sheet under a tool."""
+    plain = Faces(sheet)
+    return plain if tool.rigid else Faces(sheet, indentation(layers, sheet.section, plain.bulge, tool.radius))

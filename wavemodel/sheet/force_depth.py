@@ -1,7 +1,10 @@
-"""The sheet's equilibrium from rest to a load: Newton's method along a path whose steps halve where it fails."""
+"""Force over depth of one tool on one sheet over a hole, whose tension is its own at every radius.
+
+Equilibria are found by Newton's method along a path of rising loads, as far as a press goes; splines join them.
+"""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -9,98 +12,77 @@ from scipy.interpolate import CubicSpline
 
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import WaveError
+from wavemodel.integrators.equilibrium_path import Equilibrium, RisingCurve, follow, straight_on
 from wavemodel.integrators.load_history import Load
-from wavemodel.sheet.faces import Faces, Indentation, indentation
+from wavemodel.sheet.faces import Faces
 from wavemodel.sheet.sheet import Sheet
-from wavemodel.sheet.sheet_runs import PlateHistory
-from wavemodel.specimen import DiscTool, WaveLayer
+from wavemodel.sheet.sheet_runs import SheetHistory
 
 CORRECTIONS = 14
 TOLERANCE = 1e-9
 """Of the sheet's thickness: largest correction of a coefficient that counts as none."""
 FINEST_STEP = 1.0 / 256.0
+STEPS = 20
+CROWDING = 1.5
+"""Equilibria over the depth or force that is asked for; the splines between them are right to 1e-4.
+They crowd at small loads, where the tension sets in."""
+CLOSE = 1e-15
+"""Of the force, to which a depth is found."""
+MARGIN, LARGEST_GROWTH = 1.05, 6.0
+"""Of what is prescribed, where it is not what is wanted."""
+ROUNDING = 1e-9
+"""So little beyond the last equilibrium the curve goes on by itself."""
 
 
 @dataclass(frozen=True)
-class Equilibrium:
-    """One state at rest.
+class _ToLoad:
+    """A sheet loaded to a target: depth of a rigid tool (m), or force of a pressure (N) (a `Loading`)."""
 
-    Attributes
-    ----------
-    load
-        What is prescribed: depth of a rigid tool (m), or force of a pressure (N).
-    state
-        Unknowns of the sheet.
-    """
+    sheet: Sheet
+    target: float
 
-    load: float
-    state: FloatArray
+    def next_load(self, path: Sequence[Equilibrium], step: float) -> float:
+        return min(self.target, path[-1].load + step)
+
+    def next_step(self, path: Sequence[Equilibrium], step: float) -> float:  # noqa: ARG002
+        return step
+
+    def reached(self, path: Sequence[Equilibrium]) -> bool:
+        return path[-1].load >= self.target
+
+    def advance(self, path: Sequence[Equilibrium], load: float) -> Equilibrium | None:
+        """Newton's method from straight on; None where it does not converge."""
+        sheet, state = self.sheet, straight_on(path, load)
+        depth, force = (load, 0.0) if sheet.tool is not None else (0.0, load)
+        small = TOLERANCE * sheet.section.thickness
+        for _ in range(CORRECTIONS):
+            with np.errstate(all="ignore"):
+                residual, jacobian = sheet.residual(state, depth, force)
+            if not np.isfinite(jacobian).all():
+                return None
+            scale = 1.0 / np.sqrt(np.abs(jacobian).max(axis=1))
+            change = -scale * np.linalg.solve(jacobian * np.outer(scale, scale), residual * scale)
+            state = state + change
+            if np.abs(change[: sheet.functions.unknowns]).max() < small:
+                return Equilibrium(load, state)
+        return None
 
 
-def follow(sheet: Sheet, start: tuple[Equilibrium, ...], loads: FloatArray) -> tuple[Equilibrium, ...]:
-    """Equilibria at rising loads, from the last ones of a path on; stops early where none is found.
-
-    Parameters
-    ----------
-    sheet
-        The sheet.
-    start
-        What is known, at least the state at rest.
-    loads
-        (n,) above the last of `start`.
-    """
+def sheet_path(sheet: Sheet, start: Sequence[Equilibrium], loads: FloatArray) -> tuple[Equilibrium, ...]:
+    """Equilibria at rising loads (n,), from the last ones of a path on; stops early where none is found."""
     found = list(start)
     for target in loads.tolist():
         step = target - found[-1].load
-        finest = FINEST_STEP * step
-        trail = found[-2:]
-        while trail[-1].load < target:
-            load = min(target, trail[-1].load + step)
-            state = _solve(sheet, load, _predict(trail, load))
-            if state is not None:
-                trail = [trail[-1], Equilibrium(load, state)]
-            elif step <= finest:
-                return tuple(found)
-            else:
-                step *= 0.5
-        found.append(trail[-1])
+        *_, last = follow(_ToLoad(sheet, target), found[-2:], step, FINEST_STEP * step)
+        if last.load < target:
+            break
+        found.append(last)
     return tuple(found)
-
-
-def _predict(trail: list[Equilibrium], load: float) -> FloatArray:
-    """Straight on through the last two states."""
-    last = trail[-1]
-    if len(trail) == 1 or trail[0].load == last.load:
-        return last.state
-    share = (load - last.load) / (last.load - trail[0].load)
-    return last.state + share * (last.state - trail[0].state)
-
-
-def _solve(sheet: Sheet, load: float, state: FloatArray) -> FloatArray | None:
-    """Newton's method; None where it does not converge."""
-    depth, force = (load, 0.0) if sheet.tool is not None else (0.0, load)
-    small = TOLERANCE * sheet.section.thickness
-    for _ in range(CORRECTIONS):
-        with np.errstate(all="ignore"):
-            residual, jacobian = sheet.residual(state, depth, force)
-        if not np.isfinite(jacobian).all():
-            return None
-        scale = 1.0 / np.sqrt(np.abs(jacobian).max(axis=1))
-        change = -scale * np.linalg.solve(jacobian * np.outer(scale, scale), residual * scale)
-        state = state + change
-        if np.abs(change[: sheet.functions.unknowns]).max() < small:
-            return state
-    return None
-
-
-INVERSIONS = 6
 
 
 @dataclass(frozen=True)
 class Curve:
-    """Cubic splines through m equilibria, the first at rest.
-
-    A pull is answered like a press turned round.
+    """Cubic splines through m equilibria, the first at rest; a pull is answered like a press turned round.
 
     Attributes
     ----------
@@ -123,12 +105,9 @@ class Curve:
         return float(self.depth[-1]), float(self.force[-1])
 
     @cached_property
-    def _force(self) -> CubicSpline:
-        return CubicSpline(self.depth, self.force)
-
-    @cached_property
-    def _slope(self) -> CubicSpline:
-        return self._force.derivative()
+    def _rising(self) -> RisingCurve:
+        force = CubicSpline(self.depth, self.force)
+        return RisingCurve(self.depth, self.force, force, force.derivative())
 
     @cached_property
     def _axis(self) -> CubicSpline:
@@ -140,15 +119,12 @@ class Curve:
 
     def force_at(self, depth: FloatArray) -> FloatArray:
         """(n,) in N at depths (n,) in m."""
-        return np.asarray(np.sign(depth) * self._force(np.abs(depth)))
+        return np.asarray(np.sign(depth) * self._rising.value(np.abs(depth)))
 
     def depth_at(self, force: FloatArray) -> FloatArray:
         """(n,) in m at forces (n,) in N: the inverse of `force_at`."""
         size = np.abs(force)
-        depth = np.interp(size, self.force, self.depth)
-        for _ in range(INVERSIONS):
-            depth = depth - (self._force(depth) - size) / self._slope(depth)
-        return np.asarray(np.sign(force) * depth)
+        return np.asarray(np.sign(force) * self._rising.inverse(size, CLOSE * size))
 
     def axis_at(self, depth: FloatArray) -> FloatArray:
         """(n, L) deflection of the layers' top faces on the axis, m, at depths (n,) in m."""
@@ -159,104 +135,13 @@ class Curve:
         return np.asarray(self._state(depth))
 
 
-STEPS = 20
-CROWDING = 1.5
-"""Equilibria over the depth or force that is asked for; the splines between them are right to 1e-4.
-They crowd at small loads, where the tension sets in."""
-
-
-@dataclass(frozen=True)
-class PlateLaw:
-    """Statics of a sheet.
-
-    Attributes
-    ----------
-    sheet
-        The sheet and its tool.
-    faces
-        Synthesis of the faces' displacement.
-    dent
-        What a pressure adds at the surface; None under a rigid tool.
-    path
-        The equilibria found, from rest on.
-    """
-
-    sheet: Sheet
-    faces: Faces
-    dent: Indentation | None
-    path: tuple[Equilibrium, ...]
-
-    def extended(self, load: float) -> "PlateLaw":
-        """The same with equilibria up to a load: depth of a rigid tool (m), or force of a pressure (N).
-
-        Raises
-        ------
-        WaveError
-            If the sheet has no equilibrium up to there.
-        """
-        last = self.path[-1].load
-        if load <= last:
-            return self
-        count = max(2, int(np.ceil(STEPS * (load - last) / load)))
-        share = np.linspace(last / load, 1.0, count + 1)[1:]
-        if last == 0.0:
-            share = share**CROWDING
-        found = follow(self.sheet, self.path, share * load)
-        if found[-1].load < load:
-            unit, scale = ("mm", 1e3) if self.sheet.tool is not None else ("N", 1.0)
-            raise WaveError(
-                f"load = {load * scale:.4g} {unit} is not allowed: this sheet's equilibrium was followed up to "
-                f"{found[-1].load * scale:.4g} {unit}"
-            )
-        return replace(self, path=found)
-
-    def curve(self) -> Curve:
-        """Splines through the equilibria."""
-        state = np.stack([point.state for point in self.path])
-        load = np.array([point.load for point in self.path])
-        rigid = self.sheet.tool is not None
-        prescribed = [(point.load, 0.0) if rigid else (0.0, point.load) for point in self.path]
-        axis = np.stack(
-            [
-                self.displacement(point.state, *given, np.zeros(1))[1, :, 0]
-                for point, given in zip(self.path, prescribed, strict=True)
-            ]
-        )
-        depth, force = (load, -state[:, -1]) if rigid else (axis[:, 0], load)
-        return Curve(depth, force, state, axis[:, :-1])
-
-    def displacement(self, state: FloatArray, depth: float, force: float, radius: FloatArray) -> FloatArray:
-        """(2, L + 1, R): outwards and downwards, m, of the faces at radii up to the hole's edge."""
-        out = self.faces.displacement(state, depth, radius)
-        if self.dent is not None:
-            out[1] += force * (self._axis_dent if not radius.any() else self.dent.deflection(radius))
-        return out
-
-    @cached_property
-    def _axis_dent(self) -> FloatArray:
-        return np.zeros((1, 1)) if self.dent is None else self.dent.deflection(np.zeros(1))
-
-
-def plate_law(layers: Sequence[WaveLayer], tool: DiscTool, sheet: Sheet) -> PlateLaw:
-    """The law at rest; `extended` finds equilibria."""
-    faces = Faces(sheet)
-    dent = None if tool.rigid else indentation(layers, sheet.section, faces.bulge, tool.radius)
-    return PlateLaw(sheet, faces, dent, (Equilibrium(0.0, np.zeros(sheet.unknowns)),))
-
-
-MARGIN, LARGEST_GROWTH = 1.05, 6.0
-"""Of what is prescribed, where it is not what is wanted."""
-ROUNDING = 1e-9
-"""So little beyond the last equilibrium the curve goes on by itself."""
-
-
-class PreparedLaw:
-    """Statics of a sheet under a press.
+class LocalTension:
+    """Statics of a sheet: ready up to a depth, and further where more is wanted.
 
     Parameters
     ----------
-    law
-        At rest.
+    faces
+        Of the sheet at rest.
     reach
         Depth up to which equilibria are found now, m.
 
@@ -266,46 +151,82 @@ class PreparedLaw:
         If the sheet has no equilibrium up to there.
     """
 
-    def __init__(self, law: PlateLaw, reach: float) -> None:
-        across, self._rigid = law.sheet.section, law.sheet.tool is not None
+    def __init__(self, faces: Faces, reach: float) -> None:
+        sheet = faces.sheet
+        self._faces, self._sheet, self._rigid = faces, sheet, sheet.tool is not None
+        self._path: tuple[Equilibrium, ...] = (Equilibrium(0.0, np.zeros(sheet.unknowns)),)
         # Under a pressure the force is prescribed: begin with about one thickness of depth, by the plate's theory.
-        linear = 16.0 * np.pi * across.bending * across.thickness / law.sheet.functions.outer**2
-        self._law = law.extended(reach if self._rigid else linear)
-        self._curve: Curve = self._law.curve()
+        linear = 16.0 * np.pi * sheet.section.bending * sheet.section.thickness / sheet.functions.outer**2
+        self._curve = self._loaded(reach if self._rigid else linear)
         self._extend("depth", reach)
 
     def rest(self, control: str, value: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Force (n,) in N and depth (n,) in m where one of them, "force" or "depth", is given."""
+        """See `Statics.rest`."""
         self._extend(control, float(np.abs(value).max(initial=0.0)))
         if control == "depth":
             return self._curve.force_at(value), value
         return value, self._curve.depth_at(value)
 
-    def run(self, load: Load) -> PlateHistory:
-        """Equilibria at the instants of a load history."""
+    def run(self, load: Load) -> SheetHistory:
+        """See `Statics.run`."""
         force, depth = self.rest(load.control, load.value)
-        return PlateHistory(
+        return SheetHistory(
             force, depth, self._curve.axis_at(depth), None, lambda step, radii: self.field(float(depth[step]), radii)
         )
 
     def field(self, depth: float, radii: FloatArray) -> FloatArray:
-        """(2, L + 1, m): outward and downward displacement of the faces at radii (m,), m."""
+        """See `Statics.field`."""
         deep = abs(depth)
         self._extend("depth", deep)
         force = float(self._curve.force_at(np.array([deep]))[0])
-        moved = self._law.displacement(self._curve.state_at(deep), deep, force, radii)
-        return np.asarray(np.sign(depth) * moved)
+        return np.asarray(np.sign(depth) * self._faces.displacement(self._curve.state_at(deep), deep, radii, force))
 
     def _extend(self, control: str, wanted: float) -> None:
         """Find equilibria up to a depth (m) or force (N) that is wanted."""
         while self._curve.reach[control == "force"] < (1.0 - ROUNDING) * wanted:
             given = self._rigid == (control == "depth")
-            self._law = self._law.extended(wanted if given else self._beyond(control, wanted))
-            self._curve = self._law.curve()
+            self._curve = self._loaded(wanted if given else self._beyond(control, wanted))
 
     def _beyond(self, control: str, wanted: float) -> float:
         """What to prescribe so that the other quantity gets to what is wanted: on by the last power law."""
         depth, force = np.diff(np.log(self._curve.depth[-2:])), np.diff(np.log(self._curve.force[-2:]))
         power = float((depth / force if control == "force" else force / depth)[0])
         growth = (MARGIN * wanted / self._curve.reach[control == "force"]) ** power
-        return self._law.path[-1].load * min(float(growth), LARGEST_GROWTH)
+        return self._path[-1].load * min(float(growth), LARGEST_GROWTH)
+
+    def _loaded(self, load: float) -> Curve:
+        """The curve with equilibria up to a load: depth of a rigid tool (m), or force of a pressure (N).
+
+        Raises
+        ------
+        WaveError
+            If the sheet has no equilibrium up to there.
+        """
+        last = self._path[-1].load
+        if load <= last:
+            return self._curve
+        count = max(2, int(np.ceil(STEPS * (load - last) / load)))
+        share = np.linspace(last / load, 1.0, count + 1)[1:]
+        if last == 0.0:
+            share = share**CROWDING
+        path = sheet_path(self._sheet, self._path, share * load)
+        if path[-1].load < load:
+            unit, scale = ("mm", 1e3) if self._rigid else ("N", 1.0)
+            raise WaveError(
+                f"load = {load * scale:.4g} {unit} is not allowed: this sheet's equilibrium was followed up to "
+                f"{path[-1].load * scale:.4g} {unit}"
+            )
+        self._path = path
+        return self._splines()
+
+    def _splines(self) -> Curve:
+        state, load = np.stack([one.state for one in self._path]), np.array([one.load for one in self._path])
+        given = [(one.load, 0.0) if self._rigid else (0.0, one.load) for one in self._path]
+        axis = np.stack(
+            [
+                self._faces.displacement(one.state, depth, np.zeros(1), force)[1, :, 0]
+                for one, (depth, force) in zip(self._path, given, strict=True)
+            ]
+        )
+        depth, force = (load, -state[:, -1]) if self._rigid else (axis[:, 0], load)
+        return Curve(depth, force, state, axis[:, :-1])

@@ -1,25 +1,27 @@
 """The wave of a sheet over a hole: a disc pressed on layers that are clamped round a hole and hang free over it.
 
 Large deflections stretch the sheet, and its tension carries most of the load. Nothing but three numbers of the tool's
-edge (`edge_law`) is calibrated. The clamp holds the sheet's lower face only, outside the hole: how far the sheet gives
-way behind that edge is worked out from layered elasticity (`edge`), so there is no effective radius to choose.
+edge (`EdgeLaw`) is calibrated. The clamp holds the sheet's lower face only, outside the hole: how far the sheet gives
+way behind that edge is worked out from layered elasticity (`Edge`), so there is no effective radius to choose.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.errors import NotCoveredError, WaveError, require_positive
+from wavemodel.errors import NotCoveredError, WaveError, require_not_negative, require_positive
 from wavemodel.integrators.load_history import Load, checked_load
 from wavemodel.integrators.viscoelastic import Damping, Prony
 from wavemodel.physics.quasi_static_press import Physics
 from wavemodel.sheet.carrier import carrier
-from wavemodel.sheet.force_depth import PreparedLaw, plate_law
+from wavemodel.sheet.faces import faces_of
+from wavemodel.sheet.force_depth import LocalTension
 from wavemodel.sheet.sheet import sheet
-from wavemodel.sheet.sheet_runs import PlateHistory, Statics, fading_run, memory_of, options_run
-from wavemodel.sheet.solution import PlateSolution
+from wavemodel.sheet.sheet_runs import SheetFaces, SheetHistory, Statics, options_run, relaxing_run, with_relaxation
 from wavemodel.sheet.uniform_tension import UniformTension
+from wavemodel.solution import WaveSolution
 from wavemodel.specimen import DiscTool, WaveLayer
 
 REACH = 0.4
@@ -28,6 +30,72 @@ VERIFIED = {"rigid": (0.5, 0.2), "pressure": (0.3, 0.14)}
 """Depth, and thickness of the sheet, over the hole's radius up to which the model was compared with finite elements and
 found within 2.2 %. Sheets twice as thick are up to 6 % off under a rigid tool and 8 to 22 %
 under a pressure."""
+FUNCTIONS, FEWEST = 12, 4
+TENSIONS = ("local", "uniform")
+INTEGRATORS = ("quasi_static", "mid_point")
+
+
+@dataclass(frozen=True)
+class PlateSettings:
+    """How a sheet over a hole is worked out; what is None is chosen.
+
+    Attributes
+    ----------
+    modes
+        Radial functions for each of u, w and the rotation. None: 12, right to 1e-4.
+    reach
+        Depth up to which the set-up finds equilibria, m. None: 0.4 of the hole's radius. A run that goes beyond it
+        extends the set-up.
+    tension
+        "local": the sheet's own, at any strain, neo-Hookean. "uniform": Kirchhoff's and Carrier's, the same everywhere,
+        Hookean. None: "local", or "uniform" with the integrator "mid_point".
+    integrator
+        "quasi_static" (without inertia) or "mid_point" (with it, energy kept; a uniform tension only).
+    damping
+        With inertia: proportional to mass and stiffness.
+    tool_mass
+        With inertia: of a rigid tool, kg.
+
+    Raises
+    ------
+    WaveError
+        For a word that is unknown, a value outside its range, too few functions, or inertia with a local tension.
+    """
+
+    modes: int | None = None
+    reach: float | None = None
+    tension: str | None = None
+    integrator: str = "quasi_static"
+    damping: Damping = Damping()  # noqa: RUF009 (frozen)
+    tool_mass: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.functions < FEWEST:
+            raise WaveError(f"modes = {self.modes} is not allowed: at least {FEWEST}")
+        if self.integrator not in INTEGRATORS:
+            raise WaveError(f"integrator = {self.integrator!r} is not allowed: one of {', '.join(INTEGRATORS)}")
+        if self.tension is not None and self.tension not in TENSIONS:
+            raise WaveError(f"tension = {self.tension!r} is not allowed: one of {', '.join(TENSIONS)}")
+        if self.moving and self.tension == "local":
+            raise WaveError("tension = 'local' is not allowed with the integrator 'mid_point': only 'uniform' is")
+        require_not_negative("tool_mass", self.tool_mass, "kg")
+        if self.reach is not None:
+            require_positive("reach", self.reach, "m")
+
+    @property
+    def functions(self) -> int:
+        """Radial functions for each field."""
+        return FUNCTIONS if self.modes is None else self.modes
+
+    @property
+    def moving(self) -> bool:
+        """Whether inertia counts."""
+        return self.integrator == "mid_point"
+
+    @property
+    def uniform(self) -> bool:
+        """Whether the tension is the same everywhere."""
+        return self.moving or self.tension == "uniform"
 
 
 class PlateWave:
@@ -43,24 +111,12 @@ class PlateWave:
         "hole".
     hole_radius
         In m; the lower face is held outside it.
-    modes
-        Radial functions for each of u, w and the rotation. None: 12, right to 1e-4.
+    settings
+        How it is worked out.
     pretension
         Of the sheet before the press, N/m, equal in all directions.
-    reach
-        Depth up to which the set-up finds equilibria, m. None: 0.4 of the hole's radius. A run that goes beyond it
-        extends the set-up.
-    tension
-        "local": the sheet's own, at any strain, neo-Hookean. "uniform": Kirchhoff's and Carrier's, the same everywhere,
-        Hookean. None: "local", or "uniform" with the integrator "mid_point".
-    integrator
-        "quasi_static" (without inertia) or "mid_point" (with it, energy kept; a uniform tension only).
-    damping
-        With inertia: proportional to mass and stiffness; none by default.
-    tool_mass
-        With inertia: of a rigid tool, kg.
     relaxation
-        Fading memory of the whole sheet, without inertia; E is then the initial modulus. None: elastic.
+        Prony series of the whole sheet, without inertia; E is then the initial modulus. None: elastic.
     physics
         Options of the body beyond elasticity, without inertia; all off by default (see `Physics`).
 
@@ -78,34 +134,27 @@ class PlateWave:
         tool: DiscTool,
         support: str = "hole",
         hole_radius: float | None = None,
-        modes: int | None = None,
+        settings: PlateSettings = PlateSettings(),
         *,
         pretension: float = 0.0,
-        reach: float | None = None,
-        tension: str | None = None,
-        integrator: str = "quasi_static",
-        damping: Damping | None = None,
-        tool_mass: float = 0.0,
         relaxation: Prony | None = None,
         physics: Physics | None = None,
     ) -> None:
-        self.layers, self.tool, self.hole_radius = tuple(layers), tool, checked_hole(tool, support, hole_radius)
-        self.modes, self.integrator = checked_count(modes), integrator
-        self.tension = checked_tension(tension, integrator)
-        for name, value, unit in (("pretension", pretension, "N/m"), ("tool_mass", tool_mass, "kg")):
-            if not 0.0 <= value < float("inf"):
-                raise WaveError(f"{name} = {value:g} {unit} is not allowed: finite and not negative")
-        if reach is not None:
-            require_positive("reach", reach, "m")
-        hole = self.hole_radius
-        law = plate_law(self.layers, tool, sheet(self.layers, tool, hole, self.modes, pretension))
-        self.unknowns: int = law.sheet.unknowns
-        self._damping = damping or Damping()
-        self._options, self._series = memory_of(relaxation, physics, integrator), relaxation
-        self._moving = UniformTension(carrier(law.sheet, tool_mass), law.faces, law.dent)
-        self._statics: Statics = self._moving
-        if self.tension == "local":
-            self._statics = PreparedLaw(law, REACH * hole if reach is None else reach)
+        self.layers, self.tool, self.hole_radius = tuple(layers), tool, _checked_hole(tool, support, hole_radius)
+        require_not_negative("pretension", pretension, "N/m")
+        self.settings, hole = settings, self.hole_radius
+        at_rest = sheet(self.layers, tool, hole, settings.functions, pretension)
+        self.unknowns: int = at_rest.unknowns
+        self._options, self._series = with_relaxation(physics, relaxation, settings.integrator), relaxation
+        faces = faces_of(self.layers, tool, at_rest)
+        self._moving = UniformTension(carrier(at_rest, settings.tool_mass), faces)
+        reach = REACH * hole if settings.reach is None else settings.reach
+        self._statics: Statics = self._moving if settings.uniform else LocalTension(faces, reach)
+
+    @property
+    def modes(self) -> int:
+        """Radial functions for each of u, w and the rotation."""
+        return self.settings.functions
 
     @property
     def window(self) -> float:
@@ -159,7 +208,7 @@ class PlateWave:
         """
         return self._statics.field(depth, np.asarray(radii, dtype=np.float64))
 
-    def run(self, control: str, time: FloatArray, value: FloatArray) -> PlateSolution:
+    def run(self, control: str, time: FloatArray, value: FloatArray) -> WaveSolution[SheetFaces]:
         """Go through a load history.
 
         Parameters
@@ -178,29 +227,28 @@ class PlateWave:
         """
         load = checked_load(control, time, value)
         history = self._history(load)
-        return PlateSolution(
+        return WaveSolution(
             time=load.time,
             force=history.force,
             depth=history.depth,
             layer_names=tuple(layer.name for layer in self.layers),
             top_deflection=history.axis,
-            integrator=self.integrator,
+            integrator=self.settings.integrator,
             warnings=self._warnings(history),
+            faces=SheetFaces(self.hole_radius, history.faces),
             energy=history.energy,
-            _hole=self.hole_radius,
-            _faces=history.faces,
         )
 
-    def _history(self, load: Load) -> PlateHistory:
-        if self.integrator == "mid_point":
-            return self._moving.move(load, self._damping)
+    def _history(self, load: Load) -> SheetHistory:
+        if self.settings.moving:
+            return self._moving.move(load, self.settings.damping)
         if self._options is not None:
             return options_run(load, self._statics, self._options, 0.1 * self.hole_radius)
         if self._series is not None:
-            return fading_run(load, self._statics, self._series)
+            return relaxing_run(load, self._statics, self._series)
         return self._statics.run(load)
 
-    def _warnings(self, history: PlateHistory) -> tuple[str, ...]:
+    def _warnings(self, history: SheetHistory) -> tuple[str, ...]:
         verified = VERIFIED["rigid" if self.tool.rigid else "pressure"]
         sizes = float(np.abs(history.depth).max()), sum(layer.thickness for layer in self.layers)
         return tuple(
@@ -211,21 +259,8 @@ class PlateWave:
         )
 
 
-FUNCTIONS, FEWEST = 12, 4
-TENSIONS = ("local", "uniform")
-INTEGRATORS = ("quasi_static", "mid_point")
-
-
-def checked_hole(tool: DiscTool, support: str, hole_radius: float | None) -> float:
-    """The hole's radius, m, of a support and tool that the sheet covers.
-
-    Raises
-    ------
-    NotCoveredError
-        For another support, or a tool with friction.
-    WaveError
-        If the radius is missing, not positive, or not above the tool's.
-    """
+def _checked_hole(tool: DiscTool, support: str, hole_radius: float | None) -> float:
+    """The hole's radius, m, of a support and tool that the sheet covers."""
     if support in ("bonded", "half_space"):
         raise NotCoveredError(f"the sheet over a hole does not cover the support {support!r}; it covers 'hole'")
     if support != "hole":
@@ -244,36 +279,3 @@ def checked_hole(tool: DiscTool, support: str, hole_radius: float | None) -> flo
             "it must be wider than the tool"
         )
     return hole_radius
-
-
-def checked_count(modes: int | None) -> int:
-    """Radial functions for each field.
-
-    Raises
-    ------
-    WaveError
-        If there are too few.
-    """
-    count = FUNCTIONS if modes is None else modes
-    if count < FEWEST:
-        raise WaveError(f"modes = {count} is not allowed: at least {FEWEST}")
-    return count
-
-
-def checked_tension(tension: str | None, integrator: str) -> str:
-    """Word for the tension, "local" or "uniform", to go with the integrator.
-
-    Raises
-    ------
-    WaveError
-        If a word is unknown, or inertia is wanted with a local tension.
-    """
-    if integrator not in INTEGRATORS:
-        raise WaveError(f"integrator = {integrator!r} is not allowed: one of {', '.join(INTEGRATORS)}")
-    moving = integrator == "mid_point"
-    chosen = ("uniform" if moving else "local") if tension is None else tension
-    if chosen not in TENSIONS:
-        raise WaveError(f"tension = {tension!r} is not allowed: one of {', '.join(TENSIONS)}")
-    if moving and chosen == "local":
-        raise WaveError("tension = 'local' is not allowed with the integrator 'mid_point': only 'uniform' is")
-    return chosen

@@ -1,7 +1,13 @@
-"""What a uniform pressure works on: the mean deflection of the upper face over a disc.
+"""The whole sheet and what its unknowns must fulfil: the free part, its edges, and the force on it.
 
-The face lies above the neutral plane: as the section turns and thins it comes down further than the plane does, and
-where the sheet is bent it bulges.
+Unknowns are the coefficients q of u, w and phi and the loads P on the edges. With the sheet's energy V and the edges'
+complementary energy G they make, w being the mean deflection under a pressure,
+
+    V(q) + sum over edges P . (c(q) - support) - G(P) - force * w(q)
+
+stationary. No compliance is inverted, so an edge may also be stiff. A uniform pressure works on the mean deflection of
+the upper face over a disc. That face lies above the neutral plane: as the section turns and thins it comes down further
+than the plane does, and where the sheet is bent it bulges.
 """
 
 from collections.abc import Sequence

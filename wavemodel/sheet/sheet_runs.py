@@ -1,8 +1,15 @@
-"""What a sheet over a hole does under a load history, whichever way its tension is worked out."""
+"""What a sheet over a hole does under a load history, whichever way its tension is worked out.
+
+A sheet that relaxes, or has options of a body, keeps its elastic law. What relaxes is the elastic force, by one scalar
+state (quasi-linear viscoelasticity, Y. C. Fung, Biomechanics: Mechanical Properties of Living Tissues, section 7.6);
+the field is that of the elastic sheet at the depth where it stands. A linear sheet with one series does exactly that.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol
+
+import numpy as np
 
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import NotCoveredError, WaveError
@@ -10,10 +17,11 @@ from wavemodel.integrators.lags import creep, relaxation
 from wavemodel.integrators.load_history import Load
 from wavemodel.integrators.viscoelastic import Prony
 from wavemodel.physics.quasi_static_press import Physics, driven
+from wavemodel.solution import checked_radii, radially
 
 
 @dataclass(frozen=True)
-class PlateHistory:
+class SheetHistory:
     """A run over n steps.
 
     Attributes
@@ -35,6 +43,44 @@ class PlateHistory:
     faces: Callable[[int, FloatArray], FloatArray]
 
 
+@dataclass(frozen=True)
+class SheetFaces:
+    """Faces of a sheet in a run (a `FaceMotion`).
+
+    Attributes
+    ----------
+    hole_radius
+        In m.
+    at
+        See `SheetHistory.faces`.
+    """
+
+    hole_radius: float
+    at: Callable[[int, FloatArray], FloatArray]
+
+    def deflection(self, step: int, radius: FloatArray) -> FloatArray:
+        """See `FaceMotion.deflection`."""
+        return self._inside(step, radius)[1, :-1]
+
+    def in_plane(self, step: int, points: FloatArray, face: int) -> FloatArray:
+        """See `FaceMotion.in_plane`."""
+        return radially(self._inside(step, np.hypot(points[:, 0], points[:, 1]))[0, face], points)
+
+    def lower_face(self, step: int, radii: FloatArray) -> FloatArray:
+        """(2, m): outward and downward displacement of the lower face, m, at radii (m,); NaN outside the hole.
+
+        Raises
+        ------
+        WaveError
+            If a radius is negative or not a number.
+        """
+        return self._inside(step, checked_radii(radii))[:, -1]
+
+    def _inside(self, step: int, radius: FloatArray) -> FloatArray:
+        inside = radius <= self.hole_radius
+        return np.where(inside, self.at(step, np.where(inside, radius, self.hole_radius)), np.nan)
+
+
 class Statics(Protocol):
     """A sheet at rest under a press."""
 
@@ -46,12 +92,12 @@ class Statics(Protocol):
         """(2, L + 1, m): outward and downward displacement of the faces at radii (m,), m."""
         ...
 
-    def run(self, load: Load) -> PlateHistory:
+    def run(self, load: Load) -> SheetHistory:
         """Equilibria at the instants of a load history."""
         ...
 
 
-def memory_of(series: Prony | None, physics: Physics | None, integrator: str) -> Physics | None:
+def with_relaxation(physics: Physics | None, series: Prony | None, integrator: str) -> Physics | None:
     """The options of a sheet, its relaxation among them; None where only the relaxation is on, or nothing.
 
     Raises
@@ -70,7 +116,7 @@ def memory_of(series: Prony | None, physics: Physics | None, integrator: str) ->
     return replace(physics, relaxation=series)
 
 
-def fading_run(load: Load, statics: Statics, series: Prony) -> PlateHistory:
+def relaxing_run(load: Load, statics: Statics, series: Prony) -> SheetHistory:
     """Run a history of a sheet that relaxes; exact for an elastic force that is linear in each step.
 
     Under force control the depth is that of the force crept by the inverse of the series.
@@ -90,7 +136,7 @@ def fading_run(load: Load, statics: Statics, series: Prony) -> PlateHistory:
     return _standing(statics, load, force, load.value)
 
 
-def options_run(load: Load, statics: Statics, physics: Physics, scale: float) -> PlateHistory:
+def options_run(load: Load, statics: Statics, physics: Physics, scale: float) -> SheetHistory:
     """Run a history of a sheet with options; `scale` is about the depth of the press, m.
 
     Raises
@@ -102,6 +148,6 @@ def options_run(load: Load, statics: Statics, physics: Physics, scale: float) ->
     return replace(_standing(statics, load, trace.force, trace.surface), depth=trace.depth)
 
 
-def _standing(statics: Statics, load: Load, force: FloatArray, depth: FloatArray) -> PlateHistory:
+def _standing(statics: Statics, load: Load, force: FloatArray, depth: FloatArray) -> SheetHistory:
     """The elastic sheet at depths (n,), m, under other forces (n,), N."""
     return replace(statics.run(Load("depth", load.time, depth)), force=force, energy=None)

@@ -12,7 +12,11 @@ curvatures
 
 the fibres are stretched by l1 = stretch + z t bend and l2 = hoop + z t twist. A neo-Hookean sheet then has the energy
 per area sum over z of W(l1, l2) + S shear^2 / 2. For small deflections it is Reissner's plate, for large ones of thin
-sheets the membrane.
+sheets the membrane. With no stress across the sheet
+
+    W = G/2 (l1^2 + l2^2 + l3^2 - 3 - 2 ln J) + lam/2 (ln J)^2,    G (l3^2 - 1) + lam ln J = 0,
+
+the second from dW/dl3 = 0. In small strain it is Hooke's law with the same G and lam.
 """
 
 from dataclasses import dataclass
@@ -24,6 +28,7 @@ from wavemodel.sheet.section import Section
 
 STRAINS = 5
 """u', u / r, w', phi, phi'."""
+NEWTON_STEPS = 8
 
 
 @dataclass(frozen=True)
@@ -157,9 +162,6 @@ def _fibre(
     curve[:2, :2] = z * (t_curve * turn)[:, :, None]
     curve[:2, 2 + which] = curve[2 + which, :2] = z * t_slope[:, None]
     return value, slope, curve
-
-
-NEWTON_STEPS = 8
 
 
 @dataclass(frozen=True)

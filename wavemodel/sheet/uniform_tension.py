@@ -1,9 +1,11 @@
-"""Motion of Kirchhoff's and Carrier's wave by the mid-point rule, which keeps its energy.
+"""Runs of a sheet under one uniform tension: at rest at each instant, or in motion by the mid-point rule.
+
+The mid-point rule for Kirchhoff's and Carrier's wave is
 
     M (v1 - v0) / h + C (v0 + v1) / 2 + (K + (T0 + N) G) (x0 + x1) / 2 + N n = F e,    N = (N(x0) + N(x1)) / 2.
 
-With this mean the work of the tension on the step is the change of N^2 / 2 beta exactly, so without load and damping
-the energy stays, whatever the step. The one unknown that enters non-linearly is the number N.
+With this mean of N the work of the tension on the step is the change of N^2 / 2 beta exactly, so without load and
+damping the energy stays, whatever the step. The one unknown that enters non-linearly is the number N.
 """
 
 from collections.abc import Callable
@@ -17,8 +19,8 @@ from wavemodel.errors import WaveError
 from wavemodel.integrators.load_history import Load
 from wavemodel.integrators.viscoelastic import Damping
 from wavemodel.sheet.carrier import Carrier
-from wavemodel.sheet.faces import Faces, Indentation
-from wavemodel.sheet.sheet_runs import PlateHistory
+from wavemodel.sheet.faces import Faces
+from wavemodel.sheet.sheet_runs import SheetHistory
 
 CORRECTIONS = 60
 ROUNDING = 4.0 * float(np.finfo(np.float64).eps)
@@ -28,7 +30,7 @@ _Half: TypeAlias = Callable[[float], tuple[FloatArray, float, float]]
 
 
 @dataclass(frozen=True)
-class Motion:
+class UniformRun:
     """A run over n steps.
 
     Attributes
@@ -44,10 +46,10 @@ class Motion:
     energy: FloatArray
     amplitude: FloatArray
 
-    def at(self, step: int) -> "Motion":
+    def at(self, step: int) -> "UniformRun":
         """One step of it, n = 1."""
         one = [step]
-        return Motion(self.force[one], self.depth[one], self.energy[one], self.amplitude[one])
+        return UniformRun(self.force[one], self.depth[one], self.energy[one], self.amplitude[one])
 
 
 class _Step:
@@ -103,7 +105,7 @@ class _Step:
         raise WaveError(f"mid-point rule: no tension found within a step of {self.duration:g} s; use shorter steps")
 
 
-def integrate(load: Load, wave: Carrier, damping: Damping, start: FloatArray) -> Motion:
+def integrate(load: Load, wave: Carrier, damping: Damping, start: FloatArray) -> UniformRun:
     """Run a load history with inertia, each step as long as the history's.
 
     Parameters
@@ -124,7 +126,7 @@ def integrate(load: Load, wave: Carrier, damping: Damping, start: FloatArray) ->
     """
     by_depth, n = load.control == "depth", load.time.size
     x, v = np.zeros(wave.inertia.size), np.zeros(wave.inertia.size)
-    out = Motion(np.empty(n), np.empty(n), np.empty(n), np.empty((n, x.size)))
+    out = UniformRun(np.empty(n), np.empty(n), np.empty(n), np.empty((n, x.size)))
     before, step = 0.0, None
     for i, (duration, value) in enumerate(zip(load.durations.tolist(), load.value.tolist(), strict=True)):
         force = value
@@ -151,16 +153,13 @@ class UniformTension:
         The modes.
     faces
         Of the sheet.
-    dent
-        What a pressure adds at the surface, or None.
     """
 
     wave: Carrier
     faces: Faces
-    dent: Indentation | None
 
     def rest(self, control: str, value: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Force (n,) in N and depth (n,) in m at rest where one of them is given.
+        """See `Statics.rest`.
 
         Raises
         ------
@@ -171,14 +170,14 @@ class UniformTension:
         return history.force, history.depth
 
     def field(self, depth: float, radii: FloatArray) -> FloatArray:
-        """(2, L + 1, m): outward and downward displacement of the faces at radii (m,), m."""
+        """See `Statics.field`."""
         return np.asarray(self._faces(self._resting(np.array([depth]), True), radii)[0])
 
-    def run(self, load: Load) -> PlateHistory:
-        """Equilibria at the instants of a load history."""
+    def run(self, load: Load) -> SheetHistory:
+        """See `Statics.run`."""
         return self._history(self._resting(load.value, load.control == "depth"))
 
-    def move(self, load: Load, damping: Damping) -> PlateHistory:
+    def move(self, load: Load, damping: Damping) -> SheetHistory:
         """Go through a load history with inertia, from rest.
 
         Raises
@@ -193,39 +192,39 @@ class UniformTension:
             start = self.wave.at_rest(float(load.value[0]), by_depth)[0]
         return self._history(integrate(load, self.wave, damping, start))
 
-    def _resting(self, value: FloatArray, by_depth: bool) -> Motion:
+    def _resting(self, value: FloatArray, by_depth: bool) -> UniformRun:
         self._refuse(by_depth)
         states, force = np.empty((value.size, self.wave.inertia.size)), np.empty(value.size)
         pull, still = 0.0, np.zeros(self.wave.inertia.size)
         for i, target in enumerate(value.tolist()):
             states[i], force[i], pull = self.wave.at_rest(target, by_depth, pull)
         energy = np.array([self.wave.energy(x, still) for x in states])
-        return Motion(force, states @ self.wave.pressed, energy, states)
+        return UniformRun(force, states @ self.wave.pressed, energy, states)
 
     def _refuse(self, by_depth: bool) -> None:
-        if by_depth and self.dent is not None:
+        if by_depth and self.faces.dent is not None:
             raise WaveError(
                 "control = 'depth' is not allowed with a uniform tension under a uniform pressure: use 'force', or a "
                 "rigid tool"
             )
 
-    def _history(self, motion: Motion) -> PlateHistory:
+    def _history(self, motion: UniformRun) -> SheetHistory:
         axis = self._faces(motion, np.zeros(1))[:, 1, :-1, 0]
-        return PlateHistory(
+        return SheetHistory(
             force=motion.force,
-            depth=motion.depth if self.dent is None else axis[:, 0],
+            depth=motion.depth if self.faces.dent is None else axis[:, 0],
             axis=axis,
             energy=motion.energy,
             faces=lambda step, radii: self._faces(motion.at(step), radii)[0],
         )
 
-    def _faces(self, motion: Motion, radius: FloatArray) -> FloatArray:
+    def _faces(self, motion: UniformRun, radius: FloatArray) -> FloatArray:
         """(n, 2, L + 1, R): outward and downward displacement, m; the stretch of the neutral plane is left out."""
         table = self.faces.linear(radius)
         modes = table[..., :-1] @ self.wave.shape
-        if self.dent is None:
+        if self.faces.dent is None:
             modes = modes + table[..., -1:] * self.wave.pressed
         out = np.einsum("cfrd,nd->ncfr", modes, motion.amplitude, optimize=True)
-        if self.dent is not None:
-            out[:, 1] += motion.force[:, None, None] * self.dent.deflection(radius)
+        if self.faces.dent is not None:
+            out[:, 1] += motion.force[:, None, None] * self.faces.dent.deflection(radius)
         return np.asarray(out)

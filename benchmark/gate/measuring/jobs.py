@@ -142,7 +142,7 @@ def run_history(job: Job) -> Work:
 
 def wave_frame(job: Job) -> Work:
     """One frame of every layer's deflected face for each step of the scenario's load history."""
-    from wavemodel import DiscTool, LayeredWave, WaveLayer
+    from wavemodel import DiscTool, LayeredWave, WaveDiscretisation, WaveLayer
 
     scenario = load_scenario(Path(job["scenario"]), job["set"])
     layers = [
@@ -150,11 +150,15 @@ def wave_frame(job: Job) -> Work:
         for layer in scenario.tissue.layers
     ]
     tool, options = scenario.tool, scenario.wave
-    wave = LayeredWave(layers, DiscTool(tool.radius, tool.contact), window=options.window, modes=options.modes)
+    wave = LayeredWave(
+        layers,
+        DiscTool(tool.radius, tool.contact),
+        discretisation=WaveDiscretisation(window=options.window, modes=options.modes),
+    )
     positions = np.linspace(-REACH * tool.radius, REACH * tool.radius, VERTICES)
     surface, drive = wave.surface(positions, positions), scenario_drive(scenario)
     solution = wave.run(drive.control, drive.time, drive.value)
-    states = [solution.snapshot(step) for step in range(drive.time.size)]
+    states = [solution.faces.snapshot(step) for step in range(drive.time.size)]
 
     def work() -> None:
         for state in states:

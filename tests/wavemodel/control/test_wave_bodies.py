@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from wavemodel import DiscTool, LayeredWave, PlateWave, WaveError
+from wavemodel import DiscTool, LayeredWave, PlateSettings, PlateWave, WaveError
 from wavemodel.control import InteractiveTissue, layered_body, sheet_body
 
 
@@ -20,7 +20,7 @@ def test_a_large_press_is_the_corrected_wave(skin, grid):
 
 
 def test_a_sheet_follows_the_plate(silicone, grid):
-    wave = PlateWave(silicone(), DiscTool(5e-3, "rigid_bonded"), hole_radius=30e-3, reach=6e-3)
+    wave = PlateWave(silicone(), DiscTool(5e-3, "rigid_bonded"), settings=PlateSettings(reach=6e-3), hole_radius=30e-3)
     tool = InteractiveTissue(sheet_body(wave, grid, 6e-3), grid)
     for depth in (0.05e-3, 2.3e-3, 5.97e-3):
         tool.touch(0, 40e-3, 30e-3, depth)

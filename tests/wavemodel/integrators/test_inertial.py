@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.linalg import cholesky, expm
 
-from wavemodel import Damping, DiscTool, LayeredWave, Prony, WaveError
+from wavemodel import Damping, DiscTool, LayeredWave, Prony, WaveDiscretisation, WaveError
 from wavemodel.layered.stack.sublayers import consistent_mass, quadratic_stiffness
 from wavemodel.layered.stack.vibration import assemble
 
@@ -13,9 +13,7 @@ def few_modes(layers, damping=None, **options):
     return LayeredWave(
         layers,
         DiscTool(5e-3),
-        window=24e-3,
-        modes=5,
-        sublayers=(1, 1, 1),
+        discretisation=WaveDiscretisation(window=24e-3, modes=5, sublayers=(1, 1, 1)),
         integrator="exact",
         damping=damping,
         **options,
@@ -69,7 +67,12 @@ def test_equals_a_dense_solution_of_the_same_equations(skin, damping):
 def test_a_slow_load_gives_the_static_answer(skin):
     time = np.arange(1, 51) * 0.2
     slow = few_modes(skin(), Damping(0.0, 1e-4)).run("force", time, TRIANGLE)
-    static = LayeredWave(skin(), DiscTool(5e-3), window=24e-3, modes=5, sublayers=(1, 1, 1), integrator="quasi_static")
+    static = LayeredWave(
+        skin(),
+        DiscTool(5e-3),
+        discretisation=WaveDiscretisation(window=24e-3, modes=5, sublayers=(1, 1, 1)),
+        integrator="quasi_static",
+    )
     expected = static.run("force", time, TRIANGLE).top_deflection
     np.testing.assert_allclose(slow.top_deflection, expected, atol=2e-3 * expected.max())
 
@@ -96,7 +99,11 @@ def test_does_not_depend_on_how_a_line_is_cut_into_steps(skin):
 @pytest.mark.parametrize("damping", [Damping(), Damping(100.0), Damping(0.0, 1e-3)])
 def test_a_rigid_tool_is_driven_by_depth_at_any_step(skin, step, damping):
     wave = LayeredWave(
-        skin(), DiscTool(5e-3, "rigid_frictionless"), window=50e-3, modes=16, integrator="exact", damping=damping
+        skin(),
+        DiscTool(5e-3, "rigid_frictionless"),
+        discretisation=WaveDiscretisation(window=50e-3, modes=16),
+        integrator="exact",
+        damping=damping,
     )
     depth = np.minimum(np.arange(1, 301) / 100.0, 1.0) * 1e-3
     solution = wave.run("depth", np.arange(1, 301) * step, depth)
@@ -114,12 +121,12 @@ def test_starts_from_the_static_state_of_a_history_that_begins_at_zero(skin):
 
 
 def test_slow_presses_with_and_without_inertia_relax_alike(skin):
-    series, options = Prony((0.4,), (2.0,)), {"window": 50e-3, "modes": 16}
+    series, modes = Prony((0.4,), (2.0,)), WaveDiscretisation(window=50e-3, modes=16)
     time = np.arange(1, 41) * 0.25
     force, tool = np.minimum(time / 2.0, 1.0), DiscTool(5e-3, "rigid_frictionless")
     damping = Damping(0.0, 1e-3)
     runs = [
-        LayeredWave(skin(), tool, integrator=name, relaxation=series, damping=damping, **options)
+        LayeredWave(skin(), tool, "bonded", modes, integrator=name, relaxation=series, damping=damping)
         for name in ("exact", "quasi_static")
     ]
     by_force = [wave.run("force", time, force).depth for wave in runs]

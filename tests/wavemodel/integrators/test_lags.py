@@ -1,5 +1,3 @@
-"""WRITE"""
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -52,7 +50,7 @@ def test_a_step_comes_at_once_and_then_through_the_lags():
     assert LAW.static == pytest.approx(0.6)
 
 
-def test_goes_on_where_it_stopped_lag_sum():
+def test_a_sum_goes_on_where_it_stopped():
     rng = np.random.default_rng(0)
     durations, values = rng.uniform(0.0, 0.5, 40), rng.normal(size=40)
     whole, _ = LAW.follow(durations, values)

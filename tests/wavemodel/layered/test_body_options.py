@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveError, WaveLayer
+from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveDiscretisation, WaveError, WaveLayer
 
 CASES = [
     ("skin_forearm", 0.005, "uniform_pressure"),
@@ -81,7 +81,7 @@ def test_the_linear_wave_is_far_off_where_the_correction_is_not(stored):
 
 def test_covers_a_bonded_base_and_two_contacts(skin):
     with pytest.raises(NotCoveredError, match="free lower face"):
-        LayeredWave(skin(), DiscTool(5e-3), "free", window=50e-3, large_press="corrected")
+        LayeredWave(skin(), DiscTool(5e-3), "free", WaveDiscretisation(window=50e-3), large_press="corrected")
     with pytest.raises(NotCoveredError, match="rigid_frictionless"):
         LayeredWave(skin(), DiscTool(5e-3, "rigid_frictionless"), large_press="corrected")
     with pytest.raises(NotCoveredError, match="inertia"):

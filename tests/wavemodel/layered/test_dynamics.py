@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from wavemodel import Damping, DiscTool, LayeredWave
+from wavemodel import Damping, DiscTool, LayeredWave, WaveDiscretisation
 from wavemodel.integrators.load_history import checked_load
 from wavemodel.layered.dynamics import ringing
 
@@ -24,7 +24,7 @@ def test_an_unloaded_history_does_not_ring():
 
 @pytest.mark.parametrize("contact", ["uniform_pressure", "rigid_bonded"])
 def test_oscillators_at_rest_under_unit_force_are_the_statics(skin, contact):
-    wave = LayeredWave(skin(), DiscTool(5e-3, contact), window=50e-3, modes=12)
+    wave = LayeredWave(skin(), DiscTool(5e-3, contact), discretisation=WaveDiscretisation(window=50e-3, modes=12))
     system, press = wave._modal_system, wave.press
     np.testing.assert_allclose(system.deflection.sum(axis=2), press.unit, rtol=1e-7, atol=1e-9 * press.unit.max())
     assert system.depth.sum() + system.remainder_depth == pytest.approx(press.compliance, rel=1e-9)

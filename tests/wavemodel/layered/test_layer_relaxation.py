@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from wavemodel import Damping, DiscTool, LayeredWave, NotCoveredError, Prony, WaveError, WaveLayer
+from wavemodel import Damping, DiscTool, LayeredWave, NotCoveredError, Prony, WaveDiscretisation, WaveError, WaveLayer
 from wavemodel.layered.layer_relaxation import one_series, series_of, shared
 from wavemodel.layered.stack.sublayers import quadratic_stiffness
 from wavemodel.layered.stack.vibration import assemble
@@ -31,13 +31,17 @@ def test_as_many_series_as_layers():
         series_of([SERIES], 2)
 
 
-SERIES_layerwise = [None, Prony((0.3,), (0.5,)), Prony((0.2, 0.25), (0.1, 4.0))]
+EACH = [None, Prony((0.3,), (0.5,)), Prony((0.2, 0.25), (0.1, 4.0))]
 TRIANGLE = np.concatenate([np.arange(1, 13), np.arange(11, -1, -1)]) / 12.0
 
 
 def few_modes(layers, **options):
     return LayeredWave(
-        layers, DiscTool(5e-3), window=24e-3, modes=5, sublayers=(1, 1, 2), integrator="quasi_static", **options
+        layers,
+        DiscTool(5e-3),
+        discretisation=WaveDiscretisation(window=24e-3, modes=5, sublayers=(1, 1, 2)),
+        integrator="quasi_static",
+        **options,
     )
 
 
@@ -84,7 +88,7 @@ def dense_history(wave, k, load, eta, step, force):
 
 @pytest.mark.parametrize("eta", [0.0, 0.05])
 def test_equals_a_dense_solution_of_the_same_equations(skin, eta):
-    wave = few_modes(skin(), relaxation=SERIES_layerwise, damping=Damping(0.0, eta))
+    wave = few_modes(skin(), relaxation=EACH, damping=Damping(0.0, eta))
     time = np.arange(1, 25) * 0.15
     solution = wave.run("force", time, TRIANGLE)
     domain, load = wave.press.field.domain, wave.press.load
@@ -100,7 +104,7 @@ def test_equals_a_dense_solution_of_the_same_equations(skin, eta):
 @pytest.mark.parametrize("contact", ["uniform_pressure", "rigid_frictionless"])
 def test_depth_control_is_the_inverse_of_force_control(skin, contact, eta):
     """Force that comes out, taken as linear in short steps, gives the depth back as the steps get shorter."""
-    wave = LayeredWave(skin(), DiscTool(5e-3, contact), relaxation=SERIES_layerwise, damping=Damping(0.0, eta))
+    wave = LayeredWave(skin(), DiscTool(5e-3, contact), relaxation=EACH, damping=Damping(0.0, eta))
     errors = []
     for count in (50, 100):
         time = np.linspace(0.0, 5.0, count + 1)[1:]
@@ -114,7 +118,7 @@ def test_depth_control_is_the_inverse_of_force_control(skin, contact, eta):
 
 @pytest.mark.parametrize("eta", [0.0, 0.05])
 def test_depth_control_does_not_depend_on_how_a_line_is_cut_into_steps(skin, eta):
-    wave = few_modes(skin(), relaxation=SERIES_layerwise, damping=Damping(0.0, eta))
+    wave = few_modes(skin(), relaxation=EACH, damping=Damping(0.0, eta))
     corners, depth = np.array([0.5, 1.5, 4.0]), np.array([1e-3, 1e-3, 2e-4])
     time = np.sort(np.concatenate([corners, np.linspace(0.07, 3.97, 23)]))
     coarse = wave.run("depth", corners, depth)
@@ -149,22 +153,29 @@ def test_in_the_end_it_is_the_stack_of_the_moduli_that_are_left(skin, oracle):
     ]
     radii = np.linspace(0.0, 0.02, 9)
     for contact, tolerance in (("uniform_pressure", 1e-3), ("rigid_frictionless", 3e-3)):
-        wave = LayeredWave(layers, DiscTool(5e-3, contact), relaxation=series, window=80e-3, modes=48)
-        other = LayeredWave(left, DiscTool(5e-3, contact), window=80e-3, modes=48)
+        wave = LayeredWave(
+            layers,
+            DiscTool(5e-3, contact),
+            discretisation=WaveDiscretisation(window=80e-3, modes=48),
+            relaxation=series,
+        )
+        other = LayeredWave(left, DiscTool(5e-3, contact), discretisation=WaveDiscretisation(window=80e-3, modes=48))
         found = wave.run("force", np.array([1e-6, 100.0]), np.array([1.0, 1.0]))
         expected = other.run("force", np.array([100.0]), np.array([1.0]))
         assert found.depth[-1] == pytest.approx(expected.depth[0], rel=tolerance)
         flat = 0.001 if contact == "uniform_pressure" else 0.03
         np.testing.assert_allclose(found.profile(1, radii), expected.profile(0, radii), atol=flat * expected.depth[0])
-        start = LayeredWave(layers, DiscTool(5e-3, contact), window=80e-3, modes=48).press.compliance
+        start = LayeredWave(
+            layers, DiscTool(5e-3, contact), discretisation=WaveDiscretisation(window=80e-3, modes=48)
+        ).press.compliance
         assert found.depth[0] == pytest.approx(start, rel=1e-4)
 
 
 def test_frames_agree_with_the_profile(skin):
-    wave = LayeredWave(skin(), DiscTool(5e-3), relaxation=SERIES_layerwise)
+    wave = LayeredWave(skin(), DiscTool(5e-3), relaxation=EACH)
     solution = wave.run("force", np.array([0.5, 1.0]), np.array([1.0, 1.0]))
     x = np.linspace(0.0, 0.015, 7)
-    frame = wave.surface(x, np.zeros(1)).frame(solution.snapshot(1))[:, :, 0]
+    frame = wave.surface(x, np.zeros(1)).frame(solution.faces.snapshot(1))[:, :, 0]
     np.testing.assert_allclose(frame, solution.profile(1, x), atol=2e-6)
 
 
@@ -183,4 +194,4 @@ def test_refuses(skin):
     with pytest.raises(WaveError, match="2 series for 3 layers"):
         LayeredWave(skin(), DiscTool(5e-3), relaxation=[None, None])
     with pytest.raises(NotCoveredError, match="each in its own way"):
-        LayeredWave(skin(), DiscTool(5e-3), relaxation=SERIES_layerwise, integrator="exact")
+        LayeredWave(skin(), DiscTool(5e-3), relaxation=EACH, integrator="exact")

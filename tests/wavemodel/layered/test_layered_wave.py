@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import j1
 
-from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveError, WaveLayer, marker_motion
+from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveDiscretisation, WaveError, WaveLayer, marker_motion
 
 HAYES = {0.2: 1.2523, 0.4: 1.5993, 0.6: 2.0328, 0.8: 2.5354, 1.0: 3.0914, 1.5: 4.6576, 2.0: 6.4206}
 
@@ -98,7 +98,7 @@ def test_solution_names_layers_and_has_the_profile_s_first_value(skin):
 
 
 def test_profile_is_empty_outside_the_window_and_refuses_negative_radii(skin):
-    wave = LayeredWave(skin(), DiscTool(5e-3), window=30e-3, modes=24)
+    wave = LayeredWave(skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=30e-3, modes=24))
     profile = press(wave).profile(-1, np.array([14.9e-3, 15.1e-3]))
     assert np.isfinite(profile[:, 0]).all()
     assert np.isnan(profile[:, 1]).all()
@@ -108,7 +108,9 @@ def test_profile_is_empty_outside_the_window_and_refuses_negative_radii(skin):
 
 @pytest.mark.parametrize(("modes", "window"), [(512, 100e-3), (3, 24e-3), (1, 24e-3)])
 def test_windows_and_modes_of_the_user_are_kept(skin, modes, window):
-    wave = LayeredWave(skin(), DiscTool(5e-3), window=window, modes=modes, sublayers=(1, 1, 2))
+    wave = LayeredWave(
+        skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=window, modes=modes, sublayers=(1, 1, 2))
+    )
     assert (wave.modes, wave.window, wave.sublayers) == (modes, window, (1, 1, 2))
     assert wave.unknowns % 16 == 0
     assert press(wave).depth[0] > 0.0
@@ -116,10 +118,18 @@ def test_windows_and_modes_of_the_user_are_kept(skin, modes, window):
 
 def test_modes_alone_approach_the_corrected_answer(skin):
     """Without the static correction the truncation shows, and fades with the modes."""
-    reference = press(LayeredWave(skin(), DiscTool(5e-3), window=60e-3, modes=48)).depth[0]
+    reference = press(
+        LayeredWave(skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=60e-3, modes=48))
+    ).depth[0]
     errors = [
         abs(
-            press(LayeredWave(skin(), DiscTool(5e-3), window=60e-3, modes=n, static_correction=False)).depth[0]
+            press(
+                LayeredWave(
+                    skin(),
+                    DiscTool(5e-3),
+                    discretisation=WaveDiscretisation(window=60e-3, modes=n, static_correction=False),
+                )
+            ).depth[0]
             / reference
             - 1
         )
@@ -131,7 +141,9 @@ def test_modes_alone_approach_the_corrected_answer(skin):
 
 def test_vector_wave_on_the_paper_s_box_has_the_accuracy_of_the_notes(skin, oracle, uniform_load):
     """PHYSICS: 1/1/2 sub-layers on 5 mm of fat and a 24 mm box are right at the peak to 0.5 %, no calibration."""
-    wave = LayeredWave(skin(5e-3), DiscTool(5e-3), window=24e-3, modes=48, sublayers=(1, 1, 2))
+    wave = LayeredWave(
+        skin(5e-3), DiscTool(5e-3), discretisation=WaveDiscretisation(window=24e-3, modes=48, sublayers=(1, 1, 2))
+    )
     exact = oracle(skin(5e-3)).deflection(np.zeros(1), uniform_load(5e-3), 30e3, 5e-3)[:, 0]
     np.testing.assert_allclose(press(wave).top_deflection[0], exact, rtol=0.005)
 
@@ -139,7 +151,9 @@ def test_vector_wave_on_the_paper_s_box_has_the_accuracy_of_the_notes(skin, orac
 def test_free_lower_face_bends_like_a_plate_under_a_wide_load():
     """Kirchhoff's simply supported plate, mode by mode: w = q / (D k^4)."""
     layer = WaveLayer("sheet", 1e-3, 1000.0, 1e5, 0.3)
-    wave = LayeredWave([layer], DiscTool(20e-3), "free", window=200e-3, modes=40, static_correction=False)
+    wave = LayeredWave(
+        [layer], DiscTool(20e-3), "free", WaveDiscretisation(window=200e-3, modes=40, static_correction=False)
+    )
     domain = wave.press.field.domain
     bending = 1e5 * 1e-9 / 12 / (1 - 0.3**2)
     k = domain.wavenumber
@@ -149,7 +163,7 @@ def test_free_lower_face_bends_like_a_plate_under_a_wide_load():
 
 
 def test_auto_follows_inertia_only_in_fast_presses(skin):
-    wave = LayeredWave(skin(), DiscTool(5e-3), window=50e-3, modes=16)
+    wave = LayeredWave(skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=50e-3, modes=16))
     slow = wave.run("force", np.array([1.0, 2.0]), np.array([1.0, 0.0]))
     fast = wave.run("force", np.array([1e-3, 2e-3]), np.array([1.0, 0.0]))
     assert (slow.integrator, fast.integrator) == ("quasi_static", "exact")
@@ -173,8 +187,8 @@ def test_friction_is_not_covered(skin):
     [
         ({"support": "floating"}, "'floating'"),
         ({"integrator": "euler"}, "'euler'"),
-        ({"window": 9e-3}, "wider than the tool"),
-        ({"sublayers": (1, 2)}, "each of the 3 layers"),
+        ({"discretisation": WaveDiscretisation(window=9e-3)}, "wider than the tool"),
+        ({"discretisation": WaveDiscretisation(sublayers=(1, 2))}, "each of the 3 layers"),
         ({"support": "free"}, "window"),
     ],
 )
@@ -186,7 +200,7 @@ def test_refuses_unusable_options(skin, options, message):
 @pytest.mark.parametrize("options", [{"modes": 4}, {"static_correction": False}])
 def test_a_rigid_tool_needs_the_static_correction(skin, options):
     with pytest.raises(WaveError, match="static_correction"):
-        LayeredWave(skin(), DiscTool(5e-3, "rigid_bonded"), **options)
+        LayeredWave(skin(), DiscTool(5e-3, "rigid_bonded"), discretisation=WaveDiscretisation(**options))
 
 
 def test_refuses_no_layers():
@@ -203,9 +217,11 @@ def test_an_off_centre_press_is_the_centred_one_shifted(skin, contact):
     time, force, x = np.ones(1), np.array([0.1]), np.array([-9e-3, 0.0, 5e-3, 12e-3])
     answers, moved = [], []
     for place in ((0.0, 0.0), PLACE):
-        wave = LayeredWave(skin(), DiscTool(5e-3, contact), window=90e-3, modes=36, place=place)
+        wave = LayeredWave(
+            skin(), DiscTool(5e-3, contact), discretisation=WaveDiscretisation(window=90e-3, modes=36, place=place)
+        )
         solution = wave.run("force", time, force)
-        frame = wave.surface(x, x - 2e-3).frame(solution.snapshot(0))
+        frame = wave.surface(x, x - 2e-3).frame(solution.faces.snapshot(0))
         answers.append(
             np.concatenate([frame.ravel(), solution.top_deflection.ravel(), solution.profile(0, x[1:]).ravel()])
         )
@@ -219,7 +235,9 @@ def test_a_place_on_an_axis_is_the_mirror_image_of_its_opposite(skin):
     x = np.linspace(-10e-3, 10e-3, 5)
     frames = []
     for side in (1.0, -1.0):
-        wave = LayeredWave(skin(), DiscTool(5e-3), window=50e-3, modes=24, place=(side * 9e-3, 0.0))
+        wave = LayeredWave(
+            skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=50e-3, modes=24, place=(side * 9e-3, 0.0))
+        )
         frames.append(wave.surface(x, x).frame(wave.static_state(0.1)).copy())
     np.testing.assert_allclose(frames[1], frames[0][:, ::-1], atol=1e-12)
 
@@ -227,11 +245,13 @@ def test_a_place_on_an_axis_is_the_mirror_image_of_its_opposite(skin):
 @pytest.mark.parametrize(("place", "word"), [((21e-3, 0.0), "21 mm"), ((np.nan, 0.0), "finite"), ((0.0,), "two")])
 def test_a_place_outside_the_window_is_refused(skin, place, word):
     with pytest.raises(WaveError, match=word):
-        LayeredWave(skin(), DiscTool(5e-3), window=50e-3, modes=24, place=place)
+        LayeredWave(skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=50e-3, modes=24, place=place))
 
 
 def test_vertices_outside_the_window_round_a_place_are_refused(skin):
-    wave = LayeredWave(skin(), DiscTool(5e-3), window=50e-3, modes=24, place=(10e-3, 0.0))
+    wave = LayeredWave(
+        skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=50e-3, modes=24, place=(10e-3, 0.0))
+    )
     with pytest.raises(WaveError, match="x reaches 16 mm"):
         wave.surface(np.array([16e-3]), np.zeros(1))
     assert np.isnan(wave.run("force", np.ones(1), np.ones(1)).profile(0, np.array([16e-3]))).all()

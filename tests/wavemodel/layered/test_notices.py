@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from wavemodel import DiscTool, LayeredWave
+from wavemodel import DiscTool, LayeredWave, WaveDiscretisation
 
 
 def warnings_of(layers, force=1e-3, duration=5.0, **options):
@@ -17,8 +17,8 @@ def test_a_small_slow_press_with_all_automatic_has_none(skin):
     ("options", "words"),
     [
         ({"force": 1.0}, "linear, for small strain"),
-        ({"window": 24e-3}, "border of the 24 mm window"),
-        ({"sublayers": (1, 1, 1)}, "sub-layers cost"),
+        ({"discretisation": WaveDiscretisation(window=24e-3)}, "border of the 24 mm window"),
+        ({"discretisation": WaveDiscretisation(sublayers=(1, 1, 1))}, "sub-layers cost"),
         ({"duration": 0.02, "integrator": "quasi_static"}, "inertia is left out"),
     ],
 )

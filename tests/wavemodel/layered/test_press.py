@@ -1,5 +1,3 @@
-"""WRITE"""
-
 import numpy as np
 import pytest
 
@@ -9,7 +7,7 @@ from wavemodel.layered.press import parts, prepare
 from wavemodel.layered.remainder import remainder
 from wavemodel.layered.stack.laminate import laminate
 from wavemodel.layered.tractions import punch_tractions
-from wavemodel.layered.window import Settings, Taper
+from wavemodel.layered.window import Taper, WaveDiscretisation
 
 
 @pytest.fixture
@@ -42,7 +40,7 @@ def test_without_a_remainder_the_modes_alone(skin):
 
 @pytest.mark.parametrize("contact", ["uniform_pressure", "rigid_frictionless"])
 def test_the_static_answer_hangs_together(skin, contact):
-    press = prepare(skin(), DiscTool(5e-3, contact), "bonded", Settings())
+    press = prepare(skin(), DiscTool(5e-3, contact), "bonded", WaveDiscretisation())
     weight = press.field.domain.axis_weight
     np.testing.assert_allclose(press.unit @ weight + press.remainder_axis, press.unit_axis)
     assert press.unit_axis[0] == pytest.approx(press.compliance, rel=1e-3)
@@ -51,11 +49,11 @@ def test_the_static_answer_hangs_together(skin, contact):
 
 
 def test_a_chosen_window_is_priced(skin):
-    press = prepare(skin(), DiscTool(5e-3), "bonded", Settings(window=36e-3))
+    press = prepare(skin(), DiscTool(5e-3), "bonded", WaveDiscretisation(window=36e-3))
     assert 0.02 < press.border_cost < 0.06
 
 
 def test_the_modes_load_is_one_at_long_waves(skin):
-    press = prepare(skin(), DiscTool(5e-3, "rigid_bonded"), "bonded", Settings(window=0.4, modes=8))
+    press = prepare(skin(), DiscTool(5e-3, "rigid_bonded"), "bonded", WaveDiscretisation(window=0.4, modes=8))
     np.testing.assert_allclose(press.load[0, 1], 1.0, atol=2e-3)
     assert abs(press.load[0, 0]) < 1e-2

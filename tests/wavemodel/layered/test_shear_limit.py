@@ -4,7 +4,17 @@ import numpy as np
 import pytest
 from scipy.special import j1
 
-from wavemodel import DiscTool, LayeredWave, NotCoveredError, Physics, Prony, ShearLimit, WaveError, WaveLayer
+from wavemodel import (
+    DiscTool,
+    LayeredWave,
+    NotCoveredError,
+    Physics,
+    Prony,
+    ShearLimit,
+    WaveDiscretisation,
+    WaveError,
+    WaveLayer,
+)
 from wavemodel.layered.shear_limit import shear_on, sliding_surface
 from wavemodel.layered.stack.compliance import every_face, exact_faces
 from wavemodel.layered.stack.laminate import laminate
@@ -103,7 +113,7 @@ def test_without_a_face_the_interface_that_slides_first_does(skin):
 
 def test_says_what_it_does_not_cover(skin):
     with pytest.raises(NotCoveredError, match="free lower face"):
-        slipping(skin(), 1, support="free", window=60e-3)
+        slipping(skin(), 1, support="free", discretisation=WaveDiscretisation(window=60e-3))
     with pytest.raises(NotCoveredError, match="inertia"):
         slipping(skin(), 1, integrator="exact")
     with pytest.raises(WaveError, match="twice"):

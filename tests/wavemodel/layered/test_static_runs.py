@@ -29,7 +29,7 @@ def corrected(skin):
 def test_frames_agree_with_the_profile_and_the_profile_with_the_axis(corrected):
     solution = corrected.run("force", np.array([1.0, 2.0]), np.array([0.6, 1.2]))
     x = np.linspace(0.0, 0.018, 10)
-    frame = corrected.surface(x, np.zeros(1)).frame(solution.snapshot(1))[:, :, 0]
+    frame = corrected.surface(x, np.zeros(1)).frame(solution.faces.snapshot(1))[:, :, 0]
     np.testing.assert_allclose(frame, solution.profile(1, x), atol=1e-3 * solution.depth[1])
     np.testing.assert_allclose(solution.profile(1, np.zeros(1))[:, 0], solution.top_deflection[1], rtol=1e-9)
     assert solution.depth[1] == pytest.approx(solution.top_deflection[1, 0], rel=1e-9)

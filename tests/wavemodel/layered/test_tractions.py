@@ -1,5 +1,3 @@
-"""WRITE"""
-
 import numpy as np
 import pytest
 from scipy.special import j0
@@ -61,9 +59,9 @@ def test_half_space_flexibility_is_its_integral():
     assert pressure.half_space_flexibility(HALF)[0, 0] == pytest.approx(direct, rel=1e-5)
 
 
-HALF_rigid = HalfSpace(1.0, 0.3)
+PUNCHED = HalfSpace(1.0, 0.3)
 STEP = 1e-2
-X_rigid = (np.arange(300_000) + 0.5) * STEP
+SPAN = (np.arange(300_000) + 0.5) * STEP
 
 
 def test_first_normal_function_is_the_flat_punch():
@@ -73,23 +71,23 @@ def test_first_normal_function_is_the_flat_punch():
 
 def test_flexibility_on_a_half_space_is_its_integral():
     basis = PunchTractions(1.0, 3, 3)
-    load = basis.transform(X_rigid)
-    direct = np.einsum("nic,cd,njd->ij", load, HALF_rigid.matrix, load, optimize=True) * STEP / (2 * np.pi)
-    tail = 1.0 / X_rigid[-1]
-    np.testing.assert_allclose(basis.half_space_flexibility(HALF_rigid), direct, atol=tail)
+    load = basis.transform(SPAN)
+    direct = np.einsum("nic,cd,njd->ij", load, PUNCHED.matrix, load, optimize=True) * STEP / (2 * np.pi)
+    tail = 1.0 / SPAN[-1]
+    np.testing.assert_allclose(basis.half_space_flexibility(PUNCHED), direct, atol=tail)
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.3, 0.9, 1.7, 6.0])
 def test_deflection_of_a_half_space_is_its_integral(rho):
     basis = PunchTractions(1.0, 3, 3)
-    load = basis.transform(X_rigid)
-    direct = (load @ HALF_rigid.matrix[:, 1]).T @ j0(X_rigid * rho) * STEP / (2 * np.pi)
-    np.testing.assert_allclose(basis.half_space_deflection(HALF_rigid, np.array([rho]))[0], direct, atol=2e-4)
+    load = basis.transform(SPAN)
+    direct = (load @ PUNCHED.matrix[:, 1]).T @ j0(SPAN * rho) * STEP / (2 * np.pi)
+    np.testing.assert_allclose(basis.half_space_deflection(PUNCHED, np.array([rho]))[0], direct, atol=2e-4)
 
 
 def test_on_a_half_space_the_solved_contact_is_the_flat_punch():
     basis = PunchTractions(2e-3, 6)
-    traction = solve_contact(basis, basis.half_space_flexibility(HALF_rigid))
+    traction = solve_contact(basis, basis.half_space_flexibility(PUNCHED))
     np.testing.assert_allclose(traction.coefficients, [1, 0, 0, 0, 0, 0], atol=1e-12)
 
 

@@ -5,12 +5,21 @@ import pytest
 from scipy.special import j0, j1, jn_zeros
 
 import fem
-from wavemodel import Damping, DiscTool, LayeredWave, NotCoveredError, Prony, WaveError, WaveLayer, marker_motion
+from wavemodel import (
+    Damping,
+    DiscTool,
+    LayeredWave,
+    NotCoveredError,
+    Prony,
+    WaveDiscretisation,
+    WaveError,
+    WaveLayer,
+    marker_motion,
+)
 from wavemodel.control import Grid, layered_body
 from wavemodel.layered.stack.laminate import laminate
 from wavemodel.layered.window import (
     BORDER_COST,
-    Settings,
     Taper,
     automatic_window,
     border_cost,
@@ -30,7 +39,7 @@ from wavemodel.layered.window import (
 )
 def test_refuses(options, message):
     with pytest.raises(WaveError, match=message):
-        Settings(**options)
+        WaveDiscretisation(**options)
 
 
 @pytest.mark.parametrize(
@@ -38,7 +47,7 @@ def test_refuses(options, message):
     [({}, True), ({"modes": 8}, True), ({"modes": 7}, False), ({"modes": 64, "static_correction": False}, False)],
 )
 def test_the_correction_comes_with_enough_modes(options, corrected):
-    assert Settings(**options).corrected is corrected
+    assert WaveDiscretisation(**options).corrected is corrected
 
 
 ONE, FORCE = np.array([10.0]), np.array([0.1])
@@ -51,9 +60,11 @@ def test_far_from_the_border_it_is_the_square_window(skin, contact, place):
     """Depth, faces and marker motion within 0.1 % of the peak, 90 mm wide, tool in the middle or off it."""
     answers = []
     for domain in ("rectangle", "disc"):
-        wave = LayeredWave(skin(), DiscTool(5e-3, contact), window=90e-3, domain=domain, place=place)
+        wave = LayeredWave(
+            skin(), DiscTool(5e-3, contact), discretisation=WaveDiscretisation(window=90e-3, domain=domain, place=place)
+        )
         solution = wave.run("force", ONE, FORCE)
-        frame = wave.surface(X, X[1:]).frame(solution.snapshot(0))
+        frame = wave.surface(X, X[1:]).frame(solution.faces.snapshot(0))
         points = np.stack([X, np.roll(X, 1)], axis=1)
         parts = (solution.depth, solution.top_deflection, solution.profile(0, X[2:]), frame)
         answers.append((np.concatenate([p.ravel() for p in parts]), marker_motion(solution, points, face=1)))
@@ -64,7 +75,10 @@ def test_far_from_the_border_it_is_the_square_window(skin, contact, place):
 
 
 def test_all_automatic_it_has_fewer_modes_and_the_accuracy_of_the_contract(skin, oracle, uniform_load):
-    wave, square = (LayeredWave(skin(), DiscTool(5e-3), domain=domain) for domain in ("disc", "rectangle"))
+    wave, square = (
+        LayeredWave(skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(domain=domain))
+        for domain in ("disc", "rectangle")
+    )
     radii = np.concatenate([np.linspace(0.0, 20e-3, 17), [0.35 * wave.window, 0.5 * wave.window]])
     exact = oracle(skin()).deflection(radii, uniform_load(5e-3), 20e3, wave.window)
     solution = wave.run("force", ONE, np.ones(1))
@@ -89,7 +103,7 @@ def test_the_finite_elements_of_a_disc_of_that_radius(skin):
     )
     radii = np.linspace(0.0, 0.5 * border, 16)
     exact = fem.prepare(problem).run(fem.Load("force", ONE, FORCE)).profile(0, radii)
-    wave = LayeredWave(skin(), DiscTool(5e-3), window=2.0 * border, domain="disc")
+    wave = LayeredWave(skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=2.0 * border, domain="disc"))
     found = wave.run("force", ONE, FORCE).profile(0, radii)
     np.testing.assert_allclose(found / exact[:, :1], exact / exact[:, :1], atol=4e-3)
 
@@ -97,10 +111,8 @@ def test_the_finite_elements_of_a_disc_of_that_radius(skin):
 def test_a_free_disc_is_kirchhoff_s_plate_on_its_modes():
     """w = sum of 2 J_1(k a) / (k a) J_0(k r) / (D k^4 pi R^2 J_1(k R)^2) over the roots of J_0(k R)."""
     layer, tool, border = WaveLayer("sheet", 1e-3, 1000.0, 1e5, 0.3), 20e-3, 100e-3
-    wave = LayeredWave(
-        [layer], DiscTool(tool), "free", 2.0 * border, 30, domain="disc", static_correction=False,
-        integrator="quasi_static",
-    )  # fmt: skip
+    modes = WaveDiscretisation(window=2.0 * border, modes=30, domain="disc", static_correction=False)
+    wave = LayeredWave([layer], DiscTool(tool), "free", modes, integrator="quasi_static")
     bending = 1e5 * 1e-9 / 12.0 / (1.0 - 0.3**2)
     k = jn_zeros(0, 200) / border
     share = 2.0 * j1(k * tool) / (k * tool) / (bending * k**4 * np.pi * (border * j1(k * border)) ** 2)
@@ -116,10 +128,9 @@ def test_time_inertia_and_fading_are_those_of_the_square_window(skin, control):
     contact = "uniform_pressure" if control == "force" else "rigid_frictionless"
     runs = []
     for domain in ("rectangle", "disc"):
-        wave = LayeredWave(
-            skin(), DiscTool(5e-3, contact), window=90e-3, modes=32 if domain == "rectangle" else 16, domain=domain,
-            integrator="exact", damping=Damping(0.0, 1e-4), relaxation=Prony((0.3,), (1e-3,)),
-        )  # fmt: skip
+        modes = WaveDiscretisation(window=90e-3, modes=32 if domain == "rectangle" else 16, domain=domain)
+        material = {"damping": Damping(0.0, 1e-4), "relaxation": Prony((0.3,), (1e-3,))}
+        wave = LayeredWave(skin(), DiscTool(5e-3, contact), "bonded", modes, integrator="exact", **material)
         runs.append(wave.run(control, time, value))
     for name in ("depth", "force", "top_deflection"):
         square, found = (getattr(run, name) for run in runs)
@@ -131,7 +142,11 @@ def test_layers_that_fade_each_in_its_own_way_and_a_large_press(skin):
     time, force = np.array([0.5, 1.0, 3.0]), np.array([0.3, 0.6, 0.6])
     square, found = (
         LayeredWave(
-            skin(), DiscTool(5e-3), window=90e-3, domain=domain, relaxation=series, large_press="corrected"
+            skin(),
+            DiscTool(5e-3),
+            discretisation=WaveDiscretisation(window=90e-3, domain=domain),
+            relaxation=series,
+            large_press="corrected",
         ).run("force", time, force)
         for domain in ("rectangle", "disc")
     )
@@ -139,7 +154,9 @@ def test_layers_that_fade_each_in_its_own_way_and_a_large_press(skin):
 
 
 def test_a_tool_under_the_hand_reaches_to_the_nearest_border(skin):
-    wave = LayeredWave(skin(), DiscTool(5e-3), window=60e-3, domain="disc", place=(3e-3, 4e-3))
+    wave = LayeredWave(
+        skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=60e-3, domain="disc", place=(3e-3, 4e-3))
+    )
     assert layered_body(wave, Grid(40e-3, 40e-3, 1e-3)).reach == pytest.approx(25e-3)
 
 
@@ -155,13 +172,15 @@ def test_a_tool_under_the_hand_reaches_to_the_nearest_border(skin):
 )
 def test_refuses_what_does_not_fit(skin, options, word):
     with pytest.raises(WaveError, match=word):
-        LayeredWave(skin(), DiscTool(5e-3), **({"domain": "disc", "window": 60e-3} | options))
+        LayeredWave(
+            skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(**({"domain": "disc", "window": 60e-3} | options))
+        )
 
 
 def test_says_what_it_does_not_cover_and_what_is_outside(skin):
     with pytest.raises(NotCoveredError, match="differs along x and y"):
-        LayeredWave(skin(), DiscTool(5e-3), domain="disc", pretension=(1e4, 2e4))
-    wave = LayeredWave(skin(), DiscTool(5e-3), window=60e-3, domain="disc")
+        LayeredWave(skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(domain="disc"), pretension=(1e4, 2e4))
+    wave = LayeredWave(skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=60e-3, domain="disc"))
     solution = wave.run("force", ONE, FORCE)
     with pytest.raises(WaveError, match=r"35.3553 mm from the middle"):
         wave.surface(np.array([25e-3]), np.array([25e-3]))

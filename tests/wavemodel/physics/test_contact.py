@@ -1,5 +1,3 @@
-"""WRITE"""
-
 import numpy as np
 import pytest
 
@@ -26,12 +24,12 @@ def test_the_largest_pull_is_the_pull_off_force(press, path):
     assert found.min() >= -0.1
 
 
-def test_off_at_zero(press, path):
+def test_adhesion_is_off_at_zero(press, path):
     depth = path(0.0, 3e-3, -1e-3, 1e-3)
     np.testing.assert_array_equal(press(Physics(adhesion=Adhesion(0.0)), depth), np.maximum(500.0 * depth, 0.0))
 
 
-def test_refuses():
+def test_adhesion_refuses():
     with pytest.raises(WaveError, match="force = -1 N"):
         Adhesion(-1.0)
 
@@ -85,7 +83,7 @@ def test_off_without_force(press, path):
 
 
 @pytest.mark.parametrize("wrong", [(-0.1, 1e-4), (0.1, 0.0), (0.1, 1e-4, -1.0)])
-def test_refuses_friction(wrong):
+def test_friction_refuses(wrong):
     with pytest.raises(WaveError, match="dry friction"):
         DryFriction(*wrong)
 
@@ -119,12 +117,12 @@ def test_depths_up_to_the_onset_leave_none(press, path):
     np.testing.assert_allclose(press(Physics(permanent_set=PermanentSet(0.2, 2e-3)), depth), 500.0 * depth, atol=1e-15)
 
 
-def test_off_at_zero_permanent_set(press, path):
+def test_permanent_set_is_off_at_zero(press, path):
     depth = path(0.0, 3e-3, 0.0)
     np.testing.assert_array_equal(press(Physics(permanent_set=PermanentSet(0.0)), depth), 500.0 * depth)
 
 
 @pytest.mark.parametrize("wrong", [(1.0, 0.0), (-0.1, 0.0), (0.1, -1e-3)])
-def test_refuses_permanent_set(wrong):
+def test_permanent_set_refuses(wrong):
     with pytest.raises(WaveError, match="permanent set"):
         PermanentSet(*wrong)

@@ -1,5 +1,3 @@
-"""WRITE"""
-
 import numpy as np
 import pytest
 from scipy.special import erf
@@ -29,7 +27,7 @@ def test_the_way_back_is_the_way_there(press, path):
 
 
 @pytest.mark.parametrize("wrong", [{"linear": -0.1}, {"quadratic": np.nan}, {"length": 0.0}])
-def test_refuses(wrong):
+def test_stiffening_refuses(wrong):
     with pytest.raises(WaveError, match="strain stiffening"):
         StrainStiffening(**wrong)
 
@@ -38,7 +36,7 @@ def test_adds_a_spring(press):
     np.testing.assert_allclose(press(Physics(pretension=Pretension(120.0)), DEPTH), 620.0 * DEPTH, rtol=1e-13)
 
 
-def test_off_at_zero(press):
+def test_pretension_is_off_at_zero(press):
     np.testing.assert_array_equal(press(Physics(pretension=Pretension(0.0)), DEPTH), 500.0 * DEPTH)
 
 
@@ -58,7 +56,7 @@ def test_pulls_back_where_the_tool_is_held_but_not_in_air(press):
     np.testing.assert_allclose(press(Physics(pretension=Pretension(100.0)), depth), [0.0, 0.6, 0.0], rtol=1e-12)
 
 
-def test_refuses_pretension():
+def test_pretension_refuses():
     with pytest.raises(WaveError, match="stiffness = -1 N/m"):
         Pretension(-1.0)
     with pytest.raises(WaveError, match="tool radius"):
@@ -75,7 +73,7 @@ def test_off_without_stiffness(press):
 
 
 @pytest.mark.parametrize("wrong", [(-1e-3, 1.0), (1e-3, -1.0), (1e-3, np.inf)])
-def test_refuses_floor(wrong):
+def test_floor_refuses(wrong):
     with pytest.raises(WaveError, match="floor"):
         Floor(*wrong)
 
@@ -125,7 +123,7 @@ def test_from_shear_stress():
 
 
 @pytest.mark.parametrize("wrong", [(0.0, 0.5), (1.0, 1.1), (1.0, -0.1)])
-def test_refuses_slip(wrong):
+def test_slip_refuses(wrong):
     with pytest.raises(WaveError, match="interface slip"):
         InterfaceSlip(*wrong)
 
@@ -157,12 +155,12 @@ def test_loading_again_follows_the_way_back_and_then_the_base_law(press, path):
     np.testing.assert_allclose(found[up][beyond], 500.0 * depth[up][beyond], rtol=1e-13)
 
 
-def test_off_at_zero_softening(press, path):
+def test_softening_is_off_at_zero(press, path):
     depth = path(0.0, 3e-3, 0.0)
     np.testing.assert_array_equal(press(Physics(softening=StressSoftening(0.0)), depth), 500.0 * depth)
 
 
 @pytest.mark.parametrize("wrong", [(1.0, 0.5), (-0.1, 0.5), (0.3, 0.0)])
-def test_refuses_softening(wrong):
+def test_softening_refuses(wrong):
     with pytest.raises(WaveError, match="stress softening"):
         StressSoftening(*wrong)

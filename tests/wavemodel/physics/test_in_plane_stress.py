@@ -1,10 +1,8 @@
-"""WRITE"""
-
 import numpy as np
 import pytest
 from scipy.special import j1
 
-from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveError, WaveLayer
+from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveDiscretisation, WaveError, WaveLayer
 from wavemodel.physics.in_plane_stress import AnisotropicTension, InPlaneStress, in_plane_stress
 
 SHEET = WaveLayer("sheet", 1e-3, 1000.0, 1e5, 0.3)
@@ -12,7 +10,11 @@ SHEET = WaveLayer("sheet", 1e-3, 1000.0, 1e5, 0.3)
 
 def sheet(pretension):
     return LayeredWave(
-        [SHEET], DiscTool(20e-3), "free", window=200e-3, modes=40, static_correction=False, pretension=pretension
+        [SHEET],
+        DiscTool(20e-3),
+        "free",
+        WaveDiscretisation(window=200e-3, modes=40, static_correction=False),
+        pretension=pretension,
     )
 
 
@@ -42,10 +44,7 @@ def test_the_automatic_wave_is_what_many_modes_come_to(skin):
     brute = LayeredWave(
         skin(),
         DiscTool(5e-3),
-        window=auto.window,
-        modes=400,
-        sublayers=(1, 4, 6),
-        static_correction=False,
+        discretisation=WaveDiscretisation(window=auto.window, modes=400, sublayers=(1, 4, 6), static_correction=False),
         pretension=2e4,
     )
     np.testing.assert_allclose(auto.press.unit_axis, brute.press.unit_axis, rtol=2e-3)
@@ -129,6 +128,6 @@ def test_areas_are_kept():
     assert unit.prod() == pytest.approx(1.0)
 
 
-def test_refuses_anisotropy():
+def test_anisotropy_refuses():
     with pytest.raises(WaveError, match="ratio = 0"):
         AnisotropicTension(0.0)

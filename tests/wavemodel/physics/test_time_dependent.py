@@ -1,5 +1,3 @@
-"""WRITE"""
-
 import numpy as np
 import pytest
 
@@ -71,12 +69,12 @@ def test_a_dome_drains_slower_as_it_sinks_in():
     assert kept[0] < 0.99 * kept[1]
 
 
-def test_off_at_zero():
+def test_drainage_is_off_at_zero():
     np.testing.assert_allclose(hold(np.array([1.0, 100.0]), 2e-3, strength=0.0), 0.5, rtol=1e-14)
 
 
 @pytest.mark.parametrize("wrong", [(1.0, 1e-8, 1e-3), (0.3, 0.0, 1e-3), (0.3, 1e-8, 0.0), (0.3, 1e-8, 1e-3, 0.0)])
-def test_refuses(wrong):
+def test_drainage_refuses(wrong):
     with pytest.raises(WaveError, match="drainage"):
         PoroelasticDrainage(*wrong)
 
@@ -102,11 +100,11 @@ def test_loses_energy_with_the_speed(press, path):
     assert lost[0] == pytest.approx(500.0 * 0.2 * 1e-3 * 2e-3, rel=1e-2)
 
 
-def test_off_at_zero_damping(press, path):
+def test_damping_is_off_at_zero(press, path):
     depth = path(0.0, 3e-3, 0.0)
     np.testing.assert_array_equal(press(Physics(damping=ViscousDamping(0.0)), depth), 500.0 * depth)
 
 
-def test_refuses_damping():
+def test_damping_refuses():
     with pytest.raises(WaveError, match="retardation = -1 s"):
         ViscousDamping(-1.0)

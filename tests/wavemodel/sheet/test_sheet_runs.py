@@ -3,15 +3,16 @@
 import numpy as np
 import pytest
 
-from wavemodel import DiscTool, NotCoveredError, PlateWave, Prony, WaveError
+from wavemodel import DiscTool, NotCoveredError, PlateSettings, PlateWave, Prony, WaveError
 from wavemodel.physics import Adhesion, Floor, PermanentSet, Physics
 
 SERIES = Prony((0.3, 0.15), (0.5, 8.0))
 TIME = np.array([0.5, 1.0, 2.0, 5.0, 20.0, 200.0])
 
 
-def sheet_of(silicone, contact="rigid_bonded", **options):
-    return PlateWave(silicone(), DiscTool(5e-3, contact), hole_radius=30e-3, reach=4e-3, **options)
+def sheet_of(silicone, contact="rigid_bonded", integrator="quasi_static", **options):
+    settings = PlateSettings(reach=4e-3, integrator=integrator)
+    return PlateWave(silicone(), DiscTool(5e-3, contact), "hole", 30e-3, settings, **options)
 
 
 def faded(time, ramp):

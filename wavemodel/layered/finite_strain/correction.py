@@ -1,4 +1,4 @@
-"""What a large press adds to the linear wave, as a function of the elastic force: read off a few fields."""
+"""What finite strain adds to the linear wave, as a function of the elastic force: read off a few fields."""
 
 from bisect import bisect_right
 from dataclasses import dataclass
@@ -10,20 +10,20 @@ from scipy.special import j0, j1
 
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import WaveError
+from wavemodel.integrators.equilibrium_path import RisingCurve
 from wavemodel.layered.finite_strain.equilibrium import PressPath
 
 NEGLECTED = 1e-4
 """Fields that add less than this share of the largest are left out."""
 LEAST = 0.02
 """The law ends at the level from which on its depth per force rises by less than this share of the initial one."""
-REFINEMENTS = 50
 CLOSE = 1e-14
 SLACK = 1.0 + 1e-12
 """Rounding at the end of the range is let through."""
 
 
 @dataclass(frozen=True)
-class LargePress:
+class FiniteStrainLaw:
     """Nonlinear less linear answer of a stack to a tool, from no load to the last level of a path, or on from there.
 
     Without load or under a pull it adds nothing. Nothing in it is calibrated (`calibrated_on` is empty).
@@ -144,20 +144,18 @@ class LargePress:
                 f"large press: a depth of {1e3 * depth.max():.4g} mm is beyond the range of this tool and stack, "
                 f"{1e3 * self.deepest:.4g} mm"
             )
-        wanted = np.clip(depth, 0.0, self.followed)
-        low = np.clip(np.searchsorted(self.depth, wanted, side="right") - 1, 0, self.force.size - 2)
-        bottom, top = self.force[low], self.force[low + 1]
-        force = np.interp(wanted, self.depth, self.force)
-        for _ in range(REFINEMENTS):
-            excess = self.depth_at(force) - wanted
-            if np.all(np.abs(excess) <= CLOSE * self.deepest):
-                break
-            slope = self.compliance + self._weights(force, 1) @ self.depths
-            bottom, top = np.where(excess < 0.0, force, bottom), np.where(excess > 0.0, force, top)
-            ahead = force - excess / np.where(slope > 0.0, slope, np.inf)
-            force = np.where((ahead > bottom) & (ahead < top), ahead, 0.5 * (bottom + top))
+        force = self._rising.inverse(np.clip(depth, 0.0, self.followed), CLOSE * self.deepest)
         force = force + np.maximum(depth - self.followed, 0.0) / self._last_compliance
         return np.where(depth < 0.0, depth / self.compliance, force)
+
+    @cached_property
+    def _rising(self) -> RisingCurve:
+        return RisingCurve(
+            self.force,
+            self.depth,
+            self.depth_at,
+            lambda force: np.asarray(self.compliance + self._weights(force, 1) @ self.depths),
+        )
 
     def outward(self, force: float, face: int, radius: FloatArray) -> FloatArray:
         """(R,) what it adds to the motion away from the axis at radii (R,) of a layer's top face, m.
@@ -192,9 +190,9 @@ def _rising_levels(path: PressPath, compliance: float) -> int:
     return int(np.argmax(stuck)) + 1 if stuck.any() else path.force.size
 
 
-def large_press(
+def finite_strain_law(
     path: PressPath, wavenumber: FloatArray, compliance: float, rigid_radius: float, deepest: float = 0.0
-) -> LargePress:
+) -> FiniteStrainLaw:
     """Fields and their weights from a path.
 
     Parameters
@@ -216,16 +214,16 @@ def large_press(
     table = np.concatenate([added.reshape(path.force.size, -1), deeper[:, None]], axis=1)
     left, sizes, right = np.linalg.svd(table, full_matrices=False)
     kept = max(1, int(np.count_nonzero(sizes > NEGLECTED * max(sizes[0], 1e-300))))
-    courses = left[:, :kept] * sizes[:kept]
-    courses[0] = 0.0
-    spline = CubicSpline(path.force, courses, bc_type=((1, np.zeros(kept)), "not-a-knot"))
+    histories = left[:, :kept] * sizes[:kept]
+    histories[0] = 0.0
+    spline = CubicSpline(path.force, histories, bc_type=((1, np.zeros(kept)), "not-a-knot"))
     fields = right[:kept, :-1].reshape(kept, *path.linear_deflection.shape)
     depths = np.ascontiguousarray(right[:kept, -1])
-    depth = compliance * path.force + courses @ depths
+    depth = compliance * path.force + histories @ depths
     deepest = max(deepest, float(depth[-1]))
     sideways = path.outward - path.force[:, None, None] * path.linear_outward
     rest = (1, np.zeros(path.linear_outward.shape))
-    return LargePress(
+    return FiniteStrainLaw(
         wavenumber, path.force, depth, compliance, fields, depths, rigid_radius, deepest, spline,
         CubicSpline(path.force, sideways, bc_type=(rest, "not-a-knot")),
     )  # fmt: skip

@@ -1,14 +1,16 @@
-"""Equilibrium of the modes under a force: Newton's method, each step by conjugate gradients.
+"""Equilibrium of the modes under a force: Newton's method, each step by conjugate gradients, and the path to a depth.
 
 The linear wave's stiffness, inverted mode by mode, is the preconditioner; forces are measured by the energy of their
 linear answer. A step is shortened until the potential falls.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from wavemodel.arrays import FloatArray
+from wavemodel.integrators.equilibrium_path import Equilibrium, follow, straight_on
 from wavemodel.layered.finite_strain.modal_body import Deformed, ModalBody
 from wavemodel.layered.finite_strain.tool_contact import Contact
 
@@ -18,10 +20,19 @@ MOST_STEPS, MOST_DIRECTIONS, MOST_HALVINGS = 20, 60, 12
 FORCING = 0.1
 """How far a Newton step is solved for, at least."""
 DESCENT = 1e-4
+SPACING = 0.025
+"""Of depth between levels, in heights of the stack."""
+FASTEST = 1.6
+"""A step of force is at most so many times the one before."""
+SHORTEST = 1.0 / 32.0
+"""A step of force below this share of the first ends the path."""
+SURPRISE = 0.5
+"""A step that goes so much further, or less far, than the one before led to expect is cut: a soft block under pressure
+comes to a largest force and then sinks in, and must not be followed to another branch."""
 
 
 @dataclass(frozen=True)
-class Equilibrium:
+class ModalEquilibrium:
     """A body, its contact, and the potential of both under a force."""
 
     body: ModalBody
@@ -97,29 +108,16 @@ def _dot(left: FloatArray, right: FloatArray) -> float:
     return float(np.vdot(left, right))
 
 
-SPACING = 0.025
-"""Of depth between levels, in heights of the stack."""
-FASTEST = 1.6
-"""A step of force is at most so many times the one before."""
-SHORTEST = 1.0 / 32.0
-"""A step of force below this share of the first ends the path."""
-SURPRISE = 0.5
-"""A step that goes so much further, or less far, than the one before led to expect is cut: a soft block under pressure
-comes to a largest force and then sinks in, and must not be followed to another branch."""
-
-
 @dataclass(frozen=True)
 class PressPath:
-    """M levels of load, the first without any.
+    """M load steps, the first without any load.
 
     Attributes
     ----------
     force, depth
         (M,) in N and m, rising.
-    deflection
-        (M, L, N) amplitudes of the layers' top faces, m.
-    outward
-        (M, L, N) amplitudes in plane of the layers' top faces, m.
+    deflection, outward
+        (M, L, N) amplitudes of the layers' top faces, down and in plane, m.
     linear_depth, linear_deflection, linear_outward
         The same per force by the linear body: m/N, and (L, N) in m/N.
     """
@@ -132,13 +130,56 @@ class PressPath:
     linear_deflection: FloatArray
     linear_outward: FloatArray
 
-    def first(self, levels: int) -> "PressPath":
-        """Return its first levels."""
-        kept = {name: getattr(self, name)[:levels] for name in ("force", "depth", "deflection", "outward")}
+    def first(self, steps: int) -> "PressPath":
+        """Return its first steps."""
+        kept = {name: getattr(self, name)[:steps] for name in ("force", "depth", "deflection", "outward")}
         return replace(self, **kept)
 
 
-def follow(equilibrium: Equilibrium, height: float, reach: float) -> PressPath:
+@dataclass(frozen=True)
+class _Pressed(Equilibrium):
+    """Equilibrium under a force; its depth and what that gained on the one before, m."""
+
+    depth: float = 0.0
+    gained: float = 0.0
+
+
+@dataclass(frozen=True)
+class _ToDepth:
+    """Loading by force until the depth is `reach` (m), about every `spacing` (m) of depth (a `Loading`)."""
+
+    body: ModalEquilibrium
+    linear: FloatArray
+    compliance: float
+    spacing: float
+    reach: float
+
+    def next_load(self, path: Sequence[_Pressed], step: float) -> float:
+        return path[-1].load + step
+
+    def advance(self, path: Sequence[_Pressed], load: float) -> _Pressed | None:
+        last = path[-1]
+        state = self.body.solve(load, self._start(path, load))
+        if state is None:
+            return None
+        slope = self.compliance if len(path) == 1 else (last.depth - path[-2].depth) / (last.load - path[-2].load)
+        gained, expected = self.body.contact.depth(state, load) - last.depth, (load - last.load) * slope
+        surprising = abs(gained - expected) > SURPRISE * expected
+        return None if surprising else _Pressed(load, state, last.depth + gained, gained)
+
+    def next_step(self, path: Sequence[_Pressed], step: float) -> float:
+        return min(FASTEST * step, self.spacing * step / path[-1].gained)
+
+    def reached(self, path: Sequence[_Pressed]) -> bool:
+        return path[-1].depth >= self.reach
+
+    def _start(self, path: Sequence[_Pressed], load: float) -> FloatArray:
+        """Go straight on, unless that crushes matter."""
+        ahead = load * self.linear if len(path) == 1 else straight_on(path, load)
+        return path[-1].state if self.body.body.state(ahead) is None else ahead
+
+
+def press_path(equilibrium: ModalEquilibrium, height: float, reach: float) -> PressPath:
     """Load a body until its depth is `reach`, or until it has no equilibrium near the one before.
 
     Parameters
@@ -152,43 +193,18 @@ def follow(equilibrium: Equilibrium, height: float, reach: float) -> PressPath:
     """
     linear = equilibrium.answer(equilibrium.contact.load)
     compliance = equilibrium.contact.depth(linear, 1.0)
-    first = step = SPACING * height / compliance
-    forces, depths, states = [0.0], [0.0], [np.zeros_like(linear)]
-    while depths[-1] < reach:
-        force = forces[-1] + step
-        state = equilibrium.solve(force, _start(equilibrium, forces, states, linear, force))
-        gained = -np.inf if state is None else equilibrium.contact.depth(state, force) - depths[-1]
-        expected = step * (compliance if len(forces) == 1 else (depths[-1] - depths[-2]) / (forces[-1] - forces[-2]))
-        if state is None or abs(gained - expected) > SURPRISE * expected:
-            step *= 0.5
-            if step < SHORTEST * first:
-                break
-            continue
-        depth = depths[-1] + gained
-        step = min(FASTEST * step, SPACING * height * step / gained)
-        forces.append(force)
-        depths.append(depth)
-        states.append(state)
+    spacing = SPACING * height
+    step = spacing / compliance
+    loading = _ToDepth(equilibrium, linear, compliance, spacing, reach)
+    path = follow(loading, [_Pressed(0.0, np.zeros_like(linear))], step, SHORTEST * step)
     tops, nodes = equilibrium.body.thickness.top, equilibrium.body.nodes
-    outward, deflection = (np.stack([state[:, tops + shift].T for state in states]) for shift in (0, nodes))
+    outward, deflection = (np.stack([one.state[:, tops + shift].T for one in path]) for shift in (0, nodes))
     return PressPath(
-        force=np.array(forces),
-        depth=np.array(depths),
+        force=np.array([one.load for one in path]),
+        depth=np.array([one.depth for one in path]),
         deflection=deflection,
         outward=outward,
         linear_depth=compliance,
         linear_deflection=linear[:, tops + nodes].T,
         linear_outward=linear[:, tops].T,
     )
-
-
-def _start(
-    equilibrium: Equilibrium, forces: list[float], states: list[FloatArray], linear: FloatArray, force: float
-) -> FloatArray:
-    """Go on straight from the last two states, unless that crushes matter."""
-    if len(forces) == 1:
-        ahead = force * linear
-    else:
-        share = (force - forces[-1]) / (forces[-1] - forces[-2])
-        ahead = states[-1] + share * (states[-1] - states[-2])
-    return states[-1] if equilibrium.body.state(ahead) is None else ahead

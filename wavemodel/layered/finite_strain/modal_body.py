@@ -1,8 +1,13 @@
-"""Bessel modes round the tool's axis, and the quadratic functions through the thickness, with their quadrature.
+"""The stack in modes under finite deformation: from amplitudes to forces, their tangent, and the linear stiffness.
 
-u = -U(z) J_1(k r) and w = W(z) J_0(k r), both z and w downwards, with J_1(k R) = 0: a smooth wall at the border, with
-which the modes do not couple in the linear body. Two Gauss points in each sub-layer take all terms, which leaves no
-volumetric locking, as in the linear wave.
+u = -U(z) J_1(k r) and w = W(z) J_0(k r) round the tool's axis, both z and w downwards, with J_1(k R) = 0: a smooth wall
+at the border, with which the modes do not couple in the linear body. Amplitudes are (N, 2 n): for each mode U of the n
+nodes through the thickness, then W. Through the thickness the functions are quadratic; two Gauss points in each
+sub-layer take all terms, which leaves no volumetric locking, as in the linear wave.
+
+W = mu / 2 (J^(-2/3) tr C - 3) + K / 2 (J - 1)^2 with mu and K from the moduli at rest (J. Bonet and R. D. Wood,
+Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed., sections 6.5.2 and 6.5.3). Tensors have five
+components: rr, rz, zr, zz and the hoop.
 """
 
 from dataclasses import dataclass
@@ -19,6 +24,9 @@ POINTS_PER_MODE = 3.0
 PANEL = 6
 EVEN = 1e-6
 """Wavenumber of the first mode times the border."""
+REST = np.array([1.0, 0.0, 0.0, 1.0, 1.0])
+MOST_CRUSHED = 0.05
+"""A volume ratio below this is no state to go on from."""
 
 
 @dataclass(frozen=True)
@@ -99,11 +107,6 @@ def thickness_of(stack: Laminate) -> Thickness:
     bulk = np.repeat(stack.lame_modulus, 2) + 2.0 / 3.0 * shear
     weight = np.repeat(0.5 * stack.thickness, 2)
     return Thickness(shape[:, :-1], slope[:, :-1], weight, shear, bulk, 2 * stack.top_of_layer)
-
-
-REST = np.array([1.0, 0.0, 0.0, 1.0, 1.0])
-MOST_CRUSHED = 0.05
-"""A volume ratio below this is no state to go on from."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,9 @@
-"""Layers put on top of each other: the stiffness between the outer faces of two that share one."""
+"""Static answer of the stack to tractions on its surface, one wavenumber at a time.
+
+The stiffness of each sub-layer between its faces (the quadratic one with its middle node condensed, or the exact
+one) is block tridiagonal when stacked; it is eliminated from the base up and solved back down, for all wavenumbers
+at once. Layers that share a face are put on top of each other by eliminating it.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -10,6 +15,13 @@ import numpy as np
 from wavemodel.arrays import FloatArray
 from wavemodel.layered.stack.laminate import Laminate
 from wavemodel.layered.stack.sublayers import exact_stiffness, quadratic_stiffness
+
+FaceStiffness: TypeAlias = Callable[[FloatArray, Laminate], FloatArray]
+"""(n,) wavenumbers and a laminate to (n, S, 4, 4)."""
+THIN = 0.005
+"""Thickness of a slice times the wavenumber: the layer comes out to 1e-7, as good as rounding allows."""
+BLOCK = 512
+"""Wavenumbers taken at once: their matrices stay in the cache."""
 
 
 def stacked(upper: FloatArray, lower: FloatArray) -> FloatArray:
@@ -44,15 +56,6 @@ def inverse(matrix: FloatArray) -> FloatArray:
     out[..., 1, 1] = a
     out[..., 0, 1] = out[..., 1, 0] = -b
     return out / (a * d - b * b)[..., None, None]
-
-
-FaceStiffness: TypeAlias = Callable[[FloatArray, Laminate], FloatArray]
-"""(n,) wavenumbers and a laminate to (n, S, 4, 4)."""
-
-THIN = 0.005
-"""Thickness of a slice times the wavenumber: the layer comes out to 1e-7, as good as rounding allows."""
-BLOCK = 512
-"""Wavenumbers taken at once: their matrices stay in the cache."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Creep of a stack whose layers fade each in its own way, one wavenumber at a time.
+"""Creep of a stack whose layers relax each in its own way, one wavenumber at a time, and the few lags that all share.
 
 Layer l has the stiffness K_l between its faces and the series g_lj, tau_lj. With the displacement q_lj that each
 branch lags behind by, tau_lj q_lj' = u - q_lj,
@@ -10,7 +10,12 @@ With K_l = R_l' R_l and y_lj = sqrt(g_lj tau_lj) R_l q_lj this is symmetric,
     y' = -D y + C u,    K u = f + C' y,    D = diag(1 / tau_lj),    C_lj = sqrt(g_lj / tau_lj) R_l,
 
 so that the answer to f is what comes at once, K^-1, and lags whose rates are the eigenvalues of D - C K^-1 C'. Under
-Kelvin-Voigt damping u is a state too and nothing comes at once. Shear and bulk modulus of a layer fade alike.
+Kelvin-Voigt damping u is a state too and nothing comes at once. Shear and bulk modulus of a layer relax alike.
+
+The rates of all wavenumbers are replaced by shared ones. A lag of rate lambda has the transform 1 / (1 + s / lambda).
+As a function of x = ln lambda it is analytic in the strip |Im x| < pi / 2 for every s that a history can hold
+(Re s >= 0), so polynomials in x through Chebyshev's points of an interval of half-width a converge like rho^-M with
+rho = r + sqrt(1 + r^2), r = pi / (2 a) (L. N. Trefethen, Approximation Theory and Approximation Practice, chapter 8).
 """
 
 from collections.abc import Sequence
@@ -20,6 +25,12 @@ import numpy as np
 
 from wavemodel.arrays import FloatArray
 from wavemodel.integrators.viscoelastic import Prony
+
+TOLERANCE = 1e-13
+SEPARATION = 0.7
+"""Rates further apart than e^SEPARATION from their neighbours start an interval of their own."""
+POINT = 1e-9
+"""An interval narrower than this (in ln lambda) is one point."""
 
 
 @dataclass(frozen=True)
@@ -121,13 +132,6 @@ def _damped(
     system[:, size:, size:] = np.diag(rates)
     readout = np.concatenate([back, np.zeros((root.shape[0], rates.size, size))], axis=1)
     return system, readout
-
-
-TOLERANCE = 1e-13
-SEPARATION = 0.7
-"""Rates further apart than e^SEPARATION from their neighbours start an interval of their own."""
-POINT = 1e-9
-"""An interval narrower than this (in ln lambda) is one point."""
 
 
 @dataclass(frozen=True)

@@ -1,16 +1,14 @@
-"""WRITE"""
-
 import numpy as np
 import pytest
 
-from wavemodel.layered.finite_strain.equilibrium import SPACING, Equilibrium, follow
+from wavemodel.layered.finite_strain.equilibrium import SPACING, ModalEquilibrium, press_path
 from wavemodel.layered.finite_strain.tool_contact import PressureContact
 from wavemodel.layered.tractions import UniformPressure
 
 
 @pytest.fixture(scope="module")
-def problem(small_body) -> Equilibrium:
-    return Equilibrium(small_body, PressureContact(small_body, UniformPressure(4e-3)))
+def problem(small_body) -> ModalEquilibrium:
+    return ModalEquilibrium(small_body, PressureContact(small_body, UniformPressure(4e-3)))
 
 
 def test_forces_balance(problem):
@@ -41,7 +39,7 @@ def test_a_crushed_start_gives_none(problem):
 
 
 def test_goes_from_no_load_to_the_reach_in_even_steps(small_body):
-    path = follow(Equilibrium(small_body, PressureContact(small_body, UniformPressure(4e-3))), 6e-3, 1.5e-3)
+    path = press_path(ModalEquilibrium(small_body, PressureContact(small_body, UniformPressure(4e-3))), 6e-3, 1.5e-3)
     assert path.force[0] == path.depth[0] == 0.0
     assert path.depth[-2] < 1.5e-3 <= path.depth[-1]
     assert np.all(np.diff(path.force) > 0.0)
@@ -51,5 +49,5 @@ def test_goes_from_no_load_to_the_reach_in_even_steps(small_body):
 
 def test_ends_before_a_soft_block_sinks_in(small_body):
     """A small tool with uniform pressure on the softer layer has a largest force."""
-    path = follow(Equilibrium(small_body, PressureContact(small_body, UniformPressure(1.2e-3))), 6e-3, 6e-3)
+    path = press_path(ModalEquilibrium(small_body, PressureContact(small_body, UniformPressure(1.2e-3))), 6e-3, 6e-3)
     assert path.depth[-1] < 6e-3

@@ -1,5 +1,3 @@
-"""WRITE"""
-
 from dataclasses import replace
 
 import numpy as np
@@ -40,7 +38,7 @@ def test_inverse_of_symmetric_pairs():
     np.testing.assert_allclose(inverse(a) @ a, np.broadcast_to(np.eye(2), a.shape), atol=1e-10)
 
 
-K_compliance = np.geomspace(20.0, 30e3, 25)
+WAVENUMBERS = np.geomspace(20.0, 30e3, 25)
 
 
 def halves(layers, count, base="bonded"):
@@ -49,14 +47,14 @@ def halves(layers, count, base="bonded"):
 
 @pytest.mark.parametrize("nu", [0.3, 0.48, 0.499])
 def test_exact_faces_give_layered_elasticity(skin, oracle, nu):
-    ours = compliance(K_compliance, halves(skin(poisson_ratio=nu), 1), exact_faces).faces
-    reference = np.stack([oracle(skin(poisson_ratio=nu)).compliance(k) for k in K_compliance])
+    ours = compliance(WAVENUMBERS, halves(skin(poisson_ratio=nu), 1), exact_faces).faces
+    reference = np.stack([oracle(skin(poisson_ratio=nu)).compliance(k) for k in WAVENUMBERS])
     scale = np.abs(reference[:, :1]).max(axis=(2, 3), keepdims=True)
     np.testing.assert_allclose(ours / scale, reference / scale, atol=2e-9)
 
 
 def test_exact_faces_do_not_care_how_a_layer_is_cut(skin):
-    one, many = (compliance(K_compliance, halves(skin(), n), exact_faces).faces for n in (1, 5))
+    one, many = (compliance(WAVENUMBERS, halves(skin(), n), exact_faces).faces for n in (1, 5))
     np.testing.assert_allclose(one, many, rtol=1e-9, atol=1e-12 * np.abs(one).max())
 
 
@@ -92,7 +90,7 @@ def test_condensation_leaves_the_energy_of_the_middle_node_out(skin):
 @pytest.mark.parametrize("nu", [0.3, 0.48, 0.499])
 def test_a_slice_put_on_its_like_again_and_again_is_the_exact_layer(skin, nu):
     stack = halves(skin(poisson_ratio=nu), 1)
-    exact, doubled = exact_faces(K_compliance, stack), doubled_faces(K_compliance, stack)
+    exact, doubled = exact_faces(WAVENUMBERS, stack), doubled_faces(WAVENUMBERS, stack)
     scale = np.abs(exact).max(axis=(2, 3), keepdims=True)
     np.testing.assert_allclose(doubled / scale, exact / scale, atol=2e-7)
 

@@ -1,7 +1,7 @@
-"""In-plane displacement of the faces, u_h = U grad S / k, from the vector modes directly.
+"""Displacement of the layers' faces at any step of a run: deflection, and in the plane u_h = U grad S / k.
 
-The modes of the window give the smooth part, exact layered elasticity of the endless specimen the sharp rest, as they
-do for the deflection (see `wavemodel.layered.remainder`).
+In the plane too the modes of the window give the smooth part and exact layered elasticity of the endless specimen the
+sharp rest (see `wavemodel.layered.remainder`).
 """
 
 from dataclasses import dataclass
@@ -11,11 +11,60 @@ from scipy.special import j1
 
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import NotCoveredError
+from wavemodel.integrators.load_history import History
+from wavemodel.layered.field import Snapshot
 from wavemodel.layered.press import Press
 from wavemodel.layered.remainder import Remainder
 from wavemodel.layered.stack.compliance import FaceStiffness, every_face, exact_faces, quadratic_faces
 from wavemodel.layered.stack.laminate import Laminate
 from wavemodel.layered.tractions import UniformPressure
+from wavemodel.solution import radially
+
+
+@dataclass(frozen=True)
+class LayeredFaces:
+    """Faces of L layers in a run (a `FaceMotion`).
+
+    Attributes
+    ----------
+    press
+        The set-up.
+    history
+        The run.
+    """
+
+    press: Press
+    history: History
+
+    def snapshot(self, step: int) -> Snapshot:
+        """State of the modes after a step (0..n-1), for `Field` and `Surface`."""
+        force = self.history.static_force[step]
+        elastic = 0.0 if self.history.elastic is None else float(self.history.elastic[step])
+        return Snapshot(self.history.amplitude(step), float(force[0]) if force.size == 1 else force, elastic)
+
+    def deflection(self, step: int, radius: FloatArray) -> FloatArray:
+        """See `FaceMotion.deflection`."""
+        return self.press.field.along_x(self.snapshot(step), radius)
+
+    def in_plane(self, step: int, points: FloatArray, face: int) -> FloatArray:
+        """See `FaceMotion.in_plane`; what is not covered is said at `marker_motion`."""
+        field, history = self.press.field, self.history
+        inside = field.domain.holds(points)
+        out = np.where(inside[:, None], 0.0, np.nan) * np.ones(2)
+        if face == self.press.unit.shape[0] and self.press.stack.base == "bonded":
+            return out
+        force = history.static_force[step]
+        if force.size > 1:
+            raise NotCoveredError(
+                "marker motion of the layered wave does not cover layers that relax each in its own way"
+            )
+        plane, places = InPlane(self.press, face), points[inside]
+        amplitude = force[0] * plane.amplitude() if history.outward is None else history.outward(step)[face]
+        out[inside] = plane.smooth(amplitude, places) + force[0] * plane.sharp(places)
+        if field.large is not None and history.elastic is not None:
+            distance = np.hypot(places[:, 0], places[:, 1])
+            out[inside] += radially(field.large.outward(float(history.elastic[step]), face, distance), places)
+        return out
 
 
 @dataclass(frozen=True)
@@ -49,7 +98,7 @@ class InPlane:
         rest = self.press.field.rest
         distance = np.hypot(points[:, 0], points[:, 1])
         outward = np.zeros_like(distance) if rest is None else self._sharp(rest, distance)
-        return away(outward, points)
+        return radially(outward, points)
 
     def _sharp(self, rest: Remainder, distance: FloatArray) -> FloatArray:
         """(P,) outward, m/N: minus the integral of U J_1(k r), and nothing beyond its reach."""
@@ -71,12 +120,6 @@ class InPlane:
         node = [*stack.top_of_layer.tolist(), stack.sublayers][self.face]
         faces = every_face(stack, stiffness(k, stack))[:, node]
         return np.asarray(np.einsum("kj,kj->k", faces[:, 0], load))
-
-
-def away(outward: FloatArray, points: FloatArray) -> FloatArray:
-    """(P, 2) along x and y of what moves points (P, 2) away from the tool's axis by (P,)."""
-    distance = np.hypot(points[:, 0], points[:, 1])
-    return np.asarray((outward / np.maximum(distance, 1e-300))[:, None] * points)
 
 
 def _half_space(rest: Remainder, distance: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Fading memory of each contact while it is held, and how it comes back when the tool is gone.
+"""ContactRelaxation memory of each contact while it is held, and how it comes back when the tool is gone.
 
 Held, the force is f = e - sum_j y_j + eta e' with tau_j y_j' = g_j e - y_j, exact for an elastic force e linear in each
 frame. Free, f = 0: without damping the surface springs to e = sum_j y_j at once and creeps on from there.
@@ -8,11 +8,11 @@ import numpy as np
 from scipy.linalg import expm
 
 from wavemodel.arrays import FloatArray
-from wavemodel.errors import WaveError
+from wavemodel.errors import require_not_negative
 from wavemodel.integrators.viscoelastic import Prony
 
 
-class Fading:
+class ContactRelaxation:
     """State of `contacts` contacts.
 
     Parameters
@@ -20,7 +20,7 @@ class Fading:
     contacts
         How many.
     series
-        Fading memory of the tissue.
+        ContactRelaxation memory of the tissue.
     retardation
         Kelvin-Voigt time, s.
 
@@ -31,8 +31,7 @@ class Fading:
     """
 
     def __init__(self, contacts: int, series: Prony, retardation: float) -> None:
-        if not 0.0 <= retardation < float("inf"):
-            raise WaveError(f"retardation = {retardation:g} s is not allowed: finite and not negative")
+        require_not_negative("retardation", retardation, "s")
         self._strength, self._rate = series.ordered
         self._eta, count = retardation, self._strength.size
         # y_j, then e, as plain numbers: a series has a few terms, which arrays would only slow down.
