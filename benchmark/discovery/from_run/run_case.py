@@ -15,8 +15,7 @@ from benchmark.errors import InputError
 from benchmark.models.scenario_effects import specimen_layers
 from benchmark.physics import TrialContext
 from benchmark.response import Ramp
-from wavemodel.physics import Physics, QuasiStaticPress
-from wavemodel.physics.force_driven import drive_by_force
+from wavemodel.physics import Physics, QuasiStaticPress, drive_by_force
 
 HALF = 0.5
 NOTHING = Physics()
