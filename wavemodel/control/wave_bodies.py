@@ -21,8 +21,8 @@ LEVELS = 48
 def layered_body(wave: LayeredWave, grid: Grid) -> RoundBody:
     """Tabulate a wave round its tool; the patch is as wide as the wave's window.
 
-    A linear wave answers several tools together: each is as deep as it is told under the forces of all. With the
-    large-press correction the patches of several tools just add up. A linear press may be as deep as the stack is high.
+    A linear wave answers several tools together: each is as deep as it is told under the forces of all. At finite
+    strain the patches of several tools just add up. A linear press may be as deep as the stack is high.
 
     Parameters
     ----------

@@ -91,7 +91,7 @@ class History:
     amplitude
         Step to (L, K): amplitudes of the top faces by wavenumber.
     elastic
-        (n,) elastic forces that a large-press correction is read at, N; None where the body is linear.
+        (n,) elastic forces that a finite-strain correction is read at, N; None where the body is linear.
     outward
         With inertia, step to (L + 1, K): amplitudes in plane of the top faces and the lowest one; None where they
         follow from the force.

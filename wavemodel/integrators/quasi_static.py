@@ -18,7 +18,7 @@ from wavemodel.integrators.viscoelastic import ELASTIC, Prony
 
 
 class StaticBody(Protocol):
-    """A body without inertia whose answer is made of B fields, each with its own course in time."""
+    """A body without inertia whose answer is made of B fields, each driven by its own force in time."""
 
     @property
     def unit(self) -> FloatArray:
@@ -31,7 +31,7 @@ class StaticBody(Protocol):
         ...
 
     def follow(self, load: Load) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """(n, B) course of each field in N, (n,) force in N and (n,) depth in m."""
+        """(n, B) force that drives each field in N, (n,) force in N and (n,) depth in m."""
         ...
 
 
@@ -58,26 +58,26 @@ class SharedBody:
     retardation: float = 0.0
 
     def follow(self, load: Load) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """(n, 1) course, (n,) force, (n,) depth; exact for a force, or depth, linear in each step."""
+        """(n, 1) force on the field, (n,) force, (n,) depth; exact for a force, or depth, linear in each step."""
         by_force = load.control == "force"
         law = (creep if by_force else relaxation)(self.series, self.retardation)
         driven = load.value if by_force else load.value / self.compliance
         if not self.series.strength and self.retardation == 0.0:
             return driven[:, None], driven, driven * self.compliance
         answer, _ = law.follow(load.durations, driven, law.rest(load.initial(driven)))
-        course, force = (answer, driven) if by_force else (driven, answer)
-        return course[:, None], force, course * self.compliance
+        driven_by, force = (answer, driven) if by_force else (driven, answer)
+        return driven_by[:, None], force, driven_by * self.compliance
 
 
 def quasi_static(load: Load, body: StaticBody) -> History:
     """Run a load history without inertia."""
-    course, force, depth = body.follow(load)
+    driven_by, force, depth = body.follow(load)
     unit = body.unit
 
     def amplitude(step: int) -> FloatArray:
-        return np.asarray(np.einsum("b,blk->lk", course[step], unit))
+        return np.asarray(np.einsum("b,blk->lk", driven_by[step], unit))
 
-    return History(force, depth, course @ body.axis, course, amplitude)
+    return History(force, depth, driven_by @ body.axis, driven_by, amplitude)
 
 
 @dataclass(frozen=True)
@@ -102,11 +102,11 @@ class LayerwiseBody:
     rate: FloatArray
 
     def follow(self, load: Load) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """(n, B) course, (n,) force, (n,) depth; exact for a force, or depth, linear in each step."""
+        """(n, B) force on each field, (n,) force, (n,) depth; exact for a force, or depth, linear in each step."""
         if load.control == "force":
             lags = self._lags(load, load.value, 1.0 / self.rate)
-            course = np.concatenate([load.value[:, None], lags.T], axis=1)
-            return course, load.value, course @ self.depth
+            driven_by = np.concatenate([load.value[:, None], lags.T], axis=1)
+            return driven_by, load.value, driven_by @ self.depth
         inverse = self._inverse
         lags = self._lags(load, load.value, inverse.time)
         state = np.outer(load.value, inverse.direct) + np.real(lags.T @ inverse.states.T)

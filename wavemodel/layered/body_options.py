@@ -76,7 +76,7 @@ def with_slip(physics: Physics | None, slip: ShearLimit | None, press: Press) ->
 
 
 def finite_strain_of(word: str, press: Press, tool: DiscTool, integrator: str) -> FiniteStrainLaw | None:
-    """The correction of a large press, or None.
+    """What finite strain adds, or None.
 
     Raises
     ------

@@ -24,7 +24,7 @@ class Snapshot:
         Force that the static remainder answers to, N; with layers that creep each in its own way (B,) forces, one
         for each of its fields.
     elastic
-        Elastic force that the large-press correction is read at, N.
+        Elastic force that the finite-strain correction is read at, N.
     """
 
     amplitude: FloatArray
@@ -47,7 +47,7 @@ class Field:
     creeping
         With layers that creep each in its own way the B fields of the remainder.
     large
-        Correction of a large press, or None.
+        What finite strain adds, or None.
     """
 
     domain: Domain

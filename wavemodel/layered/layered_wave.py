@@ -2,7 +2,7 @@
 
 Each layer is an elastic wave equation in (u, v, w), quadratic through the thickness of its sub-layers, on a window of
 sine or Bessel modes round the tool. Nothing is calibrated: the answer follows from thickness, density, E and nu alone.
-It is linear, small strain, unless a large-press correction or options of the body are asked for.
+It is linear, small strain, unless finite strain or options of the body are asked for.
 """
 
 from collections.abc import Sequence

@@ -210,7 +210,18 @@ def _assemble(stack: Laminate, modal: Laminate, costs: tuple[float, float], made
         depth, rest_depth = (
             float(coefficients @ work @ coefficients) for work in (made.flexibility, made.remainder_flexibility)
         )
-    flexibility = made.flexibility if rigid else None
     return Press(
-        stack, *costs, field, made.share, load, unit, unit_axis, depth, rest_axis, rest_depth, modal, flexibility
+        stack=stack,
+        sublayer_error=costs[0],
+        border_cost=costs[1],
+        field=field,
+        share=made.share,
+        load=load,
+        unit=unit,
+        unit_axis=unit_axis,
+        compliance=depth,
+        remainder_axis=rest_axis,
+        remainder_depth=rest_depth,
+        modal_stack=modal,
+        flexibility=made.flexibility if rigid else None,
     )

@@ -25,7 +25,7 @@ class ElasticLaw:
     compliance
         Initial depth per force, m/N.
     large
-        Correction of a large press, or None.
+        What finite strain adds, or None.
     """
 
     compliance: float
@@ -49,7 +49,7 @@ class ElasticLaw:
 
 
 def finite_strain_run(load: Load, body: StaticBody, law: ElasticLaw) -> History:
-    """Run a history with a large-press correction; the elastic force is taken as linear in each step.
+    """Run a history at finite strain; the elastic force is taken as linear in each step.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def options_run(load: Load, press: Press, law: ElasticLaw, physics: Physics) -> 
 
 
 def _added(law: ElasticLaw, elastic: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(n, L) and (n,) what a large press adds to the deflection on the axis and to the depth."""
+    """(n, L) and (n,) what finite strain adds to the deflection on the axis and to the depth."""
     if law.large is None:
         return np.zeros((elastic.size, 1)), np.zeros_like(elastic)
     weights = law.large.weights(elastic)

@@ -30,7 +30,7 @@ class Surface:
     creeping
         (B, P L, Q) that of each field of the remainder, where layers creep each in its own way; else of none.
     large
-        (B, P L, Q) what each field of a large-press correction adds, m; of none without one.
+        (B, P L, Q) what each field of a finite-strain correction adds, m; of none without one.
     """
 
     field: Field
@@ -66,7 +66,7 @@ class _Memory:
     out, faces
         (P L, Q) result, and the same memory as (L, P, Q).
     rest
-        (P L, Q) what a large press adds.
+        (P L, Q) what finite strain adds.
     """
 
     out: FloatArray

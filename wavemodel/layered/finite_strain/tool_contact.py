@@ -1,4 +1,4 @@
-"""How a tool pushes the modes of a large press: a pressure that stays as it is, or a rigid face held to the tissue.
+"""How a tool pushes the modes at finite strain: a pressure that stays as it is, or a rigid face held to the tissue.
 
 A rigid face is held by springs: the flexibility of the contact's traction functions that the modes do not have, the
 sharp part near the edge, which stays linear. At small loads the answer is then that of the linear wave.
