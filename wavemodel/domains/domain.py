@@ -26,7 +26,7 @@ class Tables(Protocol):
         ...
 
 
-class Domain(Protocol):
+class WaveDomain(Protocol):
     """Eigenfunctions with K distinct amplitudes under a load at the place."""
 
     @property

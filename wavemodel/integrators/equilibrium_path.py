@@ -16,7 +16,7 @@ REFINEMENTS = 50
 
 
 @dataclass(frozen=True)
-class Equilibrium:
+class EquilibriumState:
     """One state at rest.
 
     Attributes
@@ -31,7 +31,7 @@ class Equilibrium:
     state: FloatArray
 
 
-Point = TypeVar("Point", bound=Equilibrium)
+Point = TypeVar("Point", bound=EquilibriumState)
 
 
 class Loading(Protocol[Point]):
@@ -79,7 +79,7 @@ def follow(loading: Loading[Point], start: Sequence[Point], step: float, shortes
     return path
 
 
-def straight_on(path: Sequence[Equilibrium], load: float) -> FloatArray:
+def straight_on(path: Sequence[EquilibriumState], load: float) -> FloatArray:
     """State at a load on the straight line through the last two equilibria of a path."""
     last = path[-1]
     if len(path) == 1 or path[-2].load == last.load:

@@ -14,7 +14,7 @@ from wavemodel.arrays import FloatArray
 from wavemodel.errors import WaveError
 from wavemodel.integrators.lags import LagStep, creep, lag_step
 from wavemodel.integrators.load_history import History, Load
-from wavemodel.integrators.oscillators import Motion
+from wavemodel.integrators.oscillators import OscillatorMotion
 from wavemodel.integrators.viscoelastic import Damping, Prony
 
 SAME_STEP = 1e-12
@@ -110,7 +110,7 @@ class _March:
 
     def __init__(self, system: ModalSystem) -> None:
         self.system = system
-        self.motion = Motion(system.frequency.ravel(), system.damping, system.series)
+        self.motion = OscillatorMotion(system.frequency.ravel(), system.damping, system.series)
         self.creep = creep(system.series, system.damping.stiffness_time)
         self.lags = np.zeros(self.creep.time.size)
         self.force = 0.0

@@ -157,7 +157,7 @@ def _real_rates(frequency: FloatArray, drag: FloatArray, strength: FloatArray, r
     return 0.5 * (low + high)
 
 
-class Motion:
+class OscillatorMotion:
     """State of N oscillators under one force, and the coefficients of the latest step length.
 
     Parameters

@@ -7,7 +7,7 @@ from wavemodel.integrators.viscoelastic import Damping, Prony
 from wavemodel.layered.finite_strain.correction import FiniteStrainLaw, finite_strain_law
 from wavemodel.layered.finite_strain.equilibrium import ModalEquilibrium, press_path
 from wavemodel.layered.finite_strain.modal_body import ModalBody, disc_modes, thickness_of
-from wavemodel.layered.finite_strain.tool_contact import BondedContact, Contact, PressureContact
+from wavemodel.layered.finite_strain.tool_contact import BondedContact, PressureContact, ToolContact
 from wavemodel.layered.layer_relaxation import shared
 from wavemodel.layered.press import Press
 from wavemodel.layered.shear_limit import ShearLimit, interface_slip
@@ -136,7 +136,7 @@ def correction(press: Press, tool: DiscTool, *, deep: bool = False) -> FiniteStr
     return finite_strain_law(path, body.modes.wavenumber, press.compliance, radius, height if deep else 0.0)
 
 
-def contact_of(press: Press, body: ModalBody) -> Contact:
+def contact_of(press: Press, body: ModalBody) -> ToolContact:
     """How the tool of a press pushes the modes of a body."""
     basis = press.field.traction.basis
     if press.flexibility is None:

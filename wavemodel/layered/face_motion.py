@@ -12,7 +12,7 @@ from scipy.special import j1
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import NotCoveredError
 from wavemodel.integrators.load_history import History
-from wavemodel.layered.field import Snapshot
+from wavemodel.layered.field import ModalState
 from wavemodel.layered.press import Press
 from wavemodel.layered.remainder import Remainder
 from wavemodel.layered.stack.compliance import FaceStiffness, every_face, exact_faces, quadratic_faces
@@ -36,11 +36,11 @@ class LayeredFaces:
     press: Press
     history: History
 
-    def snapshot(self, step: int) -> Snapshot:
+    def snapshot(self, step: int) -> ModalState:
         """State of the modes after a step (0..n-1), for `Field` and `Surface`."""
         force = self.history.static_force[step]
         elastic = 0.0 if self.history.elastic is None else float(self.history.elastic[step])
-        return Snapshot(self.history.amplitude(step), float(force[0]) if force.size == 1 else force, elastic)
+        return ModalState(self.history.amplitude(step), float(force[0]) if force.size == 1 else force, elastic)
 
     def deflection(self, step: int, radius: FloatArray) -> FloatArray:
         """See `FaceMotion.deflection`."""

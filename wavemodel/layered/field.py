@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.domains.domain import Domain
+from wavemodel.domains.domain import WaveDomain
 from wavemodel.layered.finite_strain.correction import FiniteStrainLaw
 from wavemodel.layered.remainder import Remainder, deflections
 from wavemodel.layered.tractions import Traction
 
 
 @dataclass(frozen=True)
-class Snapshot:
+class ModalState:
     """State of the wave at one instant.
 
     Attributes
@@ -50,7 +50,7 @@ class Field:
         What finite strain adds, or None.
     """
 
-    domain: Domain
+    domain: WaveDomain
     traction: Traction
     rest: Remainder | None
     creeping: tuple[Remainder, ...] = ()
@@ -66,14 +66,14 @@ class Field:
         """(B, L, R) deflection that each field of the remainder adds per force at radii (R,), m/N."""
         return deflections(self.creeping, self.traction.coefficients, radius)
 
-    def _sharp(self, state: Snapshot, radius: FloatArray, layers: int) -> FloatArray:
+    def _sharp(self, state: ModalState, radius: FloatArray, layers: int) -> FloatArray:
         if np.ndim(state.remainder) == 0:
             return np.asarray(state.remainder * self.remainder(radius, layers))
         if self.rest is None:
             return np.zeros((layers, radius.size))
         return np.asarray(np.tensordot(state.remainder, self.remainders(radius), axes=1))
 
-    def along_x(self, state: Snapshot, radius: FloatArray) -> FloatArray:
+    def along_x(self, state: ModalState, radius: FloatArray) -> FloatArray:
         """(L, R) deflection at radii (R,) along +x, m; NaN outside the window."""
         points = np.stack([radius, np.zeros_like(radius)], axis=1)
         inside = self.domain.holds(points)

@@ -20,7 +20,7 @@ from wavemodel.integrators.viscoelastic import Damping, Prony
 from wavemodel.layered.body_options import finite_strain_of, options_of, with_slip
 from wavemodel.layered.dynamics import first_frequency, modal_system, ringing
 from wavemodel.layered.face_motion import LayeredFaces
-from wavemodel.layered.field import Snapshot
+from wavemodel.layered.field import ModalState
 from wavemodel.layered.layer_relaxation import one_series, series_of, shared, static_body
 from wavemodel.layered.notices import notices
 from wavemodel.layered.press import Press, prepare
@@ -187,9 +187,9 @@ class LayeredWave:
             return finite_strain_run(load, self.body, self.law)
         return quasi_static(load, self.body)
 
-    def static_state(self, force: float) -> Snapshot:
+    def static_state(self, force: float) -> ModalState:
         """State at rest under an elastic force (N), by the initial moduli, for `Surface.frame`."""
-        return Snapshot(self.press.unit * force, force, force)
+        return ModalState(self.press.unit * force, force, force)
 
     @cached_property
     def _modal_system(self) -> ModalSystem:

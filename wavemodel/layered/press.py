@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.domains.domain import Domain
+from wavemodel.domains.domain import WaveDomain
 from wavemodel.errors import WaveError
 from wavemodel.layered import subdivision
 from wavemodel.layered.field import Field
@@ -47,7 +47,7 @@ class Parts:
         Answer to what they leave out; None where they carry all.
     """
 
-    domain: Domain
+    domain: WaveDomain
     basis: TractionBasis
     modal: Compliance
     load: FloatArray
@@ -71,7 +71,7 @@ class Parts:
         return solve_contact(self.basis, self.flexibility) if rigid else Traction(self.basis, np.ones(1))
 
 
-def parts(stack: Laminate, domain: Domain, basis: TractionBasis, taper: Taper, rest: Remainder | None) -> Parts:
+def parts(stack: Laminate, domain: WaveDomain, basis: TractionBasis, taper: Taper, rest: Remainder | None) -> Parts:
     """Evaluate a stack on a window for the tractions of a tool."""
     k = domain.wavenumber
     return Parts(domain, basis, compliance(k, stack), basis.transform(k), taper.modes(k), rest)
@@ -151,21 +151,21 @@ def prepare(
     return _assemble(stack, modal, (mistake, border), parts(modal, domain, basis, taper, rest), tool.rigid)
 
 
-def _seen_by_modes(stack: Laminate, domain: Domain, stress: InPlaneStress | None) -> Laminate:
+def _seen_by_modes(stack: Laminate, domain: WaveDomain, stress: InPlaneStress | None) -> Laminate:
     if stress is None or not stress.directed:
         return stack
     counts = np.diff(stack.top_of_layer, append=stack.sublayers)
     return replace(stack, tension=np.repeat(stress.along(domain.direction), counts, axis=1))
 
 
-def _window(whole: Laminate, tool: DiscTool, chosen: WaveDiscretisation, directed: bool) -> tuple[Domain, Taper]:
+def _window(whole: Laminate, tool: DiscTool, chosen: WaveDiscretisation, directed: bool) -> tuple[WaveDomain, Taper]:
     if chosen.window is None and whole.base == "free":
         raise WaveError("window: needed with a free lower face, where an endless specimen has nothing to rest on")
     side = automatic_window(whole, tool.radius) if chosen.window is None else chosen.window
     return window_of(chosen, tool.radius, side, directed=directed)
 
 
-def _yardstick(whole: Laminate, tool: DiscTool, taper: Taper, domain: Domain) -> subdivision.Yardstick:
+def _yardstick(whole: Laminate, tool: DiscTool, taper: Taper, domain: WaveDomain) -> subdivision.Yardstick:
     """Sub-layers under a rigid tool are chosen by the traction of a flat punch on a half-space."""
     basis = punch_tractions(tool.radius, tool.contact, 1) if tool.rigid else UniformPressure(tool.radius)
     return subdivision.yardstick(whole, Traction(basis, basis.net_force), taper, domain.lowest)

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.domains.domain import Domain, Endless, endless
+from wavemodel.domains.domain import Endless, WaveDomain, endless
 from wavemodel.layered.stack.compliance import compliance, exact_faces
 from wavemodel.layered.stack.laminate import Laminate
 from wavemodel.layered.tractions import HalfSpace, TractionBasis
@@ -93,7 +93,7 @@ def work(load: FloatArray, faces: FloatArray, weight: FloatArray) -> FloatArray:
     return np.asarray(np.tensordot(load, moved, axes=([0, 2], [0, 2])))
 
 
-def remainder(laminate: Laminate, basis: TractionBasis, taper: Taper, window: Domain) -> Remainder:
+def remainder(laminate: Laminate, basis: TractionBasis, taper: Taper, window: WaveDomain) -> Remainder:
     """Set up the remainder of a tool on a stack.
 
     Parameters

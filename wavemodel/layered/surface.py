@@ -7,7 +7,7 @@ import numpy as np
 
 from wavemodel.arrays import FloatArray
 from wavemodel.domains.domain import Tables
-from wavemodel.layered.field import Field, Snapshot
+from wavemodel.layered.field import Field, ModalState
 from wavemodel.layered.finite_strain.correction import FiniteStrainLaw
 
 REMAINDER_RADII, LARGE_RADII = 512, 2048
@@ -40,7 +40,7 @@ class Surface:
     large: FloatArray
     _memory: "_Memory"
 
-    def frame(self, state: Snapshot) -> FloatArray:
+    def frame(self, state: ModalState) -> FloatArray:
         """(L, P, Q) deflection of each layer's top face, m, downwards."""
         memory = self._memory
         beside = self.field.rest is not None

@@ -16,7 +16,7 @@ from scipy.special import erfc
 
 from wavemodel.arrays import FloatArray
 from wavemodel.domains.disc import Disc
-from wavemodel.domains.domain import Domain, endless
+from wavemodel.domains.domain import WaveDomain, endless
 from wavemodel.domains.rectangle import Rectangle
 from wavemodel.errors import WaveError, require_positive
 from wavemodel.layered.stack.compliance import compliance, exact_faces
@@ -138,7 +138,7 @@ class WaveDiscretisation:
 
 def window_of(
     chosen: WaveDiscretisation, radius: float, width: float, *, directed: bool = False
-) -> tuple[Domain, Taper]:
+) -> tuple[WaveDomain, Taper]:
     """Lay a window round a tool.
 
     Parameters

@@ -37,7 +37,7 @@ class LoadSegment:
         return bool(self.duration[0] == 0.0)
 
 
-class Option(Protocol):
+class BodyOption(Protocol):
     """One effect: it changes the force, knowing its own past."""
 
     def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:

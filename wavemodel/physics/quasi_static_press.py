@@ -18,8 +18,8 @@ from wavemodel.integrators.load_history import Load, checked_load
 from wavemodel.integrators.viscoelastic import Prony
 from wavemodel.physics.contact import Adhesion, DryFriction, PermanentSet
 from wavemodel.physics.elastic import Floor, InterfaceSlip, Pretension, StrainStiffening, StressSoftening
-from wavemodel.physics.load_segment import LoadSegment, Memory, Option
-from wavemodel.physics.time_dependent import PoroelasticDrainage, Relaxation, ViscousDamping
+from wavemodel.physics.load_segment import BodyOption, LoadSegment, Memory
+from wavemodel.physics.time_dependent import PoroelasticDrainage, RelaxingForce, ViscousDamping
 
 ForceLaw: TypeAlias = Callable[[FloatArray], FloatArray]
 """Depths (n,) of 0 and more, m, to forces (n,), N: rising, zero at zero. It raises `WaveError` beyond its range."""
@@ -55,19 +55,19 @@ class Physics:
     adhesion: Adhesion | None = None
 
     @property
-    def elastic(self) -> tuple[Option, ...]:
+    def elastic(self) -> tuple[BodyOption, ...]:
         """What changes the elastic force, in order."""
         chosen = (self.stiffening, self.pretension, self.floor, self.slip, self.softening)
         return tuple(option for option in chosen if option is not None)
 
     @property
-    def relaxing(self) -> tuple[Option, ...]:
+    def relaxing(self) -> tuple[BodyOption, ...]:
         """What lets the force relax, in order."""
-        relaxation = None if self.relaxation is None else Relaxation(self.relaxation)
+        relaxation = None if self.relaxation is None else RelaxingForce(self.relaxation)
         return tuple(option for option in (relaxation, self.drainage) if option is not None)
 
     @property
-    def beside(self) -> tuple[Option, ...]:
+    def beside(self) -> tuple[BodyOption, ...]:
         """What acts beside the elastic force."""
         return tuple(option for option in (self.damping, self.friction) if option is not None)
 
@@ -82,7 +82,7 @@ class PressState:
 
 
 @dataclass(frozen=True)
-class Trace:
+class PressTrace:
     """n samples of a press.
 
     Attributes
@@ -106,9 +106,9 @@ class Trace:
     touching: BoolArray
 
 
-def joined(pieces: Sequence[Trace]) -> Trace:
+def joined(pieces: Sequence[PressTrace]) -> PressTrace:
     """One trace of several that follow each other."""
-    return Trace(*(np.concatenate([getattr(one, item.name) for one in pieces]) for item in fields(Trace)))
+    return PressTrace(*(np.concatenate([getattr(one, item.name) for one in pieces]) for item in fields(PressTrace)))
 
 
 @dataclass(frozen=True)
@@ -144,7 +144,7 @@ class QuasiStaticPress:
         """
         return self.trace(time, depth).force
 
-    def trace(self, time: FloatArray, depth: FloatArray) -> Trace:
+    def trace(self, time: FloatArray, depth: FloatArray) -> PressTrace:
         """The same, with the surface and the contact; see `force`."""
         load = checked_load("depth", time, depth)
         return self.follow(load.durations, load.value, self.rest())[0]
@@ -156,7 +156,7 @@ class QuasiStaticPress:
 
     def follow(
         self, duration: FloatArray, depth: FloatArray, state: PressState, *, held: bool = False
-    ) -> tuple[Trace, PressState]:
+    ) -> tuple[PressTrace, PressState]:
         """Go on from a state through further samples.
 
         Parameters
@@ -184,7 +184,7 @@ class QuasiStaticPress:
             force = np.where(start.touching, np.maximum(force, -self._adhesion.force), 0.0)
         stands = np.where(start.touching, depth, surface)
         after = PressState(bool(start.touching[-1]), set_memory, (*first, *second, *third))
-        return Trace(depth, stands, force, elastic.force, start.touching), after
+        return PressTrace(depth, stands, force, elastic.force, start.touching), after
 
     @property
     def _adhesion(self) -> Adhesion:
@@ -204,7 +204,7 @@ class QuasiStaticPress:
 
 
 def _chain(
-    options: tuple[Option, ...], segment: LoadSegment, memories: Iterator[Memory]
+    options: tuple[BodyOption, ...], segment: LoadSegment, memories: Iterator[Memory]
 ) -> tuple[LoadSegment, list[Memory]]:
     """Options one after the other."""
     after = []
@@ -215,7 +215,7 @@ def _chain(
     return segment, after
 
 
-def driven(load: Load, law: ForceLaw, physics: Physics, scale: float) -> Trace:
+def driven(load: Load, law: ForceLaw, physics: Physics, scale: float) -> PressTrace:
     """Go through a load history, of force or depth, on an elastic law with options; see `drive_by_force`."""
     press = QuasiStaticPress(law, physics)
     if load.control == "force":
@@ -223,7 +223,7 @@ def driven(load: Load, law: ForceLaw, physics: Physics, scale: float) -> Trace:
     return press.trace(load.time, load.value)
 
 
-def drive_by_force(press: QuasiStaticPress, time: FloatArray, force: FloatArray, scale: float) -> Trace:
+def drive_by_force(press: QuasiStaticPress, time: FloatArray, force: FloatArray, scale: float) -> PressTrace:
     """Go through a history of force; the tool rests on the tissue all the time, also without force.
 
     Each step is solved for by bracketing, the options' memories being carried from step to step: about a millisecond
@@ -266,7 +266,7 @@ def _check_pull(press: QuasiStaticPress, force: FloatArray) -> None:
 
 def _step(
     press: QuasiStaticPress, duration: FloatArray, force: float, state: PressState, near: tuple[float, float]
-) -> tuple[Trace, PressState]:
+) -> tuple[PressTrace, PressState]:
     def excess(depth: float) -> float:
         return float(press.follow(duration, np.array([depth]), state, held=True)[0].force[0]) - force
 

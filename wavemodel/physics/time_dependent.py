@@ -16,7 +16,7 @@ SMALLEST = 0.05
 
 
 @dataclass(frozen=True)
-class Relaxation:
+class RelaxingForce:
     """F(t) = int G(t - t') df(t'), G = 1 - sum g_j (1 - e^(-t / tau_j)); exact for f linear in each step.
 
     Y. C. Fung, Biomechanics: Mechanical Properties of Living Tissues, section 7.6.

@@ -27,7 +27,7 @@ import numpy as np
 
 from wavemodel.arrays import FloatArray, IntArray
 from wavemodel.sheet.end_waves import ComplexArray, EndWaves, Strip, strip
-from wavemodel.sheet.section import Section
+from wavemodel.sheet.section import SheetSection
 from wavemodel.specimen import WaveLayer
 
 
@@ -72,14 +72,14 @@ class Edge:
         return self.sheet.displacement(node, radius, self.sheet_amplitude @ load)
 
 
-def clamp(layers: Sequence[WaveLayer], section: Section, radius: float) -> Edge:
+def clamp(layers: Sequence[WaveLayer], section: SheetSection, radius: float) -> Edge:
     """Lower face held outside a hole of the given radius, m."""
     through = strip(layers, section.faces, "bottom")
     last = 2 * through.z.size - 1
     return _edge(through, radius, 1.0, np.array([last - 1, last]))
 
 
-def tool_edge(layers: Sequence[WaveLayer], section: Section, radius: float, contact: str) -> Edge:
+def tool_edge(layers: Sequence[WaveLayer], section: SheetSection, radius: float, contact: str) -> Edge:
     """Upper face under a flat tool of the given radius (m), "rigid_bonded" or "rigid_frictionless"."""
     through = strip(layers, section.faces, "top")
     return _edge(through, radius, -1.0, np.array([0, 1] if contact == "rigid_bonded" else [1]))
@@ -224,7 +224,7 @@ class EdgeLaw:
 
 
 def edge_law(
-    compliance: FloatArray, corner: float, radius: float, section: Section, softening: Softening | None = None
+    compliance: FloatArray, corner: float, radius: float, section: SheetSection, softening: Softening | None = None
 ) -> EdgeLaw:
     """From the compliance (3, 3) of the neutral plane's end per metre of edge.
 

@@ -21,7 +21,7 @@ from wavemodel.layered.stack.compliance import every_face, exact_faces
 from wavemodel.layered.stack.laminate import laminate
 from wavemodel.layered.tractions import HalfSpace, UniformPressure
 from wavemodel.sheet.edge import Edge
-from wavemodel.sheet.section import Section
+from wavemodel.sheet.section import SheetSection
 from wavemodel.sheet.sheet import Sheet, face_bulge
 from wavemodel.specimen import DiscTool, WaveLayer
 
@@ -64,7 +64,7 @@ class Indentation:
         return out
 
 
-def indentation(layers: Sequence[WaveLayer], section: Section, bulge: FloatArray, radius: float) -> Indentation:
+def indentation(layers: Sequence[WaveLayer], section: SheetSection, bulge: FloatArray, radius: float) -> Indentation:
     """Set up the indentation under a pressure on a disc.
 
     Parameters

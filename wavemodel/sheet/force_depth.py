@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import WaveError
-from wavemodel.integrators.equilibrium_path import Equilibrium, RisingCurve, follow, straight_on
+from wavemodel.integrators.equilibrium_path import EquilibriumState, RisingCurve, follow, straight_on
 from wavemodel.integrators.load_history import Load
 from wavemodel.sheet.faces import Faces
 from wavemodel.sheet.sheet import Sheet
@@ -41,16 +41,16 @@ class _ToLoad:
     sheet: Sheet
     target: float
 
-    def next_load(self, path: Sequence[Equilibrium], step: float) -> float:
+    def next_load(self, path: Sequence[EquilibriumState], step: float) -> float:
         return min(self.target, path[-1].load + step)
 
-    def next_step(self, path: Sequence[Equilibrium], step: float) -> float:  # noqa: ARG002
+    def next_step(self, path: Sequence[EquilibriumState], step: float) -> float:  # noqa: ARG002
         return step
 
-    def reached(self, path: Sequence[Equilibrium]) -> bool:
+    def reached(self, path: Sequence[EquilibriumState]) -> bool:
         return path[-1].load >= self.target
 
-    def advance(self, path: Sequence[Equilibrium], load: float) -> Equilibrium | None:
+    def advance(self, path: Sequence[EquilibriumState], load: float) -> EquilibriumState | None:
         """Newton's method from straight on; None where it does not converge."""
         sheet, state = self.sheet, straight_on(path, load)
         depth, force = (load, 0.0) if sheet.tool is not None else (0.0, load)
@@ -64,11 +64,11 @@ class _ToLoad:
             change = -scale * np.linalg.solve(jacobian * np.outer(scale, scale), residual * scale)
             state = state + change
             if np.abs(change[: sheet.functions.unknowns]).max() < small:
-                return Equilibrium(load, state)
+                return EquilibriumState(load, state)
         return None
 
 
-def sheet_path(sheet: Sheet, start: Sequence[Equilibrium], loads: FloatArray) -> tuple[Equilibrium, ...]:
+def sheet_path(sheet: Sheet, start: Sequence[EquilibriumState], loads: FloatArray) -> tuple[EquilibriumState, ...]:
     """Equilibria at rising loads (n,), from the last ones of a path on; stops early where none is found."""
     found = list(start)
     for target in loads.tolist():
@@ -81,7 +81,7 @@ def sheet_path(sheet: Sheet, start: Sequence[Equilibrium], loads: FloatArray) ->
 
 
 @dataclass(frozen=True)
-class Curve:
+class EquilibriumCurve:
     """Cubic splines through m equilibria, the first at rest; a pull is answered like a press turned round.
 
     Attributes
@@ -154,7 +154,7 @@ class LocalTension:
     def __init__(self, faces: Faces, reach: float) -> None:
         sheet = faces.sheet
         self._faces, self._sheet, self._rigid = faces, sheet, sheet.tool is not None
-        self._path: tuple[Equilibrium, ...] = (Equilibrium(0.0, np.zeros(sheet.unknowns)),)
+        self._path: tuple[EquilibriumState, ...] = (EquilibriumState(0.0, np.zeros(sheet.unknowns)),)
         # Under a pressure the force is prescribed: begin with about one thickness of depth, by the plate's theory.
         linear = 16.0 * np.pi * sheet.section.bending * sheet.section.thickness / sheet.functions.outer**2
         self._curve = self._loaded(reach if self._rigid else linear)
@@ -194,7 +194,7 @@ class LocalTension:
         growth = (MARGIN * wanted / self._curve.reach[control == "force"]) ** power
         return self._path[-1].load * min(float(growth), LARGEST_GROWTH)
 
-    def _loaded(self, load: float) -> Curve:
+    def _loaded(self, load: float) -> EquilibriumCurve:
         """The curve with equilibria up to a load: depth of a rigid tool (m), or force of a pressure (N).
 
         Raises
@@ -219,7 +219,7 @@ class LocalTension:
         self._path = path
         return self._splines()
 
-    def _splines(self) -> Curve:
+    def _splines(self) -> EquilibriumCurve:
         state, load = np.stack([one.state for one in self._path]), np.array([one.load for one in self._path])
         given = [(one.load, 0.0) if self._rigid else (0.0, one.load) for one in self._path]
         axis = np.stack(
@@ -229,4 +229,4 @@ class LocalTension:
             ]
         )
         depth, force = (load, -state[:, -1]) if self._rigid else (axis[:, 0], load)
-        return Curve(depth, force, state, axis[:, :-1])
+        return EquilibriumCurve(depth, force, state, axis[:, :-1])

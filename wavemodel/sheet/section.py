@@ -14,7 +14,7 @@ POINTS_PER_LAYER = 4
 
 
 @dataclass(frozen=True)
-class Section:
+class SheetSection:
     """L layers with s quadrature points through their thickness.
 
     Attributes
@@ -64,7 +64,7 @@ class Section:
         return float((modulus * poisson) @ self.weight / (modulus @ self.weight))
 
 
-def section(layers: Sequence[WaveLayer]) -> Section:
+def section(layers: Sequence[WaveLayer]) -> SheetSection:
     """Homogenise a stack of layers.
 
     Raises
@@ -87,7 +87,7 @@ def section(layers: Sequence[WaveLayer]) -> Section:
     neutral = float((modulus * depth) @ weight / (modulus @ weight))
     z = depth - neutral
     bending = float((modulus * z**2) @ weight)
-    return Section(
+    return SheetSection(
         faces=top - neutral,
         z=z,
         weight=weight,

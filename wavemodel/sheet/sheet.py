@@ -18,7 +18,7 @@ import numpy as np
 from wavemodel.arrays import FloatArray
 from wavemodel.sheet.edge import TOOL_SOFTENING, Edge, EdgeLaw, clamp, edge_law, tool_edge
 from wavemodel.sheet.radial import RadialFunctions
-from wavemodel.sheet.section import Section, section
+from wavemodel.sheet.section import SheetSection, section
 from wavemodel.sheet.strain_energy import energy_density, vertical_span
 from wavemodel.specimen import DiscTool, WaveLayer
 
@@ -57,7 +57,7 @@ class Pressure:
         return first, self.strains.reshape(-1, q.size).T @ turned.reshape(-1, q.size)
 
 
-def pressure(functions: RadialFunctions, radius: float, section: Section, bulge: float) -> Pressure:
+def pressure(functions: RadialFunctions, radius: float, section: SheetSection, bulge: float) -> Pressure:
     """Set up a pressure.
 
     Parameters
@@ -105,7 +105,7 @@ class Sheet:
         Where it acts; None under a rigid tool.
     """
 
-    section: Section
+    section: SheetSection
     functions: RadialFunctions
     clamp: Edge
     tool: Edge | None
@@ -204,7 +204,7 @@ def sheet(layers: Sequence[WaveLayer], tool: DiscTool, hole: float, count: int, 
     )
 
 
-def face_bulge(edge: Edge, section: Section) -> FloatArray:
+def face_bulge(edge: Edge, section: SheetSection) -> FloatArray:
     """(L + 1,) deflection of the faces per curvature phi' + phi / r, m2, against the mean that Q works on.
 
     A bent sheet thins on one side: (z^2 / 2 - mean) nu / (1 - nu).

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.sheet.section import Section
+from wavemodel.sheet.section import SheetSection
 
 STRAINS = 5
 """u', u / r, w', phi, phi'."""
@@ -48,7 +48,9 @@ class EnergyDensity:
     hessian: FloatArray
 
 
-def energy_density(section: Section, radius: FloatArray, strain: FloatArray, pretension: float = 0.0) -> EnergyDensity:
+def energy_density(
+    section: SheetSection, radius: FloatArray, strain: FloatArray, pretension: float = 0.0
+) -> EnergyDensity:
     """Energy of the sheet.
 
     Parameters
@@ -111,7 +113,7 @@ def _measures(radius: FloatArray, strain: FloatArray) -> tuple[FloatArray, Float
     return measure, slope, curve
 
 
-def _fibres(section: Section, measure: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _fibres(section: SheetSection, measure: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Energy (p,) by stretch, hoop, bend, twist and shear, its gradient (5, p) and Hessian (5, 5, p)."""
     stretch, hoop, _, _, shear = measure
     z = section.z[:, None]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from wavemodel.integrators.equilibrium_path import Equilibrium, RisingCurve, follow, straight_on
+from wavemodel.integrators.equilibrium_path import EquilibriumState, RisingCurve, follow, straight_on
 
 
 @dataclass(frozen=True)
@@ -29,10 +29,10 @@ class Spring:
         if load - path[-1].load > self.longest or load > self.end:
             return None
         real = [root.real for root in np.roots([1.0, 0.0, 1.0, -load]) if abs(root.imag) < 1e-9]
-        return Equilibrium(load, np.array(real))
+        return EquilibriumState(load, np.array(real))
 
 
-REST = [Equilibrium(0.0, np.zeros(1))]
+REST = [EquilibriumState(0.0, np.zeros(1))]
 
 
 def test_goes_to_the_target_and_no_further():
@@ -52,7 +52,7 @@ def test_ends_where_the_shortest_step_fails():
 
 
 def test_the_next_state_is_guessed_on_the_line_through_the_last_two():
-    path = [Equilibrium(1.0, np.array([1.0, 4.0])), Equilibrium(3.0, np.array([2.0, 2.0]))]
+    path = [EquilibriumState(1.0, np.array([1.0, 4.0])), EquilibriumState(3.0, np.array([2.0, 2.0]))]
     np.testing.assert_allclose(straight_on(path, 4.0), [2.5, 1.0])
     np.testing.assert_array_equal(straight_on(path[:1], 4.0), [1.0, 4.0])
 

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from wavemodel import Damping, Prony
-from wavemodel.integrators.oscillators import Motion, oscillator_step, poles
+from wavemodel.integrators.oscillators import OscillatorMotion, oscillator_step, poles
 
 
 def advanced(frequency, damping, duration, state, before=0.0, change=0.0):
@@ -85,7 +85,7 @@ def dense(w, damping, series, step, force):
 @pytest.mark.parametrize("step", [0.001, 0.03, 1.0])
 def test_equals_a_dense_solution(w, damping, step):
     force = np.random.default_rng(int(w)).normal(size=40)
-    motion = Motion(np.array([w]), damping, SERIES)
+    motion = OscillatorMotion(np.array([w]), damping, SERIES)
     motion.prepare(step)
     before, found = 0.0, []
     for value in force:
@@ -110,7 +110,7 @@ def test_partial_fractions_add_up_at_every_rate(w, mass_rate, stiffness_time, g,
 
 
 def test_comes_to_rest_where_the_modulus_that_is_left_holds_it():
-    motion = Motion(np.array([5.0, 5e6]), Damping(1.0), SERIES)
+    motion = OscillatorMotion(np.array([5.0, 5e6]), Damping(1.0), SERIES)
     motion.prepare(1000.0)
     motion.advance(2.0, 0.0)
     np.testing.assert_allclose(motion.displacement, 2.0 / 0.45, rtol=1e-12)
@@ -120,7 +120,7 @@ def test_comes_to_rest_where_the_modulus_that_is_left_holds_it():
 
 
 def test_a_step_is_what_is_free_and_what_the_force_adds():
-    motion = Motion(np.array([5.0, 80.0]), Damping(1.0), SERIES)
+    motion = OscillatorMotion(np.array([5.0, 80.0]), Damping(1.0), SERIES)
     motion.prepare(0.1)
     motion.advance(0.0, 1.0)
     expected = motion.free() + 0.7 * motion.gain()

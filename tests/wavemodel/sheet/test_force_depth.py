@@ -1,13 +1,13 @@
 import numpy as np
 import pytest
 
-from wavemodel.integrators.equilibrium_path import Equilibrium
-from wavemodel.sheet.force_depth import Curve, sheet_path
+from wavemodel.integrators.equilibrium_path import EquilibriumState
+from wavemodel.sheet.force_depth import EquilibriumCurve, sheet_path
 
 
 def test_follows_to_the_loads_and_balances_forces(pressed_sheet):
     sheet = pressed_sheet("rigid_bonded")
-    rest = (Equilibrium(0.0, np.zeros(sheet.unknowns)),)
+    rest = (EquilibriumState(0.0, np.zeros(sheet.unknowns)),)
     path = sheet_path(sheet, rest, np.array([1e-3, 6e-3]))
     assert [point.load for point in path] == [0.0, 1e-3, 6e-3]
     for point in path:
@@ -19,13 +19,13 @@ def test_follows_to_the_loads_and_balances_forces(pressed_sheet):
 def test_stops_where_there_is_no_equilibrium(pressed_sheet):
     """A pressure of a thousand newtons tears the sheet out of any reasonable shape: what was found is kept."""
     sheet = pressed_sheet("uniform_pressure")
-    rest = (Equilibrium(0.0, np.zeros(sheet.unknowns)),)
+    rest = (EquilibriumState(0.0, np.zeros(sheet.unknowns)),)
     path = sheet_path(sheet, rest, np.array([0.5, 1e7]))
     assert [point.load for point in path] == [0.0, 0.5]
 
 
 DEPTH = np.linspace(0.0, 2.0, 30)
-CURVE = Curve(DEPTH, DEPTH + DEPTH**3, np.outer(DEPTH, [1.0, 2.0]), DEPTH[:, None] ** 2)
+CURVE = EquilibriumCurve(DEPTH, DEPTH + DEPTH**3, np.outer(DEPTH, [1.0, 2.0]), DEPTH[:, None] ** 2)
 
 
 def test_interpolates_and_inverts():

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.integrators.equilibrium_path import Equilibrium, follow, straight_on
+from wavemodel.integrators.equilibrium_path import EquilibriumState, follow, straight_on
 from wavemodel.layered.finite_strain.modal_body import Deformed, ModalBody
-from wavemodel.layered.finite_strain.tool_contact import Contact
+from wavemodel.layered.finite_strain.tool_contact import ToolContact
 
 TOLERANCE = 1e-4
 """Of the load, in the energy norm; the depth, which is stationary, is then right to its square."""
@@ -36,7 +36,7 @@ class ModalEquilibrium:
     """A body, its contact, and the potential of both under a force."""
 
     body: ModalBody
-    contact: Contact
+    contact: ToolContact
 
     def answer(self, forces: FloatArray) -> FloatArray:
         """(N, 2 n) linear answer to forces (N, 2 n)."""
@@ -137,7 +137,7 @@ class PressPath:
 
 
 @dataclass(frozen=True)
-class _Pressed(Equilibrium):
+class _Pressed(EquilibriumState):
     """Equilibrium under a force; its depth and what that gained on the one before, m."""
 
     depth: float = 0.0

@@ -16,7 +16,7 @@ STIFFEST = 1e-7
 """Springs are no stiffer than what this share of the whole flexibility gives."""
 
 
-class Contact(Protocol):
+class ToolContact(Protocol):
     """Forces of a tool on the modes of a body."""
 
     @property
