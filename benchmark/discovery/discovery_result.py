@@ -108,7 +108,7 @@ class ChannelGap:
     noise_floor : float or None
         Pure error of the replicates, N or m; None where no trial was repeated.
     closed : float or None
-        (before^2 - after^2) / (before^2 - floor^2), by a floor of 0 where it is unknown; None where nothing was to be closed.
+        (before^2 - after^2) / (before^2 - floor^2), an unknown floor as 0; None where nothing was to be closed.
     ci95 : (low, high) or None
         By bootstrap over trials.
     held_out : str
