@@ -12,12 +12,12 @@ reports or other models.
 from fem.errors import CheckpointError, FemError
 from fem.load import Load
 from fem.materials import Fibre, FibreReinforced, Gent, LinearElastic, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
-from fem.parts import Discretisation, Layer, Support, Tool
-from fem.prepare import prepare
-from fem.problem import Problem
-from fem.relaxation import PronyTerm
-from fem.solution import Failure, Resumed, Solution, StepReport
-from fem.surface_file import read_surface
+from fem.materials.prony import PronyTerm
+from fem.mesh.surface.surface_file import read_surface
+from fem.problem.parts import Discretisation, Layer, Support, Tool
+from fem.problem.problem import Problem
+from fem.results.solution import Failure, Resumed, Solution, StepReport
+from fem.setup.prepare import prepare
 
 __all__ = [
     "CheckpointError",

@@ -10,11 +10,12 @@ import numpy as np
 
 import fem
 from benchmarks.peers.case import LAYERS, POISSON, Case
-from fem.assembly.solid_element import SOLID_ELEMENTS
-from fem.contact.solid import uniform_pressure
-from fem.contact.uniform_pressure import UniformPressure
-from fem.layout import lay_out
-from fem.mesh import DiscGrid, Feature, Sizing, build_block, graded_line
+from fem.assembly.solid import SOLID_ELEMENTS
+from fem.mesh.block import DiscGrid, build_block
+from fem.mesh.grading import Feature, Sizing, graded_line
+from fem.setup.contacts import UniformPressure
+from fem.setup.contacts_solid import uniform_pressure
+from fem.setup.layout import lay_out
 
 TOOL_RADIUS = 5.0e-3
 BORDER = 30.0e-3

@@ -11,23 +11,23 @@ import numpy as np
 
 import fem
 from benchmarks.peers.case import LAYERS, POISSON, Case, load_case
-from fem.assembly import (
-    ElementGeometry,
-    System,
-    build_scatter,
-    element_laws,
-    gauss_geometry,
-    number_unknowns,
-)
+from fem.analysis.equilibrium import Equilibrium
+from fem.analysis.newton import NewtonSettings
+from fem.analysis.stepping import Stepper
+from fem.assembly.axisymmetric import gauss_geometry
+from fem.assembly.element_geometry import ElementGeometry
+from fem.assembly.scatter import build_scatter, number_unknowns
+from fem.assembly.system import System
 from fem.linear_solver import make_solver
-from fem.mesh import Mesh, SolidMesh
-from fem.solving import Equilibrium, NewtonSettings, Stepper
-from fem.threads import suited_threads
+from fem.linear_solver.factory import suited_threads
+from fem.materials.element_laws import element_laws
+from fem.mesh.quads import Mesh
+from fem.mesh.solid import SolidMesh
 
 
 def hexahedra(case: Case) -> ElementGeometry:
     """hex20 with 8 Gauss points."""
-    from fem.assembly.solid_geometry import solid_geometry  # the axisymmetric case does without
+    from fem.assembly.solid import solid_geometry  # the axisymmetric case does without
 
     sets = (np.zeros(len(case.nodes), dtype=np.bool_),) * 5
     rows = (np.array([0]),), np.array([0])
@@ -59,7 +59,7 @@ def solve(case: Case) -> np.ndarray:
     """Nodal displacements (N, dim) in m under the full load."""
     problem = equations(case)
     if case.kind == "linear":
-        from fem.small_strain import unit_state  # the other case does without
+        from fem.analysis.linear import unit_state  # the other case does without
 
         return problem.system.numbering.expand(unit_state(problem)[0].y).T
     stepper = Stepper(problem, "force", 1.0, NewtonSettings())

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.components import Components
+from fem.materials.components import Components
 
 ELEMENTS_AT_ONCE = 64  # so that their pulled back moduli stay in the cache
 

@@ -19,12 +19,12 @@ import numpy as np
 
 from fem.arrays import FloatArray, IntArray
 from fem.assembly.element_geometry import ELEMENTS_AT_ONCE, ElementGeometry
-from fem.assembly.laws import ElementLaws
-from fem.assembly.memory import Memory
 from fem.assembly.scatter import Numbering, Scatter, packed_positions
-from fem.assembly.sliding import Sliding
-from fem.assembly.slipping import Grip, Slipping
-from fem.deformation import Deformation
+from fem.interactions.clamp import Sliding
+from fem.interactions.interface import Grip, Slipping
+from fem.materials.deformation import Deformation
+from fem.materials.element_laws import ElementLaws
+from fem.materials.prony import Memory
 
 
 @dataclass(frozen=True)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 
 import numpy as np
 import skfem
 
 from fem.arrays import BoolArray, FloatArray, IntArray
-from fem.mesh.rows import along_row
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Mesh:
         For each layer the nodes of its top face from the axis outwards, corners and mid-sides in turn.
     undersides
         For each layer but the last the nodes of its lower face in the same order: those of the next top face, or
-        where the interface is split nodes at the same places (see :mod:`fem.mesh.split`).
+        where the interface is split nodes at the same places (see :mod:`fem.mesh.quads`).
     """
 
     nodes: FloatArray
@@ -97,3 +97,78 @@ def _row(r: FloatArray, row: IntArray) -> IntArray:
     places, first = np.unique(r[row], return_index=True)
     del places
     return row[first]
+
+
+def ring_areas(r: FloatArray) -> FloatArray:
+    """Area (m,) in m2 of each node of a row at radii r (m,) in m, corners and mid-sides in turn, by Simpson's rule."""
+    width = (r[2::2] - r[:-2:2]) / 6.0
+    area = np.zeros(len(r))
+    area[:-2:2] += width * r[:-2:2]
+    area[1:-1:2] = 4.0 * width * r[1:-1:2]
+    area[2::2] += width * r[2::2]
+    return 2.0 * np.pi * area
+
+
+def along_row(place: FloatArray, values: FloatArray, r: FloatArray) -> FloatArray:
+    """Quadratic interpolation over a row of nodes.
+
+    Parameters
+    ----------
+    place
+        Distances (2 n + 1,) in m of the nodes from the row's start, increasing.
+    values
+        Values (2 n + 1,) at the nodes.
+    r
+        Where to interpolate, (m,) in m.
+
+    Returns
+    -------
+    ndarray
+        Values (m,); NaN beyond the end of the row.
+    """
+    lines = place[::2]
+    column = np.clip(np.searchsorted(lines, r, side="right") - 1, 0, len(lines) - 2)
+    s = (r - lines[column]) / (lines[column + 1] - lines[column])
+    first, middle, last = values[2 * column], values[2 * column + 1], values[2 * column + 2]
+    inside = first * (1 - s) * (1 - 2 * s) + middle * 4 * s * (1 - s) + last * s * (2 * s - 1)
+    return np.where(r <= lines[-1] * (1 + 1e-12), inside, np.nan)
+
+
+def split_interfaces(mesh: Mesh, above: Collection[int]) -> Mesh:
+    """The mesh with the lower faces of some layers parted from what is below them.
+
+    The nodes on the axis and on the outer border, which cannot slide, stay those of both sides.
+
+    Parameters
+    ----------
+    mesh
+        A mesh whose layers are joined.
+    above
+        Numbers of the layers, 0 on top, whose lower faces get nodes of their own.
+    """
+    for layer in above:
+        mesh = _split_below(mesh, layer)
+    return mesh
+
+
+def _split_below(mesh: Mesh, layer: int) -> Mesh:
+    row, count = mesh.interfaces[layer + 1], len(mesh.nodes)
+    parted = row[~(mesh.axis | mesh.border)[row]]
+    twin = np.arange(count)
+    twin[parted] = count + np.arange(len(parted))
+    upper = mesh.layer == layer
+    elements = mesh.elements.copy()
+    elements[:, upper] = twin[elements[:, upper]]
+    undersides = list(mesh.undersides)
+    undersides[layer] = twin[row]
+    origin = np.concatenate((np.arange(count), parted))
+    return replace(
+        mesh,
+        nodes=mesh.nodes[origin],
+        elements=elements,
+        axis=mesh.axis[origin],
+        top=mesh.top[origin],
+        base=mesh.base[origin],
+        border=mesh.border[origin],
+        undersides=tuple(undersides),
+    )

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from fem.arrays import BoolArray, FloatArray, IntArray
-from fem.mesh.rows import along_row
+from fem.mesh.quads import Mesh, along_row
 
 
 @dataclass(frozen=True)
@@ -68,3 +69,6 @@ class SolidMesh:
     def profile(self, values: FloatArray, r: FloatArray) -> FloatArray:
         """Nodal values (N,) on each layer's top face at distances r (m,) from the tool's axis, (L, m)."""
         return np.stack([along_row(self.nodes[row, 0] - self.axis_point[0], values[row], r) for row in self.interfaces])
+
+
+AnyMesh: TypeAlias = Mesh | SolidMesh

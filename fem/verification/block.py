@@ -7,12 +7,12 @@ from typing import Literal
 
 import numpy as np
 
+from fem.analysis.model import Model
 from fem.load import Load
 from fem.materials import LinearElastic, NeoHookean
-from fem.model import Model
-from fem.parts import TOUCHING, Discretisation, Layer, Support, Tool
-from fem.prepare import prepare
-from fem.problem import Problem
+from fem.problem.parts import TOUCHING, Discretisation, Layer, Support, Tool
+from fem.problem.problem import Problem
+from fem.setup.prepare import prepare
 from fem.verification import half_space, hertz
 from fem.verification.case import Case, Quantity
 from fem.verification.half_space import Geometry

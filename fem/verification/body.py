@@ -11,27 +11,20 @@ from functools import cached_property
 
 import numpy as np
 
+from fem.analysis.equilibrium import Equilibrium, State
+from fem.analysis.newton import NewtonSettings, solve_newton
+from fem.analysis.stepping import Stepper
 from fem.arrays import BoolArray, FloatArray
-from fem.assembly import (
-    Evaluation,
-    Geometry,
-    Numbering,
-    Scatter,
-    System,
-    build_scatter,
-    element_laws,
-    gauss_geometry,
-    number_unknowns,
-    point_geometry,
-)
-from fem.components import AXISYMMETRIC
-from fem.deformation import Deformation
+from fem.assembly.axisymmetric import Geometry, gauss_geometry, point_geometry
+from fem.assembly.scatter import Numbering, Scatter, build_scatter, number_unknowns
+from fem.assembly.system import Evaluation, System
 from fem.linear_solver import make_solver
 from fem.materials import Material
-from fem.mesh import Mesh
-from fem.relaxation import PronyTerm
-from fem.solving import Equilibrium, NewtonSettings, State, Stepper
-from fem.solving.newton import solve_newton
+from fem.materials.components import AXISYMMETRIC
+from fem.materials.deformation import Deformation
+from fem.materials.element_laws import element_laws
+from fem.materials.prony import PronyTerm
+from fem.mesh.quads import Mesh
 
 SIDES = ((0, 4, 1), (1, 5, 2), (2, 6, 3), (3, 7, 0))
 CORNERS = np.array([[0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]])

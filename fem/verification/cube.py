@@ -6,12 +6,13 @@ import numpy as np
 import skfem
 
 from fem.arrays import BoolArray, FloatArray, IntArray
-from fem.assembly import System, build_scatter, element_laws, number_unknowns
-from fem.assembly.solid_element import SOLID_ELEMENTS
-from fem.assembly.solid_geometry import solid_geometry
+from fem.assembly.scatter import build_scatter, number_unknowns
+from fem.assembly.solid import SOLID_ELEMENTS, solid_geometry
+from fem.assembly.system import System
 from fem.linear_solver import make_solver
 from fem.materials import Material
-from fem.mesh import SolidMesh
+from fem.materials.element_laws import element_laws
+from fem.mesh.solid import SolidMesh
 from fem.mesh.surface.specimen import quadratic
 
 

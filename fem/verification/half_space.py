@@ -13,13 +13,13 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
+from fem.analysis.model import Model
 from fem.arrays import FloatArray
 from fem.load import Load
 from fem.materials import LinearElastic
-from fem.model import Model
-from fem.parts import Layer, Support, Tool
-from fem.prepare import prepare
-from fem.problem import Problem
+from fem.problem.parts import Layer, Support, Tool
+from fem.problem.problem import Problem
+from fem.setup.prepare import prepare
 from fem.verification.case import Case, Quantity
 
 Geometry: TypeAlias = Literal["axisymmetric", "block"]

@@ -14,9 +14,9 @@ import numpy as np
 
 from fem.load import Load
 from fem.materials import LinearElastic
-from fem.parts import Layer, Support, Tool
-from fem.prepare import prepare
-from fem.problem import Problem
+from fem.problem.parts import Layer, Support, Tool
+from fem.problem.problem import Problem
+from fem.setup.prepare import prepare
 from fem.verification.case import Case, Quantity
 
 KAPPA: Mapping[float, float] = MappingProxyType(

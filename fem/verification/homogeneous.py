@@ -13,9 +13,10 @@ from functools import partial
 import numpy as np
 from scipy.optimize import brentq
 
+from fem.analysis.newton import NewtonSettings
+from fem.analysis.stepping import Stepper
 from fem.arrays import FloatArray
 from fem.materials import Material, NeoHookean
-from fem.solving import NewtonSettings, Stepper
 from fem.verification.body import Body, free_of_ties, worst
 from fem.verification.case import Case, Quantity
 from fem.verification.section import PLANE_PERCENT, RING, distorted_square

@@ -16,10 +16,12 @@ from functools import partial
 
 import numpy as np
 
-from fem.fading_run import FadingBody
+from fem.analysis.equilibrium import Equilibrium
+from fem.analysis.linear import FadingBody
+from fem.analysis.newton import NewtonSettings
+from fem.analysis.stepping import Stepper
 from fem.materials import LinearElastic, Material, NeoHookean
-from fem.relaxation import PronyTerm
-from fem.solving import Equilibrium, NewtonSettings, Stepper
+from fem.materials.prony import PronyTerm
 from fem.verification.body import Body
 from fem.verification.case import Case, Quantity
 from fem.verification.section import distorted_square

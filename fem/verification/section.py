@@ -12,8 +12,7 @@ import numpy as np
 
 from fem.arrays import FloatArray
 from fem.materials import LinearElastic
-from fem.mesh import Mesh
-from fem.mesh.quads import mesh_of_quads
+from fem.mesh.quads import Mesh, mesh_of_quads
 
 RING = 1e6
 PLANE_PERCENT = 2e-3  # what curvature and the round-off of the radius cost a ring, nearly incompressible too

@@ -15,9 +15,9 @@ import numpy as np
 
 from fem.load import Load
 from fem.materials import LinearElastic, NeoHookean
-from fem.parts import Layer, Support, Tool
-from fem.prepare import prepare
-from fem.problem import Problem
+from fem.problem.parts import Layer, Support, Tool
+from fem.problem.problem import Problem
+from fem.setup.prepare import prepare
 from fem.verification.case import Case, Quantity
 from fem.verification.layered import PRESSURE, RADIUS, SOURCE, STACKS
 from fem.verification.layered_elasticity import axis_deflection

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import fem
-from fem.assembly import System
-from fem.deformation import Deformation
+from fem.assembly.system import System
+from fem.materials.deformation import Deformation
 
 SKIN = ((1e-4, 1e6), (1.5e-3, 1e5), (1e-2, 2e4))
 

@@ -9,11 +9,9 @@ import numpy as np
 from fem.arrays import BoolArray, FloatArray, IntArray
 from fem.errors import FemError
 from fem.mesh.surface.checking import check_surface
-from fem.mesh.surface.filling import Refinement
-from fem.mesh.surface.kept_filling import kept_filling
-from fem.mesh.surface.mesh import SurfaceMesh, barycentric
-from fem.mesh.surface.model import Surface
-from fem.mesh.surface.quality import POOR, MeshQuality, measure_quality
+from fem.mesh.surface.filling import Refinement, kept_filling
+from fem.mesh.surface.surface_file import Surface
+from fem.mesh.surface.surface_mesh import POOR, MeshQuality, SurfaceMesh, barycentric, measure_quality
 
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # mid-side nodes 4 to 9
 FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))  # looking outwards

@@ -8,8 +8,12 @@ import numpy as np
 import pytest
 
 from fem import NeoHookean
-from fem.assembly import System, build_scatter, element_laws, gauss_geometry, number_unknowns
-from fem.mesh import Fan, Mesh, build_mesh
+from fem.assembly.axisymmetric import gauss_geometry
+from fem.assembly.scatter import build_scatter, number_unknowns
+from fem.assembly.system import System
+from fem.materials.element_laws import element_laws
+from fem.mesh.quads import Mesh
+from fem.mesh.structured import Fan, build_mesh
 
 
 @pytest.fixture

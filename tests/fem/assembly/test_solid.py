@@ -5,8 +5,7 @@ import pytest
 import scipy.sparse as sp
 
 import fem
-from fem.assembly.solid_element import SOLID_ELEMENTS
-from fem.assembly.solid_geometry import solid_geometry
+from fem.assembly.solid import SOLID_ELEMENTS, solid_geometry
 from fem.verification.cube import cube, solve_linear
 from fem.verification.cube import equations as equations_of
 

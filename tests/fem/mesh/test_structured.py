@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from fem.assembly import gauss_geometry
-from fem.mesh import Fan, build_mesh
+from fem.assembly.axisymmetric import gauss_geometry
+from fem.mesh.structured import Fan, build_mesh
 
 R_LINES = np.array([0.0, 0.4, 0.8, 0.9, 1.0, 1.1, 1.2, 2.0, 3.0])
 DEPTHS = np.array([0.0, 0.1, 0.2, 0.6, 1.0, 2.0])
