@@ -16,8 +16,9 @@ from fem.analysis.newton import NewtonSettings
 from fem.analysis.stepping import Stepper
 from fem.assembly.axisymmetric import gauss_geometry
 from fem.assembly.element_geometry import ElementGeometry
+from fem.assembly.elements import make_elements
 from fem.assembly.scatter import build_scatter, number_unknowns
-from fem.assembly.system import System
+from fem.assembly.system import make_system
 from fem.linear_solver import make_solver
 from fem.linear_solver.factory import suited_threads
 from fem.materials.element_laws import element_laws
@@ -52,7 +53,9 @@ def equations(case: Case) -> Equilibrium:
     solver = make_solver("auto", scatter.indptr, scatter.indices)
     nodal = np.zeros(case.fixed.shape)
     nodal[-1] = case.load
-    return Equilibrium(System(geometry, laws, numbering, scatter), solver, numbering.reduce(nodal), 0)
+    return Equilibrium(
+        make_system(make_elements(geometry, laws), numbering, scatter), solver, numbering.reduce(nodal), 0
+    )
 
 
 def solve(case: Case) -> np.ndarray:

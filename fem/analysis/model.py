@@ -13,7 +13,6 @@ from fem.analysis.linear import run_linear
 from fem.analysis.newton import NewtonSettings
 from fem.analysis.nonlinear import run_nonlinear
 from fem.analysis.record import Record
-from fem.interactions.tool_contact import ContactSystem
 from fem.linear_solver.factory import suited_threads
 from fem.load import Load
 from fem.mesh.solid import AnyMesh
@@ -116,7 +115,7 @@ class Model:
     def _advised(self, solution: Solution) -> Solution:
         """The solution; a press that the mesh could not follow with what may go further."""
         failure = solution.failure
-        touches = isinstance(self.equilibrium.system, ContactSystem)
+        touches = self.problem.touches
         coarse = self.problem.discretisation.density == "coarse" and not touches
         if failure is None or coarse or failure.target <= failure.reached:
             return solution
@@ -126,8 +125,7 @@ class Model:
     @property
     def _pulling(self) -> str:
         """What a history that pulls must know of this contact."""
-        touches = isinstance(self.equilibrium.system, ContactSystem)
-        return LIFTING if touches else PULLING
+        return LIFTING if self.problem.touches else PULLING
 
     def _names(self) -> tuple[str, ...]:
         return tuple(layer.name for layer in self.problem.layers)

@@ -87,7 +87,7 @@ def solve_newton(
             step = _correction(problem, state, evaluation, control, target)
         except SingularMatrixError as error:
             return NewtonResult(state, iteration, str(error))
-        damped = problem.system.sliding is not None and (control == "force" or _reached(problem, state, target))
+        damped = problem.system.kinked and (control == "force" or _reached(problem, state, target))
         moved = _move(problem, state, evaluation, step, settings.halvings, damped)
         if moved is None:
             return NewtonResult(state, iteration, "an element turns inside out")
@@ -96,7 +96,7 @@ def solve_newton(
         limit = settings.tolerance * max(abs(state.force), force_scale)
         if unbalanced <= limit or _is_round_off(problem, tangent, state, unbalanced, limit):
             if control == "force" or _reached(problem, state, target):
-                return NewtonResult(State(state.y, evaluation.consistent_pressure, state.force), iteration)
+                return NewtonResult(State(state.y, evaluation.elements.consistent_pressure, state.force), iteration)
         elif unbalanced > settings.divergence * best:
             return NewtonResult(state, iteration, "the unbalanced forces grow")
         outdated = not SAFETY * unbalanced**2 <= before * limit
@@ -149,9 +149,9 @@ def _move(
 ) -> tuple[State, Evaluation] | None:
     """Make a correction, halved until no element is inside out.
 
-    Where it is damped (on a body that rubs on a fixed one, whose equations have kinks; not on the way to another depth,
-    which upsets the balance) it is also halved while it leaves more unbalanced than before; if it always does, the half
-    that leaves least is made.
+    Where it is damped (equations with kinks; not on the way to another depth, which upsets the balance) it is also
+    halved while it leaves more unbalanced than before; if it always does,
+    the half that leaves least is made.
     """
     dy, df = step
     pressure_step = problem.system.pressure_after(evaluation, dy) - state.pressure

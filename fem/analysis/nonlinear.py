@@ -11,17 +11,13 @@ from fem.analysis.checkpoint import Keeper, Progress
 from fem.analysis.equilibrium import Equilibrium, State
 from fem.analysis.linear import unit_state
 from fem.analysis.newton import NewtonSettings
-from fem.analysis.record import Record, largest_strain, reaction
+from fem.analysis.record import Record, largest_strain
 from fem.analysis.stepping import Advance, Stepper, settle
 from fem.assembly.system import System
 from fem.load import Load
 from fem.results.solution import Failure, Resumed, Solution, StepReport
 
 LEAST_SHARE_OF_PEAK = 1e-3
-SLID = (
-    "the sheet slides on all of the plate, up to the outer border, which holds it: the answer depends on where that "
-    "is; set the radius of the mesh to that of the clamp"
-)
 
 
 def run_nonlinear(
@@ -75,8 +71,7 @@ def run_nonlinear(
             return record.solution(failure, warnings, _between(record, stepper.problem.system, advance, start))
         system = stepper.problem.system
         _keep(record, system, time, advance.state)
-        if system.sliding is not None and system.sliding.everywhere(advance.state.y) and SLID not in warnings:
-            warnings = (*warnings, SLID)
+        warnings = tuple(dict.fromkeys((*warnings, *system.warnings(advance.state.y))))
         if checkpoint is not None:
             checkpoint.write(_progress(record, stepper, clock.process_time() - began))
         if on_step is not None:
@@ -107,7 +102,7 @@ def _keep(record: Record, system: System, time: float, state: State) -> None:
     evaluation = system.evaluate(state.y, state.pressure)
     if evaluation is None:
         raise ArithmeticError("an accepted state cannot be evaluated")
-    returned = reaction(system, evaluation.element_force, evaluation.grips)
+    returned = system.reaction(evaluation.elements.force, evaluation.responses)
     record.add(time, state, returned, largest_strain(system, state.y, finite=True))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +11,6 @@ from fem.analysis.equilibrium import Equilibrium, State
 from fem.arrays import FloatArray
 from fem.assembly.element_geometry import ElementGeometry
 from fem.assembly.system import System
-from fem.interactions.interface import Grip
-from fem.materials.deformation import Deformation
 from fem.mesh.solid import AnyMesh
 from fem.results.fields import FieldRecovery
 from fem.results.solution import Failure, Resumed, Solution
@@ -118,20 +115,8 @@ class Record:
         return np.array(rows).reshape(len(nodal), len(self.layer_names))
 
 
-def reaction(system: System, element_force: FloatArray, grips: Sequence[Grip] = ()) -> float:
-    """Upward force in N of the support on the specimen, from element forces, vertical ones last, and interfaces.
-
-    Internal forces in z add up to zero over all nodes, so what the support returns is minus the sum over the
-    nodes that may move; an interface that slips pulls on the fixed end of its curve.
-    """
-    last = -len(element_force) // len(system.numbering.unknown)
-    vertical = element_force[last:][system.scatter.element_unknowns[last:] < system.numbering.count]
-    slipping = zip(system.interfaces, grips, strict=False)
-    return float(-vertical.sum()) + sum(interface.on_fixed(grip) for interface, grip in slipping)
-
-
 def largest_strain(system: System, y: FloatArray, finite: bool) -> float:
     """Largest element mean of the Green-Lagrange strain (`finite`) or of the small strain."""
-    deformation = Deformation(system.geometry.components, system.geometry.gradient(system.element_displacement(y)))
+    deformation = system.elements.deformation(system.element_displacement(y))
     measure = deformation.green_strain if finite else deformation.small_strain
-    return largest_element_strain(measure, system.geometry)
+    return largest_element_strain(measure, system.elements.geometry)

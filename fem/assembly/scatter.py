@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -12,6 +11,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem.arrays import BoolArray, FloatArray, IntArray
+from fem.assembly.element_geometry import packed_positions
 
 FIXED = -1
 Index: TypeAlias = NDArray[np.int32]  # half the memory of the pattern's large arrays
@@ -102,17 +102,6 @@ class Scatter:
         out: FloatArray = self.vector_sum @ element.ravel()
         return out
 
-    @cached_property
-    def _keys(self) -> IntArray:
-        count = len(self.indptr) - 1
-        out: IntArray = np.repeat(np.arange(count), np.diff(self.indptr)) * count + self.indices
-        return out
-
-    def places(self, rows: IntArray, columns: IntArray) -> IntArray:
-        """Where the entries (k,) at rows and columns, or their mirror images, are in the upper triangle."""
-        low, high = np.minimum(rows, columns), np.maximum(rows, columns)
-        return np.searchsorted(self._keys, low * (len(self.indptr) - 1) + high)
-
     def round_off(self, tangent: FloatArray, y: FloatArray) -> float:
         """Norm of the forces that round-off leaves unbalanced: eps |A| |y| of entries (nnz,), unknowns (n,)."""
         n = len(y)
@@ -125,22 +114,6 @@ class Scatter:
         """Entries (nnz,) of the upper triangle from packed element stiffness (171, E)."""
         out: FloatArray = self.matrix_sum @ packed.ravel()
         return out
-
-
-def packed_positions(nodes: int, components: int) -> tuple[IntArray, IntArray]:
-    """Local row and column (entries,) of each packed entry: the upper triangle of the diagonal blocks, all of others.
-
-    Blocks belong to two displacement components each, in the order (0, 0), (0, 1), ...
-    """
-    upper = np.triu_indices(nodes)
-    full = tuple(grid.ravel() for grid in np.indices((nodes, nodes)))
-    rows, columns = [], []
-    for a in range(components):
-        for b in range(a, components):
-            i, j = upper if a == b else full
-            rows.append(i + a * nodes)
-            columns.append(j + b * nodes)
-    return np.concatenate(rows), np.concatenate(columns)
 
 
 def build_scatter(elements: IntArray, numbering: Numbering) -> Scatter:

@@ -1,59 +1,69 @@
-"""Unknowns that rub on a fixed body: they stick, with a little give, up to a limit and slide at it.
-
-Tresca's friction with the elastic stick that a consistent tangent needs (P. Wriggers, Computational Contact Mechanics,
-2nd ed., 2006, chapter 5). The limit does not depend on the pressure, so that each step has a convex potential.
-"""
+"""The lower face of a sheet on the plate round a hole, on which it slides where the shear stress passes a limit."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
 from fem.arrays import FloatArray, IntArray
+from fem.assembly.item import Item, Response
+from fem.interactions.active_set import Friction
 
-AT_THE_LIMIT = 1e-9
+SLIDES_EVERYWHERE = (
+    "the sheet slides on all of the plate, up to the outer border, which holds it: the answer depends on where that "
+    "is; set the radius of the mesh to that of the clamp"
+)
 
 
 @dataclass(frozen=True)
-class Sliding:
-    """What rubs, and where it rests.
+class ClampSlip(Item):
+    """Displacements with friction against a body at rest; in small strain there is none.
 
     Attributes
     ----------
-    unknowns
+    own
         Numbers (m,) of the unknowns, each in it once.
-    stick
-        Stiffness (m,) in N/m below the limit.
-    limit
-        Largest friction (m,) in N.
-    anchor
-        Displacement (m,) in m at which there is no friction.
+    friction
+        Friction of each, with their displacements as path.
     """
 
-    unknowns: IntArray
-    stick: FloatArray
-    limit: FloatArray
-    anchor: FloatArray
+    own: IntArray
+    friction: Friction
+    kinked: ClassVar[bool] = True
+    in_small_strain: ClassVar[bool] = False
 
-    def force(self, y: FloatArray) -> FloatArray:
-        """Friction (m,) in N against the motion to unknowns y (n,)."""
-        out: FloatArray = np.clip(self._trial(y), -self.limit, self.limit)
-        return out
+    @property
+    def unknowns(self) -> IntArray:
+        """Unknowns (m,) it acts on."""
+        return self.own
 
-    def stiffness(self, y: FloatArray) -> FloatArray:
-        """Derivative (m,) of the friction in N/m."""
-        out: FloatArray = np.where(np.abs(self._trial(y)) <= self.limit, self.stick, 0.0)
-        return out
+    @property
+    def entries(self) -> tuple[IntArray, IntArray]:
+        """The unknowns' diagonal."""
+        return self.own, self.own
 
-    def after(self, y: FloatArray) -> Sliding:
-        """The same after a step that ends at unknowns y (n,)."""
-        return replace(self, anchor=y[self.unknowns] - self.force(y) / self.stick)
+    @property
+    def remembers(self) -> bool:
+        """Where the sheet sticks follows from the states before."""
+        return True
 
-    def everywhere(self, y: FloatArray) -> bool:
-        """Whether the limit is reached everywhere at unknowns y (n,)."""
-        return bool((np.abs(self._trial(y)) >= (1.0 - AT_THE_LIMIT) * self.limit).all())
+    def respond(self, y: FloatArray) -> Response:
+        """Friction and its derivative at unknowns y (n,)."""
+        trial = self._trial(y)
+        force, sticks = self.friction.drag(trial, trial)
+        return Response(force, np.where(sticks, self.friction.stick, 0.0))
+
+    def accepted(self, y: FloatArray) -> ClampSlip:
+        """The item after a step that ends at unknowns y (n,)."""
+        elastic = self.respond(y).force / self.friction.stick
+        return replace(self, friction=self.friction.after(y[self.own], elastic))
+
+    def warning(self, y: FloatArray) -> str:
+        """Where the sheet slides up to the border."""
+        return SLIDES_EVERYWHERE if self.friction.slides_everywhere(self._trial(y)) else ""
 
     def _trial(self, y: FloatArray) -> FloatArray:
-        trial: FloatArray = self.stick * (y[self.unknowns] - self.anchor)
+        trial: FloatArray = self.friction.stick * (y[self.own] - self.friction.anchor)
         return trial

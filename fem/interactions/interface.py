@@ -1,9 +1,19 @@
-"""The deformed lower side of an interface as one smooth curve.
+"""Nodes of one side of an interface that slide along the other side once the shear stress reaches a limit.
 
-The displacement between the nodes of the row (corners and mid-sides alike) is the cubic spline through all of them: the
-curve's tangent and curvature are continuous, so that a node slides from element to element without a kink, and at rest,
-where the nodes of both sides coincide, nothing is interpolated. On the axis the radial displacement is odd and the
-vertical even; at the outer border the spline is natural.
+The other side is one smooth curve: the displacement between the nodes of its row (corners and mid-sides alike) is the
+cubic spline through all of them, so that a node slides from element to element without a kink, and at rest, where the
+nodes of both sides coincide, nothing is interpolated. On the axis the radial displacement is odd and the vertical even;
+at the outer border the spline is natural.
+
+A node stands on the curve x(s), at first where it was at rest, s = S. Its slip s - S is an unknown, and so are the two
+components of p: the node is held on the curve by the force k p. With c what it is off the curve, a function of
+displacements and slip, the potential is k p (c - e p / 2): p is c / e, e so small that c is nothing. The equations have
+no large penalty, and Newton's method follows the curve.
+
+Friction (:mod:`fem.interactions.active_set`) has as little elastic stick, k / e, per area at rest: the force along the
+curve is at most the limit, its work over a slip ds is that force times |x'| ds. The tangent leaves out how the
+displacements change the stretch |x'| in it, which keeps it symmetric. Whether a node slips follows from the force that
+holds it and from its slip.
 """
 
 from __future__ import annotations
@@ -15,6 +25,11 @@ import numpy as np
 from scipy.linalg import solve_banded
 
 from fem.arrays import FloatArray, IntArray
+from fem.assembly.item import Item, Response
+from fem.interactions.active_set import Friction
+
+SLIP_SHARE = 0.03  # of k, by which a node's slip counts against the force along the curve
+OWN = ((0, 2), (1, 3), (2, 2), (3, 3), (2, 4), (3, 4), (4, 4))  # unknowns of a node that its stiffness couples
 
 
 @dataclass(frozen=True)
@@ -81,12 +96,8 @@ class Curve:
         return odd, solve_banded((1, 1), bands, right)
 
 
-TURN = 0.03  # of k, by which a node's slip counts against the force along the curve
-OWN = ((0, 2), (1, 3), (2, 2), (3, 3), (2, 4), (3, 4), (4, 4))  # unknowns of a node that its stiffness couples
-
-
 @dataclass(frozen=True)
-class Grip:
+class InterfaceState:
     """Forces at one state of m nodes on a curve of n nodes.
 
     Attributes
@@ -114,7 +125,7 @@ class Grip:
 
 
 @dataclass(frozen=True)
-class Slipping:
+class InterfaceSlip(Item):
     """The nodes of one side and what they remember.
 
     Attributes
@@ -131,10 +142,8 @@ class Slipping:
         k (m,) in N/m.
     give
         e, of which the elastic slip is made as well.
-    limit
-        Largest friction (m,) in N.
-    anchor
-        Slip (m,) in m at which there is no friction.
+    friction
+        Friction of the nodes, with their slip as path.
     """
 
     curve: Curve
@@ -143,16 +152,24 @@ class Slipping:
     along: IntArray
     hold: FloatArray
     give: float
-    limit: FloatArray
-    anchor: FloatArray
+    friction: Friction
 
     @property
-    def rubs(self) -> bool:
-        """Whether there is friction, which remembers."""
-        return bool(self.limit.any())
+    def remembers(self) -> bool:
+        """Friction remembers."""
+        return self.friction.present
 
-    def grip(self, y: FloatArray) -> Grip | None:
+    def respond(self, y: FloatArray) -> Response | None:
         """Forces and stiffness at unknowns y (n,); None where a node is beyond an end of the curve."""
+        state = self.evaluate(y)
+        if state is None:
+            return None
+        force = np.concatenate((state.force.ravel(), state.curve_force[self.along >= 0]))
+        stiffness = np.concatenate((state.stiffness.ravel(), state.curve_stiffness.ravel()))[self._free]
+        return Response(force, stiffness, float(state.curve_force[1][self.along[1] < 0].sum()))
+
+    def evaluate(self, y: FloatArray) -> InterfaceState | None:
+        """State at unknowns y (n,); None where a node is beyond an end of the curve."""
         u, k = np.append(y, 0.0), self.hold
         *moved, p_r, p_z, slip = u[self.own]
         weights = self.curve.weights(self.start + slip)
@@ -162,11 +179,11 @@ class Slipping:
         place[0] += slip
         rate[0] += 1.0
         held = k * np.stack((p_r, p_z))
-        pull = (held * rate).sum(axis=0)
-        friction, slope = self._friction(slip, pull, np.hypot(*rate), (rate * bend).sum(axis=0))
+        pull, stretch = (held * rate).sum(axis=0), np.hypot(*rate)
+        friction, slope = self._friction(slip, pull, stretch, (rate * bend).sum(axis=0))
         left = k * (np.stack(moved) - place) - self.give * held
         soft = -self.give * k
-        return Grip(
+        return InterfaceState(
             force=np.concatenate((held, left, (friction - pull)[None])),
             curve_force=-np.einsum("cm,cmn->cn", held, weights[0]),
             stiffness=np.concatenate(
@@ -174,48 +191,39 @@ class Slipping:
             ),
             curve_stiffness=-np.stack((k[:, None] * weights[0], held[..., None] * weights[1])),
             friction=friction,
-            stretch=np.hypot(*rate),
+            stretch=stretch,
         )
 
     def _friction(
         self, slip: FloatArray, pull: FloatArray, stretch: FloatArray, turn: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Friction and its derivative by the slip (m,); turn is half the derivative of the squared stretch."""
-        limit, stick = self.limit * stretch, self.hold / self.give
-        slid = slip - self.anchor
-        trial = pull + TURN * (self.hold * slid - self.give * pull)
-        sticks = np.abs(trial) < limit
-        friction = np.where(sticks, stick * slid, np.copysign(limit, trial))
+        if not self.friction.present:
+            return np.zeros_like(slip), np.zeros_like(slip)
+        stick, slid = self.friction.stick, slip - self.friction.anchor
+        trial = pull + SLIP_SHARE * (self.hold * slid - self.give * pull)
+        friction, sticks = self.friction.drag(trial, stick * slid, stretch)
         return friction, np.where(sticks, stick, friction * turn / stretch**2)
 
-    def after(self, y: FloatArray) -> Slipping:
-        """The same after a step that ends at unknowns y (n,)."""
-        grip = self.grip(y)
-        if grip is None:
+    def accepted(self, y: FloatArray) -> InterfaceSlip:
+        """The item after a step that ends at unknowns y (n,)."""
+        state = self.evaluate(y)
+        if state is None:
             raise ArithmeticError("an accepted state cannot be evaluated")
-        return replace(self, anchor=y[self.own[4]] - grip.friction * self.give / self.hold)
+        return replace(self, friction=self.friction.after(y[self.own[4]], state.friction * self.give / self.hold))
 
-    def add_force(self, grip: Grip, residual: FloatArray) -> None:
-        """Add the forces to those on the unknowns (n,), in place."""
-        free = self.along >= 0
-        residual[self.own] += grip.force
-        residual[self.along[free]] += grip.curve_force[free]
-
-    def on_fixed(self, grip: Grip) -> float:
-        """Upward force in N on nodes that are fixed."""
-        return float(grip.curve_force[1][self.along[1] < 0].sum())
+    @property
+    def unknowns(self) -> IntArray:
+        """Unknowns (k,): those of the nodes, then the free ones of the curve."""
+        return np.concatenate((self.own.ravel(), self.along[self.along >= 0]))
 
     @cached_property
     def entries(self) -> tuple[IntArray, IntArray]:
-        """Rows and columns (k,) of the stiffness, wherever the nodes stand; none of what is fixed."""
+        """Rows and columns (e,) of the stiffness, wherever the nodes stand; none of what is fixed."""
         count, free = self.along.shape[1], self._free
         rows = [*(self.own[a] for a, _ in OWN), *(self.own[a].repeat(count) for a in (2, 3, 4, 4))]
         columns = [*(self.own[b] for _, b in OWN), *(np.tile(self.along[c], len(self.start)) for c in (0, 1, 0, 1))]
         return np.concatenate(rows)[free], np.concatenate(columns)[free]
-
-    def values(self, grip: Grip) -> FloatArray:
-        """Stiffness (k,) in N/m at the `entries`."""
-        return np.concatenate((grip.stiffness.ravel(), grip.curve_stiffness.ravel()))[self._free]
 
     @cached_property
     def _free(self) -> IntArray:

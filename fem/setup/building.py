@@ -20,7 +20,7 @@ from fem.results.fields import FieldRecovery, SolidFieldRecovery
 from fem.setup.contacts import CONTACT_MODELS
 from fem.setup.contacts_solid import solid_conditions
 from fem.setup.equations import set_up
-from fem.setup.items import clamp_sliding, sliding_nodes
+from fem.setup.items import sliding_nodes
 from fem.setup.layout import lay_out
 from fem.setup.supports import SUPPORT_MODELS
 
@@ -57,11 +57,8 @@ def _axisymmetric_model(problem: Problem, linear_solver: str, warnings: tuple[st
     radial = (support & ~sliding_nodes(mesh, problem)) | mesh.axis | conditions.held
     geometry = gauss_geometry(mesh)
     equilibrium = set_up(problem, mesh, geometry, np.stack((radial, support)), conditions, linear_solver)
-    sliding = clamp_sliding(mesh, problem, equilibrium.system.numbering)
-    if sliding is not None:
-        equilibrium = replace(equilibrium, system=equilibrium.system.rubbing(sliding))
-    system = equilibrium.system
-    recovery = FieldRecovery(mesh, system.laws, geometry, system.point_modulus, problem.kinematics == "finite")
+    elements = equilibrium.system.elements
+    recovery = FieldRecovery(mesh, elements.laws, geometry, elements.point_modulus, problem.kinematics == "finite")
     return Model(problem, mesh, equilibrium, recovery, NewtonSettings(), warnings)
 
 
@@ -77,8 +74,8 @@ def solid_model(problem: Problem, mesh: SolidMesh, linear_solver: str, warnings:
     if tool.tilt != 0.0 and conditions.punch is None:
         turned = _turn(mesh, tool.tilt) * conditions.tied
         equilibrium = replace(equilibrium, system=equilibrium.system.displaced(mesh.elements, turned))
-    system = equilibrium.system
-    recovery = SolidFieldRecovery(mesh, system.laws, geometry, system.point_modulus, problem.kinematics == "finite")
+    elements = equilibrium.system.elements
+    recovery = SolidFieldRecovery(mesh, elements.laws, geometry, elements.point_modulus, problem.kinematics == "finite")
     return Model(problem, mesh, equilibrium, recovery, NewtonSettings(), warnings)
 
 

@@ -1,63 +1,109 @@
-"""From a problem to its interfaces that slip.
+"""From a problem to the items of its equations: slip on the clamp, slip of interfaces, contact of the tool.
 
-The nodes slide on the curve of the side that bends less: a curve follows the nodes of the other side only where they
-stand, and a soft or thin side would fold between them.
+The nodes of an interface slide on the curve of the side that bends less: a curve follows the nodes of the other side
+only where they stand, and a soft or thin side would fold between them.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from fem.arrays import BoolArray, FloatArray, IntArray
-from fem.assembly.scatter import Numbering, Scatter, widened
-from fem.interactions.clamp import Sliding
-from fem.interactions.interface import Curve, Slipping
+from fem.assembly.item import Item
+from fem.assembly.scatter import Numbering
+from fem.interactions.active_set import Friction
+from fem.interactions.clamp import ClampSlip
+from fem.interactions.interface import Curve, InterfaceSlip
+from fem.interactions.punch import Punch
+from fem.interactions.tool_contact import ToolContact
 from fem.mesh.quads import Mesh, ring_areas
+from fem.mesh.solid import AnyMesh
 from fem.problem.problem import Problem
+from fem.setup.contacts import Conditions
 from fem.setup.supports import on_the_plate
 
+CLAMP_STICK = 3e3  # stiffness against sliding below the limit, in shear moduli over the thickness of the lowest layer
 HOLD, GIVE = 1e2, 1e-5  # k in shear moduli over the thickness of the layer that gives more; what it gives
 HALF_WAVE = 1.0 / 6.0  # length in tool radii over which a thin side is bent
-OWN_UNKNOWNS = 3  # of a node, besides its displacements
+INTERFACE_UNKNOWNS = 3  # of a node, besides its displacements
+PENALTY = 1e5  # of the tool, in shear moduli of the surface layer over the punch's radius
 
 
-def slipping_interfaces(problem: Problem, mesh: Mesh, numbering: Numbering) -> tuple[Slipping, ...]:
-    """The interfaces that slip in finite strain; their unknowns follow those of the numbering."""
-    found: list[Slipping] = []
-    count = numbering.count
-    for layer, limit in enumerate(problem.shear_limits):
-        if limit is None:
-            continue
-        curve, nodes = _sides(problem, mesh, layer)
-        nodes = nodes[1:-1]
-        own = count + np.arange(OWN_UNKNOWNS * len(nodes)).reshape(OWN_UNKNOWNS, -1)
-        count += own.size
-        area = ring_areas(mesh.nodes[curve, 0])[1:-1]
-        hold = HOLD * min(part.material.shear_modulus / part.thickness for part in problem.layers[layer : layer + 2])
-        found.append(
-            Slipping(
-                Curve(mesh.nodes[curve, 0]),
-                mesh.nodes[nodes, 0],
-                np.concatenate((numbering.unknown[:, nodes], own)),
-                numbering.unknown[:, curve],
-                hold * area,
-                GIVE,
-                limit * area,
-                np.zeros(len(nodes)),
-            )
-        )
-    return tuple(found)
+def make_items(
+    problem: Problem, mesh: AnyMesh, numbering: Numbering, conditions: Conditions
+) -> tuple[Numbering, tuple[Item, ...], int | None]:
+    """Items of a problem.
+
+    Parameters
+    ----------
+    problem, mesh, conditions
+        What was asked, the mesh, and the conditions of the contact.
+    numbering
+        Unknown displacements of the nodes.
+
+    Returns
+    -------
+    tuple
+        The numbering with the items' own unknowns, the items, and the unknown of a tool that touches, or None.
+    """
+    items: list[Item] = []
+    if isinstance(mesh, Mesh):
+        items += clamp_slip(problem, mesh, numbering)
+    if isinstance(mesh, Mesh) and problem.kinematics == "finite":
+        for layer, limit in enumerate(problem.shear_limits):
+            if limit is not None:
+                slip = interface_slip(problem, mesh, numbering, layer, limit)
+                numbering = replace(numbering, count=numbering.count + INTERFACE_UNKNOWNS * len(slip.start))
+                items.append(slip)
+    if conditions.punch is None or conditions.area is None:
+        return numbering, tuple(items), None
+    contact = tool_contact(problem, mesh, numbering, conditions.punch, conditions.area)
+    count = int(contact.own[-1, -1]) + 1
+    return replace(numbering, count=count), (*items, contact), contact.tool
 
 
-def with_interfaces(scatter: Scatter, count: int, interfaces: Sequence[Slipping]) -> Scatter:
-    """A scatter whose pattern has the entries of the interfaces; count is the number of unknowns."""
-    if not interfaces:
-        return scatter
-    rows, columns = (np.concatenate(side) for side in zip(*(part.entries for part in interfaces), strict=True))
-    return widened(scatter, count, rows, columns)[0]
+def sliding_nodes(mesh: Mesh, problem: Problem) -> BoolArray:
+    """Nodes (N,) that slide on the plate: all on it but those of the outer border."""
+    if problem.support.clamp_shear_limit is None:
+        return np.zeros(len(mesh.nodes), dtype=np.bool_)
+    return on_the_plate(mesh, problem) & ~mesh.border
+
+
+def clamp_slip(problem: Problem, mesh: Mesh, numbering: Numbering) -> tuple[ClampSlip, ...]:
+    """Friction between sheet and plate; none where the sheet does not slide."""
+    limit = problem.support.clamp_shear_limit
+    if limit is None:
+        return ()
+    row = np.flatnonzero(on_the_plate(mesh, problem))
+    row = row[np.argsort(mesh.nodes[row, 0])]
+    moving = sliding_nodes(mesh, problem)[row]
+    area: FloatArray = ring_areas(mesh.nodes[row, 0])[moving]
+    last = problem.layers[-1]
+    stick = CLAMP_STICK * last.material.shear_modulus / last.thickness * area
+    return (ClampSlip(numbering.unknown[0, row[moving]], Friction(stick, limit * area, np.zeros(len(area)))),)
+
+
+def interface_slip(problem: Problem, mesh: Mesh, numbering: Numbering, layer: int, limit: float) -> InterfaceSlip:
+    """The interface below a layer with its limit in Pa; its own unknowns follow those of the numbering."""
+    curve, nodes = _sides(problem, mesh, layer)
+    nodes = nodes[1:-1]
+    own = numbering.count + np.arange(INTERFACE_UNKNOWNS * len(nodes)).reshape(INTERFACE_UNKNOWNS, -1)
+    area = ring_areas(mesh.nodes[curve, 0])[1:-1]
+    hold = area * (
+        HOLD * min(part.material.shear_modulus / part.thickness for part in problem.layers[layer : layer + 2])
+    )
+    return InterfaceSlip(
+        Curve(mesh.nodes[curve, 0]),
+        mesh.nodes[nodes, 0],
+        np.concatenate((numbering.unknown[:, nodes], own)),
+        numbering.unknown[:, curve],
+        hold,
+        GIVE,
+        Friction(hold / GIVE, limit * area, np.zeros(len(nodes))),
+    )
 
 
 def _sides(problem: Problem, mesh: Mesh, layer: int) -> tuple[IntArray, IntArray]:
@@ -93,25 +139,18 @@ def bending_modulus(problem: Problem, layer: int, step: int) -> float:
     return problem.layers[layer].material.shear_modulus * min(1.0, share)
 
 
-STICK = 3e3  # stiffness against sliding below the limit, in shear moduli over the thickness of the lowest layer
+def tool_contact(problem: Problem, mesh: AnyMesh, numbering: Numbering, punch: Punch, area: FloatArray) -> ToolContact:
+    """Contact with a punch of the nodes with an area (N,) in m2; its own unknowns follow those of the numbering.
 
-
-def sliding_nodes(mesh: Mesh, problem: Problem) -> BoolArray:
-    """Nodes (N,) that slide on the plate: all on it but those of the outer border."""
-    if problem.support.clamp_shear_limit is None:
-        return np.zeros(len(mesh.nodes), dtype=np.bool_)
-    return on_the_plate(mesh, problem) & ~mesh.border
-
-
-def clamp_sliding(mesh: Mesh, problem: Problem, numbering: Numbering) -> Sliding | None:
-    """Friction between sheet and plate; None where the sheet does not slide."""
-    limit = problem.support.clamp_shear_limit
-    if limit is None:
-        return None
-    row = np.flatnonzero(on_the_plate(mesh, problem))
-    row = row[np.argsort(mesh.nodes[row, 0])]
-    moving = sliding_nodes(mesh, problem)[row]
-    area: FloatArray = ring_areas(mesh.nodes[row, 0])[moving]
-    last = problem.layers[-1]
-    stick = STICK * last.material.shear_modulus / last.thickness * area
-    return Sliding(numbering.unknown[0, row[moving]], stick, limit * area, np.zeros(len(area)))
+    A node has a multiplier against the punch and, with friction, one for each direction on it.
+    """
+    nodes = np.flatnonzero(area > 0.0)
+    kinds = 1 if punch.friction == 0.0 else len(numbering.unknown)
+    tool = np.full((1, len(nodes)), numbering.count)
+    multipliers = numbering.count + 1 + np.arange(kinds * len(nodes)).reshape(kinds, -1)
+    place: FloatArray = mesh.nodes[nodes].T.copy()
+    own = np.concatenate((numbering.unknown[:, nodes], tool, multipliers))
+    gap = punch.gap(place)
+    anchor = place[:-1] if gap is None else gap.path
+    penalty = PENALTY * problem.layers[0].material.shear_modulus / punch.radius * area[nodes]
+    return ToolContact(punch, place, own, Friction(penalty, np.zeros(len(nodes)), anchor))

@@ -16,8 +16,9 @@ from fem.analysis.newton import NewtonSettings, solve_newton
 from fem.analysis.stepping import Stepper
 from fem.arrays import BoolArray, FloatArray
 from fem.assembly.axisymmetric import Geometry, gauss_geometry, point_geometry
+from fem.assembly.elements import make_elements
 from fem.assembly.scatter import Numbering, Scatter, build_scatter, number_unknowns
-from fem.assembly.system import Evaluation, System
+from fem.assembly.system import Evaluation, System, make_system
 from fem.linear_solver import make_solver
 from fem.materials import Material
 from fem.materials.components import AXISYMMETRIC
@@ -78,7 +79,7 @@ class Body:
     def system(self) -> System:
         """Residual and tangent."""
         laws = element_laws((self.material,), self.mesh.layer, (self.relaxation,))
-        return System(self.geometry, laws, self.numbering, self.scatter, self.stabilisation)
+        return make_system(make_elements(self.geometry, laws, self.stabilisation), self.numbering, self.scatter)
 
     @property
     def points(self) -> FloatArray:

@@ -6,9 +6,10 @@ import numpy as np
 import skfem
 
 from fem.arrays import BoolArray, FloatArray, IntArray
+from fem.assembly.elements import make_elements
 from fem.assembly.scatter import build_scatter, number_unknowns
 from fem.assembly.solid import SOLID_ELEMENTS, solid_geometry
-from fem.assembly.system import System
+from fem.assembly.system import System, make_system
 from fem.linear_solver import make_solver
 from fem.materials import Material
 from fem.materials.element_laws import element_laws
@@ -73,7 +74,8 @@ def equations(mesh: SolidMesh, material: Material, fixed: BoolArray, stabilisati
     """Residual and tangent of one material with the displacements (3, N) in `fixed` prescribed."""
     numbering = number_unknowns(fixed, np.zeros(len(mesh.nodes), dtype=np.bool_))
     laws = element_laws((material,), mesh.layer)
-    return System(solid_geometry(mesh), laws, numbering, build_scatter(mesh.elements, numbering), stabilisation)
+    elements = make_elements(solid_geometry(mesh), laws, stabilisation)
+    return make_system(elements, numbering, build_scatter(mesh.elements, numbering))
 
 
 def solve_linear(system: System, load: FloatArray) -> FloatArray:

@@ -17,7 +17,7 @@ from functools import partial
 import numpy as np
 
 from fem.analysis.equilibrium import Equilibrium
-from fem.analysis.linear import FadingBody
+from fem.analysis.linear import RelaxingBody
 from fem.analysis.newton import NewtonSettings
 from fem.analysis.stepping import Stepper
 from fem.materials import LinearElastic, Material, NeoHookean
@@ -46,7 +46,7 @@ def ramp_hold() -> tuple[Quantity, ...]:
     """Axial stress of a strain that is brought up and held, in steps of many lengths."""
     material = LinearElastic(YOUNGS_MODULUS, POISSON_RATIO)
     problem = _confined(material, TERMS)
-    body, before, found = FadingBody(problem), 0.0, []
+    body, before, found = RelaxingBody(problem), 0.0, []
     for time in (0.3, 1.1, *HOLDS):
         state, _ = body.step(time - before, "depth", STRAIN * min(time, RAMP) / RAMP)
         before = time
@@ -79,7 +79,7 @@ def creep() -> tuple[Quantity, ...]:
 
 
 def _crept(problem: Equilibrium, steps: int) -> float:
-    body = FadingBody(problem)
+    body = RelaxingBody(problem)
     state, _ = body.step(0.0, "force", STRESS * np.pi)
     for _ in range(steps):
         state, _ = body.step(CREEP_TIME / steps, "force", STRESS * np.pi)

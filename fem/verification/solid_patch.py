@@ -33,7 +33,7 @@ def patch(element: str, poisson_ratio: float) -> tuple[Quantity, ...]:
     system = equations(mesh, LinearElastic(1e5, poisson_ratio), np.tile(mesh.base, (3, 1)), 0.0)
     system = system.displaced(mesh.elements, exact * mesh.base)
     y = solve_linear(system, np.zeros(system.numbering.count))
-    found = system.geometry.gradient(system.element_displacement(y))
+    found = system.elements.geometry.gradient(system.element_displacement(y))
     return tuple(
         Quantity(name, GRADIENT[i, j], worst(found[3 * i + j], GRADIENT[i, j]), "", ALLOWED_PERCENT, len(y))
         for name, i, j in (("xx", 0, 0), ("yz", 1, 2), ("zx", 2, 0))

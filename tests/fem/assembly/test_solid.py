@@ -67,10 +67,10 @@ def test_the_tangent_is_the_difference_quotient_of_the_residual(name):
     pressure = equations.rest()[1]
     for _ in range(2):  # with the pressure the volume asks for, the condensed tangent is the residual's derivative
         state = equations.evaluate(y, pressure)
-        pressure = state.consistent_pressure
+        pressure = state.elements.consistent_pressure
 
     def residual(z):
-        p = equations.evaluate(z, pressure).consistent_pressure
+        p = equations.evaluate(z, pressure).elements.consistent_pressure
         return equations.evaluate(z, p).residual
 
     h = 1e-6
@@ -92,7 +92,7 @@ def swirl_error(name, n, nu):
     equations = equations_of(mesh, material, np.tile(mesh.base, (3, 1)), 0.0).displaced(
         mesh.elements, exact * mesh.base
     )
-    geometry, element = equations.geometry, SOLID_ELEMENTS[name]
+    geometry, element = equations.elements.geometry, SOLID_ELEMENTS[name]
     value, _ = element.tabulate(element.quadrature()[0])
     at = [value @ c[mesh.elements] for c in mesh.nodes.T]
     H = np.zeros((9, *geometry.weight.shape))

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import fem
-from fem.assembly.system import System
 
 SOFT = ((1e-2, 2e4),)
 SKIN = ((1e-4, 1e6), (1.5e-3, 1e5), (1e-2, 2e4))
@@ -34,8 +33,8 @@ def tool_forces(pressed, solution):
     unknown, u = system.numbering.unknown, solution.displacement[-1].T
     y = np.zeros(system.numbering.count)
     y[unknown[unknown >= 0]] = u[unknown >= 0]
-    body = System.evaluate(system, y, solution.pressure[-1])
-    force = np.append(system.scatter.vector(body.element_force), 0.0)[unknown] * mesh.top
+    body = system.elements.evaluate(system.element_displacement(y), solution.pressure[-1])
+    force = np.append(system.scatter.vector(body.force), 0.0)[unknown] * mesh.top
     x, _, z = mesh.nodes.T + u
     return force.sum(axis=1), float((z * force[0] - (x - mesh.axis_point[0]) * force[2]).sum())
 
@@ -84,7 +83,7 @@ def test_the_tissue_does_not_enter_a_tilted_punch():
     top = pressed.mesh.top
     place = (pressed.mesh.nodes[top] + solution.displacement[-1, top]).T
     place[2] += solution.depth[-1]
-    gap = pressed.equilibrium.system.contact.punch.gap(place).distance
+    gap = pressed.equilibrium.system.items[-1].punch.gap(place).distance
     assert gap.min() > -1e-6
     assert (gap < 1e-6).sum() > 10
     np.testing.assert_allclose(solution.reaction, solution.force, rtol=1e-6)
@@ -96,7 +95,7 @@ def test_a_tilted_punch_touches_first_on_its_lower_side_and_its_mirror_image_on_
     for sign in (1.0, -1.0):
         pressed = model(tilt=sign * TILT, x=sign * 2e-3)
         solution = pressed.run(load)
-        contact = pressed.equilibrium.system.contact
+        (contact,) = pressed.equilibrium.system.items
         touched = contact.place[0, np.abs(contact.punch.gap(contact.place).distance) < 3e-4] - sign * 2e-3
         assert (sign * touched > 0.0).all()
         answers.append((solution.force[0], *tool_forces(pressed, solution)))

@@ -8,7 +8,8 @@ import pytest
 import fem
 from fem.analysis.newton import NewtonSettings
 from fem.analysis.stepping import Stepper
-from fem.interactions.clamp import Sliding
+from fem.interactions.active_set import Friction
+from fem.interactions.clamp import ClampSlip
 
 SHEET = (
     fem.Layer("skin", 1.5e-3, 1000.0, fem.NeoHookean(1e5, 0.48)),
@@ -71,13 +72,14 @@ def test_what_the_press_loses_in_a_cycle_is_what_the_friction_takes(elastic_ener
     stepper = Stepper(problem, "force", 1e-3, NewtonSettings())
     lost, depth = 0.0, [0.0]
     for value in PRESS.value.tolist():
-        before = stepper.problem.system.sliding
+        (before,) = stepper.problem.system.items
         y = stepper.advance(value).state.y
-        after = stepper.problem.system.sliding
-        assert (np.abs(after.force(y)) <= after.limit * (1.0 + 1e-9)).all()
-        lost += float(after.force(y) @ (after.anchor - before.anchor))
+        (after,) = stepper.problem.system.items
+        force = after.respond(y).force
+        assert (np.abs(force) <= after.friction.limit * (1.0 + 1e-9)).all()
+        lost += float(force @ (after.friction.anchor - before.friction.anchor))
         depth.append(problem.depth(y))
-    stored = elastic_energy(stepper.problem.system, y) + 0.5 * float((after.force(y) ** 2 / after.stick).sum())
+    stored = elastic_energy(stepper.problem.system, y) + 0.5 * float((force**2 / after.friction.stick).sum())
     work = np.trapezoid(np.append(0.0, PRESS.value), depth)
     assert lost > 1e-5
     assert work == pytest.approx(lost + stored, rel=5e-3)
@@ -121,26 +123,26 @@ def test_a_stopped_run_goes_on(sliding, tmp_path):
 
 
 def test_it_gives_elastically_slides_at_the_limit_and_comes_back():
-    slider = Sliding(np.array([1]), np.array([2.0]), np.array([3.0]), np.zeros(1))
+    slider = ClampSlip(np.array([1]), Friction(np.array([2.0]), np.array([3.0]), np.zeros(1)))
     force, slope = [], []
     for u in (1.0, 1.5, 4.0, 3.0, 0.5):
         y = np.array([9.0, u])
-        force.append(slider.force(y)[0])
-        slope.append(slider.stiffness(y)[0])
-        slider = slider.after(y)
+        force.append(slider.respond(y).force[0])
+        slope.append(slider.respond(y).stiffness[0])
+        slider = slider.accepted(y)
     np.testing.assert_allclose(force, [2.0, 3.0, 3.0, 1.0, -3.0])
     np.testing.assert_allclose(slope, [2.0, 2.0, 0.0, 2.0, 0.0])
-    np.testing.assert_allclose(slider.anchor, [2.0])
+    np.testing.assert_allclose(slider.friction.anchor, [2.0])
 
 
 def test_the_stiffness_is_the_derivative_of_the_force():
-    slider = Sliding(np.arange(3), np.array([1.0, 2.0, 3.0]), np.ones(3), np.array([0.0, 0.1, -5.0]))
+    slider = ClampSlip(np.arange(3), Friction(np.array([1.0, 2.0, 3.0]), np.ones(3), np.array([0.0, 0.1, -5.0])))
     y, step = np.array([0.5, -0.2, 0.3]), 1e-7
-    slope = (slider.force(y + step) - slider.force(y - step)) / (2.0 * step)
-    np.testing.assert_allclose(slider.stiffness(y), slope, atol=1e-8)
+    slope = (slider.respond(y + step).force - slider.respond(y - step).force) / (2.0 * step)
+    np.testing.assert_allclose(slider.respond(y).stiffness, slope, atol=1e-8)
 
 
 @pytest.mark.parametrize(("moved", "everywhere"), [(0.9, False), (1.1, True)])
 def test_everywhere(moved, everywhere):
-    slider = Sliding(np.arange(2), np.ones(2), np.ones(2), np.zeros(2))
-    assert slider.everywhere(np.array([2.0, moved])) is everywhere
+    slider = ClampSlip(np.arange(2), Friction(np.ones(2), np.ones(2), np.zeros(2)))
+    assert bool(slider.warning(np.array([2.0, moved]))) is everywhere

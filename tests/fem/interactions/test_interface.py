@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem.interactions.interface import Curve, Slipping
+from fem.interactions.active_set import Friction
+from fem.interactions.interface import Curve, InterfaceSlip
 
 RADIUS = np.array([0.0, 0.3, 0.6, 1.0, 1.5, 2.2, 3.0, 3.5, 4.0])
 PLACES = np.array([0.0, 0.1, 0.45, 2.0, 3.2, 4.0])
@@ -45,6 +46,7 @@ def test_beyond_its_ends_there_is_none(beyond):
 
 NODES = np.array([0.0, 0.3, 0.6, 1.0, 1.5, 2.2, 3.0])
 COUNT = len(NODES) - 2
+GIVE = 1e-2
 SIZE = 5 * COUNT + 2 * len(NODES)
 
 
@@ -54,19 +56,20 @@ def interface(limit):
     along[:, -1] = -1
     own = np.arange(5 * COUNT).reshape(5, COUNT)
     hold = np.linspace(1.0, 3.0, COUNT)
-    return Slipping(Curve(NODES), NODES[1:-1], own, along, hold, 1e-2, np.full(COUNT, limit), np.zeros(COUNT))
+    friction = Friction(hold / GIVE, np.full(COUNT, limit), np.zeros(COUNT))
+    return InterfaceSlip(Curve(NODES), NODES[1:-1], own, along, hold, GIVE, friction)
 
 
 def balance(part, y):
     residual = np.zeros(SIZE)
-    part.add_force(part.grip(y), residual)
+    np.add.at(residual, part.unknowns, part.respond(y).force)
     return residual
 
 
 def matrix(part, y):
     rows, columns = part.entries
     full = np.zeros((SIZE, SIZE))
-    np.add.at(full, (rows, columns), part.values(part.grip(y)))
+    np.add.at(full, (rows, columns), part.respond(y).stiffness)
     return full + full.T - np.diag(full.diagonal())
 
 
@@ -80,9 +83,9 @@ def test_the_stiffness_is_the_derivative_of_the_forces(limit):
 def test_what_holds_a_node_pushes_the_curve_back():
     y = 0.1 * np.random.default_rng(1).normal(size=SIZE)
     part = interface(1.0)
-    grip = part.grip(y)
-    assert grip.force[1].sum() + grip.curve_force[1].sum() == pytest.approx(0.0, abs=1e-12)
-    assert part.on_fixed(grip) == pytest.approx(grip.curve_force[1, -1])
+    found = part.evaluate(y)
+    assert found.force[1].sum() + found.curve_force[1].sum() == pytest.approx(0.0, abs=1e-12)
+    assert part.respond(y).support == pytest.approx(found.curve_force[1, -1])
 
 
 def state(pull, slip, stretch=1.0):
@@ -96,10 +99,10 @@ def state(pull, slip, stretch=1.0):
 
 def test_it_sticks_below_the_limit_and_slides_at_it():
     part = interface(1.0)
-    np.testing.assert_allclose(part.grip(state(0.5, 1e-3)).friction, 1e-3 * part.hold / part.give)
-    np.testing.assert_allclose(part.grip(state(1.5, 1e-3)).friction, 1.0)
-    np.testing.assert_allclose(part.grip(state(-1.5, -1e-3)).friction, -1.0)
-    assert not interface(0.0).grip(state(0.5, 1e-3)).friction.any()
+    np.testing.assert_allclose(part.evaluate(state(0.5, 1e-3)).friction, 1e-3 * part.hold / part.give)
+    np.testing.assert_allclose(part.evaluate(state(1.5, 1e-3)).friction, 1.0)
+    np.testing.assert_allclose(part.evaluate(state(-1.5, -1e-3)).friction, -1.0)
+    assert not interface(0.0).evaluate(state(0.5, 1e-3)).friction.any()
 
 
 def test_the_limit_holds_along_the_stretched_curve():
@@ -107,19 +110,19 @@ def test_the_limit_holds_along_the_stretched_curve():
     free = replace(interface(1.0), along=5 * COUNT + np.arange(2 * len(NODES)).reshape(2, -1))
     y = np.zeros(SIZE)
     y[free.along[0]], y[free.own[2]] = 0.25 * NODES, 5.0
-    grip = free.grip(y)
-    np.testing.assert_allclose(grip.stretch, 1.25)
-    np.testing.assert_allclose(grip.friction, 1.25)
+    found = free.evaluate(y)
+    np.testing.assert_allclose(found.stretch, 1.25)
+    np.testing.assert_allclose(found.friction, 1.25)
 
 
 def test_after_a_slip_it_sticks_where_it_came_to():
     part = interface(1.0)
-    later = part.after(state(1.5, 0.1))
-    np.testing.assert_allclose(later.anchor, 0.1 - part.give / part.hold)
-    np.testing.assert_allclose(later.grip(state(1.0, 0.1)).friction, 1.0)
-    assert part.rubs
-    assert not interface(0.0).rubs
+    later = part.accepted(state(1.5, 0.1))
+    np.testing.assert_allclose(later.friction.anchor, 0.1 - part.give / part.hold)
+    np.testing.assert_allclose(later.evaluate(state(1.0, 0.1)).friction, 1.0)
+    assert part.remembers
+    assert not interface(0.0).remembers
 
 
 def test_beyond_the_end_of_the_curve_there_is_none():
-    assert interface(1.0).grip(state(0.0, 1.0)) is None
+    assert interface(1.0).evaluate(state(0.0, 1.0)) is None

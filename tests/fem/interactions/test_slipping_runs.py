@@ -79,7 +79,7 @@ def test_only_what_slid_against_friction_keeps_a_set(bonded, slipping, free):
 def test_the_sides_stay_together_and_slide():
     pressed = model(0.0)
     found = pressed.run(PRESS)
-    part = pressed.equilibrium.system.interfaces[1]
+    part = pressed.equilibrium.system.items[1]
     upper, lower = (nodes[1:-1] for nodes in (pressed.mesh.undersides[1], pressed.mesh.interfaces[2]))
     jump = found.displacement[19][upper] - found.displacement[19][lower]
     assert 5e-5 < np.hypot(*jump.T).max() < 1e-3
@@ -109,18 +109,18 @@ def test_what_a_cycle_loses_is_limit_times_slip(elastic_energy):
     stepper = Stepper(equilibrium, "force", 1e-3, NewtonSettings())
     lost, most, depth = 0.0, 0.0, [0.0]
     for value in PRESS.value.tolist():
-        before = stepper.problem.system.interfaces
+        before = stepper.problem.system.items
         y = stepper.advance(value).state.y
-        for old, part in zip(before, stepper.problem.system.interfaces, strict=True):
-            grip = part.grip(y)
-            most = max(most, float(np.abs(grip.friction / grip.stretch / part.limit).max()))
-            step = grip.friction * (part.anchor - old.anchor)
+        for old, part in zip(before, stepper.problem.system.items, strict=True):
+            state = part.evaluate(y)
+            most = max(most, float(np.abs(state.friction / state.stretch / part.friction.limit).max()))
+            step = state.friction * (part.friction.anchor - old.friction.anchor)
             assert (step >= -1e-15).all()
             lost += float(step.sum())
         depth.append(equilibrium.depth(y))
     held = sum(
-        0.5 * float((part.give / part.hold * part.grip(y).friction ** 2).sum())
-        for part in stepper.problem.system.interfaces
+        0.5 * float((part.give / part.hold * part.evaluate(y).friction ** 2).sum())
+        for part in stepper.problem.system.items
     )
     stored = elastic_energy(stepper.problem.system, y) + held
     work = np.trapezoid(np.append(0.0, PRESS.value), depth)
