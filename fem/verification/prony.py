@@ -22,9 +22,8 @@ from fem.analysis.newton import NewtonSettings
 from fem.analysis.stepping import Stepper
 from fem.materials import LinearElastic, Material, NeoHookean
 from fem.materials.prony import PronyTerm
-from fem.verification.body import Body
+from fem.verification.body import Body, distorted_square
 from fem.verification.case import Case, Quantity
-from fem.verification.section import distorted_square
 
 YOUNGS_MODULUS, POISSON_RATIO = 2e4, 0.45
 TERMS, ONE_TERM = (PronyTerm(0.3, 0.5), PronyTerm(0.25, 7.0)), (PronyTerm(0.6, 2.0),)

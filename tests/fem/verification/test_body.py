@@ -2,8 +2,7 @@ import numpy as np
 import pytest
 
 from fem.materials import LinearElastic
-from fem.verification.body import Body, free_of_ties, worst
-from fem.verification.section import distorted_square, mapped_mesh, plane_stress_material
+from fem.verification.body import Body, distorted_square, free_of_ties, mapped_mesh, plane_stress_material, worst
 
 
 def test_a_distorted_square_keeps_its_volume_and_its_border():

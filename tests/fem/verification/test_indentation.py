@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import fem
-from fem.verification.half_space import INDENTATION, RADIUS, YOUNGS_MODULUS, disc, half_space, punch, settlement
+from fem.verification.indentation import INDENTATION, RADIUS, YOUNGS_MODULUS, disc, half_space, punch, settlement
 
 PRINTED = np.array([1.4478, 1.1055, 0.9259, 0.5769, 0.1901]) * 1e-3
 
@@ -29,7 +29,7 @@ def test_surface_profile_outside_the_punch():
 
 def test_a_wrong_modulus_would_be_seen(monkeypatch):
     """The case compares with the closed form of the stated modulus, not with itself."""
-    monkeypatch.setattr("fem.verification.half_space.LinearElastic", lambda e, nu: fem.LinearElastic(1.01 * e, nu))
+    monkeypatch.setattr("fem.verification.indentation.LinearElastic", lambda e, nu: fem.LinearElastic(1.01 * e, nu))
     (found,) = punch(0.35)
     assert not found.passed
     assert found.error_percent == pytest.approx(1.0, abs=0.1)
