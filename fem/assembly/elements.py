@@ -107,7 +107,7 @@ class Elements:
         volume_change = np.einsum("iqe,qe->ie", shapes, weight * change)
         mismatch = self.field_modulus * volume_change - pressure
         coupling = self.geometry.coupling(deformation.cofactor * weight)
-        stress = self.laws.stress(deformation) + at_points * deformation.cofactor
+        stress = self.laws.stress_change(deformation) + at_points * deformation.cofactor
         force = self.geometry.forces(stress * weight) + np.einsum("nie,ie->ne", coupling, mismatch)
         return ElementState(deformation, pressure, at_points, coupling, mismatch, force)
 

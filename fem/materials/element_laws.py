@@ -72,13 +72,20 @@ class ElementLaws:
 
     def stress(self, deformation: Deformation) -> FloatArray:
         """First Piola-Kirchhoff stress (5, q, E) in Pa without the pressure."""
+        out = self.stress_change(deformation)
+        if self.pretension is not None:
+            out += self.pretension
+        return out
+
+    def stress_change(self, deformation: Deformation) -> FloatArray:
+        """The same less the pretension at rest: in equilibrium itself, its round-off would hide small loads."""
         out = self.elastic_stress(deformation)
         if self.share is not None:
             out *= self.share
         if self.overstress is not None:
             out += structure_gradient(deformation, self.overstress)
         if self.pretension is not None:
-            out += deformation.components.product(deformation.F, self.pretension)
+            out += deformation.components.product(deformation.H, self.pretension)
         return out
 
     def tangent(self, deformation: Deformation) -> FloatArray:

@@ -12,6 +12,7 @@ from fem.verification import (
     manufactured,
     patch,
     press,
+    pretension,
     prony,
     sections,
     solid_patch,
@@ -33,6 +34,7 @@ FAMILIES: tuple[Callable[[], tuple[Case, ...]], ...] = (
     sections.le1_cases,
     press.cases,
     prony.cases,
+    pretension.cases,
     solid_patch.cases,
     block.cases,
 )

@@ -24,7 +24,7 @@ def test_force_control_balances_the_forces(problem):
     assert result.success
     found = problem.system.evaluate(result.state.y, result.state.pressure)
     assert np.linalg.norm(found.residual - 0.3 * problem.unit_load) <= 0.3e-9
-    np.testing.assert_allclose(result.state.pressure, found.consistent_pressure, rtol=1e-9)
+    np.testing.assert_allclose(result.state.pressure, found.elements.consistent_pressure, rtol=1e-9)
 
 
 def test_depth_control_finds_the_same_state(problem):
