@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from fem.analysis.checkpoint import Checkpoint, Keeper, run_fingerprint
 from fem.analysis.equilibrium import Equilibrium
@@ -19,9 +18,6 @@ from fem.mesh.solid import AnyMesh
 from fem.problem.problem import Problem
 from fem.results.fields import FieldRecovery
 from fem.results.solution import Solution, StepReport
-
-if TYPE_CHECKING:
-    from fem.results.fields import SolidFieldRecovery
 
 PULLING = "the load history pulls (negative values): the contact is tied to the surface and cannot lift off"
 
@@ -57,7 +53,7 @@ class Model:
     problem: Problem
     mesh: AnyMesh
     equilibrium: Equilibrium
-    recovery: FieldRecovery | SolidFieldRecovery
+    recovery: FieldRecovery
     newton: NewtonSettings
     warnings: tuple[str, ...]
 

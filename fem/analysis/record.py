@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,9 +14,6 @@ from fem.assembly.system import System
 from fem.mesh.solid import AnyMesh
 from fem.results.fields import FieldRecovery
 from fem.results.solution import Failure, Resumed, Solution
-
-if TYPE_CHECKING:
-    from fem.results.fields import SolidFieldRecovery
 
 
 def largest_element_strain(strain: FloatArray, geometry: ElementGeometry) -> float:
@@ -62,7 +59,7 @@ class Record:
 
     mesh: AnyMesh
     equilibrium: Equilibrium
-    recovery: FieldRecovery | SolidFieldRecovery
+    recovery: FieldRecovery
     layer_names: tuple[str, ...]
     time: list[float] = field(default_factory=list)
     states: list[State] = field(default_factory=list)

@@ -53,6 +53,11 @@ class Mesh:
         out: FloatArray = self.nodes[:, 0]
         return out
 
+    @property
+    def tool_distance(self) -> FloatArray:
+        """Distance of the nodes (N,) in m from the tool's axis."""
+        return self.specimen_distance
+
     def profile(self, values: FloatArray, r: FloatArray) -> FloatArray:
         """Nodal values (N,) on each layer's top face at distances r (m,) from the tool's axis, (L, m)."""
         return np.stack([along_row(self.nodes[row, 0], values[row], r) for row in self.interfaces])

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol, TypeAlias, TypeVar
+from typing import TypeAlias
 
 import numpy as np
 
 from fem.arrays import FloatArray, IntArray
 from fem.assembly.axisymmetric import Geometry, point_geometry
+from fem.assembly.element_geometry import ElementGeometry
 from fem.assembly.solid import SOLID_ELEMENTS, SolidGeometry, solid_middle
-from fem.materials.components import AXISYMMETRIC
 from fem.materials.deformation import Deformation
 from fem.materials.element_laws import ElementLaws
 from fem.materials.prony import Memory
 from fem.mesh.quads import Mesh
-from fem.mesh.solid import SolidMesh
+from fem.mesh.solid import AnyMesh, SolidMesh
 
 # A 9-node element is written as four linear quads over all its nodes, values at their middles.
 QUADS = np.array([[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]])
@@ -76,63 +76,76 @@ class FieldRecovery:
     gauss
         Geometry at the Gauss points.
     point_modulus
-        Bulk modulus (E,) in Pa that acts at points (see :class:`fem.assembly.System`).
+        Bulk modulus (E,) in Pa that acts at points (see :class:`fem.assembly.elements.Elements`).
     finite
         Whether the kinematics is finite.
     """
 
-    mesh: Mesh
+    mesh: AnyMesh
     laws: ElementLaws
-    gauss: Geometry
+    gauss: ElementGeometry
     point_modulus: FloatArray
     finite: bool
 
     @cached_property
-    def _middles(self) -> Geometry:
-        return point_geometry(self.mesh, self.gauss, MIDDLES)
+    def _middles(self) -> ElementGeometry:
+        """Geometry at the cells' middles."""
+        mesh, gauss = self.mesh, self.gauss
+        if isinstance(mesh, Mesh) and isinstance(gauss, Geometry):
+            return point_geometry(mesh, gauss, MIDDLES)
+        if isinstance(mesh, SolidMesh) and isinstance(gauss, SolidGeometry):
+            return solid_middle(mesh, gauss)
+        raise TypeError("mesh and geometry are of different dimensions")
 
     def deformation(self, displacement: FloatArray) -> Deformation:
-        """Deformation at the cells' middles of nodal displacements (N, 2)."""
-        u = displacement[self.mesh.elements].transpose(2, 0, 1).reshape(18, -1)
-        return Deformation(AXISYMMETRIC, self._middles.gradient(u))
+        """Deformation at the cells' middles of nodal displacements (N, components)."""
+        count = displacement.shape[1] * len(self.mesh.elements)
+        u = displacement[self.mesh.elements].transpose(2, 0, 1).reshape(count, -1)
+        return Deformation(self._middles.components, self._middles.gradient(u))
 
     def fields(self, displacement: FloatArray, pressure: FloatArray) -> Fields:
-        """Fields of nodal displacements (N, 2) and pressure coefficients (3, E)."""
-        geometry, deformation = self._middles, self.deformation(displacement)
+        """Fields of nodal displacements (N, components) and pressure coefficients (p, E)."""
+        geometry, deformation, mesh = self._middles, self.deformation(displacement), self.mesh
         mean_stress = np.einsum("ie,iqe->qe", pressure, geometry.pressure)
-        stress, measure, ratio = stresses(self.laws, deformation, mean_stress, self.point_modulus, self.finite)
-        nodes, moved = np.zeros((len(displacement), 3)), np.zeros((len(displacement), 3))
-        nodes[:, ::2], moved[:, ::2] = self.mesh.nodes, displacement
+        stress, strain, ratio = (_finite if self.finite else _linear)(
+            self.laws, deformation, mean_stress, self.point_modulus
+        )
+        tensor = geometry.components.tensor
+        if isinstance(mesh, Mesh):
+            cells, kind = mesh.elements[QUADS].transpose(2, 0, 1).reshape(-1, 4), VTK_QUAD
+        else:
+            element = SOLID_ELEMENTS[mesh.element]
+            cells, kind = mesh.elements[element.vtk_order].T, element.vtk_type
         return Fields(
-            points=nodes,
-            cells=self.mesh.elements[QUADS].transpose(2, 0, 1).reshape(-1, 4),
-            layer=np.repeat(self.mesh.layer, len(QUADS)),
-            displacement=moved,
-            cauchy_stress=_per_cell(AXISYMMETRIC.tensor(stress)),
-            strain=_per_cell(AXISYMMETRIC.tensor(measure)),
+            points=_in_space(mesh.nodes),
+            cells=cells,
+            layer=np.repeat(mesh.layer, len(ratio)),
+            displacement=_in_space(displacement),
+            cauchy_stress=_per_cell(tensor(stress)),
+            strain=_per_cell(tensor(strain)),
             det_F=_per_cell(ratio),
+            cell_type=kind,
         )
 
+    def remembering(self, time: FloatArray, displacement: FloatArray) -> FieldRecovery:
+        """The recovery whose laws remember the steps so far, by following them again at the cells' middles.
 
-def stresses(
-    laws: ElementLaws, deformation: Deformation, mean_stress: FloatArray, point_modulus: FloatArray, finite: bool
-) -> _Measures:
-    """Cauchy stress in Pa, strain (components, q, E each) and volume ratio (q, E).
-
-    Parameters
-    ----------
-    laws
-        Laws of the elements.
-    deformation
-        Deformation at q points of the elements.
-    mean_stress
-        The pressure field there, (q, E) in Pa.
-    point_modulus
-        Bulk modulus (E,) in Pa that acts at points.
-    finite
-        Green-Lagrange strain and the stress of the deformed state; otherwise small strain.
-    """
-    return (_finite if finite else _linear)(laws, deformation, mean_stress, point_modulus)
+        Parameters
+        ----------
+        time
+            Times (n,) in s of the steps, at least one.
+        displacement
+            Nodal displacements (n, N, components) in m.
+        """
+        if self.laws.prony is None:
+            return self
+        before = min(0.0, float(time[0]))
+        memory = Memory.of_rest(self.laws.prony, self.deformation(displacement[0]).H.shape)
+        for end, u in zip(time.tolist(), displacement, strict=True):
+            deformation = self.deformation(u)
+            elastic = self.laws.second_stress(deformation) if self.finite else self.laws.linear_stress(deformation)
+            memory, before = memory.after(end - before, elastic), end
+        return replace(self, laws=self.laws.relaxing(*memory.ahead(0.0)))
 
 
 def _finite(
@@ -156,106 +169,15 @@ def _linear(
     return stress, small, 1.0 + change
 
 
+def _in_space(plane: FloatArray) -> FloatArray:
+    """Vectors (N, 3) of those in (r, z), at theta = 0, or in three dimensions."""
+    if plane.shape[1] == 3:
+        return plane
+    out = np.zeros((len(plane), 3))
+    out[:, ::2] = plane
+    return out
+
+
 def _per_cell(values: FloatArray) -> FloatArray:
     """Values (q, E, ...) in the order of the cells, (E q, ...)."""
     return np.swapaxes(values, 0, 1).reshape(-1, *values.shape[2:])
-
-
-@dataclass(frozen=True)
-class SolidFieldRecovery:
-    """Evaluates fields of a three-dimensional mesh with laws.
-
-    Attributes
-    ----------
-    mesh
-        The mesh.
-    laws
-        Laws of its elements.
-    gauss
-        Geometry at the Gauss points.
-    point_modulus
-        Bulk modulus (E,) in Pa that acts at points (see :class:`fem.assembly.System`).
-    finite
-        Whether the kinematics is finite.
-    """
-
-    mesh: SolidMesh
-    laws: ElementLaws
-    gauss: SolidGeometry
-    point_modulus: FloatArray
-    finite: bool
-
-    @cached_property
-    def _middle(self) -> SolidGeometry:
-        return solid_middle(self.mesh, self.gauss)
-
-    def deformation(self, displacement: FloatArray) -> Deformation:
-        """Deformation at the elements' middles of nodal displacements (N, 3)."""
-        u = displacement[self.mesh.elements].transpose(2, 0, 1).reshape(-1, self.mesh.elements.shape[1])
-        return Deformation(self._middle.components, self._middle.gradient(u))
-
-    def fields(self, displacement: FloatArray, pressure: FloatArray) -> Fields:
-        """Fields of nodal displacements (N, 3) and pressure coefficients (p, E); one quadratic cell an element."""
-        geometry, deformation = self._middle, self.deformation(displacement)
-        mean_stress = np.einsum("ie,iqe->qe", pressure, geometry.pressure)
-        stress, measure, ratio = stresses(self.laws, deformation, mean_stress, self.point_modulus, self.finite)
-        element = SOLID_ELEMENTS[self.mesh.element]
-        tensor = geometry.components.tensor
-        return Fields(
-            points=self.mesh.nodes,
-            cells=self.mesh.elements[element.vtk_order].T,
-            layer=self.mesh.layer,
-            displacement=displacement,
-            cauchy_stress=tensor(stress)[0],
-            strain=tensor(measure)[0],
-            det_F=ratio[0],
-            cell_type=element.vtk_type,
-        )
-
-
-class Recovery(Protocol):
-    """What evaluates fields."""
-
-    @property
-    def laws(self) -> ElementLaws:
-        """Laws of the elements."""
-        ...
-
-    @property
-    def finite(self) -> bool:
-        """Whether the kinematics is finite."""
-        ...
-
-    def deformation(self, displacement: FloatArray) -> Deformation:
-        """Deformation at the points of the fields of nodal displacements (N, components)."""
-        ...
-
-
-AnyRecovery = TypeVar("AnyRecovery", bound=Recovery)
-
-
-def remembering(recovery: AnyRecovery, time: FloatArray, displacement: FloatArray) -> AnyRecovery:
-    """Recovery whose laws remember the steps so far.
-
-    Parameters
-    ----------
-    recovery
-        Recovery of the body at rest; returned as it is where no layer relaxes.
-    time
-        Times (n,) in s of the steps.
-    displacement
-        Nodal displacements (n, N, components) in m.
-    """
-    laws = recovery.laws
-    if laws.prony is None:
-        return recovery
-    memory, before = None, min(0.0, float(time[0]))
-    for end, u in zip(time.tolist(), displacement, strict=True):
-        deformation = recovery.deformation(u)
-        if memory is None:
-            memory = Memory.of_rest(laws.prony, deformation.H.shape)
-        elastic = laws.second_stress(deformation) if recovery.finite else laws.linear_stress(deformation)
-        memory, before = memory.after(end - before, elastic), end
-    if memory is None:
-        return recovery
-    return replace(recovery, laws=laws.relaxing(*memory.ahead(0.0)))  # type: ignore[type-var]

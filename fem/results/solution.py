@@ -12,7 +12,7 @@ from fem.errors import FemError
 
 if TYPE_CHECKING:
     from fem.mesh.solid import AnyMesh
-    from fem.results.fields import FieldRecovery, Fields, SolidFieldRecovery
+    from fem.results.fields import FieldRecovery, Fields
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ class Solution:
     failure: Failure | None
     warnings: tuple[str, ...]
     mesh: AnyMesh
-    recovery: FieldRecovery | SolidFieldRecovery
+    recovery: FieldRecovery
     resumed: Resumed | None = None
     last: Solution | None = None
 
@@ -195,11 +195,9 @@ class Solution:
         FemError
             If there is no such step.
         """
-        from fem.results.fields import remembering
-
         displacement = self._displacement_at(step)
         end = range(len(self.time))[step] + 1
-        recovery = remembering(self.recovery, self.time[:end], self.displacement[:end])
+        recovery = self.recovery.remembering(self.time[:end], self.displacement[:end])
         return recovery.fields(displacement, self.pressure[step])
 
     def _displacement_at(self, step: int) -> FloatArray:

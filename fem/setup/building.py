@@ -16,9 +16,8 @@ from fem.errors import FemError
 from fem.mesh.quads import split_interfaces
 from fem.mesh.solid import SolidMesh
 from fem.problem.problem import Problem
-from fem.results.fields import FieldRecovery, SolidFieldRecovery
+from fem.results.fields import FieldRecovery
 from fem.setup.contacts import CONTACT_MODELS
-from fem.setup.contacts_solid import solid_conditions
 from fem.setup.equations import set_up
 from fem.setup.items import sliding_nodes
 from fem.setup.layout import lay_out
@@ -65,7 +64,7 @@ def _axisymmetric_model(problem: Problem, linear_solver: str, warnings: tuple[st
 def solid_model(problem: Problem, mesh: SolidMesh, linear_solver: str, warnings: tuple[str, ...]) -> Model:
     """Model of a problem on a three-dimensional mesh."""
     tool = problem.tool
-    conditions = solid_conditions(mesh, problem)
+    conditions = CONTACT_MODELS[tool.contact].conditions(mesh, problem)
     support = SUPPORT_MODELS[problem.support.kind].fixed(mesh, problem)
     lateral = support | conditions.held
     fixed = np.stack((lateral | mesh.mirror_x, lateral | mesh.mirror_y, support))
@@ -75,7 +74,7 @@ def solid_model(problem: Problem, mesh: SolidMesh, linear_solver: str, warnings:
         turned = _turn(mesh, tool.tilt) * conditions.tied
         equilibrium = replace(equilibrium, system=equilibrium.system.displaced(mesh.elements, turned))
     elements = equilibrium.system.elements
-    recovery = SolidFieldRecovery(mesh, elements.laws, geometry, elements.point_modulus, problem.kinematics == "finite")
+    recovery = FieldRecovery(mesh, elements.laws, geometry, elements.point_modulus, problem.kinematics == "finite")
     return Model(problem, mesh, equilibrium, recovery, NewtonSettings(), warnings)
 
 

@@ -1,4 +1,4 @@
-"""What a contact tells the solver, and what every contact gives."""
+"""The contacts between tool and surface: what each refuses, the mesh it needs, and its conditions on the nodes."""
 
 from __future__ import annotations
 
@@ -11,10 +11,17 @@ import numpy as np
 
 from fem.arrays import BoolArray, FloatArray
 from fem.errors import FemError
-from fem.interactions.punch import Punch
-from fem.mesh.quads import Mesh, ring_areas
+from fem.interactions.punch import Punch, standing
+from fem.mesh.quads import Mesh
+from fem.mesh.solid import AnyMesh
 from fem.problem.parts import Tool
 from fem.problem.problem import Problem
+from fem.setup.tool_faces import disc_load, top_areas, under_tool
+
+REACH = 1.5  # radius in tool radii up to which nodes may touch the punch
+EDGE_ELEMENTS = 5.0  # elements over the edge radius where it begins and ends
+FINEST_EDGE = 1.0 / 200.0  # element size at a very sharp edge, in tool radii
+SPHERE = 1.0 / 200.0  # element size under the tip of a sphere, in tool radii
 
 
 @dataclass(frozen=True)
@@ -24,7 +31,7 @@ class Conditions:
     Attributes
     ----------
     held
-        Nodes (N,) whose radial displacement is zero.
+        Nodes (N,) whose lateral displacement is zero.
     tied
         Nodes (N,) that share one vertical displacement, the tool's.
     load
@@ -78,22 +85,17 @@ class ContactModel(Protocol):
         ...
 
     def resolution(self, problem: Problem) -> Resolution:
-        """How fine the mesh must be at the tool."""
+        """How fine an axisymmetric mesh must be at the tool."""
         ...
 
-    def conditions(self, mesh: Mesh, problem: Problem) -> Conditions:
+    def conditions(self, mesh: AnyMesh, problem: Problem) -> Conditions:
         """Conditions on the nodes of the mesh."""
         ...
 
 
-def under_tool(mesh: Mesh, problem: Problem) -> BoolArray:
-    """Nodes (N,) of the top face with r <= tool radius."""
-    return mesh.top & (mesh.nodes[:, 0] <= problem.tool.radius)
-
-
 @dataclass(frozen=True)
 class UniformPressure:
-    """Force spread evenly over the reference disc, always along the axis; no constraint."""
+    """A uniform dead traction on the reference disc r <= tool radius, always along the axis; no constraint."""
 
     def check(self, problem: Problem) -> tuple[str, ...]:
         """An edge radius means nothing here."""
@@ -105,29 +107,14 @@ class UniformPressure:
         """The edge is only weakly singular, but the surface under the tool bends."""
         return SMALL_STRAIN if problem.kinematics == "linear" else Resolution(edge=1.0 / 25.0, under=1.0 / 6.0)
 
-    def conditions(self, mesh: Mesh, problem: Problem) -> Conditions:
+    def conditions(self, mesh: AnyMesh, problem: Problem) -> Conditions:
         """Work-equivalent nodal forces of 1 N over the disc."""
-        free = np.zeros(len(mesh.nodes), dtype=np.bool_)
-        return Conditions(free, free, _disc_load(mesh, problem.tool.radius))
-
-
-def _disc_load(mesh: Mesh, radius: float) -> FloatArray:
-    """Nodal forces -int N 2 r dr / radius^2, (N,), by Simpson's rule, exact for N r with quadratic N."""
-    top = mesh.interfaces[0]
-    row = top[mesh.nodes[top, 0] <= radius]
-    inner, middle, outer = row[:-2:2], row[1:-1:2], row[2::2]
-    r0, r1, r2 = (mesh.nodes[n, 0] for n in (inner, middle, outer))
-    share = (r2 - r0) / (3.0 * radius**2)
-    load = np.zeros(len(mesh.nodes))
-    np.add.at(load, inner, -share * r0)
-    np.add.at(load, middle, -share * 4.0 * r1)
-    np.add.at(load, outer, -share * r2)
-    return load
+        return Conditions(_nowhere(mesh), _nowhere(mesh), disc_load(mesh, problem.tool.radius))
 
 
 @dataclass(frozen=True)
 class RigidBonded:
-    """Stuck to the tool: one vertical and no radial displacement under it."""
+    """A flat tool stuck to the surface: one vertical and no lateral displacement for the whole disc under it."""
 
     def check(self, problem: Problem) -> tuple[str, ...]:
         """Only the sharp flat tool is there."""
@@ -145,10 +132,10 @@ class RigidBonded:
             return SMALL_STRAIN
         return Resolution(edge=1.0 / 60.0, under=1.0 / 3.0, fan=True)
 
-    def conditions(self, mesh: Mesh, problem: Problem) -> Conditions:
+    def conditions(self, mesh: AnyMesh, problem: Problem) -> Conditions:
         """Tie all nodes under the tool."""
-        inside = under_tool(mesh, problem)
-        return _tied(mesh, held=inside, tied=inside)
+        inside = under_tool(mesh, problem.tool.radius)
+        return Conditions(inside, inside, _master_load(mesh))
 
 
 @dataclass(frozen=True)
@@ -165,27 +152,14 @@ class RigidFrictionless:
         del problem
         return SMALL_STRAIN
 
-    def conditions(self, mesh: Mesh, problem: Problem) -> Conditions:
+    def conditions(self, mesh: AnyMesh, problem: Problem) -> Conditions:
         """Tie the vertical displacement only."""
-        return _tied(mesh, held=np.zeros(len(mesh.nodes), dtype=np.bool_), tied=under_tool(mesh, problem))
-
-
-def _tied(mesh: Mesh, held: BoolArray, tied: BoolArray) -> Conditions:
-    load = np.zeros(len(mesh.nodes))
-    load[mesh.interfaces[0][0]] = -1.0
-    return Conditions(held, tied, load)
-
-
-REACH = 1.5  # radius in tool radii up to which nodes may touch the punch
-EDGE_ELEMENTS = 5.0  # elements over the edge radius where it begins and ends
-FINEST_EDGE = 1.0 / 200.0  # element size at a very sharp edge, in tool radii
-SPHERE = 1.0 / 200.0  # element size under the tip of a sphere, in tool radii
-AXIS_SHARE = 0.1  # area of the node on the axis, which is 0 by Simpson's rule, over its neighbour's
+        return Conditions(_nowhere(mesh), under_tool(mesh, problem.tool.radius), _master_load(mesh))
 
 
 @dataclass(frozen=True)
 class RoundedPunch:
-    """Nodes of the surface touch a rigid surface and come off it."""
+    """Nodes of the surface touch a rigid surface with a rounded edge and come off it, in finite strain."""
 
     contact: str
 
@@ -214,10 +188,19 @@ class RoundedPunch:
         edge = max(share / EDGE_ELEMENTS, FINEST_EDGE)
         return Resolution(edge=edge, under=1.0 / 6.0, gather=(1.0 - share, 1.0))
 
-    def conditions(self, mesh: Mesh, problem: Problem) -> Conditions:
+    def conditions(self, mesh: AnyMesh, problem: Problem) -> Conditions:
         """No tie; the nodes near the tool may touch the punch."""
-        free, reach = np.zeros(len(mesh.nodes), dtype=np.bool_), REACH * problem.tool.radius
-        return Conditions(free, free, np.zeros(len(mesh.nodes)), punch_of(problem.tool), _areas(mesh, reach))
+        tool = problem.tool
+        punch, reach = punch_of(tool), REACH * tool.radius
+        if isinstance(mesh, Mesh):
+            near = mesh.top & (mesh.nodes[:, 0] <= reach)
+        else:
+            stood = standing(punch, tool.position, tool.tilt)
+            x, y, _ = stood.tip
+            near = mesh.top & (np.hypot(mesh.nodes[:, 0] - x, mesh.nodes[:, 1] - y) <= reach)
+            punch = stood.lowered(mesh.nodes[near].T)
+        area = np.where(near, top_areas(mesh), 0.0)
+        return Conditions(_nowhere(mesh), _nowhere(mesh), np.zeros(len(mesh.nodes)), punch, area)
 
 
 @dataclass(frozen=True)
@@ -229,32 +212,15 @@ class FrictionlessPunch:
         return self._of(problem).check(problem)
 
     def resolution(self, problem: Problem) -> Resolution:
-        """How fine the mesh must be at the tool."""
+        """How fine an axisymmetric mesh must be at the tool."""
         return self._of(problem).resolution(problem)
 
-    def conditions(self, mesh: Mesh, problem: Problem) -> Conditions:
+    def conditions(self, mesh: AnyMesh, problem: Problem) -> Conditions:
         """Conditions on the nodes of the mesh."""
         return self._of(problem).conditions(mesh, problem)
 
     def _of(self, problem: Problem) -> RoundedPunch | RigidFrictionless:
         return RigidFrictionless() if problem.kinematics == "linear" else RoundedPunch("rigid_frictionless")
-
-
-def punch_of(tool: Tool) -> Punch:
-    """The tool as a punch that touches; without an edge radius a sphere."""
-    friction = tool.friction_coefficient if tool.contact == "rigid_frictional" else 0.0
-    return Punch(tool.radius, tool.edge_radius or tool.radius, friction or 0.0, tool.adhesion_force)
-
-
-def _areas(mesh: Mesh, reach: float) -> FloatArray:
-    """Area (N,) in m2 of each node of the top face up to a radius in m, by Simpson's rule; 0 elsewhere."""
-    top = mesh.interfaces[0]
-    r = mesh.nodes[top, 0]
-    area = ring_areas(r)
-    area[0] = AXIS_SHARE * area[1]
-    out = np.zeros(len(mesh.nodes))
-    out[top[r <= reach]] = area[r <= reach]
-    return out
 
 
 CONTACT_MODELS: Mapping[str, ContactModel] = MappingProxyType(
@@ -265,3 +231,20 @@ CONTACT_MODELS: Mapping[str, ContactModel] = MappingProxyType(
         "rigid_frictional": RoundedPunch("rigid_frictional"),
     }
 )
+
+
+def punch_of(tool: Tool) -> Punch:
+    """The tool as a punch that touches; without an edge radius a sphere."""
+    friction = tool.friction_coefficient if tool.contact == "rigid_frictional" else 0.0
+    return Punch(tool.radius, tool.edge_radius or tool.radius, friction or 0.0, tool.adhesion_force)
+
+
+def _nowhere(mesh: AnyMesh) -> BoolArray:
+    return np.zeros(len(mesh.nodes), dtype=np.bool_)
+
+
+def _master_load(mesh: AnyMesh) -> FloatArray:
+    """The press of 1 N on the tool's displacement, that of the node on the axis."""
+    load = np.zeros(len(mesh.nodes))
+    load[mesh.interfaces[0][0]] = -1.0
+    return load
