@@ -54,25 +54,9 @@ def solve_newton(
     force_scale: float,
     settings: NewtonSettings,
 ) -> NewtonResult:
-    """Find the equilibrium at a prescribed force (N) or depth (m).
+    """Find the equilibrium at a prescribed force (N) or depth (m), from a guess, with at least one correction.
 
-    Parameters
-    ----------
-    problem
-        The equations.
-    guess
-        Where to start.
-    control, target
-        What is prescribed.
-    force_scale
-        Force in N below which the tolerance is not tightened further.
-    settings
-        Limits.
-
-    Returns
-    -------
-    NewtonResult
-        With at least one correction made; the reason of a failure in words.
+    Below the force scale in N the tolerance is not tightened further. A failure has its reason in the result.
     """
     state = guess if control == "depth" else State(guess.y, guess.pressure, target)
     evaluation = problem.system.evaluate(state.y, state.pressure)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -43,51 +44,59 @@ def run_nonlinear(
     on_step
         Called after each accepted step that was computed here.
     checkpoint
-        Where the accepted steps are kept; what it holds already is not computed again.
-
-    Raises
-    ------
-    CheckpointError
-        If the checkpoint cannot be used.
+        Where the accepted steps are kept (CheckpointError if it cannot be used); what it holds already is not computed
+        again.
 
     Returns
     -------
     Solution
         All steps that were reached, and the failure if there was one.
     """
-    began = clock.process_time()
-    problem = record.equilibrium
+    began, problem = clock.process_time(), record.equilibrium
     scale = LEAST_SHARE_OF_PEAK * force_scale(problem, load)
     start, reason = settle(problem, scale, settings)
     if reason:
         failure = Failure(1, float(load.time[0]), load.control, 0.0, float(load.value[0]), reason)
         return record.solution(failure, warnings)
     stepper = Stepper(problem, load.control, scale, settings, start, load.start)
-    first = 0 if checkpoint is None else _resume(record, stepper, checkpoint)
-    for n, (time, value) in list(enumerate(zip(load.time.tolist(), load.value.tolist(), strict=True)))[first:]:
-        advance = stepper.advance(value, time)
-        if advance.reason:
-            failure = Failure(n + 1, time, load.control, advance.value, value, advance.reason)
-            return record.solution(failure, warnings, _between(record, stepper.problem.system, advance, start))
-        system = stepper.problem.system
-        _keep(record, system, time, advance.state)
-        warnings = tuple(dict.fromkeys((*warnings, *system.warnings(advance.state.y))))
-        if checkpoint is not None:
-            checkpoint.write(_progress(record, stepper, clock.process_time() - began))
-        if on_step is not None:
-            depth = problem.depth(advance.state.y)
-            on_step(
-                StepReport(
-                    n + 1,
-                    len(load.time),
-                    time,
-                    advance.state.force,
-                    depth,
-                    advance.iterations,
-                    advance.cuts,
-                )
-            )
-    return record.solution(None, warnings)
+    return _Run(record, load, stepper, start, began, warnings, on_step, checkpoint).solution()
+
+
+@dataclass
+class _Run:
+    """A run under way: the process clock at its begin in s, and the warnings so far."""
+
+    record: Record
+    load: Load
+    stepper: Stepper
+    start: State
+    began: float
+    warnings: tuple[str, ...]
+    on_step: Callable[[StepReport], None] | None
+    checkpoint: Keeper | None
+
+    def solution(self) -> Solution:
+        """Follow the load history to its end, or to where it cannot be followed."""
+        first = 0 if self.checkpoint is None else _resume(self.record, self.stepper, self.checkpoint)
+        steps = list(enumerate(zip(self.load.time.tolist(), self.load.value.tolist(), strict=True)))
+        for n, (time, value) in steps[first:]:
+            advance = self.stepper.advance(value, time)
+            if advance.reason:
+                failure = Failure(n + 1, time, self.load.control, advance.value, value, advance.reason)
+                further = _between(self.record, self.stepper.problem.system, advance, self.start)
+                return self.record.solution(failure, self.warnings, further)
+            self._accept(n + 1, time, advance)
+        return self.record.solution(None, self.warnings)
+
+    def _accept(self, step: int, time: float, advance: Advance) -> None:
+        system, state = self.stepper.problem.system, advance.state
+        _keep(self.record, system, time, state)
+        self.warnings = tuple(dict.fromkeys((*self.warnings, *system.warnings(state.y))))
+        if self.checkpoint is not None:
+            self.checkpoint.write(_progress(self.record, self.stepper, clock.process_time() - self.began))
+        if self.on_step is not None:
+            total, depth = len(self.load.time), self.record.equilibrium.depth(state.y)
+            self.on_step(StepReport(step, total, time, state.force, depth, advance.iterations, advance.cuts))
 
 
 def force_scale(problem: Equilibrium, load: Load) -> float:

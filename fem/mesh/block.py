@@ -115,26 +115,18 @@ def build_block(
     ----------
     grid
         The plane grid.
-    depth_lines
-        Depths (m,) in m, increasing from 0.
-    layer_tops
-        Depths (L,) of the layers' top faces in m, each one of `depth_lines`.
-    places
-        Reference coordinates (n, 3) of the element's nodes, all of 0, 1/2 or 1.
-    element
-        Kind of the element, "hex27" or "hex20".
+    depth_lines, layer_tops
+        Depths (m,) in m, increasing from 0, and those (L,) among them of the layers' top faces.
+    places, element
+        Reference coordinates (n, 3) of an element's nodes, all of 0, 1/2 or 1, and its kind, "hex27" or "hex20".
     """
     plane, patches = grid.points(), grid.elements()
-    half_lines = np.insert(depth_lines[1:], range(len(depth_lines) - 1), 0.5 * (depth_lines[1:] + depth_lines[:-1]))
-    depths = np.concatenate((depth_lines[:1], half_lines))
-    count = len(plane)
-    a, b, c = np.rint(2.0 * places).astype(np.int64).T
-    level = 2 * np.arange(len(depth_lines) - 1)[None, :] + 2 - c[:, None]
-    elements = (patches[a, b][:, :, None] + count * level[:, None, :]).reshape(len(places), -1)
     middle = 0.5 * (depth_lines[1:] + depth_lines[:-1])
+    depths = np.concatenate((depth_lines[:1], np.insert(depth_lines[1:], range(len(middle)), middle)))
+    count = len(plane)
+    elements = _drawn_down(patches, count, len(middle), places)
     layer = np.tile(np.searchsorted(layer_tops, middle, side="right") - 1, patches.shape[2])
     nodes = np.concatenate((np.tile(plane, (len(depths), 1)), -np.repeat(depths, count)[:, None]), axis=1)
-    rows = [grid.row() + count * int(np.flatnonzero(depths == top)[0]) for top in layer_tops]
     used, renumbered = np.unique(elements, return_inverse=True)
     x, y, z = nodes[used].T
     outer = grid.rings[-1] * (1.0 - 1e-9)
@@ -150,6 +142,16 @@ def build_block(
         top=np.asarray(z == 0.0),
         base=np.asarray(z == z.min()),
         border=np.asarray((np.abs(x) >= outer) | (y >= outer)),
-        interfaces=tuple(np.searchsorted(used, row) for row in rows),
-        top_elements=np.arange(patches.shape[2]) * (len(depth_lines) - 1),
+        interfaces=tuple(
+            np.searchsorted(used, grid.row() + count * int(np.flatnonzero(depths == top)[0])) for top in layer_tops
+        ),
+        top_elements=np.arange(patches.shape[2]) * len(middle),
     )
+
+
+def _drawn_down(patches: IntArray, count: int, rows: int, places: FloatArray) -> IntArray:
+    """Nodes (n, E) of the elements of a plane grid of patches (3, 3, P) with `count` nodes, in rows of elements."""
+    a, b, c = np.rint(2.0 * places).astype(np.int64).T
+    level = 2 * np.arange(rows)[None, :] + 2 - c[:, None]
+    out: IntArray = (patches[a, b][:, :, None] + count * level[:, None, :]).reshape(len(places), -1)
+    return out
