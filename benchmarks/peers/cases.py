@@ -11,8 +11,8 @@ import numpy as np
 import fem
 from benchmarks.peers.case import LAYERS, POISSON, Case
 from fem.assembly.solid import SOLID_ELEMENTS
-from fem.mesh.block import DiscGrid, build_block
 from fem.mesh.grading import Feature, Sizing, graded_line
+from fem.mesh.solid import DiscGrid, build_block
 from fem.setup.layout import lay_out
 from fem.setup.tool_faces import disc_load
 

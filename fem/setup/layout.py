@@ -14,8 +14,7 @@ import numpy as np
 
 from fem.arrays import FloatArray
 from fem.mesh.grading import Feature, Sizing, graded_line
-from fem.mesh.quads import Mesh
-from fem.mesh.structured import Fan, build_mesh
+from fem.mesh.quads import Fan, Mesh, build_mesh
 from fem.problem.problem import Problem
 from fem.setup.contacts import CONTACT_MODELS, Resolution
 from fem.setup.supports import SUPPORT_MODELS, Extent

@@ -15,9 +15,8 @@ import numpy as np
 from fem.arrays import FloatArray
 from fem.assembly.solid import SOLID_ELEMENTS
 from fem.errors import FemError
-from fem.mesh.block import DiscGrid, build_block
 from fem.mesh.grading import Feature, Sizing, graded_line
-from fem.mesh.solid import SolidMesh
+from fem.mesh.solid import DiscGrid, SolidMesh, build_block
 from fem.mesh.surface.specimen import build_surface_mesh
 from fem.mesh.surface.surface_file import Surface
 from fem.mesh.surface.surface_mesh import SurfaceMesh

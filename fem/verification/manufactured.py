@@ -19,7 +19,7 @@ from fem.arrays import FloatArray
 from fem.materials import NeoHookean
 from fem.materials.components import AXISYMMETRIC
 from fem.materials.deformation import Deformation
-from fem.mesh.structured import build_mesh
+from fem.mesh.quads import build_mesh
 from fem.verification.body import Body, free_of_ties
 from fem.verification.case import Case, Quantity
 

@@ -3,7 +3,7 @@ import pytest
 
 from fem.analysis import record as strain
 from fem.assembly.axisymmetric import gauss_geometry
-from fem.mesh.structured import build_mesh
+from fem.mesh.quads import build_mesh
 
 
 def test_one_singular_point_does_not_decide():

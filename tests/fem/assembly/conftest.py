@@ -13,8 +13,7 @@ from fem.assembly.elements import make_elements
 from fem.assembly.scatter import build_scatter, number_unknowns
 from fem.assembly.system import System, make_system
 from fem.materials.element_laws import element_laws
-from fem.mesh.quads import Mesh
-from fem.mesh.structured import Fan, build_mesh
+from fem.mesh.quads import Fan, Mesh, build_mesh
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from fem.assembly.elements import make_elements
 from fem.assembly.scatter import build_scatter, number_unknowns
 from fem.assembly.system import make_system
 from fem.materials.element_laws import element_laws
-from fem.mesh.structured import build_mesh
+from fem.mesh.quads import build_mesh
 from fem.results.fields import FieldRecovery
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from fem.mesh.block import DiscGrid
+from fem.mesh.solid import DiscGrid
 
 RINGS = np.array([0.4, 0.7, 1.0, 2.0, 4.0])
 
