@@ -1,7 +1,7 @@
-"""Errors of the finite-element package: input that cannot be used.
+"""Errors of the finite-element package, and checks of single input values that raise them.
 
 A run that does not converge is not an error here; it is a :class:`fem.results.solution.Solution` with a
-:class:`fem.results.solution.Failure`.
+:class:`fem.results.solution.Failure`. Each message says what is allowed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The equilibrium problem of a run: equations, unit load, depth probe and what is prescribed."""
+"""The equilibrium problem of a run, and its states: equations, unit load, depth probe; how a Newton run ended."""
 
 from __future__ import annotations
 

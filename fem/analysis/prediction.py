@@ -1,9 +1,12 @@
 """Prediction of the next state from known ones.
 
-Interpolation or extrapolation over the load through the nearest known states, of second order, or of a higher one as
+Over the load: interpolation or extrapolation through the nearest known states, of second order, or of a higher one as
 long as each further state changes the prediction much less than the one before: high on a smooth path, low where the
 path has a kink. On the way back of a load history the states of the way up are near, so the prediction is good; it is
 still corrected by Newton like any other.
+
+Over time, for a body with a memory, whose states of the way up say nothing about the way back: while the load goes on
+at one rate the last three states are extrapolated; after a change of rate the last increment is scaled with the load.
 """
 
 from __future__ import annotations
@@ -16,6 +19,8 @@ from fem.arrays import FloatArray
 LOWEST_ORDER, HIGHEST_ORDER = 2, 5  # as far as there are states
 SHRINKAGE = 0.5  # of the change by each further state; where it is less, the order rises no further
 LEAST_SPACING = 0.3
+KEPT = 3
+SAME_RATE = 1e-6
 
 
 class KnownStates:
@@ -88,10 +93,6 @@ def lagrange(points: FloatArray, at: float) -> FloatArray:
             if i != j:
                 weights[i] *= (at - other) / (p - other)
     return weights
-
-
-KEPT = 3
-SAME_RATE = 1e-6
 
 
 class RecentStates:

@@ -1,4 +1,4 @@
-"""Strain measures of element averages, for warnings and reports."""
+"""Collects the accepted steps of a run and makes the solution of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The state before the first load step: at rest, or with prescribed displacements and no force."""
+"""The state before the first load step, and the way from one prescribed load to the next, in parts as Newton needs."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from fem.arrays import FloatArray
 from fem.assembly.system import Evaluation, System
 
 SMALLEST_PART = 2.0**-8
+MOST_PARTS = 400
+MOST_CORRECTIONS = 60
 
 
 def at_rest(problem: Equilibrium) -> Evaluation:
@@ -64,10 +66,6 @@ def settle(problem: Equilibrium, force_scale: float, settings: NewtonSettings) -
         else:
             part, reason = 0.5 * part, result.reason
     return state, "" if share >= 1.0 else f"the tool cannot be tilted: {reason}"
-
-
-MOST_PARTS = 400
-MOST_CORRECTIONS = 60
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
-"""Shape functions of the 9-node quadrilateral, tabulated in reference coordinates for matrix products.
+"""The axisymmetric element: shape functions of the 9-node quadrilateral and its reference geometry.
 
-Axis-aligned elements need no more than these tables and one factor per component of the gradient:
-F_rr = 1 + (du_r/dxi) / width, F_tt = 1 + u_r / r, and so on. The factors are in
-:mod:`fem.assembly.axisymmetric`.
+Shape functions are tabulated in reference coordinates for matrix products. A displacement gradient is made from the
+rows d/dxi, d/deta and value of :class:`Shapes` and one factor for each of its components (F_tt = 1 + u_r / r, and so
+on); stresses and moduli go the transposed way.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from fem.materials.components import AXISYMMETRIC, Components
 from fem.mesh.quads import Mesh
 
 NODES = 9
+QUADRATURE_ORDER = 5  # three Gauss points a direction, none of them on the axis
 
 
 @dataclass(frozen=True)
@@ -55,9 +56,6 @@ def tabulate(points: FloatArray) -> Shapes:
         np.concatenate((gradient[0], gradient[1], value)),
         np.concatenate((gradient[0], gradient[1])),
     )
-
-
-QUADRATURE_ORDER = 5  # three Gauss points a direction, none of them on the axis
 
 
 @dataclass(frozen=True)

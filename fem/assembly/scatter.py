@@ -1,4 +1,4 @@
-"""From element arrays to the unknowns: numbering, and the sparse pattern built once."""
+"""From element arrays to the unknowns: numbering, and the sparse pattern built once, and made wider for items."""
 
 from __future__ import annotations
 

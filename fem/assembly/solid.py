@@ -20,6 +20,14 @@ from fem.errors import FemError
 from fem.materials.components import SOLID, Components
 from fem.mesh.solid import SolidMesh
 
+_HEX_CORNERS = ((0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2))
+_HEX_EDGES = (
+    *((1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0), (1, 0, 2), (2, 1, 2), (1, 2, 2), (0, 1, 2)),
+    *((0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1)),
+)
+_HEX_FACES = ((0, 1, 1), (2, 1, 1), (1, 0, 1), (1, 2, 1), (1, 1, 0), (1, 1, 2), (1, 1, 1))
+_TET = ((0, 0, 0), (2, 0, 0), (0, 2, 0), (0, 0, 2), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (0, 1, 1))
+
 
 @dataclass(frozen=True)
 class SolidElement:
@@ -72,15 +80,6 @@ class SolidElement:
     def monomials(self, points: FloatArray) -> FloatArray:
         """Pressure shapes (p, q) at reference points (3, q), before they are made orthonormal."""
         return np.concatenate((np.ones((1, points.shape[1])), points - self.middle[:, None]))[: self.pressure_shapes]
-
-
-_HEX_CORNERS = ((0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2))
-_HEX_EDGES = (
-    *((1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0), (1, 0, 2), (2, 1, 2), (1, 2, 2), (0, 1, 2)),
-    *((0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1)),
-)
-_HEX_FACES = ((0, 1, 1), (2, 1, 1), (1, 0, 1), (1, 2, 1), (1, 1, 0), (1, 1, 2), (1, 1, 1))
-_TET = ((0, 0, 0), (2, 0, 0), (0, 2, 0), (0, 0, 2), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (0, 1, 1))
 
 
 def _vtk_order(shapes: skfem.Element, halves: tuple[tuple[int, ...], ...]) -> IntArray:

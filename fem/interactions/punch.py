@@ -2,6 +2,8 @@
 
 The punch is a cylinder (r <= a, h >= e) swelled by e, with e its edge radius, a its radius less e and h the height over
 its face. So the distance from its surface is |(r, h) - nearest point of the cylinder| - e: face, torus and wall in one.
+
+In three dimensions the punch stands somewhere and may lean.
 """
 
 from __future__ import annotations
@@ -12,6 +14,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem.arrays import BoolArray, FloatArray
+
+NEAR_AXIS = 1e-12  # radius within which a point has no direction from the axis, in radii of the punch
+TOUCHING = 1e-14  # depth by which a lowered punch enters, in its radii
+MOST_DROPS = 100
+PACKED = np.triu_indices(3)
 
 
 @dataclass(frozen=True)
@@ -89,12 +96,6 @@ class Punch:
     def metric(self, path: FloatArray) -> FloatArray:
         """Lengths on the punch by steps of the path (c - 1, m), symmetric (c - 1, c - 1, m)."""
         return np.ones((1, *path.shape))
-
-
-NEAR_AXIS = 1e-12  # radius within which a point has no direction from the axis, in radii of the punch
-TOUCHING = 1e-14  # depth by which a lowered punch enters, in its radii
-MOST_DROPS = 100
-PACKED = np.triu_indices(3)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,7 @@
-"""Choice of the direct solver."""
+"""Choice of the direct solver, where its library is, and how many threads it may use.
+
+Without being told pypardiso would search the whole environment for the MKL, which takes up to a second.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,8 @@ from fem.linear_solver.superlu import SuperLUSolver
 from fem.linear_solver.symmetric import SymmetricSolver
 
 LINEAR_SOLVERS = ("auto", "pardiso", "superlu")
+VARIABLE = "PYPARDISO_MKL_RT"
+SMALL = 10_000
 
 
 def make_solver(choice: str, indptr: IntArray, indices: IntArray) -> SymmetricSolver:
@@ -46,17 +51,11 @@ def make_solver(choice: str, indptr: IntArray, indices: IntArray) -> SymmetricSo
     return SuperLUSolver(indptr, indices)
 
 
-VARIABLE = "PYPARDISO_MKL_RT"
-
-
 def name_library(prefix: str = sys.prefix) -> None:
     """Tell pypardiso the library of this environment by its variable, unless the user has set it."""
     for pattern in ("lib/libmkl_rt.so*", "Library/bin/mkl_rt*.dll"):
         for path in sorted(Path(prefix).glob(pattern)):
             os.environ.setdefault(VARIABLE, str(path))
-
-
-SMALL = 10_000
 
 
 @contextmanager

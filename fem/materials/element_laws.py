@@ -2,7 +2,7 @@
 
 A pretension S0 (constant second Piola-Kirchhoff stress) adds F S0 to P, in equilibrium at rest where S0 lies in the
 plane of the layers; its linear form is the geometric stiffness of an initial stress (M. A. Biot, Mechanics of
-Incremental Deformations, 1965). It does not fade. The share and the overstress of a fading memory are explained in
+Incremental Deformations, 1965). It does not relax. The share and the overstress of relaxation are explained in
 :mod:`fem.materials.prony`.
 """
 
@@ -49,11 +49,11 @@ class ElementLaws:
     shear_modulus, bulk_modulus
         Moduli at rest (E,) in Pa.
     prony
-        Series of their fading memory, or None.
+        Series of their relaxation, or None.
     pretension
         S0, (components, 1, 1) in Pa, or None.
     share
-        Share (E,) of the elastic stress that a fading memory leaves to this step; None for all of it.
+        Share (E,) of the elastic stress that relaxation leaves to this step; None for all of it.
     overstress
         Known overstress (components, q, E) in Pa, or None.
     """
@@ -67,7 +67,7 @@ class ElementLaws:
     overstress: FloatArray | None = None
 
     def relaxing(self, share: FloatArray, overstress: FloatArray | None) -> ElementLaws:
-        """The same laws in a step of a fading memory."""
+        """The same laws in a step of relaxation."""
         return replace(self, share=share, overstress=overstress)
 
     def stress(self, deformation: Deformation) -> FloatArray:
@@ -101,7 +101,7 @@ class ElementLaws:
         return out
 
     def second_stress(self, deformation: Deformation) -> FloatArray:
-        """J^(2/3) F^-1 P of the elastic isochoric stress P, (5, q, E) in Pa: what a fading memory remembers."""
+        """J^(2/3) F^-1 P of the elastic isochoric stress P, (5, q, E) in Pa: what relaxation remembers."""
         components = deformation.components
         pulled = components.product(deformation.cofactor[components.transposed], self.elastic_stress(deformation))
         out: FloatArray = pulled / (deformation.J * deformation.isochoric_factor)
@@ -116,7 +116,7 @@ class ElementLaws:
         return out
 
     def small_stress(self, deformation: Deformation) -> FloatArray:
-        """Stress (5, q, E) in Pa of small strain without the pressure: faded, with the pretension."""
+        """Stress (5, q, E) in Pa of small strain without the pressure: relaxed, with the pretension."""
         out = self.linear_stress(deformation)
         if self.share is not None:
             out *= self.share

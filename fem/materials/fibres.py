@@ -8,6 +8,9 @@ J. R. Soc. Interface 3 (2006) 15; without dispersion G. A. Holzapfel, T. C. Gass
 With the structure tensor H = kappa I + (1 - 3 kappa) M, E = J^(-2/3) H : C - 1. M is a x a for one direction and
 (I - n x n) / 2 for directions spread evenly over the plane (n its normal), which keeps axial symmetry. At rest
 E = 0 and the fibres add no stiffness: the moduli at rest are the ground substance's.
+
+Directions must fit the symmetry of the geometry: axial symmetry has none in the plane, a block has mirror planes along
+x and y.
 """
 
 from __future__ import annotations
@@ -27,6 +30,7 @@ from fem.materials.material import IsochoricLaw, Material
 ISOTROPIC = 1.0 / 3.0  # dispersion that spreads the fibres over all directions of space
 LARGEST_POWER = 100.0  # k2 E^2 beyond which the law has no answer
 PER_FAMILY = 6  # parameters of one family: k1, k2, H_xx, H_yy, H_zz, H_xy
+SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -202,9 +206,6 @@ def _slopes(strain: FloatArray, k1: FloatArray, k2: FloatArray) -> tuple[FloatAr
     power = k2 * strain * strain
     growth = k1 * np.exp(np.where(power < LARGEST_POWER, power, np.nan))
     return 2.0 * growth * strain, np.where(strain > 0.0, 4.0 * growth * (1.0 + 2.0 * k2 * strain * strain), 0.0)
-
-
-SAME = 1e-9
 
 
 def require_fibre_symmetry(materials: Mapping[str, Material], geometry: str) -> None:

@@ -1,7 +1,9 @@
-"""What a material law is to the solver.
+"""What a material law is to the solver, and what the materials share.
 
 A law gives the isochoric (shape-changing) part of the stress and its tangent. The volumetric part is the
 same for all laws, U(J) = K/2 (J - 1)^2 with the pressure as a field of its own, and belongs to the element.
+
+Elastic constants are checked for the valid range of the mixed element.
 """
 
 from __future__ import annotations
@@ -14,6 +16,8 @@ from typing import Protocol
 from fem.arrays import FloatArray
 from fem.errors import FemError, require_positive
 from fem.materials.deformation import Deformation
+
+LARGEST_POISSON_RATIO = 0.4999
 
 
 class IsochoricLaw(Protocol):
@@ -59,9 +63,6 @@ class Material(Protocol):
     def finite_strain(self) -> bool:
         """Whether the law is objective, so that it may be used in finite kinematics."""
         ...
-
-
-LARGEST_POISSON_RATIO = 0.4999
 
 
 def require_elastic_constants(youngs_modulus: float, poisson_ratio: float) -> None:

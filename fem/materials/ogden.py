@@ -2,6 +2,14 @@
 
 W = sum_p mu_p / alpha_p (L1^alpha_p + L2^alpha_p + L3^alpha_p - 3), L_a = J^(-1/3) l_a (R. W. Ogden, Proc. R. Soc.
 Lond. A 326 (1972) 565). With b_a = sum_p mu_p L_a^alpha_p the principal stresses are P_a = (b_a - mean b) / l_a.
+
+With F = sum_a l_a r_a x q_a the basis B_ab = r_a x q_b turns dP/dF into its principal form: d2W/dl_a dl_b between B_aa
+and B_bb, and for a != b, with P_a = dW/dl_a,
+
+    B_ab B_ab: (d + s) / 2,  B_ab B_ba: (d - s) / 2,  d = (P_a - P_b) / (l_a - l_b),  s = (P_a + P_b) / (l_a + l_b)
+
+(Ogden, Non-linear Elastic Deformations, 1984, section 6.1.4). Stretches come from the Green-Lagrange strain, so that
+they keep their digits near rest.
 """
 
 from __future__ import annotations

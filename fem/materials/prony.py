@@ -1,4 +1,12 @@
-"""The fading part of a layer's stiffness: a Prony series on the isochoric stress."""
+"""Relaxation of a layer: a Prony series on the isochoric stress, exact for stresses that are linear over each step.
+
+With S the elastic isochoric second Piola-Kirchhoff stress times J^(2/3), h the step, x = h / tau and
+phi = (1 - e^-x) / x, each Prony term follows H' = e^-x H + g phi (S' - S), and the stress is
+J^(-2/3) DEV[(1 - sum g) S' + sum H'] (J. C. Simo, Comput. Methods Appl. Mech. Engrg. 60 (1987) 153; the recursion:
+R. L. Taylor, K. S. Pister and G. L. Goudreau, Int. J. Numer. Methods Engrg. 2 (1970) 45). So the step sees a share
+a = 1 - sum g (1 - phi) of the elastic stress and an overstress B = sum (e^-x H - g phi S) that is known before it,
+with the potential J^(-2/3) B : C / 2: the tangent stays symmetric. In small strain S is the deviatoric stress.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +20,12 @@ from fem.errors import FemError, require_positive
 
 @dataclass(frozen=True)
 class PronyTerm:
-    """One fading part.
+    """One term of the series.
 
     Attributes
     ----------
     g
-        Fraction of the initial shear stiffness that fades, above 0 and below 1.
+        Fraction of the initial shear stiffness that relaxes, above 0 and below 1.
     tau
         Time constant in s, above 0.
 

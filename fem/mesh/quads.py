@@ -1,4 +1,8 @@
-"""Meshes of biquadratic quadrilaterals, and the node sets every part of the solver works with."""
+"""Meshes of biquadratic quadrilaterals, and the node sets every part of the solver works with.
+
+The mesh of a layered specimen is a tensor product, with a fan of elements round the tool's edge if wanted. The two
+sides of an interface may be parted: nodes of their own, at the same places at rest.
+"""
 
 from __future__ import annotations
 

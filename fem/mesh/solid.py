@@ -1,4 +1,9 @@
-"""Three-dimensional meshes, and the node sets every part of the solver works with."""
+"""Three-dimensional meshes, and the block: a plane grid round a disc, drawn down through the layers.
+
+The grid is a bulged square, circles, and a square border. The circles follow the tool's edge and the rim of a hole;
+further out they turn into the sides of the block. Round an off-centre tool their centres move from the tool's axis to
+the specimen's.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +14,8 @@ import numpy as np
 
 from fem.arrays import BoolArray, FloatArray, IntArray
 from fem.mesh.quads import Mesh, along_row
+
+BULGE = 0.18  # how much the corners of the inner square are pulled in, so that the ring round it is even
 
 
 @dataclass(frozen=True)
@@ -72,9 +79,6 @@ class SolidMesh:
 
 
 AnyMesh: TypeAlias = Mesh | SolidMesh
-
-
-BULGE = 0.18  # how much the corners of the inner square are pulled in, so that the ring round it is even
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ class Layer:
     material
         A law of :mod:`fem.materials`; its moduli are those of a sudden press.
     relaxation
-        Prony terms by which the isochoric stress fades; their fractions add up to less than 1.
+        Prony terms by which the isochoric stress relaxes; their fractions add up to less than 1.
     """
 
     name: str

@@ -1,4 +1,7 @@
-"""Stress and strain at the parts of the elements, as plain arrays for a file writer."""
+"""Stress and strain at the middles of the cells, as plain arrays for a file writer.
+
+The memory of layers that relax is followed again there, where the equations do not keep it.
+"""
 
 from __future__ import annotations
 

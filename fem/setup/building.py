@@ -1,4 +1,4 @@
-"""The set-up of a model by its geometry; what three dimensions need is loaded with the first such model."""
+"""From a problem to a model: mesh, conditions, unknowns and equations."""
 
 from __future__ import annotations
 

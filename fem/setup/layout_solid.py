@@ -1,8 +1,10 @@
 """Where the three-dimensional block of a problem has its grid lines.
 
-Radially and vertically as in :mod:`fem.setup.layout`, but coarser at the tool's edge: unknowns cost more in three
+Radially and vertically as in :mod:`fem.layout`, but coarser at the tool's edge: unknowns cost more in three
 dimensions, and round the tool few elements are enough. Under a tool that touches the lines gather where its rounded
 edge begins and ends, under a sphere at the axis.
+
+The mesh of a body bounded by a surface is made by :mod:`fem.mesh.surface.specimen`.
 """
 
 from __future__ import annotations

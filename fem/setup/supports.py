@@ -1,4 +1,4 @@
-"""What a support decides about the mesh, and what every support gives."""
+"""The supports: how far the mesh reaches and what it must resolve, and which nodes are held."""
 
 from __future__ import annotations
 
@@ -13,6 +13,15 @@ from fem.errors import FemError
 from fem.mesh.grading import Feature
 from fem.mesh.solid import AnyMesh
 from fem.problem.problem import Problem
+
+BORDER_IN_DECAY_LENGTHS = 6.0
+FAR_BORDER = (
+    2.0e4  # in tool radii or stack thicknesses: fixed at the distance R it takes about a/R of the deflection away
+)
+FAR_FIELD = 40.0  # in the same, from where the mesh grows geometrically
+CLAMP_IN_THICKNESSES = 4.0
+# A sheet bends: the tool's edge weighs little, but the press goes several thicknesses deep.
+EDGE_FACTOR = 1.5
 
 
 @dataclass(frozen=True)
@@ -55,9 +64,6 @@ class SupportModel(Protocol):
         ...
 
 
-BORDER_IN_DECAY_LENGTHS = 6.0
-
-
 def decay_length(problem: Problem) -> float:
     """Length in m over which the pressed surface of a bonded stack goes back to rest.
 
@@ -88,10 +94,6 @@ class Bonded:
         return mesh.base | mesh.border
 
 
-FAR_BORDER = 2.0e4
-FAR_FIELD = 40.0
-
-
 @dataclass(frozen=True)
 class HalfSpace:
     """Lower face and outer border fixed, both very far away."""
@@ -107,11 +109,6 @@ class HalfSpace:
         """Lower face and outer border."""
         del problem
         return mesh.base | mesh.border
-
-
-CLAMP_IN_THICKNESSES = 4.0
-# A sheet bends: the tool's edge weighs little, but the press goes several thicknesses deep.
-EDGE_FACTOR = 1.5
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,8 @@
-"""Meshes of sections that are no layered specimen, and plane problems by the axisymmetric element.
+"""A body of one material with loads of its own, for cases that are no press of a tool, and meshes of its section.
 
-Plane strain is axial symmetry far from the axis: a ring of radius `RING` (in widths of its section), whose curvature
-costs about 1/RING. Plane stress at small strain is plane strain of another material.
+It uses the solver's element, assembly, Newton and linear solver on any mesh of quadrilaterals in (r, z). Plane strain
+is axial symmetry far from the axis: a ring of radius `RING` (in widths of its section), whose curvature costs about
+1/RING. Plane stress at small strain is plane strain of another material.
 """
 
 from __future__ import annotations
@@ -30,6 +31,10 @@ from fem.mesh.quads import Mesh, mesh_of_quads
 
 RING = 1e6
 PLANE_PERCENT = 2e-3  # what curvature and the round-off of the radius cost a ring, nearly incompressible too
+SIDES = ((0, 4, 1), (1, 5, 2), (2, 6, 3), (3, 7, 0))
+CORNERS = np.array([[0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]])
+NEAR = 1e-6  # of the section's height: corners this near each other are one
+SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
 
 
 def mapped_mesh(
@@ -64,12 +69,6 @@ def plane_stress_material(youngs_modulus: float, poisson_ratio: float) -> Linear
     """
     whole = 1.0 + poisson_ratio
     return LinearElastic(youngs_modulus * (1.0 + 2.0 * poisson_ratio) / whole**2, poisson_ratio / whole)
-
-
-SIDES = ((0, 4, 1), (1, 5, 2), (2, 6, 3), (3, 7, 0))
-CORNERS = np.array([[0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]])
-NEAR = 1e-6  # of the section's height: corners this near each other are one
-SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,11 @@ ALLOWED_PERCENT = 1e-6
 SOURCE = "neo-Hookean closed form (Bonet and Wood, 2nd ed., chapter 6)"
 COUNT, SEED = 3, 20
 SHEAR_STEPS = 12
+LAW_POISSON_RATIOS, LAW_STRETCHES = (0.45, 0.4999), (0.7, 1.4)
+LAW_SOURCE = "closed form in principal stretches (Ogden 1984, chapter 7)"
+C10, C01, C20, C30, MU, JM = 1.2e4, 5e3, -2e3, 1.5e3, 3e4, 20.0
+TERMS = ((1.2e4, 2.7), (-5e3, -3.0))
+FIBRE = Fibre(2e4, 1.5, 0.1)
 
 
 def cases() -> tuple[Case, ...]:
@@ -133,11 +138,6 @@ def _shear_stress(material: NeoHookean, amount: float) -> FloatArray:
     return material.shear_modulus * np.array([1.0 - third, third * amount, 1.0 - third, amount, 1.0 - third])
 
 
-LAW_POISSON_RATIOS, LAW_STRETCHES = (0.45, 0.4999), (0.7, 1.4)
-LAW_SOURCE = "closed form in principal stretches (Ogden 1984, chapter 7)"
-C10, C01, C20, C30, MU, JM = 1.2e4, 5e3, -2e3, 1.5e3, 3e4, 20.0
-TERMS = ((1.2e4, 2.7), (-5e3, -3.0))
-FIBRE = Fibre(2e4, 1.5, 0.1)
 Slopes: TypeAlias = Callable[[FloatArray], FloatArray]
 
 

@@ -37,6 +37,16 @@ DEPTHS = (0.0, 0.1, 0.15, 0.3, 1.0)
 POISSON_RATIOS = (0.35, 0.49, 0.499)
 ALLOWED_PERCENT = 0.1
 SOURCE = "Johnson, Contact Mechanics (1985), chapter 3, closed form"
+HAYES_KAPPA: Mapping[float, float] = MappingProxyType(
+    {0.2: 1.2523, 0.4: 1.5993, 0.6: 2.0328, 0.8: 2.5354, 1.0: 3.0914, 1.5: 4.6576, 2.0: 6.4206}
+)
+HAYES_RADIUS, HAYES_YOUNGS_MODULUS, HAYES_POISSON_RATIO, HAYES_INDENTATION = 5e-3, 2e4, 0.45, 1e-5
+HAYES_SOURCE = "Hayes et al., J. Biomech. 5 (1972) 541, recomputed to five digits"
+HERTZ_RADIUS, HERTZ_YOUNGS_MODULUS = 0.01, 2e4
+INDENTATIONS = (1e-3, 4e-3)  # over the radius
+HERTZ_POISSON_RATIOS = (0.45, 0.499)
+HERTZ_ALLOWED_PERCENT = 1.0
+HERTZ_SOURCE = "Hertz; Johnson, Contact Mechanics (1985), chapter 4, closed form"
 
 
 def half_space_cases() -> tuple[Case, ...]:
@@ -86,13 +96,6 @@ def half_space(
     return prepare(Problem(layers, Tool(RADIUS, contact), Support("half_space"), "linear", geometry=geometry))
 
 
-HAYES_KAPPA: Mapping[float, float] = MappingProxyType(
-    {0.2: 1.2523, 0.4: 1.5993, 0.6: 2.0328, 0.8: 2.5354, 1.0: 3.0914, 1.5: 4.6576, 2.0: 6.4206}
-)
-HAYES_RADIUS, HAYES_YOUNGS_MODULUS, HAYES_POISSON_RATIO, HAYES_INDENTATION = 5e-3, 2e4, 0.45, 1e-5
-HAYES_SOURCE = "Hayes et al., J. Biomech. 5 (1972) 541, recomputed to five digits"
-
-
 def hayes_cases() -> tuple[Case, ...]:
     """One for each ratio of tool radius to thickness."""
     return tuple(Case(f"hayes/ratio_{ratio:g}", HAYES_SOURCE, partial(bonded_layer, ratio)) for ratio in HAYES_KAPPA)
@@ -109,13 +112,6 @@ def bonded_layer(ratio: float) -> tuple[Quantity, ...]:
     model = prepare(Problem((layer,), Tool(HAYES_RADIUS, "rigid_frictionless"), Support("bonded"), "linear"))
     force = float(model.run(Load("depth", np.ones(1), np.array([HAYES_INDENTATION]))).force[0])
     return (Quantity("", HAYES_KAPPA[ratio], hayes_kappa(force), "", ALLOWED_PERCENT, model.unknowns),)
-
-
-HERTZ_RADIUS, HERTZ_YOUNGS_MODULUS = 0.01, 2e4
-INDENTATIONS = (1e-3, 4e-3)  # over the radius
-HERTZ_POISSON_RATIOS = (0.45, 0.499)
-HERTZ_ALLOWED_PERCENT = 1.0
-HERTZ_SOURCE = "Hertz; Johnson, Contact Mechanics (1985), chapter 4, closed form"
 
 
 def hertz_cases() -> tuple[Case, ...]:

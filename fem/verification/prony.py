@@ -6,7 +6,7 @@ With M(t) = K + 4/3 G0 (1 - sum g (1 - exp(-t / tau))) the axial stress of a ram
 
 and a sudden stress s creeps, with one term, to e(t) = s / M(0) (1 + m / (1 - m) (1 - exp(-(1 - m) t / tau))),
 m = 4/3 G0 g / M(0) (R. M. Christensen, Theory of Viscoelasticity, 2nd ed., 1982, chapter 1). After a sudden finite
-stretch the isochoric stress fades with the series. Relaxation is exact in any steps; creep follows no straight lines,
+stretch the isochoric stress relaxes with the series. Relaxation is exact in any steps; creep follows no straight lines,
 so it is extrapolated from three step sizes (the error is of second order in the step).
 """
 

@@ -33,6 +33,22 @@ SHEAR_MODULUS, BULK_MODULUS = 80.194e6, 400889.8e6
 STRESS_CORNER, STRESS_MIDDLE, STRESS_PERCENT = 25.164, 23.965, 0.2
 COOK_SOURCE = "Cook's membrane (J. Struct. Div. ASCE 100 (1974) 1851), converged value of later literature"
 ELEMENTS = 24
+LE1_INNER, LE1_OUTER = np.array([2.0, 1.0]), np.array([3.25, 2.75])
+LE1_YOUNGS_MODULUS, LE1_POISSON_RATIO, TENSION = 210e9, 0.3, 10e6
+LE1_REFERENCE, LE1_ALLOWED_PERCENT = 92.7, 0.1
+LE1_SOURCE = "The Standard NAFEMS Benchmarks (1990), LE1"
+ACROSS, AROUND, GROWTH = 20, 40, 6.0
+ON_EDGE = 0.995  # of the outer ellipse's equation: chords lie above it, the next nodes inwards below
+CYLINDER_INNER, CYLINDER_OUTER, CYLINDER_HEIGHT, CYLINDER_PRESSURE, CYLINDER_YOUNGS_MODULUS = (
+    0.05,
+    0.1,
+    0.01,
+    10e6,
+    210e9,
+)
+CYLINDER_POISSON_RATIOS = (0.3, 0.499)
+CYLINDER_ALLOWED_PERCENT = 0.1
+CYLINDER_SOURCE = "Lame (Timoshenko and Goodier, Theory of Elasticity, chapter 4)"
 
 
 def cook_cases() -> tuple[Case, ...]:
@@ -96,14 +112,6 @@ def middle(body: Body, y: FloatArray) -> float:
     return float(body.numbering.expand(y)[1][right[at]])
 
 
-LE1_INNER, LE1_OUTER = np.array([2.0, 1.0]), np.array([3.25, 2.75])
-LE1_YOUNGS_MODULUS, LE1_POISSON_RATIO, TENSION = 210e9, 0.3, 10e6
-LE1_REFERENCE, LE1_ALLOWED_PERCENT = 92.7, 0.1
-LE1_SOURCE = "The Standard NAFEMS Benchmarks (1990), LE1"
-ACROSS, AROUND, GROWTH = 20, 40, 6.0
-ON_EDGE = 0.995  # of the outer ellipse's equation: chords lie above it, the next nodes inwards below
-
-
 def le1_cases() -> tuple[Case, ...]:
     """The one case."""
     return (Case("nafems_le1", LE1_SOURCE, membrane),)
@@ -129,18 +137,6 @@ def membrane() -> tuple[Quantity, ...]:
 def _place(across: FloatArray, around: FloatArray) -> tuple[FloatArray, FloatArray]:
     angle, axes = 0.5 * np.pi * around, LE1_INNER[:, None] + across * (LE1_OUTER - LE1_INNER)[:, None]
     return RING + axes[0] * np.cos(angle), axes[1] * np.sin(angle)
-
-
-CYLINDER_INNER, CYLINDER_OUTER, CYLINDER_HEIGHT, CYLINDER_PRESSURE, CYLINDER_YOUNGS_MODULUS = (
-    0.05,
-    0.1,
-    0.01,
-    10e6,
-    210e9,
-)
-CYLINDER_POISSON_RATIOS = (0.3, 0.499)
-CYLINDER_ALLOWED_PERCENT = 0.1
-CYLINDER_SOURCE = "Lame (Timoshenko and Goodier, Theory of Elasticity, chapter 4)"
 
 
 def cylinder_cases() -> tuple[Case, ...]:

@@ -1,6 +1,7 @@
 """Patch tests in three dimensions: a linear displacement on the border must go on inside, on a distorted mesh.
 
-The mesh of tetrahedra has straight sides by construction and is not distorted.
+The body is a unit cube of each element with displacements prescribed all round. The mesh of tetrahedra has straight
+sides by construction and is not distorted.
 """
 
 from __future__ import annotations

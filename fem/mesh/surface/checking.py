@@ -12,6 +12,7 @@ from fem.mesh.surface.surface_file import Surface
 
 LEAST_SIZE, LARGEST_SIZE = 1e-3, 3.0
 LARGEST_HOLE = 0.05  # of the largest side of the body
+AT_ONCE = 200_000
 
 
 def check_surface(surface: Surface) -> Surface:
@@ -121,9 +122,6 @@ def _outwards(surface: Surface) -> Surface:
 
 def _place(point: FloatArray) -> str:
     return "({:.4g}, {:.4g}, {:.4g}) m".format(*point)
-
-
-AT_ONCE = 200_000
 
 
 def crossing_triangles(surface: Surface) -> FloatArray | None:

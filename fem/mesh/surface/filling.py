@@ -28,6 +28,7 @@ BACKGROUND = 14
 SLEEVE_SIDES = 32
 SLEEVE_HEIGHTS = (-0.5, 0.2)  # in tool radii from the place it touches
 TOLERANCE_OF_TOOL = 0.04  # of the tool's radius
+FORMAT = "fem tetrahedra 1"
 
 
 @dataclass(frozen=True)
@@ -197,9 +198,6 @@ def _box(surface: Surface) -> Surface:
     quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
     triangles = [(a, b, c) for q in quads for a, b, c in ((q[0], q[1], q[2]), (q[0], q[2], q[3]))]
     return Surface(low - margin + corner * (high - low + 2.0 * margin), np.array(triangles))
-
-
-FORMAT = "fem tetrahedra 1"
 
 
 def kept_filling(

@@ -1,4 +1,7 @@
-"""A triangulated surface and simple measures of it."""
+"""A triangulated surface, and the files it is read from: STL, OBJ, PLY and VTK by pyvista.
+
+Light to import: the libraries are loaded by the first file.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,9 @@ import numpy as np
 
 from fem.arrays import FloatArray, IntArray
 from fem.errors import FemError, require_one_of
+
+UNITS = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 25.4e-3}
+SUFFIXES = (".stl", ".obj", ".ply", ".vtk", ".vtp")
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,10 +68,6 @@ class Surface:
         used = self.points[np.unique(self.triangles)]
         out: FloatArray = used.max(axis=0) - used.min(axis=0)
         return out
-
-
-UNITS = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 25.4e-3}
-SUFFIXES = (".stl", ".obj", ".ply", ".vtk", ".vtp")
 
 
 def read_surface(path: str | Path, unit: str) -> Surface:

@@ -1,4 +1,4 @@
-"""The mesh of a specimen bounded by a surface: quadratic tetrahedra with the tool's place on them."""
+"""The mesh of a specimen bounded by a surface: quadratic tetrahedra, the tool's place on them, their quality."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import numpy as np
 
 from fem.arrays import FloatArray, IntArray
 from fem.mesh.solid import SolidMesh
+
+POOR = 0.1
 
 
 @dataclass(frozen=True)
@@ -80,9 +82,6 @@ def barycentric(a: FloatArray, b: FloatArray, c: FloatArray, place: FloatArray) 
     area = np.where(upright, 1.0, area)
     q, r = (wx * vy - wy * vx) / area, (ux * wy - uy * wx) / area
     return np.where(upright, -1.0, np.stack((1.0 - q - r, q, r)))
-
-
-POOR = 0.1
 
 
 @dataclass(frozen=True)
