@@ -31,7 +31,7 @@ from benchmark.models.result import (
 from benchmark.models.scenario_effects import Given, given_effects, scenario_context
 from benchmark.models.wider_edge import follow_deeper
 from benchmark.physics import NotInFemError, option_effects
-from fem.analysis.model import Model
+from fem.analysis.prepared import Model
 
 
 class FemModel:

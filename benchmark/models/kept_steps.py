@@ -10,7 +10,7 @@ from pathlib import Path
 import fem
 from benchmark.models.keeping import Keeping
 from fem.analysis.checkpoint import Checkpoint, Progress
-from fem.analysis.model import Model
+from fem.analysis.prepared import Model
 
 STEPS, STEPS_AT_EDGE, MESH = "fem_steps.kept", "fem_steps_edge_{:g}.kept", "fem_mesh.kept"
 LEAST_PAUSE = 2.0

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import fem
-from fem.analysis.model import Model
+from fem.analysis.prepared import Model
 
 WIDER = (2.0, 4.0)
 """How much larger the elements at the edge are in each further try."""

@@ -96,7 +96,7 @@ def slowdowns(share: float, how: str) -> list[Fault]:
     return [
         _slower("wave.frame", "wavemodel/layered/surface.py", ("Surface.frame",), share, often),
         _slower("fem.assembly", "fem/assembly/system.py", ("System.evaluate", "System.tangent"), share, often),
-        _slower("fem.step", "fem/analysis/model.py", ("Model.run",), share, once),
+        _slower("fem.step", "fem/analysis/prepared.py", ("Model.run",), share, once),
         _slower("fit", "benchmark/identification/session_fit.py", ("fit_session",), share, once),
     ]
 

@@ -13,7 +13,7 @@ import numpy as np
 import skfem
 
 from fem.arrays import FloatArray
-from fem.assembly.element_geometry import ElementGeometry
+from fem.assembly.element_geometry import ElementGeometry, orthonormal
 from fem.materials.components import AXISYMMETRIC, Components
 from fem.mesh.quads import Mesh
 
@@ -127,10 +127,7 @@ def gauss_geometry(mesh: Mesh) -> Geometry:
     shapes = tabulate(points)
     inverse, determinant, radius = _mapping(mesh, shapes)
     weight = 2.0 * np.pi * radius * determinant * weights[:, None]
-    monomials = _monomials(shapes)
-    mass = np.einsum("iq,jq,qe->eij", monomials, monomials, weight)
-    transform = np.ascontiguousarray(np.linalg.inv(np.linalg.cholesky(mass)).transpose(1, 2, 0))
-    pressure = np.einsum("ije,jq->iqe", transform, monomials)
+    transform, pressure = orthonormal(_monomials(shapes), weight)
     return Geometry(shapes, inverse, 1.0 / radius, weight, pressure, transform)
 
 

@@ -95,6 +95,19 @@ class ElementGeometry(ABC):
         return np.concatenate([table.T @ piece for table, piece in zip(self.tables, pieces, strict=True)])
 
 
+def orthonormal(monomials: FloatArray, weight: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Shapes made orthonormal in the weight (q, E) on each element: from monomials (p, q), and at the points.
+
+    Returns
+    -------
+    tuple of ndarray
+        Lower triangular (p, p, E) and (p, q, E).
+    """
+    mass = np.einsum("iq,jq,qe->eij", monomials, monomials, weight)
+    transform = np.ascontiguousarray(np.linalg.inv(np.linalg.cholesky(mass)).transpose(1, 2, 0))
+    return transform, np.einsum("ije,jq->iqe", transform, monomials)
+
+
 def packed_positions(nodes: int, components: int) -> tuple[IntArray, IntArray]:
     """Local row and column (entries,) of each packed entry: the upper triangle of the diagonal blocks, all of others.
 

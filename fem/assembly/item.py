@@ -14,7 +14,7 @@ from fem.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True)
-class Response:
+class ItemForces:
     """Forces and stiffness of an item at one state.
 
     Attributes
@@ -32,7 +32,7 @@ class Response:
     support: float = 0.0
 
 
-class Item(ABC):
+class EquationItem(ABC):
     """One interaction; what it remembers is in the item, a new one after each step."""
 
     kinked: ClassVar[bool] = False
@@ -56,7 +56,7 @@ class Item(ABC):
         """Whether a state depends on the states before it."""
 
     @abstractmethod
-    def respond(self, y: FloatArray) -> Response | None:
+    def respond(self, y: FloatArray) -> ItemForces | None:
         """Forces and stiffness at unknowns y (n,); None where they do not exist."""
 
     @abstractmethod

@@ -15,7 +15,7 @@ import numpy as np
 import skfem
 
 from fem.arrays import FloatArray, IntArray
-from fem.assembly.element_geometry import ElementGeometry
+from fem.assembly.element_geometry import ElementGeometry, orthonormal
 from fem.errors import FemError
 from fem.materials.components import SOLID, Components
 from fem.mesh.solid import SolidMesh
@@ -183,10 +183,7 @@ def solid_geometry(mesh: SolidMesh) -> SolidGeometry:
         x, y, z = mesh.nodes[mesh.elements[:, e]].mean(axis=0)
         raise FemError(f"mesh: element {e} at ({x:g}, {y:g}, {z:g}) m is folded")
     weight = mesh.images * determinant * weights[:, None]
-    monomials = element.monomials(points)
-    mass = np.einsum("iq,jq,qe->eij", monomials, monomials, weight)
-    transform = np.ascontiguousarray(np.linalg.inv(np.linalg.cholesky(mass)).transpose(1, 2, 0))
-    pressure = np.einsum("ije,jq->iqe", transform, monomials)
+    transform, pressure = orthonormal(element.monomials(points), weight)
     return SolidGeometry(rows, inverse, weight, pressure, transform)
 
 

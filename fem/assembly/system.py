@@ -8,7 +8,7 @@ import numpy as np
 
 from fem.arrays import FloatArray, IntArray
 from fem.assembly.elements import Elements, ElementState
-from fem.assembly.item import Item, Response
+from fem.assembly.item import EquationItem, ItemForces
 from fem.assembly.scatter import Numbering, Scatter, widened
 
 
@@ -27,7 +27,7 @@ class Evaluation:
     """
 
     elements: ElementState
-    responses: tuple[Response, ...]
+    responses: tuple[ItemForces, ...]
     residual: FloatArray
 
 
@@ -52,7 +52,7 @@ class System:
     elements: Elements
     numbering: Numbering
     scatter: Scatter
-    items: tuple[Item, ...] = ()
+    items: tuple[EquationItem, ...] = ()
     places: tuple[IntArray, ...] = ()
     offset: FloatArray | None = None
 
@@ -63,7 +63,7 @@ class System:
 
     @property
     def kinked(self) -> bool:
-        """Whether the forces have kinks; see :class:`fem.assembly.item.Item`."""
+        """Whether the forces have kinks; see :class:`fem.assembly.item.EquationItem`."""
         return any(item.kinked for item in self.items)
 
     def element_displacement(self, y: FloatArray) -> FloatArray:
@@ -92,7 +92,7 @@ class System:
             np.add.at(residual, item.unknowns, response.force)
         return Evaluation(state, responses, residual) if np.isfinite(residual).all() else None
 
-    def _responses(self, y: FloatArray) -> tuple[Response, ...] | None:
+    def _responses(self, y: FloatArray) -> tuple[ItemForces, ...] | None:
         found = []
         for item in self.items:
             response = item.respond(y)
@@ -130,7 +130,7 @@ class System:
             np.add.at(out, columns, mirrored * y[rows])
         return out
 
-    def reaction(self, element_force: FloatArray, responses: tuple[Response, ...] = ()) -> float:
+    def reaction(self, element_force: FloatArray, responses: tuple[ItemForces, ...] = ()) -> float:
         """Upward force in N of the support on the specimen, from element forces (18, E) and the items' responses.
 
         Internal forces in z add up to zero over all nodes, so what the support returns is minus the sum over the
@@ -160,7 +160,7 @@ class System:
         """The equations to begin with where a share of the press is left; None if they are these."""
         return self._with([item.lightened(share) for item in self.items])
 
-    def _with(self, others: list[Item | None]) -> System | None:
+    def _with(self, others: list[EquationItem | None]) -> System | None:
         if all(other is None for other in others):
             return None
         return replace(self, items=tuple(other or item for other, item in zip(others, self.items, strict=True)))
@@ -201,7 +201,9 @@ class System:
         )
 
 
-def make_system(elements: Elements, numbering: Numbering, scatter: Scatter, items: tuple[Item, ...] = ()) -> System:
+def make_system(
+    elements: Elements, numbering: Numbering, scatter: Scatter, items: tuple[EquationItem, ...] = ()
+) -> System:
     """The equations of elements and items, with a pattern that has the entries of both."""
     if not items:
         return System(elements, numbering, scatter)

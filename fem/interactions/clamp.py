@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from fem.arrays import FloatArray, IntArray
-from fem.assembly.item import Item, Response
+from fem.assembly.item import EquationItem, ItemForces
 from fem.interactions.active_set import Friction
 
 SLIDES_EVERYWHERE = (
@@ -18,7 +18,7 @@ SLIDES_EVERYWHERE = (
 
 
 @dataclass(frozen=True)
-class ClampSlip(Item):
+class ClampFriction(EquationItem):
     """Displacements with friction against a body at rest; in small strain there is none.
 
     Attributes
@@ -49,13 +49,13 @@ class ClampSlip(Item):
         """Where the sheet sticks follows from the states before."""
         return True
 
-    def respond(self, y: FloatArray) -> Response:
+    def respond(self, y: FloatArray) -> ItemForces:
         """Friction and its derivative at unknowns y (n,)."""
         trial = self._trial(y)
         force, sticks = self.friction.drag(trial, trial)
-        return Response(force, np.where(sticks, self.friction.stick, 0.0))
+        return ItemForces(force, np.where(sticks, self.friction.stick, 0.0))
 
-    def accepted(self, y: FloatArray) -> ClampSlip:
+    def accepted(self, y: FloatArray) -> ClampFriction:
         """The item after a step that ends at unknowns y (n,)."""
         elastic = self.respond(y).force / self.friction.stick
         return replace(self, friction=self.friction.after(y[self.own], elastic))

@@ -25,7 +25,7 @@ import numpy as np
 from scipy.linalg import solve_banded
 
 from fem.arrays import FloatArray, IntArray
-from fem.assembly.item import Item, Response
+from fem.assembly.item import EquationItem, ItemForces
 from fem.interactions.active_set import Friction
 
 SLIP_SHARE = 0.03  # of k, by which a node's slip counts against the force along the curve
@@ -125,7 +125,7 @@ class InterfaceState:
 
 
 @dataclass(frozen=True)
-class InterfaceSlip(Item):
+class InterfaceFriction(EquationItem):
     """The nodes of one side and what they remember.
 
     Attributes
@@ -159,14 +159,14 @@ class InterfaceSlip(Item):
         """Friction remembers."""
         return self.friction.present
 
-    def respond(self, y: FloatArray) -> Response | None:
+    def respond(self, y: FloatArray) -> ItemForces | None:
         """Forces and stiffness at unknowns y (n,); None where a node is beyond an end of the curve."""
         state = self.evaluate(y)
         if state is None:
             return None
         force = np.concatenate((state.force.ravel(), state.curve_force[self.along >= 0]))
         stiffness = np.concatenate((state.stiffness.ravel(), state.curve_stiffness.ravel()))[self._free]
-        return Response(force, stiffness, float(state.curve_force[1][self.along[1] < 0].sum()))
+        return ItemForces(force, stiffness, float(state.curve_force[1][self.along[1] < 0].sum()))
 
     def evaluate(self, y: FloatArray) -> InterfaceState | None:
         """State at unknowns y (n,); None where a node is beyond an end of the curve."""
@@ -205,7 +205,7 @@ class InterfaceSlip(Item):
         friction, sticks = self.friction.drag(trial, stick * slid, stretch)
         return friction, np.where(sticks, stick, friction * turn / stretch**2)
 
-    def accepted(self, y: FloatArray) -> InterfaceSlip:
+    def accepted(self, y: FloatArray) -> InterfaceFriction:
         """The item after a step that ends at unknowns y (n,)."""
         state = self.evaluate(y)
         if state is None:

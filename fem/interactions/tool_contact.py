@@ -20,7 +20,7 @@ from functools import cache, cached_property
 import numpy as np
 
 from fem.arrays import BoolArray, FloatArray, IntArray
-from fem.assembly.item import Item, Response
+from fem.assembly.item import EquationItem, ItemForces
 from fem.interactions.active_set import Friction, in_touch
 from fem.interactions.punch import Gap, Punch
 
@@ -57,7 +57,7 @@ class Touch:
 
 
 @dataclass(frozen=True)
-class ToolContact(Item):
+class ToolContact(EquationItem):
     """Candidate nodes and what they remember.
 
     Attributes
@@ -119,14 +119,14 @@ class ToolContact(Item):
         elastic, press = _undo(metric, drag.force / k), -float(force[c].sum())
         return Touch(force, np.concatenate((stiffness, *more)), elastic, gap.path, touch.push, press)
 
-    def respond(self, y: FloatArray) -> Response | None:
+    def respond(self, y: FloatArray) -> ItemForces | None:
         """Forces and stiffness at unknowns y (n,); a punch in the air keeps a trace of stiffness."""
         touch = self.touch(y)
         if touch is None:
             return None
         loose = LOOSE * float(self.friction.stick.sum())
         stiffness = np.append(touch.stiffness.ravel(), loose)[self._free_pairs]
-        return Response(touch.force.ravel()[self._free], stiffness)
+        return ItemForces(touch.force.ravel()[self._free], stiffness)
 
     @cached_property
     def pairs(self) -> tuple[tuple[int, int], ...]:

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from fem.analysis.equilibrium import Equilibrium
-from fem.analysis.model import Model
 from fem.analysis.newton import NewtonSettings
+from fem.analysis.prepared import Model
 from fem.arrays import BoolArray, FloatArray
 from fem.assembly.axisymmetric import gauss_geometry
 from fem.assembly.element_geometry import ElementGeometry

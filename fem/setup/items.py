@@ -12,11 +12,11 @@ from dataclasses import replace
 import numpy as np
 
 from fem.arrays import BoolArray, FloatArray, IntArray
-from fem.assembly.item import Item
+from fem.assembly.item import EquationItem
 from fem.assembly.scatter import Numbering
 from fem.interactions.active_set import Friction
-from fem.interactions.clamp import ClampSlip
-from fem.interactions.interface import Curve, InterfaceSlip
+from fem.interactions.clamp import ClampFriction
+from fem.interactions.interface import Curve, InterfaceFriction
 from fem.interactions.punch import Punch
 from fem.interactions.tool_contact import ToolContact
 from fem.mesh.quads import Mesh, ring_areas
@@ -34,7 +34,7 @@ PENALTY = 1e5  # of the tool, in shear moduli of the surface layer over the punc
 
 def make_items(
     problem: Problem, mesh: AnyMesh, numbering: Numbering, conditions: Conditions
-) -> tuple[Numbering, tuple[Item, ...], int | None]:
+) -> tuple[Numbering, tuple[EquationItem, ...], int | None]:
     """Items of a problem.
 
     Parameters
@@ -49,7 +49,7 @@ def make_items(
     tuple
         The numbering with the items' own unknowns, the items, and the unknown of a tool that touches, or None.
     """
-    items: list[Item] = []
+    items: list[EquationItem] = []
     if isinstance(mesh, Mesh):
         items += clamp_slip(problem, mesh, numbering)
     if isinstance(mesh, Mesh) and problem.kinematics == "finite":
@@ -72,7 +72,7 @@ def sliding_nodes(mesh: Mesh, problem: Problem) -> BoolArray:
     return on_the_plate(mesh, problem) & ~mesh.border
 
 
-def clamp_slip(problem: Problem, mesh: Mesh, numbering: Numbering) -> tuple[ClampSlip, ...]:
+def clamp_slip(problem: Problem, mesh: Mesh, numbering: Numbering) -> tuple[ClampFriction, ...]:
     """Friction between sheet and plate; none where the sheet does not slide."""
     limit = problem.support.clamp_shear_limit
     if limit is None:
@@ -83,10 +83,10 @@ def clamp_slip(problem: Problem, mesh: Mesh, numbering: Numbering) -> tuple[Clam
     area: FloatArray = ring_areas(mesh.nodes[row, 0])[moving]
     last = problem.layers[-1]
     stick = CLAMP_STICK * last.material.shear_modulus / last.thickness * area
-    return (ClampSlip(numbering.unknown[0, row[moving]], Friction(stick, limit * area, np.zeros(len(area)))),)
+    return (ClampFriction(numbering.unknown[0, row[moving]], Friction(stick, limit * area, np.zeros(len(area)))),)
 
 
-def interface_slip(problem: Problem, mesh: Mesh, numbering: Numbering, layer: int, limit: float) -> InterfaceSlip:
+def interface_slip(problem: Problem, mesh: Mesh, numbering: Numbering, layer: int, limit: float) -> InterfaceFriction:
     """The interface below a layer with its limit in Pa; its own unknowns follow those of the numbering."""
     curve, nodes = _sides(problem, mesh, layer)
     nodes = nodes[1:-1]
@@ -95,7 +95,7 @@ def interface_slip(problem: Problem, mesh: Mesh, numbering: Numbering, layer: in
     hold = area * (
         HOLD * min(part.material.shear_modulus / part.thickness for part in problem.layers[layer : layer + 2])
     )
-    return InterfaceSlip(
+    return InterfaceFriction(
         Curve(mesh.nodes[curve, 0]),
         mesh.nodes[nodes, 0],
         np.concatenate((numbering.unknown[:, nodes], own)),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fem.problem.problem import Problem
 
 if TYPE_CHECKING:
-    from fem.analysis.model import Model
+    from fem.analysis.prepared import Model
 
 
 def prepare(problem: Problem, linear_solver: str = "auto", mesh_file: str | Path | None = None) -> Model:
@@ -27,7 +27,7 @@ def prepare(problem: Problem, linear_solver: str = "auto", mesh_file: str | Path
     Returns
     -------
     Model
-        Ready to :meth:`~fem.analysis.model.Model.run`.
+        Ready to :meth:`~fem.analysis.prepared.Model.run`.
 
     Raises
     ------

@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from fem.analysis.model import Model
+from fem.analysis.prepared import Model
 from fem.load import Load
 from fem.materials import LinearElastic, NeoHookean
 from fem.problem.parts import TOUCHING, Discretisation, Layer, Support, Tool

@@ -20,7 +20,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from fem.analysis.model import Model
+from fem.analysis.prepared import Model
 from fem.arrays import FloatArray
 from fem.load import Load
 from fem.materials import LinearElastic, NeoHookean

@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from fem.analysis.model import Model
+from fem.analysis.prepared import Model
 from fem.arrays import FloatArray
 from fem.load import Load
 from fem.materials import NeoHookean

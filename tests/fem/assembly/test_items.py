@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from fem.arrays import IntArray
-from fem.assembly.item import Item, Response
+from fem.assembly.item import EquationItem, ItemForces
 from fem.assembly.system import make_system
 
 
 @dataclass(frozen=True)
-class Spring(Item):
+class Spring(EquationItem):
     """Two unknowns joined by a spring, torn where it gets longer than 1 m, which counts the accepted states."""
 
     pair: IntArray
@@ -38,7 +38,7 @@ class Spring(Item):
         if abs(length) > 1.0:
             return None
         k = self.stiffness
-        return Response(k * length * np.array([-1.0, 1.0]), k * np.array([1.0, 1.0, -1.0]), support=0.25)
+        return ItemForces(k * length * np.array([-1.0, 1.0]), k * np.array([1.0, 1.0, -1.0]), support=0.25)
 
     def accepted(self, y):
         return replace(self, used=self.used + 1)

@@ -9,7 +9,7 @@ import fem
 from fem.analysis.newton import NewtonSettings
 from fem.analysis.stepping import Stepper
 from fem.interactions.active_set import Friction
-from fem.interactions.clamp import ClampSlip
+from fem.interactions.clamp import ClampFriction
 
 SHEET = (
     fem.Layer("skin", 1.5e-3, 1000.0, fem.NeoHookean(1e5, 0.48)),
@@ -123,7 +123,7 @@ def test_a_stopped_run_goes_on(sliding, tmp_path):
 
 
 def test_it_gives_elastically_slides_at_the_limit_and_comes_back():
-    slider = ClampSlip(np.array([1]), Friction(np.array([2.0]), np.array([3.0]), np.zeros(1)))
+    slider = ClampFriction(np.array([1]), Friction(np.array([2.0]), np.array([3.0]), np.zeros(1)))
     force, slope = [], []
     for u in (1.0, 1.5, 4.0, 3.0, 0.5):
         y = np.array([9.0, u])
@@ -136,7 +136,7 @@ def test_it_gives_elastically_slides_at_the_limit_and_comes_back():
 
 
 def test_the_stiffness_is_the_derivative_of_the_force():
-    slider = ClampSlip(np.arange(3), Friction(np.array([1.0, 2.0, 3.0]), np.ones(3), np.array([0.0, 0.1, -5.0])))
+    slider = ClampFriction(np.arange(3), Friction(np.array([1.0, 2.0, 3.0]), np.ones(3), np.array([0.0, 0.1, -5.0])))
     y, step = np.array([0.5, -0.2, 0.3]), 1e-7
     slope = (slider.respond(y + step).force - slider.respond(y - step).force) / (2.0 * step)
     np.testing.assert_allclose(slider.respond(y).stiffness, slope, atol=1e-8)
@@ -144,5 +144,5 @@ def test_the_stiffness_is_the_derivative_of_the_force():
 
 @pytest.mark.parametrize(("moved", "everywhere"), [(0.9, False), (1.1, True)])
 def test_everywhere(moved, everywhere):
-    slider = ClampSlip(np.arange(2), Friction(np.ones(2), np.ones(2), np.zeros(2)))
+    slider = ClampFriction(np.arange(2), Friction(np.ones(2), np.ones(2), np.zeros(2)))
     assert bool(slider.warning(np.array([2.0, moved]))) is everywhere

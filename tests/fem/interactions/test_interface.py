@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fem.interactions.active_set import Friction
-from fem.interactions.interface import Curve, InterfaceSlip
+from fem.interactions.interface import Curve, InterfaceFriction
 
 RADIUS = np.array([0.0, 0.3, 0.6, 1.0, 1.5, 2.2, 3.0, 3.5, 4.0])
 PLACES = np.array([0.0, 0.1, 0.45, 2.0, 3.2, 4.0])
@@ -57,7 +57,7 @@ def interface(limit):
     own = np.arange(5 * COUNT).reshape(5, COUNT)
     hold = np.linspace(1.0, 3.0, COUNT)
     friction = Friction(hold / GIVE, np.full(COUNT, limit), np.zeros(COUNT))
-    return InterfaceSlip(Curve(NODES), NODES[1:-1], own, along, hold, GIVE, friction)
+    return InterfaceFriction(Curve(NODES), NODES[1:-1], own, along, hold, GIVE, friction)
 
 
 def balance(part, y):
