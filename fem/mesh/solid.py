@@ -186,9 +186,8 @@ def build_block(
         Reference coordinates (n, 3) of an element's nodes, all of 0, 1/2 or 1, and its kind, "hex27" or "hex20".
     """
     plane, patches = grid.points(), grid.elements()
-    middle = 0.5 * (depth_lines[1:] + depth_lines[:-1])
+    count, middle = len(plane), 0.5 * (depth_lines[1:] + depth_lines[:-1])
     depths = np.concatenate((depth_lines[:1], np.insert(depth_lines[1:], range(len(middle)), middle)))
-    count = len(plane)
     elements = _drawn_down(patches, count, len(middle), places)
     layer = np.tile(np.searchsorted(layer_tops, middle, side="right") - 1, patches.shape[2])
     nodes = np.concatenate((np.tile(plane, (len(depths), 1)), -np.repeat(depths, count)[:, None]), axis=1)

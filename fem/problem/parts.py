@@ -166,7 +166,7 @@ class Discretisation:
         Radius of the outer border in m; None follows tool, stack and support.
     stabilisation
         Finite strain: part of the bulk modulus, in shear moduli, that acts at each Gauss point instead of
-        on the pressure field (see :class:`fem.assembly.System`); 0 gives the plain Q2/P1 element.
+        on the pressure field (see :func:`fem.assembly.elements.make_elements`); 0 gives the plain Q2/P1 element.
     edge
         How much larger than usual, 1 to 4, the elements are round the edge of a tool stuck to a first layer that is not
         thin, in finite strain and axial symmetry: a little stiffer, but they fold later.

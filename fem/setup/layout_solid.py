@@ -1,6 +1,6 @@
 """Where the three-dimensional block of a problem has its grid lines.
 
-Radially and vertically as in :mod:`fem.layout`, but coarser at the tool's edge: unknowns cost more in three
+Radially and vertically as in :mod:`fem.setup.layout`, but coarser at the tool's edge: unknowns cost more in three
 dimensions, and round the tool few elements are enough. Under a tool that touches the lines gather where its rounded
 edge begins and ends, under a sphere at the axis.
 
@@ -105,7 +105,7 @@ def _require_room(problem: Problem, rims: list[float], border: float) -> None:
 
 
 def lay_out_surface(problem: Problem, surface: Surface, keep: Path | None = None) -> SurfaceMesh:
-    """Mesh of a problem with `geometry` "surface" (see :func:`fem.mesh.surface.build_surface_mesh`)."""
+    """Mesh of a problem with `geometry` "surface" (see :func:`fem.mesh.surface.specimen.build_surface_mesh`)."""
     thickness = tuple(layer.thickness for layer in problem.layers)
     tool = (*problem.tool.position, problem.tool.radius)
     return build_surface_mesh(surface, thickness, tool, DENSITY[problem.discretisation.density], keep)

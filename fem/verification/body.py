@@ -86,7 +86,7 @@ class Body:
     tied
         Nodes (N,) that share one vertical displacement.
     stabilisation
-        See :class:`fem.assembly.System`.
+        See :func:`fem.assembly.elements.make_elements`.
     relaxation
         Prony terms of the material.
     """

@@ -85,7 +85,7 @@ def pressed(
     stretch
         Axial stretch.
     stabilisation
-        See :class:`fem.assembly.System`.
+        See :func:`fem.assembly.elements.make_elements`.
     """
     mesh = distorted_square(COUNT, SEED)
     body = Body(mesh, material, np.stack((mesh.axis, mesh.base)), mesh.top, stabilisation)
