@@ -15,7 +15,17 @@ class FemError(ValueError):
 
 
 class CheckpointError(FemError):
-    """A checkpoint that cannot be written, is damaged, or belongs to another problem."""
+    """A checkpoint that cannot be written, is damaged, or belongs to another problem.
+
+    Attributes
+    ----------
+    problem
+        What is wrong; the message goes on with what to do.
+    """
+
+    def __init__(self, problem: str, remedy: str = ""):
+        super().__init__(f"{problem}; {remedy}" if remedy else problem)
+        self.problem = problem
 
 
 def require_positive(name: str, value: float, unit: str) -> None:

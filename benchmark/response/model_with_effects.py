@@ -17,7 +17,7 @@ import numpy as np
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel, read_model
 from benchmark.models import Drive, Keeping, ModelResult, PreparedModel, UncoveredError, UserFile, prepare, silent
-from benchmark.models.result import OnStep
+from benchmark.models.model_result import OnStep
 from benchmark.models.scenario_effects import given_in_wave, scenario_context
 from benchmark.physics import Effect, TrialContext, catalogue, load_effects
 from benchmark.response.force_curve import Array

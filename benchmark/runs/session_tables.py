@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from benchmark.errors import SolverError
 from benchmark.files import Session
 from benchmark.models import StepProgress, prepare
-from benchmark.models.result import OnStep
+from benchmark.models.model_result import OnStep
 from benchmark.response import FaceField, ForceCurve, Neighbour, Ramp, RampTable, View, depth_ramp
 from benchmark.response.ramp import Setup, setup_scenario
 from benchmark.response.setup_change import THICKNESS, changed_setup

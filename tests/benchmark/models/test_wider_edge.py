@@ -8,8 +8,8 @@ import pytest
 import fem
 from benchmark.files import load_scenario
 from benchmark.models import prepare, scenario_drive
-from benchmark.models.fem_model import problem_of
-from benchmark.models.wider_edge import WIDER, follow_deeper
+from benchmark.models.fem_problem import problem_of
+from benchmark.models.fem_steps import WIDER, follow_deeper
 
 LAYER = fem.Layer("jelly", 12e-3, 1000.0, fem.NeoHookean(2e4, 0.45))
 TIME = np.array([1.0, 2.0, 3.0])

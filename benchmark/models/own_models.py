@@ -13,9 +13,10 @@ from bench_hw.tables.columns import numbers_of
 from bench_hw.tables.source import read_source, text_columns
 from benchmark.errors import InputError
 from benchmark.files import Scenario
+from benchmark.model_file import RepairedModel
+from benchmark.models.model_result import Array, Drive, ModelResult, profile_radii
 from benchmark.models.prepare import scenario_drive
-from benchmark.models.radii import profile_radii
-from benchmark.models.result import Array, Drive, ModelResult
+from benchmark.models.user_file import UserFile
 
 COLUMNS = ("step", "time_s", "force_N", "layer", "fem_mm")
 TOLERANCE = 1e-4
@@ -150,3 +151,28 @@ def _check_history(rows: _Rows, drive: Drive) -> None:
                 f"{rows.path}, line {rows.line[row]}, column {column}: step {step[row] + 1} is at {found[row]:.6g} "
                 f"{unit}, in the scenario at {expected[step[row]]:.6g} {unit}"
             )
+
+
+@dataclass(frozen=True)
+class Own:
+    """A user's own fast model in the wave's place and own FEA in the FEM's; None keeps the model of the harness.
+
+    `repair` switches the effects of a model file on, in both models of the harness.
+    """
+
+    wave: UserFile | None = None
+    reference: Reference | None = None
+    repair: RepairedModel | None = None
+
+    def place(self, model: str) -> UserFile | RepairedModel | None:
+        """What a process of `"fem"` or `"wave"` needs to know of it."""
+        return self.wave if model == "wave" and self.wave is not None else self.repair
+
+    def name(self, model: str) -> str | None:
+        """What the user calls the model in the place of `"fem"` or `"wave"`; None where there is none."""
+        if model == "fem":
+            return None if self.reference is None else self.reference.name
+        return None if self.wave is None else self.wave.name
+
+
+NOTHING = Own()

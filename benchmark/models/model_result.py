@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+_SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -96,6 +98,84 @@ class LastState:
 
 
 @dataclass(frozen=True)
+class FemChoices:
+    """What the finite-element solver chose or was told.
+
+    `kinematics` "finite" or "linear", `edge` how much larger than usual the elements at the tool's edge are.
+    """
+
+    kinematics: str
+    geometry: str
+    mesh: str
+    edge: float
+    linear_solver: str
+
+    def notes(self) -> dict[str, str]:
+        """The choices by name, in words."""
+        larger = "" if self.edge == 1.0 else f", elements at the tool's edge {self.edge:g} times larger"
+        return {
+            "kinematics": "finite strain" if self.kinematics == "finite" else "small strain",
+            "geometry": self.geometry,
+            "mesh": self.mesh + larger,
+            "linear solver": self.linear_solver,
+        }
+
+
+STRAINS = {
+    "linear": "small strain",
+    "corrected": "finite strain of the layers",
+    "deep": "finite strain of the layers, followed deep",
+}
+"""How a layered wave takes the strain of its layers."""
+SHEET = "sheet over a hole, finite deflection with its local tension"
+CALIBRATED = (
+    "; three numbers of a bonded tool's edge were identified once on finite elements of eleven sheets, that of the "
+    "shipped phantom among them, and are the same for all sheets"
+)
+
+
+@dataclass(frozen=True)
+class WaveChoices:
+    """What a wave model chose or was told.
+
+    Attributes
+    ----------
+    strain
+        "linear", "corrected" or "deep" (`STRAINS`) of the layered wave; None of a sheet over a hole.
+    window
+        Width in m.
+    modes
+        N of the layered wave's m, n = 1..N, or of the sheet's radial functions.
+    calibrated
+        Whether numbers of it were identified on finite elements.
+    """
+
+    strain: str | None
+    window: float
+    modes: int
+    calibrated: bool = False
+
+    @property
+    def plane_modes(self) -> int | None:
+        """N of modes m, n = 1..N, which a run may refine; None of a sheet."""
+        return None if self.strain is None else self.modes
+
+    def notes(self) -> dict[str, str]:
+        """The choices by name, in words."""
+        if self.strain is None:
+            return {
+                "model": SHEET + (CALIBRATED if self.calibrated else "; no calibration"),
+                "window": f"the hole, {1e3 * self.window:.4g} mm wide",
+                "modes": f"{self.modes} radial functions each",
+            }
+        return {
+            "model": f"layered vector wave, {STRAINS[self.strain]}, no calibration",
+            "window": f"{1e3 * self.window:.4g} mm",
+            "modes": f"m, n = 1..{self.modes}",
+        }
+
+
+@dataclass(frozen=True)
 class ModelResult:
     """A model's answer to a scenario.
 
@@ -125,6 +205,8 @@ class ModelResult:
         Snapshots of the continuum (FEM only).
     resumed
         What was taken over from an interrupted run; None where all was computed at once.
+    choices
+        What the model chose, as facts; None of a user's own.
     last
         Of a run that stopped early its last state of equilibrium, if it has one (FEM only).
     """
@@ -145,6 +227,7 @@ class ModelResult:
     fields: tuple[FieldSnapshot, ...] = ()
     resumed: Resumption | None = None
     last: LastState | None = None
+    choices: FemChoices | WaveChoices | None = None
 
     @property
     def complete(self) -> bool:
@@ -196,3 +279,60 @@ class PreparedModel(Protocol):
     def run(self, drive: Drive, on_step: OnStep = silent) -> ModelResult:
         """Follow a load history from rest and read everything off it."""
         ...
+
+
+@dataclass(frozen=True)
+class Keeping:
+    """A folder for unfinished work, which need not exist yet, and who is told what was found or done there."""
+
+    folder: Path
+    say: Callable[[str], None]
+
+
+REACH = 5.0
+PER_RADIUS = 10
+
+
+def profile_radii(tool_radius: float) -> Array:
+    """Radii (m,) in m from the axis to five tool radii, ten to a radius, the tool's edge among them."""
+    return np.asarray(tool_radius / PER_RADIUS * np.arange(int(REACH * PER_RADIUS) + 1), dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class LowerFace:
+    """Displacement of the lower face at each depth of a ramp; SI.
+
+    Attributes
+    ----------
+    depth : (k,) array
+        Of the press, m, increasing from 0.
+    radius : (m,) array
+        Distance from the tool axis before the press, m, increasing from 0.
+    outward, sunk : (k, m) array
+        Away from the axis and downwards, m.
+    """
+
+    depth: Array
+    radius: Array
+    outward: Array
+    sunk: Array
+
+
+def lower_face(result: ModelResult) -> LowerFace | None:
+    """Take the lower face out of a depth ramp that kept every field; None where a step has none.
+
+    Parameters
+    ----------
+    result : ModelResult
+        Of an axisymmetric run prepared with `every_field`.
+    """
+    if not result.time.size or len(result.fields) != result.time.size:
+        return None
+    points = result.fields[0].points
+    low = float(points[:, 2].min())
+    rows = np.flatnonzero((points[:, 2] <= low + _SAME) & (np.abs(points[:, 1]) <= _SAME))
+    rows = rows[np.argsort(points[rows, 0])]
+    radius = points[rows, 0]
+    moved = np.array([field.point_data["displacement_m"][rows] for field in result.fields])
+    moved = np.concatenate([np.zeros((1, *moved.shape[1:])), moved])
+    return LowerFace(np.append(0.0, result.depth), radius, moved[:, :, 0], -moved[:, :, 2])
