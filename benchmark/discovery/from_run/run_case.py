@@ -12,7 +12,7 @@ from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.from_run.finished_run import FinishedRun
 from benchmark.discovery.report.discovery_record import LayerGap
 from benchmark.errors import InputError
-from benchmark.models.scenario_effects import specimen_layers
+from benchmark.models.scenario_effects import open_radius, specimen_layers
 from benchmark.physics import TrialContext
 from benchmark.response import Ramp
 from wavemodel.physics import Physics, QuasiStaticPress, drive_by_force
@@ -90,6 +90,7 @@ def _case(run: FinishedRun, fitted: NDArray[np.bool_], held: NDArray[np.bool_]) 
         peak_depth=float(run.reference[:, 0].max()),
         peak_force=float(run.force.max()),
         duration=float(run.time[-1]),
+        hole_radius=open_radius(run.scenario.support),
         layers=specimen_layers(run.scenario.tissue.layers),
         contact=run.scenario.tool.contact,
     )
