@@ -6,7 +6,6 @@ the measured force; then the fit is done again. A few rounds settle it.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -16,7 +15,7 @@ from benchmark.files import Session
 from benchmark.identification import FittingError, SessionFit, TrialData, fit_session
 from benchmark.model_file import RepairedModel
 from benchmark.models import Array, UncoveredError
-from benchmark.models.scenario_effects import specimen_layers
+from benchmark.models.scenario_effects import open_radius, specimen_layers
 from benchmark.physics import TrialContext
 from benchmark.response.model_with_effects import effects_of, held_by_finite_strain
 from benchmark.response.pipeline import Added, trial_force
@@ -101,7 +100,7 @@ def trial_context(session: Session, trial: TrialData, depth: Array) -> TrialCont
         peak_depth=float(depth.max()),
         peak_force=float(np.ptp(trial.force)),
         duration=float(np.ptp(trial.time)),
-        hole_radius=(support.hole_radius or math.inf) if support.kind == "hole" else math.inf,
+        hole_radius=open_radius(support),
         layers=specimen_layers(session.specimen.layers),
         contact=measured.tool.contact,
     )

@@ -23,7 +23,7 @@ from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import TrialsFit, fit_record
 from benchmark.response.noise import effective_rows, lag_one
 from benchmark.response.ramp_table import RampTable
-from benchmark.response.trials_model import Record, differences
+from benchmark.response.trials_model import RecordModel, differences
 
 MM = 1e3
 CONTACT = ("log_stiffness", "onset", "zero", "axis_x", "axis_y")
@@ -109,7 +109,7 @@ def fit_sheet_trial(
     return _sheet_trial(filmed, sheet, weights, fit_record(_record(filmed, sheet, weights, bounds), vector))
 
 
-def _sheet_trial(filmed: FilmedTrial, sheet: RampTable, weights: Weights, fitted: TrialsFit[Record]) -> SheetTrial:
+def _sheet_trial(filmed: FilmedTrial, sheet: RampTable, weights: Weights, fitted: TrialsFit[RecordModel]) -> SheetTrial:
     """Put the parts together."""
     state, free = _state(fitted.vector), _free(fitted.model.bounds)
     names = [NAMES[k] for k in free]
@@ -173,12 +173,12 @@ def _residuals(filmed: FilmedTrial, sheet: RampTable, state: SheetState) -> tupl
     return force, sheet_markers(filmed, sheet, state) - filmed.places
 
 
-def _record(filmed: FilmedTrial, sheet: RampTable, weights: Weights, bounds: tuple[Array, Array]) -> Record:
+def _record(filmed: FilmedTrial, sheet: RampTable, weights: Weights, bounds: tuple[Array, Array]) -> RecordModel:
     def residual(vector: Array) -> Array:
         force, marker = _residuals(filmed, sheet, _state(vector))
         return -np.concatenate([force / weights.force, np.nan_to_num(marker.ravel() / weights.marker)])
 
-    return Record(residual, lambda vector: differences(residual, vector, STEP, bounds), bounds)
+    return RecordModel(residual, lambda vector: differences(residual, vector, STEP, bounds), bounds)
 
 
 def _weights(filmed: FilmedTrial, sheet: RampTable, state: SheetState, parameters: int) -> Weights:

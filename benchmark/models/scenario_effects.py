@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from benchmark.files import Layer, Scenario
+from benchmark.files.tool import Support
 from benchmark.models.model_result import UncoveredError
 from benchmark.models.wave_parts import wave_layers
 from benchmark.physics import Effect, TrialContext, option_effects
@@ -105,7 +106,7 @@ def scenario_context(scenario: Scenario) -> TrialContext:
         peak_depth=0.1 * thickness if control == "force" else peak,
         peak_force=peak,
         duration=float(history.time[-1]),
-        hole_radius=(scenario.support.hole_radius or math.inf) if scenario.support.kind == "hole" else math.inf,
+        hole_radius=open_radius(scenario.support),
         layers=layers,
         contact=scenario.tool.contact,
         control=control,
@@ -115,6 +116,11 @@ def scenario_context(scenario: Scenario) -> TrialContext:
 def specimen_layers(layers: Iterable[Layer]) -> tuple[WaveLayer, ...]:
     """The layers of a specimen as effects know them, without an endless base."""
     return tuple(wave_layers(layer for layer in layers if math.isfinite(layer.thickness)))
+
+
+def open_radius(support: Support) -> float:
+    """Radius in m of the hole below a specimen; infinite without one."""
+    return (support.hole_radius or math.inf) if support.kind == "hole" else math.inf
 
 
 def keys_on_top() -> tuple[str, ...]:

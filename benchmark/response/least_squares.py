@@ -6,7 +6,7 @@ others make up for it. What a trial says of the vector, after its nuisances, is 
 the covariance, the fit without a trial and the density of a trial at other parameters, to second order.
 
 No library eliminates nuisances trial by trial (SciPy's `least_squares` and lmfit would carry all of them in one dense
-matrix); a single record without nuisances is the case of one trial (`Record`).
+matrix); a single record without nuisances is the case of one trial (`RecordModel`).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.response.force_curve import Array
-from benchmark.response.trials_model import Columns, Evaluation, Record, TrialsModel
+from benchmark.response.trials_model import RecordModel, TrialColumns, TrialsEvaluation, TrialsModel
 
 MOST_DAMPING = 1e5
 LENT = 3
@@ -91,7 +91,7 @@ class TrialsFit(Generic[Model]):
         At the solution.
     precision, prior_mean : (p,) array
         Of the priors on the vector.
-    columns : Columns
+    columns : TrialColumns
         At the solution.
     """
 
@@ -102,7 +102,7 @@ class TrialsFit(Generic[Model]):
     blocks: Blocks
     precision: Array
     prior_mean: Array
-    columns: Columns
+    columns: TrialColumns
 
     @property
     def covariance(self) -> Array:
@@ -126,7 +126,7 @@ class TrialsFit(Generic[Model]):
 
 
 def least_squares(
-    model: Model, start: Array, nuisance: Array, *, warm: Columns | None = None, search: Search = USUAL
+    model: Model, start: Array, nuisance: Array, *, warm: TrialColumns | None = None, search: Search = USUAL
 ) -> TrialsFit[Model]:
     """Fit a model from a start.
 
@@ -168,7 +168,7 @@ def least_squares(
     return TrialsFit(model, at.vector, at.nuisance, value, blocks, precision, mean, columns)
 
 
-def _objective(model: TrialsModel, at: Evaluation, mean: Array, precision: Array) -> float:
+def _objective(model: TrialsModel, at: TrialsEvaluation, mean: Array, precision: Array) -> float:
     data = sum(float(r @ r) for r in at.residuals)
     prior = float(np.sum(at.nuisance**2 * model.trial_precision) + np.sum(precision * (at.vector - mean) ** 2))
     total = 0.5 * (data + prior)
@@ -176,7 +176,7 @@ def _objective(model: TrialsModel, at: Evaluation, mean: Array, precision: Array
 
 
 def _moved(
-    model: TrialsModel, columns: Columns, at: Evaluation, prior: tuple[Array, Array], damping: float
+    model: TrialsModel, columns: TrialColumns, at: TrialsEvaluation, prior: tuple[Array, Array], damping: float
 ) -> tuple[Array, Array]:
     """Vector and nuisances one damped step further, within their bounds."""
     mean, precision = prior
@@ -213,7 +213,7 @@ class _Eliminated:
 
 
 def _eliminated(
-    columns: Columns, index: int, residual: Array, own: Array, weight: Array, held: NDArray[np.bool_]
+    columns: TrialColumns, index: int, residual: Array, own: Array, weight: Array, held: NDArray[np.bool_]
 ) -> _Eliminated:
     """Eliminate the nuisances of a trial that stand at `own` (q,); those that are `held` stay there."""
     j, n = columns.vector[index], columns.nuisance[index]
@@ -228,7 +228,7 @@ def _eliminated(
     return _Eliminated(inner, side, pull, solved, matrix, j.T @ residual - side.T @ solved[:, -1])
 
 
-def _held(model: TrialsModel, columns: Columns, at: Evaluation, index: int) -> NDArray[np.bool_]:
+def _held(model: TrialsModel, columns: TrialColumns, at: TrialsEvaluation, index: int) -> NDArray[np.bool_]:
     """Which nuisances of a trial stand at a bound that they would pass (q,)."""
     limits, own = model.trial_bounds, at.nuisance[index]
     if limits is None:
@@ -265,7 +265,7 @@ def _solve(matrix: Array, right: Array) -> Array:
         return np.asarray(np.linalg.lstsq(matrix, right)[0])
 
 
-def _blocks(model: TrialsModel, columns: Columns, at: Evaluation) -> Blocks:
+def _blocks(model: TrialsModel, columns: TrialColumns, at: TrialsEvaluation) -> Blocks:
     matrices, slopes, misfits, sizes = [], [], [], []
     weight = model.trial_precision
     for index, residual in enumerate(at.residuals):
@@ -303,21 +303,21 @@ def settled(model: TrialsModel, vector: Array, nuisance: Array, search: Search =
     return at.nuisance
 
 
-def _trial_objectives(at: Evaluation, weight: Array) -> Array:
+def _trial_objectives(at: TrialsEvaluation, weight: Array) -> Array:
     """(R,) half the sum of squares of each trial with its priors."""
     data = np.array([float(r @ r) for r in at.residuals])
     total = 0.5 * (data + np.sum(at.nuisance**2 * weight, axis=1))
     return np.asarray(np.where(np.isfinite(total), total, np.inf))
 
 
-def _mixed(one: Evaluation, other: Evaluation, which: NDArray[np.bool_]) -> Evaluation:
+def _mixed(one: TrialsEvaluation, other: TrialsEvaluation, which: NDArray[np.bool_]) -> TrialsEvaluation:
     """An evaluation with some trials (mask (R,)) from another."""
     nuisance = np.where(which[:, None], other.nuisance, one.nuisance)
     signals = [b if pick else a for a, b, pick in zip(one.signals, other.signals, which, strict=True)]
     residuals = [b if pick else a for a, b, pick in zip(one.residuals, other.residuals, which, strict=True)]
-    return Evaluation(one.vector, nuisance, signals, residuals)
+    return TrialsEvaluation(one.vector, nuisance, signals, residuals)
 
 
-def fit_record(record: Record, start: Array, search: Search = EXACT) -> TrialsFit[Record]:
+def fit_record(record: RecordModel, start: Array, search: Search = EXACT) -> TrialsFit[RecordModel]:
     """Fit one record from a start (p,)."""
     return least_squares(record, start, np.zeros((1, 0)), search=search)

@@ -12,7 +12,7 @@ from benchmark.response.force_curve import Array
 
 
 @dataclass(frozen=True, eq=False)
-class Columns:
+class TrialColumns:
     """White derivatives of each trial's prediction: by the vector (N, p) and by the trial's nuisances (N, q)."""
 
     vector: list[Array]
@@ -20,7 +20,7 @@ class Columns:
 
 
 @dataclass(frozen=True, eq=False)
-class Evaluation:
+class TrialsEvaluation:
     """A model at a vector (p,) and nuisances (R, q): its signals and the white residuals (N,) of each trial.
 
     Residuals are measured minus predicted; what signals are is the model's own affair.
@@ -54,21 +54,21 @@ class TrialsModel(Protocol):
         """Mean and precision (p,) of the priors of a fit that begins at a vector."""
         ...
 
-    def evaluated(self, vector: Array, nuisance: Array) -> Evaluation:
+    def evaluated(self, vector: Array, nuisance: Array) -> TrialsEvaluation:
         """Signals and white residuals of all trials."""
         ...
 
-    def columns(self, at: Evaluation, warm: Columns | None = None) -> Columns:
+    def columns(self, at: TrialsEvaluation, warm: TrialColumns | None = None) -> TrialColumns:
         """Derivatives of all trials; some may be lent by those of a start nearby (`warm`)."""
         ...
 
-    def nuisance_columns(self, at: Evaluation) -> list[Array]:
+    def nuisance_columns(self, at: TrialsEvaluation) -> list[Array]:
         """Those by the nuisances alone."""
         ...
 
 
 @dataclass(frozen=True, eq=False)
-class Record:
+class RecordModel:
     """One record fitted by a vector (p,) alone, without nuisances and priors.
 
     Attributes
@@ -98,15 +98,15 @@ class Record:
         """No priors."""
         return np.zeros_like(start), np.zeros_like(start)
 
-    def evaluated(self, vector: Array, nuisance: Array) -> Evaluation:
+    def evaluated(self, vector: Array, nuisance: Array) -> TrialsEvaluation:
         """The record's residual."""
-        return Evaluation(vector, nuisance, [], [self.residual(vector)])
+        return TrialsEvaluation(vector, nuisance, [], [self.residual(vector)])
 
-    def columns(self, at: Evaluation, warm: Columns | None = None) -> Columns:  # noqa: ARG002
+    def columns(self, at: TrialsEvaluation, warm: TrialColumns | None = None) -> TrialColumns:  # noqa: ARG002
         """The record's derivative; nothing is lent."""
-        return Columns([self.derivative(at.vector)], self.nuisance_columns(at))
+        return TrialColumns([self.derivative(at.vector)], self.nuisance_columns(at))
 
-    def nuisance_columns(self, at: Evaluation) -> list[Array]:
+    def nuisance_columns(self, at: TrialsEvaluation) -> list[Array]:
         """None."""
         return [np.zeros((at.residuals[0].size, 0))]
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.calibration import pure_errors
-from benchmark.discovery.base.effect_model import Fit, Model, White, fit, settled
+from benchmark.discovery.base.effect_model import EffectModel, Fit, White, fit, settled
 from benchmark.discovery.base.trials_problem import FOLLOWED, only
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.discovery_result import Array, ChannelGap, Trace
@@ -37,7 +37,7 @@ def unbent(chosen: Fit) -> Fit:
     """
     names = chosen.model.problem.shapes
     pinned = tuple((n, float(v)) for n, v in zip(names, chosen.vector, strict=False) if n not in FOLLOWED)
-    return fit(Model(chosen.model.problem, (), pinned), chosen.vector[: len(names)], chosen.nuisance, most=6)
+    return fit(EffectModel(chosen.model.problem, (), pinned), chosen.vector[: len(names)], chosen.nuisance, most=6)
 
 
 def held_out_residuals(base: Fit, chosen: Fit) -> HeldOut:
