@@ -2,8 +2,13 @@
 
 Describe a :class:`Problem`, :func:`prepare` it once, run load histories on the model::
 
-    model = fem.prepare(problem)
-    solution = model.run(fem.Load("force", time, force))
+    import numpy as np, fem
+    skin = fem.Layer("dermis", 1.5e-3, 1116.0, fem.NeoHookean(1e5, 0.48))
+    fat = fem.Layer("fat", 10e-3, 971.0, fem.NeoHookean(2e4, 0.48), relaxation=(fem.PronyTerm(0.3, 0.5),))
+    problem = fem.Problem((skin, fat), fem.Tool(5e-3, "rigid_bonded"), fem.Support("bonded"), pretension=2e3)
+    time = np.arange(1, 11) / 10
+    solution = fem.prepare(problem).run(fem.Load("force", time, 2.0 * time))
+    solution.depth                       # m, also force, reaction, top_deflection, profile(...), fields(...)
 
 SI units; a press and its deflection are positive into the tissue. The package knows nothing of files,
 reports or other models.
@@ -12,12 +17,12 @@ reports or other models.
 from fem.errors import CheckpointError, FemError
 from fem.load import Load
 from fem.materials import Fibre, FibreReinforced, Gent, LinearElastic, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
-from fem.parts import Discretisation, Layer, Support, Tool
-from fem.prepare import prepare
-from fem.problem import Problem
-from fem.relaxation import PronyTerm
-from fem.solution import Failure, Resumed, Solution, StepReport
-from fem.surface_file import read_surface
+from fem.materials.prony import PronyTerm
+from fem.mesh.surface.surface_file import read_surface
+from fem.problem.parts import Discretisation, Layer, Support, Tool
+from fem.problem.problem import Problem
+from fem.results.solution import Failure, Resumed, Solution, StepReport
+from fem.setup.prepare import prepare
 
 __all__ = [
     "CheckpointError",

@@ -1,10 +1,13 @@
-"""Errors of the finite-element package: input that cannot be used.
+"""Errors of the finite-element package, and checks of single input values that raise them.
 
-A run that does not converge is not an error here; it is a :class:`fem.solution.Solution` with a
-:class:`fem.solution.Failure`.
+A run that does not converge is not an error here; it is a :class:`fem.results.solution.Solution` with a
+:class:`fem.results.solution.Failure`. Each message says what is allowed.
 """
 
 from __future__ import annotations
+
+import math
+from collections.abc import Collection
 
 
 class FemError(ValueError):
@@ -12,4 +15,50 @@ class FemError(ValueError):
 
 
 class CheckpointError(FemError):
-    """A checkpoint that cannot be written, is damaged, or belongs to another problem."""
+    """A checkpoint that cannot be written, is damaged, or belongs to another problem.
+
+    Attributes
+    ----------
+    problem
+        What is wrong; the message goes on with what to do.
+    """
+
+    def __init__(self, problem: str, remedy: str = ""):
+        super().__init__(f"{problem}; {remedy}" if remedy else problem)
+        self.problem = problem
+
+
+def require_positive(name: str, value: float, unit: str) -> None:
+    """Refuse a value that is not a finite number above zero.
+
+    Raises
+    ------
+    FemError
+        If `value` (in `unit`) is not finite or not positive.
+    """
+    if not math.isfinite(value) or value <= 0.0:
+        raise FemError(f"{name} = {value:g} {unit}: must be a finite number above 0 {unit}")
+
+
+def require_one_of(name: str, value: str, allowed: Collection[str]) -> None:
+    """Refuse a word that is not in `allowed`.
+
+    Raises
+    ------
+    FemError
+        If `value` is unknown; the message lists the allowed words.
+    """
+    if value not in allowed:
+        raise FemError(f"{name} = {value!r}: allowed are {', '.join(sorted(allowed))}")
+
+
+def require_finite(name: str, value: float, unit: str) -> None:
+    """Refuse a value that is infinite or not a number.
+
+    Raises
+    ------
+    FemError
+        If `value` (in `unit`) is not finite.
+    """
+    if not math.isfinite(value):
+        raise FemError(f"{name} = {value:g} {unit}: must be a finite number")

@@ -50,15 +50,15 @@ def read_kept(path: Path, form: str, fingerprint: str) -> dict[str, np.ndarray] 
     try:
         content = memoryview(path.read_bytes())
     except OSError as error:
-        raise CheckpointError(f"checkpoint {path}: cannot be read ({error}); remove it") from error
+        raise CheckpointError(f"checkpoint {path}: cannot be read ({error})", "remove it") from error
     if hashlib.sha256(content[DIGEST:]).hexdigest().encode() != content[:DIGEST]:
-        raise CheckpointError(f"checkpoint {path}: is damaged or no checkpoint; remove it")
+        raise CheckpointError(f"checkpoint {path}: is damaged or no checkpoint", "remove it")
     with np.load(io.BytesIO(content[DIGEST:]), allow_pickle=False) as data:
         arrays = {name: data[name] for name in data.files}
     if str(arrays.pop(FORMAT)) != form or str(arrays.pop(OWNER)) != fingerprint:
         raise CheckpointError(
-            f"checkpoint {path}: is of another problem, mesh or load history, or of another version of the solver; "
-            "give the file another name, or remove it to start anew"
+            f"checkpoint {path}: is of another problem, mesh or load history, or of another version of the solver",
+            "give the file another name, or remove it to start anew",
         )
     return arrays
 

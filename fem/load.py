@@ -8,8 +8,7 @@ from typing import Literal
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.checks import require_one_of
-from fem.errors import FemError
+from fem.errors import FemError, require_one_of
 
 Control = Literal["force", "depth"]
 

@@ -29,3 +29,32 @@ def require_positive(name: str, value: float, unit: str) -> None:
     """
     if not 0.0 < value < float("inf"):
         raise WaveError(f"{name} = {value:g} {unit} is not allowed: a finite value above zero is needed")
+
+
+def require_not_negative(name: str, value: float, unit: str) -> None:
+    """Refuse a value that is negative or not a finite number.
+
+    Raises
+    ------
+    WaveError
+        If it is.
+    """
+    if not 0.0 <= value < float("inf"):
+        raise WaveError(f"{name} = {value:g} {unit} is not allowed: finite and not negative")
+
+
+def require_between(
+    option: str, name: str, value: float, unit: str, low: float, high: float, *, open_low: bool = False
+) -> None:
+    """Refuse a parameter of an option outside its bounds.
+
+    Raises
+    ------
+    WaveError
+        If `value` is not a number from `low` (excluded if `open_low`) to `high`, both included.
+    """
+    if (low < value if open_low else low <= value) and value <= high:
+        return
+    bound = f"above {low:g}" if open_low else f"{low:g}"
+    text = f"{value:g} {unit}".strip()
+    raise WaveError(f"{option}: {name} = {text} is not allowed: {bound} to {high:g}{' ' + unit if unit else ''}")

@@ -48,8 +48,7 @@ def discover(
     """
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
-    from benchmark.discovery.carrying_out import DiscoverRequest, carry_out
-    from benchmark.discovery.of_session import answer_session
+    from benchmark.discovery.discovery_request import DiscoverRequest, answer_session, carry_out
 
     console = Console(quiet=quiet)
     request = DiscoverRequest(paths, model, effects, specimen, parse_settings(settings), out, seed)

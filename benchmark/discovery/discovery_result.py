@@ -103,10 +103,12 @@ class ChannelGap:
     Attributes
     ----------
     channel : str
-    rmse_before, rmse_after, noise_floor : float
-        N or m; the floor is the pure error of the replicates.
+    rmse_before, rmse_after : float
+        N or m.
+    noise_floor : float or None
+        Pure error of the replicates, N or m; None where no trial was repeated.
     closed : float or None
-        (before^2 - after^2) / (before^2 - floor^2); None where nothing was to be closed.
+        (before^2 - after^2) / (before^2 - floor^2), an unknown floor as 0; None where nothing was to be closed.
     ci95 : (low, high) or None
         By bootstrap over trials.
     held_out : str
@@ -116,7 +118,7 @@ class ChannelGap:
     channel: str
     rmse_before: float
     rmse_after: float
-    noise_floor: float
+    noise_floor: float | None
     closed: float | None
     ci95: tuple[float, float] | None
     held_out: str

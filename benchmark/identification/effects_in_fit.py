@@ -6,7 +6,6 @@ the measured force; then the fit is done again. A few rounds settle it.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -15,22 +14,19 @@ import numpy as np
 from benchmark.files import Session
 from benchmark.identification import FittingError, SessionFit, TrialData, fit_session
 from benchmark.model_file import RepairedModel
-from benchmark.models import Array, Drive, PreparedModel, UncoveredError
-from benchmark.models.scenario_effects import specimen_layers
+from benchmark.models import Array, UncoveredError
+from benchmark.models.scenario_effects import open_radius, specimen_layers
 from benchmark.physics import TrialContext
 from benchmark.response.model_with_effects import effects_of, held_by_finite_strain
 from benchmark.response.pipeline import Added, trial_force
 
 ROUNDS = 12
-STEPS = 60
-REACH = 1.2
-"""The wave's elastic law is ramped this much deeper than the trial."""
 SETTLED = 1e-3
 """Relative change of the stiffness from which a round is the last."""
 
 
 @dataclass(frozen=True, eq=False)
-class RepairedFit:
+class FitWithEffects:
     """A fit with effects.
 
     Attributes
@@ -51,7 +47,7 @@ class RepairedFit:
     settled: bool
 
 
-def fit_repaired(session: Session, trials: Sequence[TrialData], repair: RepairedModel) -> RepairedFit:
+def fit_with_effects(session: Session, trials: Sequence[TrialData], repair: RepairedModel) -> FitWithEffects:
     """Fit a session's specimen with effects switched on.
 
     Raises
@@ -72,22 +68,7 @@ def fit_repaired(session: Session, trials: Sequence[TrialData], repair: Repaired
         if abs(fit.stiffness_factor - before) <= SETTLED * before:
             settled = True
             break
-    return RepairedFit(fit, reduced, added, settled)
-
-
-def wave_force(
-    session: Session, trial: TrialData, onset: float, wave: PreparedModel, effects: Sequence[Added]
-) -> Array:
-    """(n,) N of a wave model at a trial's depth with all effects around its elastic law; raises UncoveredError."""
-    depth = trial.depth - onset
-    deepest = REACH * float(depth.max())
-    fractions = np.arange(1, STEPS + 1) / STEPS
-    ramp = wave.run(Drive("depth", fractions, deepest * fractions))
-
-    def law(below: Array) -> Array:
-        return np.asarray(np.interp(below, np.append(0.0, ramp.depth), np.append(0.0, ramp.force)))
-
-    return trial_force(law, effects, trial.time, depth, _around(session, trial, depth))
+    return FitWithEffects(fit, reduced, added, settled)
 
 
 def _fitted(trial: TrialData, fit: SessionFit) -> bool:
@@ -100,18 +81,17 @@ def _share(session: Session, trial: TrialData, fit: SessionFit, effects: Sequenc
     depth = trial.depth - own.onset
 
     def law(below: Array) -> Array:
-        inside = np.minimum(below, trial.curve.depth[-1])
-        slope = (trial.curve.force[-1] - trial.curve.force[-2]) / (trial.curve.depth[-1] - trial.curve.depth[-2])
-        return np.asarray(factor * (trial.curve(inside) + slope * (below - inside)))
+        return factor * trial.curve.extended(below)
 
     try:
-        force = trial_force(law, effects, trial.time, depth, _around(session, trial, depth))
+        force = trial_force(law, effects, trial.time, depth, trial_context(session, trial, depth))
     except UncoveredError as error:
         raise FittingError(f"{trial.label}: {error}") from None
     return np.asarray(force - np.where(depth > 0.0, law(np.maximum(depth, 0.0)), 0.0))
 
 
-def _around(session: Session, trial: TrialData, depth: Array) -> TrialContext:
+def trial_context(session: Session, trial: TrialData, depth: Array) -> TrialContext:
+    """What effects may know of a trial that is pressed to a depth (n,) below contact, m."""
     measured = next(each for each in session.trials if (each.condition, each.name) == trial.key)
     thickness, support = session.specimen.thickness, measured.support
     return TrialContext(
@@ -120,7 +100,7 @@ def _around(session: Session, trial: TrialData, depth: Array) -> TrialContext:
         peak_depth=float(depth.max()),
         peak_force=float(np.ptp(trial.force)),
         duration=float(np.ptp(trial.time)),
-        hole_radius=(support.hole_radius or math.inf) if support.kind == "hole" else math.inf,
+        hole_radius=open_radius(support),
         layers=specimen_layers(session.specimen.layers),
         contact=measured.tool.contact,
     )

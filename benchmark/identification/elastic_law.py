@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from benchmark.identification.trial_data import TrialData
 from benchmark.identification.trial_features import ContactRange, Start, shape_above_rest
 from benchmark.response.force_curve import Array
-from benchmark.response.least_squares import Record, TrialsFit
+from benchmark.response.least_squares import TrialsFit, fit_record
 from benchmark.response.noise import effective_rows, lag_one
+from benchmark.response.trials_model import RecordModel
 
 AT_BOUND = 1e-3
 """An onset or rest force within this fraction of its range from an end of it is put at that end."""
@@ -70,12 +71,12 @@ def minimise(trial: TrialData, allowed: ContactRange, start: Start, contact_fixe
     if contact_fixed:
         low[1:] = high[1:] = vector[1:]
     vector[1:] = np.clip(vector[1:], *inside(low[1:], high[1:]))
-    fitted = _record(trial, allowed, low, high).fit(vector)
+    fitted = fit_record(_record(trial, allowed, low, high), vector)
     ends = np.array([at_end(*each) for each in zip(fitted.vector, low, high, strict=True)])
     fixed = np.isfinite(ends) & (low < high)
     if fixed.any():
         low[fixed] = high[fixed] = ends[fixed]
-        fitted = _record(trial, allowed, low, high).fit(fitted.vector)
+        fitted = fit_record(_record(trial, allowed, low, high), fitted.vector)
     return _law_fit(fitted, trial, allowed, low < high)
 
 
@@ -90,14 +91,14 @@ def at_end(value: float, low: float, high: float) -> float:
     return near[0] if near else np.nan
 
 
-def _record(trial: TrialData, allowed: ContactRange, low: Array, high: Array) -> Record:
+def _record(trial: TrialData, allowed: ContactRange, low: Array, high: Array) -> RecordModel:
     def residual(vector: Array) -> Array:
         return np.asarray(trial.force - law_force(trial, allowed, *vector))
 
     def derivative(vector: Array) -> Array:
         return law_derivatives(trial, allowed, vector[0], vector[2])
 
-    return Record(residual, derivative, (low, high))
+    return RecordModel(residual, derivative, (low, high))
 
 
 def law_force(trial: TrialData, allowed: ContactRange, log_stiffness: float, rest: float, onset: float) -> Array:
@@ -112,7 +113,9 @@ def law_derivatives(trial: TrialData, allowed: ContactRange, log_stiffness: floa
     return np.column_stack([factor * shape_above_rest(trial, allowed, onset), np.ones(trial.rows), -factor * slope])
 
 
-def _law_fit(fitted: TrialsFit[Record], trial: TrialData, allowed: ContactRange, free: NDArray[np.bool_]) -> LawFit:
+def _law_fit(
+    fitted: TrialsFit[RecordModel], trial: TrialData, allowed: ContactRange, free: NDArray[np.bool_]
+) -> LawFit:
     log_stiffness, rest, onset = fitted.vector.tolist()
     residual, parameters = fitted.model.residual(fitted.vector), int(free.sum())
     rho = lag_one(residual, parameters)
@@ -137,7 +140,7 @@ def _law_fit(fitted: TrialsFit[Record], trial: TrialData, allowed: ContactRange,
     )
 
 
-def _covariance(fitted: TrialsFit[Record], free: NDArray[np.bool_]) -> Array:
+def _covariance(fitted: TrialsFit[RecordModel], free: NDArray[np.bool_]) -> Array:
     """(3, 3) for residuals of unit variance, zeros for what was fixed."""
     normal = fitted.blocks.matrix[0]
     covariance: Array = np.zeros_like(normal)

@@ -17,7 +17,8 @@ from benchmark.identification.trial_data import TrialData, reduced
 from benchmark.identification.trial_features import ContactRange
 from benchmark.identification.trial_fit import TrialFit
 from benchmark.response.force_curve import Array
-from benchmark.response.least_squares import EXACT, Columns, Evaluation, least_squares
+from benchmark.response.least_squares import EXACT, least_squares
+from benchmark.response.trials_model import TrialColumns, TrialsEvaluation
 
 BETWEEN_TRIALS = "t interval of the mean logarithm, the trial as the unit"
 LEAST_FREEDOM = 2.0
@@ -161,7 +162,7 @@ def fit_jointly(trials: Triples, pooled: PooledStiffness) -> JointFit:
 class _CommonStiffness:
     """One stiffness factor, by its logarithm, and the rest force and onset of each trial as nuisances in their range.
 
-    A `benchmark.response.least_squares.TrialsModel`.
+    A `benchmark.response.trials_model.TrialsModel`.
     """
 
     trials: tuple[tuple[TrialData, ContactRange, TrialFit], ...]
@@ -190,23 +191,23 @@ class _CommonStiffness:
         """None."""
         return np.zeros_like(start), np.zeros_like(start)
 
-    def evaluated(self, vector: Array, nuisance: Array) -> Evaluation:
+    def evaluated(self, vector: Array, nuisance: Array) -> TrialsEvaluation:
         """Weighted residuals of all trials."""
         residuals = [
             _weight(trial, fit) * (trial.force - law_force(trial, allowed, vector[0], *own))
             for (trial, allowed, fit), own in zip(self.trials, nuisance, strict=True)
         ]
-        return Evaluation(vector, nuisance, [], residuals)
+        return TrialsEvaluation(vector, nuisance, [], residuals)
 
-    def columns(self, at: Evaluation, warm: Columns | None = None) -> Columns:  # noqa: ARG002
+    def columns(self, at: TrialsEvaluation, warm: TrialColumns | None = None) -> TrialColumns:  # noqa: ARG002
         """By the stiffness, and by rest force and onset."""
         each = [
             _weight(trial, fit) * law_derivatives(trial, allowed, at.vector[0], own[1])
             for (trial, allowed, fit), own in zip(self.trials, at.nuisance, strict=True)
         ]
-        return Columns([one[:, :1] for one in each], [one[:, 1:] for one in each])
+        return TrialColumns([one[:, :1] for one in each], [one[:, 1:] for one in each])
 
-    def nuisance_columns(self, at: Evaluation) -> list[Array]:
+    def nuisance_columns(self, at: TrialsEvaluation) -> list[Array]:
         """By rest force and onset."""
         return self.columns(at).nuisance
 

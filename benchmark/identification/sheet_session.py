@@ -40,7 +40,7 @@ class Pooled:
 
 
 @dataclass(frozen=True)
-class HeldOut:
+class HeldOutTrial:
     """How the other trials predict one, with its own contact, zero and axis.
 
     Attributes
@@ -72,7 +72,7 @@ class SheetFit:
     stiffness_with_thickness : Pooled
         The stiffness factor of that fit.
     trials, with_thickness : tuple of SheetTrial
-    held_out : tuple of HeldOut
+    held_out : tuple of HeldOutTrial
         Empty for a single trial.
     """
 
@@ -83,7 +83,7 @@ class SheetFit:
     stiffness_with_thickness: Pooled
     trials: tuple[SheetTrial, ...]
     with_thickness: tuple[SheetTrial, ...]
-    held_out: tuple[HeldOut, ...]
+    held_out: tuple[HeldOutTrial, ...]
 
     @property
     def relaxation(self) -> Relaxation:
@@ -195,10 +195,12 @@ def held_out_state(own: SheetTrial, trials: Sequence[SheetTrial], relaxation: Re
     return replace(own.state, log_stiffness=float(np.mean(others)), relaxation=relaxation)
 
 
-def _held_out(film: FilmedTrial, sheet: RampTable, trials: Sequence[SheetTrial], relaxation: Relaxation) -> HeldOut:
+def _held_out(
+    film: FilmedTrial, sheet: RampTable, trials: Sequence[SheetTrial], relaxation: Relaxation
+) -> HeldOutTrial:
     own = next(each for each in trials if (each.condition, each.name) == film.trial.key)
     state = held_out_state(own, trials, relaxation)
     force = sheet_force(film, sheet, state) - film.trial.force
     peak = float(film.trial.force.max())
     marker = rms_distance(sheet_markers(film, sheet, state) - film.places)
-    return HeldOut(own.name, own.condition, 100.0 * float(np.sqrt(np.mean(force**2))) / peak, 1e3 * marker)
+    return HeldOutTrial(own.name, own.condition, 100.0 * float(np.sqrt(np.mean(force**2))) / peak, 1e3 * marker)

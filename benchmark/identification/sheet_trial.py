@@ -20,9 +20,10 @@ from benchmark.identification.sheet_model import (
 from benchmark.identification.trial_features import contact_range
 from benchmark.identification.trial_fit import TrialFit
 from benchmark.response.force_curve import Array
-from benchmark.response.least_squares import Record, TrialsFit, differences
+from benchmark.response.least_squares import TrialsFit, fit_record
 from benchmark.response.noise import effective_rows, lag_one
 from benchmark.response.ramp_table import RampTable
+from benchmark.response.trials_model import RecordModel, differences
 
 MM = 1e3
 CONTACT = ("log_stiffness", "onset", "zero", "axis_x", "axis_y")
@@ -100,15 +101,15 @@ def fit_sheet_trial(
     vector, bounds = _start(filmed, start, free, relaxation)
     if known is None:
         first = Weights(FIRST_FORCE * start.peak, FIRST_MARKER)
-        vector = _record(filmed, sheet, first, bounds).fit(vector).vector
+        vector = fit_record(_record(filmed, sheet, first, bounds), vector).vector
         weights = _weights(filmed, sheet, _state(vector), _free(bounds).size)
     else:
         weights = known.weights
         vector[: len(CONTACT)] = _vector(known.state)[: len(CONTACT)]
-    return _sheet_trial(filmed, sheet, weights, _record(filmed, sheet, weights, bounds).fit(vector))
+    return _sheet_trial(filmed, sheet, weights, fit_record(_record(filmed, sheet, weights, bounds), vector))
 
 
-def _sheet_trial(filmed: FilmedTrial, sheet: RampTable, weights: Weights, fitted: TrialsFit[Record]) -> SheetTrial:
+def _sheet_trial(filmed: FilmedTrial, sheet: RampTable, weights: Weights, fitted: TrialsFit[RecordModel]) -> SheetTrial:
     """Put the parts together."""
     state, free = _state(fitted.vector), _free(fitted.model.bounds)
     names = [NAMES[k] for k in free]
@@ -172,12 +173,12 @@ def _residuals(filmed: FilmedTrial, sheet: RampTable, state: SheetState) -> tupl
     return force, sheet_markers(filmed, sheet, state) - filmed.places
 
 
-def _record(filmed: FilmedTrial, sheet: RampTable, weights: Weights, bounds: tuple[Array, Array]) -> Record:
+def _record(filmed: FilmedTrial, sheet: RampTable, weights: Weights, bounds: tuple[Array, Array]) -> RecordModel:
     def residual(vector: Array) -> Array:
         force, marker = _residuals(filmed, sheet, _state(vector))
         return -np.concatenate([force / weights.force, np.nan_to_num(marker.ravel() / weights.marker)])
 
-    return Record(residual, lambda vector: differences(residual, vector, STEP, bounds), bounds)
+    return RecordModel(residual, lambda vector: differences(residual, vector, STEP, bounds), bounds)
 
 
 def _weights(filmed: FilmedTrial, sheet: RampTable, state: SheetState, parameters: int) -> Weights:

@@ -1,14 +1,12 @@
 """One face over the finite-element solver, the wave models, and a user's own in their places."""
 
 from benchmark.models.frames import frame_seconds
-from benchmark.models.keeping import Keeping
-from benchmark.models.own import NOTHING, Own
-from benchmark.models.prepare import prepare, scenario_drive
-from benchmark.models.reference import Reference, read_reference
-from benchmark.models.result import (
+from benchmark.models.model_result import (
     Array,
     Drive,
+    FemChoices,
     FieldSnapshot,
+    Keeping,
     LastState,
     ModelResult,
     PreparedModel,
@@ -17,14 +15,18 @@ from benchmark.models.result import (
     RunFailure,
     StepProgress,
     UncoveredError,
+    WaveChoices,
     silent,
 )
+from benchmark.models.own_models import NOTHING, Own, Reference, read_reference
+from benchmark.models.prepare import prepare, scenario_drive
 from benchmark.models.user_file import UserFile, read_user_file
 
 __all__ = [
     "NOTHING",
     "Array",
     "Drive",
+    "FemChoices",
     "FieldSnapshot",
     "Keeping",
     "LastState",
@@ -38,6 +40,7 @@ __all__ = [
     "StepProgress",
     "UncoveredError",
     "UserFile",
+    "WaveChoices",
     "frame_seconds",
     "prepare",
     "read_reference",

@@ -8,7 +8,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from benchmark.models.result import Array, Drive, Picture, PreparedModel
+from benchmark.models.model_result import Array, Drive, Picture, PreparedModel
 
 VERTICES = 81
 REACH = 4.0

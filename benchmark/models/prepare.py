@@ -1,10 +1,9 @@
-"""From a scenario to a model that is ready to run."""
+"""From a scenario to a model that is ready to run, and to the wave of small strain beside one of finite strain."""
 
 from __future__ import annotations
 
 from benchmark.files import Scenario
-from benchmark.models.keeping import Keeping
-from benchmark.models.result import Drive, PreparedModel
+from benchmark.models.model_result import Array, Drive, Keeping, ModelResult, PreparedModel, WaveChoices
 from benchmark.models.user_file import UserFile
 
 
@@ -55,3 +54,20 @@ def scenario_drive(scenario: Scenario) -> Drive:
     """Return the scenario's load history."""
     history = scenario.load_history()
     return Drive(scenario.load.control, history.time, history.value)
+
+
+def in_small_strain(scenario: Scenario) -> Scenario:
+    """The scenario with the wave of small strain."""
+    return scenario.model_copy(update={"wave": scenario.wave.model_copy(update={"large_press": "linear"})})
+
+
+def took_finite_strain(scenario: Scenario, wave: ModelResult) -> bool:
+    """Whether `large_press = "auto"` gave a wave the layers' finite strain."""
+    choices = wave.choices
+    strain = choices.strain if isinstance(choices, WaveChoices) else None
+    return scenario.wave.large_press == "auto" and strain in ("corrected", "deep")
+
+
+def small_strain_deflection(scenario: Scenario, drive: Drive) -> Array:
+    """(n, L) m: each layer's deflection on the axis by the wave of small strain."""
+    return prepare("wave", in_small_strain(scenario)).run(drive).top_deflection

@@ -18,7 +18,7 @@ from types import ModuleType
 from typing import Any
 
 from benchmark.errors import InputError
-from benchmark.models.result import UncoveredError
+from benchmark.models.model_result import UncoveredError
 
 NAME = "NAME"
 LONGEST_NAME = 60

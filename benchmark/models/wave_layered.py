@@ -8,16 +8,10 @@ import numpy as np
 
 from benchmark.files import Scenario
 from benchmark.models.frames import vertices
-from benchmark.models.result import Drive, Picture, UncoveredError
+from benchmark.models.model_result import Drive, Picture, UncoveredError, WaveChoices
 from benchmark.models.scenario_effects import wave_physics, wave_slip
 from benchmark.models.wave_parts import PreparedWave, Solution, law_warnings, wave_layers, wave_relaxation, wave_tool
-from wavemodel import LayeredWave, NotCoveredError, WaveError
-
-STRAINS = {
-    "linear": "small strain",
-    "corrected": "finite strain of the layers",
-    "deep": "finite strain of the layers, followed deep",
-}
+from wavemodel import LayeredWave, NotCoveredError, WaveDiscretisation, WaveError
 
 
 def layered_wave(scenario: Scenario) -> PreparedWave:
@@ -63,9 +57,8 @@ def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) ->
     wave = LayeredWave(
         wave_layers(scenario.tissue.layers),
         wave_tool(scenario),
+        discretisation=WaveDiscretisation(window=scenario.wave.window, modes=scenario.wave.modes),
         support=scenario.support.kind,
-        window=scenario.wave.window,
-        modes=scenario.wave.modes,
         relaxation=wave_relaxation(scenario),
         large_press=large_press,
         pretension=scenario.physics.pretension,
@@ -78,11 +71,7 @@ def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) ->
     return PreparedWave(
         follow=lambda drive: wave.run(drive.control, drive.time, drive.value),
         unknowns=wave.unknowns,
-        notes={
-            "model": f"layered vector wave, {STRAINS[large_press]}, no calibration",
-            "window": f"{1e3 * wave.window:.4g} mm",
-            "modes": f"m, n = 1..{wave.modes}",
-        },
+        choices=WaveChoices(large_press, wave.window, wave.modes),
         warnings=() if large_press == "linear" else law_warnings(scenario),
         picture=lambda drive: _picture(wave, scenario.tool.radius, drive),
     )
@@ -92,7 +81,7 @@ def _picture(wave: LayeredWave, tool_radius: float, drive: Drive) -> Picture:
     """What draws the faces at the peak of a load history."""
     positions = vertices(tool_radius, 0.5 * wave.window)
     surface = wave.surface(positions, positions)
-    state = wave.run(drive.control, drive.time, drive.value).snapshot(int(np.abs(drive.value).argmax()))
+    state = wave.run(drive.control, drive.time, drive.value).faces.snapshot(int(np.abs(drive.value).argmax()))
     return lambda: surface.frame(state)
 
 

@@ -6,10 +6,18 @@ import numpy as np
 
 from benchmark.errors import InputError
 from benchmark.files import Scenario
-from benchmark.models.coverage import refuse_options, refuse_solid
-from benchmark.models.radii import profile_radii
-from benchmark.models.result import Drive, ModelResult, OnStep, Picture, Reading, StepProgress, UncoveredError, silent
-from benchmark.models.scenario_effects import SHEAR_LIMIT, keys_on_top
+from benchmark.models.model_result import (
+    Drive,
+    ModelResult,
+    OnStep,
+    Picture,
+    Reading,
+    StepProgress,
+    UncoveredError,
+    profile_radii,
+    silent,
+)
+from benchmark.models.scenario_effects import SHEAR_LIMIT, keys_on_top, refuse_options, refuse_solid
 from benchmark.models.wave_layered import layered_wave
 from benchmark.models.wave_parts import PreparedWave, Solution
 from benchmark.models.wave_plate import plate_wave
@@ -80,7 +88,8 @@ class WaveModel:
             profile=solution.profile(peak, radii),
             peak_step=peak,
             unknowns=self._wave.unknowns,
-            notes=self._wave.notes,
+            notes=self._wave.choices.notes(),
+            choices=self._wave.choices,
             warnings=(*self._wave.warnings, *solution.warnings),
         )
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
 from benchmark.files import Layer, Scenario
-from benchmark.models.result import Array, Drive, Picture
+from benchmark.models.model_result import Array, Drive, Picture, WaveChoices
 from wavemodel import DiscTool, Prony, WaveLayer
 
 
@@ -63,8 +63,8 @@ class PreparedWave:
         Load history to solution; raises `wavemodel.WaveError` beyond the model's range.
     unknowns
         Of the model.
-    notes
-        Choices made, by name, as readable text.
+    choices
+        What was chosen.
     warnings
         What is left out, one sentence each.
     picture
@@ -73,7 +73,7 @@ class PreparedWave:
 
     follow: Callable[[Drive], Solution]
     unknowns: int
-    notes: Mapping[str, str]
+    choices: WaveChoices
     warnings: tuple[str, ...] = ()
     picture: Callable[[Drive], Picture] | None = None
 

@@ -5,17 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from benchmark.files import Scenario
-from benchmark.models.coverage import relaxation_warnings
-from benchmark.models.result import UncoveredError
-from benchmark.models.scenario_effects import wave_physics
+from benchmark.models.model_result import UncoveredError, WaveChoices
+from benchmark.models.scenario_effects import relaxation_warnings, wave_physics
 from benchmark.models.wave_parts import PreparedWave, law_warnings, wave_layers, wave_relaxation, wave_tool
-from wavemodel import PlateWave, Prony, WaveError
+from wavemodel import PlateSettings, PlateWave, Prony, WaveError
 
-MODEL = "sheet over a hole, finite deflection with its local tension"
-CALIBRATED = (
-    "; three numbers of a bonded tool's edge were identified once on finite elements of eleven sheets, that of the "
-    "shipped phantom among them, and are the same for all sheets"
-)
 FIRST_REACH = 0.1
 """Of the hole's radius: how deep equilibria are looked for before the peak force says how deep they must go."""
 
@@ -40,11 +34,12 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
         wave_tool(scenario),
         scenario.support.kind,
         hole,
-        options.modes if explicit else None,
+        PlateSettings(
+            modes=options.modes if explicit else None, reach=FIRST_REACH * hole if hole is not None else None
+        ),
         pretension=stress * sum(layer.thickness for layer in scenario.tissue.layers),
         relaxation=series,
         physics=wave_physics(scenario),
-        reach=FIRST_REACH * hole if hole is not None else None,
     )
     peak = np.array([abs(load.peak)])
     try:
@@ -54,11 +49,7 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
     return PreparedWave(
         follow=lambda drive: wave.run(drive.control, drive.time, drive.value),
         unknowns=wave.unknowns,
-        notes={
-            "model": MODEL + (CALIBRATED if scenario.tool.contact == "rigid_bonded" else "; no calibration"),
-            "window": f"the hole, {1e3 * wave.window:.4g} mm wide",
-            "modes": f"{wave.modes} radial functions each",
-        },
+        choices=WaveChoices(None, wave.window, wave.modes, scenario.tool.contact == "rigid_bonded"),
         warnings=(*warnings, *law_warnings(scenario), *_ignored(scenario)),
     )
 

@@ -10,9 +10,10 @@ from benchmark.response.errors import ResponseError
 from benchmark.response.force_curve import ForceCurve
 from benchmark.response.pipeline import TrialPipeline, trial_force
 from benchmark.response.ramp import Ramp, depth_ramp
-from benchmark.response.ramp_table import FaceField, Neighbour, RampTable, View
+from benchmark.response.ramp_table import CameraView, FaceField, Neighbour, RampTable
 
 __all__ = [
+    "CameraView",
     "ElasticTable",
     "FaceField",
     "ForceCurve",
@@ -24,7 +25,6 @@ __all__ = [
     "SetupDerivative",
     "TableOf",
     "TrialPipeline",
-    "View",
     "depth_ramp",
     "trial_force",
 ]

@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 from benchmark.errors import InputError
 from benchmark.files import Session, Support, Tissue, Tool
 from benchmark.models import UncoveredError, prepare
-from benchmark.models.lower_face import LowerFace
+from benchmark.models.model_result import LowerFace
 from benchmark.response.elastic_table import (
     POINTS,
     ElasticTable,

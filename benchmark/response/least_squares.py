@@ -6,19 +6,19 @@ others make up for it. What a trial says of the vector, after its nuisances, is 
 the covariance, the fit without a trial and the density of a trial at other parameters, to second order.
 
 No library eliminates nuisances trial by trial (SciPy's `least_squares` and lmfit would carry all of them in one dense
-matrix); a single record without nuisances is the case of one trial (`Record`).
+matrix); a single record without nuisances is the case of one trial (`RecordModel`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.response.force_curve import Array
+from benchmark.response.trials_model import RecordModel, TrialColumns, TrialsEvaluation, TrialsModel
 
 MOST_DAMPING = 1e5
 LENT = 3
@@ -50,62 +50,6 @@ SETTLED = Search(most=20, gain=1e-3, share=1e-6)
 """Of the nuisances of a trial at parameters that stay."""
 EXACT = Search(most=200, gain=0.0, share=1e-13, damping=1.0)
 """Of a few bounded parameters: to round-off, and in short steps first, since a long one may end in a corner."""
-
-
-@dataclass(frozen=True, eq=False)
-class Columns:
-    """White derivatives of each trial's prediction: by the vector (N, p) and by the trial's nuisances (N, q)."""
-
-    vector: list[Array]
-    nuisance: list[Array]
-
-
-@dataclass(frozen=True, eq=False)
-class Evaluation:
-    """A model at a vector (p,) and nuisances (R, q): its signals and the white residuals (N,) of each trial.
-
-    Residuals are measured minus predicted; what signals are is the model's own affair.
-    """
-
-    vector: Array
-    nuisance: Array
-    signals: list[Array]
-    residuals: list[Array]
-
-
-class TrialsModel(Protocol):
-    """What is fitted to R trials: a vector (p,), and q nuisances of each trial with priors round zero."""
-
-    @property
-    def bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bounds (p,) of the vector."""
-        ...
-
-    @property
-    def trial_precision(self) -> Array:
-        """(q,) prior precisions of a trial's nuisances; 0 for none."""
-        ...
-
-    @property
-    def trial_bounds(self) -> tuple[Array, Array] | None:
-        """Lower and upper bounds (R, q) of the nuisances; None where there are none."""
-        ...
-
-    def prior(self, start: Array) -> tuple[Array, Array]:
-        """Mean and precision (p,) of the priors of a fit that begins at a vector."""
-        ...
-
-    def evaluated(self, vector: Array, nuisance: Array) -> Evaluation:
-        """Signals and white residuals of all trials."""
-        ...
-
-    def columns(self, at: Evaluation, warm: Columns | None = None) -> Columns:
-        """Derivatives of all trials; some may be lent by those of a start nearby (`warm`)."""
-        ...
-
-    def nuisance_columns(self, at: Evaluation) -> list[Array]:
-        """Those by the nuisances alone."""
-        ...
 
 
 Model = TypeVar("Model", bound=TrialsModel)
@@ -147,7 +91,7 @@ class TrialsFit(Generic[Model]):
         At the solution.
     precision, prior_mean : (p,) array
         Of the priors on the vector.
-    columns : Columns
+    columns : TrialColumns
         At the solution.
     """
 
@@ -158,7 +102,7 @@ class TrialsFit(Generic[Model]):
     blocks: Blocks
     precision: Array
     prior_mean: Array
-    columns: Columns
+    columns: TrialColumns
 
     @property
     def covariance(self) -> Array:
@@ -182,7 +126,7 @@ class TrialsFit(Generic[Model]):
 
 
 def least_squares(
-    model: Model, start: Array, nuisance: Array, *, warm: Columns | None = None, search: Search = USUAL
+    model: Model, start: Array, nuisance: Array, *, warm: TrialColumns | None = None, search: Search = USUAL
 ) -> TrialsFit[Model]:
     """Fit a model from a start.
 
@@ -224,7 +168,7 @@ def least_squares(
     return TrialsFit(model, at.vector, at.nuisance, value, blocks, precision, mean, columns)
 
 
-def _objective(model: TrialsModel, at: Evaluation, mean: Array, precision: Array) -> float:
+def _objective(model: TrialsModel, at: TrialsEvaluation, mean: Array, precision: Array) -> float:
     data = sum(float(r @ r) for r in at.residuals)
     prior = float(np.sum(at.nuisance**2 * model.trial_precision) + np.sum(precision * (at.vector - mean) ** 2))
     total = 0.5 * (data + prior)
@@ -232,7 +176,7 @@ def _objective(model: TrialsModel, at: Evaluation, mean: Array, precision: Array
 
 
 def _moved(
-    model: TrialsModel, columns: Columns, at: Evaluation, prior: tuple[Array, Array], damping: float
+    model: TrialsModel, columns: TrialColumns, at: TrialsEvaluation, prior: tuple[Array, Array], damping: float
 ) -> tuple[Array, Array]:
     """Vector and nuisances one damped step further, within their bounds."""
     mean, precision = prior
@@ -269,7 +213,7 @@ class _Eliminated:
 
 
 def _eliminated(
-    columns: Columns, index: int, residual: Array, own: Array, weight: Array, held: NDArray[np.bool_]
+    columns: TrialColumns, index: int, residual: Array, own: Array, weight: Array, held: NDArray[np.bool_]
 ) -> _Eliminated:
     """Eliminate the nuisances of a trial that stand at `own` (q,); those that are `held` stay there."""
     j, n = columns.vector[index], columns.nuisance[index]
@@ -284,7 +228,7 @@ def _eliminated(
     return _Eliminated(inner, side, pull, solved, matrix, j.T @ residual - side.T @ solved[:, -1])
 
 
-def _held(model: TrialsModel, columns: Columns, at: Evaluation, index: int) -> NDArray[np.bool_]:
+def _held(model: TrialsModel, columns: TrialColumns, at: TrialsEvaluation, index: int) -> NDArray[np.bool_]:
     """Which nuisances of a trial stand at a bound that they would pass (q,)."""
     limits, own = model.trial_bounds, at.nuisance[index]
     if limits is None:
@@ -321,7 +265,7 @@ def _solve(matrix: Array, right: Array) -> Array:
         return np.asarray(np.linalg.lstsq(matrix, right)[0])
 
 
-def _blocks(model: TrialsModel, columns: Columns, at: Evaluation) -> Blocks:
+def _blocks(model: TrialsModel, columns: TrialColumns, at: TrialsEvaluation) -> Blocks:
     matrices, slopes, misfits, sizes = [], [], [], []
     weight = model.trial_precision
     for index, residual in enumerate(at.residuals):
@@ -359,79 +303,21 @@ def settled(model: TrialsModel, vector: Array, nuisance: Array, search: Search =
     return at.nuisance
 
 
-def _trial_objectives(at: Evaluation, weight: Array) -> Array:
+def _trial_objectives(at: TrialsEvaluation, weight: Array) -> Array:
     """(R,) half the sum of squares of each trial with its priors."""
     data = np.array([float(r @ r) for r in at.residuals])
     total = 0.5 * (data + np.sum(at.nuisance**2 * weight, axis=1))
     return np.asarray(np.where(np.isfinite(total), total, np.inf))
 
 
-def _mixed(one: Evaluation, other: Evaluation, which: NDArray[np.bool_]) -> Evaluation:
+def _mixed(one: TrialsEvaluation, other: TrialsEvaluation, which: NDArray[np.bool_]) -> TrialsEvaluation:
     """An evaluation with some trials (mask (R,)) from another."""
     nuisance = np.where(which[:, None], other.nuisance, one.nuisance)
     signals = [b if pick else a for a, b, pick in zip(one.signals, other.signals, which, strict=True)]
     residuals = [b if pick else a for a, b, pick in zip(one.residuals, other.residuals, which, strict=True)]
-    return Evaluation(one.vector, nuisance, signals, residuals)
+    return TrialsEvaluation(one.vector, nuisance, signals, residuals)
 
 
-@dataclass(frozen=True, eq=False)
-class Record:
-    """One record fitted by a vector (p,) alone, without nuisances and priors.
-
-    Attributes
-    ----------
-    residual : (p,) -> (n,)
-        Measured minus predicted.
-    derivative : (p,) -> (n, p)
-        Of the prediction.
-    bounds : (p,) and (p,) array
-        Equal ones fix a parameter.
-    """
-
-    residual: Callable[[Array], Array]
-    derivative: Callable[[Array], Array]
-    bounds: tuple[Array, Array]
-
-    @property
-    def trial_precision(self) -> Array:
-        """No nuisance has a prior."""
-        return np.zeros(0)
-
-    @property
-    def trial_bounds(self) -> None:
-        """Nor bounds."""
-
-    def prior(self, start: Array) -> tuple[Array, Array]:
-        """No priors."""
-        return np.zeros_like(start), np.zeros_like(start)
-
-    def evaluated(self, vector: Array, nuisance: Array) -> Evaluation:
-        """The record's residual."""
-        return Evaluation(vector, nuisance, [], [self.residual(vector)])
-
-    def columns(self, at: Evaluation, warm: Columns | None = None) -> Columns:  # noqa: ARG002
-        """The record's derivative; nothing is lent."""
-        return Columns([self.derivative(at.vector)], self.nuisance_columns(at))
-
-    def nuisance_columns(self, at: Evaluation) -> list[Array]:
-        """None."""
-        return [np.zeros((at.residuals[0].size, 0))]
-
-    def fit(self, start: Array, search: Search = EXACT) -> TrialsFit[Record]:
-        """Fit from a start (p,)."""
-        return least_squares(self, start, np.zeros((1, 0)), search=search)
-
-
-def differences(residual: Callable[[Array], Array], vector: Array, step: float, bounds: tuple[Array, Array]) -> Array:
-    """(n, p) derivatives of a prediction from its residuals, measured minus predicted: central, one-sided at bounds.
-
-    A parameter whose bounds are equal has none.
-    """
-    columns: list[Array | None] = []
-    for k in range(vector.size):
-        less, more = vector.copy(), vector.copy()
-        less[k], more[k] = max(vector[k] - step, bounds[0][k]), min(vector[k] + step, bounds[1][k])
-        wide = more[k] - less[k]
-        columns.append((residual(less) - residual(more)) / wide if wide > 0.0 else None)
-    known = next((each for each in columns if each is not None), np.zeros(0))
-    return np.stack([np.zeros_like(known) if each is None else each for each in columns], axis=1)
+def fit_record(record: RecordModel, start: Array, search: Search = EXACT) -> TrialsFit[RecordModel]:
+    """Fit one record from a start (p,)."""
+    return least_squares(record, start, np.zeros((1, 0)), search=search)

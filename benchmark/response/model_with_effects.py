@@ -17,15 +17,14 @@ import numpy as np
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel, read_model
 from benchmark.models import Drive, Keeping, ModelResult, PreparedModel, UncoveredError, UserFile, prepare, silent
-from benchmark.models.result import OnStep
+from benchmark.models.model_result import OnStep
 from benchmark.models.scenario_effects import given_in_wave, scenario_context
 from benchmark.physics import Effect, TrialContext, catalogue, load_effects
 from benchmark.response.force_curve import Array
 from benchmark.response.pipeline import Added, physics_of
 from benchmark.response.ramp import depth_ramp
 from wavemodel import WaveError
-from wavemodel.physics import Physics, QuasiStaticPress
-from wavemodel.physics.force_driven import drive_by_force
+from wavemodel.physics import Physics, QuasiStaticPress, drive_by_force
 
 STEPS = 40
 ENOUGH = 1.02

@@ -16,7 +16,7 @@ from benchmark.physics import Effect, LowerFaceMotion, Motion, PressHistory, Rea
 from benchmark.response.force_curve import Array
 from wavemodel import WaveError
 from wavemodel.physics import Physics, QuasiStaticPress
-from wavemodel.physics.quasi_static_press import Trace
+from wavemodel.physics.quasi_static_press import PressTrace
 
 Law: TypeAlias = Callable[[Array], Array]
 """Elastic force (n,) N over depths (n,) of 0 and more, m."""
@@ -66,7 +66,7 @@ class PressedBody:
         """(n,) N."""
         return self.trace(depth).force
 
-    def trace(self, depth: Array) -> Trace:
+    def trace(self, depth: Array) -> PressTrace:
         """The press through depths (n,), m."""
         press = QuasiStaticPress(self.law, self.physics)
         return press.follow(np.diff(self.time, prepend=0.0), depth, press.rest())[0]

@@ -12,8 +12,7 @@ import numpy as np
 
 from benchmark.files import Load, Scenario, Session, Support, Tissue, Tool
 from benchmark.models import Drive, PreparedModel, RunFailure, silent
-from benchmark.models.lower_face import LowerFace, lower_face
-from benchmark.models.result import OnStep
+from benchmark.models.model_result import LowerFace, OnStep, lower_face
 from benchmark.response.force_curve import Array, straight_on
 
 Setup: TypeAlias = tuple[Tool, Support]

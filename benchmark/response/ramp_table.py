@@ -20,7 +20,7 @@ from benchmark.response.force_curve import Array, ForceCurve
 
 
 @dataclass(frozen=True)
-class View:
+class CameraView:
     """A camera at right angles to the resting face.
 
     Attributes
@@ -45,7 +45,7 @@ class View:
         return np.asarray(self.centre + (seen - self.centre) * shrunk[..., None])
 
 
-EVERYWHERE = View()
+EVERYWHERE = CameraView()
 """Of a camera that is too far to see anything grow."""
 
 
@@ -87,7 +87,7 @@ class FaceField:
         outward, sunk = np.moveaxis(over_depth(np.clip(depth, 0.0, self.depth[-1])), 1, 0)
         return outward, sunk
 
-    def markers(self, rest: Array, axis: Array, depth: Array, view: View) -> Array:
+    def markers(self, rest: Array, axis: Array, depth: Array, view: CameraView) -> Array:
         """Where a camera sees the markers.
 
         Parameters
@@ -98,7 +98,7 @@ class FaceField:
             Where the tool's axis meets the face, m.
         depth : (n,) array
             Below contact, m; in the air nothing moves.
-        view : View
+        view : CameraView
 
         Returns
         -------
@@ -144,14 +144,14 @@ class RampTable:
         Force and lower face of the specimen as its file has it.
     by : mapping of key to Neighbour
         Keys as in `--set`, and "thickness" for that of all layers together.
-    view : View
+    view : CameraView
         The camera.
     """
 
     curve: ForceCurve
     face: FaceField
     by: Mapping[str, Neighbour] = field(default_factory=dict)
-    view: View = EVERYWHERE
+    view: CameraView = EVERYWHERE
 
     @property
     def reach(self) -> float:

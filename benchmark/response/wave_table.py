@@ -88,10 +88,10 @@ def _sheet_fields(
     tissue: Tissue, tool: Tool, support: Support, grid: Array, levels: Array, radii: Array
 ) -> tuple[Array, Array, Array]:
     """Force (k,) N on the grid; outward motion and sinking (levels, radii) m of the lower face."""
-    from wavemodel import DiscTool, PlateWave
+    from wavemodel import DiscTool, PlateSettings, PlateWave
 
-    hole, reach = float(support.hole_radius or 0.0), float(grid[-1])
-    wave = PlateWave(_layers(tissue), DiscTool(tool.radius, _contact(tool)), "hole", hole, reach=reach)
+    hole, settings = float(support.hole_radius or 0.0), PlateSettings(reach=float(grid[-1]))
+    wave = PlateWave(_layers(tissue), DiscTool(tool.radius, _contact(tool)), "hole", hole, settings)
     faces = np.array([wave.field(float(level), radii)[:, -1] for level in levels[1:]])
     faces = np.concatenate([np.zeros((1, *faces.shape[1:])), faces])
     return wave.force_of_depth(grid), faces[:, 0], faces[:, 1]

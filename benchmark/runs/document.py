@@ -73,6 +73,7 @@ def _model(run: ModelRun, record: RunRecord) -> dict[str, Any]:
         },
         "peak_memory_MB": None if run.peak_memory is None else run.peak_memory / 1e6,
         "picture_us": None if run.frame is None else 1e6 * run.frame,
+        "choices": None if result is None or result.choices is None else asdict(result.choices),
         "notes": {} if result is None else dict(result.notes),
         "resumed": None if result is None or result.resumed is None else asdict(result.resumed),
         "failure": None if result is None or result.failure is None else str(result.failure),

@@ -22,7 +22,7 @@ from benchmark.errors import InputError
 from benchmark.files import Session, Trial
 from benchmark.files.sessions.trials import read_markers
 from benchmark.identification import Film
-from benchmark.response import View
+from benchmark.response import CameraView
 from benchmark.runs.listener import Listener
 
 Key = tuple[str, str]
@@ -61,11 +61,11 @@ class Films:
 
     films: Mapping[Key, Film]
     tracked: tuple[Tracked, ...]
-    view: View
+    view: CameraView
     warnings: tuple[str, ...] = ()
 
 
-NO_FILMS = Films({}, (), View())
+NO_FILMS = Films({}, (), CameraView())
 
 
 def session_films(session: Session, listener: Listener) -> Films:
@@ -161,7 +161,7 @@ def _missing(outcome: TrackOutcome) -> float:
     return 100.0 * float(outcome.tally.missing.mean()) / max(outcome.tally.frames, 1)
 
 
-def _view(session: Session) -> tuple[View, tuple[str, ...]]:
+def _view(session: Session) -> tuple[CameraView, tuple[str, ...]]:
     """The camera's distance and axis, from its file or from the session."""
     path = _camera_file(session)
     try:
@@ -170,10 +170,10 @@ def _view(session: Session) -> tuple[View, tuple[str, ...]]:
         raise InputError(f"{error}.") from None
     distance = session.camera.distance if session.camera is not None else None
     if distance is None and (camera is None or camera.plane is None):
-        return View(), ("the camera's distance is not known: perspective is left out of the markers' fit",)
+        return CameraView(), ("the camera's distance is not known: perspective is left out of the markers' fit",)
     if camera is None or camera.plane is None:
-        return View(float(distance or 0.0)), ()
-    return View(distance_of(camera) if distance is None else distance, _centre(camera)), ()
+        return CameraView(float(distance or 0.0)), ()
+    return CameraView(distance_of(camera) if distance is None else distance, _centre(camera)), ()
 
 
 def _centre(camera: Camera) -> tuple[float, float]:

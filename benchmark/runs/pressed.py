@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmark.files import Scenario
-from benchmark.models.result import FieldSnapshot
+from benchmark.models.model_result import FieldSnapshot
 from benchmark.runs.fields import save_grid
 from benchmark.runs.record import RunRecord
 from reports import Block, Figure, Paragraph, write_bytes, write_text

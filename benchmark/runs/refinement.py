@@ -6,13 +6,12 @@ a model's place is not refined.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from benchmark.comparison import GridConvergence, grid_convergence
 from benchmark.files import Scenario
-from benchmark.models import ModelResult
+from benchmark.models import ModelResult, WaveChoices
 from benchmark.runs.listener import Listener
 from benchmark.side_by_side import Finished, ModelProcess, Seconds, SideBySide
 
@@ -86,9 +85,8 @@ def _changed(scenario: Scenario, section: str, **values: object) -> Scenario:
 
 
 def _modes(result: ModelResult) -> int | None:
-    """N of a wave model's modes m, n = 1..N, which its notes name; None for a model without."""
-    found = re.search(r"1\.\.(\d+)", result.notes.get("modes", ""))
-    return None if found is None else int(found[1])
+    """N of a wave model's modes m, n = 1..N; None for a model without."""
+    return result.choices.plane_modes if isinstance(result.choices, WaveChoices) else None
 
 
 def _size(refined: str, level: str, result: ModelResult) -> float:

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from benchmark.errors import SolverError
 from benchmark.files import Session
 from benchmark.models import StepProgress, prepare
-from benchmark.models.result import OnStep
-from benchmark.response import FaceField, ForceCurve, Neighbour, Ramp, RampTable, View, depth_ramp
+from benchmark.models.model_result import OnStep
+from benchmark.response import CameraView, FaceField, ForceCurve, Neighbour, Ramp, RampTable, depth_ramp
 from benchmark.response.ramp import Setup, setup_scenario
 from benchmark.response.setup_change import THICKNESS, changed_setup
 from benchmark.runs.listener import Advance, Listener
@@ -60,7 +60,7 @@ def base_curves(session: Session, depths: Mapping[Setup, float], listener: Liste
 
 
 def session_sheets(
-    session: Session, depths: Mapping[Setup, float], view: View, listener: Listener
+    session: Session, depths: Mapping[Setup, float], view: CameraView, listener: Listener
 ) -> tuple[dict[Setup, RampTable], tuple[str, ...]]:
     """Compute a sheet for each tool and support over a hole; others, and what the solver cannot follow, are said.
 
@@ -69,7 +69,7 @@ def session_sheets(
     session : Session
     depths : mapping
         How deep (m) each setup is needed.
-    view : View
+    view : CameraView
         The camera.
     listener : Listener
     """

@@ -8,7 +8,7 @@ import numpy as np
 
 from benchmark.files import Scenario
 from benchmark.models import Drive
-from benchmark.models.small_strain import small_strain_deflection, took_finite_strain
+from benchmark.models.prepare import small_strain_deflection, took_finite_strain
 from benchmark.side_by_side import SideBySide
 
 NOTE = "small strain"
@@ -17,7 +17,7 @@ NOTE = "small strain"
 def beside_small_strain(scenario: Scenario, pair: SideBySide, drive: Drive) -> SideBySide:
     """Return the pair with a note on how far the wave of small strain is off at peak load, layer by layer."""
     fem, wave = pair.fem.result, pair.wave.result
-    if fem is None or wave is None or wave.model != "wave" or not took_finite_strain(scenario, wave.notes):
+    if fem is None or wave is None or wave.model != "wave" or not took_finite_strain(scenario, wave):
         return pair
     peak = int(np.abs(drive.value).argmax())
     if peak >= len(fem.top_deflection):

@@ -10,7 +10,7 @@ from bench_hw.simulated.tabulated import SheetTable
 from benchmark.errors import SolverError
 from benchmark.files import Load, Scenario, Support, Tool, load_tissue, scaled_tissue
 from benchmark.models import Drive, prepare
-from benchmark.models.lower_face import lower_face
+from benchmark.models.model_result import lower_face
 
 SPECIMEN: Final = "rtv3498_sheet"
 TRUE_FACTOR: Final = 0.83

@@ -119,14 +119,13 @@ def run_side_by_side(
     own: Own = NOTHING,
     keep: Path | None = None,
 ) -> SideBySide:
-    """Run both models on `scenario`.
+    """Run both models on `scenario`; raises InputError or SolverError as `ModelProcess.receive`.
 
     Parameters
     ----------
-    repeats
-        Timed repeats of each model; none where the FEM stopped early, since a part of a load history is not the job.
-    seed
-        Of the bootstrap of the speed-up.
+    repeats, seed
+        Timed repeats of each model (none where one stopped early: a part of a history is not the job), and the seed of
+        the bootstrap of the speed-up.
     every_field
         Keep the fields of each step instead of the peak's and the last one's.
     on_progress, on_remark
@@ -135,11 +134,6 @@ def run_side_by_side(
         A user's own model in the wave's place, timed like it, or own FEA in the FEM's, which does not run.
     keep
         Where the execution for the results keeps its FEM steps and takes up an earlier run's; repeats are whole anyway.
-
-    Raises
-    ------
-    InputError, SolverError
-        See `ModelProcess.receive`.
     """
     with ExitStack() as stack:
         processes = [

@@ -66,7 +66,7 @@ class Finished:
     peak_memory
         Of its process in bytes where it is known.
     frame
-        Wall s of a picture of all faces (`benchmark.models.frames`); None where it was not timed.
+        Wall s of a picture of all faces (`benchmark.models.wave_parts`); None where it was not timed.
     """
 
     seconds: Seconds

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from benchmark.models import Array
 from benchmark.sweep.point import SECONDS, PointResult
-
-Array = NDArray[np.float64]
 
 CONSTANT = 1e-9
 """Spread of a result, as a part of its largest value, below which it does not depend on anything."""

@@ -8,9 +8,18 @@ from functools import partial
 import numpy as np
 
 from benchmark.models import Array
-from fem.verification import Case, Quantity, hayes, layered
+from fem.verification import Case, Quantity, layered
+from fem.verification.indentation import (
+    HAYES_INDENTATION,
+    HAYES_KAPPA,
+    HAYES_POISSON_RATIO,
+    HAYES_RADIUS,
+    HAYES_SOURCE,
+    HAYES_YOUNGS_MODULUS,
+    hayes_kappa,
+)
 from fem.verification.layered_elasticity import axis_deflection
-from wavemodel import Damping, DiscTool, LayeredWave, WaveLayer
+from wavemodel import Damping, DiscTool, LayeredWave, WaveDiscretisation, WaveLayer
 
 STACK = "skin_bonded"
 STATIC_PERCENT, CREEP_PERCENT = 0.1, 0.1
@@ -21,7 +30,7 @@ VOIGT = "Kelvin-Voigt solid under a {load} force, closed form"
 
 def cases() -> tuple[Case, ...]:
     """Every case."""
-    punches = [Case(f"wave_hayes/ratio_{ratio:g}", hayes.SOURCE, partial(punch, ratio)) for ratio in hayes.KAPPA]
+    punches = [Case(f"wave_hayes/ratio_{ratio:g}", HAYES_SOURCE, partial(punch, ratio)) for ratio in HAYES_KAPPA]
     return (
         *punches,
         Case(f"wave_layered/{STACK}", layered.SOURCE, interfaces),
@@ -33,10 +42,16 @@ def cases() -> tuple[Case, ...]:
 
 def punch(ratio: float) -> tuple[Quantity, ...]:
     """Stiffness of a bonded layer of thickness a / ratio under a frictionless punch."""
-    layer = WaveLayer("layer", hayes.RADIUS / ratio, DENSITY, hayes.YOUNGS_MODULUS, hayes.POISSON_RATIO)
-    wave = LayeredWave([layer], DiscTool(hayes.RADIUS, "rigid_frictionless"))
-    force = float(wave.run("depth", np.ones(1), np.array([hayes.INDENTATION])).force[0])
-    return (Quantity("", hayes.KAPPA[ratio], hayes.kappa(force), "", STATIC_PERCENT, wave.unknowns),)
+    layer = WaveLayer(
+        "layer",
+        HAYES_RADIUS / ratio,
+        DENSITY,
+        HAYES_YOUNGS_MODULUS,
+        HAYES_POISSON_RATIO,
+    )
+    wave = LayeredWave([layer], DiscTool(HAYES_RADIUS, "rigid_frictionless"))
+    force = float(wave.run("depth", np.ones(1), np.array([HAYES_INDENTATION])).force[0])
+    return (Quantity("", HAYES_KAPPA[ratio], hayes_kappa(force), "", STATIC_PERCENT, wave.unknowns),)
 
 
 def interfaces(domain: str = "rectangle") -> tuple[Quantity, ...]:
@@ -75,4 +90,10 @@ def _skin(damping: Damping, integrator: str, domain: str = "rectangle") -> Layer
     stack = layered.STACKS[STACK]
     rows = zip(stack.thickness.tolist(), stack.youngs_modulus.tolist(), stack.poisson_ratio.tolist(), strict=True)
     layers = [WaveLayer(f"layer {n}", t, DENSITY, modulus, nu) for n, (t, modulus, nu) in enumerate(rows)]
-    return LayeredWave(layers, DiscTool(layered.RADIUS), domain=domain, integrator=integrator, damping=damping)
+    return LayeredWave(
+        layers,
+        DiscTool(layered.RADIUS),
+        discretisation=WaveDiscretisation(domain=domain),
+        integrator=integrator,
+        damping=damping,
+    )

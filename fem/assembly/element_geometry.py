@@ -12,8 +12,8 @@ from functools import cached_property
 
 import numpy as np
 
-from fem.arrays import FloatArray
-from fem.components import Components
+from fem.arrays import FloatArray, IntArray
+from fem.materials.components import Components
 
 ELEMENTS_AT_ONCE = 64  # so that their pulled back moduli stay in the cache
 
@@ -81,6 +81,11 @@ class ElementGeometry(ABC):
         return np.concatenate([table @ piece for table, piece in zip(self._products, pieces, strict=True)])
 
     @cached_property
+    def packed(self) -> tuple[IntArray, IntArray]:
+        """Row and column (entries,) of each entry of a packed element stiffness."""
+        return packed_positions(self.tables[0].shape[1], len(self.tables))
+
+    @cached_property
     def _products(self) -> tuple[FloatArray, ...]:
         return stiffness_tables(self.components, self.tables)
 
@@ -88,6 +93,35 @@ class ElementGeometry(ABC):
         ends = np.cumsum([len(table) for table in self.tables])[:-1]
         pieces = np.split(flat, ends)
         return np.concatenate([table.T @ piece for table, piece in zip(self.tables, pieces, strict=True)])
+
+
+def orthonormal(monomials: FloatArray, weight: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Shapes made orthonormal in the weight (q, E) on each element: from monomials (p, q), and at the points.
+
+    Returns
+    -------
+    tuple of ndarray
+        Lower triangular (p, p, E) and (p, q, E).
+    """
+    mass = np.einsum("iq,jq,qe->eij", monomials, monomials, weight)
+    transform = np.ascontiguousarray(np.linalg.inv(np.linalg.cholesky(mass)).transpose(1, 2, 0))
+    return transform, np.einsum("ije,jq->iqe", transform, monomials)
+
+
+def packed_positions(nodes: int, components: int) -> tuple[IntArray, IntArray]:
+    """Local row and column (entries,) of each packed entry: the upper triangle of the diagonal blocks, all of others.
+
+    Blocks belong to two displacement components each, in the order (0, 0), (0, 1), ...
+    """
+    upper = np.triu_indices(nodes)
+    full = tuple(grid.ravel() for grid in np.indices((nodes, nodes)))
+    rows, columns = [], []
+    for a in range(components):
+        for b in range(a, components):
+            i, j = upper if a == b else full
+            rows.append(i + a * nodes)
+            columns.append(j + b * nodes)
+    return np.concatenate(rows), np.concatenate(columns)
 
 
 def stiffness_tables(components: Components, tables: tuple[FloatArray, ...]) -> tuple[FloatArray, ...]:

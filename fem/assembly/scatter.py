@@ -1,10 +1,9 @@
-"""From element arrays to the unknowns: numbering, and the sparse pattern built once."""
+"""From element arrays to the unknowns: numbering, and the sparse pattern built once, and made wider for items."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -12,6 +11,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem.arrays import BoolArray, FloatArray, IntArray
+from fem.assembly.element_geometry import packed_positions
 
 FIXED = -1
 Index: TypeAlias = NDArray[np.int32]  # half the memory of the pattern's large arrays
@@ -102,17 +102,6 @@ class Scatter:
         out: FloatArray = self.vector_sum @ element.ravel()
         return out
 
-    @cached_property
-    def _keys(self) -> IntArray:
-        count = len(self.indptr) - 1
-        out: IntArray = np.repeat(np.arange(count), np.diff(self.indptr)) * count + self.indices
-        return out
-
-    def places(self, rows: IntArray, columns: IntArray) -> IntArray:
-        """Where the entries (k,) at rows and columns, or their mirror images, are in the upper triangle."""
-        low, high = np.minimum(rows, columns), np.maximum(rows, columns)
-        return np.searchsorted(self._keys, low * (len(self.indptr) - 1) + high)
-
     def round_off(self, tangent: FloatArray, y: FloatArray) -> float:
         """Norm of the forces that round-off leaves unbalanced: eps |A| |y| of entries (nnz,), unknowns (n,)."""
         n = len(y)
@@ -125,22 +114,6 @@ class Scatter:
         """Entries (nnz,) of the upper triangle from packed element stiffness (171, E)."""
         out: FloatArray = self.matrix_sum @ packed.ravel()
         return out
-
-
-def packed_positions(nodes: int, components: int) -> tuple[IntArray, IntArray]:
-    """Local row and column (entries,) of each packed entry: the upper triangle of the diagonal blocks, all of others.
-
-    Blocks belong to two displacement components each, in the order (0, 0), (0, 1), ...
-    """
-    upper = np.triu_indices(nodes)
-    full = tuple(grid.ravel() for grid in np.indices((nodes, nodes)))
-    rows, columns = [], []
-    for a in range(components):
-        for b in range(a, components):
-            i, j = upper if a == b else full
-            rows.append(i + a * nodes)
-            columns.append(j + b * nodes)
-    return np.concatenate(rows), np.concatenate(columns)
 
 
 def build_scatter(elements: IntArray, numbering: Numbering) -> Scatter:
@@ -172,3 +145,38 @@ def _stable_order(key: Index, count: int, order: Index) -> Index:
     row = sp.csr_array((order, key[order], ends), shape=(1, count))
     out: Index = row.tocsc().data
     return out
+
+
+def widened(scatter: Scatter, count: int, rows: IntArray, columns: IntArray) -> tuple[Scatter, IntArray]:
+    """A scatter whose pattern has more entries.
+
+    Parameters
+    ----------
+    scatter
+        Sums of the elements.
+    count
+        Number of unknowns.
+    rows, columns
+        Entries (k,) that are needed, each in any order and as often as wanted; every row must have its diagonal.
+
+    Returns
+    -------
+    tuple
+        The scatter, and the place (k,) of each entry among the entries of the upper triangle.
+    """
+    low, high = np.minimum(rows, columns), np.maximum(rows, columns)
+    old = np.repeat(np.arange(count), np.diff(scatter.indptr)) * count + scatter.indices
+    keys, place = np.unique(np.concatenate((old, low * count + high)), return_inverse=True)
+    kept, added = place[: len(old)], place[len(old) :]
+    lengths = np.zeros(len(keys), dtype=np.int64)
+    lengths[kept] = np.diff(scatter.matrix_sum.indptr)
+    matrix = sp.csr_array(
+        (
+            scatter.matrix_sum.data,
+            scatter.matrix_sum.indices,
+            np.concatenate(([0], np.cumsum(lengths))).astype(scatter.matrix_sum.indptr.dtype),
+        ),
+        shape=(len(keys), scatter.matrix_sum.shape[1]),
+    )
+    indptr = np.searchsorted(keys // count, np.arange(count + 1))
+    return replace(scatter, matrix_sum=matrix, indptr=indptr, indices=keys % count), added

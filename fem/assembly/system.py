@@ -1,30 +1,15 @@
-"""The discrete equations: residual and tangent of displacement and pressure, the pressure condensed.
-
-The shapes in the docstrings are those of the axisymmetric element (18 displacements, 3 pressures); other
-elements have others. An element without pressure shapes has all of its bulk modulus at the Gauss points.
-
-Two-field form (perturbed Lagrangian): W_iso(F) + p (J - 1) - p^2 / (2 K), u quadratic, p discontinuous, as a rule
-linear (Q2/P1, inf-sup stable: Boffi, Brezzi and Fortin, Mixed Finite Element Methods and Applications,
-chapter 8). The pressure shapes are orthonormal on each element, so that condensing it adds
-K sum_i b_i b_i^T to the element's stiffness, b_i the integral of pressure shape i times dJ/du.
-Linear kinematics is the tangent at rest.
-"""
+"""The equations: residual and tangent on the unknowns, summed over elements and items."""
 
 from __future__ import annotations
 
-import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fem.arrays import FloatArray, IntArray
-from fem.assembly.element_geometry import ELEMENTS_AT_ONCE, ElementGeometry
-from fem.assembly.laws import ElementLaws
-from fem.assembly.memory import Memory
-from fem.assembly.scatter import Numbering, Scatter, packed_positions
-from fem.assembly.sliding import Sliding
-from fem.assembly.slipping import Grip, Slipping
-from fem.deformation import Deformation
+from fem.assembly.elements import Elements, ElementState
+from fem.assembly.item import EquationItem, ItemForces
+from fem.assembly.scatter import Numbering, Scatter, widened
 
 
 @dataclass(frozen=True)
@@ -33,180 +18,62 @@ class Evaluation:
 
     Attributes
     ----------
-    deformation
-        Deformation gradient at the Gauss points.
-    pressure
-        Pressure coefficients (3, E) the evaluation was made with.
-    pressure_at_points
-        Pressure (q, E) in Pa.
-    coupling
-        b (18, 3, E): derivative of the volume change by the nodal displacements.
-    mismatch
-        K (volume change) - p (3, E): how far the pressure is from what the volume change asks for.
-    element_force
-        Nodal forces (18, E) in N with the pressure the volume change asks for.
+    elements
+        Forces of the elements.
+    responses
+        Those of the items.
     residual
-        Their sum on the unknowns (n,), with the friction.
-    friction_stiffness
-        Derivative (m,) in N/m of the friction on the unknowns that rub.
-    grips
-        The interfaces that slip.
+        Their sum (n,) in N on the unknowns.
     """
 
-    deformation: Deformation
-    pressure: FloatArray
-    pressure_at_points: FloatArray
-    coupling: FloatArray
-    mismatch: FloatArray
-    element_force: FloatArray
+    elements: ElementState
+    responses: tuple[ItemForces, ...]
     residual: FloatArray
-    friction_stiffness: FloatArray
-    grips: tuple[Grip, ...]
-
-    @property
-    def consistent_pressure(self) -> FloatArray:
-        """Pressure coefficients (3, E) the volume change asks for."""
-        out: FloatArray = self.pressure + self.mismatch
-        return out
 
 
+@dataclass(frozen=True)
 class System:
-    """Residual and tangent of a mesh with laws and a numbering.
+    """Residual and tangent of elements and items.
 
-    Parameters
+    Attributes
     ----------
-    geometry
-        Geometry at the Gauss points.
-    laws
-        Laws of the elements.
+    elements
+        The elements.
     numbering, scatter
-        Unknowns and the sums into them.
-    stabilisation
-        Part of the bulk modulus, in shear moduli (at most half of it), that acts on J at each Gauss point
-        instead of on the pressure field. It takes nothing from the continuum's energy, but Q2/P1 controls only
-        three moments of J on an element, and at large strain the rest can become unstable (Pantuso and
-        Bathe, Finite Elements in Analysis and Design 28 (1997) 83).
+        Unknowns, and the sums into them with the pattern of the tangent.
+    items
+        What acts besides the elements.
+    places
+        For each item the place of each of its entries in the tangent; see :func:`make_system`.
+    offset
+        Prescribed displacements (18, E) in m on top of those of the unknowns, or None.
     """
 
-    def __init__(
-        self,
-        geometry: ElementGeometry,
-        laws: ElementLaws,
-        numbering: Numbering,
-        scatter: Scatter,
-        stabilisation: float = 0.0,
-    ) -> None:
-        self.geometry = geometry
-        self.laws = laws
-        self.numbering = numbering
-        self.scatter = scatter
-        count, components = scatter.element_unknowns.shape[0], len(geometry.tables)
-        self._rows, self._columns = packed_positions(count // components, components)
-        at_points = np.minimum(stabilisation * laws.shear_modulus, 0.5 * laws.bulk_modulus)
-        if len(geometry.pressure) == 0:
-            at_points = laws.bulk_modulus
-        self.point_modulus = at_points
-        self._field_modulus = laws.bulk_modulus - at_points
-        self._prescribed: FloatArray | None = None
-        shape = (len(geometry.components.positions), *geometry.weight.shape)
-        self.memory = None if laws.prony is None else Memory.of_rest(laws.prony, shape)
-        self._duration = 0.0
-        self.sliding: Sliding | None = None
-        self.interfaces: tuple[Slipping, ...] = ()
+    elements: Elements
+    numbering: Numbering
+    scatter: Scatter
+    items: tuple[EquationItem, ...] = ()
+    places: tuple[IntArray, ...] = ()
+    offset: FloatArray | None = None
 
     @property
     def remembers(self) -> bool:
         """Whether a state depends on the states before it."""
-        rubs = self.sliding is not None or any(interface.rubs for interface in self.interfaces)
-        return rubs or self.memory is not None
-
-    def advanced(self, duration: float) -> System:
-        """The equations of a step that takes `duration` s from the last accepted state."""
-        if self.memory is None:
-            return self
-        other = copy.copy(self)
-        other._duration, other.laws = duration, self.laws.relaxing(*self.memory.ahead(duration))
-        return other
-
-    def accepted(self, y: FloatArray) -> System:
-        """The equations after a step that ends at unknowns y (n,); evaluated there they give its forces."""
-        slid = self if self.sliding is None else self.rubbing(self.sliding.after(y))
-        if self.interfaces:
-            slid = slid.slipping(tuple(interface.after(y) for interface in self.interfaces))
-        if self.memory is None:
-            return slid
-        deformation = Deformation(self.geometry.components, self.geometry.gradient(self.element_displacement(y)))
-        other = copy.copy(slid)
-        other.memory = self.memory.after(self._duration, self.laws.second_stress(deformation))
-        return other.advanced(0.0)
-
-    def corrected(self, y: FloatArray, press: float) -> System | None:
-        """The equations that fit a state with unknowns y (n,) and a press in N; None if these do."""
-        del y, press
-        return None
-
-    def lightened(self, share: float) -> System | None:
-        """The equations to begin with where a share of the press is left; None if they are these."""
-        del share
-        return None
-
-    def with_laws(self, laws: ElementLaws) -> System:
-        """The same equations with other laws of the same moduli at rest."""
-        other = copy.copy(self)
-        other.laws = laws
-        return other
-
-    def rubbing(self, sliding: Sliding) -> System:
-        """The same equations with friction on a fixed body."""
-        other = copy.copy(self)
-        other.sliding = sliding
-        return other
-
-    def slipping(self, interfaces: tuple[Slipping, ...]) -> System:
-        """The same equations with interfaces that slip, whose entries the pattern has."""
-        other = copy.copy(self)
-        other.interfaces = interfaces
-        return other
-
-    def displaced(self, elements: IntArray, prescribed: FloatArray) -> System:
-        """The same equations with displacements (components, N) in m on top of the unknowns', elements (nodes, E)."""
-        other = copy.copy(self)
-        other.numbering = replace(self.numbering, prescribed=prescribed)
-        other._prescribed = np.concatenate([u[elements] for u in prescribed])
-        return other
+        return self.elements.memory is not None or any(item.remembers for item in self.items)
 
     @property
-    def is_displaced(self) -> bool:
-        """Whether there are prescribed displacements."""
-        return self._prescribed is not None
-
-    @property
-    def plain(self) -> System:
-        """The same equations without prescribed displacements and without friction on a fixed body."""
-        if self._prescribed is None and self.sliding is None:
-            return self
-        other = copy.copy(self)
-        other.sliding = None
-        other.numbering, other._prescribed = replace(self.numbering, prescribed=None), None
-        return other
-
-    def scaled(self, share: float) -> System:
-        """The same equations with a share of the prescribed displacements."""
-        nodal, element = self.numbering.prescribed, self._prescribed
-        if nodal is None or element is None:
-            return self
-        other = copy.copy(self)
-        other.numbering, other._prescribed = replace(self.numbering, prescribed=share * nodal), share * element
-        return other
+    def kinked(self) -> bool:
+        """Whether the forces have kinks; see :class:`fem.assembly.item.EquationItem`."""
+        return any(item.kinked for item in self.items)
 
     def element_displacement(self, y: FloatArray) -> FloatArray:
         """Nodal displacements of each element (18, E) in m at the unknowns y (n,)."""
         u = self.scatter.gather(y)
-        return u if self._prescribed is None else u + self._prescribed
+        return u if self.offset is None else u + self.offset
 
     def rest(self) -> tuple[FloatArray, FloatArray]:
         """Unknowns (n,) and pressure coefficients (3, E) at rest."""
-        return np.zeros(self.numbering.count), np.zeros((len(self.geometry.pressure), len(self.laws.bulk_modulus)))
+        return np.zeros(self.numbering.count), self.elements.rest_pressure
 
     def evaluate(self, y: FloatArray, pressure: FloatArray) -> Evaluation | None:
         """Equations at unknowns y (n,) and pressure coefficients (3, E).
@@ -214,99 +81,133 @@ class System:
         Returns
         -------
         Evaluation or None
-            None where an element is turned inside out (J <= 0) or a value is not finite.
+            None where an element is turned inside out (J <= 0), an item has no answer or a value is not finite.
         """
-        deformation = Deformation(self.geometry.components, self.geometry.gradient(self.element_displacement(y)))
-        if not deformation.J.min() > 0.0:
+        responses = self._responses(y)
+        state = None if responses is None else self.elements.evaluate(self.element_displacement(y), pressure)
+        if responses is None or state is None:
             return None
-        shapes, weight, bulk = self.geometry.pressure, self.geometry.weight, self._field_modulus
-        change = deformation.volume_change
-        at_points = np.einsum("ie,iqe->qe", pressure, shapes) + self.point_modulus * change
-        volume_change = np.einsum("iqe,qe->ie", shapes, weight * change)
-        mismatch = bulk * volume_change - pressure
-        coupling = self.geometry.coupling(deformation.cofactor * weight)
-        stress = self.laws.stress(deformation) + at_points * deformation.cofactor
-        force = self.geometry.forces(stress * weight) + np.einsum("nie,ie->ne", coupling, mismatch)
-        residual, friction_stiffness = self._with_friction(self.scatter.vector(force), y)
-        grips = self._gripped(residual, y)
-        if grips is None or not np.isfinite(residual).all():
-            return None
-        return Evaluation(
-            deformation, pressure, at_points, coupling, mismatch, force, residual, friction_stiffness, grips
-        )
+        residual = self.scatter.vector(state.force)
+        for item, response in zip(self.items, responses, strict=True):
+            np.add.at(residual, item.unknowns, response.force)
+        return Evaluation(state, responses, residual) if np.isfinite(residual).all() else None
 
-    def _gripped(self, residual: FloatArray, y: FloatArray) -> tuple[Grip, ...] | None:
-        """The interfaces at unknowns y (n,), their forces added to the residual (n,); None beyond an end of one."""
-        grips = []
-        for interface in self.interfaces:
-            grip = interface.grip(y)
-            if grip is None:
+    def _responses(self, y: FloatArray) -> tuple[ItemForces, ...] | None:
+        found = []
+        for item in self.items:
+            response = item.respond(y)
+            if response is None:
                 return None
-            interface.add_force(grip, residual)
-            grips.append(grip)
-        return tuple(grips)
-
-    def _with_friction(self, residual: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Forces (n,) with the friction at unknowns y (n,), and the friction's derivative (m,)."""
-        if self.sliding is None:
-            return residual, np.zeros(0)
-        residual[self.sliding.unknowns] += self.sliding.force(y)
-        return residual, self.sliding.stiffness(y)
+            found.append(response)
+        return tuple(found)
 
     def tangent(self, state: Evaluation) -> FloatArray:
         """Upper triangle (nnz,) of the tangent, the pressure condensed."""
-        components = self.geometry.components
-        moduli = self.laws.tangent(state.deformation)
-        moduli[components.cofactor_pairs] += state.pressure_at_points * state.deformation.cofactor_derivative
-        cofactor = state.deformation.cofactor
-        components.add_products(moduli, self.point_modulus * cofactor, cofactor)
-        moduli *= self.geometry.weight
-        packed = self.geometry.stiffness(moduli)
-        self._condense(packed, state.coupling)
-        out = self.scatter.matrix(packed)
-        if self.sliding is not None:
-            out[self.scatter.indptr[self.sliding.unknowns]] += state.friction_stiffness
-        for interface, grip in zip(self.interfaces, state.grips, strict=True):
-            out[self.scatter.places(*interface.entries)] += interface.values(grip)
+        out = self.scatter.matrix(self.elements.stiffness(state.elements))
+        for places, response in zip(self.places, state.responses, strict=True):
+            np.add.at(out, places, response.stiffness)
         return out
-
-    def _condense(self, packed: FloatArray, coupling: FloatArray) -> None:
-        """Add what the eliminated pressure does to the packed stiffness."""
-        for start in range(0, packed.shape[1], ELEMENTS_AT_ONCE):
-            part = slice(start, start + ELEMENTS_AT_ONCE)
-            b, bulk = coupling[..., part], self._field_modulus[part]
-            packed[:, part] += np.einsum("pie,pie->pe", (b * bulk)[self._rows], b[self._columns])
 
     def pressure_after(self, state: Evaluation, dy: FloatArray) -> FloatArray:
         """Pressure coefficients (3, E) after a Newton increment dy (n,) of the unknowns."""
-        change = np.einsum("nie,ne->ie", state.coupling, self.scatter.gather(dy))
-        out: FloatArray = state.pressure + state.mismatch + self._field_modulus * change
-        return out
+        return self.elements.pressure_after(state.elements, self.scatter.gather(dy))
 
     def linear_pressure(self, rest: Evaluation, y: FloatArray) -> FloatArray:
         """Pressure coefficients (3, E) at small displacements y (n,)."""
-        out: FloatArray = self._field_modulus * np.einsum("nie,ne->ie", rest.coupling, self.element_displacement(y))
-        return out
+        return self.elements.linear_pressure(rest.elements, self.element_displacement(y))
+
+    def linear_force(self, rest: Evaluation, y: FloatArray) -> FloatArray:
+        """Nodal forces (18, E) in N of small displacements y (n,), from the moduli at rest."""
+        return self.elements.linear_force(rest.elements, self.element_displacement(y))
 
     def linear_residual(self, rest: Evaluation, y: FloatArray) -> FloatArray:
-        """Forces (n,) of small displacements y (n,), from the moduli and the interfaces at rest."""
+        """Forces (n,) of small displacements y (n,), from the moduli and the items at rest."""
         out = self.scatter.vector(self.linear_force(rest, y))
-        for interface, grip in zip(self.interfaces, rest.grips, strict=True):
-            (rows, columns), values = interface.entries, interface.values(grip)
+        for item, response in zip(self.items, rest.responses, strict=True):
+            (rows, columns), values = item.entries, response.stiffness
             mirrored = np.where(rows == columns, 0.0, values)
             np.add.at(out, rows, values * y[columns])
             np.add.at(out, columns, mirrored * y[rows])
         return out
 
-    def linear_force(self, rest: Evaluation, y: FloatArray) -> FloatArray:
-        """Nodal forces (18, E) in N of small displacements y (n,), from the moduli at rest."""
-        u = self.element_displacement(y)
-        H, components = self.geometry.gradient(u), self.geometry.components
-        moduli = components.unpack(self.laws.tangent(rest.deformation))
-        stress = np.einsum("kmqe,mqe->kqe", moduli, H)
-        stress[components.normal] += self.point_modulus * H[components.normal].sum(axis=0)
-        pressure = self.linear_pressure(rest, y)
-        out: FloatArray = self.geometry.forces(stress * self.geometry.weight) + np.einsum(
-            "nie,ie->ne", rest.coupling, pressure
+    def reaction(self, element_force: FloatArray, responses: tuple[ItemForces, ...] = ()) -> float:
+        """Upward force in N of the support on the specimen, from element forces (18, E) and the items' responses.
+
+        Internal forces in z add up to zero over all nodes, so what the support returns is minus the sum over the
+        nodes that may move; an item may pull on fixed nodes as well.
+        """
+        last = -len(element_force) // len(self.numbering.unknown)
+        vertical = element_force[last:][self.scatter.element_unknowns[last:] < self.numbering.count]
+        return float(-vertical.sum()) + sum(response.support for response in responses)
+
+    def advanced(self, duration: float) -> System:
+        """The equations of a step that takes `duration` s from the last accepted state."""
+        elements = self.elements.advanced(duration)
+        return self if elements is self.elements else replace(self, elements=elements)
+
+    def accepted(self, y: FloatArray) -> System:
+        """The equations after a step that ends at unknowns y (n,); evaluated there they give its forces."""
+        if self.elements.memory is None and not self.items:
+            return self
+        elements = self.elements.accepted(self.element_displacement(y))
+        return replace(self, elements=elements, items=tuple(item.accepted(y) for item in self.items))
+
+    def corrected(self, y: FloatArray, press: float) -> System | None:
+        """The equations that fit a state with unknowns y (n,) and a press in N; None if these do."""
+        return self._with([item.corrected(y, press) for item in self.items])
+
+    def lightened(self, share: float) -> System | None:
+        """The equations to begin with where a share of the press is left; None if they are these."""
+        return self._with([item.lightened(share) for item in self.items])
+
+    def _with(self, others: list[EquationItem | None]) -> System | None:
+        if all(other is None for other in others):
+            return None
+        return replace(self, items=tuple(other or item for other, item in zip(others, self.items, strict=True)))
+
+    def warnings(self, y: FloatArray) -> tuple[str, ...]:
+        """What a person must know of the accepted state y (n,)."""
+        return tuple(text for text in (item.warning(y) for item in self.items) if text)
+
+    def displaced(self, elements: IntArray, prescribed: FloatArray) -> System:
+        """The same equations with displacements (components, N) in m on top of the unknowns', elements (nodes, E)."""
+        offset = np.concatenate([u[elements] for u in prescribed])
+        return replace(self, numbering=replace(self.numbering, prescribed=prescribed), offset=offset)
+
+    @property
+    def is_displaced(self) -> bool:
+        """Whether there are prescribed displacements."""
+        return self.offset is not None
+
+    def scaled(self, share: float) -> System:
+        """The same equations with a share of the prescribed displacements."""
+        nodal, offset = self.numbering.prescribed, self.offset
+        if nodal is None or offset is None:
+            return self
+        return replace(self, numbering=replace(self.numbering, prescribed=share * nodal), offset=share * offset)
+
+    @property
+    def plain(self) -> System:
+        """The same equations without prescribed displacements and with the items of small strain alone."""
+        kept = [n for n, item in enumerate(self.items) if item.in_small_strain]
+        if self.offset is None and len(kept) == len(self.items):
+            return self
+        return replace(
+            self,
+            numbering=replace(self.numbering, prescribed=None),
+            offset=None,
+            items=tuple(self.items[n] for n in kept),
+            places=tuple(self.places[n] for n in kept),
         )
-        return out
+
+
+def make_system(
+    elements: Elements, numbering: Numbering, scatter: Scatter, items: tuple[EquationItem, ...] = ()
+) -> System:
+    """The equations of elements and items, with a pattern that has the entries of both."""
+    if not items:
+        return System(elements, numbering, scatter)
+    rows, columns = (np.concatenate(side) for side in zip(*(item.entries for item in items), strict=True))
+    wide, place = widened(scatter, numbering.count, rows, columns)
+    ends = np.cumsum([len(item.entries[0]) for item in items])[:-1]
+    return System(elements, numbering, wide, items, tuple(np.split(place, ends)))

@@ -1,15 +1,26 @@
-"""Choice of the direct solver."""
+"""Choice of the direct solver, where its library is, and how many threads it may use.
+
+Without being told pypardiso would search the whole environment for the MKL, which takes up to a second.
+"""
 
 from __future__ import annotations
 
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from threadpoolctl import threadpool_limits
+
 from fem.arrays import IntArray
-from fem.checks import require_one_of
-from fem.errors import FemError
-from fem.linear_solver.mkl import name_library
+from fem.errors import FemError, require_one_of
 from fem.linear_solver.superlu import SuperLUSolver
 from fem.linear_solver.symmetric import SymmetricSolver
 
 LINEAR_SOLVERS = ("auto", "pardiso", "superlu")
+VARIABLE = "PYPARDISO_MKL_RT"
+SMALL = 10_000
 
 
 def make_solver(choice: str, indptr: IntArray, indices: IntArray) -> SymmetricSolver:
@@ -38,3 +49,20 @@ def make_solver(choice: str, indptr: IntArray, indices: IntArray) -> SymmetricSo
             if choice == "pardiso":
                 raise FemError(f"linear_solver = 'pardiso': cannot be loaded ({error}); use 'superlu'") from error
     return SuperLUSolver(indptr, indices)
+
+
+def name_library(prefix: str = sys.prefix) -> None:
+    """Tell pypardiso the library of this environment by its variable, unless the user has set it."""
+    for pattern in ("lib/libmkl_rt.so*", "Library/bin/mkl_rt*.dll"):
+        for path in sorted(Path(prefix).glob(pattern)):
+            os.environ.setdefault(VARIABLE, str(path))
+
+
+@contextmanager
+def suited_threads(unknowns: int) -> Iterator[None]:
+    """One thread for small systems, whose threads wait for each other longer than they work; otherwise no limit."""
+    if unknowns >= SMALL:
+        yield
+        return
+    with threadpool_limits(1):
+        yield

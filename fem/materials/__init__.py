@@ -2,8 +2,8 @@
 
 from fem.materials.fibres import Fibre, FibreReinforced
 from fem.materials.gent import Gent
-from fem.materials.law import IsochoricLaw, Material
 from fem.materials.linear_elastic import LinearElastic
+from fem.materials.material import IsochoricLaw, Material
 from fem.materials.mooney_rivlin import MooneyRivlin
 from fem.materials.neo_hookean import NeoHookean
 from fem.materials.ogden import Ogden

@@ -8,25 +8,29 @@ J. R. Soc. Interface 3 (2006) 15; without dispersion G. A. Holzapfel, T. C. Gass
 With the structure tensor H = kappa I + (1 - 3 kappa) M, E = J^(-2/3) H : C - 1. M is a x a for one direction and
 (I - n x n) / 2 for directions spread evenly over the plane (n its normal), which keeps axial symmetry. At rest
 E = 0 and the fibres add no stiffness: the moduli at rest are the ground substance's.
+
+Directions must fit the symmetry of the geometry: axial symmetry has none in the plane, a block has mirror planes along
+x and y.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.checks import require_finite, require_positive
-from fem.deformation import Deformation
-from fem.errors import FemError
+from fem.errors import FemError, require_finite, require_positive
+from fem.materials.deformation import Deformation
 from fem.materials.invariants import structure_change, structure_curvature, structure_gradient
-from fem.materials.law import IsochoricLaw, Material
+from fem.materials.material import IsochoricLaw, Material
 
 ISOTROPIC = 1.0 / 3.0  # dispersion that spreads the fibres over all directions of space
 LARGEST_POWER = 100.0  # k2 E^2 beyond which the law has no answer
 PER_FAMILY = 6  # parameters of one family: k1, k2, H_xx, H_yy, H_zz, H_xy
+SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -202,3 +206,48 @@ def _slopes(strain: FloatArray, k1: FloatArray, k2: FloatArray) -> tuple[FloatAr
     power = k2 * strain * strain
     growth = k1 * np.exp(np.where(power < LARGEST_POWER, power, np.nan))
     return 2.0 * growth * strain, np.where(strain > 0.0, 4.0 * growth * (1.0 + 2.0 * k2 * strain * strain), 0.0)
+
+
+def require_fibre_symmetry(materials: Mapping[str, Material], geometry: str) -> None:
+    """Refuse directions of fibres in a layer's material that the geometry cannot have.
+
+    Axial symmetry has no direction in the plane; a block has mirror planes along x and y.
+
+    Raises
+    ------
+    FemError
+        If a family breaks the symmetry.
+    """
+    for name, material in materials.items():
+        if not isinstance(material, FibreReinforced):
+            continue
+        directed = [fibre for fibre in material.fibres if fibre.directed]
+        if geometry == "axisymmetric" and directed:
+            raise FemError(
+                f"layer {name!r}: fibre angle = {_degrees(directed[0]):g} deg breaks the symmetry of geometry = "
+                "'axisymmetric': leave the angle out (fibres spread evenly over the plane), set dispersion = 1/3, "
+                "or use a geometry in three dimensions"
+            )
+        lonely = [fibre for fibre in directed if geometry == "block" and not _mirrored(fibre, directed)]
+        if lonely:
+            raise FemError(
+                f"layer {name!r}: fibre angle = {_degrees(lonely[0]):g} deg breaks the mirror planes of "
+                "geometry = 'block': use 0 or 90 deg, two equal families at plus and minus the angle, or 'surface'"
+            )
+
+
+def _mirrored(fibre: Fibre, families: list[Fibre]) -> bool:
+    """Whether the mirror image of a family is there, and as often as the family itself."""
+    alike = [f for f in families if (f.k1, f.k2, f.dispersion) == (fibre.k1, fibre.k2, fibre.dispersion)]
+    angle = fibre.angle or 0.0
+    here = sum(_apart(f.angle or 0.0, angle) < SAME for f in alike)
+    return here == sum(_apart(f.angle or 0.0, -angle) < SAME for f in alike)
+
+
+def _apart(first: float, second: float) -> float:
+    """Angle between two directions without sense, in rad."""
+    return abs(math.remainder(first - second, math.pi))
+
+
+def _degrees(fibre: Fibre) -> float:
+    return math.degrees(fibre.angle or 0.0)

@@ -10,10 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.checks import require_positive
-from fem.materials.first_invariant import FirstInvariantLaw
-from fem.materials.hyperelastic import Hyperelastic
-from fem.materials.law import IsochoricLaw
+from fem.errors import require_positive
+from fem.materials.invariants import FirstInvariantLaw
+from fem.materials.material import Hyperelastic, IsochoricLaw
 
 
 @dataclass(frozen=True)

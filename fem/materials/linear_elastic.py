@@ -11,9 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.deformation import Deformation
-from fem.materials.elastic_constants import IsotropicSolid
-from fem.materials.law import IsochoricLaw
+from fem.materials.deformation import Deformation
+from fem.materials.material import IsochoricLaw, IsotropicSolid
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fem.arrays import FloatArray
-from fem.checks import require_finite
-from fem.deformation import Deformation
+from fem.errors import require_finite
 from fem.materials import invariants
-from fem.materials.hyperelastic import Hyperelastic
-from fem.materials.law import IsochoricLaw
+from fem.materials.deformation import Deformation
+from fem.materials.material import Hyperelastic, IsochoricLaw
 
 
 @dataclass(frozen=True)

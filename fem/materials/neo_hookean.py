@@ -9,10 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fem.arrays import FloatArray
-from fem.deformation import Deformation
-from fem.materials.elastic_constants import IsotropicSolid
+from fem.materials.deformation import Deformation
 from fem.materials.invariants import first_curvature, first_gradient
-from fem.materials.law import IsochoricLaw
+from fem.materials.material import IsochoricLaw, IsotropicSolid
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fem.arrays import FloatArray
-from fem.checks import require_finite
-from fem.materials.first_invariant import FirstInvariantLaw
-from fem.materials.hyperelastic import Hyperelastic
-from fem.materials.law import IsochoricLaw
+from fem.errors import require_finite
+from fem.materials.invariants import FirstInvariantLaw
+from fem.materials.material import Hyperelastic, IsochoricLaw
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,18 @@
-"""Meshes of biquadratic quadrilaterals, and the node sets every part of the solver works with."""
+"""Meshes of biquadratic quadrilaterals, and the node sets every part of the solver works with.
+
+The mesh of a layered specimen is a tensor product, with a fan of elements round the tool's edge if wanted. The two
+sides of an interface may be parted: nodes of their own, at the same places at rest.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 
 import numpy as np
 import skfem
 
 from fem.arrays import BoolArray, FloatArray, IntArray
-from fem.mesh.rows import along_row
 
 
 @dataclass(frozen=True)
@@ -29,7 +33,7 @@ class Mesh:
         For each layer the nodes of its top face from the axis outwards, corners and mid-sides in turn.
     undersides
         For each layer but the last the nodes of its lower face in the same order: those of the next top face, or
-        where the interface is split nodes at the same places (see :mod:`fem.mesh.split`).
+        where the interface is split nodes at the same places (see :mod:`fem.mesh.quads`).
     """
 
     nodes: FloatArray
@@ -52,6 +56,11 @@ class Mesh:
         """Distance of the nodes (N,) in m from the specimen's axis, which is the tool's."""
         out: FloatArray = self.nodes[:, 0]
         return out
+
+    @property
+    def tool_distance(self) -> FloatArray:
+        """Distance of the nodes (N,) in m from the tool's axis."""
+        return self.specimen_distance
 
     def profile(self, values: FloatArray, r: FloatArray) -> FloatArray:
         """Nodal values (N,) on each layer's top face at distances r (m,) from the tool's axis, (L, m)."""
@@ -97,3 +106,142 @@ def _row(r: FloatArray, row: IntArray) -> IntArray:
     places, first = np.unique(r[row], return_index=True)
     del places
     return row[first]
+
+
+def ring_areas(r: FloatArray) -> FloatArray:
+    """Area (m,) in m2 of each node of a row at radii r (m,) in m, corners and mid-sides in turn, by Simpson's rule."""
+    width = (r[2::2] - r[:-2:2]) / 6.0
+    area = np.zeros(len(r))
+    area[:-2:2] += width * r[:-2:2]
+    area[1:-1:2] = 4.0 * width * r[1:-1:2]
+    area[2::2] += width * r[2::2]
+    return 2.0 * np.pi * area
+
+
+def along_row(place: FloatArray, values: FloatArray, r: FloatArray) -> FloatArray:
+    """Quadratic interpolation over a row of nodes.
+
+    Parameters
+    ----------
+    place
+        Distances (2 n + 1,) in m of the nodes from the row's start, increasing.
+    values
+        Values (2 n + 1,) at the nodes.
+    r
+        Where to interpolate, (m,) in m.
+
+    Returns
+    -------
+    ndarray
+        Values (m,); NaN beyond the end of the row.
+    """
+    lines = place[::2]
+    column = np.clip(np.searchsorted(lines, r, side="right") - 1, 0, len(lines) - 2)
+    s = (r - lines[column]) / (lines[column + 1] - lines[column])
+    first, middle, last = values[2 * column], values[2 * column + 1], values[2 * column + 2]
+    inside = first * (1 - s) * (1 - 2 * s) + middle * 4 * s * (1 - s) + last * s * (2 * s - 1)
+    return np.where(r <= lines[-1] * (1 + 1e-12), inside, np.nan)
+
+
+def split_interfaces(mesh: Mesh, above: Collection[int]) -> Mesh:
+    """The mesh with the lower faces of some layers parted from what is below them.
+
+    The nodes on the axis and on the outer border, which cannot slide, stay those of both sides.
+
+    Parameters
+    ----------
+    mesh
+        A mesh whose layers are joined.
+    above
+        Numbers of the layers, 0 on top, whose lower faces get nodes of their own.
+    """
+    for layer in above:
+        mesh = _split_below(mesh, layer)
+    return mesh
+
+
+def _split_below(mesh: Mesh, layer: int) -> Mesh:
+    row, count = mesh.interfaces[layer + 1], len(mesh.nodes)
+    parted = row[~(mesh.axis | mesh.border)[row]]
+    twin = np.arange(count)
+    twin[parted] = count + np.arange(len(parted))
+    upper = mesh.layer == layer
+    elements = mesh.elements.copy()
+    elements[:, upper] = twin[elements[:, upper]]
+    undersides = list(mesh.undersides)
+    undersides[layer] = twin[row]
+    origin = np.concatenate((np.arange(count), parted))
+    return replace(
+        mesh,
+        nodes=mesh.nodes[origin],
+        elements=elements,
+        axis=mesh.axis[origin],
+        top=mesh.top[origin],
+        base=mesh.base[origin],
+        border=mesh.border[origin],
+        undersides=tuple(undersides),
+    )
+
+
+@dataclass(frozen=True)
+class Fan:
+    """A box round the tool's edge meshed by rays from the edge, collapsed quadrilaterals in its middle.
+
+    Under a stuck tool the material turns round the sharp edge. One element spanning the right angle under the
+    edge cannot follow and folds; rays share the turn among several elements.
+
+    Attributes
+    ----------
+    radius
+        Radius of the edge in m.
+    half_width
+        Half width and depth of the box in m; its sides must be grid lines.
+    rings
+        Sizes of the rings relative to the box, decreasing from 1.
+    """
+
+    radius: float
+    half_width: float
+    rings: tuple[float, ...]
+
+
+def build_mesh(r_lines: FloatArray, depth_lines: FloatArray, layer_tops: FloatArray, fan: Fan | None = None) -> Mesh:
+    """Mesh of the rectangles between grid lines.
+
+    Parameters
+    ----------
+    r_lines
+        Radii (n,) in m, increasing from 0.
+    depth_lines
+        Depths (m,) in m, increasing from 0.
+    layer_tops
+        Depths (L,) of the layers' top faces in m, each one of `depth_lines`.
+    fan
+        Replaces the rectangles in its box.
+    """
+    rows = len(depth_lines)
+    r, depth = (grid.ravel() for grid in np.meshgrid(r_lines, depth_lines, indexing="ij"))
+    points = np.stack((r, -depth), axis=1)
+    corner = np.arange(len(r)).reshape(-1, rows)[:-1, 1:].ravel()
+    quads = np.stack((corner, corner + rows, corner + rows - 1, corner - 1))
+    if fan is not None:
+        points, quads = _with_fan(points, quads, fan)
+    return mesh_of_quads(points, quads, layer_tops)
+
+
+def _with_fan(points: FloatArray, quads: IntArray, fan: Fan) -> tuple[FloatArray, IntArray]:
+    edge = np.array([fan.radius, 0.0])
+    offset = np.abs(points - edge).max(axis=1)
+    limit = fan.half_width * (1.0 + 1e-9)
+    kept = quads[:, ~(offset[quads] <= limit).all(axis=0)]
+    side = np.flatnonzero((offset <= limit) & (offset >= fan.half_width * (1.0 - 1e-9)))
+    angle = np.arctan2(-points[side, 1], points[side, 0] - fan.radius)
+    outer = side[np.argsort(-angle)]
+    rays, pieces, fans = points[outer] - edge, [points], [kept]
+    for ring in (*fan.rings[1:], 0.0):
+        inner = sum(len(piece) for piece in pieces) + np.arange(len(outer))
+        pieces.append(edge + ring * rays)
+        fans.append(np.stack((outer[:-1], outer[1:], inner[1:], inner[:-1])))
+        outer = inner
+    used, renumbered = np.unique(np.concatenate(fans, axis=1), return_inverse=True)
+    return np.concatenate(pieces)[used], renumbered.reshape(4, -1)

@@ -7,15 +7,15 @@ from typing import Literal
 
 import numpy as np
 
+from fem.analysis.prepared import Model
 from fem.load import Load
 from fem.materials import LinearElastic, NeoHookean
-from fem.model import Model
-from fem.parts import TOUCHING, Discretisation, Layer, Support, Tool
-from fem.prepare import prepare
-from fem.problem import Problem
-from fem.verification import half_space, hertz
+from fem.problem.parts import TOUCHING, Discretisation, Layer, Support, Tool
+from fem.problem.problem import Problem
+from fem.setup.prepare import prepare
+from fem.verification import indentation
 from fem.verification.case import Case, Quantity
-from fem.verification.half_space import Geometry
+from fem.verification.indentation import Geometry
 from fem.verification.press import CONTACTS, LAYERS, POISSON_RATIO, RADIUS
 
 ALLOWED_PERCENT = 0.5
@@ -27,21 +27,23 @@ FINE_SOURCE = "own axisymmetric solver, fine mesh (0.5 N, large strain, real con
 
 def cases() -> tuple[Case, ...]:
     """Half-space under a disc and under a punch; skin under each contact."""
-    discs = [_half_space("disc", half_space.disc, nu) for nu in (0.35, 0.499)]
+    discs = [_half_space("disc", indentation.disc, nu) for nu in (0.35, 0.499)]
     skins = [Case(f"block_axisymmetric/{contact}", AXISYMMETRIC, partial(skin, contact)) for contact in CONTACTS]
     punches = [Case(f"block_punch/{contact}", FINE_SOURCE, partial(punch, contact)) for contact in TOUCHING]
-    return (*discs, _half_space("punch", half_space.punch, 0.499), *skins, *punches, _sphere(0.499))
+    return (*discs, _half_space("punch", indentation.punch, 0.499), *skins, *punches, _sphere(0.499))
 
 
 def _sphere(nu: float) -> Case:
     return Case(
-        f"block_hertz/nu_{nu:g}", hertz.SOURCE, partial(hertz.sphere, nu, (SPHERE_INDENTATION,), "block", "coarse")
+        f"block_hertz/nu_{nu:g}",
+        indentation.HERTZ_SOURCE,
+        partial(indentation.sphere, nu, (SPHERE_INDENTATION,), "block", "coarse"),
     )
 
 
-def _half_space(name: str, compute: half_space.Compute, nu: float) -> Case:
+def _half_space(name: str, compute: indentation.Compute, nu: float) -> Case:
     name = f"block_half_space_{name}/nu_{nu:g}"
-    return Case(name, half_space.SOURCE, partial(compute, nu, "block", ALLOWED_PERCENT))
+    return Case(name, indentation.SOURCE, partial(compute, nu, "block", ALLOWED_PERCENT))
 
 
 def skin(contact: str) -> tuple[Quantity, ...]:

@@ -1,6 +1,8 @@
-"""A body of one material with loads of its own, for cases that are no press of a tool.
+"""A body of one material with loads of its own, for cases that are no press of a tool, and meshes of its section.
 
-It uses the solver's element, assembly, Newton and linear solver on any mesh of quadrilaterals in (r, z).
+It uses the solver's element, assembly, Newton and linear solver on any mesh of quadrilaterals in (r, z). Plane strain
+is axial symmetry far from the axis: a ring of radius `RING` (in widths of its section), whose curvature costs about
+1/RING. Plane stress at small strain is plane strain of another material.
 """
 
 from __future__ import annotations
@@ -11,32 +13,62 @@ from functools import cached_property
 
 import numpy as np
 
+from fem.analysis.equilibrium import Equilibrium, State
+from fem.analysis.newton import NewtonSettings, solve_newton
+from fem.analysis.stepping import Stepper
 from fem.arrays import BoolArray, FloatArray
-from fem.assembly import (
-    Evaluation,
-    Geometry,
-    Numbering,
-    Scatter,
-    System,
-    build_scatter,
-    element_laws,
-    gauss_geometry,
-    number_unknowns,
-    point_geometry,
-)
-from fem.components import AXISYMMETRIC
-from fem.deformation import Deformation
+from fem.assembly.axisymmetric import Geometry, gauss_geometry, point_geometry
+from fem.assembly.elements import make_elements
+from fem.assembly.scatter import Numbering, Scatter, build_scatter, number_unknowns
+from fem.assembly.system import Evaluation, System, make_system
 from fem.linear_solver import make_solver
-from fem.materials import Material
-from fem.mesh import Mesh
-from fem.relaxation import PronyTerm
-from fem.solving import Equilibrium, NewtonSettings, State, Stepper
-from fem.solving.newton import solve_newton
+from fem.materials import LinearElastic, Material
+from fem.materials.components import AXISYMMETRIC
+from fem.materials.deformation import Deformation
+from fem.materials.element_laws import element_laws
+from fem.materials.prony import PronyTerm
+from fem.mesh.quads import Mesh, mesh_of_quads
 
+RING = 1e6
+PLANE_PERCENT = 2e-3  # what curvature and the round-off of the radius cost a ring, nearly incompressible too
 SIDES = ((0, 4, 1), (1, 5, 2), (2, 6, 3), (3, 7, 0))
 CORNERS = np.array([[0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]])
 NEAR = 1e-6  # of the section's height: corners this near each other are one
 SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
+
+
+def mapped_mesh(
+    s: FloatArray, t: FloatArray, place: Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
+) -> Mesh:
+    """Mesh of the grid lines s (n,) by t (m,), moved to (r, z) by `place`, which keeps the orientation."""
+    rows = len(t)
+    r, z = place(*(grid.ravel() for grid in np.meshgrid(s, t, indexing="ij")))
+    corner = np.arange(rows * len(s)).reshape(-1, rows)[:-1, :-1].ravel()
+    quads = np.stack((corner, corner + rows, corner + rows + 1, corner + 1))
+    return mesh_of_quads(np.stack((r, z - z.max()), axis=1), quads, np.zeros(1))
+
+
+def distorted_square(count: int, seed: int, start: float = 0.0) -> Mesh:
+    """Unit square start <= r <= start + 1 of count x count quadrilaterals whose inner corners are off the grid."""
+    line = np.linspace(0.0, 1.0, count + 1)
+    generator = np.random.default_rng(seed)
+
+    def place(s: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+        inner = (s > 0.0) & (s < 1.0) & (t > 0.0) & (t < 1.0)
+        shift = np.where(inner, generator.uniform(-0.25, 0.25, (2, len(s))) / count, 0.0)
+        return start + s + shift[0], t + shift[1]
+
+    return mapped_mesh(line, line, place)
+
+
+def plane_stress_material(youngs_modulus: float, poisson_ratio: float) -> LinearElastic:
+    """Material whose plane strain is the plane stress of the constants given.
+
+    E (1 + 2 nu) / (1 + nu)^2 and nu / (1 + nu): stresses and displacements in the plane are the same (Timoshenko and
+    Goodier, Theory of Elasticity, chapter 2).
+    """
+    whole = 1.0 + poisson_ratio
+    return LinearElastic(youngs_modulus * (1.0 + 2.0 * poisson_ratio) / whole**2, poisson_ratio / whole)
 
 
 @dataclass(frozen=True)
@@ -54,7 +86,7 @@ class Body:
     tied
         Nodes (N,) that share one vertical displacement.
     stabilisation
-        See :class:`fem.assembly.System`.
+        See :func:`fem.assembly.elements.make_elements`.
     relaxation
         Prony terms of the material.
     """
@@ -85,7 +117,7 @@ class Body:
     def system(self) -> System:
         """Residual and tangent."""
         laws = element_laws((self.material,), self.mesh.layer, (self.relaxation,))
-        return System(self.geometry, laws, self.numbering, self.scatter, self.stabilisation)
+        return make_system(make_elements(self.geometry, laws, self.stabilisation), self.numbering, self.scatter)
 
     @property
     def points(self) -> FloatArray:

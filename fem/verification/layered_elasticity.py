@@ -77,7 +77,7 @@ def axis_deflection(stack: ElasticStack, radius: float, pressure: float) -> Floa
 
 
 def surface_response(stack: ElasticStack, k: FloatArray) -> FloatArray:
-    """Response k W of each layer's top face (n, L) in 1/Pa under unit pressure, wavenumbers k (n,) in rad/m."""
+    """ItemForces k W of each layer's top face (n, L) in 1/Pa under unit pressure, wavenumbers k (n,) in rad/m."""
     count, shear = len(stack.thickness), stack.shear_modulus
     endless = bool(np.isinf(stack.thickness[-1]))
     tops = [_states(stack, n, k, 0.0) for n in range(count)]

@@ -16,10 +16,10 @@ from typing import TypeAlias
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.components import AXISYMMETRIC
-from fem.deformation import Deformation
 from fem.materials import NeoHookean
-from fem.mesh import build_mesh
+from fem.materials.components import AXISYMMETRIC
+from fem.materials.deformation import Deformation
+from fem.mesh.quads import build_mesh
 from fem.verification.body import Body, free_of_ties
 from fem.verification.case import Case, Quantity
 

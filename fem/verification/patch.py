@@ -12,9 +12,8 @@ import numpy as np
 
 from fem.arrays import FloatArray
 from fem.materials import LinearElastic
-from fem.verification.body import Body, free_of_ties, worst
+from fem.verification.body import PLANE_PERCENT, RING, Body, distorted_square, free_of_ties, worst
 from fem.verification.case import Case, Quantity
-from fem.verification.section import PLANE_PERCENT, RING, distorted_square
 
 YOUNGS_MODULUS = 1e5
 POISSON_RATIOS = (0.3, 0.4999)

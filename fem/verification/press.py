@@ -10,13 +10,13 @@ from functools import partial
 
 import numpy as np
 
+from fem.analysis.prepared import Model
 from fem.arrays import FloatArray
 from fem.load import Load
 from fem.materials import NeoHookean
-from fem.model import Model
-from fem.parts import Discretisation, Layer, Support, Tool
-from fem.prepare import prepare
-from fem.problem import Problem
+from fem.problem.parts import Discretisation, Layer, Support, Tool
+from fem.problem.problem import Problem
+from fem.setup.prepare import prepare
 from fem.verification.body import worst
 from fem.verification.case import Case, Quantity
 

@@ -6,7 +6,7 @@ With M(t) = K + 4/3 G0 (1 - sum g (1 - exp(-t / tau))) the axial stress of a ram
 
 and a sudden stress s creeps, with one term, to e(t) = s / M(0) (1 + m / (1 - m) (1 - exp(-(1 - m) t / tau))),
 m = 4/3 G0 g / M(0) (R. M. Christensen, Theory of Viscoelasticity, 2nd ed., 1982, chapter 1). After a sudden finite
-stretch the isochoric stress fades with the series. Relaxation is exact in any steps; creep follows no straight lines,
+stretch the isochoric stress relaxes with the series. Relaxation is exact in any steps; creep follows no straight lines,
 so it is extrapolated from three step sizes (the error is of second order in the step).
 """
 
@@ -16,13 +16,14 @@ from functools import partial
 
 import numpy as np
 
-from fem.fading_run import FadingBody
+from fem.analysis.equilibrium import Equilibrium
+from fem.analysis.linear import RelaxingBody
+from fem.analysis.newton import NewtonSettings
+from fem.analysis.stepping import Stepper
 from fem.materials import LinearElastic, Material, NeoHookean
-from fem.relaxation import PronyTerm
-from fem.solving import Equilibrium, NewtonSettings, Stepper
-from fem.verification.body import Body
+from fem.materials.prony import PronyTerm
+from fem.verification.body import Body, distorted_square
 from fem.verification.case import Case, Quantity
-from fem.verification.section import distorted_square
 
 YOUNGS_MODULUS, POISSON_RATIO = 2e4, 0.45
 TERMS, ONE_TERM = (PronyTerm(0.3, 0.5), PronyTerm(0.25, 7.0)), (PronyTerm(0.6, 2.0),)
@@ -44,7 +45,7 @@ def ramp_hold() -> tuple[Quantity, ...]:
     """Axial stress of a strain that is brought up and held, in steps of many lengths."""
     material = LinearElastic(YOUNGS_MODULUS, POISSON_RATIO)
     problem = _confined(material, TERMS)
-    body, before, found = FadingBody(problem), 0.0, []
+    body, before, found = RelaxingBody(problem), 0.0, []
     for time in (0.3, 1.1, *HOLDS):
         state, _ = body.step(time - before, "depth", STRAIN * min(time, RAMP) / RAMP)
         before = time
@@ -77,7 +78,7 @@ def creep() -> tuple[Quantity, ...]:
 
 
 def _crept(problem: Equilibrium, steps: int) -> float:
-    body = FadingBody(problem)
+    body = RelaxingBody(problem)
     state, _ = body.step(0.0, "force", STRESS * np.pi)
     for _ in range(steps):
         state, _ = body.step(CREEP_TIME / steps, "force", STRESS * np.pi)

@@ -8,7 +8,7 @@ import pytest
 
 from benchmark.models import UncoveredError, read_user_file
 from benchmark.models.user_file import UserCode
-from benchmark.models.user_specimen import UserLayer, UserSupport, UserTool
+from benchmark.models.user_model import UserLayer, UserSupport, UserTool
 
 FILE = read_user_file(Path(__file__).parents[2] / "examples" / "own_model.py")
 TOOL, BONDED = UserTool(5e-3, "uniform_pressure", None), UserSupport("bonded", None)

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import fem
-from fem.assembly import System
-from fem.deformation import Deformation
+from fem.assembly.system import System
 
 SKIN = ((1e-4, 1e6), (1.5e-3, 1e5), (1e-2, 2e4))
 
@@ -81,11 +80,11 @@ def elastic_energy() -> Callable[[System, np.ndarray], float]:
     """Return the function that gives the elastic energy in J of a body of one law at unknowns y (n,)."""
 
     def energy(system: System, y: np.ndarray) -> float:
-        deformation = Deformation(system.geometry.components, system.geometry.gradient(system.element_displacement(y)))
-        (group,), weight, change = system.laws.groups, system.geometry.weight, deformation.volume_change
-        mean = np.einsum("iqe,qe->ie", system.geometry.pressure, weight * change)
-        field = system.laws.bulk_modulus - system.point_modulus
-        at_points = group.law.energy(deformation, group.parameters) + 0.5 * system.point_modulus * change**2
-        return float((weight * at_points).sum() + 0.5 * (field * mean**2).sum())
+        elements = system.elements
+        deformation = elements.deformation(system.element_displacement(y))
+        (group,), weight, change = elements.laws.groups, elements.geometry.weight, deformation.volume_change
+        mean = np.einsum("iqe,qe->ie", elements.geometry.pressure, weight * change)
+        at_points = group.law.energy(deformation, group.parameters) + 0.5 * elements.point_modulus * change**2
+        return float((weight * at_points).sum() + 0.5 * (elements.field_modulus * mean**2).sum())
 
     return energy

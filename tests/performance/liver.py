@@ -14,7 +14,7 @@ import numpy as np
 import pyvista
 
 import fem
-from fem.model import Model
+from fem.analysis.prepared import Model
 
 LAYERS = (("capsule", 2.5e-3, 20e3), ("outer", 10e-3, 6e3), ("inner", 50e-3, 4e3))
 TOOL = fem.Tool(10e-3, "uniform_pressure", position=(-0.03, 0.0))

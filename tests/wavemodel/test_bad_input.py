@@ -3,7 +3,17 @@
 import numpy as np
 import pytest
 
-from wavemodel import Damping, DiscTool, InPlaneStress, LayeredWave, PlateWave, Prony, WaveError, WaveLayer
+from wavemodel import (
+    Damping,
+    DiscTool,
+    InPlaneStress,
+    LayeredWave,
+    PlateWave,
+    Prony,
+    WaveDiscretisation,
+    WaveError,
+    WaveLayer,
+)
 
 TOOL = DiscTool(5e-3)
 SKIN = [WaveLayer("dermis", 1.5e-3, 1116.0, 1e5, 0.48), WaveLayer("fat", 10e-3, 971.0, 2e4, 0.48)]
@@ -14,8 +24,16 @@ SKIN = [WaveLayer("dermis", 1.5e-3, 1116.0, 1e5, 0.48), WaveLayer("fat", 10e-3, 
     [
         (lambda: WaveLayer("fat", 0.0, 971.0, 2e4, 0.48), ("'fat'", "thickness = 0 m", "above zero")),
         (lambda: WaveLayer("fat", 1e-2, 971.0, 2e4, 0.5), ("poisson_ratio = 0.5", "below 0.5")),
-        (lambda: LayeredWave(SKIN, TOOL, window=9e-3), ("window = 9 mm", "wider than the tool")),
-        (lambda: LayeredWave(SKIN, TOOL, window=30e-3, modes=16, place=(11e-3, 0.0)), ("place = 11 mm", "inside")),
+        (
+            lambda: LayeredWave(SKIN, TOOL, discretisation=WaveDiscretisation(window=9e-3)),
+            ("window = 9 mm", "wider than the tool"),
+        ),
+        (
+            lambda: LayeredWave(
+                SKIN, TOOL, discretisation=WaveDiscretisation(window=30e-3, modes=16, place=(11e-3, 0.0))
+            ),
+            ("place = 11 mm", "inside"),
+        ),
         (lambda: PlateWave(SKIN, TOOL, hole_radius=4e-3), ("hole_radius = 4 mm", "wider than the tool")),
         (lambda: Prony((0.6, 0.4), (1.0, 2.0)), ("strength", "below 1")),
         (lambda: Damping(-1.0), ("-1", "negative")),
@@ -44,7 +62,7 @@ def test_a_model_that_cannot_be_is_not_made(make, named):
     ],
 )
 def test_a_history_that_cannot_be_followed_leaves_the_model_as_it_was(control, time, value, word):
-    wave = LayeredWave(SKIN, TOOL, window=60e-3, modes=24, large_press="corrected")
+    wave = LayeredWave(SKIN, TOOL, discretisation=WaveDiscretisation(window=60e-3, modes=24), large_press="corrected")
     before = wave.run("force", np.ones(1), np.array([0.3]))
     with pytest.raises(WaveError, match=word):
         wave.run(control, np.array(time), np.array(value))

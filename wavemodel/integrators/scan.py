@@ -6,13 +6,13 @@ import numpy as np
 
 from wavemodel.arrays import FloatArray, NumberArray
 
-FADED = 45.0
+DECAYED = 45.0
 """Beyond this exponent what was there before is gone (e^-45 is 3e-20)."""
 LARGEST = 600.0
 """Exponents that a block may sum up to without overflow."""
 
 
-def fading_sum(exponent: NumberArray, gain: NumberArray, start: complex = 0.0) -> NumberArray:
+def decaying_sum(exponent: NumberArray, gain: NumberArray, start: complex = 0.0) -> NumberArray:
     """y_n = e^(-exponent_n) y_(n-1) + gain_n, from y = `start` before the first.
 
     The sum of e^(c_k) gain_k with the running sum c of the exponents, in blocks that cannot overflow; every term is
@@ -28,7 +28,7 @@ def fading_sum(exponent: NumberArray, gain: NumberArray, start: complex = 0.0) -
         y before the first step.
     """
     out = np.empty_like(gain)
-    exponent = np.where(exponent.real > FADED, FADED, exponent)
+    exponent = np.where(exponent.real > DECAYED, DECAYED, exponent)
     block = np.floor(np.cumsum(exponent.real) / LARGEST)
     edges = [0, *(np.flatnonzero(np.diff(block)) + 1), gain.size]
     for first, last in pairwise(edges):

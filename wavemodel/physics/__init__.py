@@ -1,26 +1,18 @@
-"""What a real body does beyond elasticity, an option a file: each off by default, all composable, SI units.
+"""What a real body does beyond elasticity: options, each off by default, all composable, SI units.
 
-Names are loaded when first used.
+The elastic law of a specimen is handed in as a function; nothing here knows a wave model.
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING
 
+from wavemodel.lazy import loader
+
 if TYPE_CHECKING:
-    from wavemodel.physics.adhesion import Adhesion
-    from wavemodel.physics.anisotropy import AnisotropicTension
-    from wavemodel.physics.body import Physics
-    from wavemodel.physics.damping import ViscousDamping
-    from wavemodel.physics.drainage import PoroelasticDrainage
-    from wavemodel.physics.floor import Floor
-    from wavemodel.physics.friction import DryFriction
-    from wavemodel.physics.in_plane_stress import InPlaneStress
-    from wavemodel.physics.permanent_set import PermanentSet
-    from wavemodel.physics.pretension import Pretension
-    from wavemodel.physics.quasi_static_press import QuasiStaticPress
-    from wavemodel.physics.slip import InterfaceSlip
-    from wavemodel.physics.softening import StressSoftening
-    from wavemodel.physics.stiffening import StrainStiffening
+    from wavemodel.physics.contact import Adhesion, DryFriction, PermanentSet
+    from wavemodel.physics.elastic import Floor, InterfaceSlip, Pretension, StrainStiffening, StressSoftening
+    from wavemodel.physics.in_plane_stress import AnisotropicTension, InPlaneStress
+    from wavemodel.physics.quasi_static_press import Physics, QuasiStaticPress, drive_by_force
+    from wavemodel.physics.time_dependent import PoroelasticDrainage, ViscousDamping
 
 __all__ = [
     "Adhesion",
@@ -37,27 +29,16 @@ __all__ = [
     "StrainStiffening",
     "StressSoftening",
     "ViscousDamping",
+    "drive_by_force",
 ]
 
-_HOMES = {
-    "Adhesion": "adhesion",
-    "AnisotropicTension": "anisotropy",
-    "DryFriction": "friction",
-    "Floor": "floor",
-    "InPlaneStress": "in_plane_stress",
-    "InterfaceSlip": "slip",
-    "PermanentSet": "permanent_set",
-    "Physics": "body",
-    "PoroelasticDrainage": "drainage",
-    "Pretension": "pretension",
-    "QuasiStaticPress": "quasi_static_press",
-    "StrainStiffening": "stiffening",
-    "StressSoftening": "softening",
-    "ViscousDamping": "damping",
-}
-
-
-def __getattr__(name: str) -> object:
-    if name not in _HOMES:
-        raise AttributeError(f"module 'wavemodel.physics' has no attribute {name!r}")
-    return getattr(import_module(f"wavemodel.physics.{_HOMES[name]}"), name)
+__getattr__ = loader(
+    __name__,
+    {
+        "contact": "Adhesion DryFriction PermanentSet",
+        "elastic": "Floor InterfaceSlip Pretension StrainStiffening StressSoftening",
+        "in_plane_stress": "AnisotropicTension InPlaneStress",
+        "quasi_static_press": "Physics QuasiStaticPress drive_by_force",
+        "time_dependent": "PoroelasticDrainage ViscousDamping",
+    },
+)

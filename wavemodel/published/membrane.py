@@ -163,3 +163,56 @@ def _quadrature(modes: int) -> tuple[FloatArray, FloatArray]:
     """Gauss points (mm) and weights on the side, exact to rounding for the sines of so many modes."""
     point, weight = np.polynomial.legendre.leggauss(32 + 4 * modes)
     return 0.5 * printed.SIDE * (point + 1.0), 0.5 * printed.SIDE * weight
+
+
+@dataclass(frozen=True)
+class Recomputed:
+    """One printed number beside what its equation gives.
+
+    Attributes
+    ----------
+    item
+        What it is, with its equation.
+    printed, value
+        As printed, and recomputed from the other printed numbers (in the paper's units).
+    agrees
+        Whether the value rounds to the printed one.
+    reason
+        Why not, or how.
+    """
+
+    item: str
+    printed: float
+    value: float
+    agrees: bool
+    reason: str
+
+
+def table_one() -> tuple[Recomputed, ...]:
+    """Table 1 of the paper: c, lambda_11 and B_11."""
+    root = float(np.sqrt(printed.SPEED_SQUARED))
+    as_printed, corrected = PublishedWave("as_printed"), PublishedWave("corrected")
+    by_equation = float(corrected.coefficient[0, 0]) / MILLI
+    by_slip = float(as_printed.coefficient[0, 0]) / MILLI
+    rows = (
+        (
+            "c, root of c^2 (eq. 1)",
+            printed.SPEED,
+            root,
+            "the printed c is the root of a c^2 of 85.555 to 85.556, which rounds to 85.56",
+        ),
+        ("lambda_11 (eq. 3)", printed.FREQUENCY, float(as_printed.frequency[0, 0]), "c in m/s over a in mm: rad/ms"),
+        (
+            "B_11 (eq. 3 with eqs. 4 to 6)",
+            printed.COEFFICIENT,
+            by_equation,
+            "the equations as they stand; the printed number follows if sin(n pi y / b) is written as sin(pi x / a)",
+        ),
+        (
+            "B_11 with sin(n pi y / b) written as sin(pi x / a)",
+            printed.COEFFICIENT,
+            by_slip,
+            "4d/(ab) int int O(x) p(y) sin^2(pi x / a) dx dy gives the printed number",
+        ),
+    )
+    return tuple(Recomputed(item, old, new, abs(new - old) <= 0.5e-4, reason) for item, old, new, reason in rows)

@@ -11,7 +11,7 @@ import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.calibration import pure_errors
-from benchmark.discovery.base.effect_model import Fit, Model, White, fit, settled
+from benchmark.discovery.base.effect_model import EffectModel, Fit, White, fit, settled
 from benchmark.discovery.base.trials_problem import FOLLOWED, only
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.discovery_result import Array, ChannelGap, Trace
@@ -37,7 +37,7 @@ def unbent(chosen: Fit) -> Fit:
     """
     names = chosen.model.problem.shapes
     pinned = tuple((n, float(v)) for n, v in zip(names, chosen.vector, strict=False) if n not in FOLLOWED)
-    return fit(Model(chosen.model.problem, (), pinned), chosen.vector[: len(names)], chosen.nuisance, most=6)
+    return fit(EffectModel(chosen.model.problem, (), pinned), chosen.vector[: len(names)], chosen.nuisance, most=6)
 
 
 def held_out_residuals(base: Fit, chosen: Fit) -> HeldOut:
@@ -83,11 +83,12 @@ def gaps(base: Fit, held: HeldOut, settings: Settings) -> tuple[ChannelGap, ...]
     for channel in dict.fromkeys(channels):
         mine = [k for k, other in enumerate(channels) if other == channel]
         before, after, floor = (table[:, mine].mean(axis=1) for table in tables)
-        floor = np.where(np.isfinite(floor), floor, np.nanmedian(floor) if np.isfinite(floor).any() else 0.0)
+        told = np.isfinite(floor)
+        floor = np.where(told, floor, np.nanmedian(floor) if told.any() else 0.0)
         closed = share_closed(before.mean(), after.mean(), floor.mean())
         interval = None if closed is None else _interval((before, after, floor), draws)
         one, two, least = (float(np.sqrt(values.mean())) for values in (before, after, floor))
-        out.append(ChannelGap(channel, one, two, least, closed, interval, held.kind))
+        out.append(ChannelGap(channel, one, two, least if told.any() else None, closed, interval, held.kind))
     return tuple(out)
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from benchmark.discovery import criteria
-from benchmark.discovery.base.effect_model import Fit, Model, fit, nuisance_count
-from benchmark.discovery.base.trials_problem import OWN, NoiseModel, Problem, TrialPrior, TrialRef, trial_refs
+from benchmark.discovery.base.effect_model import EffectModel, Fit, fit, nuisance_count
+from benchmark.discovery.base.trials_problem import OWN, NoiseModel, TrialPrior, TrialRef, TrialsProblem, trial_refs
 from benchmark.discovery.trials.study import Study
 from benchmark.files import Session
 from benchmark.response.elastic_table import ElasticTable, TableOf
@@ -25,7 +25,7 @@ WIDE = TrialPrior(2.0, 10.0, 0.2, 1e-3, 1e-2)
 class Calibrated:
     """A problem with noise and priors, its base model fitted, and what was left out."""
 
-    problem: Problem
+    problem: TrialsProblem
     base: Fit
     warnings: tuple[str, ...]
 
@@ -33,14 +33,14 @@ class Calibrated:
 def calibrate(session: Session, study: Study, table_of: TableOf | None = None) -> Calibrated:
     """Fit the base and estimate noise and spreads, twice over."""
     tables = _tables(session, study, table_of or fem_or_wave_table(session))
-    problem = Problem(study, tables, _first_noise(study), _wide(study), trial_refs(study))
+    problem = TrialsProblem(study, tables, _first_noise(study), _wide(study), trial_refs(study))
     vector, state = _first_guess(problem)
-    model = Model(problem, ())
+    model = EffectModel(problem, ())
     start = fit(model, vector, state, most=6)
     problem, warnings = _estimated(start)
-    second = fit(Model(problem, ()), start.vector, _kept_state(start, problem), most=6)
+    second = fit(EffectModel(problem, ()), start.vector, _kept_state(start, problem), most=6)
     problem = _estimated(second)[0]
-    base = fit(Model(problem, ()), second.vector, _kept_state(second, problem), most=8)
+    base = fit(EffectModel(problem, ()), second.vector, _kept_state(second, problem), most=8)
     notes = [table.note for table in tables if table.note]
     return Calibrated(problem, base, tuple(dict.fromkeys([*notes, *warnings])))
 
@@ -55,7 +55,7 @@ def _tables(session: Session, study: Study, table_of: TableOf) -> tuple[ElasticT
     return tuple(made[setup] for setup in setups)
 
 
-def _kept_state(before: Fit, problem: Problem) -> Array:
+def _kept_state(before: Fit, problem: TrialsProblem) -> Array:
     names = [(t.condition, t.name) for t in before.model.problem.trials]
     return np.array([before.nuisance[names.index((t.condition, t.name))] for t in problem.trials])
 
@@ -80,9 +80,9 @@ def _wide(study: Study) -> TrialPrior:
     return replace(WIDE, zero=0.5 * peak, shift=max(0.02, 2.0 * interval), offset=WIDE.offset)
 
 
-def _first_guess(problem: Problem) -> tuple[Array, Array]:
+def _first_guess(problem: TrialsProblem) -> tuple[Array, Array]:
     """Modulus and gains by the ratio of peaks."""
-    model = Model(problem, ())
+    model = EffectModel(problem, ())
     vector = np.zeros(model.size)
     state = np.zeros((len(problem.trials), nuisance_count(problem)))
     signals = model.signals(vector, state)
@@ -131,7 +131,7 @@ def _less_nuisances(rows: Array, signals: Array) -> Array:
     return out
 
 
-def _estimated(fitted: Fit) -> tuple[Problem, list[str]]:
+def _estimated(fitted: Fit) -> tuple[TrialsProblem, list[str]]:
     """The problem with noise and spreads from a fit, and remarks on noisy trials, which count for less."""
     problem = fitted.model.problem
     errors = pure_errors(fitted)

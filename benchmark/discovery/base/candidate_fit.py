@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmark.discovery import criteria
-from benchmark.discovery.base.effect_model import Fit, Model, White, fit, nuisance_precision
-from benchmark.discovery.base.trials_problem import Problem
+from benchmark.discovery.base.effect_model import EffectModel, Fit, White, fit, nuisance_precision
+from benchmark.discovery.base.trials_problem import TrialsProblem
 from benchmark.physics import Effect
 from benchmark.physics.effect import Values
 from benchmark.response.force_curve import Array
@@ -24,13 +24,13 @@ def fit_candidate(base: Fit, effect: Effect, most: int = 10) -> Fit:
     Parameters
     ----------
     base
-        Model fitted without it.
+        EffectModel fitted without it.
     effect
         To add.
     most
         Steps of the refinement.
     """
-    model = Model(base.model.problem, (*base.model.effects, effect))
+    model = EffectModel(base.model.problem, (*base.model.effects, effect))
     fits = []
     for state in (base.nuisance, *_unshifted(base)):
         starts = screened(base, model, effect, state)
@@ -59,7 +59,7 @@ def _unshifted(base: Fit) -> tuple[Array, ...]:
 
 
 @dataclass(frozen=True, eq=False)
-class Start:
+class CandidateStart:
     """A start (p,) of the vector, what one step would gain from it, and the residual along it in each trial (R,)."""
 
     won: float
@@ -67,7 +67,7 @@ class Start:
     along: Array
 
 
-def screened(base: Fit, model: Model, effect: Effect, nuisance: Array | None = None) -> list[Start]:
+def screened(base: Fit, model: EffectModel, effect: Effect, nuisance: Array | None = None) -> list[CandidateStart]:
     """Starts with what one step would gain from them, best first, at the trials' nuisances or at others (R, q)."""
     state = base.nuisance if nuisance is None else nuisance
     problem = base.model.problem
@@ -76,7 +76,7 @@ def screened(base: Fit, model: Model, effect: Effect, nuisance: Array | None = N
     plain = base.model.signals(base.vector, state)
     residuals = white.residuals(plain)
     projections = _projections(base)
-    ranked: list[Start] = []
+    ranked: list[CandidateStart] = []
     for values in _starts(problem, effect):
         start = model.vector(base.vector[: base.model.shape_count], {**known, effect.slug: values})
         signals = model.signals(start, state)
@@ -88,17 +88,17 @@ def screened(base: Fit, model: Model, effect: Effect, nuisance: Array | None = N
         scale = float(np.clip(overlap / size, *SCALES))
         won = scale * overlap - 0.5 * scale**2 * size
         along = overlaps / np.sqrt(size / len(plain))
-        ranked.append(Start(won, _scaled(model, start, effect, values, scale, known), along))
+        ranked.append(CandidateStart(won, _scaled(model, start, effect, values, scale, known), along))
     ranked.sort(key=lambda each: -each.won)
     if not ranked:
         first = effect.first_values(problem.study.conditions[0].around)[0]
         start = model.vector(base.vector[: base.model.shape_count], {**known, effect.slug: first})
-        return [Start(0.0, start, np.zeros(len(plain)))]
+        return [CandidateStart(0.0, start, np.zeros(len(plain)))]
     return ranked
 
 
 def _scaled(
-    model: Model, start: Array, effect: Effect, values: Values, scale: float, known: Mapping[str, Values]
+    model: EffectModel, start: Array, effect: Effect, values: Values, scale: float, known: Mapping[str, Values]
 ) -> Array:
     changed = dict(values)
     for p in effect.description.parameters:
@@ -107,7 +107,7 @@ def _scaled(
     return model.vector(start[: model.shape_count], {**known, effect.slug: changed})
 
 
-def _starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
+def _starts(problem: TrialsProblem, effect: Effect) -> list[dict[str, float]]:
     """Starts for all conditions, and with the other sign where the amplitude may have it."""
     deepest = max((c.around for c in problem.study.conditions), key=lambda around: around.peak_depth)
     quickest = min((c.around for c in problem.study.conditions), key=lambda around: around.duration)

@@ -11,14 +11,15 @@ import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.base_shape import Shape, ShapedTable
-from benchmark.discovery.base.trials_problem import OFFSETS, OWN, Problem
+from benchmark.discovery.base.trials_problem import OFFSETS, OWN, TrialsProblem
 from benchmark.physics import Effect, EffectParameter, Readings, catalogue
 from benchmark.physics.effect import Values
 from benchmark.response.force_curve import Array
-from benchmark.response.least_squares import Columns, Evaluation, Search, TrialsFit, least_squares
+from benchmark.response.least_squares import Search, TrialsFit, least_squares
 from benchmark.response.least_squares import settled as settled_nuisances
 from benchmark.response.noise import Whitener
 from benchmark.response.pipeline import TrialPipeline
+from benchmark.response.trials_model import TrialColumns, TrialsEvaluation
 
 SHAPE_STEP = 1e-3
 """By which the base's nuisances are changed to differentiate."""
@@ -30,7 +31,7 @@ MOST = 12
 class White:
     """Residual vectors of a problem, whitened and flattened: one array a trial."""
 
-    problem: Problem
+    problem: TrialsProblem
 
     @cached_property
     def _whiteners(self) -> list[list[Whitener]]:
@@ -51,14 +52,14 @@ class White:
 
 
 @dataclass(frozen=True, eq=False)
-class Model:
-    """Base and effects for a problem; a `benchmark.response.least_squares.TrialsModel`.
+class EffectModel:
+    """Base and effects for a problem; a `benchmark.response.trials_model.TrialsModel`.
 
     The vector is the shape nuisances of the base, then each effect's parameters; logarithmic ones by their logarithm.
     `pinned` nuisances stay at their values.
     """
 
-    problem: Problem
+    problem: TrialsProblem
     effects: tuple[Effect, ...]
     pinned: tuple[tuple[str, float], ...] = ()
 
@@ -180,23 +181,25 @@ class Model:
     def trial_bounds(self) -> None:
         """Nuisances are held by their priors alone."""
 
-    def evaluated(self, vector: Array, nuisance: Array) -> Evaluation:
+    def evaluated(self, vector: Array, nuisance: Array) -> TrialsEvaluation:
         """Signals and white residuals of all trials."""
         signals = self.signals(vector, nuisance)
-        return Evaluation(vector, nuisance, signals, self.white.residuals(signals))
+        return TrialsEvaluation(vector, nuisance, signals, self.white.residuals(signals))
 
-    def columns(self, at: Evaluation, warm: Columns | None = None) -> Columns:
+    def columns(self, at: TrialsEvaluation, warm: TrialColumns | None = None) -> TrialColumns:
         """Derivatives by differences; `warm` lends those by the base's nuisances and the trials'."""
         first = 0 if warm is None else self.shape_count
         changes = [self._change(at, k) for k in range(first, self.size)]
         count = len(at.signals)
         own = [np.column_stack([c[i] for c in changes]) if changes else np.zeros((0, 0)) for i in range(count)]
         if warm is None:
-            return Columns(own, self.nuisance_columns(at))
+            return TrialColumns(own, self.nuisance_columns(at))
         shapes = [columns[:, : self.shape_count] for columns in warm.vector]
-        return Columns([np.hstack([s, o]) if o.size else s for s, o in zip(shapes, own, strict=True)], warm.nuisance)
+        return TrialColumns(
+            [np.hstack([s, o]) if o.size else s for s, o in zip(shapes, own, strict=True)], warm.nuisance
+        )
 
-    def _change(self, at: Evaluation, k: int) -> list[Array]:
+    def _change(self, at: TrialsEvaluation, k: int) -> list[Array]:
         """White derivative of each trial by one number of the vector."""
         step = self._step(at.vector, k)
         moved = at.vector.copy()
@@ -211,7 +214,7 @@ class Model:
         size = 0.02 if p.logarithmic else max(0.02 * abs(vector[k]), 1e-5 * (p.high - p.low))
         return size if vector[k] + size <= self.bounds[1][k] else -size
 
-    def nuisance_columns(self, at: Evaluation) -> list[Array]:
+    def nuisance_columns(self, at: TrialsEvaluation) -> list[Array]:
         """White derivatives (N, q) of each trial by its nuisances."""
         study = self.problem.study
         steps = self._nuisance_steps
@@ -240,12 +243,12 @@ class Model:
         return {0: 0.01, 2: max(0.2 * study.raw_interval, 1e-3), 3: 1e-3 * deepest}
 
 
-Fit: TypeAlias = TrialsFit[Model]
+Fit: TypeAlias = TrialsFit[EffectModel]
 """A model fitted to the trials of its problem."""
 
 
 def fit(
-    model: Model, start: Array, nuisance: Array | None = None, warm: Columns | None = None, most: int = MOST
+    model: EffectModel, start: Array, nuisance: Array | None = None, warm: TrialColumns | None = None, most: int = MOST
 ) -> Fit:
     """Fit a model from a start.
 
@@ -267,10 +270,10 @@ def fit(
     return least_squares(model, start, state, warm=warm, search=Search(most))
 
 
-def settled(model: Model, vector: Array, nuisance: Array) -> Array:
+def settled(model: EffectModel, vector: Array, nuisance: Array) -> Array:
     """(R, q) nuisances of the trials, all their rows counted, at a vector that stays."""
     if model.problem.mask is not None:
-        model = Model(replace(model.problem, mask=None), model.effects)
+        model = EffectModel(replace(model.problem, mask=None), model.effects)
     return settled_nuisances(model, vector, nuisance)
 
 
@@ -286,12 +289,12 @@ def _inner(parameter: EffectParameter, value: float) -> float:
     return float(np.log(max(value, parameter.low, 1e-300)))
 
 
-def nuisance_count(problem: Problem) -> int:
+def nuisance_count(problem: TrialsProblem) -> int:
     """Nuisances of a trial: gain, zero, shift, height, and the marker zeros."""
     return len(OWN) + (len(OFFSETS) if problem.study.layout is not None else 0)
 
 
-def nuisance_precision(problem: Problem) -> Array:
+def nuisance_precision(problem: TrialsProblem) -> Array:
     """(q,) prior precisions of a trial's nuisances."""
     prior = problem.prior
     sizes = [getattr(prior, name) for name in OWN] + [prior.offset] * (nuisance_count(problem) - len(OWN))

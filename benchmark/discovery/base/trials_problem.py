@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.discovery.base.base_shape import Shape
-from benchmark.discovery.trials.study import ConditionData, Study
+from benchmark.discovery.trials.study import Study
 from benchmark.physics import Motion
 from benchmark.response.elastic_table import ElasticTable
 from benchmark.response.force_curve import Array
@@ -68,7 +68,7 @@ class NoiseModel:
 
 
 @dataclass(frozen=True, eq=False)
-class Problem:
+class TrialsProblem:
     """What is fitted.
 
     Attributes
@@ -128,12 +128,7 @@ def _between(time: Array, frames: Array) -> tuple[NDArray[np.int64], Array]:
     return row, np.clip((frames - time[row]) / (time[row + 1] - time[row]), 0.0, 1.0)
 
 
-def only(problem: Problem, trials: Sequence[int]) -> Problem:
+def only(problem: TrialsProblem, trials: Sequence[int]) -> TrialsProblem:
     """The problem of some of its trials, whose nuisances are then in the same order."""
     noise = NoiseModel(problem.noise.memory, problem.noise.scale[list(trials)])
     return replace(problem, trials=tuple(problem.trials[i] for i in trials), noise=noise)
-
-
-def condition_of(problem: Problem, index: int) -> ConditionData:
-    """The condition of a trial."""
-    return problem.study.conditions[problem.trials[index].condition]

@@ -10,7 +10,7 @@ import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit, White, nuisance_precision
-from benchmark.discovery.base.trials_problem import Problem
+from benchmark.discovery.base.trials_problem import TrialsProblem
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.discovery_result import Array
 
@@ -58,7 +58,7 @@ class FlipTest:
     p_any: float
 
 
-def cells_of(problem: Problem) -> tuple[Cell, ...]:
+def cells_of(problem: TrialsProblem) -> tuple[Cell, ...]:
     """Cells of phase, cycle (third and later ones together), half and signal, over all conditions that have them."""
     found: dict[tuple[int, int, int, int], dict[int, np.ndarray]] = {}
     for number, condition in enumerate(problem.study.conditions):
@@ -115,7 +115,7 @@ def _tangents(fitted: Fit) -> list[Array]:
     return [np.stack(columns, axis=-1) for columns in out]
 
 
-def cell_means(problem: Problem, residuals: list[Array], cells: tuple[Cell, ...]) -> CellTable:
+def cell_means(problem: TrialsProblem, residuals: list[Array], cells: tuple[Cell, ...]) -> CellTable:
     """Means of residuals (n, C) over the rows of each cell."""
     means = np.full((len(cells), len(problem.trials)), np.nan)
     for k, cell in enumerate(cells):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.stats import norm
 
 from benchmark.discovery import criteria
-from benchmark.discovery.base.effect_model import Fit, Model, fit
+from benchmark.discovery.base.effect_model import EffectModel, Fit, fit
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.cells import (
     CellTable,
@@ -81,7 +81,7 @@ def _refitted(fitted: Fit, table: CellTable, flagged: NDArray[np.bool_]) -> Fit:
             for condition, rows in cell.rows.items():
                 masks[condition][rows, cell.signal] = False
     clean = replace(problem, mask=tuple(masks))
-    model = Model(clean, fitted.model.effects)
+    model = EffectModel(clean, fitted.model.effects)
     return fit(model, fitted.vector, fitted.nuisance, most=4)
 
 

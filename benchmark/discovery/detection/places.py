@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from benchmark.discovery import criteria
-from benchmark.discovery.base.effect_model import Fit, Model, White, nuisance_precision
+from benchmark.discovery.base.effect_model import EffectModel, Fit, White, nuisance_precision
 from benchmark.discovery.base.trials_problem import FOLLOWED
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.cells import Cell, one_sided
@@ -60,7 +60,7 @@ def effect_places(chosen: Fit, settings: Settings) -> tuple[Place, ...]:
     conditions; the residual without the effects must lie along it, trial by trial.
     """
     problem = chosen.model.problem
-    bare = Model(problem, ())
+    bare = EffectModel(problem, ())
     with_them = chosen.model.signals(chosen.vector, chosen.nuisance)
     without = bare.signals(chosen.vector[: bare.size], chosen.nuisance)
     changes = [more - less for more, less in zip(with_them, without, strict=True)]

@@ -23,9 +23,10 @@ import numpy as np
 
 from benchmark.child_processes import end_with_parent, single_threaded_children
 from benchmark.discovery.base.candidate_fit import fit_candidate
-from benchmark.discovery.base.effect_model import Fit, Model
+from benchmark.discovery.base.effect_model import EffectModel, Fit
 from benchmark.physics import Effect, load_effects
-from benchmark.response.least_squares import Blocks, Columns
+from benchmark.response.least_squares import Blocks
+from benchmark.response.trials_model import TrialColumns
 from reports import write_bytes
 from reports.manifest import remove_known
 
@@ -104,7 +105,7 @@ def stored(made: Fit) -> bytes:
     """All of a fit but its model, to the last bit."""
     arrays = {name: getattr(made, name) for name in ARRAYS}
     arrays |= {f"blocks_{each.name}": getattr(made.blocks, each.name) for each in fields(Blocks)}
-    for each in fields(Columns):
+    for each in fields(TrialColumns):
         arrays |= {f"{each.name}_{i:04d}": value for i, value in enumerate(getattr(made.columns, each.name))}
     stream = io.BytesIO()
     np.savez(stream, **arrays)  # its time stamps are constant: the same fit has the same bytes
@@ -118,10 +119,12 @@ def restored(content: bytes, base: Fit, effect: Effect) -> Fit:
     trials = range(len(base.model.problem.trials))
     plain = {name: arrays[name] for name in ARRAYS if name != "objective"}
     return Fit(
-        model=Model(base.model.problem, (*base.model.effects, effect)),
+        model=EffectModel(base.model.problem, (*base.model.effects, effect)),
         objective=float(arrays["objective"]),
         blocks=Blocks(**{each.name: arrays[f"blocks_{each.name}"] for each in fields(Blocks)}),
-        columns=Columns(**{each.name: [arrays[f"{each.name}_{i:04d}"] for i in trials] for each in fields(Columns)}),
+        columns=TrialColumns(
+            **{each.name: [arrays[f"{each.name}_{i:04d}"] for i in trials] for each in fields(TrialColumns)}
+        ),
         **plain,
     )
 

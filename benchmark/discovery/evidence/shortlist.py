@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.candidate_fit import screened
-from benchmark.discovery.base.effect_model import Fit, Model, fit, settled
+from benchmark.discovery.base.effect_model import EffectModel, Fit, fit, settled
 from benchmark.discovery.base.trials_problem import only
 from benchmark.discovery.discovery_result import Array
 from benchmark.physics import Effect
@@ -31,7 +31,7 @@ def screen(current: Fit, effects: Sequence[Effect]) -> tuple[Screened, ...]:
     """Effects by what one step gains, best first."""
     out = []
     for effect in effects:
-        model = Model(current.model.problem, (*current.model.effects, effect))
+        model = EffectModel(current.model.problem, (*current.model.effects, effect))
         ranked = screened(current, model, effect)
         out.append(Screened(effect, ranked[0].won, np.array([start.along for start in ranked])))
     return tuple(sorted(out, key=lambda each: -each.won))
@@ -56,7 +56,7 @@ def on_some(fitted: Fit, trials: list[int]) -> Fit:
     problem = fitted.model.problem
     if len(trials) == len(problem.trials):
         return fitted
-    return fit(Model(only(problem, trials), fitted.model.effects), fitted.vector, fitted.nuisance[trials], most=6)
+    return fit(EffectModel(only(problem, trials), fitted.model.effects), fitted.vector, fitted.nuisance[trials], most=6)
 
 
 def on_all(base: Fit, chosen: Fit) -> Fit:
@@ -66,7 +66,7 @@ def on_all(base: Fit, chosen: Fit) -> Fit:
         return chosen
     if not chosen.model.effects:
         return base
-    model = Model(problem, chosen.model.effects)
+    model = EffectModel(problem, chosen.model.effects)
     return fit(model, chosen.vector, settled(model, chosen.vector, base.nuisance), most=5)
 
 

@@ -9,10 +9,11 @@ import numpy as np
 from scipy.stats import t as student
 
 from benchmark.discovery.discovery_result import Array
-from benchmark.discovery.from_run.run_case import Case
+from benchmark.discovery.from_run.run_case import RunCase
 from benchmark.physics import Effect, EffectParameter
-from benchmark.response.least_squares import Record, Search, differences
+from benchmark.response.least_squares import Search, fit_record
 from benchmark.response.pipeline import physics_of
+from benchmark.response.trials_model import RecordModel, differences
 from wavemodel import WaveError
 
 SEARCH = Search(most=80, gain=0.0, share=1e-10, damping=1.0)
@@ -46,7 +47,7 @@ class BodyEffectFit:
     delta_bic: float
 
 
-def fit_body_effect(effect: Effect, case: Case) -> BodyEffectFit | None:
+def fit_body_effect(effect: Effect, case: RunCase) -> BodyEffectFit | None:
     """Fit an effect from each of its starts and keep the best; None where no start has an answer."""
     measured = case.run.force
     scale = _rms((case.force() - measured)[case.fitted])
@@ -61,8 +62,8 @@ def fit_body_effect(effect: Effect, case: Case) -> BodyEffectFit | None:
         return np.asarray((measured - force)[case.fitted] / scale)
 
     bounds = coordinates.bounds
-    record = Record(residual, lambda u: differences(residual, u, STEP, bounds), bounds)
-    found = [record.fit(coordinates.start(values), SEARCH) for values in starts]
+    record = RecordModel(residual, lambda u: differences(residual, u, STEP, bounds), bounds)
+    found = [fit_record(record, coordinates.start(values), SEARCH) for values in starts]
     best = min(found, key=lambda each: each.objective)
     left = residual(best.vector)
     if not np.abs(left).max() < FAILED:

@@ -17,8 +17,8 @@ from bench_hw.tables.columns import numbers_of, read_source, text_columns
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
 from benchmark.models import Drive, read_reference
-from benchmark.models.small_strain import in_small_strain, small_strain_deflection
-from benchmark.models.wave_layered import STRAINS
+from benchmark.models.model_result import STRAINS
+from benchmark.models.prepare import in_small_strain, small_strain_deflection
 
 Array = NDArray[np.float64]
 TABLE = Path("tables") / "max_deformation.csv"
@@ -105,12 +105,15 @@ def read_run(folder: Path) -> FinishedRun:
 
 
 def _large_press(scenario: Scenario, document: Mapping[str, Any]) -> str:
-    """What the wave model took; under "auto" its notes say it."""
+    """What the wave model took; under "auto" the run says it, older runs in their notes alone."""
     chosen = scenario.wave.large_press
     if chosen != "auto":
         return chosen
-    notes = document.get("models", {}).get("wave", {}).get("notes", {})
-    return "corrected" if STRAINS["corrected"] in str(notes.get("model", "")) else "linear"
+    wave = document.get("models", {}).get("wave", {})
+    choices = wave.get("choices")
+    if choices:
+        return "linear" if choices["strain"] == "linear" else "corrected"
+    return "corrected" if STRAINS["corrected"] in str(wave.get("notes", {})) else "linear"
 
 
 def _wave(path: Path, shape: tuple[int, ...]) -> Array:

@@ -24,7 +24,7 @@ from benchmark.discovery.discovery_result import (
 )
 from benchmark.discovery.from_run.body_effects import BodyEffectFit, fit_body_effect
 from benchmark.discovery.from_run.finished_run import FinishedRun
-from benchmark.discovery.from_run.run_case import Case, layer_gaps, split
+from benchmark.discovery.from_run.run_case import RunCase, layer_gaps, split
 from benchmark.discovery.from_run.run_places import contrasts, places
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, LayerGap
 from benchmark.physics import Effect
@@ -78,7 +78,7 @@ def repair_run(
     )
 
 
-def _fits(effects: Sequence[Effect], case: Case, listener: Listener) -> tuple[BodyEffectFit, ...]:
+def _fits(effects: Sequence[Effect], case: RunCase, listener: Listener) -> tuple[BodyEffectFit, ...]:
     """The candidates that have an answer."""
     fits: list[BodyEffectFit] = []
     with listener.progress(f"{case.run.name}: effects of the body against the finite elements") as advance:
@@ -98,7 +98,7 @@ def _gains(fit: BodyEffectFit) -> bool:
 class _Answer:
     """The pieces of the answer, each from the fits and the two cases."""
 
-    def __init__(self, fitted: Case, judged: Case, fits: Sequence[BodyEffectFit]):
+    def __init__(self, fitted: RunCase, judged: RunCase, fits: Sequence[BodyEffectFit]):
         self.fitted, self.judged = fitted, judged
         self.margin = fitted.run.scenario.comparison.equivalence_margin
         self.gaps = {fit.effect.slug: self._gap(fit) for fit in fits}
@@ -109,7 +109,7 @@ class _Answer:
         repaired = self.best if self.verdict == "conditional" else None
         self.layers = before if repaired is None else layer_gaps(judged, _physics(repaired, judged))
 
-    def force_after(self, case: Case) -> Array:
+    def force_after(self, case: RunCase) -> Array:
         """(n,) N with the best candidate at the reference's depths; the base's where there is none."""
         if self.best is None or self.verdict == "no_discrepancy":
             return case.force()
@@ -246,7 +246,7 @@ class _Answer:
         cases = [self.fitted] if self.fitted is self.judged else [self.fitted, self.judged]
         return tuple(self._trace(case) for case in cases)
 
-    def _trace(self, case: Case) -> Trace:
+    def _trace(self, case: RunCase) -> Trace:
         return Trace(
             trial=case.run.name,
             condition=case.run.name,
@@ -282,7 +282,7 @@ def _labels(answer: _Answer) -> dict[str, str]:
     }
 
 
-def _physics(fit: BodyEffectFit, case: Case) -> Physics:
+def _physics(fit: BodyEffectFit, case: RunCase) -> Physics:
     return physics_of([(fit.effect, fit.values)], case.context)
 
 

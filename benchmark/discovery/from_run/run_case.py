@@ -12,18 +12,17 @@ from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.from_run.finished_run import FinishedRun
 from benchmark.discovery.report.discovery_record import LayerGap
 from benchmark.errors import InputError
-from benchmark.models.scenario_effects import specimen_layers
+from benchmark.models.scenario_effects import open_radius, specimen_layers
 from benchmark.physics import TrialContext
 from benchmark.response import Ramp
-from wavemodel.physics import Physics, QuasiStaticPress
-from wavemodel.physics.force_driven import drive_by_force
+from wavemodel.physics import Physics, QuasiStaticPress, drive_by_force
 
 HALF = 0.5
 NOTHING = Physics()
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
+class RunCase:
     """A press of the reference beside the wave model.
 
     Attributes
@@ -59,7 +58,7 @@ class Case:
         return self.ramp.layers_at(np.maximum(trace.surface, 0.0))
 
 
-def split(run: FinishedRun, other: FinishedRun | None) -> tuple[Case, Case]:
+def split(run: FinishedRun, other: FinishedRun | None) -> tuple[RunCase, RunCase]:
     """The case that is fitted, and the case whose held-out rows count: the upper half of loads, or the other run.
 
     Raises
@@ -80,7 +79,7 @@ def split(run: FinishedRun, other: FinishedRun | None) -> tuple[Case, Case]:
     return first, _case(other, np.ones(other.force.size, dtype=bool), np.ones(other.force.size, dtype=bool))
 
 
-def _case(run: FinishedRun, fitted: NDArray[np.bool_], held: NDArray[np.bool_]) -> Case:
+def _case(run: FinishedRun, fitted: NDArray[np.bool_], held: NDArray[np.bool_]) -> RunCase:
     """The wave model's ramp is read off the rows while the load rises."""
     rising = run.force > np.concatenate(([0.0], np.maximum.accumulate(run.force)[:-1]))
     layers = np.vstack([np.zeros((1, run.wave.shape[1])), run.wave[rising]])
@@ -91,19 +90,20 @@ def _case(run: FinishedRun, fitted: NDArray[np.bool_], held: NDArray[np.bool_]) 
         peak_depth=float(run.reference[:, 0].max()),
         peak_force=float(run.force.max()),
         duration=float(run.time[-1]),
+        hole_radius=open_radius(run.scenario.support),
         layers=specimen_layers(run.scenario.tissue.layers),
         contact=run.scenario.tool.contact,
     )
-    return Case(run, Ramp(layers[:, 0], np.append(0.0, run.force[rising]), layers), context, fitted, held)
+    return RunCase(run, Ramp(layers[:, 0], np.append(0.0, run.force[rising]), layers), context, fitted, held)
 
 
-def layer_gaps(case: Case, physics: Physics = NOTHING) -> tuple[LayerGap, ...]:
+def layer_gaps(case: RunCase, physics: Physics = NOTHING) -> tuple[LayerGap, ...]:
     """The gap of each layer under the run's force, before and with `physics`."""
     after = case.deflections(physics)
     return tuple(_layer_gap(name, case, column, after[:, column]) for column, name in enumerate(case.run.layers))
 
 
-def _layer_gap(name: str, case: Case, column: int, after: Array) -> LayerGap:
+def _layer_gap(name: str, case: RunCase, column: int, after: Array) -> LayerGap:
     run = case.run
     reference, before = run.reference[:, column], run.wave[:, column]
     peak = int(np.abs(run.force).argmax())

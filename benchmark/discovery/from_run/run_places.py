@@ -7,12 +7,12 @@ import math
 import numpy as np
 
 from benchmark.discovery.discovery_result import Contrast, Place
-from benchmark.discovery.from_run.run_case import Case
+from benchmark.discovery.from_run.run_case import RunCase
 
 CLASSES = 3
 
 
-def places(case: Case, smallest: float) -> tuple[Place, ...]:
+def places(case: RunCase, smallest: float) -> tuple[Place, ...]:
     """Cells whose mean residual is beyond `smallest` (N), largest first; without p, for nothing here is random."""
     residual = case.run.force - case.force()
     depth, peak = case.depth, float(case.depth.max())
@@ -29,7 +29,7 @@ def places(case: Case, smallest: float) -> tuple[Place, ...]:
     return tuple(sorted(found, key=lambda place: -abs(place.size)))
 
 
-def contrasts(case: Case) -> tuple[Contrast, ...]:
+def contrasts(case: RunCase) -> tuple[Contrast, ...]:
     """Whether the reference has a memory: unload minus load at equal depth."""
     force, depth, phases = case.run.force, case.depth, _phases(case)
     load, unload = phases == "load", np.char.startswith(phases, "unload")
@@ -40,7 +40,7 @@ def contrasts(case: Case) -> tuple[Contrast, ...]:
     return (Contrast("Unload minus load at equal depth, in the reference", "force_z", size, math.nan),)
 
 
-def _phases(case: Case) -> np.ndarray:
+def _phases(case: RunCase) -> np.ndarray:
     """(n,) phase of each row: of one press, up to its peak, held near it, and back."""
     force, depth = case.run.force, case.depth
     last = int(np.flatnonzero(force >= force.max() * (1.0 - 1e-9))[-1])

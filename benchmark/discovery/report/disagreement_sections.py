@@ -170,7 +170,7 @@ def gap_section(record: DiscoveryRecord) -> Section:
 
 def _bar(gap: ChannelGap) -> GapRow:
     unit, scale = channel_unit(gap.channel)
-    floor = scale * gap.noise_floor if gap.noise_floor > 0.0 else None
+    floor = scale * gap.noise_floor if gap.noise_floor else None
     return GapRow(channel_name(gap.channel), scale * gap.rmse_before, scale * gap.rmse_after, floor, unit)
 
 
@@ -188,7 +188,8 @@ def _gap_row(gap: ChannelGap) -> tuple[object, ...]:
     unit, scale = channel_unit(gap.channel)
     ends = (None, None) if gap.ci95 is None else tuple(100 * end for end in gap.ci95)
     closed = None if gap.closed is None else 100 * gap.closed
-    sizes = (scale * gap.rmse_before, scale * gap.rmse_after, scale * gap.noise_floor)
+    floor = None if gap.noise_floor is None else scale * gap.noise_floor
+    sizes = (scale * gap.rmse_before, scale * gap.rmse_after, floor)
     return (channel_name(gap.channel), unit, *sizes, closed, *ends, gap.held_out)
 
 

@@ -163,7 +163,7 @@ def gap_in_units(gap: ChannelGap) -> dict[str, object]:
         "unit": unit,
         "rmse_before": scale * gap.rmse_before,
         "rmse_after": scale * gap.rmse_after,
-        "noise_floor": scale * gap.noise_floor,
+        "noise_floor": None if gap.noise_floor is None else scale * gap.noise_floor,
         "closed": gap.closed,
         "held_out": gap.held_out,
     }

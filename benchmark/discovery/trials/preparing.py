@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
@@ -25,7 +24,7 @@ from benchmark.discovery.trials.segments import segments, stages
 from benchmark.discovery.trials.study import ConditionData, Study
 from benchmark.errors import InputError
 from benchmark.files import Camera, Session, Trial
-from benchmark.models.scenario_effects import specimen_layers
+from benchmark.models.scenario_effects import open_radius, specimen_layers
 from benchmark.physics import TrialContext
 
 MOST_RAW = 4000
@@ -245,7 +244,7 @@ def _context(session: Session, first: Trial, data: Array, grid: Layout | None) -
         duration=float((data[:, -1, 0] - data[:, 0, 0]).max()),
         spacing=session.camera.marker_spacing if session.camera and grid is not None else 0.0,
         markers=None if grid is None else grid.rest,
-        hole_radius=(first.support.hole_radius or math.inf) if first.support.kind == "hole" else math.inf,
+        hole_radius=open_radius(first.support),
         layers=specimen_layers(session.specimen.layers),
         contact=first.tool.contact,
     )

@@ -110,7 +110,7 @@ def _far(result: ModelResult, radius: float) -> float:
 
 def fit_values(case: Mapping[str, Any]) -> list[GatedValue]:
     """Pooled stiffness factor, and the medians of contact onset and force zero over the trials of a session."""
-    from benchmark.runs.session_run import fit_trials
+    from benchmark.runs.fit_run import fit_trials
 
     fit = fit_trials(Path(case["session"]), None, {}, SilentListener(), films=False).fit
     return [
@@ -142,19 +142,23 @@ def run_history(job: Job) -> Work:
 
 def wave_frame(job: Job) -> Work:
     """One frame of every layer's deflected face for each step of the scenario's load history."""
-    from wavemodel import DiscTool, LayeredWave, WaveLayer
+    import wavemodel
 
     scenario = load_scenario(Path(job["scenario"]), job["set"])
     layers = [
-        WaveLayer(layer.name, layer.thickness, layer.density, layer.youngs_modulus, layer.poisson_ratio)
+        wavemodel.WaveLayer(layer.name, layer.thickness, layer.density, layer.youngs_modulus, layer.poisson_ratio)
         for layer in scenario.tissue.layers
     ]
     tool, options = scenario.tool, scenario.wave
-    wave = LayeredWave(layers, DiscTool(tool.radius, tool.contact), window=options.window, modes=options.modes)
+    choices: dict[str, Any] = {"window": options.window, "modes": options.modes}
+    if hasattr(wavemodel, "WaveDiscretisation"):  # earlier revisions take them one by one
+        choices = {"discretisation": wavemodel.WaveDiscretisation(**choices)}
+    wave = wavemodel.LayeredWave(layers, wavemodel.DiscTool(tool.radius, tool.contact), **choices)
     positions = np.linspace(-REACH * tool.radius, REACH * tool.radius, VERTICES)
     surface, drive = wave.surface(positions, positions), scenario_drive(scenario)
     solution = wave.run(drive.control, drive.time, drive.value)
-    states = [solution.snapshot(step) for step in range(drive.time.size)]
+    faces: Any = getattr(solution, "faces", solution)  # in earlier revisions the solution is its own faces
+    states = [faces.snapshot(step) for step in range(drive.time.size)]
 
     def work() -> None:
         for state in states:

@@ -8,14 +8,16 @@ distance from the surface.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import scipy.sparse as sp
 import skfem
 
 from fem.arrays import BoolArray, FloatArray, IntArray
-from fem.errors import FemError
-from fem.mesh.surface.model import Surface
+from fem.errors import CheckpointError, FemError
+from fem.kept_file import fingerprint, read_kept, write_kept
+from fem.mesh.surface.surface_file import Surface
 
 BOX_MARGIN = 0.1
 TOLERANCE = 2e-3  # of the box's diagonal
@@ -26,6 +28,7 @@ BACKGROUND = 14
 SLEEVE_SIDES = 32
 SLEEVE_HEIGHTS = (-0.5, 0.2)  # in tool radii from the place it touches
 TOLERANCE_OF_TOOL = 0.04  # of the tool's radius
+FORMAT = "fem tetrahedra 1"
 
 
 @dataclass(frozen=True)
@@ -195,3 +198,40 @@ def _box(surface: Surface) -> Surface:
     quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
     triangles = [(a, b, c) for q in quads for a, b, c in ((q[0], q[1], q[2]), (q[0], q[2], q[3]))]
     return Surface(low - margin + corner * (high - low + 2.0 * margin), np.array(triangles))
+
+
+def kept_filling(
+    surface: Surface, depths: FloatArray, refinement: Refinement, keep: Path | None
+) -> tuple[FloatArray, IntArray, IntArray]:
+    """Tetrahedra of a checked surface, from a file where it holds those of the same surface, depths and lengths.
+
+    Parameters
+    ----------
+    surface, depths, refinement
+        See :func:`fem.mesh.surface.filling.fill`.
+    keep
+        The file; one that is not there, damaged or another's is replaced. None keeps nothing.
+
+    Returns
+    -------
+    tuple of ndarray
+        Points (P, 3) in m, tetrahedra (E, 4) of positive volume, layer (E,) of each.
+
+    Raises
+    ------
+    FemError
+        If the surface cannot be filled, or the file not written.
+    """
+    if keep is None:
+        return fill(surface, depths, refinement)
+    lengths = (refinement.radius, refinement.fine, refinement.coarse, refinement.growth)
+    owner = fingerprint(lengths, (surface.points, surface.triangles, np.asarray(depths), refinement.place))
+    try:
+        found = read_kept(keep, FORMAT, owner)
+    except CheckpointError:
+        found = None
+    if found is not None:
+        return found["points"], found["tetrahedra"], found["layer"]
+    points, tetrahedra, layer = fill(surface, depths, refinement)
+    write_kept(keep, FORMAT, owner, {"points": points, "tetrahedra": tetrahedra, "layer": layer})
+    return points, tetrahedra, layer

@@ -9,11 +9,9 @@ import numpy as np
 from fem.arrays import BoolArray, FloatArray, IntArray
 from fem.errors import FemError
 from fem.mesh.surface.checking import check_surface
-from fem.mesh.surface.filling import Refinement
-from fem.mesh.surface.kept_filling import kept_filling
-from fem.mesh.surface.mesh import SurfaceMesh, barycentric
-from fem.mesh.surface.model import Surface
-from fem.mesh.surface.quality import POOR, MeshQuality, measure_quality
+from fem.mesh.surface.filling import Refinement, kept_filling
+from fem.mesh.surface.surface_file import Surface
+from fem.mesh.surface.surface_mesh import POOR, MeshQuality, SurfaceMesh, barycentric, measure_quality
 
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # mid-side nodes 4 to 9
 FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))  # looking outwards
@@ -40,10 +38,8 @@ def build_surface_mesh(
         Its surface as read; it is checked here.
     thickness
         Thickness (L,) in m of the layers from the surface inwards; the last one fills the rest.
-    tool
-        x, y and radius in m of the tool.
-    density
-        1 for the default mesh; larger is finer.
+    tool, density
+        x, y and radius in m of the tool; 1 for the default mesh, larger is finer.
     keep
         File in which the mesher's tetrahedra are kept, and taken from if it holds those of the same specimen.
 
@@ -58,17 +54,28 @@ def build_surface_mesh(
     place = touch_point(surface, x, y)
     fine = radius / (2.0 * density)
     coarse = max(fine, float(surface.size.max()) / (10.0 * density))
-    depths = np.cumsum(thickness[:-1])
-    points, tetrahedra, layer = kept_filling(
-        surface, depths, Refinement(place, radius, fine, coarse, 0.5 / density), keep
-    )
+    refinement = Refinement(place, radius, fine, coarse, 0.5 / density)
+    points, tetrahedra, layer = kept_filling(surface, np.cumsum(thickness[:-1]), refinement, keep)
     points = _with_vertex(points, tetrahedra, place)
     quality = measure_quality(points, tetrahedra, layer, surface.volume)
     _require_quality(surface, quality)
     remarks = (*surface.remarks, *_size_remark(surface, radius))
     if quality.least < POOR / 2:
         remarks = (*remarks, f"mesh quality: {quality}")
-    nodes, elements = quadratic(points, tetrahedra)
+    return _pressed_mesh(*quadratic(points, tetrahedra), layer, place, radius, quality, remarks)
+
+
+def _pressed_mesh(
+    nodes: FloatArray,
+    elements: IntArray,
+    layer: IntArray,
+    place: FloatArray,
+    radius: float,
+    quality: MeshQuality,
+    remarks: tuple[str, ...],
+) -> SurfaceMesh:
+    """Mesh of 10-node elements (10, E) with the load of a tool that touches it at a place (3,)."""
+    x, y, _ = place.tolist()
     faces = _layer_faces(elements, layer)
     up = _upward(nodes, faces[0])
     touched = _touched(nodes, faces[0], up, place, radius)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from benchmark.discovery.carrying_out import DiscoverRequest, carry_out
+from benchmark.discovery.discovery_request import DiscoverRequest, carry_out
 from benchmark.sessions import SHIPPED
 
 PHANTOM = SHIPPED / "phantom"

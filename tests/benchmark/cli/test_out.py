@@ -42,14 +42,14 @@ def nothing_is_computed(monkeypatch):
         "benchmark.runs.requests.run_scenario",
         "benchmark.runs.requests.run_session",
         "benchmark.runs.requests.run_tissues",
-        "benchmark.discovery.of_session.findings",
+        "benchmark.discovery.discovery_request.findings",
         "benchmark.reproduce.reproduction.gather",
         "benchmark.gate.checking._verdict",
         "benchmark.cli.verify._run",
         "benchmark.blind.running._work",
         "benchmark.sweep.sweep_run._rows",
         "benchmark.runs.finished.carrying_out.read_run",
-        "benchmark.discovery.carrying_out.read_run",
+        "benchmark.discovery.discovery_request.read_run",
     ):
         monkeypatch.setattr(name, never)
 

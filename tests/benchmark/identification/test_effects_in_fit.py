@@ -5,7 +5,7 @@ import pytest
 
 from benchmark.files import load_tissue
 from benchmark.identification import TrialData, fit_session
-from benchmark.identification.effects_in_fit import fit_repaired
+from benchmark.identification.effects_in_fit import fit_with_effects
 from benchmark.model_file import AddedEffect, RepairedModel, Value
 from benchmark.physics import TrialContext, catalogue
 from benchmark.response import ForceCurve
@@ -34,7 +34,7 @@ def test_the_effect_no_longer_softens_the_fit() -> None:
     measured = [SimpleNamespace(name=t.name, condition=t.condition, **rig) for t in trials]
     session = SimpleNamespace(specimen=specimen, trials=measured)
     plain = fit_session(trials, specimen.layers)
-    repaired = fit_repaired(session, trials, MODEL)
+    repaired = fit_with_effects(session, trials, MODEL)
     assert plain.stiffness_factor < 0.95 * TRUE
     assert repaired.settled
     assert repaired.fit.stiffness_factor == pytest.approx(TRUE, rel=0.03)

@@ -14,7 +14,7 @@ from bench_hw.simulated.tabulated import TabulatedSpecimen, read_sheet
 from benchmark.files import load_session
 from benchmark.identification import Film, TrialData, filmed_trial, fit_session, fit_sheet
 from benchmark.identification.fitted_parameters import sheet_parameters
-from benchmark.response import View
+from benchmark.response import CameraView
 from benchmark.runs.listener import Listener
 from benchmark.runs.session_tables import base_curves, session_sheets
 from benchmark.sessions import SHIPPED
@@ -47,7 +47,7 @@ def model():
     setup = (session.tool, session.support)
     listener: Listener = Quiet()
     curve = base_curves(session, {setup: DEEP}, listener).curves[setup]
-    sheets, warnings = session_sheets(session, {setup: DEEP}, View(70e-3), listener)
+    sheets, warnings = session_sheets(session, {setup: DEEP}, CameraView(70e-3), listener)
     assert not warnings
     return session.specimen.layers, curve, sheets[setup]
 
@@ -65,7 +65,7 @@ def one_trial(name, stretches, curve, rng, relaxation=RELAXATION):
     read = COUNT * np.round(depth / COUNT)
     force = answer.force[rows, 2] + rng.normal(0.0, 2e-3, len(rows))
     markers = answer.markers[frames]
-    seen = View(70e-3).seen(markers[..., :2], markers[..., 2])
+    seen = CameraView(70e-3).seen(markers[..., :2], markers[..., 2])
     film = Film(time[frames], seen + rng.normal(0.0, 2e-6, seen.shape))
     return TrialData(name, "rich" if stretches is RICH else "press", time[rows], read[rows], force, curve), film
 

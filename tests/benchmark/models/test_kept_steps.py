@@ -7,7 +7,7 @@ import pytest
 
 from benchmark.files import Scenario, load_scenario
 from benchmark.models import Keeping, prepare, scenario_drive
-from benchmark.models import kept_steps as module
+from benchmark.models import fem_steps as module
 
 
 @pytest.fixture

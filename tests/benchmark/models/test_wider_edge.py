@@ -8,20 +8,20 @@ import pytest
 import fem
 from benchmark.files import load_scenario
 from benchmark.models import prepare, scenario_drive
-from benchmark.models.fem_model import problem_of
-from benchmark.models.wider_edge import WIDER, follow_deeper
+from benchmark.models.fem_problem import problem_of
+from benchmark.models.fem_steps import WIDER, follow_deeper
 
 LAYER = fem.Layer("jelly", 12e-3, 1000.0, fem.NeoHookean(2e4, 0.45))
 TIME = np.array([1.0, 2.0, 3.0])
 
 
-def model(contact: str = "rigid_bonded", **others) -> fem.model.Model:
+def model(contact: str = "rigid_bonded", **others) -> fem.analysis.prepared.Model:
     edge = None if contact in ("rigid_bonded", "uniform_pressure") else 1e-3
     problem = fem.Problem((LAYER,), fem.Tool(5e-3, contact, edge), fem.Support("bonded"), **others)
     return fem.prepare(problem)
 
 
-def reaching(made: fem.model.Model, steps: int, reached: float, depth: float = 1.0) -> fem.Solution:
+def reaching(made: fem.analysis.prepared.Model, steps: int, reached: float, depth: float = 1.0) -> fem.Solution:
     """A run that stopped after so many of three steps of 1 N, or did not."""
     whole = made.run(fem.Load("force", TIME, [0.1, 0.2, 0.3]))
     stop = None if steps == 3 else fem.Failure(steps + 1, TIME[steps], "force", reached, steps + 1.0, "it folds")
@@ -29,10 +29,10 @@ def reaching(made: fem.model.Model, steps: int, reached: float, depth: float = 1
     return replace(whole, **kept, depth=depth * np.arange(1.0, steps + 1), failure=stop, complete=stop is None)
 
 
-def follow(made: fem.model.Model, answers: dict[float, tuple[int, float]]):
+def follow(made: fem.analysis.prepared.Model, answers: dict[float, tuple[int, float]]):
     tried: list[float] = []
 
-    def run(each: fem.model.Model, edge: float) -> fem.Solution:
+    def run(each: fem.analysis.prepared.Model, edge: float) -> fem.Solution:
         assert each.problem.discretisation.edge == edge
         tried.append(edge)
         return reaching(each, *answers[edge], depth=1.0 if edge == 1.0 else 0.99)
@@ -68,13 +68,13 @@ def test_of_runs_that_all_stop_the_furthest_is_taken() -> None:
 )
 def test_other_presses_have_no_such_edge(other) -> None:
     assert follow(model(**other), {1.0: (1, 1.5)})[2] == [1.0]
-    assert max(WIDER) <= fem.parts.LARGEST_EDGE
+    assert max(WIDER) <= fem.problem.parts.LARGEST_EDGE
 
 
 def test_a_try_that_is_far_from_the_usual_mesh_is_not_believed() -> None:
     usual, tried = reaching(model(), 1, 1.5), []
 
-    def run(each: fem.model.Model, edge: float) -> fem.Solution:
+    def run(each: fem.analysis.prepared.Model, edge: float) -> fem.Solution:
         tried.append(edge)
         return usual if edge == 1.0 else reaching(each, 3, 3.0, depth=0.96)
 

@@ -6,16 +6,8 @@ import numpy as np
 import pytest
 import scipy
 
-from benchmark.response.least_squares import (
-    EXACT,
-    Columns,
-    Evaluation,
-    Record,
-    Search,
-    differences,
-    least_squares,
-    settled,
-)
+from benchmark.response.least_squares import EXACT, Search, fit_record, least_squares, settled
+from benchmark.response.trials_model import RecordModel, TrialColumns, TrialsEvaluation, differences
 
 TIME = np.linspace(0.0, 1.0, 40)
 TIGHT = Search(most=50, gain=0.0, share=1e-14)
@@ -44,10 +36,10 @@ class Straight:
 
     def evaluated(self, vector, nuisance):
         signals = [self.design[k] @ vector + self.own @ own for k, own in enumerate(nuisance)]
-        return Evaluation(vector, nuisance, signals, [m - s for m, s in zip(self.measured, signals, strict=True)])
+        return TrialsEvaluation(vector, nuisance, signals, [m - s for m, s in zip(self.measured, signals, strict=True)])
 
     def columns(self, at, warm=None):
-        return Columns(list(self.design), self.nuisance_columns(at))
+        return TrialColumns(list(self.design), self.nuisance_columns(at))
 
     def nuisance_columns(self, at):
         return [self.own] * len(self.measured)
@@ -124,8 +116,8 @@ def rosenbrock(vector):
 @pytest.mark.parametrize("high", [np.inf, 0.6])
 def test_a_record_ends_where_scipy_ends_also_at_a_bound(high) -> None:
     bounds = np.array([-2.0, -2.0]), np.array([high, 2.0])
-    record = Record(rosenbrock, lambda v: differences(rosenbrock, v, 1e-6, bounds), bounds)
-    fitted = record.fit(np.array([-1.2, 1.0]))
+    record = RecordModel(rosenbrock, lambda v: differences(rosenbrock, v, 1e-6, bounds), bounds)
+    fitted = fit_record(record, np.array([-1.2, 1.0]))
     other = scipy.optimize.least_squares(rosenbrock, [-1.2, 1.0], bounds=bounds, xtol=1e-15, ftol=1e-15)
     assert fitted.vector == pytest.approx(other.x, abs=1e-6)
     assert fitted.nuisance.shape == (1, 0)
@@ -133,7 +125,9 @@ def test_a_record_ends_where_scipy_ends_also_at_a_bound(high) -> None:
 
 def test_a_fixed_parameter_stays_and_has_no_derivative() -> None:
     bounds = np.array([0.5, -2.0]), np.array([0.5, 2.0])
-    fitted = Record(rosenbrock, lambda v: differences(rosenbrock, v, 1e-6, bounds), bounds).fit(np.array([0.5, 1.0]))
+    fitted = fit_record(
+        RecordModel(rosenbrock, lambda v: differences(rosenbrock, v, 1e-6, bounds), bounds), np.array([0.5, 1.0])
+    )
     assert fitted.vector == pytest.approx([0.5, 0.25], abs=1e-9)
     assert (fitted.columns.vector[0][:, 0] == 0.0).all()
 
@@ -143,7 +137,9 @@ def test_what_the_data_do_not_feel_stays_where_it_began() -> None:
         return np.ones(5) - vector[0] * np.arange(5)
 
     bounds = np.full(2, -np.inf), np.full(2, np.inf)
-    fitted = Record(residual, lambda v: differences(residual, v, 1e-6, bounds), bounds).fit(np.array([0.0, 0.7]))
+    fitted = fit_record(
+        RecordModel(residual, lambda v: differences(residual, v, 1e-6, bounds), bounds), np.array([0.0, 0.7])
+    )
     assert fitted.vector[0] == pytest.approx(10.0 / 30.0)
     assert fitted.vector[1] == 0.7
 
@@ -173,13 +169,13 @@ class Late:
 
     def evaluated(self, vector, nuisance):
         signals = [self.bell(own[0]) for own in nuisance]
-        return Evaluation(vector, nuisance, signals, [m - s for m, s in zip(self.measured, signals, strict=True)])
+        return TrialsEvaluation(vector, nuisance, signals, [m - s for m, s in zip(self.measured, signals, strict=True)])
 
     def nuisance_columns(self, at):
         return [((self.bell(own[0] + 1e-6) - self.bell(own[0] - 1e-6)) / 2e-6)[:, None] for own in at.nuisance]
 
     def columns(self, at, warm=None):
-        return Columns([np.zeros((TIME.size, 0))] * len(self.measured), self.nuisance_columns(at))
+        return TrialColumns([np.zeros((TIME.size, 0))] * len(self.measured), self.nuisance_columns(at))
 
 
 def test_nuisances_settle_where_two_undamped_steps_would_leap_away() -> None:

@@ -1,8 +1,10 @@
 import numpy as np
 import pytest
 
+from benchmark.models import UncoveredError
 from benchmark.physics import TrialContext, catalogue
 from benchmark.response.pipeline import trial_force
+from wavemodel import WaveError
 
 TIME = np.linspace(0.0, 20.0, 400)
 DEPTH = np.minimum(TIME / 0.5, 1.0) * 2e-3
@@ -27,3 +29,28 @@ def test_body_rig_and_sensor_act_together() -> None:
     force = trial_force(_law, added, TIME, DEPTH, AROUND)
     held = 2e-3 * 700.0 / (1.0 + 1e-4 * 700.0)
     assert force[-1] == pytest.approx(held + 0.01 * 20.0, rel=0.02)
+
+
+def test_the_rig_gives_way_to_the_body_with_its_stiffening() -> None:
+    stiff, soft = (
+        (BY_SLUG["strain_stiffening"], {"b_1": 0.5, "b_2": 0.0}),
+        (
+            BY_SLUG["machine_compliance"],
+            {"compliance": 3e-4},
+        ),
+    )
+    force = trial_force(_law, (stiff, soft), TIME, DEPTH, AROUND)
+    given = DEPTH[-1] - 3e-4 * force[-1]
+    alone = trial_force(_law, (stiff,), TIME, np.minimum(DEPTH, given), AROUND)
+    assert force[-1] == pytest.approx(alone[-1], rel=1e-3)
+    assert alone[-1] > 1.02 * _law(given)
+
+
+def test_a_depth_beyond_the_law_is_uncovered() -> None:
+    def law(depth):
+        if depth.max() > 1e-3:
+            raise WaveError("1 mm at most")
+        return _law(depth)
+
+    with pytest.raises(UncoveredError, match="1 mm at most"):
+        trial_force(law, (), TIME, DEPTH, AROUND)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from benchmark.response import FaceField, ForceCurve, Neighbour, RampTable, ResponseError, View
+from benchmark.response import CameraView, FaceField, ForceCurve, Neighbour, RampTable, ResponseError
 
 DEPTH, RADIUS = np.linspace(0.0, 4e-3, 9), np.linspace(0.0, 30e-3, 31)
 SUNK = DEPTH[:, None] * (1.0 - (RADIUS / 30e-3) ** 2) ** 2
@@ -10,17 +10,17 @@ FIELD = FaceField(DEPTH, RADIUS, OUTWARD, SUNK)
 
 
 def test_a_marker_that_comes_near_seems_to_move_outwards() -> None:
-    view = View(70e-3)
+    view = CameraView(70e-3)
     seen = view.seen(np.array([[10e-3, 0.0]]), np.array([2e-3]))
     np.testing.assert_allclose(seen, [[10e-3 * 70.0 / 68.0, 0.0]])
     np.testing.assert_allclose(view.true(seen, np.array([2e-3])), [[10e-3, 0.0]])
-    np.testing.assert_array_equal(View().seen(seen, np.array([2e-3])), seen)
+    np.testing.assert_array_equal(CameraView().seen(seen, np.array([2e-3])), seen)
 
 
 def test_markers_move_away_from_the_tool_axis_wherever_that_is() -> None:
     axis = np.array([1e-3, -2e-3])
     rest = axis + np.array([[5e-3, 0.0], [0.0, 12e-3]])
-    moved = FIELD.markers(rest, axis, np.array([0.0, 2e-3, 3e-3]), View()) - rest
+    moved = FIELD.markers(rest, axis, np.array([0.0, 2e-3, 3e-3]), CameraView()) - rest
     np.testing.assert_allclose(moved[0], 0.0, atol=1e-15)
     np.testing.assert_allclose(moved[1:, 0, 0], 10.0 * np.array([2e-3, 3e-3]) ** 2 * 5e-3, rtol=1e-6)
     np.testing.assert_allclose(moved[1:, 1, 1], 10.0 * np.array([2e-3, 3e-3]) ** 2 * 12e-3, rtol=1e-6)

@@ -8,7 +8,7 @@ import pytest
 
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
-from benchmark.models import Keeping, StepProgress, UncoveredError, kept_steps, prepare, scenario_drive
+from benchmark.models import Keeping, StepProgress, UncoveredError, fem_steps, prepare, scenario_drive
 from benchmark.sweep import point as point_module
 from benchmark.sweep.point import FAILED, OK, Task, evaluate, failed
 
@@ -100,8 +100,8 @@ def test_failed_is_one_line() -> None:
 
 
 def test_a_long_point_goes_on_from_its_steps(scenario: Scenario, tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr(kept_steps, "LEAST_PAUSE", 0.0)
-    monkeypatch.setattr(kept_steps, "SHARE", 1e9)
+    monkeypatch.setattr(fem_steps, "LEAST_PAUSE", 0.0)
+    monkeypatch.setattr(fem_steps, "SHARE", 1e9)
     keep = tmp_path / "point"
 
     def stop(progress: StepProgress) -> None:

@@ -8,8 +8,12 @@ import numpy as np
 import pytest
 
 from fem import NeoHookean
-from fem.assembly import System, build_scatter, element_laws, gauss_geometry, number_unknowns
-from fem.mesh import Fan, Mesh, build_mesh
+from fem.assembly.axisymmetric import gauss_geometry
+from fem.assembly.elements import make_elements
+from fem.assembly.scatter import build_scatter, number_unknowns
+from fem.assembly.system import System, make_system
+from fem.materials.element_laws import element_laws
+from fem.mesh.quads import Fan, Mesh, build_mesh
 
 
 @pytest.fixture
@@ -38,6 +42,6 @@ def system_of() -> Callable[..., System]:
         numbering = number_unknowns(fixed, tied)
         laws = element_laws((NeoHookean(1.0, nu), NeoHookean(5.0, nu)), mesh.layer)
         scatter = build_scatter(mesh.elements, numbering)
-        return System(gauss_geometry(mesh), laws, numbering, scatter, stabilisation)
+        return make_system(make_elements(gauss_geometry(mesh), laws, stabilisation), numbering, scatter)
 
     return make

@@ -3,8 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fem.assembly import build_scatter, number_unknowns
-from fem.assembly.scatter import packed_positions
+from fem.assembly.scatter import build_scatter, number_unknowns, packed_positions
 
 
 def dense(scatter, data, n):

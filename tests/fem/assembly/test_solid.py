@@ -5,10 +5,9 @@ import pytest
 import scipy.sparse as sp
 
 import fem
-from fem.assembly.solid_element import SOLID_ELEMENTS
-from fem.assembly.solid_geometry import solid_geometry
-from fem.verification.cube import cube, solve_linear
-from fem.verification.cube import equations as equations_of
+from fem.assembly.solid import SOLID_ELEMENTS, solid_geometry
+from fem.verification.solid_patch import cube, solve_linear
+from fem.verification.solid_patch import equations as equations_of
 
 ELEMENTS = ("hex27", "hex20", "tet10")
 
@@ -68,10 +67,10 @@ def test_the_tangent_is_the_difference_quotient_of_the_residual(name):
     pressure = equations.rest()[1]
     for _ in range(2):  # with the pressure the volume asks for, the condensed tangent is the residual's derivative
         state = equations.evaluate(y, pressure)
-        pressure = state.consistent_pressure
+        pressure = state.elements.consistent_pressure
 
     def residual(z):
-        p = equations.evaluate(z, pressure).consistent_pressure
+        p = equations.evaluate(z, pressure).elements.consistent_pressure
         return equations.evaluate(z, p).residual
 
     h = 1e-6
@@ -93,7 +92,7 @@ def swirl_error(name, n, nu):
     equations = equations_of(mesh, material, np.tile(mesh.base, (3, 1)), 0.0).displaced(
         mesh.elements, exact * mesh.base
     )
-    geometry, element = equations.geometry, SOLID_ELEMENTS[name]
+    geometry, element = equations.elements.geometry, SOLID_ELEMENTS[name]
     value, _ = element.tabulate(element.quadrature()[0])
     at = [value @ c[mesh.elements] for c in mesh.nodes.T]
     H = np.zeros((9, *geometry.weight.shape))

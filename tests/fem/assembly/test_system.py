@@ -31,7 +31,7 @@ def test_tangent_is_the_derivative_of_the_residual(block, system_of, nu, stabili
     def residual(at):
         return system.evaluate(at, p).residual
 
-    consistent = system.evaluate(y, system.evaluate(y, p).consistent_pressure)
+    consistent = system.evaluate(y, system.evaluate(y, p).elements.consistent_pressure)
     direction = np.random.default_rng(10).normal(size=y.shape)
     step = 2e-7
     quotient = (residual(y + step * direction) - residual(y - step * direction)) / (2 * step)
@@ -45,7 +45,7 @@ def test_residual_does_not_depend_on_the_given_pressure(block, system_of):
     y, p = state(system, mesh)
     one, other = system.evaluate(y, p), system.evaluate(y, 0.0 * p)
     np.testing.assert_allclose(one.residual, other.residual, atol=1e-10 * np.abs(one.residual).max())
-    np.testing.assert_allclose(one.consistent_pressure, other.consistent_pressure, atol=1e-10)
+    np.testing.assert_allclose(one.elements.consistent_pressure, other.elements.consistent_pressure, atol=1e-10)
 
 
 def test_a_vertical_shift_costs_nothing(block, system_of):
@@ -62,7 +62,7 @@ def test_internal_forces_balance_in_z(block, system_of):
     mesh = block(fan=True)
     system = system_of(mesh, hold=False)
     y, p = state(system, mesh)
-    force = system.evaluate(y, p).element_force
+    force = system.evaluate(y, p).elements.force
     assert abs(force[9:].sum()) < 1e-12 * np.abs(force).sum()
 
 
@@ -94,10 +94,10 @@ def test_patch_homogeneous_strain_gives_its_stress(block, system_of, fan, stabil
     y = np.zeros(system.numbering.count)
     y[system.numbering.unknown.ravel()] = nodal.ravel()
     found = system.evaluate(y, system.rest()[1])
-    again = system.evaluate(y, found.consistent_pressure)
+    again = system.evaluate(y, found.elements.consistent_pressure)
     J = 1.1**2 * 0.85
-    K = system.laws.bulk_modulus[one[0]]
-    np.testing.assert_allclose(again.pressure_at_points[:, one], K * (J - 1.0), rtol=1e-10)
+    K = system.elements.laws.bulk_modulus[one[0]]
+    np.testing.assert_allclose(again.elements.pressure_at_points[:, one], K * (J - 1.0), rtol=1e-10)
     interior = ~(mesh.top | mesh.base | mesh.border | mesh.axis) & np.isin(
         np.arange(len(mesh.nodes)), mesh.elements[:, one]
     )

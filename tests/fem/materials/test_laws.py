@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import fem
-from fem.components import AXISYMMETRIC, SOLID
-from fem.deformation import Deformation
+from fem.materials.components import AXISYMMETRIC, SOLID
+from fem.materials.deformation import Deformation
 
 NU = 0.49
 GROUNDS = {

@@ -3,8 +3,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fem import LinearElastic
-from fem.components import AXISYMMETRIC
-from fem.deformation import Deformation
+from fem.materials.components import AXISYMMETRIC
+from fem.materials.deformation import Deformation
 
 MATERIAL = LinearElastic(1e5, 0.3)
 PARAMETERS = np.array(MATERIAL.parameters)

@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fem import NeoHookean
-from fem.components import AXISYMMETRIC
-from fem.deformation import Deformation
+from fem.materials.components import AXISYMMETRIC
+from fem.materials.deformation import Deformation
 from fem.materials.neo_hookean import NeoHookeanLaw
 
 LAW, MU = NeoHookeanLaw(), np.array([3.0e4])

@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fem.mesh import Feature, Sizing, graded_line
+from fem.mesh.grading import Feature, Sizing, graded_line
 
 lengths = st.floats(1e-4, 10.0)
 

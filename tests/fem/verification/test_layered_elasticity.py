@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fem.verification.half_space import DEPTHS, PRESSURE, RADIUS, YOUNGS_MODULUS, settlement
+from fem.verification.indentation import DEPTHS, PRESSURE, RADIUS, YOUNGS_MODULUS, settlement
 from fem.verification.layered_elasticity import ElasticStack, axis_deflection, surface_response
 
 

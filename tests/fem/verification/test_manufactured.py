@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fem.components import AXISYMMETRIC
-from fem.deformation import Deformation
+from fem.materials.components import AXISYMMETRIC
+from fem.materials.deformation import Deformation
 from fem.verification.manufactured import bulge, errors, stream
 
 

@@ -94,9 +94,9 @@ def slowdowns(share: float, how: str) -> list[Fault]:
     """
     often, once = ("repeat", "burn") if how == "work" else (how, how)
     return [
-        _slower("wave.frame", "wavemodel/surface.py", ("Surface.frame",), share, often),
+        _slower("wave.frame", "wavemodel/layered/surface.py", ("Surface.frame",), share, often),
         _slower("fem.assembly", "fem/assembly/system.py", ("System.evaluate", "System.tangent"), share, often),
-        _slower("fem.step", "fem/model.py", ("Model.run",), share, once),
+        _slower("fem.step", "fem/analysis/prepared.py", ("Model.run",), share, once),
         _slower("fit", "benchmark/identification/session_fit.py", ("fit_session",), share, once),
     ]
 

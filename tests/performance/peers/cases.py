@@ -9,11 +9,11 @@ from types import MappingProxyType
 import numpy as np
 
 import fem
-from fem.assembly.solid_element import SOLID_ELEMENTS
-from fem.contact.solid import uniform_pressure
-from fem.contact.uniform_pressure import UniformPressure
-from fem.layout import lay_out
-from fem.mesh import DiscGrid, Feature, Sizing, build_block, graded_line
+from fem.assembly.solid import SOLID_ELEMENTS
+from fem.mesh.grading import Feature, Sizing, graded_line
+from fem.mesh.solid import DiscGrid, build_block
+from fem.setup.layout import lay_out
+from fem.setup.tool_faces import disc_load
 from tests.performance.peers.case import LAYERS, POISSON, Case
 
 TOOL_RADIUS = 5.0e-3
@@ -32,7 +32,7 @@ def block_case(density: float) -> Case:
     mesh = build_block(grid, lines, depths[:-1], SOLID_ELEMENTS["hex20"].node_places, "hex20")
     held = mesh.base | mesh.border
     fixed = np.stack((held | mesh.mirror_x, held | mesh.mirror_y, held))
-    load = 0.25 * uniform_pressure(mesh, TOOL_RADIUS).load
+    load = 0.25 * disc_load(mesh, TOOL_RADIUS)
     return Case("linear", mesh.nodes, mesh.elements, SOLID_ELEMENTS["hex20"].vtk_order, mesh.layer, fixed, load, 1)
 
 
@@ -47,7 +47,7 @@ def axisymmetric_case(steps: int = 50, force: float = 2.5) -> Case:
     )
     mesh = lay_out(problem)
     held = mesh.base | mesh.border
-    load = force * UniformPressure().conditions(mesh, problem).load
+    load = force * disc_load(mesh, TOOL_RADIUS)
     return Case(
         "hyperelastic",
         mesh.nodes,

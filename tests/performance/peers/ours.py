@@ -10,24 +10,25 @@ from pathlib import Path
 import numpy as np
 
 import fem
-from fem.assembly import (
-    ElementGeometry,
-    System,
-    build_scatter,
-    element_laws,
-    gauss_geometry,
-    number_unknowns,
-)
+from fem.analysis.equilibrium import Equilibrium
+from fem.analysis.newton import NewtonSettings
+from fem.analysis.stepping import Stepper
+from fem.assembly.axisymmetric import gauss_geometry
+from fem.assembly.element_geometry import ElementGeometry
+from fem.assembly.elements import make_elements
+from fem.assembly.scatter import build_scatter, number_unknowns
+from fem.assembly.system import make_system
 from fem.linear_solver import make_solver
-from fem.mesh import Mesh, SolidMesh
-from fem.solving import Equilibrium, NewtonSettings, Stepper
-from fem.threads import suited_threads
+from fem.linear_solver.factory import suited_threads
+from fem.materials.element_laws import element_laws
+from fem.mesh.quads import Mesh
+from fem.mesh.solid import SolidMesh
 from tests.performance.peers.case import LAYERS, POISSON, Case, load_case
 
 
 def hexahedra(case: Case) -> ElementGeometry:
     """hex20 with 8 Gauss points."""
-    from fem.assembly.solid_geometry import solid_geometry  # the axisymmetric case does without
+    from fem.assembly.solid import solid_geometry  # the axisymmetric case does without
 
     sets = (np.zeros(len(case.nodes), dtype=np.bool_),) * 5
     rows = (np.array([0]),), np.array([0])
@@ -52,14 +53,16 @@ def equations(case: Case) -> Equilibrium:
     solver = make_solver("auto", scatter.indptr, scatter.indices)
     nodal = np.zeros(case.fixed.shape)
     nodal[-1] = case.load
-    return Equilibrium(System(geometry, laws, numbering, scatter), solver, numbering.reduce(nodal), 0)
+    return Equilibrium(
+        make_system(make_elements(geometry, laws), numbering, scatter), solver, numbering.reduce(nodal), 0
+    )
 
 
 def solve(case: Case) -> np.ndarray:
     """Nodal displacements (N, dim) in m under the full load."""
     problem = equations(case)
     if case.kind == "linear":
-        from fem.small_strain import unit_state  # the other case does without
+        from fem.analysis.linear import unit_state  # the other case does without
 
         return problem.system.numbering.expand(unit_state(problem)[0].y).T
     stepper = Stepper(problem, "force", 1.0, NewtonSettings())

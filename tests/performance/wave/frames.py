@@ -12,9 +12,9 @@ import numpy as np
 from tests.performance.wave import rivals
 from tests.performance.wave.job import FORCE, RADIUS, Reference, errors, vertices, wave_layers
 from tests.performance.wave.timing import Times, microseconds
-from wavemodel import DiscTool, LayeredWave, Prony
+from wavemodel import DiscTool, LayeredWave, Prony, WaveDiscretisation
 from wavemodel.control import Grid, InteractiveTissue, layered_body
-from wavemodel.control.fading import Fading
+from wavemodel.control.contact_relaxation import ContactRelaxation
 
 COUNTS, MODES, WINDOW = (25, 100, 512), (8, 16, 32), 60e-3
 DISC, DISC_MODES = 90e-3, 24
@@ -69,12 +69,14 @@ def _row(count: int, way: str, make: Make, truth: np.ndarray) -> Row:
 def _wave(
     x: np.ndarray, modes: int, domain: str = "rectangle", window: float = WINDOW
 ) -> Callable[[float], np.ndarray]:
-    """A frame: one step of the fading memory, the amplitudes, the synthesis of three layers."""
-    wave = LayeredWave(wave_layers(), DiscTool(RADIUS), window=window, modes=modes, domain=domain)
-    surface, fading = wave.surface(x, x), Fading(1, SERIES, 0.0)
+    """A frame: one step of the relaxation, the amplitudes, the synthesis of three layers."""
+    wave = LayeredWave(
+        wave_layers(), DiscTool(RADIUS), discretisation=WaveDiscretisation(window=window, modes=modes, domain=domain)
+    )
+    surface, relaxation = wave.surface(x, x), ContactRelaxation(1, SERIES, 0.0)
 
     def frame(elastic: float) -> np.ndarray:
-        fading.held(0, elastic, DT)
+        relaxation.held(0, elastic, DT)
         return surface.frame(wave.static_state(elastic))
 
     return frame
@@ -84,7 +86,7 @@ def _interactive(count: int) -> Callable[[float], np.ndarray]:
     """A frame of a tissue as wide as the vertices, tool in the middle, depth in, force out."""
     x = vertices(count)
     side = float(x[-1] - x[0])
-    wave = LayeredWave(wave_layers(), DiscTool(RADIUS), window=WINDOW, modes=32)
+    wave = LayeredWave(wave_layers(), DiscTool(RADIUS), discretisation=WaveDiscretisation(window=WINDOW, modes=32))
     grid = Grid(side, side, side / (count - 1))
     tissue = InteractiveTissue(layered_body(wave, grid), grid, series=SERIES)
 

@@ -18,7 +18,7 @@ from itertools import product  # noqa: E402
 import numpy as np  # noqa: E402
 
 import fem  # noqa: E402
-from benchmark.models.radii import profile_radii  # noqa: E402
+from benchmark.models.model_result import profile_radii  # noqa: E402
 from tests.performance.wave.job import DENSITY, LAYERS  # noqa: E402
 from wavemodel import DiscTool, LayeredWave, WaveLayer  # noqa: E402
 

@@ -20,8 +20,8 @@ import numpy as np  # noqa: E402
 import fem  # noqa: E402
 from benchmark.files import Layer, Scenario, load_scenario  # noqa: E402
 from benchmark.models import Drive  # noqa: E402
-from benchmark.models.fem_model import problem_of  # noqa: E402
-from benchmark.models.radii import profile_radii  # noqa: E402
+from benchmark.models.fem_problem import problem_of  # noqa: E402
+from benchmark.models.model_result import profile_radii  # noqa: E402
 from benchmark.models.wave_layered import layered_wave  # noqa: E402
 from benchmark.models.wave_parts import Solution  # noqa: E402
 from benchmark.models.wave_plate import plate_wave  # noqa: E402

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from wavemodel import DiscTool, LayeredWave
+from wavemodel import DiscTool, LayeredWave, WaveDiscretisation
 from wavemodel.control import Grid, InteractiveTissue, layered_body
 
 
@@ -16,7 +16,7 @@ def grid() -> Grid:
 
 @pytest.fixture(scope="session")
 def wave(skin) -> LayeredWave:
-    return LayeredWave(skin(), DiscTool(3e-3), window=40e-3, modes=24)
+    return LayeredWave(skin(), DiscTool(3e-3), discretisation=WaveDiscretisation(window=40e-3, modes=24))
 
 
 @pytest.fixture

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.special import j0
 
-from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveError
+from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveDiscretisation, WaveError
 from wavemodel.domains.disc import Disc
-from wavemodel.domains.endless import endless
-from wavemodel.layers.compliance import compliance, exact_faces
-from wavemodel.layers.laminate import laminate
-from wavemodel.loads.uniform import uniform_pressure
+from wavemodel.domains.domain import endless
+from wavemodel.layered.stack.compliance import compliance, exact_faces
+from wavemodel.layered.stack.laminate import laminate
+from wavemodel.layered.tractions import uniform_pressure
 
 TOOL, BORDER, MODES = 5e-3, 45e-3, 400
 RADII = np.linspace(0.0, 20e-3, 41)
@@ -55,7 +55,7 @@ def test_round_and_square_window_agree(skin, stack):
     """Within 0.3 % of each layer's peak."""
     disc = Disc(BORDER, MODES)
     found = along(disc, amplitudes(stack, disc.wavenumber), RADII)
-    wave = LayeredWave(skin(), DiscTool(TOOL), window=2.0 * BORDER)
+    wave = LayeredWave(skin(), DiscTool(TOOL), discretisation=WaveDiscretisation(window=2.0 * BORDER))
     square = wave.run("force", np.array([10.0]), np.array([1.0])).profile(0, RADII)
     np.testing.assert_allclose(found / square[:, :1], square / square[:, :1], atol=3e-3)
 

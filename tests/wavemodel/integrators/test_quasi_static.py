@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from wavemodel.integrators.load import checked_load
+from wavemodel.integrators.load_history import checked_load
 from wavemodel.integrators.quasi_static import SharedBody, quasi_static
 
 UNIT, AXIS = np.array([[2.0, 1.0]]), np.array([4.0])

@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from wavemodel.integrators.scan import bounded_sum, fading_sum
+from wavemodel.integrators.scan import bounded_sum, decaying_sum
 
 SIZES = st.integers(1, 60)
 
@@ -20,18 +20,18 @@ def test_fading_sum_is_its_recursion(pair, start):
     for a, b in zip(exponent, gain, strict=True):
         y = np.exp(-a) * y + b
         expected.append(y)
-    np.testing.assert_allclose(fading_sum(exponent, gain, start), expected, rtol=1e-12, atol=1e-13)
+    np.testing.assert_allclose(decaying_sum(exponent, gain, start), expected, rtol=1e-12, atol=1e-13)
 
 
 def test_fading_sum_does_not_overflow_over_a_long_history():
     exponent, gain = np.full(20000, 3.0), np.ones(20000)
-    np.testing.assert_allclose(fading_sum(exponent, gain)[-1], 1.0 / (1.0 - np.exp(-3.0)), rtol=1e-14)
+    np.testing.assert_allclose(decaying_sum(exponent, gain)[-1], 1.0 / (1.0 - np.exp(-3.0)), rtol=1e-14)
 
 
 def test_fading_sum_turns_where_the_exponent_is_complex():
     exponent, gain = np.full(50, 0.1 + 0.7j), np.zeros(50, dtype=complex)
     gain[0] = 1.0
-    np.testing.assert_allclose(fading_sum(exponent, gain), np.exp(-(0.1 + 0.7j) * np.arange(50)), rtol=1e-12)
+    np.testing.assert_allclose(decaying_sum(exponent, gain), np.exp(-(0.1 + 0.7j) * np.arange(50)), rtol=1e-12)
 
 
 @given(

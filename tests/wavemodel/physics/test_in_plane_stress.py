@@ -2,15 +2,19 @@ import numpy as np
 import pytest
 from scipy.special import j1
 
-from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveError, WaveLayer
-from wavemodel.physics.in_plane_stress import InPlaneStress, in_plane_stress
+from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveDiscretisation, WaveError, WaveLayer
+from wavemodel.physics.in_plane_stress import AnisotropicTension, InPlaneStress, in_plane_stress
 
 SHEET = WaveLayer("sheet", 1e-3, 1000.0, 1e5, 0.3)
 
 
 def sheet(pretension):
     return LayeredWave(
-        [SHEET], DiscTool(20e-3), "free", window=200e-3, modes=40, static_correction=False, pretension=pretension
+        [SHEET],
+        DiscTool(20e-3),
+        "free",
+        WaveDiscretisation(window=200e-3, modes=40, static_correction=False),
+        pretension=pretension,
     )
 
 
@@ -40,10 +44,7 @@ def test_the_automatic_wave_is_what_many_modes_come_to(skin):
     brute = LayeredWave(
         skin(),
         DiscTool(5e-3),
-        window=auto.window,
-        modes=400,
-        sublayers=(1, 4, 6),
-        static_correction=False,
+        discretisation=WaveDiscretisation(window=auto.window, modes=400, sublayers=(1, 4, 6), static_correction=False),
         pretension=2e4,
     )
     np.testing.assert_allclose(auto.press.unit_axis, brute.press.unit_axis, rtol=2e-3)
@@ -88,3 +89,45 @@ def test_refuses(skin, given, message):
 def test_a_large_press_does_not_cover_it(skin):
     with pytest.raises(NotCoveredError, match="pretension"):
         LayeredWave(skin(), DiscTool(5e-3), pretension=1e4, large_press="corrected")
+
+
+X, Y = np.meshgrid(np.linspace(-4e-3, 4e-3, 9), np.linspace(-3e-3, 3e-3, 8))
+
+
+def test_the_dent_of_a_point_solves_the_equation_of_the_sheet():
+    """ln r' satisfies T_x w_xx + T_y w_yy = 0 away from the point."""
+    rho, h = 3.0, 1e-5
+    dent = AnisotropicTension(rho)
+
+    def w(x, y):
+        return np.log(dent.radius(x, y))
+
+    xx = (w(X + h, Y) - 2 * w(X, Y) + w(X - h, Y)) / h**2
+    yy = (w(X, Y + h) - 2 * w(X, Y) + w(X, Y - h)) / h**2
+    np.testing.assert_allclose(rho * xx + yy, 0.0, atol=2e-3 * np.abs(xx).max())
+
+
+def test_the_gradient_is_that_of_the_field():
+    dent, h = AnisotropicTension(0.4), 1e-8
+    found = dent.gradient(X, Y, 2.0 * dent.radius(X, Y))
+    expected = [
+        (dent.radius(X + h, Y) ** 2 - dent.radius(X - h, Y) ** 2) / (2 * h),
+        (dent.radius(X, Y + h) ** 2 - dent.radius(X, Y - h) ** 2) / (2 * h),
+    ]
+    np.testing.assert_allclose(found, expected, atol=1e-8)
+
+
+def test_off_at_one():
+    np.testing.assert_allclose(AnisotropicTension(1.0).radius(X, Y), np.hypot(X, Y))
+
+
+def test_areas_are_kept():
+    """The transformation has the determinant one: contours keep their area, so the mean dent stays."""
+    dent = AnisotropicTension(5.0)
+    unit = dent.radius(np.array([1.0, 0.0]), np.array([0.0, 1.0]))
+    assert unit.prod() == pytest.approx(1.0)
+
+
+def test_anisotropy_refuses():
+    with pytest.raises(WaveError, match="ratio = 0"):
+        AnisotropicTension(0.0)

@@ -6,20 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wavemodel import Prony, WaveError
-from wavemodel.integrators.load import checked_load
-from wavemodel.physics.adhesion import Adhesion
-from wavemodel.physics.body import Physics
-from wavemodel.physics.damping import ViscousDamping
-from wavemodel.physics.drainage import PoroelasticDrainage
-from wavemodel.physics.floor import Floor
-from wavemodel.physics.force_driven import drive_by_force
-from wavemodel.physics.friction import DryFriction
-from wavemodel.physics.permanent_set import PermanentSet
-from wavemodel.physics.pretension import Pretension
-from wavemodel.physics.quasi_static_press import QuasiStaticPress
-from wavemodel.physics.slip import InterfaceSlip
-from wavemodel.physics.softening import StressSoftening
-from wavemodel.physics.stiffening import StrainStiffening
+from wavemodel.integrators.load_history import checked_load
+from wavemodel.physics.contact import Adhesion, DryFriction, PermanentSet
+from wavemodel.physics.elastic import Floor, InterfaceSlip, Pretension, StrainStiffening, StressSoftening
+from wavemodel.physics.quasi_static_press import Physics, QuasiStaticPress, drive_by_force
+from wavemodel.physics.time_dependent import PoroelasticDrainage, ViscousDamping
 
 EVERYTHING = Physics(
     stiffening=StrainStiffening(0.1, 0.5, 1e-2),

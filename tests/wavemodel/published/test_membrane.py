@@ -5,9 +5,9 @@ from scipy.integrate import dblquad
 from wavemodel import Damping, PublishedWave, WaveError, WaveLayer
 from wavemodel.domains.rectangle import Rectangle
 from wavemodel.integrators.oscillators import oscillator_step
-from wavemodel.layers import quadratic
-from wavemodel.layers.laminate import laminate
-from wavemodel.published import printed
+from wavemodel.layered.stack.laminate import laminate
+from wavemodel.layered.stack.sublayers import consistent_mass, quadratic_stiffness
+from wavemodel.published import printed, table_one
 
 
 def test_b_11_of_the_equations_and_of_the_slip():
@@ -89,8 +89,8 @@ def test_it_is_the_one_layer_one_mode_special_case_of_the_layered_wave():
     stack = laminate([layer], [(1.0,)], "free")
     domain = Rectangle(paper.side, paper.side, 1)
     rigid = np.array([0.0, 1.0, 0.0, 1.0, 0.0, 1.0])
-    stiffness = rigid @ quadratic.stiffness(domain.wavenumber, stack)[0, 0] @ rigid
-    mass = rigid @ quadratic.mass(stack)[0] @ rigid
+    stiffness = rigid @ quadratic_stiffness(domain.wavenumber, stack)[0, 0] @ rigid
+    mass = rigid @ consistent_mass(stack)[0] @ rigid
     step = oscillator_step(np.array([np.sqrt(stiffness / mass)]), Damping(), 1e-4)
     amplitude, velocity = paper.coefficient[0].copy(), np.zeros(1)
     middle = np.array([0.5 * paper.side])
@@ -98,3 +98,10 @@ def test_it_is_the_one_layer_one_mode_special_case_of_the_layered_wave():
         step.advance(amplitude, velocity, 0.0, 0.0)
         mode = amplitude[0] * (domain.sines(np.zeros(1)) @ domain.sines(np.zeros(1)).T)[0, 0]
         assert mode == pytest.approx(paper.deflection(middle, middle, n * 1e-4)[0, 0], abs=1e-12)
+
+
+def test_what_agrees_and_what_does_not():
+    rows = table_one()
+    assert [row.agrees for row in rows] == [False, True, False, True]
+    assert [row.value for row in rows] == pytest.approx([9.24986, 1.74092, 31.7788, 39.20117], rel=1e-5)
+    assert all(row.reason for row in rows)

@@ -129,6 +129,9 @@ def test_where_no_replicates_tell_the_noise_the_whole_gap_is_unknown_and_nothing
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert closed_overall(measured(before, (0, 1)), held(before, 0.5 * before)) is None
+        (gap,) = gaps(measured(before, (0, 1)), held(before, 0.5 * before), Settings(bootstraps=5))
+    assert gap.noise_floor is None
+    assert gap.closed == pytest.approx(0.75)
 
 
 def test_channels_count_together_in_units_of_their_noise(monkeypatch):

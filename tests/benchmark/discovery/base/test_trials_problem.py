@@ -3,7 +3,7 @@
 import numpy as np
 
 from benchmark.discovery.base.calibration import calibrate
-from benchmark.discovery.base.effect_model import Model
+from benchmark.discovery.base.effect_model import EffectModel
 from benchmark.discovery.base.trials_problem import only
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.response.wave_table import wave_table
@@ -16,7 +16,7 @@ def test_some_trials_are_simulated_and_whitened_as_among_all(session_of):
     part = only(problem, picked)
     assert [t.name for t in part.trials] == [problem.trials[i].name for i in picked]
     whole = base.model.signals(base.vector, base.nuisance)
-    some = Model(part, ()).signals(base.vector, base.nuisance[picked])
+    some = EffectModel(part, ()).signals(base.vector, base.nuisance[picked])
     for k, i in enumerate(picked):
         np.testing.assert_array_equal(some[k], whole[i])
         np.testing.assert_array_equal(part.whiteners(k)[0].scale, problem.whiteners(i)[0].scale)

@@ -9,7 +9,7 @@ import pytest
 
 from benchmark.discovery.from_run import at_small_strain, is_run, read_run
 from benchmark.errors import InputError
-from benchmark.models.wave_layered import STRAINS
+from benchmark.models.model_result import STRAINS
 
 
 def test_a_run_is_read_in_si(make_run) -> None:

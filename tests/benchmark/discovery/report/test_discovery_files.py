@@ -106,3 +106,11 @@ def test_a_failure_leaves_nothing(record, tmp_path: Path, monkeypatch: pytest.Mo
     with pytest.raises(OSError, match="disk is full"):
         write_discovery(record, tmp_path / "new")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_an_unknown_floor_is_null_in_every_file(record, tmp_path: Path) -> None:
+    gap = tuple(replace(each, noise_floor=None) for each in record.found.gap)
+    made = write_discovery(replace(record, found=replace(record.found, gap=gap)), tmp_path / "new")
+    assert made.document["gap"]["force_z"]["noise_floor"] is None
+    assert pd.read_csv(tmp_path / "new/tables/gap.csv")["noise_floor"].isna().all()
+    assert "noise_floor" not in read_model(tmp_path / "new/model.toml", record.cards).evidence["gap"]["force_z"]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import pyvista
 
-from fem.mesh.surface import Surface
+from fem.mesh.surface.surface_file import Surface
 
 
 @pytest.fixture

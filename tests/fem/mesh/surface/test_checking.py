@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from fem import FemError
-from fem.mesh.surface import Surface, check_surface
+from fem.mesh.surface.checking import check_surface
+from fem.mesh.surface.surface_file import Surface
 
 
 def test_a_good_surface_stays_as_it_is(ball):

@@ -1,0 +1,155 @@
+"""From what `discover` was asked for to its result folder: a session, or one or two finished runs.
+
+A session's fits are kept beside the result until it is complete, so that an interrupted discovery goes on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from benchmark.discovery.criteria import Settings
+from benchmark.discovery.evidence.pool import forget
+from benchmark.discovery.from_run import at_small_strain, is_run, read_run, repair_run
+from benchmark.discovery.planning.proposing import propose
+from benchmark.discovery.report.discovery_files import DiscoveryOutcome, write_discovery
+from benchmark.discovery.report.discovery_record import DiscoveryRecord
+from benchmark.discovery.workflow import Findings, findings
+from benchmark.errors import InputError
+from benchmark.files import Session, load_session
+from benchmark.physics import SLUGS, Effect, catalogue, load_effects
+from benchmark.response.fem_table import fem_table
+from benchmark.runs.destination import destination, file_name
+from benchmark.runs.listener import Listener
+
+
+@dataclass(frozen=True)
+class DiscoverRequest:
+    """What the command line asked for; see `python -m benchmark discover --help`."""
+
+    paths: Sequence[Path]
+    model: str = "wave"
+    effects: Path | None = None
+    specimen: str | None = None
+    settings: Mapping[str, str] = field(default_factory=dict)
+    out: Path | None = None
+    seed: int = 0
+
+
+OfSession = Callable[[DiscoverRequest, tuple[Effect, ...], Listener], DiscoveryRecord]
+
+
+def carry_out(request: DiscoverRequest, of_session: OfSession, listener: Listener) -> DiscoveryOutcome:
+    """Answer for a session or for finished runs, and write the result folder.
+
+    Parameters
+    ----------
+    request
+        What was asked for.
+    of_session
+        What answers for a session.
+    listener
+        Told of progress.
+
+    Raises
+    ------
+    InputError
+        Unusable input, or options that do not go together; nothing is written then.
+    """
+    destination(request.out, "", (*request.paths, request.effects, request.specimen, *request.settings.values()))
+    effects = (*catalogue(), *(() if request.effects is None else load_effects(request.effects)))
+    if any(is_run(path) for path in request.paths):
+        record = _of_runs(request, effects, listener)
+    elif len(request.paths) > 1:
+        raise InputError(
+            "discover takes one session (several conditions belong into one), or one or two result folders of run"
+        )
+    else:
+        record = of_session(request, effects, listener)
+    outcome = write_discovery(record, destination(request.out, f"{record.name}-discovery"))
+    if record.store is not None:
+        forget(record.store)
+    return outcome
+
+
+def _of_runs(request: DiscoverRequest, effects: tuple[Effect, ...], listener: Listener) -> DiscoveryRecord:
+    """The wave model of a run against its finite elements."""
+    odd = [path for path in request.paths if not is_run(path)]
+    if odd or len(request.paths) > 2:
+        what = f"{odd[0]} is none" if odd else f"there are {len(request.paths)}"
+        raise InputError(f"with a result folder of run, discover takes one or two of them and nothing else; {what}")
+    if request.model != "wave":
+        raise InputError("--model fem: in a finished run the FEM is what the wave model is held against; leave it out")
+    if request.settings or request.specimen is not None:
+        raise InputError("--set and --specimen belong to a session: a finished run has its scenario in it")
+    runs = [at_small_strain(read_run(path)) for path in request.paths]
+    return repair_run(runs[0], runs[1] if len(runs) > 1 else None, effects, request.seed, listener)
+
+
+STAGES = {
+    "prepare": "read and align the trials",
+    "detect": "is there a disagreement",
+    "verify": "what the effect closes",
+}
+
+
+def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listener: Listener) -> DiscoveryRecord:
+    """Find what the model of a session lacks.
+
+    Fits are kept beside the result folder until it is complete, so that an interrupted discovery goes on.
+
+    Raises
+    ------
+    InputError
+        The session cannot be used.
+    """
+    loaded = load_session(request.paths[0], request.settings, request.specimen)
+    session, said = _with_films(loaded, listener)
+    own = tuple(effect for effect in effects if effect.slug not in SLUGS)
+    store = store_folder(request.out, session, request.model)
+    found = _found(session, request, own, listener, store)
+    warnings = tuple(dict.fromkeys((*session.warnings, *said, *found.discovery.warnings)))
+    return DiscoveryRecord(
+        name=session.name,
+        source="session",
+        fingerprint=session.fingerprint,
+        synthetic=session.synthetic,
+        tissue=session.specimen.name,
+        model=request.model,
+        found=replace(found.discovery, warnings=warnings),
+        cards={effect.slug: (effect.richer or effect).description for effect in effects},
+        seed=request.seed,
+        proposal=propose(found),
+        large_press="corrected",
+        store=store,
+    )
+
+
+def _with_films(session: Session, listener: Listener) -> tuple[Session, tuple[str, ...]]:
+    if session.camera is None:
+        return session, ()
+    from benchmark.runs.filming import with_markers
+
+    return with_markers(session, listener)
+
+
+def store_folder(out: Path | None, session: Session, model: str) -> Path:
+    """Where the fits of an unfinished discovery are kept: beside the result, the same for the same session."""
+    if out is not None:
+        return out.parent / f".{out.name}-{model}.unfinished"
+    return Path("results") / f".{file_name(session.name)}-{session.fingerprint[:12]}-{model}.unfinished"
+
+
+def _found(
+    session: Session, request: DiscoverRequest, own: tuple[Effect, ...], listener: Listener, store: Path
+) -> Findings:
+    table_of = fem_table(session) if request.model == "fem" else None
+    settings = Settings(seed=request.seed)
+    with listener.progress(f"{session.name}: what the model lacks") as advance:
+
+        def on_stage(stage: str, done: int, total: int, best: str) -> None:
+            remark = f"best so far {best.replace('_', ' ')}" if best else ""
+            advance(STAGES.get(stage, stage), done, max(total, 1), remark)
+
+        return findings(session, settings=settings, effects=own, listener=on_stage, store=store, table_of=table_of)

@@ -1,0 +1,1 @@
+"""Load histories followed: Newton's method, step control, small strain, relaxation, checkpoints."""

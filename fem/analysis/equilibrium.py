@@ -1,0 +1,78 @@
+"""The equilibrium problem of a run, and its states: equations, unit load, depth probe; how a Newton run ended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fem.arrays import FloatArray
+from fem.assembly.system import System
+from fem.linear_solver import SymmetricSolver
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """Internal forces = force * unit load, with the force or the depth prescribed.
+
+    Attributes
+    ----------
+    system
+        Residual and tangent.
+    solver
+        Linear solver of the tangent's pattern.
+    unit_load
+        Forces (n,) on the unknowns of a press of 1 N.
+    probe
+        Unknown whose downward displacement is the depth.
+    """
+
+    system: System
+    solver: SymmetricSolver
+    unit_load: FloatArray
+    probe: int
+
+    def depth(self, y: FloatArray) -> float:
+        """Depth in m of the unknowns (n,)."""
+        return float(-y[self.probe])
+
+
+@dataclass(frozen=True)
+class State:
+    """Displacement, pressure and force, in equilibrium or a guess at it.
+
+    Attributes
+    ----------
+    y
+        Unknowns (n,) in m.
+    pressure
+        Pressure coefficients (3, E).
+    force
+        Press of the tool in N.
+    """
+
+    y: FloatArray
+    pressure: FloatArray
+    force: float
+
+
+@dataclass(frozen=True)
+class NewtonResult:
+    """How a Newton run ended.
+
+    Attributes
+    ----------
+    state
+        The state reached; in equilibrium if `reason` is empty.
+    iterations
+        Number of Newton corrections made.
+    reason
+        Why it failed, or "".
+    """
+
+    state: State
+    iterations: int
+    reason: str = ""
+
+    @property
+    def success(self) -> bool:
+        """Whether equilibrium was found."""
+        return not self.reason

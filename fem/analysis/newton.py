@@ -1,0 +1,155 @@
+"""Newton's method for one prescribed force or depth.
+
+The pressure is an unknown of its own during the iteration (eliminated element by element in each linear
+solve), which keeps Newton robust for nearly incompressible layers. Under depth control the force is one
+more unknown: the bordered system is solved by two right-hand sides of the same factors, so the depth is
+exact and the force follows, also on branches where the force falls. Where the last correction promises that one more
+with the same factors suffices, no new ones are made (the simplified Newton method: P. Deuflhard, Newton Methods for
+Nonlinear Problems, 2004, section 2.1).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from fem.analysis.equilibrium import Equilibrium, NewtonResult, State
+from fem.arrays import FloatArray
+from fem.assembly.system import Evaluation
+from fem.linear_solver import SingularMatrixError
+
+MOST_ROUND_OFF = 1e3  # in tolerances: round-off beyond it is not accepted as equilibrium
+SAFETY = 4.0  # on the reduction by old factors; in theory twice that of the correction they were made for
+
+
+@dataclass(frozen=True)
+class NewtonSettings:
+    """Limits of a Newton run.
+
+    Attributes
+    ----------
+    tolerance
+        Allowed norm of the unbalanced forces relative to the force.
+    iterations
+        Most corrections.
+    halvings
+        Most halvings of a correction that turns an element inside out.
+    divergence
+        Growth of the unbalanced forces over the best so far that counts as divergence.
+    """
+
+    tolerance: float = 1e-9
+    iterations: int = 25
+    halvings: int = 5
+    divergence: float = 1e6
+
+
+def solve_newton(
+    problem: Equilibrium,
+    guess: State,
+    control: Literal["force", "depth"],
+    target: float,
+    force_scale: float,
+    settings: NewtonSettings,
+) -> NewtonResult:
+    """Find the equilibrium at a prescribed force (N) or depth (m), from a guess, with at least one correction.
+
+    Below the force scale in N the tolerance is not tightened further. A failure has its reason in the result.
+    """
+    state = guess if control == "depth" else State(guess.y, guess.pressure, target)
+    evaluation = problem.system.evaluate(state.y, state.pressure)
+    if evaluation is None:
+        return NewtonResult(state, 0, "the predicted state turns an element inside out")
+    before, best, outdated = _unbalanced(problem, state, evaluation), np.inf, True
+    for iteration in range(1, settings.iterations + 1):
+        try:
+            if outdated:
+                tangent = problem.system.tangent(evaluation)
+                problem.solver.factorise(tangent)
+            step = _correction(problem, state, evaluation, control, target)
+        except SingularMatrixError as error:
+            return NewtonResult(state, iteration, str(error))
+        damped = problem.system.kinked and (control == "force" or _reached(problem, state, target))
+        moved = _move(problem, state, evaluation, step, settings.halvings, damped)
+        if moved is None:
+            return NewtonResult(state, iteration, "an element turns inside out")
+        state, evaluation = moved
+        unbalanced = _unbalanced(problem, state, evaluation)
+        limit = settings.tolerance * max(abs(state.force), force_scale)
+        if unbalanced <= limit or _is_round_off(problem, tangent, state, unbalanced, limit):
+            if control == "force" or _reached(problem, state, target):
+                return NewtonResult(State(state.y, evaluation.elements.consistent_pressure, state.force), iteration)
+        elif unbalanced > settings.divergence * best:
+            return NewtonResult(state, iteration, "the unbalanced forces grow")
+        outdated = not SAFETY * unbalanced**2 <= before * limit
+        before, best = unbalanced, min(best, unbalanced)
+    return NewtonResult(state, settings.iterations, f"no equilibrium after {settings.iterations} iterations")
+
+
+def _unbalanced(problem: Equilibrium, state: State, evaluation: Evaluation) -> float:
+    """Norm of the unbalanced forces in N."""
+    return float(np.linalg.norm(evaluation.residual - state.force * problem.unit_load))
+
+
+def _is_round_off(problem: Equilibrium, tangent: FloatArray, state: State, unbalanced: float, limit: float) -> bool:
+    """Whether what is left is no more than round-off, as with very flat elements far away."""
+    if unbalanced > MOST_ROUND_OFF * limit:
+        return False
+    return unbalanced <= problem.system.scatter.round_off(tangent, state.y)
+
+
+def _reached(problem: Equilibrium, state: State, target: float) -> bool:
+    return abs(problem.depth(state.y) - target) <= 1e-12 * max(abs(target), float(np.abs(state.y).max()))
+
+
+def _correction(
+    problem: Equilibrium,
+    state: State,
+    evaluation: Evaluation,
+    control: Literal["force", "depth"],
+    target: float,
+) -> tuple[FloatArray, float]:
+    """Increments of the unknowns (n,) and of the force, with the factors the solver has."""
+    unbalanced = state.force * problem.unit_load - evaluation.residual
+    if control == "force":
+        return problem.solver.solve(unbalanced[:, None])[:, 0], 0.0
+    free, loaded = problem.solver.solve(np.stack((unbalanced, problem.unit_load), axis=1)).T
+    if loaded[problem.probe] == 0.0:
+        raise SingularMatrixError("the depth does not depend on the force")
+    missing = -target - state.y[problem.probe] - free[problem.probe]
+    force = float(missing / loaded[problem.probe])
+    return free + force * loaded, force
+
+
+def _move(
+    problem: Equilibrium,
+    state: State,
+    evaluation: Evaluation,
+    step: tuple[FloatArray, float],
+    halvings: int,
+    damped: bool,
+) -> tuple[State, Evaluation] | None:
+    """Make a correction, halved until no element is inside out.
+
+    Where it is damped (equations with kinks; not on the way to another depth, which upsets the balance) it is also
+    halved while it leaves more unbalanced than before; if it always does,
+    the half that leaves least is made.
+    """
+    dy, df = step
+    pressure_step = problem.system.pressure_after(evaluation, dy) - state.pressure
+    least, best = np.inf, None
+    before = _unbalanced(problem, state, evaluation) if damped else np.inf
+    for halving in range(halvings + 1):
+        share = 0.5**halving
+        moved = State(state.y + share * dy, state.pressure + share * pressure_step, state.force + share * df)
+        found = problem.system.evaluate(moved.y, moved.pressure)
+        if found is None:
+            continue
+        unbalanced = _unbalanced(problem, moved, found)
+        if unbalanced < least:
+            least, best = unbalanced, (moved, found)
+        if unbalanced <= before:
+            break
+    return best

@@ -1,0 +1,152 @@
+"""Finite-strain runs: step by step with Newton."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem.analysis.checkpoint import Keeper, Progress
+from fem.analysis.equilibrium import Equilibrium, State
+from fem.analysis.linear import unit_state
+from fem.analysis.newton import NewtonSettings
+from fem.analysis.record import Record, largest_strain
+from fem.analysis.stepping import Advance, Stepper, settle
+from fem.assembly.system import System
+from fem.load import Load
+from fem.results.solution import Failure, Resumed, Solution, StepReport
+
+LEAST_SHARE_OF_PEAK = 1e-3
+
+
+def run_nonlinear(
+    record: Record,
+    load: Load,
+    settings: NewtonSettings,
+    warnings: tuple[str, ...],
+    on_step: Callable[[StepReport], None] | None,
+    checkpoint: Keeper | None = None,
+) -> Solution:
+    """Follow a load history in finite strain.
+
+    Parameters
+    ----------
+    record
+        Empty record of the model.
+    load
+        Prescribed force (N) or depth (m).
+    settings
+        Limits of Newton's method.
+    warnings
+        Texts of the model.
+    on_step
+        Called after each accepted step that was computed here.
+    checkpoint
+        Where the accepted steps are kept (CheckpointError if it cannot be used); what it holds already is not computed
+        again.
+
+    Returns
+    -------
+    Solution
+        All steps that were reached, and the failure if there was one.
+    """
+    began, problem = clock.process_time(), record.equilibrium
+    scale = LEAST_SHARE_OF_PEAK * force_scale(problem, load)
+    start, reason = settle(problem, scale, settings)
+    if reason:
+        failure = Failure(1, float(load.time[0]), load.control, 0.0, float(load.value[0]), reason)
+        return record.solution(failure, warnings)
+    stepper = Stepper(problem, load.control, scale, settings, start, load.start)
+    return _Run(record, load, stepper, start, began, warnings, on_step, checkpoint).solution()
+
+
+@dataclass
+class _Run:
+    """A run under way: the process clock at its begin in s, and the warnings so far."""
+
+    record: Record
+    load: Load
+    stepper: Stepper
+    start: State
+    began: float
+    warnings: tuple[str, ...]
+    on_step: Callable[[StepReport], None] | None
+    checkpoint: Keeper | None
+
+    def solution(self) -> Solution:
+        """Follow the load history to its end, or to where it cannot be followed."""
+        first = 0 if self.checkpoint is None else _resume(self.record, self.stepper, self.checkpoint)
+        steps = list(enumerate(zip(self.load.time.tolist(), self.load.value.tolist(), strict=True)))
+        for n, (time, value) in steps[first:]:
+            advance = self.stepper.advance(value, time)
+            if advance.reason:
+                failure = Failure(n + 1, time, self.load.control, advance.value, value, advance.reason)
+                further = _between(self.record, self.stepper.problem.system, advance, self.start)
+                return self.record.solution(failure, self.warnings, further)
+            self._accept(n + 1, time, advance)
+        return self.record.solution(None, self.warnings)
+
+    def _accept(self, step: int, time: float, advance: Advance) -> None:
+        system, state = self.stepper.problem.system, advance.state
+        _keep(self.record, system, time, state)
+        self.warnings = tuple(dict.fromkeys((*self.warnings, *system.warnings(state.y))))
+        if self.checkpoint is not None:
+            self.checkpoint.write(_progress(self.record, self.stepper, clock.process_time() - self.began))
+        if self.on_step is not None:
+            total, depth = len(self.load.time), self.record.equilibrium.depth(state.y)
+            self.on_step(StepReport(step, total, time, state.force, depth, advance.iterations, advance.cuts))
+
+
+def force_scale(problem: Equilibrium, load: Load) -> float:
+    """Largest force in N of a load history, from the stiffness at rest if depth is prescribed."""
+    largest = float(np.abs(load.value).max())
+    if load.control == "force":
+        return largest
+    return largest / problem.depth(unit_state(problem)[0].y)
+
+
+def _keep(record: Record, system: System, time: float, state: State) -> None:
+    evaluation = system.evaluate(state.y, state.pressure)
+    if evaluation is None:
+        raise ArithmeticError("an accepted state cannot be evaluated")
+    returned = system.reaction(evaluation.elements.force, evaluation.responses)
+    record.add(time, state, returned, largest_strain(system, state.y, finite=True))
+
+
+def _between(record: Record, system: System, advance: Advance, start: State) -> Record | None:
+    """The record with the last state of equilibrium as one more row; None if it is a step's or the start's."""
+    known = record.states[-1] if record.states else start
+    if advance.state is known:
+        return None
+    further = record.copy()
+    _keep(further, system, advance.time, advance.state)
+    return further
+
+
+def _resume(record: Record, stepper: Stepper, checkpoint: Keeper) -> int:
+    """Put the steps of a checkpoint into record and stepper; how many there are."""
+    found = checkpoint.read()
+    if found is None:
+        return 0
+    for n, time, reached, strain in zip(found.steps, found.time, found.reactions, found.strains, strict=True):
+        record.add(float(time), found.states[n], float(reached), float(strain))
+    stepper.resume(found.values, found.times, found.states)
+    record.resumed = Resumed(len(found.steps), found.seconds)
+    return len(found.steps)
+
+
+def _progress(record: Record, stepper: Stepper, seconds: float) -> Progress:
+    known, earlier = stepper.known, 0.0 if record.resumed is None else record.resumed.seconds
+    place = {id(state): n for n, state in enumerate(known.states)}
+    return Progress(
+        time=np.array(record.time),
+        reactions=np.array(record.reactions),
+        strains=np.array(record.strains),
+        steps=np.array([place[id(state)] for state in record.states]),
+        values=known.values,
+        times=stepper.times,
+        states=known.states,
+        seconds=earlier + seconds,
+    )

@@ -1,0 +1,123 @@
+"""Prediction of the next state from known ones.
+
+Over the load: interpolation or extrapolation through the nearest known states, of second order, or of a higher one as
+long as each further state changes the prediction much less than the one before: high on a smooth path, low where the
+path has a kink. On the way back of a load history the states of the way up are near, so the prediction is good; it is
+still corrected by Newton like any other.
+
+Over time, for a body with a memory, whose states of the way up say nothing about the way back: while the load goes on
+at one rate the last three states are extrapolated; after a change of rate the last increment is scaled with the load.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fem.analysis.equilibrium import State
+from fem.arrays import FloatArray
+
+LOWEST_ORDER, HIGHEST_ORDER = 2, 5  # as far as there are states
+SHRINKAGE = 0.5  # of the change by each further state; where it is less, the order rises no further
+LEAST_SPACING = 0.3
+KEPT = 3
+SAME_RATE = 1e-6
+
+
+class KnownStates:
+    """States of equilibrium with the load value each belongs to."""
+
+    def __init__(self, value: float, state: State) -> None:
+        self._values = [value]
+        self._states = [state]
+
+    @property
+    def values(self) -> FloatArray:
+        """Load values (k,) in the order in which the states were added."""
+        return np.array(self._values)
+
+    @property
+    def states(self) -> tuple[State, ...]:
+        """The states in the same order."""
+        return tuple(self._states)
+
+    def add(self, value: float, state: State) -> None:
+        """Remember a state."""
+        self._values.append(value)
+        self._states.append(state)
+
+    def predict(self, value: float, highest: int = HIGHEST_ORDER) -> State:
+        """State at a load value, of at most the order `highest`."""
+        chosen = self._choose(value, highest + 1)
+        states = [self._states[n] for n in chosen]
+        return extrapolated(np.array([self._values[n] for n in chosen]), states, value)
+
+    def _choose(self, value: float, most: int) -> list[int]:
+        """Nearest known states, far enough from each other for the distance to the value."""
+        distance = np.abs(np.array(self._values) - value)
+        order = np.argsort(distance, kind="stable")
+        chosen = [int(order[0])]
+        spacing = LEAST_SPACING * max(float(distance[order[0]]), 1e-9 * float(distance.max()))
+        for n in order[1:]:
+            if len(chosen) == most or distance[order[0]] == 0.0:
+                break
+            if all(abs(self._values[n] - self._values[m]) > spacing for m in chosen):
+                chosen.append(int(n))
+        return chosen
+
+
+def extrapolated(points: FloatArray, states: list[State], at: float) -> State:
+    """Prediction at one place from states at different points (n,), the most important first."""
+    weights = np.zeros((len(points), len(points)))
+    for k in range(len(points)):
+        weights[k, : k + 1] = lagrange(points[: k + 1], at)
+    terms = np.diff(weights, axis=0) @ np.stack([state.y for state in states])
+    sizes = np.linalg.norm(terms, axis=1)
+    order = min(LOWEST_ORDER, len(sizes))
+    while order < len(sizes) and sizes[order] <= SHRINKAGE * sizes[order - 1]:
+        order += 1
+    return combined(weights[order, : order + 1], states[: order + 1])
+
+
+def combined(weights: FloatArray, states: list[State]) -> State:
+    """Sum of states (n) times weights (n,)."""
+    y = np.tensordot(weights, [s.y for s in states], axes=1)
+    pressure = np.tensordot(weights, [s.pressure for s in states], axes=1)
+    return State(y, pressure, float(weights @ [s.force for s in states]))
+
+
+def lagrange(points: FloatArray, at: float) -> FloatArray:
+    """Weights (n,) of values at different points (n,) in the polynomial through them, at one place."""
+    weights = np.ones(len(points))
+    for i, p in enumerate(points):
+        for j, other in enumerate(points):
+            if i != j:
+                weights[i] *= (at - other) / (p - other)
+    return weights
+
+
+class RecentStates:
+    """The last states of equilibrium with load value and time of each."""
+
+    def __init__(self, value: float, time: float, state: State) -> None:
+        self._known = [(value, time, state)]
+
+    def add(self, value: float, time: float, state: State) -> None:
+        """Remember a state."""
+        self._known = [*self._known[1 - KEPT :], (value, time, state)]
+
+    def predict(self, value: float, time: float) -> State:
+        """State at a load value and a time in s."""
+        values = np.array([*(v for v, _, _ in self._known), value])
+        times = np.array([*(t for _, t, _ in self._known), time])
+        states = [state for _, _, state in self._known]
+        if len(states) == 1:
+            return states[0]
+        steps, durations = np.diff(values), np.diff(times)
+        if len(states) == KEPT and durations.min() > 0.0 and _steady(steps / durations):
+            return combined(lagrange(times[:-1], time), states)
+        ratio = steps[-1] / steps[-2] if steps[-2] != 0.0 else 0.0
+        return combined(np.array([-ratio, 1.0 + ratio]), states[-2:])
+
+
+def _steady(rates: np.ndarray) -> bool:
+    return bool(np.ptp(rates) <= SAME_RATE * np.abs(rates).max())

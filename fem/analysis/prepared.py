@@ -1,0 +1,127 @@
+"""A prepared model: mesh, equations and linear solver of one problem, ready for load histories."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from fem.analysis.checkpoint import Checkpoint, Keeper, run_fingerprint
+from fem.analysis.equilibrium import Equilibrium
+from fem.analysis.linear import run_linear
+from fem.analysis.newton import NewtonSettings
+from fem.analysis.nonlinear import run_nonlinear
+from fem.analysis.record import Record
+from fem.linear_solver.factory import suited_threads
+from fem.load import Load
+from fem.mesh.solid import AnyMesh
+from fem.problem.problem import Problem
+from fem.results.fields import FieldRecovery
+from fem.results.solution import Solution, StepReport
+
+PULLING = "the load history pulls (negative values): the contact is tied to the surface and cannot lift off"
+
+COARSER = "a coarser mesh, whose elements at the tool's edge fold later, may follow a deeper press"
+ROUNDER = "a larger edge_radius of the tool may follow a deeper press"
+
+LIFTING = (
+    "the load history pulls (negative values): the tool comes off once it pulls more than its adhesion force; a depth "
+    "is then reached without force, a prescribed pull is not"
+)
+
+
+@dataclass(frozen=True)
+class Model:
+    """A problem with its mesh, equations and linear solver.
+
+    Attributes
+    ----------
+    problem
+        What was asked.
+    mesh
+        The mesh.
+    equilibrium
+        Equations, linear solver, unit load and depth probe.
+    recovery
+        Evaluates stress and strain.
+    newton
+        Limits of Newton's method.
+    warnings
+        Texts for people, repeated in every solution.
+    """
+
+    problem: Problem
+    mesh: AnyMesh
+    equilibrium: Equilibrium
+    recovery: FieldRecovery
+    newton: NewtonSettings
+    warnings: tuple[str, ...]
+
+    @property
+    def unknowns(self) -> int:
+        """Number of displacement unknowns; the pressure is condensed."""
+        return self.equilibrium.system.numbering.count
+
+    @property
+    def linear_solver(self) -> str:
+        """Name of the linear solver in use."""
+        return self.equilibrium.solver.name
+
+    def run(
+        self,
+        load: Load,
+        on_step: Callable[[StepReport], None] | None = None,
+        checkpoint: str | Path | Keeper | None = None,
+    ) -> Solution:
+        """Follow a load history.
+
+        Parameters
+        ----------
+        load
+            Prescribed force or depth over time.
+        on_step
+            Called after each accepted step that was computed here.
+        checkpoint
+            File in which a run at finite strain keeps its accepted steps, each one, or a keeper round
+            :meth:`checkpoint` that decides which. If the file exists, the run goes on from there; after the last
+            step it stays, and can be removed. A linear run, which is one solve, has none.
+
+        Returns
+        -------
+        Solution
+            With `complete` False and a `failure` if a step could not be reached; never raises for that.
+
+        Raises
+        ------
+        CheckpointError
+            If the checkpoint cannot be written, is damaged, or is of another problem, mesh, load history or solver.
+        """
+        record = Record(self.mesh, self.equilibrium, self.recovery, self._names())
+        warnings = self.warnings + ((self._pulling,) if load.value.min() < 0.0 else ())
+        with suited_threads(self.unknowns):
+            if self.problem.kinematics == "linear":
+                return run_linear(record, load, warnings, on_step)
+            kept = self.checkpoint(load, checkpoint) if isinstance(checkpoint, (str, Path)) else checkpoint
+            return self._advised(run_nonlinear(record, load, self.newton, warnings, on_step, kept))
+
+    def checkpoint(self, load: Load, path: str | Path) -> Checkpoint:
+        """The file in which a run of a load history keeps its steps."""
+        return Checkpoint(Path(path), run_fingerprint(self.problem, self.mesh, load))
+
+    def _advised(self, solution: Solution) -> Solution:
+        """The solution; a press that the mesh could not follow with what may go further."""
+        failure = solution.failure
+        touches = self.problem.touches
+        coarse = self.problem.discretisation.density == "coarse" and not touches
+        if failure is None or coarse or failure.target <= failure.reached:
+            return solution
+        advice = ROUNDER if touches else COARSER
+        return replace(solution, failure=replace(failure, reason=f"{failure.reason}; {advice}"))
+
+    @property
+    def _pulling(self) -> str:
+        """What a history that pulls must know of this contact."""
+        return LIFTING if self.problem.touches else PULLING
+
+    def _names(self) -> tuple[str, ...]:
+        return tuple(layer.name for layer in self.problem.layers)

@@ -1,0 +1,231 @@
+"""The state before the first load step, and the way from one prescribed load to the next, in parts as Newton needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from fem.analysis.equilibrium import Equilibrium, NewtonResult, State
+from fem.analysis.newton import NewtonSettings, solve_newton
+from fem.analysis.prediction import LOWEST_ORDER, KnownStates, RecentStates
+from fem.arrays import FloatArray
+from fem.assembly.system import Evaluation, System
+
+SMALLEST_PART = 2.0**-8
+MOST_PARTS = 400
+MOST_CORRECTIONS = 60
+
+
+def at_rest(problem: Equilibrium) -> Evaluation:
+    """The equations at rest, without prescribed displacements."""
+    plain = problem.system.plain
+    rest = plain.evaluate(*plain.rest())
+    if rest is None:
+        raise ArithmeticError("the mesh has an element without volume")
+    return rest
+
+
+def settle_linear(problem: Equilibrium) -> State:
+    """Small-strain state of the prescribed displacements alone; the tangent at rest must be factorised."""
+    y, pressure = problem.system.rest()
+    if not problem.system.is_displaced:
+        return State(y, pressure, 0.0)
+    system, rest = problem.system, at_rest(problem)
+    for _ in range(2):
+        force = system.scatter.vector(system.linear_force(rest, y))
+        y = y - problem.solver.solve(force[:, None])[:, 0]
+    return State(y, system.linear_pressure(rest, y), 0.0)
+
+
+def settle(problem: Equilibrium, force_scale: float, settings: NewtonSettings) -> tuple[State, str]:
+    """Apply the prescribed displacements at no force, in as many parts as Newton needs.
+
+    Returns
+    -------
+    tuple
+        The state, and why it is not the wanted one, or "".
+    """
+    state = State(*problem.system.rest(), 0.0)
+    if not problem.system.is_displaced:
+        return state, ""
+    rest = at_rest(problem)
+    problem.solver.factorise(problem.system.plain.tangent(rest))
+    direction = settle_linear(problem)
+    share, part, reason = 0.0, 1.0, ""
+    while share < 1.0 and part > SMALLEST_PART:
+        target = min(1.0, share + part)
+        ahead = target - share
+        guess = State(state.y + ahead * direction.y, state.pressure + ahead * direction.pressure, 0.0)
+        there = replace(problem, system=problem.system.scaled(target))
+        result = solve_newton(there, guess, "force", 0.0, force_scale, settings)
+        if result.success:
+            state, share = result.state, target
+        else:
+            part, reason = 0.5 * part, result.reason
+    return state, "" if share >= 1.0 else f"the tool cannot be tilted: {reason}"
+
+
+@dataclass(frozen=True)
+class Advance:
+    """How one load step ended.
+
+    Attributes
+    ----------
+    state, value
+        Last state of equilibrium and its load value (N or m).
+    iterations
+        Newton corrections in all parts together.
+    cuts
+        How often a part was halved.
+    reason
+        Why the target was not reached, or "".
+    time
+        Time in s of the state.
+    """
+
+    state: State
+    value: float
+    iterations: int
+    cuts: int
+    reason: str = ""
+    time: float = 0.0
+
+
+class Stepper:
+    """Follows the equilibrium from load to load.
+
+    Parameters
+    ----------
+    problem
+        The equations.
+    control
+        What is prescribed, force (N) or depth (m).
+    force_scale
+        Force in N below which the tolerance is not tightened further.
+    settings
+        Limits of each Newton run.
+    start
+        State without force to start from; None for rest.
+    time
+        Time in s of the start; matters to equations with a memory only.
+    """
+
+    def __init__(
+        self,
+        problem: Equilibrium,
+        control: Literal["force", "depth"],
+        force_scale: float,
+        settings: NewtonSettings,
+        start: State | None = None,
+        time: float = 0.0,
+    ) -> None:
+        self._problem = problem
+        self._control: Literal["force", "depth"] = control
+        self._force_scale = force_scale
+        self._settings = settings
+        self._state = State(*problem.system.rest(), 0.0) if start is None else start
+        self._value = 0.0 if control == "force" else problem.depth(self._state.y)
+        self._time = time
+        self._times = [time]
+        self._known = KnownStates(self._value, self._state)
+        self._recent = RecentStates(self._value, self._time, self._state) if problem.system.remembers else None
+
+    @property
+    def known(self) -> KnownStates:
+        """All states of equilibrium found so far."""
+        return self._known
+
+    @property
+    def times(self) -> FloatArray:
+        """Their times (k,) in s."""
+        return np.array(self._times)
+
+    def resume(self, values: FloatArray, times: FloatArray, states: Sequence[State]) -> None:
+        """Go on from known states, each with its load value (k,) in N or m and its time (k,) in s, the start first."""
+        for value, time, state in zip(values[1:].tolist(), times[1:].tolist(), states[1:], strict=True):
+            system = self._problem.system.advanced(time - self._time)
+            self._accept(state, value, time, system.corrected(state.y, state.force) or system)
+
+    @property
+    def problem(self) -> Equilibrium:
+        """The equations, which remember the states up to the last one."""
+        return self._problem
+
+    def advance(self, target: float, time: float | None = None) -> Advance:
+        """Go to the load value `target` at a time in s (None: at once), halving the way as often as needed."""
+        start, iterations, cuts = self._value, 0, 0
+        began, way = self._time, target - start
+        duration = 0.0 if time is None else time - began
+        share, part = 0.0, 1.0
+        for _ in range(MOST_PARTS):
+            last = part >= 1.0 - share
+            value = target if last else start + (share + part) * way
+            end = began + duration * (1.0 if last else share + part)
+            result, system = self._solve(value, end)
+            iterations += result.iterations
+            if result.success:
+                self._accept(result.state, value, end, system)
+                if last:
+                    return Advance(self._state, value, iterations, cuts, time=self._time)
+                share += part
+                part *= 2.0
+            else:
+                part *= 0.5
+                cuts += 1
+                if part <= SMALLEST_PART:
+                    return Advance(self._state, self._value, iterations, cuts, result.reason, self._time)
+        reason = f"more than {MOST_PARTS} parts of one step"
+        return Advance(self._state, self._value, iterations, cuts, reason, self._time)
+
+    def _solve(self, value: float, time: float) -> tuple[NewtonResult, System]:
+        """Newton's result at a load value and a time, and the equations that fit it."""
+        iterations = 0
+        for guess, begun in self._beginnings(value, time):
+            result, system = self._settle(guess, value, begun)
+            iterations += result.iterations
+            if result.success:
+                break
+        return replace(result, iterations=iterations), system
+
+    def _beginnings(self, value: float, time: float) -> Iterator[tuple[State, System]]:
+        """Predictions with the equations to begin with; on the way back, last, those of a lighter press."""
+        system = self._problem.system.advanced(time - self._time)
+        for guess in self._guesses(value, time):
+            yield guess, system
+        if abs(value) < abs(self._value):
+            lighter = system.lightened(max(value / self._value, 0.0))
+            if lighter is not None:
+                yield next(self._guesses(value, time)), lighter
+
+    def _guesses(self, value: float, time: float) -> Iterator[State]:
+        """Predictions at a load value and a time, the best first."""
+        if self._recent is not None:
+            yield self._recent.predict(value, time)
+            return
+        yield self._known.predict(value)
+        if len(self._times) > LOWEST_ORDER + 1:
+            yield self._known.predict(value, LOWEST_ORDER)
+
+    def _settle(self, guess: State, value: float, system: System) -> tuple[NewtonResult, System]:
+        """Newton's result from a guess and equations to begin with, and the equations that fit it."""
+        iterations = 0
+        for _ in range(MOST_CORRECTIONS):
+            ahead = replace(self._problem, system=system)
+            result = solve_newton(ahead, guess, self._control, value, self._force_scale, self._settings)
+            iterations += result.iterations
+            other = system.corrected(result.state.y, result.state.force) if result.success else None
+            if other is None:
+                return replace(result, iterations=iterations), system
+            system, guess = other, result.state
+        return NewtonResult(guess, iterations, f"friction does not settle in {MOST_CORRECTIONS} rounds"), system
+
+    def _accept(self, state: State, value: float, time: float, system: System) -> None:
+        self._problem = replace(self._problem, system=system.accepted(state.y))
+        self._state, self._value, self._time = state, value, time
+        self._times.append(time)
+        self._known.add(value, state)
+        if self._recent is not None:
+            self._recent.add(value, time, state)

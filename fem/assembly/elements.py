@@ -1,0 +1,187 @@
+"""The elements of a mesh with their laws: forces and stiffness of displacement and pressure, the pressure condensed.
+
+The shapes in the docstrings are those of the axisymmetric element (18 displacements, 3 pressures); other
+elements have others. An element without pressure shapes has all of its bulk modulus at the Gauss points.
+
+Two-field form (perturbed Lagrangian): W_iso(F) + p (J - 1) - p^2 / (2 K), u quadratic, p discontinuous, as a rule
+linear (Q2/P1, inf-sup stable: Boffi, Brezzi and Fortin, Mixed Finite Element Methods and Applications,
+chapter 8). The pressure shapes are orthonormal on each element, so that condensing it adds
+K sum_i b_i b_i^T to the element's stiffness, b_i the integral of pressure shape i times dJ/du.
+Linear kinematics is the tangent at rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fem.arrays import FloatArray
+from fem.assembly.element_geometry import ELEMENTS_AT_ONCE, ElementGeometry
+from fem.materials.deformation import Deformation
+from fem.materials.element_laws import ElementLaws
+from fem.materials.prony import Memory
+
+
+@dataclass(frozen=True)
+class ElementState:
+    """The elements at one state.
+
+    Attributes
+    ----------
+    deformation
+        Deformation gradient at the Gauss points.
+    pressure
+        Pressure coefficients (3, E) the evaluation was made with.
+    pressure_at_points
+        Pressure (q, E) in Pa.
+    coupling
+        b (18, 3, E): derivative of the volume change by the nodal displacements.
+    mismatch
+        K (volume change) - p (3, E): how far the pressure is from what the volume change asks for.
+    force
+        Nodal forces (18, E) in N with the pressure the volume change asks for.
+    """
+
+    deformation: Deformation
+    pressure: FloatArray
+    pressure_at_points: FloatArray
+    coupling: FloatArray
+    mismatch: FloatArray
+    force: FloatArray
+
+    @property
+    def consistent_pressure(self) -> FloatArray:
+        """Pressure coefficients (3, E) the volume change asks for."""
+        out: FloatArray = self.pressure + self.mismatch
+        return out
+
+
+@dataclass(frozen=True)
+class Elements:
+    """Geometry and laws of all elements, and what the material remembers.
+
+    Attributes
+    ----------
+    geometry
+        Geometry at the Gauss points.
+    laws
+        Laws of the elements, those of a step of relaxation while one is under way.
+    point_modulus
+        Part (E,) in Pa of the bulk modulus that acts on J at each Gauss point instead of on the pressure field.
+    memory
+        Relaxation up to the last accepted state; None where no layer relaxes.
+    duration
+        Of the step under way, in s.
+    """
+
+    geometry: ElementGeometry
+    laws: ElementLaws
+    point_modulus: FloatArray
+    memory: Memory | None = None
+    duration: float = 0.0
+
+    @property
+    def field_modulus(self) -> FloatArray:
+        """Bulk modulus (E,) in Pa that acts on the pressure field."""
+        out: FloatArray = self.laws.bulk_modulus - self.point_modulus
+        return out
+
+    @property
+    def rest_pressure(self) -> FloatArray:
+        """Pressure coefficients (3, E) at rest."""
+        return np.zeros((len(self.geometry.pressure), len(self.laws.bulk_modulus)))
+
+    def deformation(self, u: FloatArray) -> Deformation:
+        """Deformation at the Gauss points of nodal displacements (18, E) in m."""
+        return Deformation(self.geometry.components, self.geometry.gradient(u))
+
+    def evaluate(self, u: FloatArray, pressure: FloatArray) -> ElementState | None:
+        """Forces at nodal displacements (18, E) and pressure coefficients (3, E); None where J <= 0."""
+        deformation = self.deformation(u)
+        if not deformation.J.min() > 0.0:
+            return None
+        shapes, weight = self.geometry.pressure, self.geometry.weight
+        change = deformation.volume_change
+        at_points = np.einsum("ie,iqe->qe", pressure, shapes) + self.point_modulus * change
+        volume_change = np.einsum("iqe,qe->ie", shapes, weight * change)
+        mismatch = self.field_modulus * volume_change - pressure
+        coupling = self.geometry.coupling(deformation.cofactor * weight)
+        stress = self.laws.stress_change(deformation) + at_points * deformation.cofactor
+        force = self.geometry.forces(stress * weight) + np.einsum("nie,ie->ne", coupling, mismatch)
+        return ElementState(deformation, pressure, at_points, coupling, mismatch, force)
+
+    def stiffness(self, state: ElementState) -> FloatArray:
+        """Packed element stiffness (entries, E) in N/m, the pressure condensed."""
+        components, deformation = self.geometry.components, state.deformation
+        moduli = self.laws.tangent(deformation)
+        moduli[components.cofactor_pairs] += state.pressure_at_points * deformation.cofactor_derivative
+        components.add_products(moduli, self.point_modulus * deformation.cofactor, deformation.cofactor)
+        moduli *= self.geometry.weight
+        packed = self.geometry.stiffness(moduli)
+        self._condense(packed, state.coupling)
+        return packed
+
+    def _condense(self, packed: FloatArray, coupling: FloatArray) -> None:
+        """Add what the eliminated pressure does to the packed stiffness."""
+        (rows, columns), modulus = self.geometry.packed, self.field_modulus
+        for start in range(0, packed.shape[1], ELEMENTS_AT_ONCE):
+            part = slice(start, start + ELEMENTS_AT_ONCE)
+            b = coupling[..., part]
+            packed[:, part] += np.einsum("pie,pie->pe", (b * modulus[part])[rows], b[columns])
+
+    def pressure_after(self, state: ElementState, du: FloatArray) -> FloatArray:
+        """Pressure coefficients (3, E) after an increment du (18, E) of the nodal displacements."""
+        change = np.einsum("nie,ne->ie", state.coupling, du)
+        out: FloatArray = state.pressure + state.mismatch + self.field_modulus * change
+        return out
+
+    def linear_pressure(self, rest: ElementState, u: FloatArray) -> FloatArray:
+        """Pressure coefficients (3, E) at small nodal displacements (18, E)."""
+        out: FloatArray = self.field_modulus * np.einsum("nie,ne->ie", rest.coupling, u)
+        return out
+
+    def linear_force(self, rest: ElementState, u: FloatArray) -> FloatArray:
+        """Nodal forces (18, E) in N of small nodal displacements (18, E), from the moduli at rest."""
+        H, components = self.geometry.gradient(u), self.geometry.components
+        moduli = components.unpack(self.laws.tangent(rest.deformation))
+        stress = np.einsum("kmqe,mqe->kqe", moduli, H)
+        stress[components.normal] += self.point_modulus * H[components.normal].sum(axis=0)
+        pressure = self.linear_pressure(rest, u)
+        out: FloatArray = self.geometry.forces(stress * self.geometry.weight) + np.einsum(
+            "nie,ie->ne", rest.coupling, pressure
+        )
+        return out
+
+    def advanced(self, duration: float) -> Elements:
+        """The elements in a step that takes `duration` s from the last accepted state."""
+        if self.memory is None:
+            return self
+        return replace(self, duration=duration, laws=self.laws.relaxing(*self.memory.ahead(duration)))
+
+    def accepted(self, u: FloatArray) -> Elements:
+        """The elements after a step that ends at nodal displacements (18, E); evaluated there they give its forces."""
+        if self.memory is None:
+            return self
+        elastic = self.laws.second_stress(self.deformation(u))
+        return replace(self, memory=self.memory.after(self.duration, elastic)).advanced(0.0)
+
+
+def make_elements(geometry: ElementGeometry, laws: ElementLaws, stabilisation: float = 0.0) -> Elements:
+    """Elements at rest.
+
+    Parameters
+    ----------
+    geometry, laws
+        Geometry at the Gauss points and laws.
+    stabilisation
+        Part of the bulk modulus, in shear moduli (at most half of it), that acts on J at each Gauss point
+        instead of on the pressure field. It takes nothing from the continuum's energy, but Q2/P1 controls only
+        three moments of J on an element, and at large strain the rest can become unstable (Pantuso and
+        Bathe, Finite Elements in Analysis and Design 28 (1997) 83).
+    """
+    at_points: FloatArray = np.minimum(stabilisation * laws.shear_modulus, 0.5 * laws.bulk_modulus)
+    if len(geometry.pressure) == 0:
+        at_points = laws.bulk_modulus
+    shape = (len(geometry.components.positions), *geometry.weight.shape)
+    return Elements(geometry, laws, at_points, None if laws.prony is None else Memory.of_rest(laws.prony, shape))

@@ -1,0 +1,79 @@
+"""What an interaction brings to the equations: forces on the unknowns and their derivative.
+
+:class:`fem.assembly.system.System` sums the elements and the items, Newton's method solves the sum; neither knows what
+an item stands for. The items are in :mod:`fem.interactions`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+from fem.arrays import FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class ItemForces:
+    """Forces and stiffness of an item at one state.
+
+    Attributes
+    ----------
+    force
+        Internal forces (k,) in N on the item's unknowns.
+    stiffness
+        Derivative (e,) in N/m at the item's entries.
+    support
+        Upward force in N on nodes that are fixed.
+    """
+
+    force: FloatArray
+    stiffness: FloatArray
+    support: float = 0.0
+
+
+class EquationItem(ABC):
+    """One interaction; what it remembers is in the item, a new one after each step."""
+
+    kinked: ClassVar[bool] = False
+    """Whether its forces have kinks, so that Newton's corrections must not leave more unbalanced than before."""
+    in_small_strain: ClassVar[bool] = True
+    """Whether it takes part in the equations of small displacements from rest."""
+
+    @property
+    @abstractmethod
+    def unknowns(self) -> IntArray:
+        """Unknowns (k,) it acts on, the same in all states, each as often as wanted."""
+
+    @property
+    @abstractmethod
+    def entries(self) -> tuple[IntArray, IntArray]:
+        """Rows and columns (e,) of its stiffness, the same in all states; of two mirrored entries only one."""
+
+    @property
+    @abstractmethod
+    def remembers(self) -> bool:
+        """Whether a state depends on the states before it."""
+
+    @abstractmethod
+    def respond(self, y: FloatArray) -> ItemForces | None:
+        """Forces and stiffness at unknowns y (n,); None where they do not exist."""
+
+    @abstractmethod
+    def accepted(self, y: FloatArray) -> Self:
+        """The item after a step that ends at unknowns y (n,)."""
+
+    def corrected(self, y: FloatArray, press: float) -> Self | None:
+        """The item that fits a state in equilibrium at y (n,) under a press in N; None if this one does."""
+        del y, press
+        return None
+
+    def lightened(self, share: float) -> Self | None:
+        """The item to begin with where a share of the press is left; None if it is this one."""
+        del share
+        return None
+
+    def warning(self, y: FloatArray) -> str:
+        """What a person must know of an accepted state, or ""."""
+        del y
+        return ""

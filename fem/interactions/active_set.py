@@ -1,0 +1,142 @@
+"""Which points touch and which are apart, which stick and which slide: the one active set of all interactions.
+
+It is the primal-dual active set (M. Hintermueller, K. Ito and K. Kunisch, SIAM J. Optim. 13 (2002) 865): a trial force,
+made of what holds a point and of where it is, decides.
+
+Friction is Tresca's law, whose limit is given, with as little elastic stick as a consistent tangent needs (P. Wriggers,
+Computational Contact Mechanics, 2nd ed., 2006, chapters 5 and 6); it keeps the stiffness symmetric. Coulomb's law is a
+sequence of it, whose limit follows the pressure from one Newton run to the next.
+
+In two directions the friction of a point that slides turns with its slip. Its derivative is taken with the direction of
+the multiplier beside that of the slip (T. F. Chan, G. H. Golub and P. Mulet, SIAM J. Sci. Comput. 20 (1999) 1964),
+which keeps a slip from turning to and fro.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fem.arrays import BoolArray, FloatArray
+
+GAP_SHARE = 1e-3  # of the penalty, by which a gap counts against a multiplier
+SLIP_SHARE = 1e-5  # of the slip against the multiplier; larger ones make the slip turn to and fro
+SETTLED = 1e-6  # change of all friction limits, over the press, that ends the runs of Coulomb's law
+AT_THE_LIMIT = 1e-9
+
+
+def in_touch(multiplier: FloatArray, gap: FloatArray) -> BoolArray:
+    """Which points (m,) touch, of multipliers and gaps (m,) in m."""
+    out: BoolArray = multiplier >= GAP_SHARE * gap
+    return out
+
+
+@dataclass(frozen=True)
+class MultiplierDrag:
+    """Friction of m points in t directions that multipliers hold.
+
+    Attributes
+    ----------
+    force
+        (t, m) in N against the slip.
+    left
+        What the multipliers' equations leave, (t, m) in N.
+    sticks
+        Which points (m,) stick.
+    turning
+        Derivative of the force of points that slide by their slip, (t, t, m) in N/m; None in one direction.
+    """
+
+    force: FloatArray
+    left: FloatArray
+    sticks: BoolArray
+    turning: FloatArray | None
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Friction of m points, in one direction or in t of them, and where they rest.
+
+    Attributes
+    ----------
+    stick
+        Stiffness (m,) in N/m below the limit.
+    limit
+        Largest friction (m,) in N.
+    anchor
+        Path (m,) or (t, m) in m at which there is no friction.
+    """
+
+    stick: FloatArray
+    limit: FloatArray
+    anchor: FloatArray
+
+    @property
+    def present(self) -> bool:
+        """Whether a point has a limit above zero."""
+        return bool(self.limit.any())
+
+    def drag(
+        self, trial: FloatArray, sticking: FloatArray, stretch: FloatArray | float = 1.0
+    ) -> tuple[FloatArray, BoolArray]:
+        """Friction (m,) in N in one direction, and which points stick.
+
+        Parameters
+        ----------
+        trial
+            Trial force (m,) in N.
+        sticking
+            Friction (m,) in N of the points that stick.
+        stretch
+            Factor (m,) on the limit.
+        """
+        limit = self.limit * stretch
+        sticks: BoolArray = np.abs(trial) <= limit
+        return np.where(sticks, sticking, np.copysign(limit, trial)), sticks
+
+    def multiplier_drag(self, multiplier: FloatArray, slid: FloatArray) -> MultiplierDrag:
+        """Friction of points with multipliers and slip, (t, m) in m each: one that sticks has the multiplier = slip."""
+        k = self.stick
+        trial = k * (multiplier + SLIP_SHARE * (slid - multiplier))
+        turning = None
+        if len(slid) == 1:
+            force, sticks = self.drag(trial[0], k * multiplier)
+        else:
+            sticks = np.hypot(*trial) <= self.limit
+            sliding, turning = _in_the_plane(multiplier, slid, np.where(sticks, 0.0, self.limit), k)
+            force = np.where(sticks, k * multiplier, sliding)
+        left = np.where(sticks, k * (slid - multiplier), force - k * multiplier)
+        return MultiplierDrag(force, left, sticks, turning)
+
+    def after(self, path: FloatArray, elastic: FloatArray) -> Friction:
+        """The same after a step that ends at a path with an elastic slip, shaped like the anchor, in m."""
+        return replace(self, anchor=path - elastic)
+
+    def following(self, limit: FloatArray, press: float) -> Friction | None:
+        """Coulomb's law: with the limits (m,) in N of the present pressure; None where these fit a press in N."""
+        if np.abs(limit - self.limit).sum() <= SETTLED * press:
+            return None
+        return replace(self, limit=limit)
+
+    def lightened(self, share: float) -> Friction:
+        """With a share of the limits."""
+        return replace(self, limit=share * self.limit)
+
+    def slides_everywhere(self, trial: FloatArray) -> bool:
+        """Whether the trial force (m,) in N reaches the limit at all points."""
+        return bool((np.abs(trial) >= (1.0 - AT_THE_LIMIT) * self.limit).all())
+
+
+def _in_the_plane(
+    multiplier: FloatArray, slid: FloatArray, limit: FloatArray, k: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Friction (2, m) and its derivative (2, 2, m) of points that slide; zero where the limit is."""
+    pull = k * (slid + multiplier)
+    size, slides = np.hypot(*pull), limit > 0.0
+    direction = np.where(slides, pull / np.where(slides, size, 1.0), 0.0)
+    before = k * multiplier / np.where(slides, limit, 1.0)
+    before = before / np.maximum(np.hypot(*before), 1.0)
+    crossed = before[:, None] * direction
+    turn = np.eye(2)[..., None] - 0.5 * (crossed + crossed.swapaxes(0, 1))
+    return limit * direction, np.where(slides, limit * k / np.where(slides, size, 1.0), 0.0) * turn

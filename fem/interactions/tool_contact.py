@@ -1,0 +1,245 @@
+"""Nodes of the surface against a rigid punch: a multiplier a node, more of them with friction; adhesion.
+
+The multiplier x of a node is a length: its force is k x, k the node's penalty. In touch g = -x, so a node enters the
+punch by about 1e-5 of the punch's radius where the pressure equals the surface layer's shear modulus; out of touch
+x = 0. The potential -k x g - k x^2 / 2 is symmetric.
+
+Friction has a multiplier for each direction on the punch (see :mod:`fem.interactions.active_set`); its limit is given
+within one Newton run, and runs follow each other until it fits the pressure. With adhesion the nodes of the flat
+face are held both ways once the punch has pressed, until it pulls more than its adhesion.
+
+A node has c displacements, the vertical one last: two in axial symmetry, three in three dimensions.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
+
+import numpy as np
+
+from fem.arrays import BoolArray, FloatArray, IntArray
+from fem.assembly.item import EquationItem, ItemForces
+from fem.interactions.active_set import Friction, in_touch
+from fem.interactions.punch import Gap, Punch
+
+LOOSE = 1e-12  # stiffness of a punch in the air, in penalties
+
+
+@dataclass(frozen=True)
+class Touch:
+    """Contact at one state: forces on (node, punch, multipliers) and their derivative.
+
+    Attributes
+    ----------
+    force
+        Internal forces (c + 2, m) in N, with friction (2 c + 1, m): against the motion of node and punch; those of the
+        multipliers are what their equations leave, times k.
+    stiffness
+        In N/m, in the order of :attr:`ToolContact.pairs`.
+    elastic
+        Elastic slip (c - 1, m) in m along the punch.
+    path
+        Path (c - 1, m) in m of the nodes on the punch.
+    push
+        Force (m,) in N of punch and node on each other.
+    press
+        Force in N of the punch on the tissue, downwards.
+    """
+
+    force: FloatArray
+    stiffness: FloatArray
+    elastic: FloatArray
+    path: FloatArray
+    push: FloatArray
+    press: float
+
+
+@dataclass(frozen=True)
+class ToolContact(EquationItem):
+    """Candidate nodes and what they remember.
+
+    Attributes
+    ----------
+    punch
+        The punch.
+    place
+        Nodes (c, m) at rest, in m.
+    own
+        Unknowns (c + 2, m): displacements of the node, -1 where fixed, of the punch, multiplier; with friction
+        (2 c + 1, m): its multipliers.
+    friction
+        Friction of the nodes, with their path (c - 1, m) on the punch; its `stick` is the stiffness k (m,) in N/m of
+        each node against the punch.
+    pressed
+        Whether the punch has pressed and has not come off since.
+    peak
+        Largest press so far in N.
+    """
+
+    punch: Punch
+    place: FloatArray
+    own: IntArray
+    friction: Friction
+    pressed: bool = False
+    peak: float = 0.0
+
+    def touch(self, y: FloatArray) -> Touch | None:
+        """Contact at unknowns y (n,); None where a node is deep inside the punch."""
+        c, penalty = len(self.place), self.friction.stick
+        u = np.append(y, 0.0)[self.own]
+        place = self.place + u[:c]
+        place[-1] -= u[c]
+        gap = self.punch.gap(place)
+        if gap is None:
+            return None
+        active = (in_touch(u[c + 1], gap.distance) | self._adheres) * penalty
+        push, rate = active * u[c + 1], with_punch(gap.normal)
+        left = -active * gap.distance - penalty * u[c + 1]
+        force = np.concatenate((-push * rate, left[None]))
+        stiffness = np.concatenate((-push * bend_with_punch(gap), -active * rate, -penalty[None]))
+        touch = Touch(force, stiffness, np.zeros_like(gap.path), gap.path, push, -float(force[c].sum()))
+        return touch if self.punch.friction == 0.0 else self._with_friction(gap, u[c + 2 :], touch)
+
+    def _with_friction(self, gap: Gap, multiplier: FloatArray, touch: Touch) -> Touch:
+        """With the friction multipliers (c - 1, m) in m."""
+        c, k, metric = len(self.place), self.friction.stick, self.punch.metric(self.friction.anchor)
+        drag = self.friction.multiplier_drag(multiplier, _apply(metric, gap.path - self.friction.anchor))
+        rates = [with_punch(rate) for rate in _apply(metric, gap.along)]
+        force, stiffness = touch.force.copy(), touch.stiffness.copy()
+        for against, rate in zip(drag.force, rates, strict=True):
+            force[: c + 1] += against * rate
+        if drag.turning is not None:
+            i, j = np.triu_indices(c + 1)
+            for a, b in itertools.product(range(c - 1), repeat=2):
+                stiffness[: len(i)] += drag.turning[a, b] * rates[a][i] * rates[b][j]
+        more = [part for rate in rates for part in (drag.sticks * k * rate, -k[None])]
+        force = np.concatenate((force, drag.left))
+        elastic, press = _undo(metric, drag.force / k), -float(force[c].sum())
+        return Touch(force, np.concatenate((stiffness, *more)), elastic, gap.path, touch.push, press)
+
+    def respond(self, y: FloatArray) -> ItemForces | None:
+        """Forces and stiffness at unknowns y (n,); a punch in the air keeps a trace of stiffness."""
+        touch = self.touch(y)
+        if touch is None:
+            return None
+        loose = LOOSE * float(self.friction.stick.sum())
+        stiffness = np.append(touch.stiffness.ravel(), loose)[self._free_pairs]
+        return ItemForces(touch.force.ravel()[self._free], stiffness)
+
+    @cached_property
+    def pairs(self) -> tuple[tuple[int, int], ...]:
+        """Which unknowns each row of a touch's stiffness couples."""
+        moving = range(len(self.place) + 1)
+        pairs = list(itertools.combinations_with_replacement(moving, 2))
+        for multiplier in range(len(moving), len(self.own)):
+            pairs += [*((i, multiplier) for i in moving), (multiplier, multiplier)]
+        return tuple(pairs)
+
+    @property
+    def unknowns(self) -> IntArray:
+        """Unknowns (k,) of nodes, punch and multipliers that are not fixed."""
+        return self.own.ravel()[self._free]
+
+    @property
+    def entries(self) -> tuple[IntArray, IntArray]:
+        """Rows and columns (e,) of the stiffness, the punch's own one last."""
+        rows, columns = self._all_entries
+        return rows[self._free_pairs], columns[self._free_pairs]
+
+    @cached_property
+    def _all_entries(self) -> tuple[IntArray, IntArray]:
+        first, second = zip(*self.pairs, strict=True)
+        rows, columns = (np.concatenate([*(self.own[n] for n in side), [self.tool]]) for side in (first, second))
+        return rows, columns
+
+    @cached_property
+    def _free(self) -> IntArray:
+        return np.flatnonzero(self.own.ravel() >= 0)
+
+    @cached_property
+    def _free_pairs(self) -> IntArray:
+        rows, columns = self._all_entries
+        return np.flatnonzero((rows >= 0) & (columns >= 0))
+
+    @property
+    def tool(self) -> int:
+        """Unknown of the punch's displacement."""
+        return int(self.own[len(self.place), 0])
+
+    @property
+    def remembers(self) -> bool:
+        """Friction remembers."""
+        return self.punch.friction > 0.0
+
+    @property
+    def _adheres(self) -> BoolArray:
+        """Nodes (m,) that are held both ways."""
+        held = self.punch.under_face(self.place)
+        return held if self.pressed and self.punch.adhesion > 0.0 else np.zeros_like(held)
+
+    def accepted(self, y: FloatArray) -> ToolContact:
+        """The item after a step that ends at unknowns y (n,)."""
+        touch = self.touch(y)
+        if touch is None:
+            raise ArithmeticError("an accepted state cannot be evaluated")
+        friction = self.friction.after(touch.path, touch.elastic)
+        pressed, peak = self.pressed or touch.press > 0.0, max(self.peak, touch.press)
+        return replace(self, friction=friction, pressed=pressed, peak=peak)
+
+    def corrected(self, y: FloatArray, press: float) -> ToolContact | None:
+        """The contact that fits a state with a press in N, where this one does not; None where it does.
+
+        It comes off where the punch pulls more than it holds; the friction limit follows the pressure.
+        """
+        touch = self.touch(y)
+        if touch is None:
+            return None
+        if self.pressed and self.punch.adhesion > 0.0 and press < -self.punch.adhesion:
+            return replace(self, pressed=False)
+        limit = self.punch.friction * np.maximum(touch.push, 0.0)
+        friction = self.friction.following(limit, max(abs(press), self.peak))
+        return None if friction is None else replace(self, friction=friction)
+
+    def lightened(self, share: float) -> ToolContact | None:
+        """The contact with a share of the friction limits; None without friction."""
+        return replace(self, friction=self.friction.lightened(share)) if self.punch.friction > 0.0 else None
+
+
+def with_punch(rate: FloatArray) -> FloatArray:
+    """By node and punch, (c + 1, m), of a derivative by the node's place, (c, m)."""
+    return np.concatenate((rate, -rate[-1:]))
+
+
+def bend_with_punch(gap: Gap) -> FloatArray:
+    """Second derivative of the distance by node and punch, its upper triangle row by row."""
+    order, sign = _bend_order(len(gap.normal))
+    out: FloatArray = sign * gap.bend[order]
+    return out
+
+
+@cache
+def _bend_order(c: int) -> tuple[IntArray, FloatArray]:
+    """Which derivative by the node's place is that by node and punch, and its sign (pairs, 1)."""
+    i, j = np.triu_indices(c + 1)
+    packed = np.zeros((c, c), dtype=np.int64)
+    packed[np.triu_indices(c)] = np.arange(c * (c + 1) // 2)
+    sign = np.where((i == c) != (j == c), -1.0, 1.0)
+    return packed[np.minimum(i, c - 1), np.minimum(j, c - 1)], sign[:, None]
+
+
+def _apply(metric: FloatArray, values: FloatArray) -> FloatArray:
+    """Matrix (t, t, m) times values (t, ..., m)."""
+    if len(metric) == 1:
+        return values
+    out: FloatArray = np.einsum("abm,b...m->a...m", metric, values)
+    return out
+
+
+def _undo(metric: FloatArray, values: FloatArray) -> FloatArray:
+    """Values (t, m) divided by a symmetric matrix (t, t, m)."""
+    if len(metric) == 1:
+        return values
+    out: FloatArray = np.linalg.solve(metric.T, values.T[..., None]).astype(np.float64)[..., 0].T
+    return out

@@ -1,0 +1,1 @@
+"""What is asked: layers, tool, support and discretisation, and whether they fit together. Nothing here computes."""

@@ -1,0 +1,1 @@
+"""From a problem to a model: mesh, contact, support, unknowns and equations."""

@@ -1,0 +1,155 @@
+"""From a problem to a model: mesh, conditions, unknowns and equations."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from fem.analysis.equilibrium import Equilibrium
+from fem.analysis.newton import NewtonSettings
+from fem.analysis.prepared import Model
+from fem.arrays import BoolArray, FloatArray
+from fem.assembly.axisymmetric import gauss_geometry
+from fem.assembly.element_geometry import ElementGeometry
+from fem.assembly.elements import make_elements
+from fem.assembly.scatter import Numbering, build_scatter, number_unknowns
+from fem.assembly.solid import solid_geometry
+from fem.assembly.system import make_system
+from fem.errors import FemError
+from fem.linear_solver import make_solver
+from fem.materials.components import Components
+from fem.materials.element_laws import element_laws
+from fem.mesh.quads import Mesh, split_interfaces
+from fem.mesh.solid import AnyMesh, SolidMesh
+from fem.problem.problem import Problem
+from fem.results.fields import FieldRecovery
+from fem.setup.contacts import CONTACT_MODELS, Conditions
+from fem.setup.items import make_items, sliding_nodes
+from fem.setup.layout import lay_out
+from fem.setup.supports import SUPPORT_MODELS
+
+
+def build_model(problem: Problem, linear_solver: str, mesh_file: Path | None = None) -> Model:
+    """See :func:`fem.prepare`."""
+    contact = CONTACT_MODELS.get(problem.tool.contact)
+    if contact is None:
+        raise FemError(
+            f"tool.contact = {problem.tool.contact!r}: not available in this solver; "
+            f"available are {', '.join(sorted(CONTACT_MODELS))}"
+        )
+    warnings = contact.check(problem)
+    if problem.geometry == "axisymmetric":
+        return _axisymmetric_model(problem, linear_solver, warnings)
+    return _solid_model(problem, linear_solver, warnings, mesh_file)
+
+
+def _solid_model(problem: Problem, linear_solver: str, warnings: tuple[str, ...], mesh_file: Path | None) -> Model:
+    from fem.setup.building import solid_model
+    from fem.setup.layout_solid import lay_out_block, lay_out_surface
+
+    if problem.surface is None:
+        return solid_model(problem, lay_out_block(problem), linear_solver, warnings)
+    mesh = lay_out_surface(problem, problem.surface, mesh_file)
+    return solid_model(problem, mesh, linear_solver, (*warnings, *mesh.remarks))
+
+
+def _axisymmetric_model(problem: Problem, linear_solver: str, warnings: tuple[str, ...]) -> Model:
+    slipping = [layer for layer, limit in enumerate(problem.shear_limits) if limit is not None]
+    mesh = split_interfaces(lay_out(problem), slipping)
+    conditions = CONTACT_MODELS[problem.tool.contact].conditions(mesh, problem)
+    support = SUPPORT_MODELS[problem.support.kind].fixed(mesh, problem)
+    radial = (support & ~sliding_nodes(mesh, problem)) | mesh.axis | conditions.held
+    geometry = gauss_geometry(mesh)
+    equilibrium = set_up(problem, mesh, geometry, np.stack((radial, support)), conditions, linear_solver)
+    elements = equilibrium.system.elements
+    recovery = FieldRecovery(mesh, elements.laws, geometry, elements.point_modulus, problem.kinematics == "finite")
+    return Model(problem, mesh, equilibrium, recovery, NewtonSettings(), warnings)
+
+
+def solid_model(problem: Problem, mesh: SolidMesh, linear_solver: str, warnings: tuple[str, ...]) -> Model:
+    """Model of a problem on a three-dimensional mesh."""
+    tool = problem.tool
+    conditions = CONTACT_MODELS[tool.contact].conditions(mesh, problem)
+    support = SUPPORT_MODELS[problem.support.kind].fixed(mesh, problem)
+    lateral = support | conditions.held
+    fixed = np.stack((lateral | mesh.mirror_x, lateral | mesh.mirror_y, support))
+    geometry = solid_geometry(mesh)
+    equilibrium = set_up(problem, mesh, geometry, fixed, conditions, linear_solver)
+    if tool.tilt != 0.0 and conditions.punch is None:
+        turned = _turn(mesh, tool.tilt) * conditions.tied
+        equilibrium = replace(equilibrium, system=equilibrium.system.displaced(mesh.elements, turned))
+    elements = equilibrium.system.elements
+    recovery = FieldRecovery(mesh, elements.laws, geometry, elements.point_modulus, problem.kinematics == "finite")
+    return Model(problem, mesh, equilibrium, recovery, NewtonSettings(), warnings)
+
+
+def _turn(mesh: SolidMesh, tilt: float) -> FloatArray:
+    """Displacements (3, N) in m of a turn of the top face by `tilt` about the tool's centre, upper end to +x."""
+    x = mesh.nodes[:, 0] - mesh.axis_point[0]
+    return np.stack(((np.cos(tilt) - 1.0) * x, np.zeros_like(x), -np.sin(tilt) * x))
+
+
+def set_up(
+    problem: Problem,
+    mesh: AnyMesh,
+    geometry: ElementGeometry,
+    fixed: BoolArray,
+    conditions: Conditions,
+    linear_solver: str,
+) -> Equilibrium:
+    """Equations, linear solver, unit load and depth probe.
+
+    Parameters
+    ----------
+    problem
+        What was asked.
+    mesh, geometry
+        The mesh and its geometry at the Gauss points.
+    fixed
+        Displacements (components, N) that are zero.
+    conditions
+        Conditions of the contact; what it holds is in `fixed` already.
+    linear_solver
+        See :func:`fem.prepare`.
+    """
+    displacements = _numbered(problem, mesh, fixed, conditions.tied)
+    numbering, items, tool = make_items(problem, mesh, displacements, conditions)
+    laws = element_laws(
+        tuple(layer.material for layer in problem.layers),
+        mesh.layer,
+        tuple(layer.relaxation for layer in problem.layers),
+        _pretension(problem, geometry.components),
+    )
+    elements = make_elements(geometry, laws, _stabilisation(problem))
+    system = make_system(elements, numbering, build_scatter(mesh.elements, numbering), items)
+    solver = make_solver(linear_solver, system.scatter.indptr, system.scatter.indices)
+    if tool is not None:
+        return Equilibrium(system, solver, -np.eye(1, numbering.count, tool)[0], tool)
+    nodal = np.zeros(fixed.shape)
+    nodal[-1] = conditions.load
+    load: FloatArray = numbering.reduce(nodal)
+    return Equilibrium(system, solver, load, int(numbering.unknown[-1, mesh.interfaces[0][0]]))
+
+
+def _numbered(problem: Problem, mesh: AnyMesh, fixed: BoolArray, tied: BoolArray) -> Numbering:
+    """The displacements' numbers; in small strain the sides of an interface that slips stay level."""
+    if isinstance(mesh, Mesh) and problem.kinematics == "linear":
+        return number_unknowns(fixed, tied, zip(mesh.undersides, mesh.interfaces[1:], strict=True))
+    return number_unknowns(fixed, tied)
+
+
+def _pretension(problem: Problem, components: Components) -> FloatArray | None:
+    """In-plane stress (components, 1, 1) in Pa; the last axis is the normal of the layers."""
+    if problem.pretension == 0.0:
+        return None
+    in_plane = components.identity.copy()
+    in_plane[components.normal[-1]] = 0.0
+    out: FloatArray = problem.pretension * in_plane.reshape(-1, 1, 1)
+    return out
+
+
+def _stabilisation(problem: Problem) -> float:
+    """Small strain needs none."""
+    return problem.discretisation.stabilisation if problem.kinematics == "finite" else 0.0

@@ -1,0 +1,156 @@
+"""The supports: how far the mesh reaches and what it must resolve, and which nodes are held."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Protocol
+
+from fem.arrays import BoolArray
+from fem.errors import FemError
+from fem.mesh.grading import Feature
+from fem.mesh.solid import AnyMesh
+from fem.problem.problem import Problem
+
+BORDER_IN_DECAY_LENGTHS = 6.0
+FAR_BORDER = (
+    2.0e4  # in tool radii or stack thicknesses: fixed at the distance R it takes about a/R of the deflection away
+)
+FAR_FIELD = 40.0  # in the same, from where the mesh grows geometrically
+CLAMP_IN_THICKNESSES = 4.0
+# A sheet bends: the tool's edge weighs little, but the press goes several thicknesses deep.
+EDGE_FACTOR = 1.5
+
+
+@dataclass(frozen=True)
+class Extent:
+    """How far the mesh reaches and what it must resolve besides the tool.
+
+    Attributes
+    ----------
+    radius
+        Radius of the outer border in m.
+    thickness
+        Meshed thickness of each layer in m.
+    radial
+        Features over r; their positions become grid lines.
+    vertical
+        Features over the depth.
+    far
+        Distance in m from the tool beyond which only a decaying far field is left.
+    edge_factor
+        Factor on the size of the fan at the tool's edge.
+    """
+
+    radius: float
+    thickness: tuple[float, ...]
+    radial: tuple[Feature, ...] = ()
+    vertical: tuple[Feature, ...] = ()
+    far: float = math.inf
+    edge_factor: float = 1.0
+
+
+class SupportModel(Protocol):
+    """One kind of support."""
+
+    def extent(self, problem: Problem) -> Extent:
+        """How far the mesh reaches."""
+        ...
+
+    def fixed(self, mesh: AnyMesh, problem: Problem) -> BoolArray:
+        """Nodes (N,) that are held in both directions."""
+        ...
+
+
+def decay_length(problem: Problem) -> float:
+    """Length in m over which the pressed surface of a bonded stack goes back to rest.
+
+    A single layer decays over about its thickness. A stiff skin spreads the in-plane pull of the tool over
+    sqrt(H sum(G_i h_i) / G), G the modulus of the softest layer and H the whole thickness (shear-lag theory).
+    """
+    total = sum(layer.thickness for layer in problem.layers)
+    softest = min(layer.material.shear_modulus for layer in problem.layers)
+    pull = sum(layer.material.shear_modulus * layer.thickness for layer in problem.layers)
+    return math.sqrt(total * pull / softest)
+
+
+@dataclass(frozen=True)
+class Bonded:
+    """Lower face and outer border fixed; the border is so far away that it costs at most 0.1 %."""
+
+    def extent(self, problem: Problem) -> Extent:
+        """Border at the prescribed radius, or several decay lengths outside the tool, wherever it stands."""
+        radius = problem.discretisation.radius
+        if radius is None:
+            reach = abs(problem.tool.position[0]) + 2.0 * problem.tool.radius
+            radius = reach + BORDER_IN_DECAY_LENGTHS * decay_length(problem)
+        return Extent(radius, tuple(layer.thickness for layer in problem.layers))
+
+    def fixed(self, mesh: AnyMesh, problem: Problem) -> BoolArray:
+        """Lower face and outer border."""
+        del problem
+        return mesh.base | mesh.border
+
+
+@dataclass(frozen=True)
+class HalfSpace:
+    """Lower face and outer border fixed, both very far away."""
+
+    def extent(self, problem: Problem) -> Extent:
+        """Border at 20 000 times the larger of tool radius and thickness of the layers above."""
+        above = tuple(layer.thickness for layer in problem.layers[:-1])
+        unit = max(problem.tool.radius, sum(above))
+        border, radius = FAR_BORDER * unit, problem.discretisation.radius
+        return Extent(border if radius is None else radius, (*above, border), far=FAR_FIELD * unit)
+
+    def fixed(self, mesh: AnyMesh, problem: Problem) -> BoolArray:
+        """Lower face and outer border."""
+        del problem
+        return mesh.base | mesh.border
+
+
+@dataclass(frozen=True)
+class Hole:
+    """Lower face fixed for r >= hole_radius, outer border fixed."""
+
+    def extent(self, problem: Problem) -> Extent:
+        """Border several thicknesses outside the hole; the rim of the hole is resolved."""
+        hole, thickness = hole_radius(problem), tuple(layer.thickness for layer in problem.layers)
+        total = sum(thickness)
+        radius = problem.discretisation.radius
+        if radius is None:
+            radius = max(hole, problem.tool.radius) + CLAMP_IN_THICKNESSES * total
+        size = min(total, hole) / 8.0
+        rim = Feature(hole, size, 0.4)
+        underside = Feature(total, 2.0 * size, 0.5)
+        return Extent(radius, thickness, (rim,), (underside,), edge_factor=EDGE_FACTOR)
+
+    def fixed(self, mesh: AnyMesh, problem: Problem) -> BoolArray:
+        """Lower face outside the hole, rim included, and the outer border."""
+        return on_the_plate(mesh, problem) | mesh.border
+
+
+def on_the_plate(mesh: AnyMesh, problem: Problem) -> BoolArray:
+    """Nodes (N,) of the lower face outside the hole, rim included."""
+    return mesh.base & (mesh.specimen_distance >= hole_radius(problem) * (1.0 - 1e-9))
+
+
+def hole_radius(problem: Problem) -> float:
+    """Radius of the hole in m.
+
+    Raises
+    ------
+    FemError
+        If the support has none.
+    """
+    radius = problem.support.hole_radius
+    if radius is None:
+        raise FemError("support.hole_radius is missing: needed for the support 'hole'")
+    return radius
+
+
+SUPPORT_MODELS: Mapping[str, SupportModel] = MappingProxyType(
+    {"bonded": Bonded(), "hole": Hole(), "half_space": HalfSpace()}
+)

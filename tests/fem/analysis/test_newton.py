@@ -1,0 +1,72 @@
+import dataclasses
+
+import numpy as np
+import pytest
+
+import fem
+from fem.analysis.equilibrium import State
+from fem.analysis.newton import NewtonSettings, solve_newton
+
+SETTINGS = NewtonSettings()
+
+
+@pytest.fixture
+def problem(skin):
+    return fem.prepare(skin("rigid_bonded", discretisation=fem.Discretisation("coarse"))).equilibrium
+
+
+def rest(problem):
+    return State(*problem.system.rest(), 0.0)
+
+
+def test_force_control_balances_the_forces(problem):
+    result = solve_newton(problem, rest(problem), "force", 0.3, 0.0, SETTINGS)
+    assert result.success
+    found = problem.system.evaluate(result.state.y, result.state.pressure)
+    assert np.linalg.norm(found.residual - 0.3 * problem.unit_load) <= 0.3e-9
+    np.testing.assert_allclose(result.state.pressure, found.elements.consistent_pressure, rtol=1e-9)
+
+
+def test_depth_control_finds_the_same_state(problem):
+    by_force = solve_newton(problem, rest(problem), "force", 0.3, 0.0, SETTINGS).state
+    depth = problem.depth(by_force.y)
+    by_depth = solve_newton(problem, rest(problem), "depth", depth, 0.3, SETTINGS)
+    assert by_depth.success
+    assert by_depth.state.force == pytest.approx(0.3, rel=1e-8)
+    np.testing.assert_allclose(by_depth.state.y, by_force.y, atol=1e-9 * depth)
+
+
+def test_at_least_one_correction_is_made(problem):
+    state = solve_newton(problem, rest(problem), "force", 0.3, 0.0, SETTINGS).state
+    assert solve_newton(problem, state, "force", 0.3, 0.0, SETTINGS).iterations == 1
+
+
+def test_too_few_iterations_are_a_reason(problem):
+    result = solve_newton(problem, rest(problem), "force", 2.0, 0.0, dataclasses.replace(SETTINGS, iterations=1))
+    assert not result.success
+    assert result.reason == "no equilibrium after 1 iterations"
+
+
+def test_a_guess_inside_out_is_a_reason(problem):
+    state = rest(problem)
+    bad = State(state.y - 1.0, state.pressure, 0.0)
+    assert "inside out" in solve_newton(problem, bad, "force", 1.0, 0.0, SETTINGS).reason
+
+
+class Counting:
+    """A linear solver that counts its factorisations."""
+
+    def __init__(self, solver):
+        self.solver, self.count, self.solve = solver, 0, solver.solve
+
+    def factorise(self, data):
+        self.count += 1
+        self.solver.factorise(data)
+
+
+def test_the_last_correction_takes_the_factors_of_the_one_before(problem):
+    close = solve_newton(problem, rest(problem), "force", 0.3, 0.0, SETTINGS).state
+    counting = Counting(problem.solver)
+    result = solve_newton(dataclasses.replace(problem, solver=counting), close, "force", 0.31, 0.0, SETTINGS)
+    assert result.success
+    assert counting.count == result.iterations - 1

@@ -1,0 +1,68 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fem.analysis.equilibrium import State
+from fem.analysis.prediction import HIGHEST_ORDER, LOWEST_ORDER, KnownStates
+
+
+def quadratic(v):
+    return State(np.array([1.0 + v, v**2]), np.array([[3.0 * v - v**2]]), 2.0 * v + v**2)
+
+
+def known(values):
+    states = KnownStates(0.0, quadratic(0.0))
+    for v in values:
+        states.add(v, quadratic(v))
+    return states
+
+
+@given(st.floats(-2.0, 5.0))
+@settings(deadline=None)
+def test_quadratic_paths_are_predicted_exactly(target):
+    found, exact = known([1.0, 2.0]).predict(target), quadratic(target)
+    np.testing.assert_allclose(found.y, exact.y, atol=1e-10)
+    np.testing.assert_allclose(found.pressure, exact.pressure, atol=1e-10)
+    assert found.force == pytest.approx(exact.force, abs=1e-10)
+
+
+def test_one_known_state_predicts_itself():
+    found = KnownStates(0.0, quadratic(0.0)).predict(1.0)
+    np.testing.assert_array_equal(found.y, quadratic(0.0).y)
+
+
+def test_nearly_equal_loads_do_not_blow_the_extrapolation_up():
+    states = known([1.0])
+    noisy = quadratic(1.0)
+    states.add(1.0 + 1e-9, State(noisy.y + 1e-6, noisy.pressure, noisy.force))
+    assert np.abs(states.predict(1.5).y).max() < 10.0
+
+
+def test_a_known_load_gives_its_state():
+    np.testing.assert_array_equal(known([1.0, 2.0, 3.0]).predict(2.0).y, quadratic(2.0).y)
+
+
+def smooth(v):
+    return State(np.array([np.exp(0.3 * v), 1.0]), np.zeros((1, 1)), v)
+
+
+def states_of(path, values):
+    states = KnownStates(values[0], path(values[0]))
+    for v in values[1:]:
+        states.add(v, path(v))
+    return states
+
+
+def test_a_smooth_path_is_predicted_to_a_higher_order():
+    known_states = states_of(smooth, np.arange(8.0))
+    errors = [abs(known_states.predict(8.0, order).y[0] - smooth(8.0).y[0]) for order in (2, 3, 4, 5)]
+    assert errors == sorted(errors, reverse=True)
+    assert errors[-1] < 0.05 * errors[0]
+    np.testing.assert_allclose(known_states.predict(8.0).y, known_states.predict(8.0, HIGHEST_ORDER).y)
+
+
+def test_behind_a_kink_the_order_stays_low():
+    path = lambda v: State(np.array([v + 5.0 * max(v - 5.0, 0.0)]), np.zeros((1, 1)), v)  # noqa: E731
+    states = states_of(path, np.arange(7.0))
+    np.testing.assert_allclose(states.predict(7.0).y, states.predict(7.0, LOWEST_ORDER).y)

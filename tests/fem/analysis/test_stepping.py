@@ -1,0 +1,61 @@
+import dataclasses
+
+import pytest
+
+import fem
+from fem.analysis.newton import NewtonSettings
+from fem.analysis.prediction import HIGHEST_ORDER, LOWEST_ORDER, KnownStates
+from fem.analysis.stepping import Stepper
+
+SETTINGS = NewtonSettings()
+
+
+@pytest.fixture
+def problem(skin):
+    return fem.prepare(skin("uniform_pressure", discretisation=fem.Discretisation("coarse"))).equilibrium
+
+
+def test_a_step_too_long_for_newton_is_cut_and_reached(problem):
+    few = dataclasses.replace(SETTINGS, iterations=4)
+    advance = Stepper(problem, "force", 5e-3, few).advance(2.0)
+    assert advance.reason == ""
+    assert advance.value == 2.0
+    assert advance.cuts > 0
+
+
+def test_cutting_does_not_change_the_state(problem):
+    few = Stepper(problem, "force", 5e-3, dataclasses.replace(SETTINGS, iterations=4)).advance(2.0)
+    many = Stepper(problem, "force", 5e-3, SETTINGS)
+    for value in (0.5, 1.0, 1.5, 2.0):
+        last = many.advance(value)
+    assert problem.depth(few.state.y) == pytest.approx(problem.depth(last.state.y), rel=1e-7)
+
+
+def test_standing_still_is_reached(problem):
+    stepper = Stepper(problem, "force", 5e-3, SETTINGS)
+    stepper.advance(1.0)
+    again = stepper.advance(1.0)
+    assert (again.value, again.cuts, again.reason) == (1.0, 0, "")
+
+
+def test_what_cannot_be_reached_keeps_the_last_equilibrium(problem):
+    none = Stepper(problem, "force", 5e-3, dataclasses.replace(SETTINGS, iterations=1))
+    advance = none.advance(3.0)
+    assert advance.reason != ""
+    assert advance.value < 3.0
+    assert advance.cuts > 5
+
+
+def test_a_prediction_of_high_order_that_fails_is_followed_by_a_plain_one(problem, monkeypatch):
+    stepper = Stepper(problem, "force", 5e-3, SETTINGS)
+    for value in (0.2, 0.4, 0.6, 0.8):
+        stepper.advance(value)
+    plain = KnownStates.predict
+
+    def predict(self, value, highest=HIGHEST_ORDER):
+        guess = plain(self, value, highest)
+        return guess if highest == LOWEST_ORDER else dataclasses.replace(guess, y=guess.y - 1.0)
+
+    monkeypatch.setattr(KnownStates, "predict", predict)
+    advance = stepper.advance(1.0)
+    assert (advance.value, advance.cuts, advance.reason) == (1.0, 0, "")

@@ -1,0 +1,77 @@
+"""The contact of nodes in three dimensions: its stiffness is the derivative of its force."""
+
+import numpy as np
+import pytest
+
+from fem.interactions.active_set import Friction
+from fem.interactions.punch import Punch, standing
+from fem.interactions.tool_contact import ToolContact
+
+NODES, STEP = 6, 1e-7
+
+
+def contact(friction, tilt):
+    """Six nodes under the face, the edge and outside, all free."""
+    rng = np.random.default_rng(3)
+    place = np.stack((np.linspace(-4.0, 5.2, NODES), rng.uniform(-1.0, 1.0, NODES), np.zeros(NODES)))
+    rows = 5 if friction == 0.0 else 7
+    moving = np.arange(3 * NODES).reshape(3, NODES)
+    multipliers = 3 * NODES + 1 + np.arange((rows - 4) * NODES).reshape(rows - 4, NODES)
+    unknowns = np.concatenate((moving, np.full((1, NODES), 3 * NODES), multipliers))
+    punch = standing(Punch(5.0, 1.0, friction), (0.0, 0.0), tilt)
+    anchor = punch.gap(place).path
+    resistance = Friction(rng.uniform(1.0, 2.0, NODES), np.full(NODES, 0.4 * friction), anchor)
+    return ToolContact(punch, place, unknowns, resistance)
+
+
+def total(found, unknowns, count):
+    out = np.zeros(count)
+    np.add.at(out, unknowns, found.force)
+    return out
+
+
+def matrix(found, made, count):
+    out = np.zeros((count, count))
+    for (i, j), entry in zip(made.pairs, found.stiffness, strict=True):
+        for row, column, value in zip(made.own[i], made.own[j], entry, strict=True):
+            out[row, column] += value
+            if i != j:
+                out[column, row] += value
+    return out
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.3])
+def test_stiffness_without_friction(tilt):
+    made = contact(0.0, tilt)
+    y = 0.05 * np.random.default_rng(5).standard_normal(made.own.max() + 1)
+    y[made.tool] = -0.8
+    found = made.touch(y)
+    assert 0 < (found.push != 0.0).sum() < NODES
+    stiffness = matrix(found, made, len(y))
+    for n in range(len(y)):
+        more = STEP * np.eye(len(y))[n]
+        change = total(made.touch(y + more), made.own, len(y)) - total(made.touch(y - more), made.own, len(y))
+        np.testing.assert_allclose(stiffness[n], change / (2 * STEP), atol=1e-6)
+
+
+def test_stiffness_of_nodes_that_stick():
+    """On the flat face, whose directions do not turn."""
+    made = contact(0.5, 0.2)
+    y = 1e-3 * np.random.default_rng(5).standard_normal(made.own.max() + 1)
+    y[made.tool] = -0.8
+    found, under = made.touch(y), made.punch.under_face(made.place)
+    stiffness = matrix(found, made, len(y))
+    for n in made.own[:, under].ravel():
+        if n == made.tool:
+            continue
+        more = STEP * np.eye(len(y))[n]
+        change = total(made.touch(y + more), made.own, len(y)) - total(made.touch(y - more), made.own, len(y))
+        np.testing.assert_allclose(stiffness[n], change / (2 * STEP), atol=1e-6)
+
+
+def test_the_punch_presses_by_what_the_nodes_push():
+    made = contact(0.5, 0.2)
+    y = 1e-3 * np.random.default_rng(5).standard_normal(made.own.max() + 1)
+    found = made.touch(y)
+    assert found.press == pytest.approx(-found.force[3].sum())
+    assert found.press == pytest.approx(found.force[2].sum())

@@ -1,0 +1,77 @@
+import numpy as np
+import pytest
+
+import fem
+from fem.setup.layout import lay_out
+from fem.setup.supports import SUPPORT_MODELS, decay_length
+
+LAYERS = (
+    fem.Layer("a", 2e-3, 1000.0, fem.NeoHookean(1e5, 0.48)),
+    fem.Layer("b", 8e-3, 1000.0, fem.NeoHookean(1e4, 0.48)),
+)
+
+
+def problem(support, kinematics="linear", **mesh):
+    return fem.Problem(LAYERS, fem.Tool(5e-3, "uniform_pressure"), support, kinematics, fem.Discretisation(**mesh))
+
+
+def test_bonded_holds_base_and_border():
+    p = problem(fem.Support("bonded"))
+    mesh = lay_out(p)
+    fixed = SUPPORT_MODELS["bonded"].fixed(mesh, p)
+    assert (fixed == (mesh.base | mesh.border)).all()
+    assert mesh.nodes[:, 1].min() == pytest.approx(-10e-3)
+
+
+def test_a_prescribed_radius_is_kept():
+    assert lay_out(problem(fem.Support("bonded"), radius=0.03)).radius == 0.03
+
+
+def test_a_single_layer_decays_over_its_thickness():
+    p = fem.Problem(LAYERS[1:], fem.Tool(5e-3, "uniform_pressure"), fem.Support("bonded"))
+    assert decay_length(p) == pytest.approx(8e-3)
+
+
+@pytest.mark.parametrize("contact", ["uniform_pressure", "rigid_bonded"])
+@pytest.mark.parametrize("nu", [0.3, 0.499])
+def test_the_border_costs_less_than_a_thousandth(contact, nu):
+    layers = tuple(
+        fem.Layer(one.name, one.thickness, 1000.0, fem.NeoHookean(one.material.youngs_modulus, nu)) for one in LAYERS
+    )
+
+    def depth(radius):
+        p = fem.Problem(
+            layers, fem.Tool(5e-3, contact), fem.Support("bonded"), "linear", fem.Discretisation(radius=radius)
+        )
+        return fem.prepare(p).run(fem.Load("force", [1.0], [1.0])).top_deflection[0]
+
+    automatic = lay_out(fem.Problem(layers, fem.Tool(5e-3, contact), fem.Support("bonded"), "linear")).radius
+    np.testing.assert_allclose(depth(automatic), depth(4.0 * automatic), rtol=1e-3)
+
+
+def test_hole_is_free_inside_and_has_its_rim_on_a_grid_line():
+    p = problem(fem.Support("hole", 0.03))
+    mesh = lay_out(p)
+    fixed = SUPPORT_MODELS["hole"].fixed(mesh, p)
+    r = mesh.nodes[:, 0]
+    assert (r[mesh.base] == 0.03).sum() == 1
+    np.testing.assert_array_equal(fixed[mesh.base], r[mesh.base] >= 0.03)
+    assert fixed[mesh.border].all()
+    assert mesh.radius > 0.03
+
+
+def test_half_space_reaches_ten_thousand_radii_and_ignores_the_last_thickness():
+    deep = [
+        lay_out(
+            fem.Problem(
+                (LAYERS[0], fem.Layer("b", thickness, 1000.0, LAYERS[1].material)),
+                fem.Tool(5e-3, "uniform_pressure"),
+                fem.Support("half_space"),
+                "linear",
+            )
+        )
+        for thickness in (1e-3, np.inf)
+    ]
+    np.testing.assert_array_equal(deep[0].nodes, deep[1].nodes)
+    assert deep[0].radius >= 1e4 * 5e-3
+    assert -deep[0].nodes[:, 1].min() >= 1e4 * 5e-3

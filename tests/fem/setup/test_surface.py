@@ -1,0 +1,168 @@
+"""Bodies bounded by a surface, from the mesh to the press."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista
+
+import fem
+from fem.mesh.surface import filling as kept_filling
+from fem.mesh.surface.filling import Refinement
+from fem.mesh.surface.specimen import build_surface_mesh
+from fem.mesh.surface.surface_file import Surface
+from fem.setup.building import solid_model
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def ball():
+    """A sphere of 20 mm."""
+    sphere = pyvista.Icosphere(radius=0.02, nsub=3)
+    return Surface(np.asarray(sphere.points, dtype=np.float64), sphere.regular_faces.astype(np.int64))
+
+
+@pytest.fixture(scope="module")
+def layered(ball):
+    """The sphere with a rind of 4 mm, under a tool of 6 mm on its top."""
+    return build_surface_mesh(ball, (4e-3, 1.0), (0.0, 0.0, 6e-3), 0.7)
+
+
+def test_the_layers_have_their_volumes(layered, ball):
+    inner = 4 / 3 * np.pi * 0.016**3
+    np.testing.assert_allclose(layered.quality.layer_volume, [ball.volume - inner, inner], rtol=0.03)
+    assert abs(layered.quality.volume_error) < 0.02
+    assert layered.quality.least > 0.05
+    assert layered.remarks == ()
+
+
+def test_the_tool_touches_the_top(layered):
+    np.testing.assert_allclose(layered.nodes[layered.interfaces[0][0]], [0.0, 0.0, 0.02], atol=2e-4)
+    assert layered.tool_load.sum() == pytest.approx(-1.0)
+    assert layered.tool_distance[layered.top].max() < 9e-3
+    heights = layered.profile(layered.nodes[:, 2], np.array([0.0, 8e-3, 0.03]))
+    np.testing.assert_allclose(heights[0, :2], [0.02, np.sqrt(0.02**2 - 0.008**2)], atol=4e-4)
+    np.testing.assert_allclose(heights[1, :2], [0.016, np.sqrt(0.016**2 - 0.008**2)], atol=8e-4)
+    assert np.isnan(heights[:, 2]).all()
+
+
+def problem(surface, contact="uniform_pressure", **other):
+    layers = (
+        fem.Layer("rind", 4e-3, 1000.0, fem.NeoHookean(2e4, 0.48)),
+        fem.Layer("pulp", 1.0, 1000.0, fem.NeoHookean(1e4, 0.48)),
+    )
+    words = {"kinematics": "linear", "discretisation": fem.Discretisation("coarse"), **other}
+    return fem.Problem(
+        layers, fem.Tool(6e-3, contact), fem.Support("bonded"), geometry="surface", surface=surface, **words
+    )
+
+
+@pytest.mark.parametrize("contact", ["uniform_pressure", "rigid_bonded"])
+def test_a_press_is_in_equilibrium(ball, layered, contact):
+    model = solid_model(problem(ball, contact), layered, "auto", ())
+    solution = model.run(fem.Load("force", np.array([1.0]), np.array([0.1])))
+    np.testing.assert_allclose(solution.reaction, solution.force, rtol=1e-6)
+    np.testing.assert_allclose(solution.top_deflection[0, 0], solution.depth[0], rtol=1e-3)
+    assert 0.0 < solution.top_deflection[0, 1] < solution.top_deflection[0, 0]
+    fields = solution.fields(0)
+    assert (fields.cell_type, fields.cells.shape[1]) == (24, 10)
+
+
+@pytest.mark.parametrize(
+    ("words", "change"),
+    [
+        ("surface is missing", {"surface": None}),
+        ("has the support 'bonded' only", {"support": fem.Support("half_space")}),
+        ("is not above the surface", {"tool": fem.Tool(6e-3, "uniform_pressure", position=(0.1, 0.0))}),
+        ("tool.tilt", {"tool": fem.Tool(6e-3, "rigid_bonded", tilt=0.1)}),
+    ],
+)
+def test_what_does_not_fit_is_refused(ball, words, change):
+    with pytest.raises(fem.FemError, match=words):
+        fem.prepare(replace(problem(ball), **change))
+
+
+def test_layers_thicker_than_the_body_are_refused(ball):
+    with pytest.raises(fem.FemError, match=r"no place in the body is deeper than 0.02 m: is the unit right"):
+        build_surface_mesh(ball, (0.03, 1.0), (0.0, 0.0, 6e-3), 0.7)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("contact", ["uniform_pressure", "rigid_bonded"])
+def test_a_slab_as_a_surface_is_the_axisymmetric_slab(contact):
+    """One layer of 12 mm, 72 mm wide; the sides are free here and fixed there, far away from the tool."""
+    box = pyvista.Box((-0.036, 0.036, -0.036, 0.036, 0.0, 0.012)).triangulate().subdivide(3, "linear").clean()
+    surface = Surface(np.asarray(box.points, dtype=np.float64), box.regular_faces.astype(np.int64))
+    layer = fem.Layer("slab", 0.012, 1000.0, fem.NeoHookean(2e4, 0.49))
+    load = fem.Load("force", np.array([1.0]), np.array([0.1]))
+    depths = []
+    for geometry, body in (("surface", surface), ("axisymmetric", None)):
+        tool, support, fine = fem.Tool(6e-3, contact), fem.Support("bonded"), fem.Discretisation("fine")
+        model = fem.prepare(fem.Problem((layer,), tool, support, "linear", fine, geometry, body))
+        depths.append(model.run(load).depth[0])
+    assert depths[0] == pytest.approx(depths[1], rel=0.03)
+
+
+@pytest.mark.slow
+def test_a_liver_goes_from_stl_to_a_pressed_vtu(tmp_path):
+    command = [sys.executable, "-m", "tests.performance.liver", tmp_path]
+    subprocess.run(command, capture_output=True, check=True, cwd=ROOT)
+    grid = pyvista.read(tmp_path / "liver_synthetic.vtu")
+    assert set(np.unique(grid.cell_data["layer"])) == {0, 1, 2}
+    assert grid.point_data["displacement_m"][:, 2].min() < -5e-3
+
+
+def test_the_mesh_of_a_body_is_kept(ball, tmp_path, monkeypatch):
+    """The mesher is called once for a body, and again for another or where the file is damaged."""
+    kept, calls = tmp_path / "mesh.npz", []
+
+    def counted(*arguments):
+        calls.append(arguments)
+        points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, float(len(calls))]])
+        return points, np.array([[0, 1, 2, 3]]), np.array([0])
+
+    monkeypatch.setattr(kept_filling, "fill", counted)
+    wanted = Refinement(np.array([0.0, 0.0, 0.02]), 6e-3, 4e-3, 6e-3, 0.7)
+    first = kept_filling.kept_filling(ball, np.array([4e-3]), wanted, kept)
+    for found, array in zip(kept_filling.kept_filling(ball, np.array([4e-3]), wanted, kept), first, strict=True):
+        np.testing.assert_array_equal(found, array)
+    assert len(calls) == 1
+    kept_filling.kept_filling(ball, np.array([3e-3]), wanted, kept)
+    assert len(calls) == 2
+    kept.write_bytes(b"half")
+    kept_filling.kept_filling(ball, np.array([3e-3]), wanted, kept)
+    kept_filling.kept_filling(ball, np.array([3e-3]), wanted, None)
+    assert len(calls) == 4
+
+
+@pytest.mark.slow
+def test_a_run_on_a_kept_mesh_goes_on_with_a_new_model(ball, tmp_path):
+    layers = (
+        fem.Layer("rind", 4e-3, 1e3, fem.NeoHookean(2e4, 0.45)),
+        fem.Layer("rest", 1.0, 1e3, fem.NeoHookean(1e4, 0.45)),
+    )
+    problem = fem.Problem(
+        layers,
+        fem.Tool(6e-3, "uniform_pressure"),
+        fem.Support("bonded"),
+        discretisation=fem.Discretisation("coarse"),
+        geometry="surface",
+        surface=ball,
+    )
+    mesh, steps = tmp_path / "mesh.npz", tmp_path / "steps.npz"
+    load = fem.Load("force", [1.0, 2.0, 3.0], [0.02, 0.04, 0.05])
+    stopped = fem.prepare(problem, mesh_file=mesh)
+
+    def stop(report):
+        if report.step == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stopped.run(load, stop, steps)
+    resumed = fem.prepare(problem, mesh_file=mesh).run(load, checkpoint=steps)
+    assert resumed.resumed.steps == 2
+    np.testing.assert_allclose(resumed.displacement, stopped.run(load).displacement, rtol=1e-10, atol=1e-14)

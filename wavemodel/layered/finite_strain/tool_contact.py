@@ -1,0 +1,122 @@
+"""How a tool pushes the modes at finite strain: a pressure that stays as it is, or a rigid face held to the tissue.
+
+A rigid face is held by springs: the flexibility of the contact's traction functions that the modes do not have, the
+sharp part near the edge, which stays linear. At small loads the answer is then that of the linear wave.
+"""
+
+from typing import Protocol
+
+import numpy as np
+
+from wavemodel.arrays import FloatArray
+from wavemodel.layered.finite_strain.modal_body import ModalBody
+from wavemodel.layered.tractions import TractionBasis
+
+STIFFEST = 1e-7
+"""Springs are no stiffer than what this share of the whole flexibility gives."""
+
+
+class ToolContact(Protocol):
+    """Forces of a tool on the modes of a body."""
+
+    @property
+    def load(self) -> FloatArray:
+        """(N, 2 n) forces per force on the tool."""
+        ...
+
+    def held(self, amplitude: FloatArray) -> FloatArray:
+        """(N, 2 n) forces with which the tool holds the modes, N."""
+        ...
+
+    def relieve(self, amplitude: FloatArray) -> FloatArray:
+        """From the linear answer of the free body to that of the held one."""
+        ...
+
+    def depth(self, amplitude: FloatArray, force: float) -> float:
+        """Of the tool, m."""
+        ...
+
+
+def _push(body: ModalBody, load: FloatArray) -> FloatArray:
+    """(N, 2 n, J) forces on all amplitudes from (N, J, 2) along U and W of the surface."""
+    out = np.zeros((load.shape[0], 2 * body.nodes, load.shape[1]))
+    out[:, 0], out[:, body.nodes] = load[..., 0], load[..., 1]
+    return out
+
+
+class PressureContact:
+    """A uniform pressure on the disc as it was, straight down; the depth is that of the surface on the axis.
+
+    Parameters
+    ----------
+    body
+        The body.
+    basis
+        The pressure.
+    """
+
+    def __init__(self, body: ModalBody, basis: TractionBasis) -> None:
+        self._node = body.nodes
+        self.load: FloatArray = _push(body, basis.transform(body.modes.wavenumber))[..., 0]
+
+    def held(self, amplitude: FloatArray) -> FloatArray:
+        """Nothing is held."""
+        return np.zeros_like(amplitude)
+
+    def relieve(self, amplitude: FloatArray) -> FloatArray:
+        """The body is free."""
+        return amplitude
+
+    def depth(self, amplitude: FloatArray, force: float) -> float:  # noqa: ARG002
+        """Of the surface on the axis, m."""
+        return float(amplitude[:, self._node].sum())
+
+
+class BondedContact:
+    """A rigid flat face bonded to the disc.
+
+    Parameters
+    ----------
+    body
+        The body.
+    basis
+        J traction functions, normal and shear.
+    flexibility
+        (J, J) of them on the linear body, m/N.
+    """
+
+    def __init__(self, body: ModalBody, basis: TractionBasis, flexibility: FloatArray) -> None:
+        self._push = _push(body, basis.transform(body.modes.wavenumber))
+        self._answer = body.linear_compliance @ self._push
+        modal = np.einsum("nim,nij->mj", self._push, self._answer)
+        stiffness = _springs(flexibility, modal)
+        along = stiffness @ basis.net_force
+        self._along, self._whole = along, float(basis.net_force @ along)
+        self._spring = stiffness - np.outer(along, along) / self._whole
+        both = self._spring @ np.linalg.inv(np.eye(along.size) + modal @ self._spring)
+        self._both = 0.5 * (both + both.T)
+        self.load: FloatArray = self._push @ (along / self._whole)
+
+    def _motion(self, amplitude: FloatArray) -> FloatArray:
+        """(J,) motion of the surface weighted by each function, m."""
+        return np.asarray(np.einsum("nij,ni->j", self._push, amplitude))
+
+    def held(self, amplitude: FloatArray) -> FloatArray:
+        """(N, 2 n) forces of the springs, the tool being free to move down."""
+        return self._push @ (self._spring @ self._motion(amplitude))
+
+    def relieve(self, amplitude: FloatArray) -> FloatArray:
+        """The same with springs (Woodbury)."""
+        return np.asarray(amplitude - self._answer @ (self._both @ self._motion(amplitude)))
+
+    def depth(self, amplitude: FloatArray, force: float) -> float:
+        """Of the tool, m."""
+        return (force + float(self._along @ self._motion(amplitude))) / self._whole
+
+
+def _springs(flexibility: FloatArray, modal: FloatArray) -> FloatArray:
+    """(J, J) inverse of the flexibility that the modes do not have, which is positive but for rounding."""
+    scale = 1.0 / np.sqrt(np.diag(flexibility))
+    values, vectors = np.linalg.eigh((flexibility - modal) * np.outer(scale, scale))
+    inverse = (vectors / np.maximum(values, STIFFEST)) @ vectors.T
+    return np.asarray(inverse * np.outer(scale, scale))

@@ -1,0 +1,78 @@
+"""What a reader of the wave's results must know: warnings in words, with figures."""
+
+from collections.abc import Iterator
+
+from wavemodel.integrators.load_history import History
+from wavemodel.layered.body_options import VERIFIED
+from wavemodel.layered.press import Press
+
+SMALL_STRAIN = 0.05
+SUBLAYER_ERROR = 0.003
+BORDER_COST = 0.005
+INERTIA = 0.02
+
+
+def notices(press: Press, history: History, method: str, ringing: float) -> tuple[str, ...]:
+    """Warnings of one run.
+
+    Parameters
+    ----------
+    press
+        The set-up.
+    history
+        The run.
+    method
+        "quasi_static" or "exact".
+    ringing
+        About what inertia adds, over the peak.
+    """
+    inertia = _inertia(ringing) if method == "quasi_static" else iter(())
+    return (*_strain(press, history), *_sublayers(press), *_border(press), *inertia)
+
+
+def _strain(press: Press, history: History) -> Iterator[str]:
+    deepest, height = float(abs(history.depth).max()), press.stack.height
+    if press.field.large is not None:
+        if deepest > VERIFIED * height:
+            yield (
+                f"layered wave: the deepest press, {deepest * 1e3:.3g} mm, is {100 * deepest / height:.3g} % of the "
+                f"{height * 1e3:.3g} mm stack, outside the range that the large-press correction is verified in "
+                f"({100 * VERIFIED:.0f} %){_continued(press, deepest)}"
+            )
+    elif deepest > SMALL_STRAIN * height:
+        yield (
+            f"layered wave: the deepest press, {deepest * 1e3:.3g} mm, is {100 * deepest / height:.3g} % of the "
+            f"{height * 1e3:.3g} mm stack; this wave is linear, for small strain (up to about "
+            f"{100 * SMALL_STRAIN:.0f} %)"
+        )
+
+
+def _continued(press: Press, deepest: float) -> str:
+    large = press.field.large
+    if large is None or deepest <= large.followed:
+        return ""
+    return f", and from {large.followed * 1e3:.3g} mm on, its last equilibrium, the law goes straight along its tangent"
+
+
+def _sublayers(press: Press) -> Iterator[str]:
+    if press.sublayer_error > SUBLAYER_ERROR:
+        yield (
+            f"layered wave: the sub-layers cost {100 * press.sublayer_error:.2g} % of a layer's peak against exact "
+            "layered elasticity; left automatic they cost 0.05 %"
+        )
+
+
+def _border(press: Press) -> Iterator[str]:
+    if press.border_cost > BORDER_COST:
+        yield (
+            f"layered wave: the border of the {press.field.domain.width * 1e3:.4g} mm window costs up to "
+            f"{100 * press.border_cost:.2g} % of a layer's peak; an automatic window costs 0.1 %"
+        )
+
+
+def _inertia(ringing: float) -> Iterator[str]:
+    if ringing > INERTIA:
+        yield (
+            "layered wave: inertia is left out, though the load changes fast enough for it to add about "
+            f"{100 * ringing:.2g} % of the peak; the integrator 'exact' follows it"
+        )

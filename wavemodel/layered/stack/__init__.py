@@ -1,0 +1,1 @@
+"""Through-thickness stiffness K(k), mass and creep of a stack of layers, whatever the domain."""

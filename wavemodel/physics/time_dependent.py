@@ -1,0 +1,124 @@
+"""Options that depend on time: relaxation by a Prony series, poroelastic drainage, viscous damping."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wavemodel.arrays import FloatArray
+from wavemodel.errors import require_between
+from wavemodel.integrators.lags import LagMemory, lagged, relaxation, slopes
+from wavemodel.integrators.viscoelastic import Prony
+from wavemodel.physics.load_segment import LoadSegment, Memory
+
+TERMS = 12
+SMALLEST = 0.05
+"""A dome's contact is taken as no smaller than this share of the tool's radius."""
+
+
+@dataclass(frozen=True)
+class RelaxingForce:
+    """F(t) = int G(t - t') df(t'), G = 1 - sum g_j (1 - e^(-t / tau_j)); exact for f linear in each step.
+
+    Y. C. Fung, Biomechanics: Mechanical Properties of Living Tissues, section 7.6.
+
+    Attributes
+    ----------
+    series
+        g_j (together below 1) and tau_j in s.
+    """
+
+    series: Prony
+
+    def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
+        """(n,) force."""
+        law = relaxation(self.series)
+        start = law.rest(float(segment.force[0]) if segment.endless else 0.0)
+        if memory:
+            start = LagMemory(memory[0], np.array(memory[1:]))
+        force, end = law.follow(segment.duration, segment.force, start)
+        return force, (end.last, *end.state.tolist())
+
+
+@dataclass(frozen=True)
+class PoroelasticDrainage:
+    """F = int (1 - g (1 - phi(xi - xi'))) df, xi = int D / a^2 dt, phi = sum 8 / (n pi)^2 e^(-(n pi / 2)^2 xi), n odd.
+
+    phi is the share of the load that the fluid carries in one-dimensional consolidation (Terzaghi; H. F. Wang, Theory
+    of Linear Poroelasticity, section 6.3): 1 - 2 sqrt(xi / pi) at first, as all diffusion. That times go with a^2 / D
+    is what Hu et al. (2010, Appl Phys Lett 96:121904) measure by indentation. 12 terms; what is beyond is in the
+    last.
+
+    Attributes
+    ----------
+    strength
+        g, 0 to 0.99: the share that drains away; zero: off.
+    diffusivity
+        D in m2/s, 1e-15 to 1.
+    radius
+        a in m, 1e-6 to 1: of the tool's flat face.
+    dome
+        Radius of curvature of a domed tool, m; its contact is a = sqrt(2 dome d), up to `radius`. None: flat.
+    """
+
+    strength: float
+    diffusivity: float
+    radius: float
+    dome: float | None = None
+
+    def __post_init__(self) -> None:
+        require_between("drainage", "strength", self.strength, "", 0.0, 0.99)
+        require_between("drainage", "diffusivity", self.diffusivity, "m2/s", 1e-15, 1.0)
+        require_between("drainage", "radius", self.radius, "m", 1e-6, 1.0)
+        if self.dome is not None:
+            require_between("drainage", "dome", self.dome, "m", 1e-6, 1e3)
+
+    def contact_radius(self, depth: FloatArray) -> FloatArray:
+        """(n,) a in m at depths (n,), m."""
+        if self.dome is None:
+            return np.full_like(depth, self.radius)
+        contact = np.sqrt(2.0 * self.dome * np.maximum(depth, 0.0))
+        return np.asarray(np.clip(contact, SMALLEST * self.radius, self.radius))
+
+    def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
+        """(n,) force; exact for f linear in xi within each step."""
+        rate, weight = _spectrum()
+        first = float(segment.force[0]) if segment.endless else 0.0
+        last, *state = memory or (first,) * (TERMS + 1)
+        step = segment.duration * self.diffusivity / self.contact_radius(segment.depth) ** 2
+        pairs = zip(rate.tolist(), state, strict=True)
+        lags = np.array([lagged(step * one, segment.force, last, start) for one, start in pairs])
+        drained = self.strength * (weight @ lags)
+        return segment.force - drained, (float(segment.force[-1]), *lags[:, -1].tolist())
+
+
+def _spectrum() -> tuple[FloatArray, FloatArray]:
+    """Rates (in units of D / a^2) and weights, which sum to one."""
+    odd = np.arange(1, 2 * TERMS, 2, dtype=np.float64)
+    weight: FloatArray = 8.0 / (odd * np.pi) ** 2
+    weight[-1] += 1.0 - weight.sum()
+    rate: FloatArray = (0.5 * np.pi * odd) ** 2
+    return rate, weight
+
+
+@dataclass(frozen=True)
+class ViscousDamping:
+    """F = f + eta df_e/dt (Kelvin-Voigt; for a linear law eta K times the speed).
+
+    The rate is that of the step that ends at a sample, as in the layered wave.
+
+    Attributes
+    ----------
+    retardation
+        eta in s, 0 to 1e4; zero: off.
+    """
+
+    retardation: float
+
+    def __post_init__(self) -> None:
+        require_between("viscous damping", "retardation", self.retardation, "s", 0.0, 1e4)
+
+    def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
+        """(n,) force that the damping adds to the elastic force of the segment."""
+        last = memory[0] if memory else float(segment.force[0]) if segment.endless else 0.0
+        rate = slopes(segment.duration, segment.force, last)
+        return np.where(segment.touching, self.retardation * rate, 0.0), (float(segment.force[-1]),)
