@@ -245,7 +245,7 @@ def _misfit(trials: Sequence[TrialFit]) -> str:
         return ""
     return (
         f"the elastic law leaves more than {MISFIT:g} % of the peak (root mean square) in {len(above)} of "
-        f"{len(trials)} trials, up to {max(above):.3g} %"
+        f"{len(trials)} trials, up to {max(above):.3g} %; they are kept, but their stiffness is that of another law"
     )
 
 

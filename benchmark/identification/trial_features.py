@@ -21,6 +21,8 @@ LEAST_EVIDENCE = 5.0
 LEAST_TRAVEL = 1e-6
 """A trial whose depth stays within this range (m) has no motion."""
 ONSETS = 41
+END_ROWS = 0.05
+"""Share of the rows that count as the shallowest, and as the deepest."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,8 @@ class ContactRange:
 class Start:
     """Best linear fit over a grid of onsets: stiffness factor, force at the reference depth (N), onset (m).
 
-    `evidence` is the t of the stiffness with autocorrelated noise.
+    `evidence` is the t of the stiffness with autocorrelated noise, or of the force's rise where that is larger: a
+    force that follows another law than the curve is none the less a contact.
     """
 
     stiffness: float
@@ -122,7 +125,7 @@ def find_start(trial: TrialData, allowed: ContactRange) -> Start:
     residual = force - rest[:, None] - stiffness[:, None] * shapes
     misfit = np.einsum("ij,ij->i", residual, residual)
     best = int(np.argmin(np.where(stiffness > 0.0, misfit, np.inf)))
-    evidence = evidence_of(shapes[best], force)
+    evidence = max(evidence_of(shapes[best], force), evidence_of_rise(trial.depth, force))
     return Start(float(stiffness[best]), float(rest[best]), float(onsets[best]), evidence)
 
 
@@ -152,6 +155,23 @@ def evidence_of(shape: Array, force: Array) -> float:
     if variance <= 0.0:
         return float(np.sign(slope[0]) * np.inf) if slope[0] else 0.0
     return float(slope[0] / np.sqrt(variance))
+
+
+def evidence_of_rise(depth: Array, force: Array) -> float:
+    """Return how many times the force (n,) N rises above its own noise from the shallowest to the deepest (n,) m.
+
+    No law is assumed. The noise is what a random walk with the record's sample-to-sample noise would gain over its
+    length, or the scatter of the force where the trial is least deep, which shows a drift. 0 where it does not rise.
+    """
+    calm = without_spikes(force)
+    shallow, deep = depth <= np.quantile(depth, END_ROWS), depth >= np.quantile(depth, 1.0 - END_ROWS)
+    rise = float(np.median(calm[deep]) - np.median(calm[shallow]))
+    steps = np.abs(np.diff(force))
+    count = float(steps[steps > 0.0].min(initial=np.inf))
+    if rise <= 0.0 or np.isinf(count):
+        return 0.0
+    walk = np.sqrt(3.0 * force.size) * max(sample_noise(force), count / np.sqrt(12.0))
+    return float(rise / max(walk, np.std(calm[shallow])))
 
 
 STILL = 0.005

@@ -1,10 +1,17 @@
-"""WRITE"""
+"""Where a trial's force rises, what is noise, and what falls in a hold."""
 
 import numpy as np
 import pytest
 
 from benchmark.identification import TrialData, required_depth
-from benchmark.identification.trial_features import contact_range, evidence_of, find_start, largest_decay, sample_noise
+from benchmark.identification.trial_features import (
+    contact_range,
+    evidence_of,
+    evidence_of_rise,
+    find_start,
+    largest_decay,
+    sample_noise,
+)
 
 
 @pytest.mark.parametrize("onset", [-4e-4, 0.0, 3e-4, 1e-3])
@@ -47,6 +54,20 @@ def test_noise_alone_is_no_evidence(ar1, rho, share):
     ramp = np.clip(np.linspace(0, 2, 160), 0, 1)
     found = np.array([evidence_of(ramp, ar1(generator, 160, rho)) for _ in range(300)])
     assert np.mean(found >= 5.0) <= share
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.9, 0.98, 0.999])
+def test_a_walk_of_the_force_is_no_rise(ar1, rho):
+    generator = np.random.default_rng(5)
+    depth = np.linspace(0.0, 5e-3, 160)
+    assert max(evidence_of_rise(depth, ar1(generator, 160, rho)) for _ in range(300)) < 5.0
+
+
+def test_one_count_of_a_coarse_sensor_is_no_rise():
+    depth = np.linspace(0.0, 5e-3, 60)
+    assert evidence_of_rise(depth, 0.01 * (np.arange(60) > 40)) < 5.0
+    assert evidence_of_rise(depth, np.zeros(60)) == 0.0
+    assert evidence_of_rise(depth, -1e3 * depth) == 0.0
 
 
 def test_evidence_of_a_clear_slope_and_of_none():

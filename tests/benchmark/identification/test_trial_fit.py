@@ -80,6 +80,25 @@ def test_no_force_over_the_noise_is_no_contact(trial, ar1):
             fit_trial(air)
 
 
+@pytest.mark.parametrize("rows", [25, 100, 1000])
+def test_a_force_by_another_law_is_kept_with_its_misfit(rows):
+    time = np.arange(rows) / 10
+    depth = np.linspace(-2e-4, 4e-3, rows)
+    noise = 5e-3 * np.random.default_rng(rows).normal(size=rows)
+    force = 0.3 * np.expm1(1.2e3 * np.maximum(depth, 0.0)) + noise  # 36 N at the peak
+    straight = ForceCurve(np.array([1e-3, 9e-3]), np.array([0.3, 2.7]))
+    fit = fit_trial(TrialData("a", "slow", time, depth, force, straight))
+    assert fit.peak == pytest.approx(36.2, rel=0.1)
+    assert fit.residual_percent > 10.0
+
+
+def test_a_drift_in_the_air_is_no_contact(trial):
+    made = trial(noise=0.0)
+    air = replace(made, force=0.05 * np.linspace(0.0, 1.0, made.rows) + 1e-3 * np.sin(np.arange(made.rows) ** 2.0))
+    with pytest.raises(NoContactError, match="no force rises"):
+        fit_trial(air)
+
+
 def test_press_of_the_wrong_sign_asks_for_it(trial):
     made = trial()
     with pytest.raises(NoContactError, match="press positive"):
