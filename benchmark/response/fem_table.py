@@ -1,6 +1,7 @@
 """Elastic tables by the finite elements: a depth ramp of the set-up as told, and two of each parameter that is changed.
 
-Where the solver stops early, the force goes on like the wave model's; where it has no answer, the wave's table serves.
+Where the solver stops early, or does not cover the tool, the force is that of the nearest tools that it follows, and
+goes on like the wave model's; where there is none, the wave's table serves.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
-from benchmark.errors import InputError
+from benchmark.errors import InputError, TissuebenchError
 from benchmark.files import Session, Support, Tissue, Tool
 from benchmark.models import UncoveredError, prepare
 from benchmark.models.model_result import LowerFace
@@ -24,13 +25,12 @@ from benchmark.response.elastic_table import (
     orders,
 )
 from benchmark.response.force_curve import Array
+from benchmark.response.nearest_curve import nearest_curve, stuck_tool
 from benchmark.response.ramp import Ramp, depth_ramp, setup_scenario
 from benchmark.response.setup_change import RADIUS, changed_setup
 from benchmark.response.wave_table import MARGIN, STEP, wave_table
 
 STEPS = 24
-LEAST_REACH = 0.5
-"""A ramp that the solver followed at least this far of the trials' depth serves; beyond it goes on like the wave."""
 
 
 def fem_or_wave_table(session: Session, keys: Sequence[str] = (RADIUS,)) -> TableOf:
@@ -46,8 +46,8 @@ def fem_or_wave_table(session: Session, keys: Sequence[str] = (RADIUS,)) -> Tabl
     def table(tissue: Tissue, tool: Tool, support: Support, depth: float) -> ElasticTable:
         try:
             return _fem_table(session, (tissue, tool, support), depth, keys)
-        except InputError as error:
-            return _noted(wave_table(tissue, tool, support, depth, keys), str(error))
+        except TissuebenchError as error:
+            return _noted(_wave(tissue, tool, support, depth, keys), str(error))
 
     return table
 
@@ -58,7 +58,7 @@ def fem_table(session: Session, keys: Sequence[str] = (RADIUS,)) -> TableOf:
     def table(tissue: Tissue, tool: Tool, support: Support, depth: float) -> ElasticTable:
         try:
             return _fem_table(session, (tissue, tool, support), depth, keys)
-        except InputError as error:
+        except TissuebenchError as error:
             raise InputError(f"--model fem: {error}; --model wave goes on without them.") from None
 
     return table
@@ -71,24 +71,43 @@ def _fem_table(
 
     Raises
     ------
-    InputError
-        The solver has no answer, or stops before half the depth.
+    TissuebenchError
+        The solver has no answer for it, nor for a tool near it.
     """
-    told = _ramp(session, *setup, MARGIN * depth)
-    pairs = {
-        key: tuple(_ramp(session, *changed_setup(*setup, key, sign * STEP), MARGIN * depth) for sign in (-1.0, 1.0))
-        for key in keys
-    }
-    reached = min(float(ramp.depth[-1]) for ramp in (told, *(one for pair in pairs.values() for one in pair)))
-    if reached < LEAST_REACH * depth:
-        raise InputError(
-            f"the finite elements of {session.name} stop at {1e3 * reached:.3g} mm of {1e3 * depth:.3g} mm"
+    tissue, tool, support = setup
+
+    def ramp_of(other: Tool) -> Ramp:
+        return _ramp(session, tissue, other, support, MARGIN * depth)
+
+    curve = nearest_curve(tool, ramp_of)
+    told = curve.told
+    if told is not None and told.depth[-1] >= depth:
+        pairs = {
+            key: tuple(_ramp(session, *changed_setup(*setup, key, sign * STEP), MARGIN * depth) for sign in (-1.0, 1.0))
+            for key in keys
+        }
+        reached = min(float(ramp.depth[-1]) for ramp in (told, *(one for pair in pairs.values() for one in pair)))
+        if reached >= depth:
+            return _table(told, pairs, np.linspace(0.0, reached, POINTS))
+    note = curve.remark(MARGIN * depth) or "the finite elements stop early for a slightly changed set-up"
+    if curve.reach < depth:
+        note = f"{note}; beyond {1e3 * curve.reach:.3g} mm the base goes on like the wave model"
+    return _noted(_with_force(_wave(*setup, depth, keys), curve.depth, curve.force), note)
+
+
+def _wave(tissue: Tissue, tool: Tool, support: Support, depth: float, keys: Sequence[str]) -> ElasticTable:
+    """The wave's table; for a tool that the wave does not cover, that of one to which the surface sticks."""
+    try:
+        return wave_table(tissue, tool, support, depth, keys)
+    except InputError as error:
+        stuck = stuck_tool(tool)
+        if stuck == tool:
+            raise
+        table = wave_table(tissue, stuck, support, depth, keys)
+        reason = str(error).rpartition(": ")[0] or str(error)
+        return replace(
+            table, note=f"the wave model's changes with depth and radius are those of a tool that sticks ({reason})"
         )
-    if reached < depth:
-        wave = wave_table(*setup, depth, keys)
-        note = f"the finite elements stop at {1e3 * reached:.3g} mm; beyond, the base goes on like the wave model"
-        return _noted(_with_force(wave, told.depth, told.force), note)
-    return _table(told, pairs, np.linspace(0.0, reached, POINTS))
 
 
 def _ramp(session: Session, tissue: Tissue, tool: Tool, support: Support, deepest: float) -> Ramp:
@@ -146,4 +165,5 @@ def _with_force(wave: ElasticTable, depth: Array, force: Array) -> ElasticTable:
 
 
 def _noted(table: ElasticTable, note: str) -> ElasticTable:
+    note = "; ".join(text for text in (note, table.note) if text)
     return replace(table, note=f"{note}; what the wave model itself misses there may be taken for an effect")

@@ -32,7 +32,7 @@ def changed_setup(tissue: Tissue, tool: Tool, support: Support, key: str, share:
         return tissue.model_copy(update={"layers": layers}), tool, support
     part, _, name = key.partition(".")
     if part == "tool":
-        return tissue, _changed(tool, name, share, key), support
+        return tissue, _rounded(_changed(tool, name, share, key), tool), support
     if part == "support":
         return tissue, tool, _changed(support, name, share, key)
     path = layer_path(key, tissue.layer_names)
@@ -43,6 +43,16 @@ def changed_setup(tissue: Tissue, tool: Tool, support: Support, key: str, share:
         for number, layer in enumerate(tissue.layers)
     )
     return tissue.model_copy(update={"layers": layers}), tool, support
+
+
+def _rounded(changed: Tool, told: Tool) -> Tool:
+    """A changed tool whose edge fits its radius: a sphere stays one."""
+    edge = told.edge_radius
+    if edge is None or changed.edge_radius != edge:
+        return changed
+    return changed.model_copy(
+        update={"edge_radius": changed.radius if edge == told.radius else min(edge, changed.radius)}
+    )
 
 
 def _changed(part: Part, name: str, share: float, key: str) -> Part:

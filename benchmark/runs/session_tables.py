@@ -10,11 +10,12 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from benchmark.errors import SolverError
-from benchmark.files import Session
-from benchmark.models import StepProgress, prepare
+from benchmark.errors import InputError, SolverError
+from benchmark.files import Session, Tool
+from benchmark.models import StepProgress, UncoveredError, prepare
 from benchmark.models.model_result import OnStep
 from benchmark.response import CameraView, FaceField, ForceCurve, Neighbour, Ramp, RampTable, depth_ramp
+from benchmark.response.nearest_curve import continued, nearest_curve
 from benchmark.response.ramp import Setup, setup_scenario
 from benchmark.response.setup_change import THICKNESS, changed_setup
 from benchmark.runs.listener import Advance, Listener
@@ -22,8 +23,6 @@ from benchmark.runs.listener import Advance, Listener
 STEP = 0.5e-3
 LEAST_STEPS = 24
 MOST_STEPS = 40
-LEAST_REACH = 0.5
-"""A curve that the solver followed at least this far of the depth asked for serves, with a warning."""
 THICKER = 0.1
 FACE_STEPS = 24
 
@@ -39,24 +38,37 @@ class BaseCurves:
 def base_curves(session: Session, depths: Mapping[Setup, float], listener: Listener) -> BaseCurves:
     """Compute a curve for each tool and support, deep enough for the `depths` (m) asked for.
 
+    Where the finite elements stop, or do not cover the tool, the curve goes on by the nearest tools that they follow,
+    and then by its last power of the depth; the warnings say so.
+
     Raises
     ------
     SolverError
-        The solver stops before half the depth, saying where.
+        There is no curve at all.
     """
     curves, warnings = {}, []
     with listener.progress(f"{session.name}: force over depth of the specimen") as advance:
         for number, (setup, depth) in enumerate(depths.items(), start=1):
-            model = prepare("fem", setup_scenario(session, session.specimen, setup))
-            steps = min(max(math.ceil(depth / STEP), LEAST_STEPS), MOST_STEPS)
-            ramp = depth_ramp(model, depth, steps, _told(advance, f"FEM {number}"))
-            if ramp.failure is not None:
-                _refuse_short(session, ramp, depth, steps)
-                warnings.append(
-                    f"{_stop(ramp, depth)}; deeper rows are left out of the fit and have no finite-element force"
-                )
-            curves[setup] = ForceCurve(ramp.depth, ramp.force)
-    return BaseCurves(curves, tuple(warnings))
+            curves[setup], said = _curve(session, setup, depth, _told(advance, f"FEM {number}"))
+            warnings += said
+    return BaseCurves(curves, tuple(dict.fromkeys(warnings)))
+
+
+def _curve(session: Session, setup: Setup, depth: float, on_step: OnStep) -> tuple[ForceCurve, list[str]]:
+    """The curve of one tool and support, and what was put in the place of what the solver does not follow."""
+    steps = min(max(math.ceil(depth / STEP), LEAST_STEPS), MOST_STEPS)
+
+    def ramp_of(tool: Tool) -> Ramp:
+        model = prepare("fem", setup_scenario(session, session.specimen, (tool, setup[1])))
+        return depth_ramp(model, depth, steps, on_step)
+
+    try:
+        found = nearest_curve(setup[0], ramp_of)
+    except SolverError as error:
+        raise SolverError(f"session {session.name}: {error}") from None
+    points, force, beyond = continued(found, depth)
+    said = "; ".join(text for text in (found.remark(depth), beyond) if text)
+    return ForceCurve(points, force), [said] if said else []
 
 
 def session_sheets(
@@ -81,7 +93,7 @@ def session_sheets(
                 continue
             try:
                 thin, thick = (_sheet(session, setup, share, depth, advance) for share in (0.0, THICKER))
-            except SolverError as error:
+            except (SolverError, InputError, UncoveredError) as error:
                 warnings.append(f"the markers are not fitted: {error}")
                 continue
             sheets[setup] = RampTable(*thin, {THICKNESS: Neighbour(1.0 + THICKER, *thick)}, view)
@@ -107,20 +119,3 @@ def _told(advance: Advance, task: str) -> OnStep:
         advance(task, step.step, step.total, f"{1e3 * step.depth:.3g} mm")
 
     return on_step
-
-
-def _refuse_short(session: Session, ramp: Ramp, depth: float, steps: int) -> None:
-    if ramp.steps < max(LEAST_REACH * steps, 2):
-        raise SolverError(
-            f"session {session.name}: {_stop(ramp, depth)}; a thicker specimen, a larger tool or trials of less depth "
-            "can be followed"
-        )
-
-
-def _stop(ramp: Ramp, depth: float) -> str:
-    failure = ramp.failure
-    assert failure is not None
-    return (
-        f"the finite-element curve of the specimen is needed to {1e3 * depth:.4g} mm but stopped at "
-        f"{1e3 * failure.reached:.4g} mm ({failure.reason})"
-    )

@@ -29,3 +29,11 @@ def test_the_thickness_of_all_layers_changes_together() -> None:
 def test_what_is_no_number_of_the_set_up_is_refused(key) -> None:
     with pytest.raises(InputError, match=key):
         changed_setup(*SETUP, key, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("told", "share", "changed"), [(5e-3, 0.1, 5.5e-3), (5e-3, -0.1, 4.5e-3), (4.9e-3, -0.1, 4.5e-3), (1e-3, 0.1, 1e-3)]
+)
+def test_a_sphere_stays_one_and_an_edge_within_its_radius(told, share, changed) -> None:
+    tool = Tool(radius=5e-3, contact="rigid_frictionless", edge_radius=told)
+    assert changed_setup(SETUP[0], tool, SETUP[2], RADIUS, share)[1].edge_radius == pytest.approx(changed)
