@@ -66,13 +66,18 @@ LEAST_TRAVEL = 1e-6
 LONG_GAP = 5.0
 """A step in time of this many usual ones is told of as a gap. First choice."""
 PROTOCOL_SPREAD = 3.0
-"""Speeds of one condition lie within this factor, and so do peak depths or else peak forces. First choice."""
+"""Speeds of one condition lie within this factor, and so do peak depths or else peak forces. First choice.
+
+Where the specimens' heights are given, speeds and depths may be those over the height.
+"""
 PROTOCOL_TIME = 0.05
 """Trials whose segments differ may still be of one motion if their durations agree within this share. First choice."""
 PROTOCOL_DEPTH = 0.2
 """And if their depths over time agree within this share of the travel. First choice."""
 MOST_ODD = 0.25
 """Above this share of trials with another motion the condition is refused, below they are left out. First choice."""
+SHORT_REST = 0.15
+"""A rest up to this share of a trial counts to the motion before it where not all trials show it. First choice."""
 MARKER_SEEN = 0.5
 """Share of the frames in which a marker must be seen. First choice."""
 LEAST_MARKERS = 4

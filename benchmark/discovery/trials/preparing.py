@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +10,7 @@ from numpy.typing import NDArray
 from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.trials.marker_layout import Layout, layout
+from benchmark.discovery.trials.protocols import most_odd, same_protocol
 from benchmark.discovery.trials.rows import (
     RawTrial,
     acceleration,
@@ -46,20 +45,18 @@ def prepare(session: Session, rows: int) -> Study:
     Raises
     ------
     InputError
-        Fewer than three trials, a trial without motion or force, or trials of different protocols in a condition.
+        Fewer than three trials, more than single ones without motion or force, or different protocols in a condition.
     """
     warnings = [*session.warnings, *_few(session)]
     rows = min(rows, max(LEAST_IN_TRIAL, MOST_IN_ALL // len(session.trials)))
-    raw = [_raw(session, trial, warnings) for trial in session.trials]
+    raw = _usable(session, warnings)
     groups = [[r for r in raw if r.trial.condition == name] for name in session.conditions]
-    kept = [_same_protocol(session, group, warnings) for group in groups]
+    kept = [same_protocol(session.name, group, warnings) for group in groups if group]
     camera, seen = session.camera, _seen(kept)
     grid = None if camera is None else _grid(camera, kept, seen, warnings)
     order = {id(trial): number for number, trial in enumerate(session.trials)}
     conditions = tuple(
-        _condition(session, group, grid, seen, np.array([order[id(r.trial)] for r in group]), rows)
-        for group in kept
-        if group
+        _condition(session, group, grid, seen, np.array([order[id(r.trial)] for r in group]), rows) for group in kept
     )
     interval = float(np.median([np.median(np.diff(r.time)) for r in raw]))
     return Study(conditions, grid, camera.distance if camera else None, interval, tuple(warnings))
@@ -91,6 +88,21 @@ def _grid(
     return layout(resting_grid(camera, positions)[seen], camera.marker_spacing)
 
 
+def _usable(session: Session, warnings: list[str]) -> list[RawTrial]:
+    """The trials in which a tool presses; single others are set aside and named."""
+    found: list[RawTrial] = []
+    refused: list[InputError] = []
+    for trial in session.trials:
+        try:
+            found.append(_raw(session, trial, warnings))
+        except InputError as error:
+            refused.append(error)
+    if refused and (len(refused) > most_odd(len(session.trials)) or len(found) < criteria.LEAST_TRIALS):
+        raise refused[0]
+    warnings += [f"left out: {error}" for error in refused]
+    return found
+
+
 def _raw(session: Session, trial: Trial, warnings: list[str]) -> RawTrial:
     table = trial.table
     place = f"session {session.name}, trial {trial.name}"
@@ -118,77 +130,6 @@ def _decimated(*columns: Array) -> list[Array]:
         return [np.asarray(column, dtype=float) for column in columns]
     whole = columns[0].size // block * block
     return [np.asarray(column[:whole].reshape(-1, block).mean(axis=1)) for column in columns]
-
-
-def _kinds(raw: RawTrial) -> tuple[str, ...]:
-    return tuple(piece.kind for piece in raw.pieces)
-
-
-def _without_first_rest(raw: RawTrial) -> RawTrial:
-    """A trial whose first rest counts to what follows it."""
-    pieces = raw.pieces
-    if len(pieces) < 2 or pieces[0].kind != "rest":
-        return raw
-    return replace(raw, pieces=(replace(pieces[1], first=0), *pieces[2:]))
-
-
-def _same_protocol(session: Session, group: Sequence[RawTrial], warnings: list[str]) -> list[RawTrial]:
-    """Trials with the motion of most, their segments alike."""
-    if len({_kinds(raw) for raw in group}) > 1:
-        group = [_without_first_rest(raw) for raw in group]
-    usual = Counter(_kinds(raw) for raw in group).most_common(1)[0][0]
-    model = next(raw for raw in group if _kinds(raw) == usual)
-    fitted = [raw if _kinds(raw) == usual else _timed_like(raw, model) for raw in group]
-    kept = [raw for raw in fitted if raw is not None]
-    odd = [raw.trial.name for raw, one in zip(group, fitted, strict=True) if one is None]
-    _check_protocol(session, group, kept)
-    if odd:
-        warnings.append(
-            f"condition {group[0].trial.condition}: left out for another motion than the others': {', '.join(odd)}"
-        )
-    return kept
-
-
-def _check_protocol(session: Session, group: Sequence[RawTrial], kept: Sequence[RawTrial]) -> None:
-    """Refuse a condition whose trials differ in more than chance in motion, speed, or both depth and force."""
-    peaks = np.array([raw.depth.max() for raw in kept])
-    speeds = np.array([_speed(raw) for raw in kept])
-    forces = np.array([np.ptp(raw.force) for raw in kept])
-    deep = min(_ratio(peaks), _ratio(forces)) > criteria.PROTOCOL_SPREAD
-    wide = deep or _ratio(speeds) > criteria.PROTOCOL_SPREAD
-    if len(group) - len(kept) > criteria.MOST_ODD * len(group) or wide:
-        raise InputError(
-            f"session {session.name}, condition {group[0].trial.condition}: trials of different protocols "
-            f"({len(group)} trials; peak depth {1e3 * peaks.min():.3g} to {1e3 * peaks.max():.3g} mm, speed "
-            f"{1e3 * speeds.min():.3g} to {1e3 * speeds.max():.3g} mm/s); give each protocol a condition of its own."
-        )
-
-
-def _ratio(values: Array) -> float:
-    return float(values.max() / values.min())
-
-
-def _speed(raw: RawTrial) -> float:
-    piece = next(piece for piece in raw.pieces if piece.kind == "press")
-    last = min(piece.last, raw.time.size - 1)
-    return float(abs(raw.depth[last] - raw.depth[piece.first]) / max(raw.time[last] - raw.time[piece.first], 1e-9))
-
-
-def _timed_like(raw: RawTrial, model: RawTrial) -> RawTrial | None:
-    """A trial with the segments of another by their times, if its motion is the same."""
-    duration, other = np.ptp(raw.time), np.ptp(model.time)
-    if abs(duration / other - 1.0) > criteria.PROTOCOL_TIME:
-        return None
-    shown = np.interp(model.time - model.time[0], raw.time - raw.time[0], raw.depth)
-    if np.abs(shown - model.depth).max() > criteria.PROTOCOL_DEPTH * np.ptp(model.depth):
-        return None
-    stamps = [model.time[piece.first] - model.time[0] for piece in model.pieces]
-    edges = [int(np.searchsorted(raw.time - raw.time[0], stamp - 1e-9)) for stamp in stamps] + [raw.time.size]
-    pieces = [
-        replace(piece, first=first, last=last)
-        for piece, first, last in zip(model.pieces, edges[:-1], edges[1:], strict=True)
-    ]
-    return replace(raw, pieces=tuple(pieces)) if all(p.last > p.first for p in pieces) else None
 
 
 def _seen(groups: Sequence[Sequence[RawTrial]]) -> NDArray[np.bool_] | None:

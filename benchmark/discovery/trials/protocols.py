@@ -1,0 +1,203 @@
+"""Trials of one condition that share a motion: their segments made alike, odd ones set aside by name."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.discovery import criteria
+from benchmark.discovery.discovery_result import Array
+from benchmark.discovery.trials.rows import RawTrial
+from benchmark.discovery.trials.segments import Segment
+from benchmark.errors import InputError
+
+
+def same_protocol(name: str, group: Sequence[RawTrial], warnings: list[str]) -> list[RawTrial]:
+    """The trials of a condition with the motion of most, their segments alike; the others are set aside and named.
+
+    Parameters
+    ----------
+    name
+        Of the session, for messages.
+    group
+        At least one trial, of one condition.
+    warnings
+        Who was set aside is added here.
+
+    Raises
+    ------
+    InputError
+        More than single trials have another motion, another speed, or another depth and force.
+    """
+    alike = _with_like_rests(group)
+    usual = Counter(_kinds(raw) for raw in alike).most_common(1)[0][0]
+    model = next(raw for raw in alike if _kinds(raw) == usual)
+    timed = [raw if _kinds(raw) == usual else _timed_like(raw, model) for raw in alike]
+    kept = [raw for raw in timed if raw is not None]
+    extent = _Extent.of(kept)
+    if extent.wide:
+        kept = [raw for raw, odd in zip(kept, extent.odd, strict=True) if not odd]
+    left = len(group) - len(kept)
+    if left > most_odd(len(group)) or _Extent.of(kept).wide:
+        raise InputError(
+            f"session {name}, condition {group[0].trial.condition}: trials of different protocols ({len(group)} "
+            f"trials; {extent}); give each protocol a condition of its own."
+        )
+    if left:
+        names = {raw.trial.name for raw in kept}
+        odd = ", ".join(raw.trial.name for raw in group if raw.trial.name not in names)
+        warnings.append(f"condition {group[0].trial.condition}: left out for another motion than the others': {odd}")
+    return kept
+
+
+def most_odd(trials: int) -> float:
+    """How many of so many trials may be set aside: one of three and more, else a share."""
+    return max(criteria.MOST_ODD * trials, 1.0 if trials >= criteria.LEAST_TRIALS else 0.0)
+
+
+def _kinds(raw: RawTrial) -> tuple[str, ...]:
+    return tuple(piece.kind for piece in raw.pieces)
+
+
+def _strokes(raw: RawTrial) -> tuple[str, ...]:
+    return tuple(kind for kind in _kinds(raw) if kind != "rest")
+
+
+def _rests(raw: RawTrial) -> dict[int, Segment]:
+    """The rests of a trial by the number of strokes before them."""
+    found, strokes = {}, 0
+    for piece in raw.pieces:
+        if piece.kind == "rest":
+            found[strokes] = piece
+        else:
+            strokes += 1
+    return found
+
+
+def _with_like_rests(group: Sequence[RawTrial]) -> list[RawTrial]:
+    """Trials whose first rest, and short ones, count to the motion beside them where not all trials show them.
+
+    Whether a short dwell shows depends on how far the tool travels, and so on the specimen's height.
+    """
+    usual = Counter(_strokes(raw) for raw in group).most_common(1)[0][0]
+    rests = [_rests(raw) for raw in group if _strokes(raw) == usual]
+    shared = set(rests[0]).intersection(*rests)
+    unshared = {place for each in rests for place in each} - shared
+    shares: dict[int, list[float]] = {place: [] for place in unshared}
+    for raw in group:
+        if _strokes(raw) == usual:
+            for place, piece in _rests(raw).items():
+                shares.get(place, []).append(_duration(raw, piece) / float(np.ptp(raw.time)))
+    joined = {place for place, each in shares.items() if place == 0 or np.median(each) <= criteria.SHORT_REST}
+    return [_without_rests(raw, joined) if _strokes(raw) == usual else raw for raw in group]
+
+
+def _duration(raw: RawTrial, piece: Segment) -> float:
+    return float(raw.time[min(piece.last, raw.time.size - 1)] - raw.time[piece.first])
+
+
+def _without_rests(raw: RawTrial, places: AbstractSet[int]) -> RawTrial:
+    """A trial whose rests at these places count to the stroke before them, the first to the one after it."""
+    out: list[Segment] = []
+    strokes, first = 0, 0
+    for piece in raw.pieces:
+        if piece.kind == "rest" and strokes in places:
+            if out:
+                out[-1] = replace(out[-1], last=piece.last)
+            continue
+        strokes += piece.kind != "rest"
+        out.append(piece if out else replace(piece, first=first))
+    return replace(raw, pieces=tuple(out))
+
+
+@dataclass(frozen=True, eq=False)
+class _Extent:
+    """How deep, how hard and how fast trials press, each (R,): m, N, m/s; `height` of each specimen, m, or NaN."""
+
+    depth: Array
+    force: Array
+    speed: Array
+    height: Array
+
+    @staticmethod
+    def of(group: Sequence[RawTrial]) -> _Extent:
+        return _Extent(
+            np.array([raw.depth.max() for raw in group]),
+            np.array([np.ptp(raw.force) for raw in group]),
+            np.array([_speed(raw) for raw in group]),
+            np.array([_height(raw) for raw in group]),
+        )
+
+    @property
+    def _presses(self) -> tuple[Array, ...]:
+        """What may be alike in one protocol: depth, depth over the specimen's height, or force."""
+        return (self.depth, self.force, *self._over_height(self.depth))
+
+    @property
+    def _rates(self) -> tuple[Array, ...]:
+        return (self.speed, *self._over_height(self.speed))
+
+    def _over_height(self, values: Array) -> tuple[Array, ...]:
+        return (values / self.height,) if np.isfinite(self.height).all() else ()
+
+    @property
+    def wide(self) -> bool:
+        """Whether the trials differ in speed, or in depth and force, by more than chance."""
+        spreads = [min(_ratio(each) for each in kind) for kind in (self._presses, self._rates)]
+        return max(spreads) > criteria.PROTOCOL_SPREAD
+
+    @property
+    def odd(self) -> NDArray[np.bool_]:
+        """(R,) whether a trial is far from the median."""
+        far = [
+            np.min([np.abs(np.log(each / np.median(each))) for each in kind], axis=0)
+            for kind in (self._presses, self._rates)
+        ]
+        return np.asarray(np.max(far, axis=0) > 0.5 * np.log(criteria.PROTOCOL_SPREAD))
+
+    def __str__(self) -> str:
+        depth, speed = 1e3 * self.depth, 1e3 * self.speed
+        return (
+            f"peak depth {depth.min():.3g} to {depth.max():.3g} mm, speed {speed.min():.3g} to {speed.max():.3g} mm/s"
+        )
+
+
+def _ratio(values: Array) -> float:
+    return float(values.max() / values.min())
+
+
+def _height(raw: RawTrial) -> float:
+    """Gap between tool and base at zero depth, m; NaN where it was not measured."""
+    table = raw.trial.table
+    gap = table.extra.get("gap")
+    row = int(np.argmin(np.abs(table.depth)))
+    height = np.nan if gap is None else float(gap[row] + table.depth[row])
+    return height if height > 0.0 else np.nan
+
+
+def _speed(raw: RawTrial) -> float:
+    piece = next(piece for piece in raw.pieces if piece.kind == "press")
+    last = min(piece.last, raw.time.size - 1)
+    return float(abs(raw.depth[last] - raw.depth[piece.first]) / max(raw.time[last] - raw.time[piece.first], 1e-9))
+
+
+def _timed_like(raw: RawTrial, model: RawTrial) -> RawTrial | None:
+    """A trial with the segments of another by their times, if its motion is the same."""
+    duration, other = np.ptp(raw.time), np.ptp(model.time)
+    if abs(duration / other - 1.0) > criteria.PROTOCOL_TIME:
+        return None
+    shown = np.interp(model.time - model.time[0], raw.time - raw.time[0], raw.depth)
+    if np.abs(shown - model.depth).max() > criteria.PROTOCOL_DEPTH * np.ptp(model.depth):
+        return None
+    stamps = [model.time[piece.first] - model.time[0] for piece in model.pieces]
+    edges = [int(np.searchsorted(raw.time - raw.time[0], stamp - 1e-9)) for stamp in stamps] + [raw.time.size]
+    pieces = [
+        replace(piece, first=first, last=last)
+        for piece, first, last in zip(model.pieces, edges[:-1], edges[1:], strict=True)
+    ]
+    return replace(raw, pieces=tuple(pieces)) if all(p.last > p.first for p in pieces) else None

@@ -1,0 +1,95 @@
+"""Which trials of a condition belong together: dwells that show in some, specimens of different height, odd ones."""
+
+import numpy as np
+import pytest
+
+from benchmark.discovery.trials.preparing import prepare
+from benchmark.errors import InputError
+from benchmark.files import load_session
+
+SESSION = 'schema = 1\nname = "mixed"\n[tool]\nradius = "5 mm"\ncontact = "rigid_bonded"\n[support]\nkind = "bonded"\n'
+
+
+@pytest.fixture
+def session(tmp_path):
+    """A session of trials, each (time s, depth mm, force N, height mm or None)."""
+
+    def make(trials, conditions=None):
+        lines = [SESSION]
+        for number, (time, depth, force, height) in enumerate(trials):
+            name = f"trial_{number:02d}.csv"
+            columns, header = [time, depth, force], "time_s,depth_mm,force_N"
+            if height is not None:
+                columns, header = [*columns, height - depth], f"{header},gap_mm"
+            np.savetxt(tmp_path / name, np.column_stack(columns), delimiter=",", header=header, comments="")
+            condition = "slow" if conditions is None else conditions[number]
+            lines.append(f'[[trials]]\nfile = "{name}"\ncondition = "{condition}"\n')
+        (tmp_path / "session.toml").write_text("\n".join(lines))
+        return load_session(tmp_path)
+
+    return make
+
+
+def press(peak, *, speed=1.0, dwell=0.0, height=None, stiffness=1.0, rate=25.0):
+    """A press to a peak (mm) at a speed (mm/s), a dwell (s) and the way back, from 0.3 mm above the surface."""
+    knots = np.cumsum([0.0, 0.5, (peak + 0.3) / speed, max(dwell, 1e-6), (peak + 0.3) / speed, 0.5])
+    time = np.arange(0.0, knots[-1], 1.0 / rate)
+    depth = np.interp(time, knots, [-0.3, -0.3, peak, peak, -0.3, -0.3])
+    return time, depth, stiffness * np.maximum(depth, 0.0) ** 1.5, height
+
+
+def test_a_short_dwell_that_shows_in_some_trials_refuses_none(session) -> None:
+    peaks = np.linspace(2.0, 4.6, 12)
+    made = session([press(peak, dwell=0.3) for peak in peaks])
+    study = prepare(made, 100)
+    assert study.trial_count == 12
+    assert not any("left out" in text for text in study.warnings)
+    deepest = [depth.max() for depth in study.conditions[0].depth]
+    assert 1e3 * np.array(deepest) == pytest.approx(peaks, abs=0.1)
+
+
+def test_a_long_hold_of_single_trials_is_another_motion(session) -> None:
+    made = session([*(press(3.0) for _ in range(8)), press(3.0, dwell=6.0)])
+    study = prepare(made, 100)
+    assert study.trial_count == 8
+    assert any("another motion than the others': trial_08" in text for text in study.warnings)
+
+
+def test_depth_over_height_is_compared_where_specimens_differ(session) -> None:
+    heights = np.linspace(4.0, 16.0, 8)
+    trials = [press(0.3 * h, speed=0.1 * h, height=h, stiffness=20.0 / (0.3 * h) ** 4) for h in heights]
+    assert prepare(session(trials), 100).trial_count == 8
+    unknown = prepare(session([(*trial[:3], None) for trial in trials]), 100)
+    assert unknown.trial_count == 6
+    assert any("others': trial_00, trial_01" in text for text in unknown.warnings)
+
+
+@pytest.mark.parametrize("speed", [8.0, 0.2])
+def test_a_single_trial_of_another_speed_is_set_aside_by_name(session, speed) -> None:
+    made = session([press(3.0), press(3.1), press(2.9), press(3.0, speed=speed), press(3.0)])
+    study = prepare(made, 100)
+    assert study.trial_count == 4
+    assert any("trial_03" in text for text in study.warnings)
+
+
+def test_two_protocols_of_like_number_are_refused(session) -> None:
+    with pytest.raises(InputError, match=r"different protocols \(6 trials; peak depth 3 to 3 mm, speed .* mm/s\)"):
+        prepare(session([press(3.0, speed=speed) for speed in (1.0, 9.0) * 3]), 100)
+
+
+@pytest.mark.parametrize(("column", "reason"), [(1, "no motion"), (2, "force_N does not change")])
+def test_a_single_trial_that_tells_nothing_is_set_aside_by_name(session, column, reason) -> None:
+    still = list(press(3.0))
+    still[column] = np.full_like(still[0], 0.5)
+    study = prepare(session([press(3.0), tuple(still), press(3.0), press(3.0)]), 100)
+    assert study.trial_count == 3
+    assert any("trial_01" in text and reason in text for text in study.warnings)
+
+
+def test_a_condition_whose_trials_all_tell_nothing_is_left_out(session) -> None:
+    trials = [press(3.0) for _ in range(7)]
+    time, depth, _, _ = press(3.0)
+    trials.append((time, depth, np.zeros_like(time), None))
+    study = prepare(session(trials, ["slow"] * 7 + ["off"]), 100)
+    assert [condition.name for condition in study.conditions] == ["slow"]
+    assert any("trial_07" in text for text in study.warnings)
