@@ -48,11 +48,11 @@ def discover(
     """
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
-    from benchmark.discovery.discovery_request import DiscoverRequest, answer_session, carry_out
+    from benchmark.discovery.discovery_request import DiscoverRequest, carry_out
 
     console = Console(quiet=quiet)
     request = DiscoverRequest(paths, model, effects, specimen, parse_settings(settings), out, seed)
-    outcome = carry_out(request, answer_session, console)
+    outcome = carry_out(request, console)
     for warning in outcome.warnings:
         console.say(f"  warning: {warning}")
     if json:

@@ -38,12 +38,11 @@ def fit(
     """
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
-    from benchmark.runs import fit_to_folder
+    from benchmark.runs import FitRequest, fit_to_folder
 
     console = Console(quiet=quiet)
-    outcome = fit_to_folder(
-        session, specimen, parse_settings(settings), out, seed=seed, listener=console, model=model, effects=effects
-    )
+    request = FitRequest(session, specimen, parse_settings(settings), model, effects, seed)
+    outcome = fit_to_folder(request, out, console)
     for warning in outcome.warnings:
         console.say(f"  warning: {warning}")
     if json:

@@ -37,37 +37,39 @@ class DiscoverRequest:
     seed: int = 0
 
 
-OfSession = Callable[[DiscoverRequest, tuple[Effect, ...], Listener], DiscoveryRecord]
-
-
-def carry_out(request: DiscoverRequest, of_session: OfSession, listener: Listener) -> DiscoveryOutcome:
-    """Answer for a session or for finished runs, and write the result folder.
-
-    Parameters
-    ----------
-    request
-        What was asked for.
-    of_session
-        What answers for a session.
-    listener
-        Told of progress.
+def carry_out(request: DiscoverRequest, listener: Listener) -> DiscoveryOutcome:
+    """Answer for a session or for finished runs, and write the result folder, whose place is checked first.
 
     Raises
     ------
     InputError
-        Unusable input, or options that do not go together; nothing is written then.
+        As `answer` and `destination`; nothing is written then.
     """
     destination(request.out, "", (*request.paths, request.effects, request.specimen, *request.settings.values()))
+    return put_down(answer(request, listener), request.out)
+
+
+def answer(request: DiscoverRequest, listener: Listener) -> DiscoveryRecord:
+    """Answer for a session or for finished runs.
+
+    Raises
+    ------
+    InputError
+        Unusable input, or options that do not go together.
+    """
     effects = (*catalogue(), *(() if request.effects is None else load_effects(request.effects)))
     if any(is_run(path) for path in request.paths):
-        record = _of_runs(request, effects, listener)
-    elif len(request.paths) > 1:
+        return _of_runs(request, effects, listener)
+    if len(request.paths) != 1:
         raise InputError(
             "discover takes one session (several conditions belong into one), or one or two result folders of run"
         )
-    else:
-        record = of_session(request, effects, listener)
-    outcome = write_discovery(record, destination(request.out, f"{record.name}-discovery"))
+    return answer_session(request, effects, listener)
+
+
+def put_down(record: DiscoveryRecord, out: Path | None) -> DiscoveryOutcome:
+    """Write the result folder of an answer, by default results/NAME-DATE-TIME, and forget the fits kept for it."""
+    outcome = write_discovery(record, destination(out, f"{record.name}-discovery"))
     if record.store is not None:
         forget(record.store)
     return outcome

@@ -1,191 +1,74 @@
-"""`fit`: a session's specimen fitted to its trials, to force alone or to force and markers, as a folder of its own."""
+"""`fit`: from a session to its fit, and the fit as a folder of its own."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from benchmark.errors import InputError
-from benchmark.files import Session, Trial, load_session
-from benchmark.identification import (
-    FittingError,
-    SessionFit,
-    TrialData,
-    filmed_trial,
-    fit_session,
-    fit_sheet,
-    parameter_columns,
-    required_depth,
-)
-from benchmark.identification.effects_in_fit import fit_with_effects
-from benchmark.identification.fitted_parameters import sheet_parameters
-from benchmark.identification.session_fit import elastic_only
-from benchmark.identification.sheet_model import NONE, FilmedTrial
-from benchmark.identification.sheet_trial import SheetTrial
+from benchmark.identification import SheetFit, parameter_columns
 from benchmark.model_file import RepairedModel
-from benchmark.models import Array
-from benchmark.response import ForceCurve, RampTable
 from benchmark.response.model_with_effects import load_repair
-from benchmark.response.ramp import Setup
 from benchmark.runs.destination import destination
 from benchmark.runs.document import describe_environment
-from benchmark.runs.film_tables import Motion, motions_of
-from benchmark.runs.filming import Films, session_films
 from benchmark.runs.listener import Listener
-from benchmark.runs.measured import FilmedSession
 from benchmark.runs.report import fit_page
-from benchmark.runs.report.values import fit_headline
-from benchmark.runs.session_tables import base_curves, session_sheets
-from benchmark.runs.table_one import Placed, table_one
-from reports import whole_folder, write_csv, write_json, write_page
-
-Key = tuple[str, str]
-MARGIN = 1.02
+from benchmark.runs.report.values import fit_headline, sheet_headline
+from benchmark.runs.fitted_session import FittedSession, fit_trials
+from reports import Page, whole_folder, write_csv, write_json, write_page
 
 
 @dataclass(frozen=True)
-class FittedSession:
-    """A session with its fit.
+class FitRequest:
+    """What is fitted: a session, the tissue of its trials, settings by KEY, a model file whose effects are in the fit.
 
-    Attributes
-    ----------
-    session
-        As read.
-    fit
-        Of its specimen.
-    trials
-        In the session's order, each with the force curve of its tool and support.
-    warnings
-        Of reading, of the curves, of the films, and of the fit.
-    filmed
-        What the markers tell; None without any.
-    sheets
-        Each filmed trial with its model, by condition and name.
-    added
-        By condition and trial: (n,) N that the effects of a model file add to the elastic force; empty without one.
+    `effects` is the user's own file that the model file may name.
     """
 
-    session: Session
-    fit: SessionFit
-    trials: tuple[TrialData, ...]
-    warnings: tuple[str, ...]
-    filmed: FilmedSession | None = None
-    sheets: Mapping[Key, tuple[FilmedTrial, RampTable]] = field(default_factory=dict)
-    added: Mapping[Key, Array] = field(default_factory=dict)
+    session: Path
+    specimen: str | None = None
+    settings: Mapping[str, str] = field(default_factory=dict)
+    model: Path | None = None
+    effects: Path | None = None
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class FitRecord:
+    """A fit before it is written: what was found, with which effects switched on, and the seed."""
+
+    found: FittedSession
+    repair: RepairedModel | None
+    seed: int
 
     @property
-    def stiffness_factor(self) -> float:
-        """Of force and markers together where there are markers, else of the force alone."""
-        sheet = None if self.filmed is None else self.filmed.sheet
-        return self.fit.stiffness_factor if sheet is None else sheet.stiffness.value
+    def sheet(self) -> SheetFit | None:
+        """The fit of force and markers together; None without markers."""
+        return None if self.found.filmed is None else self.found.filmed.sheet
 
+    @property
+    def headline(self) -> str:
+        """The fit in one sentence."""
+        return fit_headline(self.found.fit) if self.sheet is None else sheet_headline(self.sheet)
 
-def fit_trials(
-    path: Path,
-    specimen: str | None,
-    settings: Mapping[str, str],
-    listener: Listener,
-    *,
-    films: bool = True,
-    repair: RepairedModel | None = None,
-) -> FittedSession:
-    """Read a session and fit its specimen to all trials.
+    def document(self) -> dict[str, Any]:
+        """The content of `fit.json`."""
+        session = self.found.session
+        return {
+            **self.found.fit.to_dict(),
+            **({} if self.sheet is None else {"sheet": self.sheet.to_dict()}),
+            "session": {"name": session.name, "fingerprint": session.fingerprint, "synthetic": session.synthetic},
+            "specimen": session.specimen.name,
+            "warnings": list(self.found.warnings),
+            **({} if self.repair is None else {"effects": list(self.repair.slugs)}),
+        }
 
-    With `films` to their markers, too; with the effects of a model file (`repair`) to their force alone.
-
-    Raises
-    ------
-    InputError
-        Files or trials that cannot be used.
-    SolverError
-        The finite-element curve could not be computed deep enough.
-    """
-    session = load_session(path, settings, specimen)
-    base = base_curves(session, _depths(session), listener)
-    listener.say(f"{session.name}: fitting {len(session.trials)} trials")
-    try:
-        trials = tuple(_trial_data(trial, base.curves[trial.tool, trial.support]) for trial in session.trials)
-        if repair is not None:
-            return _fitted_with(repair, session, trials, base.warnings)
-        fit = fit_session(trials, session.specimen.layers)
-    except FittingError as error:
-        raise InputError(f"session {session.folder}: {error}") from None
-    found = FittedSession(session, fit, trials, (*session.warnings, *base.warnings, *fit.warnings))
-    return _with_films(found, session_films(session, listener), listener) if films else found
-
-
-def _with_films(found: FittedSession, films: Films, listener: Listener) -> FittedSession:
-    """Fit force and markers together where trials were filmed."""
-    session, camera = found.session, found.session.camera
-    if camera is None or not films.films:
-        return replace(found, warnings=(*found.warnings, *films.warnings))
-    listener.say(f"{session.name}: fitting force and markers of {len(films.films)} trials together")
-    motions = motions_of(films.films, camera)
-    models, said = session_sheets(session, _depths(session), films.view, listener)
-    starts = {trial.key: trial for trial in found.fit.trials}
-    pairs = {
-        data.key: (film, models[trial.tool, trial.support])
-        for trial, data in zip(session.trials, found.trials, strict=True)
-        if data.key in films.films and data.key in starts and (trial.tool, trial.support) in models
-        if (film := filmed_trial(data, films.films[data.key])) is not None
-    }
-    sheet = fit_sheet(tuple(pairs.values()), starts) if pairs else None
-    rows, notes = found.fit.parameters, found.fit.notes
-    if sheet is not None:
-        rows = sheet_parameters(sheet, session.specimen.layers, rows)
-        notes = (f"force alone: {fit_headline(found.fit)}", *(f"force alone: {note}" for note in notes))
-    placed = (
-        {} if sheet is None else {key[1]: _placed(pairs[key][1], own) for key in pairs if (own := sheet.trial(key))}
-    )
-    fit = replace(found.fit, notes=notes, parameters=(*rows, *table_one(session, motions, placed)))
-    filmed = FilmedSession(motions, films.tracked, sheet)
-    elastic = () if sheet is None or sheet.relaxation == NONE else elastic_only(found.fit.trials)
-    fit = replace(fit, warnings=tuple(text for text in fit.warnings if text not in elastic))
-    warnings = (*(text for text in found.warnings if text not in elastic), *films.warnings, *said)
-    return replace(found, fit=fit, filmed=filmed, sheets=pairs, warnings=warnings)
-
-
-def _placed(model: RampTable, own: SheetTrial) -> Placed:
-    """Take perspective off the markers of a trial, by how far the fitted sheet sinks."""
-
-    def true_displacements(motion: Motion, depth: Array) -> Array:
-        radius = np.hypot(*(motion.rest - np.array(own.state.axis)).T)
-        sunk = model.face(depth - own.state.onset, radius)[1]
-        return np.asarray(model.view.true(motion.rest + motion.moved, sunk) - motion.rest)
-
-    return true_displacements
-
-
-def _fitted_with(
-    repair: RepairedModel, session: Session, trials: tuple[TrialData, ...], said: tuple[str, ...]
-) -> FittedSession:
-    """The fit with the effects of a model file; raises FittingError."""
-    names = ", ".join(repair.slugs) or "no effect"
-    made = fit_with_effects(session, trials, repair)
-    warnings = [f"fitted with {names} of {repair.name} switched on, to the force alone"]
-    if not made.settled:
-        warnings.append("the stiffness did not come to rest with the effects in the fit: take it with care")
-    everything = (*session.warnings, *said, *made.fit.warnings, *warnings)
-    return FittedSession(session, made.fit, trials, everything, added=made.added)
-
-
-def _depths(session: Session) -> dict[Setup, float]:
-    """The depth each tool and support needs a curve to."""
-    depths: dict[Setup, float] = {}
-    for trial in session.trials:
-        key = (trial.tool, trial.support)
-        needed = MARGIN * required_depth(trial.table.depth, trial.table.force)
-        depths[key] = max(depths.get(key, 0.0), needed)
-    return depths
-
-
-def _trial_data(trial: Trial, curve: ForceCurve) -> TrialData:
-    table = trial.table
-    return TrialData(trial.name, trial.condition, table.time, table.depth, table.force, curve)
+    def page(self) -> Page:
+        """The page of the fit."""
+        found = self.found
+        return fit_page(found.session, found.fit, found.warnings, describe_environment(seed=self.seed), self.sheet)
 
 
 @dataclass(frozen=True)
@@ -198,47 +81,43 @@ class FitOutcome:
     warnings: tuple[str, ...]
 
 
-def fit_to_folder(
-    path: Path,
-    specimen: str | None,
-    settings: Mapping[str, str],
-    out: Path | None,
-    *,
-    seed: int,
-    listener: Listener,
-    model: Path | None = None,
-    effects: Path | None = None,
-) -> FitOutcome:
-    """Fit a session and write fit.json, fitted_parameters.csv and report.html.
-
-    With a `model` file its effects are in the fit; `effects` is the user's own file that it may name.
+def carry_out_fit(request: FitRequest, listener: Listener) -> FitRecord:
+    """Fit a session; nothing is written.
 
     Raises
     ------
     InputError, SolverError
-        See `fit_trials`.
+        See `benchmark.runs.session_run.fit_trials`.
+    """
+    if request.effects is not None and request.model is None:
+        raise InputError("--effects brings effects that a model file names: give --model with it")
+    repair = None if request.model is None else load_repair(request.model, request.effects)
+    found = fit_trials(request.session, request.specimen, request.settings, listener, repair=repair)
+    return FitRecord(found, repair, request.seed)
+
+
+def fit_to_folder(request: FitRequest, out: Path | None, listener: Listener) -> FitOutcome:
+    """Fit a session and write its folder, whose place is checked first.
+
+    Raises
+    ------
+    InputError, SolverError
+        See `carry_out_fit` and `destination`.
     OSError
         Where the file system refuses; `out` is then as it was.
     """
-    if effects is not None and model is None:
-        raise InputError("--effects brings effects that a model file names: give --model with it")
-    destination(out, "", (path, model, effects, specimen, *settings.values()))
-    repair = None if model is None else load_repair(model, effects)
-    found = fit_trials(path, specimen, settings, listener, repair=repair)
-    session, fit, warnings = found.session, found.fit, found.warnings
-    sheet = None if found.filmed is None else found.filmed.sheet
-    document = {
-        **fit.to_dict(),
-        **({} if sheet is None else {"sheet": sheet.to_dict()}),
-        "session": {"name": session.name, "fingerprint": session.fingerprint, "synthetic": session.synthetic},
-        "specimen": session.specimen.name,
-        "warnings": list(warnings),
-        **({} if repair is None else {"effects": list(repair.slugs)}),
-    }
-    page = fit_page(session, fit, warnings, describe_environment(seed=seed), sheet)
-    folder = destination(out, f"{session.name}-fit")
+    destination(
+        out, "", (request.session, request.model, request.effects, request.specimen, *request.settings.values())
+    )
+    record = carry_out_fit(request, listener)
+    return write_fit(record, destination(out, f"{record.found.session.name}-fit"))
+
+
+def write_fit(record: FitRecord, folder: Path) -> FitOutcome:
+    """Write fit.json, fitted_parameters.csv and report.html; raises OSError, and `folder` is then as it was."""
+    document, page = record.document(), record.page()
     with whole_folder(folder) as new:
         write_json(new / "fit.json", document)
-        write_csv(new / "fitted_parameters.csv", parameter_columns(fit.parameters))
+        write_csv(new / "fitted_parameters.csv", parameter_columns(record.found.fit.parameters))
         write_page(new / "report.html", page)
-    return FitOutcome(folder, document, page.verdict.headline, warnings)
+    return FitOutcome(folder, document, page.verdict.headline, record.found.warnings)

@@ -14,6 +14,7 @@ from benchmark.runs.destination import destination
 from benchmark.runs.folder import RunOutcome, write_run
 from benchmark.runs.listener import Listener
 from benchmark.runs.options import RunOptions
+from benchmark.runs.record import RunRecord
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.session_run import run_session
 from benchmark.runs.tissues_run import run_tissues
@@ -61,6 +62,23 @@ def carry_out(request: RunRequest, options: RunOptions, listener: Listener) -> l
     if request.scenario is not None:
         return [_scenario(request, request.scenario, request.out, options, listener)]
     return _shipped(request, options, listener)
+
+
+def computed(request: RunRequest, options: RunOptions, listener: Listener) -> RunRecord:
+    """Run one scenario or one session; nothing is written.
+
+    Raises
+    ------
+    InputError, SolverError
+        As `carry_out`; a request for neither, or for several tissues, is an InputError.
+    """
+    _check_together(request)
+    if request.trials is not None:
+        return _session_record(request, request.trials, options, listener)
+    if request.scenario is None or len(request.tissues) > 1:
+        raise InputError("give a scenario or trials, and at most one tissue")
+    scenario = _chosen(request, request.scenario)
+    return run_scenario(scenario, options, listener, own=_own(request, scenario))
 
 
 def _check_together(request: RunRequest) -> None:
@@ -114,19 +132,26 @@ def _shipped(request: RunRequest, options: RunOptions, listener: Listener) -> li
 
 
 def _scenario(request: RunRequest, name: str, out: Path | None, options: RunOptions, listener: Listener) -> RunOutcome:
-    chosen = {"tissue": request.tissues[0]} if request.tissues else {}
-    scenario = load_scenario(name, {**(request.settings or {}), **chosen})
+    scenario = _chosen(request, name)
     folder = destination(out, scenario.name)
     own = _own(request, scenario)
     with unfinished(folder) as keep:
         return write_run(run_scenario(scenario, replace(options, keep=keep), listener, own=own), folder)
 
 
+def _chosen(request: RunRequest, name: str) -> Scenario:
+    """The scenario with its settings and its one other tissue put in."""
+    tissue = {"tissue": request.tissues[0]} if request.tissues else {}
+    return load_scenario(name, {**(request.settings or {}), **tissue})
+
+
 def _session(request: RunRequest, path: Path, out: Path | None, options: RunOptions, listener: Listener) -> RunOutcome:
-    own = _own(request)
     if out is None:
-        record = run_session(path, request.specimen, request.settings or {}, options, listener, own)
+        record = _session_record(request, path, options, listener)
         return write_run(record, destination(None, record.name))
     with unfinished(destination(out, path.name)) as keep:
-        options = replace(options, keep=keep)
-        return write_run(run_session(path, request.specimen, request.settings or {}, options, listener, own), out)
+        return write_run(_session_record(request, path, replace(options, keep=keep), listener), out)
+
+
+def _session_record(request: RunRequest, path: Path, options: RunOptions, listener: Listener) -> RunRecord:
+    return run_session(path, request.specimen, request.settings or {}, options, listener, _own(request))

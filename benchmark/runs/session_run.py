@@ -20,7 +20,7 @@ from benchmark.models import NOTHING, Array, Drive, Own, PreparedModel, Uncovere
 from benchmark.response import depth_ramp, trial_force
 from benchmark.response.model_with_effects import effects_of, on_its_base
 from benchmark.response.ramp import Setup, setup_scenario
-from benchmark.runs.fit_run import FittedSession, fit_trials
+from benchmark.runs.fitted_session import FittedSession, fit_trials
 from benchmark.runs.listener import Listener
 from benchmark.runs.measured import MeasuredComparison, TrialPrediction
 from benchmark.runs.options import RunOptions

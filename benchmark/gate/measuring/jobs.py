@@ -110,8 +110,7 @@ def _far(result: ModelResult, radius: float) -> float:
 
 def fit_values(case: Mapping[str, Any]) -> list[GatedValue]:
     """Pooled stiffness factor, and the medians of contact onset and force zero over the trials of a session."""
-    from benchmark.runs.fit_run import fit_trials
-
+    fit_trials = first_of("benchmark.runs.fitted_session:fit_trials", "benchmark.runs.session_run:fit_trials")
     fit = fit_trials(Path(case["session"]), None, {}, SilentListener(), films=False).fit
     return [
         _value("stiffness_factor", fit.stiffness_factor, "", None),

@@ -10,7 +10,7 @@ from typing import Any
 from benchmark.errors import InputError
 from benchmark.runs.destination import destination, file_name
 from benchmark.runs.document import describe_environment
-from benchmark.runs.finished.comparison_page import changed_parameters, compare_page, result_columns
+from benchmark.runs.finished.comparison_page import Columns, changed_parameters, compare_page, result_columns
 from benchmark.runs.finished.saved_run import SavedRun, read_run
 from benchmark.runs.pressed import pressed_picture, read_drawn, write_drawn
 from benchmark.runs.report import run_page
@@ -53,10 +53,30 @@ def page_again(folder: Path, out: Path | None) -> ReportOutcome:
     return ReportOutcome(target, page.verdict.headline, run.document)
 
 
-def compare_runs(folders: Sequence[Path], out: Path | None) -> ReportOutcome:
-    """Set finished runs side by side; the first one is what the others are compared with.
+@dataclass(frozen=True)
+class RunsSideBySide:
+    """Finished runs by what pages call them, with the columns of `parameters.csv` and `runs.csv`."""
 
-    The folder holds `report.html`, `report.json`, `tables/runs.csv` and `tables/parameters.csv`.
+    runs: Mapping[str, SavedRun]
+    folders: tuple[Path, ...]
+    changed: Columns
+    results: Columns
+
+    def document(self) -> dict[str, Any]:
+        """The content of `report.json`."""
+        return {
+            "schema": 1,
+            "runs": [
+                {"name": name, "folder": str(folder), "results": run.document}
+                for (name, run), folder in zip(self.runs.items(), self.folders, strict=True)
+            ],
+            "parameters_changed": self.changed,
+            "table": self.results,
+        }
+
+
+def set_side_by_side(folders: Sequence[Path]) -> RunsSideBySide:
+    """Read finished runs and compare them; the first one is what the others are compared with.
 
     Raises
     ------
@@ -65,16 +85,23 @@ def compare_runs(folders: Sequence[Path], out: Path | None) -> ReportOutcome:
     """
     if len({folder.resolve() for folder in folders}) < len(folders):
         raise InputError(f"report: {', '.join(map(str, folders))} are not different runs; give each one once")
-    destination(out, "", folders)
     runs = dict(zip(_labels(folders), map(read_run, folders), strict=True))
-    changed, columns = (
-        changed_parameters({name: run.record.scenario for name, run in runs.items()}),
-        result_columns(runs),
-    )
+    changed = changed_parameters({name: run.record.scenario for name, run in runs.items()})
+    return RunsSideBySide(runs, tuple(folders), changed, result_columns(runs))
+
+
+def compare_runs(folders: Sequence[Path], out: Path | None) -> ReportOutcome:
+    """Set finished runs side by side in a folder, whose place is checked first; see `set_side_by_side`."""
+    destination(out, "", folders)
+    return write_side_by_side(set_side_by_side(folders), out)
+
+
+def write_side_by_side(compared: RunsSideBySide, out: Path | None) -> ReportOutcome:
+    """Write `report.html`, `report.json`, `tables/runs.csv` and `tables/parameters.csv`."""
+    runs, changed, columns = compared.runs, compared.changed, compared.results
     texts = {"runs.csv": csv_text(columns), "parameters.csv": csv_text(changed)}
-    environment = describe_environment(seed=0)
-    page = compare_page(runs, changed, columns, environment, texts)
-    document = _document(runs, folders, changed, columns)
+    page = compare_page(runs, changed, columns, describe_environment(seed=0), texts)
+    document = compared.document()
     target = destination(out, file_name(f"{next(iter(runs))}-compared"))
     with whole_folder(target) as new:
         for name, text in texts.items():
@@ -92,21 +119,3 @@ def _labels(folders: Sequence[Path]) -> list[str]:
         if len(set(names)) == len(names):
             return names
     return [str(folder) for folder in resolved]
-
-
-def _document(
-    runs: Mapping[str, SavedRun],
-    folders: Sequence[Path],
-    changed: Mapping[str, Sequence[Any]],
-    columns: Mapping[str, Sequence[Any]],
-) -> dict[str, Any]:
-    """`report.json`."""
-    return {
-        "schema": 1,
-        "runs": [
-            {"name": name, "folder": str(folder), "results": run.document}
-            for (name, run), folder in zip(runs.items(), folders, strict=True)
-        ],
-        "parameters_changed": changed,
-        "table": columns,
-    }

@@ -87,7 +87,7 @@ def test_unusable_input_is_exit_2_and_leaves_nothing(benchmark_cli, finished: Pa
         assert not (tmp_path / "d").exists()
 
 
-def test_a_folder_that_is_no_result_is_refused_before_the_work(tmp_path: Path) -> None:
+def test_a_folder_that_is_no_result_is_refused_before_the_work(tmp_path: Path, monkeypatch) -> None:
     (tmp_path / "thesis.tex").touch()
 
     def never(*_: object):
@@ -96,5 +96,6 @@ def test_a_folder_that_is_no_result_is_refused_before_the_work(tmp_path: Path) -
     from benchmark.cli.console import Console
     from benchmark.errors import InputError
 
+    monkeypatch.setattr("benchmark.discovery.discovery_request.findings", never)
     with pytest.raises(InputError, match="not a result"):
-        carry_out(DiscoverRequest([PHANTOM], out=tmp_path), never, Console(quiet=True))
+        carry_out(DiscoverRequest([PHANTOM], out=tmp_path), Console(quiet=True))

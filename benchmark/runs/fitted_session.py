@@ -1,0 +1,188 @@
+"""A session's specimen fitted to its trials: to the force alone, or to force and markers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmark.errors import InputError
+from benchmark.files import Session, Trial, load_session
+from benchmark.identification import (
+    FittingError,
+    SessionFit,
+    TrialData,
+    filmed_trial,
+    fit_session,
+    fit_sheet,
+    parameter_columns,
+    required_depth,
+)
+from benchmark.identification.effects_in_fit import fit_with_effects
+from benchmark.identification.fitted_parameters import sheet_parameters
+from benchmark.identification.session_fit import elastic_only
+from benchmark.identification.sheet_model import NONE, FilmedTrial
+from benchmark.identification.sheet_trial import SheetTrial
+from benchmark.model_file import RepairedModel
+from benchmark.models import Array
+from benchmark.response import ForceCurve, RampTable
+from benchmark.response.model_with_effects import load_repair
+from benchmark.response.ramp import Setup
+from benchmark.runs.destination import destination
+from benchmark.runs.document import describe_environment
+from benchmark.runs.film_tables import Motion, motions_of
+from benchmark.runs.filming import Films, session_films
+from benchmark.runs.listener import Listener
+from benchmark.runs.measured import FilmedSession
+from benchmark.runs.report import fit_page
+from benchmark.runs.report.values import fit_headline
+from benchmark.runs.session_tables import base_curves, session_sheets
+from benchmark.runs.table_one import Placed, table_one
+from reports import whole_folder, write_csv, write_json, write_page
+
+Key = tuple[str, str]
+MARGIN = 1.02
+
+
+@dataclass(frozen=True)
+class FittedSession:
+    """A session with its fit.
+
+    Attributes
+    ----------
+    session
+        As read.
+    fit
+        Of its specimen.
+    trials
+        In the session's order, each with the force curve of its tool and support.
+    warnings
+        Of reading, of the curves, of the films, and of the fit.
+    filmed
+        What the markers tell; None without any.
+    sheets
+        Each filmed trial with its model, by condition and name.
+    added
+        By condition and trial: (n,) N that the effects of a model file add to the elastic force; empty without one.
+    """
+
+    session: Session
+    fit: SessionFit
+    trials: tuple[TrialData, ...]
+    warnings: tuple[str, ...]
+    filmed: FilmedSession | None = None
+    sheets: Mapping[Key, tuple[FilmedTrial, RampTable]] = field(default_factory=dict)
+    added: Mapping[Key, Array] = field(default_factory=dict)
+
+    @property
+    def stiffness_factor(self) -> float:
+        """Of force and markers together where there are markers, else of the force alone."""
+        sheet = None if self.filmed is None else self.filmed.sheet
+        return self.fit.stiffness_factor if sheet is None else sheet.stiffness.value
+
+
+def fit_trials(
+    path: Path,
+    specimen: str | None,
+    settings: Mapping[str, str],
+    listener: Listener,
+    *,
+    films: bool = True,
+    repair: RepairedModel | None = None,
+) -> FittedSession:
+    """Read a session and fit its specimen to all trials.
+
+    With `films` to their markers, too; with the effects of a model file (`repair`) to their force alone.
+
+    Raises
+    ------
+    InputError
+        Files or trials that cannot be used.
+    SolverError
+        The finite-element curve could not be computed deep enough.
+    """
+    session = load_session(path, settings, specimen)
+    base = base_curves(session, _depths(session), listener)
+    listener.say(f"{session.name}: fitting {len(session.trials)} trials")
+    try:
+        trials = tuple(_trial_data(trial, base.curves[trial.tool, trial.support]) for trial in session.trials)
+        if repair is not None:
+            return _fitted_with(repair, session, trials, base.warnings)
+        fit = fit_session(trials, session.specimen.layers)
+    except FittingError as error:
+        raise InputError(f"session {session.folder}: {error}") from None
+    found = FittedSession(session, fit, trials, (*session.warnings, *base.warnings, *fit.warnings))
+    return _with_films(found, session_films(session, listener), listener) if films else found
+
+
+def _with_films(found: FittedSession, films: Films, listener: Listener) -> FittedSession:
+    """Fit force and markers together where trials were filmed."""
+    session, camera = found.session, found.session.camera
+    if camera is None or not films.films:
+        return replace(found, warnings=(*found.warnings, *films.warnings))
+    listener.say(f"{session.name}: fitting force and markers of {len(films.films)} trials together")
+    motions = motions_of(films.films, camera)
+    models, said = session_sheets(session, _depths(session), films.view, listener)
+    starts = {trial.key: trial for trial in found.fit.trials}
+    pairs = {
+        data.key: (film, models[trial.tool, trial.support])
+        for trial, data in zip(session.trials, found.trials, strict=True)
+        if data.key in films.films and data.key in starts and (trial.tool, trial.support) in models
+        if (film := filmed_trial(data, films.films[data.key])) is not None
+    }
+    sheet = fit_sheet(tuple(pairs.values()), starts) if pairs else None
+    rows, notes = found.fit.parameters, found.fit.notes
+    if sheet is not None:
+        rows = sheet_parameters(sheet, session.specimen.layers, rows)
+        notes = (f"force alone: {fit_headline(found.fit)}", *(f"force alone: {note}" for note in notes))
+    placed = (
+        {} if sheet is None else {key[1]: _placed(pairs[key][1], own) for key in pairs if (own := sheet.trial(key))}
+    )
+    fit = replace(found.fit, notes=notes, parameters=(*rows, *table_one(session, motions, placed)))
+    filmed = FilmedSession(motions, films.tracked, sheet)
+    elastic = () if sheet is None or sheet.relaxation == NONE else elastic_only(found.fit.trials)
+    fit = replace(fit, warnings=tuple(text for text in fit.warnings if text not in elastic))
+    warnings = (*(text for text in found.warnings if text not in elastic), *films.warnings, *said)
+    return replace(found, fit=fit, filmed=filmed, sheets=pairs, warnings=warnings)
+
+
+def _placed(model: RampTable, own: SheetTrial) -> Placed:
+    """Take perspective off the markers of a trial, by how far the fitted sheet sinks."""
+
+    def true_displacements(motion: Motion, depth: Array) -> Array:
+        radius = np.hypot(*(motion.rest - np.array(own.state.axis)).T)
+        sunk = model.face(depth - own.state.onset, radius)[1]
+        return np.asarray(model.view.true(motion.rest + motion.moved, sunk) - motion.rest)
+
+    return true_displacements
+
+
+def _fitted_with(
+    repair: RepairedModel, session: Session, trials: tuple[TrialData, ...], said: tuple[str, ...]
+) -> FittedSession:
+    """The fit with the effects of a model file; raises FittingError."""
+    names = ", ".join(repair.slugs) or "no effect"
+    made = fit_with_effects(session, trials, repair)
+    warnings = [f"fitted with {names} of {repair.name} switched on, to the force alone"]
+    if not made.settled:
+        warnings.append("the stiffness did not come to rest with the effects in the fit: take it with care")
+    everything = (*session.warnings, *said, *made.fit.warnings, *warnings)
+    return FittedSession(session, made.fit, trials, everything, added=made.added)
+
+
+def _depths(session: Session) -> dict[Setup, float]:
+    """The depth each tool and support needs a curve to."""
+    depths: dict[Setup, float] = {}
+    for trial in session.trials:
+        key = (trial.tool, trial.support)
+        needed = MARGIN * required_depth(trial.table.depth, trial.table.force)
+        depths[key] = max(depths.get(key, 0.0), needed)
+    return depths
+
+
+def _trial_data(trial: Trial, curve: ForceCurve) -> TrialData:
+    table = trial.table
+    return TrialData(trial.name, trial.condition, table.time, table.depth, table.force, curve)

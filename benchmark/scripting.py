@@ -1,0 +1,224 @@
+"""The verbs for a script: the same work as the command line's, with result objects instead of folders.
+
+Nothing is written until a result's `report` is called; a sweep alone writes its points as they finish. Progress goes to
+a listener (`benchmark.runs.listener`), none by default. Errors are those of the command line (`benchmark.errors`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from os import PathLike
+from pathlib import Path
+from typing import Literal
+
+from benchmark.discovery.discovery_request import DiscoverRequest, answer
+from benchmark.results import ComparisonResult, DiscoveryResult, FitResult, RunResult, SweepResult
+from benchmark.runs.finished.carrying_out import set_side_by_side
+from benchmark.runs.fit_run import FitRequest, carry_out_fit
+from benchmark.runs.listener import Advance, Listener
+from benchmark.runs.options import RunOptions
+from benchmark.runs.requests import RunRequest, computed
+from benchmark.sweep.run import SweepRequest, run_sweep
+
+StrPath = str | PathLike[str]
+Settings = Mapping[str, str]
+
+
+class Unheard:
+    """A listener that shows nothing."""
+
+    def say(self, text: str) -> None:
+        """Pass over a remark."""
+
+    @contextmanager
+    def progress(self, title: str) -> Iterator[Advance]:  # noqa: ARG002 - the signature of a listener
+        """Pass over the progress of a task."""
+        yield lambda task, done, total, remark: None  # noqa: ARG005
+
+
+def run(
+    scenario: str | None = None,
+    *,
+    trials: StrPath | None = None,
+    specimen: str | None = None,
+    tissue: str | None = None,
+    set: Settings | None = None,
+    wave: StrPath | None = None,
+    reference: StrPath | None = None,
+    model: StrPath | None = None,
+    effects: StrPath | None = None,
+    fields: Literal["peak", "all"] = "peak",
+    repeats: int = 3,
+    refine: bool = False,
+    seed: int = 0,
+    listener: Listener | None = None,
+) -> RunResult:
+    """Run FEM and wave model side by side on a scenario, or on a trial session whose specimen is fitted first.
+
+    Parameters
+    ----------
+    scenario, trials
+        A shipped scenario's name or a TOML file; or the folder of a trial session. One of them.
+    specimen, tissue
+        Tissue of the trials; another tissue for the scenario: a name or a TOML file.
+    set
+        Values to change, KEY to value with unit, as `--set` takes them.
+    wave, reference
+        A Python file with your own fast model; a CSV file with your own FEA.
+    model, effects
+        A model file of `discover` to switch on; a Python file with effects of your own that it names.
+    fields, repeats, refine, seed
+        Steps whose fields are kept, timed repeats of each model, coarser and finer runs too, seed of random draws.
+
+    Raises
+    ------
+    InputError
+        Options that do not go together, or unusable input.
+    SolverError
+        A model's process failed.
+    """
+    request = RunRequest(
+        scenario,
+        _path(trials),
+        specimen,
+        set or {},
+        None,
+        _path(wave),
+        _path(reference),
+        () if tissue is None else (tissue,),
+        _path(model),
+        _path(effects),
+    )
+    options = RunOptions(every_field=fields == "all", repeats=repeats, refine=refine, seed=seed)
+    return RunResult(computed(request, options, listener or Unheard()))
+
+
+def fit(
+    session: StrPath,
+    *,
+    specimen: str | None = None,
+    set: Settings | None = None,
+    model: StrPath | None = None,
+    effects: StrPath | None = None,
+    seed: int = 0,
+    listener: Listener | None = None,
+) -> FitResult:
+    """Fit the specimen of a trial session; see `run` for the arguments.
+
+    Raises
+    ------
+    InputError, SolverError
+        Trials that cannot be used; a finite-element curve that cannot be computed deep enough.
+    """
+    request = FitRequest(Path(session), specimen, set or {}, _path(model), _path(effects), seed)
+    return FitResult(carry_out_fit(request, listener or Unheard()))
+
+
+def discover(
+    *paths: StrPath,
+    model: Literal["wave", "fem"] = "wave",
+    effects: StrPath | None = None,
+    specimen: str | None = None,
+    set: Settings | None = None,
+    seed: int = 0,
+    listener: Listener | None = None,
+) -> DiscoveryResult:
+    """Find where simulation and measurement disagree and name the effect that is missing.
+
+    Parameters
+    ----------
+    *paths
+        A trial session; or a result folder of `run`, and a second one to hold out.
+    model
+        The model under repair.
+    effects
+        A Python file with effects of your own beside the catalogue.
+    specimen, set, seed
+        As in `run`.
+
+    Raises
+    ------
+    InputError
+        Input that cannot be used.
+    """
+    request = DiscoverRequest(tuple(map(Path, paths)), model, _path(effects), specimen, set or {}, None, seed)
+    return DiscoveryResult(answer(request, listener or Unheard()))
+
+
+def sweep(
+    scenario: str,
+    *,
+    vary: Mapping[str, str],
+    set: Settings | None = None,
+    sample: Literal["lhs", "sobol"] | None = None,
+    points: int | None = None,
+    sensitivity: bool = False,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    seed: int = 0,
+    out: StrPath | None = None,
+    listener: Listener | None = None,
+) -> SweepResult:
+    """Run FEM and wave model at many points of a scenario's parameters; the same call goes on where it was stopped.
+
+    Parameters
+    ----------
+    scenario, set, seed
+        As in `run`.
+    vary
+        KEY to a list of values ("2 mm,5 mm") or a range ("50 kPa:500 kPa:10:log").
+    sample, points, sensitivity
+        Draw that many points by a Latin hypercube or a Sobol sequence; Sobol indices by a design of their own.
+    workers, scheduler
+        Processes here, or the address of a Dask cluster.
+    out
+        Folder of the points; by default results/NAME-DATE-TIME.
+
+    Raises
+    ------
+    InputError
+        A request that cannot be carried out.
+    """
+    request = SweepRequest(
+        scenario=scenario,
+        vary=tuple(f"{key}={values}" for key, values in vary.items()),
+        settings=set or {},
+        sample=sample,
+        points=points,
+        sensitivity=sensitivity,
+        out=_path(out),
+        seed=seed,
+        workers=workers,
+        scheduler=scheduler,
+    )
+    outcome = run_sweep(request, listener or Unheard())
+    return SweepResult(outcome.folder, outcome.headline, outcome.document)
+
+
+def compare(*runs: StrPath) -> ComparisonResult:
+    """Set finished runs side by side; the first one is what the others are compared with.
+
+    Parameters
+    ----------
+    *runs
+        Result folders of `run`, two or more.
+
+    Raises
+    ------
+    InputError
+        A folder that is no result of `run`, or one that is given twice.
+    """
+    return ComparisonResult(set_side_by_side(_folders(runs)))
+
+
+def _folders(runs: Sequence[StrPath]) -> list[Path]:
+    from benchmark.errors import InputError
+
+    if len(runs) < 2:
+        raise InputError(f"compare takes two result folders of run or more; {len(runs)} given")
+    return [Path(each) for each in runs]
+
+
+def _path(path: StrPath | None) -> Path | None:
+    return None if path is None else Path(path)
