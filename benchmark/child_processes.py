@@ -1,9 +1,10 @@
-"""Processes that this program starts: one thread in each of their libraries, and an end with their parent's."""
+"""Processes that this program starts: one thread a library, no script of the user, an end with their parent."""
 
 from __future__ import annotations
 
 import multiprocessing
 import os
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,17 +14,34 @@ THREAD_VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"
 
 @contextmanager
 def single_threaded_children() -> Iterator[None]:
-    """Processes started inside have one thread per linear-algebra library; the parent keeps its own."""
+    """Processes started inside have one thread per linear-algebra library; the parent keeps its own.
+
+    They do not run the script that was started, as a spawned process otherwise does at its beginning: nothing that they
+    need is in it, and a script that calls the harness outside of `if __name__ == "__main__"` would start itself anew.
+    """
     before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
     os.environ.update(dict.fromkeys(THREAD_VARIABLES, "1"))
     try:
-        yield
+        with _unnamed_script():
+            yield
     finally:
         for name, value in before.items():
             if value is None:
                 del os.environ[name]
             else:
                 os.environ[name] = value
+
+
+@contextmanager
+def _unnamed_script() -> Iterator[None]:
+    """Take from `__main__` what `multiprocessing` finds the script by, for a while."""
+    main = sys.modules["__main__"]
+    kept = {name: vars(main)[name] for name in ("__spec__", "__file__") if name in vars(main)}
+    vars(main).update(dict.fromkeys(kept))
+    try:
+        yield
+    finally:
+        vars(main).update(kept)
 
 
 def end_with_parent() -> None:

@@ -19,7 +19,7 @@ from benchmark.runs.fit_run import FitRequest, carry_out_fit
 from benchmark.runs.listener import Advance, Listener
 from benchmark.runs.options import RunOptions
 from benchmark.runs.requests import RunRequest, computed
-from benchmark.sweep.run import SweepRequest, run_sweep
+from benchmark.sweeps.sweep_run import SweepRequest, run_sweep
 
 StrPath = str | PathLike[str]
 Settings = Mapping[str, str]

@@ -56,7 +56,7 @@ def sweep(
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
     from benchmark.errors import SolverError
-    from benchmark.sweep.sweep_run import SweepRequest, run_sweep
+    from benchmark.sweeps.sweep_run import SweepRequest, run_sweep
 
     console = Console(quiet=quiet)
     request = SweepRequest(

@@ -5,7 +5,7 @@ A session's fits are kept beside the result until it is complete, so that an int
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -18,7 +17,6 @@ from benchmark.identification import (
     filmed_trial,
     fit_session,
     fit_sheet,
-    parameter_columns,
     required_depth,
 )
 from benchmark.identification.effects_in_fit import fit_with_effects
@@ -29,19 +27,14 @@ from benchmark.identification.sheet_trial import SheetTrial
 from benchmark.model_file import RepairedModel
 from benchmark.models import Array
 from benchmark.response import ForceCurve, RampTable
-from benchmark.response.model_with_effects import load_repair
 from benchmark.response.ramp import Setup
-from benchmark.runs.destination import destination
-from benchmark.runs.document import describe_environment
 from benchmark.runs.film_tables import Motion, motions_of
 from benchmark.runs.filming import Films, session_films
 from benchmark.runs.listener import Listener
 from benchmark.runs.measured import FilmedSession
-from benchmark.runs.report import fit_page
 from benchmark.runs.report.values import fit_headline
 from benchmark.runs.session_tables import base_curves, session_sheets
 from benchmark.runs.table_one import Placed, table_one
-from reports import whole_folder, write_csv, write_json, write_page
 
 Key = tuple[str, str]
 MARGIN = 1.02

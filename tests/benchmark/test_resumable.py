@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmark.resumable import Journal, read_rows
-from benchmark.sweep.point import PointResult, failed
+from benchmark.sweeps.point import PointResult, failed
 
 ROWS = [
     PointResult(1, "ok", None, "mind \u2026 the\ttab", {"x_mm": 1 / 3, "dermis.y": -1e-300}),

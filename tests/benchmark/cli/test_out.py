@@ -47,7 +47,7 @@ def nothing_is_computed(monkeypatch):
         "benchmark.gate.checking._verdict",
         "benchmark.cli.verify._run",
         "benchmark.blind.running._work",
-        "benchmark.sweep.sweep_run._rows",
+        "benchmark.sweeps.sweep_run._rows",
         "benchmark.runs.finished.carrying_out.read_run",
         "benchmark.discovery.discovery_request.read_run",
     ):

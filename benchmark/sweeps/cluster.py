@@ -10,7 +10,7 @@ from importlib import metadata
 from typing import Any
 
 from benchmark.errors import InputError
-from benchmark.sweep.point import PointResult, Task, evaluate, failed
+from benchmark.sweeps.point import PointResult, Task, evaluate, failed
 
 
 class ClusterError(InputError):

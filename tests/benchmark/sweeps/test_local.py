@@ -6,8 +6,8 @@ import signal
 
 import pytest
 
-from benchmark.sweep.local import usable_cores, work_locally
-from benchmark.sweep.point import OK, Task, evaluate
+from benchmark.sweeps.local import usable_cores, work_locally
+from benchmark.sweeps.point import OK, Task, evaluate
 
 
 class Deadly:

@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import pytest
 
-from benchmark.sweep.design import Design
-from benchmark.sweep.parameter import parse_parameter
-from benchmark.sweep.plan import SweepPlan, make_plan
+from benchmark.sweeps.design import Design
+from benchmark.sweeps.parameter import parse_parameter
+from benchmark.sweeps.plan import SweepPlan, make_plan
 
 SMALL = {"fem.mesh": "coarse", "load.observations": "4", "load.peak": "0.5 N"}
 

@@ -12,8 +12,8 @@ from typing import Any
 
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
-from benchmark.sweep.design import Design, Point
-from benchmark.sweep.parameter import Parameter
+from benchmark.sweeps.design import Design, Point
+from benchmark.sweeps.parameter import Parameter
 
 SCHEMA = 1
 MOST_DIFFERENCES = 3

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from benchmark.resumable import read_rows
-from benchmark.sweep.cluster import ClusterError, work_on_cluster
-from benchmark.sweep.local import work_locally
-from benchmark.sweep.point import OK, PointResult, Task
+from benchmark.sweeps.cluster import ClusterError, work_on_cluster
+from benchmark.sweeps.local import work_locally
+from benchmark.sweeps.point import OK, PointResult, Task
 
 pytestmark = pytest.mark.slow
 

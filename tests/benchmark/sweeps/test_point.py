@@ -9,8 +9,8 @@ import pytest
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
 from benchmark.models import Keeping, StepProgress, UncoveredError, fem_steps, prepare, scenario_drive
-from benchmark.sweep import point as point_module
-from benchmark.sweep.point import FAILED, OK, Task, evaluate, failed
+from benchmark.sweeps import point as point_module
+from benchmark.sweeps.point import FAILED, OK, Task, evaluate, failed
 
 SMALL = {"fem.mesh": "coarse", "load.observations": "4", "load.peak": "0.5 N"}
 

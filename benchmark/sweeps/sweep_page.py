@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from benchmark.sweep.parameter import Parameter
-from benchmark.sweep.plan import SweepPlan
-from benchmark.sweep.point import FAILED, MODELS, SECONDS, PointResult, headline
-from benchmark.sweep.sensitivity import Sensitivity
-from benchmark.sweep.sweep_folder import Columns, point_columns
+from benchmark.sweeps.parameter import Parameter
+from benchmark.sweeps.plan import SweepPlan
+from benchmark.sweeps.point import FAILED, MODELS, SECONDS, PointResult, headline
+from benchmark.sweeps.sensitivity import Sensitivity
+from benchmark.sweeps.sweep_folder import Columns, point_columns
 from reports import (
     Block,
     Column,

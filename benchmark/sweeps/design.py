@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.errors import InputError
-from benchmark.sweep.parameter import Parameter
-from benchmark.sweep.sensitivity import DEFAULT_BASE, LEAST_BASE, base_samples, saltelli_design
+from benchmark.sweeps.parameter import Parameter
+from benchmark.sweeps.sensitivity import DEFAULT_BASE, LEAST_BASE, base_samples, saltelli_design
 
 Kind = Literal["grid", "lhs", "sobol", "saltelli"]
 Shares = NDArray[np.float64]

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from benchmark.errors import InputError
-from benchmark.sweep.design import Design, chosen_design
-from benchmark.sweep.parameter import parse_parameter
+from benchmark.sweeps.design import Design, chosen_design
+from benchmark.sweeps.parameter import parse_parameter
 
 TWO = (parse_parameter("d.e=50 kPa:500 kPa:3:log"), parse_parameter("tool.radius=2 mm,5 mm"))
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from benchmark.models import Array
-from benchmark.sweep.point import SECONDS, PointResult
+from benchmark.sweeps.point import SECONDS, PointResult
 
 CONSTANT = 1e-9
 """Spread of a result, as a part of its largest value, below which it does not depend on anything."""

@@ -1,7 +1,7 @@
 import pytest
 
-from benchmark.sweep.point import PointResult, failed
-from benchmark.sweep.sweep_run import SweepProgress
+from benchmark.sweeps.point import PointResult, failed
+from benchmark.sweeps.sweep_run import SweepProgress
 
 
 def test_the_estimate_rests_on_what_this_command_did() -> None:

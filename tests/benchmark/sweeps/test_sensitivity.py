@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmark.sweep.sensitivity import base_samples, saltelli_design, sobol_indices
+from benchmark.sweeps.sensitivity import base_samples, saltelli_design, sobol_indices
 
 NAMES = ("x1", "x2", "x3")
 A, B = 7.0, 0.1

@@ -14,10 +14,10 @@ from typing import Any
 from benchmark.errors import InputError
 from benchmark.resumable import Journal, check_files, read_rows
 from benchmark.runs.unfinished import is_kept
-from benchmark.sweep.design import Point
-from benchmark.sweep.parameter import Parameter
-from benchmark.sweep.plan import SCHEMA, SweepPlan, differences
-from benchmark.sweep.point import PointResult
+from benchmark.sweeps.design import Point
+from benchmark.sweeps.parameter import Parameter
+from benchmark.sweeps.plan import SCHEMA, SweepPlan, differences
+from benchmark.sweeps.point import PointResult
 from reports import extended_folder, write_json, write_text
 from reports.manifest import MANIFEST, read_manifest, remove_known
 from reports.result_folder import clear_leftovers, replace_file

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from benchmark.errors import InputError
 from benchmark.files.units import PRESSURE, parse_quantity
-from benchmark.sweep.parameter import parse_parameter
+from benchmark.sweeps.parameter import parse_parameter
 
 
 def test_a_list_keeps_its_words() -> None:

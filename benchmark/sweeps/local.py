@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from multiprocessing.connection import Connection, wait
 
 from benchmark.child_processes import end_with_parent, single_threaded_children
-from benchmark.sweep.point import PointResult, Task, evaluate, failed
+from benchmark.sweeps.point import PointResult, Task, evaluate, failed
 
 LIVES = 2
 

@@ -6,7 +6,7 @@ import pytest
 
 from benchmark.errors import InputError
 from benchmark.files import Scenario
-from benchmark.sweep.plan import differences
+from benchmark.sweeps.plan import differences
 
 
 def test_every_point_has_its_scenario(plan_of) -> None:

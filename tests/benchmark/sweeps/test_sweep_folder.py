@@ -11,9 +11,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from benchmark.errors import InputError
-from benchmark.sweep.parameter import parse_parameter
-from benchmark.sweep.point import PointResult, failed
-from benchmark.sweep.sweep_folder import open_folder, point_columns, write_points
+from benchmark.sweeps.parameter import parse_parameter
+from benchmark.sweeps.point import PointResult, failed
+from benchmark.sweeps.sweep_folder import open_folder, point_columns, write_points
 
 PARAMETERS = [parse_parameter(text) for text in ("d.e=50 kPa:500 kPa:2", "d.nu=0.4,0.45", "tool.contact=a,b")]
 POINTS = [("50 kPa", "0.4", "a"), ("500 kPa", "0.45", "b"), ("50 kPa", "0.45", "a")]

@@ -12,14 +12,14 @@ from benchmark.errors import InputError
 from benchmark.runs.destination import check_ready, destination
 from benchmark.runs.document import describe_environment
 from benchmark.runs.listener import Advance, Listener
-from benchmark.sweep.design import chosen_design
-from benchmark.sweep.local import usable_cores, work_locally
-from benchmark.sweep.parameter import parse_parameter
-from benchmark.sweep.plan import SweepPlan, make_plan
-from benchmark.sweep.point import FAILED, OK, PointResult, Task, failed
-from benchmark.sweep.sensitivity import Sensitivity, sensitivity_columns, sweep_sensitivity
-from benchmark.sweep.sweep_folder import SweepFolder, open_folder
-from benchmark.sweep.sweep_page import sweep_page
+from benchmark.sweeps.design import chosen_design
+from benchmark.sweeps.local import usable_cores, work_locally
+from benchmark.sweeps.parameter import parse_parameter
+from benchmark.sweeps.plan import SweepPlan, make_plan
+from benchmark.sweeps.point import FAILED, OK, PointResult, Task, failed
+from benchmark.sweeps.sensitivity import Sensitivity, sensitivity_columns, sweep_sensitivity
+from benchmark.sweeps.sweep_folder import SweepFolder, open_folder
+from benchmark.sweeps.sweep_page import sweep_page
 from reports import extended_folder, write_csv, write_json, write_page
 
 
@@ -121,7 +121,7 @@ def _rows(
     if request.scheduler is None:
         yield from work_locally(tasks, request.workers or usable_cores())
     elif tasks:
-        from benchmark.sweep.cluster import work_on_cluster
+        from benchmark.sweeps.cluster import work_on_cluster
 
         yield from work_on_cluster(tasks, request.scheduler, listener.say)
 
