@@ -36,7 +36,8 @@ def single_threaded_children() -> Iterator[None]:
 def _unnamed_script() -> Iterator[None]:
     """Take from `__main__` what `multiprocessing` finds the script by, for a while."""
     main = sys.modules["__main__"]
-    kept = {name: vars(main)[name] for name in ("__spec__", "__file__") if name in vars(main)}
+    names: tuple[str, ...] = ("__spec__", "__file__")
+    kept = {name: vars(main)[name] for name in names if name in vars(main)}
     vars(main).update(dict.fromkeys(kept))
     try:
         yield
