@@ -18,10 +18,10 @@ from benchmark.discovery.discovery_request import put_down
 from benchmark.discovery.discovery_result import Discovery
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
 from benchmark.identification import SessionFit, parameter_columns
-from benchmark.runs.destination import destination
 from benchmark.runs.finished.carrying_out import RunsSideBySide, write_side_by_side
 from benchmark.runs.fit_run import FitRecord, write_fit
-from benchmark.runs.folder import write_run
+from benchmark.runs.output.destination import destination
+from benchmark.runs.output.run_folder import write_run
 from benchmark.runs.record import RunRecord
 from benchmark.runs.tables import run_tables
 

@@ -1,7 +1,7 @@
 """The verbs for a script: the same work as the command line's, with result objects instead of folders.
 
 Nothing is written until a result's `report` is called; a sweep alone writes its points as they finish. Progress goes to
-a listener (`benchmark.runs.listener`), none by default. Errors are those of the command line (`benchmark.errors`).
+a listener (`benchmark.runs.options`), none by default. Errors are those of the command line (`benchmark.errors`).
 """
 
 from __future__ import annotations
@@ -16,8 +16,7 @@ from benchmark.discovery.discovery_request import DiscoverRequest, answer
 from benchmark.results import ComparisonResult, DiscoveryResult, FitResult, RunResult, SweepResult
 from benchmark.runs.finished.carrying_out import set_side_by_side
 from benchmark.runs.fit_run import FitRequest, carry_out_fit
-from benchmark.runs.listener import Advance, Listener
-from benchmark.runs.options import RunOptions
+from benchmark.runs.options import Advance, Listener, RunOptions
 from benchmark.runs.requests import RunRequest, computed
 from benchmark.sweeps.sweep_run import SweepRequest, run_sweep
 

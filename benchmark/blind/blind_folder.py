@@ -11,7 +11,7 @@ from typing import Any
 from benchmark.blind.judging import BlindRow, Judged, confusion, table, verdicts
 from benchmark.errors import InputError
 from benchmark.resumable import check_files
-from benchmark.runs.destination import check_ready
+from benchmark.runs.output.destination import check_ready
 from reports import extended_folder, write_csv, write_json, write_text
 from reports.result_folder import clear_leftovers
 

@@ -50,7 +50,7 @@ def blind(
     from benchmark.blind.running import load_discoverer, run_cases
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
-    from benchmark.runs.destination import fresh
+    from benchmark.runs.output.destination import fresh
 
     console = Console(quiet=quiet)
     slugs = tuple(each.strip() for each in cases.split(",") if each.strip())

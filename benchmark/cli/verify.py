@@ -38,7 +38,7 @@ def verify(
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
     from benchmark.errors import GateError
-    from benchmark.runs.destination import destination
+    from benchmark.runs.output.destination import destination
     from benchmark.verification.verification_page import document, headline, text_table, write_verification
 
     console, folder = Console(quiet=quiet), None if out is None else destination(out, "verification")

@@ -20,8 +20,8 @@ from benchmark.errors import InputError
 from benchmark.files import Session, load_session
 from benchmark.physics import SLUGS, Effect, catalogue, load_effects
 from benchmark.response.fem_table import fem_table
-from benchmark.runs.destination import destination, file_name
-from benchmark.runs.listener import Listener
+from benchmark.runs.options import Listener
+from benchmark.runs.output.destination import destination, file_name
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
 def _with_films(session: Session, listener: Listener) -> tuple[Session, tuple[str, ...]]:
     if session.camera is None:
         return session, ()
-    from benchmark.runs.filming import with_markers
+    from benchmark.runs.trials.filming import with_markers
 
     return with_markers(session, listener)
 

@@ -21,7 +21,7 @@ from benchmark.gate.baseline import (
 from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
 from benchmark.gate.processes import measure
 from benchmark.gate.versions import Origin, gated_values, origin_of, this_version
-from benchmark.runs.listener import Listener
+from benchmark.runs.options import Listener
 
 TIMING_UNIT = "x the reference workload"
 

@@ -18,8 +18,8 @@ from benchmark.gate.processes import Measured, Party, measure
 from benchmark.gate.timing import Judge, TimingRow
 from benchmark.gate.verdict import CheckVerdict
 from benchmark.gate.versions import Origin, gated_values, origin_of, rival, this_version
-from benchmark.runs.destination import destination
-from benchmark.runs.listener import Listener
+from benchmark.runs.options import Listener
+from benchmark.runs.output.destination import destination
 from reports import whole_folder, write_csv, write_json, write_page
 
 NOTABLE = 0.25

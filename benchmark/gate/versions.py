@@ -15,7 +15,7 @@ from benchmark.errors import InputError
 from benchmark.gate.baseline import Machine, StoredValue
 from benchmark.gate.plan import GatePlan
 from benchmark.gate.processes import Party, Side
-from benchmark.runs.document import describe_environment
+from benchmark.runs.output.document import describe_environment
 
 DECISIVE = ("numpy", "scipy", "pypardiso")
 """Packages whose version can change a ratio of times."""

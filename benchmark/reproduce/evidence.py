@@ -10,13 +10,12 @@ import numpy as np
 from bench_hw.vision.displacement import fit_parabolas, moving_average
 from benchmark.files import Session, load_scenario, load_session
 from benchmark.models import Array
-from benchmark.runs.film_tables import Motion, motions_of
-from benchmark.runs.filming import Tracked, session_films
-from benchmark.runs.listener import Listener
-from benchmark.runs.options import RunOptions
+from benchmark.runs.options import Listener, RunOptions
 from benchmark.runs.record import RunRecord
 from benchmark.runs.scenario_run import run_scenario
-from benchmark.runs.table_one import table_one
+from benchmark.runs.trials.film_tables import Motion, motions_of
+from benchmark.runs.trials.filming import Tracked, session_films
+from benchmark.runs.trials.table_one import table_one
 from benchmark.sessions import SHIPPED
 
 SESSION, CONDITION = "phantom", "press"

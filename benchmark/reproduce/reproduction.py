@@ -11,9 +11,9 @@ from benchmark.reproduce.article_statistics import table_two_items, text_items
 from benchmark.reproduce.article_wave import equation_items, table_one_items
 from benchmark.reproduce.evidence import Evidence, gather
 from benchmark.reproduce.items import Item, columns, document
-from benchmark.runs.destination import destination
-from benchmark.runs.document import describe_environment
-from benchmark.runs.listener import Listener
+from benchmark.runs.options import Listener
+from benchmark.runs.output.destination import destination
+from benchmark.runs.output.document import describe_environment
 from reports import csv_text, whole_folder, write_json, write_page, write_text
 
 

@@ -11,10 +11,10 @@ from benchmark.errors import InputError
 from benchmark.identification import SheetFit, parameter_columns
 from benchmark.model_file import RepairedModel
 from benchmark.response.model_with_effects import load_repair
-from benchmark.runs.destination import destination
-from benchmark.runs.document import describe_environment
 from benchmark.runs.fitted_session import FittedSession, fit_trials
-from benchmark.runs.listener import Listener
+from benchmark.runs.options import Listener
+from benchmark.runs.output.destination import destination
+from benchmark.runs.output.document import describe_environment
 from benchmark.runs.report import fit_page
 from benchmark.runs.report.values import fit_headline, sheet_headline
 from reports import Page, whole_folder, write_csv, write_json, write_page

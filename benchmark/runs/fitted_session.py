@@ -28,13 +28,13 @@ from benchmark.model_file import RepairedModel
 from benchmark.models import Array
 from benchmark.response import ForceCurve, RampTable
 from benchmark.response.ramp import Setup
-from benchmark.runs.film_tables import Motion, motions_of
-from benchmark.runs.filming import Films, session_films
-from benchmark.runs.listener import Listener
-from benchmark.runs.measured import FilmedSession
+from benchmark.runs.options import Listener
 from benchmark.runs.report.values import fit_headline
-from benchmark.runs.session_tables import base_curves, session_sheets
-from benchmark.runs.table_one import Placed, table_one
+from benchmark.runs.trials.film_tables import Motion, motions_of
+from benchmark.runs.trials.filming import Films, session_films
+from benchmark.runs.trials.measured import FilmedSession
+from benchmark.runs.trials.session_tables import base_curves, session_sheets
+from benchmark.runs.trials.table_one import Placed, table_one
 
 Key = tuple[str, str]
 MARGIN = 1.02

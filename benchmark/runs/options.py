@@ -1,9 +1,12 @@
-"""How a run is carried out, as opposed to what is run."""
+"""How a run is carried out, as opposed to what is run, and who is told how it gets on."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 
 @dataclass(frozen=True)
@@ -29,3 +32,18 @@ class RunOptions:
     refine: bool = False
     seed: int = 0
     keep: Path | None = None
+
+
+Advance = Callable[[str, int, int, str], None]
+
+
+class Listener(Protocol):
+    """Remarks and progress of a long piece of work."""
+
+    def say(self, text: str) -> None:
+        """One line."""
+        ...
+
+    def progress(self, title: str) -> AbstractContextManager[Advance]:
+        """`advance(task, done, total, remark)` inside the context."""
+        ...

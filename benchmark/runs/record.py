@@ -13,8 +13,8 @@ from benchmark.files import Scenario, scenario_notes
 from benchmark.model_file import RepairedModel
 from benchmark.models import Array, ModelResult
 from benchmark.runs.fields import LAST
-from benchmark.runs.measured import MeasuredComparison
 from benchmark.runs.refinement import Level
+from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.side_by_side import SideBySide
 
 

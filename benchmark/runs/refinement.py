@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from benchmark.comparison import GridConvergence, grid_convergence
 from benchmark.files import Scenario
 from benchmark.models import ModelResult, WaveChoices
-from benchmark.runs.listener import Listener
+from benchmark.runs.options import Listener
 from benchmark.side_by_side import Finished, ModelProcess, Seconds, SideBySide
 
 MESHES = ("fine", "default", "coarse")

@@ -10,15 +10,14 @@ from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
 from benchmark.models import NOTHING, Own, read_reference, read_user_file
 from benchmark.response.model_with_effects import load_repair
-from benchmark.runs.destination import destination
-from benchmark.runs.folder import RunOutcome, write_run
-from benchmark.runs.listener import Listener
-from benchmark.runs.options import RunOptions
+from benchmark.runs.options import Listener, RunOptions
+from benchmark.runs.output.destination import destination
+from benchmark.runs.output.run_folder import RunOutcome, write_run
+from benchmark.runs.output.unfinished import unfinished
 from benchmark.runs.record import RunRecord
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.session_run import run_session
 from benchmark.runs.tissues_run import run_tissues
-from benchmark.runs.unfinished import unfinished
 from benchmark.sessions import SHIPPED
 
 DEFAULT_SCENARIO = "skin-5N"

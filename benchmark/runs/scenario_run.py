@@ -7,13 +7,12 @@ from collections.abc import Sequence
 from benchmark.comparison import ComparisonError
 from benchmark.files import Scenario
 from benchmark.models import NOTHING, Own, StepProgress, scenario_drive
-from benchmark.runs.listener import Listener
-from benchmark.runs.measured import MeasuredComparison
-from benchmark.runs.options import RunOptions
+from benchmark.runs.options import Listener, RunOptions
 from benchmark.runs.record import RunRecord, compare_layers, deflections, gather_warnings
 from benchmark.runs.refinement import refine
 from benchmark.runs.small_strain import beside_small_strain
-from benchmark.side_by_side import NAMES, run_side_by_side
+from benchmark.runs.trials.measured import MeasuredComparison
+from benchmark.side_by_side import NAMES, SideBySide, run_side_by_side
 
 
 def run_scenario(
@@ -51,24 +50,7 @@ def run_scenario(
         See `run_side_by_side`.
     """
     drive = scenario_drive(scenario)
-    unit, scale = ("N", 1.0) if scenario.load.control == "force" else ("mm", 1e3)
-    names = {model: own.name(model) or name for model, name in NAMES.items()}
-    with listener.progress(f"{scenario.name}: {names['fem']} and {names['wave']} side by side") as advance:
-
-        def on_progress(model: str, step: StepProgress) -> None:
-            value = step.force if scenario.load.control == "force" else step.depth
-            advance(names[model], step.step, step.total, f"{scale * value:.3g} {unit}")
-
-        pair = run_side_by_side(
-            scenario,
-            repeats=options.repeats,
-            seed=options.seed,
-            every_field=options.every_field,
-            on_progress=on_progress,
-            on_remark=listener.say,
-            own=own,
-            keep=options.keep,
-        )
+    pair = _side_by_side(scenario, options, listener, own)
     if own.wave is None and own.repair is None:
         pair = beside_small_strain(scenario, pair, drive)
     levels = refine(scenario, pair, listener) if options.refine else ()
@@ -94,3 +76,25 @@ def run_scenario(
         effects=() if own.repair is None else own.repair.slugs,
         levels=levels,
     )
+
+
+def _side_by_side(scenario: Scenario, options: RunOptions, listener: Listener, own: Own) -> SideBySide:
+    """Both models' results and times, each step told as it is reached."""
+    unit, scale = ("N", 1.0) if scenario.load.control == "force" else ("mm", 1e3)
+    names = {model: own.name(model) or name for model, name in NAMES.items()}
+    with listener.progress(f"{scenario.name}: {names['fem']} and {names['wave']} side by side") as advance:
+
+        def on_progress(model: str, step: StepProgress) -> None:
+            value = step.force if scenario.load.control == "force" else step.depth
+            advance(names[model], step.step, step.total, f"{scale * value:.3g} {unit}")
+
+        return run_side_by_side(
+            scenario,
+            repeats=options.repeats,
+            seed=options.seed,
+            every_field=options.every_field,
+            on_progress=on_progress,
+            on_remark=listener.say,
+            own=own,
+            keep=options.keep,
+        )

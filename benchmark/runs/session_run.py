@@ -21,11 +21,10 @@ from benchmark.response import depth_ramp, trial_force
 from benchmark.response.model_with_effects import effects_of, on_its_base
 from benchmark.response.ramp import Setup, setup_scenario
 from benchmark.runs.fitted_session import FittedSession, fit_trials
-from benchmark.runs.listener import Listener
-from benchmark.runs.measured import MeasuredComparison, TrialPrediction
-from benchmark.runs.options import RunOptions
+from benchmark.runs.options import Listener, RunOptions
 from benchmark.runs.record import RunRecord
 from benchmark.runs.scenario_run import run_scenario
+from benchmark.runs.trials.measured import MeasuredComparison, TrialPrediction
 from benchmark.side_by_side import NAMES
 
 OBSERVATIONS = 100

@@ -10,9 +10,9 @@ import numpy as np
 from benchmark.comparison import normal_fit_columns, statistics_columns
 from benchmark.identification import parameter_columns
 from benchmark.models import Array, ModelResult
-from benchmark.runs.film_tables import circles, marker_fits
-from benchmark.runs.measured import MeasuredComparison
 from benchmark.runs.record import RunRecord
+from benchmark.runs.trials.film_tables import circles, marker_fits
+from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.runs.validation import refinement_columns, validation_columns
 from benchmark.side_by_side import SideBySide
 

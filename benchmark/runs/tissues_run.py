@@ -10,16 +10,15 @@ from typing import Any
 from benchmark.errors import InputError
 from benchmark.files import load_scenario
 from benchmark.models import Own
-from benchmark.runs.destination import destination, file_name
-from benchmark.runs.document import describe_environment
-from benchmark.runs.folder import RunOutcome, write_run
-from benchmark.runs.listener import Listener
-from benchmark.runs.options import RunOptions
+from benchmark.runs.options import Listener, RunOptions
+from benchmark.runs.output.destination import destination, file_name
+from benchmark.runs.output.document import describe_environment
+from benchmark.runs.output.run_folder import RunOutcome, write_run
+from benchmark.runs.output.unfinished import unfinished
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report import tissues_page
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.tables import tissue_columns
-from benchmark.runs.unfinished import unfinished
 from reports import whole_folder, write_csv, write_json, write_page
 
 

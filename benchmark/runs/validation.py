@@ -15,9 +15,9 @@ from benchmark.comparison import (
     replicate_uncertainty,
 )
 from benchmark.models import Array
-from benchmark.runs.measured import MeasuredComparison, TrialPrediction
 from benchmark.runs.record import RunRecord
 from benchmark.runs.refinement import ORDER, Level, convergence
+from benchmark.runs.trials.measured import MeasuredComparison, TrialPrediction
 from benchmark.side_by_side import ModelRun
 
 Columns = dict[str, list[Any]]

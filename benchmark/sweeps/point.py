@@ -14,7 +14,7 @@ import numpy as np
 from benchmark.errors import TissuebenchError
 from benchmark.files import Scenario
 from benchmark.models import Keeping, ModelResult, UncoveredError, prepare, scenario_drive
-from benchmark.runs.unfinished import is_kept
+from benchmark.runs.output.unfinished import is_kept
 from reports.manifest import remove_known
 
 OK, FAILED = "ok", "failed"

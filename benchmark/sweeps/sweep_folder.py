@@ -13,7 +13,7 @@ from typing import Any
 
 from benchmark.errors import InputError
 from benchmark.resumable import Journal, check_files, read_rows
-from benchmark.runs.unfinished import is_kept
+from benchmark.runs.output.unfinished import is_kept
 from benchmark.sweeps.design import Point
 from benchmark.sweeps.parameter import Parameter
 from benchmark.sweeps.plan import SCHEMA, SweepPlan, differences

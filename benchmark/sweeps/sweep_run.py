@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError
-from benchmark.runs.destination import check_ready, destination
-from benchmark.runs.document import describe_environment
-from benchmark.runs.listener import Advance, Listener
+from benchmark.runs.options import Advance, Listener
+from benchmark.runs.output.destination import check_ready, destination
+from benchmark.runs.output.document import describe_environment
 from benchmark.sweeps.design import chosen_design
 from benchmark.sweeps.local import usable_cores, work_locally
 from benchmark.sweeps.parameter import parse_parameter

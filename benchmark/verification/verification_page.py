@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmark.runs.document import describe_environment
+from benchmark.runs.output.document import describe_environment
 from benchmark.verification.cases import VerificationRow
 from reports import (
     Column,

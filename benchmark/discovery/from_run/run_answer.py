@@ -29,7 +29,7 @@ from benchmark.discovery.from_run.run_places import contrasts, places
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, LayerGap
 from benchmark.physics import Effect
 from benchmark.response.pipeline import physics_of
-from benchmark.runs.listener import Listener
+from benchmark.runs.options import Listener
 from wavemodel.physics import Physics
 
 

@@ -21,7 +21,7 @@ from benchmark.discovery.report.discovery_page import discovery_page
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, LayerGap, NextExperiment, gap_in_units
 from benchmark.files.units import shown
 from benchmark.model_file import model_toml
-from benchmark.runs.document import describe_environment
+from benchmark.runs.output.document import describe_environment
 from reports import whole_folder, write_csv, write_json, write_page, write_text
 
 SCHEMA = 1

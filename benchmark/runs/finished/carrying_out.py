@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError
-from benchmark.runs.destination import destination, file_name
-from benchmark.runs.document import describe_environment
 from benchmark.runs.finished.comparison_page import Columns, changed_parameters, compare_page, result_columns
 from benchmark.runs.finished.saved_run import SavedRun, read_run
-from benchmark.runs.pressed import pressed_picture, read_drawn, write_drawn
+from benchmark.runs.output.destination import destination, file_name
+from benchmark.runs.output.document import describe_environment
+from benchmark.runs.output.pressed import pressed_picture, read_drawn, write_drawn
 from benchmark.runs.report import run_page
 from reports import csv_text, extended_folder, whole_folder, write_json, write_page, write_text
 

@@ -13,8 +13,8 @@ import numpy as np
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
 from benchmark.models import Array, ModelResult, RunFailure, scenario_drive
-from benchmark.runs.document import SCHEMA
 from benchmark.runs.finished.saved_tables import MM, SavedTables, Table, saved_trials
+from benchmark.runs.output.document import SCHEMA
 from benchmark.runs.record import RunRecord, compare_layers
 from benchmark.runs.report.run_page import REFINEMENT, VALIDATION
 from benchmark.runs.report.trials_section import TrialsPart

@@ -13,10 +13,10 @@ import numpy as np
 from benchmark.errors import InputError
 from benchmark.identification import FittedParameter
 from benchmark.models import Array
-from benchmark.runs.measured import TrialPrediction
 from benchmark.runs.report.film_section import read_film
 from benchmark.runs.report.run_page import DESCRIPTIONS
 from benchmark.runs.report.trials_section import TrialsPart
+from benchmark.runs.trials.measured import TrialPrediction
 
 MM = 1e-3
 """A column in mm times this is in m."""

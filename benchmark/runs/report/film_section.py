@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 
 from benchmark.models import Array
-from benchmark.runs.film_tables import Motion
-from benchmark.runs.measured import FilmedSession, MeasuredComparison
 from benchmark.runs.report.values import MM
+from benchmark.runs.trials.film_tables import Motion
+from benchmark.runs.trials.measured import FilmedSession, MeasuredComparison
 from reports import (
     Block,
     Column,

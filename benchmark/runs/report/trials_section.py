@@ -9,9 +9,9 @@ import numpy as np
 
 from benchmark.identification import FittedParameter
 from benchmark.models import Array
-from benchmark.runs.measured import MeasuredComparison, TrialPrediction
 from benchmark.runs.report.film_section import FilmPart, film_part
 from benchmark.runs.report.values import MM, measured_headline
+from benchmark.runs.trials.measured import MeasuredComparison, TrialPrediction
 from benchmark.side_by_side import SideBySide
 from reports import Block, Bullets, Column, Download, Notice, Paragraph, Section, Table
 from reports.figures.measured import TrialCurve, measured

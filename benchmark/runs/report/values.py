@@ -6,8 +6,8 @@ import numpy as np
 
 from benchmark.identification import SessionFit, SheetFit
 from benchmark.models import Array, ModelResult
-from benchmark.runs.measured import MeasuredComparison
 from benchmark.runs.record import RunRecord
+from benchmark.runs.trials.measured import MeasuredComparison
 from reports.figures.style import Pair
 
 MM = 1e3

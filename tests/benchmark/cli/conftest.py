@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import pytest
 
 from benchmark.cli.app import main
-from benchmark.runs.pressed import Drawn
+from benchmark.runs.output.pressed import Drawn
 
 
 @dataclass(frozen=True)
@@ -31,4 +31,4 @@ def benchmark_cli(capfd: pytest.CaptureFixture[str]) -> Callable[..., Called]:
 @pytest.fixture(autouse=True)
 def no_drawing(monkeypatch: pytest.MonkeyPatch) -> None:
     """The pressed tissue's picture takes seconds and has tests of its own."""
-    monkeypatch.setattr("benchmark.runs.pressed.draw_pressed", lambda *_: Drawn(b"", "left out of this test"))
+    monkeypatch.setattr("benchmark.runs.output.pressed.draw_pressed", lambda *_: Drawn(b"", "left out of this test"))

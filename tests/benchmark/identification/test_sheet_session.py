@@ -15,8 +15,8 @@ from benchmark.files import load_session
 from benchmark.identification import Film, TrialData, filmed_trial, fit_session, fit_sheet
 from benchmark.identification.fitted_parameters import sheet_parameters
 from benchmark.response import CameraView
-from benchmark.runs.listener import Listener
-from benchmark.runs.session_tables import base_curves, session_sheets
+from benchmark.runs.options import Listener
+from benchmark.runs.trials.session_tables import base_curves, session_sheets
 from benchmark.sessions import SHIPPED
 from benchmark.sessions.phantom_sheet import RELAXATION, TRUE_FACTOR
 

@@ -9,9 +9,9 @@ import pytest
 
 from benchmark.errors import InputError
 from benchmark.files import load_session
-from benchmark.runs.film_tables import circles, marker_fits, motions_of
-from benchmark.runs.filming import session_films, with_markers
-from benchmark.runs.table_one import table_one
+from benchmark.runs.trials.film_tables import circles, marker_fits, motions_of
+from benchmark.runs.trials.filming import session_films, with_markers
+from benchmark.runs.trials.table_one import table_one
 from benchmark.sessions import SHIPPED
 
 PHANTOM = Path(SHIPPED) / "phantom"

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from benchmark.errors import InputError, InterruptedRunError, SolverError
-from benchmark.runs.unfinished import unfinished
+from benchmark.runs.output.unfinished import unfinished
 
 
 def begin(keep: Path) -> None:

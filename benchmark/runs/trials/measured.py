@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from benchmark.files import Session
 from benchmark.identification import SessionFit, SheetFit
 from benchmark.models import Array
-from benchmark.runs.film_tables import Motion
-from benchmark.runs.filming import Tracked
+from benchmark.runs.trials.film_tables import Motion
+from benchmark.runs.trials.filming import Tracked
 
 
 @dataclass(frozen=True)

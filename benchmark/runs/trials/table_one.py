@@ -13,7 +13,7 @@ from bench_hw.vision.displacement import maximum_radius, moving_average, publish
 from benchmark.files import Session, Trial
 from benchmark.identification import FittedParameter
 from benchmark.identification.pooling import mean_interval
-from benchmark.runs.film_tables import Motion
+from benchmark.runs.trials.film_tables import Motion
 
 OURS = "Table 1 with dimensions that are right, mean over {} trials of condition {}"
 THEIRS = "Table 1 in the article's own way, units mixed as there, mean over {} trials of condition {}"

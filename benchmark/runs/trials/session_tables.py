@@ -18,7 +18,7 @@ from benchmark.response import CameraView, FaceField, ForceCurve, Neighbour, Ram
 from benchmark.response.nearest_curve import continued, nearest_curve
 from benchmark.response.ramp import Setup, setup_scenario
 from benchmark.response.setup_change import THICKNESS, changed_setup
-from benchmark.runs.listener import Advance, Listener
+from benchmark.runs.options import Advance, Listener
 
 STEP = 0.5e-3
 LEAST_STEPS = 24

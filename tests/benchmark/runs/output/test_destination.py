@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from benchmark.errors import InputError
-from benchmark.runs.destination import destination
+from benchmark.runs.output.destination import destination
 from reports import whole_folder
 
 

@@ -8,8 +8,8 @@ import pytest
 
 from benchmark.files import load_scenario
 from benchmark.models import FieldSnapshot, prepare, scenario_drive
-from benchmark.runs import pressed
-from benchmark.runs.pressed import PACKAGES, Drawn, draw_pressed
+from benchmark.runs.output import pressed
+from benchmark.runs.output.pressed import PACKAGES, Drawn, draw_pressed
 from reports import Figure, Paragraph
 
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -51,7 +51,7 @@ def test_a_missing_driver_names_the_packages(snapshot: FieldSnapshot, monkeypatc
     def failing(command, **_):
         return subprocess.CompletedProcess(command, -11, "", "cannot open libEGL.so\n")
 
-    monkeypatch.setattr("benchmark.runs.pressed.subprocess.run", failing)
+    monkeypatch.setattr("benchmark.runs.output.pressed.subprocess.run", failing)
     record = Record(snapshot)
     block = pressed.pressed_picture(record, pressed.draw(record))
     assert isinstance(block, Paragraph)
@@ -64,7 +64,7 @@ def test_the_report_has_the_picture_in_it(snapshot: FieldSnapshot, monkeypatch: 
         Path(command[4]).write_bytes(PNG)
         return subprocess.CompletedProcess(command, 0, "", "")
 
-    monkeypatch.setattr("benchmark.runs.pressed.subprocess.run", drawing)
+    monkeypatch.setattr("benchmark.runs.output.pressed.subprocess.run", drawing)
     record = Record(snapshot)
     block = pressed.pressed_picture(record, pressed.draw(record))
     assert isinstance(block, Figure)

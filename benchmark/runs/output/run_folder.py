@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.model_file import model_toml
-from benchmark.runs.document import describe_environment, results_document
 from benchmark.runs.fields import write_fields, write_last
-from benchmark.runs.pressed import draw, pressed_picture, write_drawn
+from benchmark.runs.output.document import describe_environment, results_document
+from benchmark.runs.output.pressed import draw, pressed_picture, write_drawn
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report import TrialsPart, run_page
 from benchmark.runs.report.film_section import write_film

@@ -23,7 +23,7 @@ from benchmark.files import Session, Trial
 from benchmark.files.sessions.trials import read_markers
 from benchmark.identification import Film
 from benchmark.response import CameraView
-from benchmark.runs.listener import Listener
+from benchmark.runs.options import Listener
 
 Key = tuple[str, str]
 
