@@ -1,1 +1,1 @@
-"""A session's trials beside the models: base curves, films and their tables, what was measured, Table 1 of the article."""
+"""A session's trials beside the models: base curves, films, what was measured, the article's Table 1."""
