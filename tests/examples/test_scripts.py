@@ -12,7 +12,7 @@ SAYS = {
     "run": ("skin-5N: largest deflection", "epidermis", "report.html"),
     "own_model": ("skin-5N: largest deflection", "dermis"),
     "fit": ("stiff", "95 %"),
-    "discover": ("conditional: ", "strain_stiffening", "report.html"),
+    "discover": ("conditional: ", "strain stiffening", "report.html"),
     "sweep": ("(3 of 3 points)", "dermis.youngs_modulus"),
 }
 LEAVES = {
