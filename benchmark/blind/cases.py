@@ -51,16 +51,24 @@ class CaseName:
     seed : int
     strength : float
         D of each effect, in standard deviations of the trial mean.
+    wrong_layers : bool
+        Whether the session tells each layer's modulus and thickness as a laboratory knows them, not as they are.
     """
 
     kind: CaseKind
     slug: str
     seed: int
     strength: float = 20.0
+    wrong_layers: bool = False
 
     @property
     def text(self) -> str:
         """Unique among the cases."""
+        return self.truth + (":wrong-layers" if self.wrong_layers else "")
+
+    @property
+    def truth(self) -> str:
+        """What the true world is drawn from, whatever the session tells of it."""
         return f"{self.kind}:{self.slug or '-'}:{self.seed}:D{self.strength:g}"
 
     @property
@@ -107,7 +115,7 @@ def make_case(name: CaseName) -> BlindCase:
 
 def generator(name: CaseName, purpose: str) -> np.random.Generator:
     """A random generator of one case and one purpose."""
-    digest = hashlib.sha256(f"{name.text} {purpose}".encode()).digest()
+    digest = hashlib.sha256(f"{name.truth} {purpose}".encode()).digest()
     return np.random.default_rng(int.from_bytes(digest[:8], "big"))
 
 

@@ -12,7 +12,7 @@ from benchmark.blind.cases import BlindCase, CaseName, generator, make_case
 from benchmark.blind.motion import Array, Integers, ReportedMotion, motion
 from benchmark.blind.scene import Noise
 from benchmark.blind.simulate import Signals, simulate
-from benchmark.blind.specimens import HOLE_RADIUS, ToldSpecimen
+from benchmark.blind.specimens import HOLE_RADIUS, ToldSpecimen, misjudged
 from reports import write_text
 
 TAILS = 4.0
@@ -77,7 +77,9 @@ def write_case(made: BlindCase, folder: Path) -> Path:
         fault = made.bad_trial if number - 1 == bad else ""
         text += _write_trial(made, moved, folder, number, fault, rng)
     write_text(folder / "session.toml", text)
-    write_text(folder / "specimen.toml", specimen_text(made.scene.body.specimen))
+    told = made.scene.body.specimen
+    told = misjudged(told, generator(made.name, "layers")) if made.name.wrong_layers else told
+    write_text(folder / "specimen.toml", specimen_text(told))
     return folder
 
 

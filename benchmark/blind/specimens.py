@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -18,6 +18,8 @@ STEPS = 25
 SECOND_SHARE = 0.2
 """Share of the shear modulus in the second Mooney-Rivlin constant, which no session tells of."""
 REFERENCE_DEPTH = 2e-3
+MODULUS_ERROR, THICKNESS_ERROR = 0.25, 0.04
+"""Standard deviations of what a laboratory knows of a layer, as shares; the modulus by its logarithm."""
 
 
 @dataclass(frozen=True)
@@ -99,6 +101,19 @@ SHEETS = (
     _sheet("sheet_thin", 3.5e-3, 400e3, 4.5e-3),
 )
 SKINS = (_skin("skin_stiff", 0.8e6, 50e3, 5.0e-3), _skin("skin_soft", 0.3e6, 25e3, 4.0e-3))
+
+
+def misjudged(specimen: ToldSpecimen, rng: np.random.Generator) -> ToldSpecimen:
+    """The specimen as a laboratory tells it: each layer's modulus and thickness off by the usual errors."""
+    layers = tuple(
+        replace(
+            layer,
+            youngs_modulus=layer.youngs_modulus * float(np.exp(MODULUS_ERROR * rng.normal())),
+            thickness=layer.thickness * float(1.0 + THICKNESS_ERROR * rng.normal()),
+        )
+        for layer in specimen.layers
+    )
+    return replace(specimen, layers=layers)
 
 
 @lru_cache(maxsize=8)

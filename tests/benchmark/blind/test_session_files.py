@@ -46,3 +46,14 @@ def test_a_force_only_session(tmp_path: Path) -> None:
 def test_the_same_name_gives_the_same_files(sheet: Path, tmp_path: Path) -> None:
     again, _ = case(CaseName("null", "", 0, 0.0), tmp_path)
     assert load_session(again).fingerprint == load_session(sheet).fingerprint
+
+
+def test_a_session_with_wrong_layers_has_the_same_trials_and_tells_other_layers(sheet: Path, tmp_path: Path) -> None:
+    folder, made = case(CaseName("null", "", 0, 0.0, wrong_layers=True), tmp_path)
+    assert made.name.text == "null:-:0:D0:wrong-layers"
+    for trial in ("trial_001.csv", "markers_001.csv"):
+        assert (folder / trial).read_bytes() == (sheet / trial).read_bytes()
+    true, told = (load_session(each).specimen.layers[0] for each in (sheet, folder))
+    assert 0.0 < abs(np.log(told.youngs_modulus / true.youngs_modulus)) < 1.0
+    assert 0.0 < abs(told.thickness / true.thickness - 1.0) < 0.2
+    assert told.poisson_ratio == true.poisson_ratio
