@@ -7,6 +7,7 @@ In a file a quantity is text with a unit. In code it is a float in SI units, so 
 from __future__ import annotations
 
 import math
+import typing
 from dataclasses import dataclass
 from typing import Annotated, Any, Final
 
@@ -15,7 +16,16 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 from pydantic_core.core_schema import SerializationInfo, ValidationInfo
 
 from benchmark.files import units
-from benchmark.files.units import Dimension, QuantityError, format_quantity, parse_quantity, shown_quantity
+from benchmark.files.units import (
+    Dimension,
+    QuantityError,
+    dimension_of,
+    format_quantity,
+    parse_quantity,
+    relative_uncertainty,
+    shown_quantity,
+    split_uncertainty,
+)
 
 FROM_FILE: Final = {"from_file": True}
 """The validation context of values that were written by a person: quantities must carry their unit."""
@@ -170,6 +180,34 @@ class Number:
     def serialize(self, value: float | None, info: SerializationInfo) -> float | str | None:
         """The number; "auto" in files where it is automatic."""
         return "auto" if self.automatic and value is None and info.mode == "json" else value
+
+
+def quantity_of(annotation: Any) -> Dimension | None:
+    """The dimension of a field whose value may carry an uncertainty; None of names, counts and fractions."""
+    for part in (annotation, *typing.get_args(annotation)):
+        if isinstance(part, Quantity) and part.dimension.si:
+            return part.dimension
+        if isinstance(part, Number) and not part.whole:
+            return dimension_of("")
+    inner = (found for part in typing.get_args(annotation) if typing.get_args(part) for found in (quantity_of(part),))
+    return next((found for found in inner if found is not None), None)
+
+
+def without_uncertainty(text: str, dimension: Dimension) -> tuple[str, float | None]:
+    """The text of the value alone, and the relative standard uncertainty where it carries one ("5 mm +/- 1 %").
+
+    Raises
+    ------
+    PydanticCustomError
+        The uncertainty cannot be one of this value.
+    """
+    plain, uncertain = split_uncertainty(text)
+    if uncertain is None:
+        return text, None
+    try:
+        return plain, relative_uncertainty(parse_quantity(plain, dimension), uncertain, dimension)
+    except QuantityError as error:
+        raise problem(str(error)) from None
 
 
 def quantity(dimension: Dimension, low: float, high: float, **options: bool) -> Quantity:

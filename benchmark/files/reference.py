@@ -25,7 +25,8 @@ HEAD = """# File reference
 
 Every key of the files that people write, from the schemas that read them; made by
 `python -m benchmark.files.reference`. Quantities are text with a unit, such as `"120 kPa"`; the examples in
-[Files](files.md) show them at work.
+[Files](files.md) show them at work. A quantity may carry its standard uncertainty, `"5 mm +/- 0.05 mm"` or
+`"120 kPa +/- 30 %"`.
 """
 ROOTS: tuple[tuple[str, type[FileModel]], ...] = (
     ("Tissue", Tissue),

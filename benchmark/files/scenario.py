@@ -14,7 +14,7 @@ from benchmark.files.quantities import AutoLength, Bounds, Margin, Number, probl
 from benchmark.files.schema import FileModel, Name, Schema
 from benchmark.files.sources import folder_of, is_file
 from benchmark.files.tissue import Layer, Tissue
-from benchmark.files.tool import TOUCHING, Support, Tool, check_hole
+from benchmark.files.tool import TOUCHING, Support, Tool, check_hole, setup_uncertainties
 
 Modes = Annotated[
     int | None,
@@ -120,6 +120,11 @@ class Scenario(FileModel):
     comparison: Comparison = Comparison()
     fem: FemOptions = FemOptions()
     wave: WaveOptions = WaveOptions()
+
+    @property
+    def uncertainties(self) -> dict[str, float]:
+        """Standard uncertainties that are stated of the set-up, as shares of the values, by keys as in `--set`."""
+        return setup_uncertainties(self.tissue, self.tool, self.support)
 
     def load_history(self) -> LoadHistory:
         """Time (n,) in s and value (n,) in N or m of the load, see `benchmark.files.load`."""

@@ -8,14 +8,28 @@ from __future__ import annotations
 import difflib
 import typing
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Any, Final, Literal, TypeVar
+from types import MappingProxyType
+from typing import Annotated, Any, Final, Literal, Self, TypeVar
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
-from pydantic_core import ErrorDetails
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    SerializerFunctionWrapHandler,
+    ValidationError,
+    model_serializer,
+    model_validator,
+)
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails, PydanticCustomError
+from pydantic_core.core_schema import SerializationInfo
 
 from benchmark.errors import InputError
-from benchmark.files.quantities import problem
+from benchmark.files.quantities import problem, quantity_of, without_uncertainty
 from benchmark.files.sources import KeyPath, Source
+from benchmark.files.units import FRACTION, format_quantity, split_uncertainty
 
 SCHEMA = 1
 """The number of the tissue, scenario and session schemas that this version reads and writes."""
@@ -34,9 +48,48 @@ Name = Annotated[str, AfterValidator(_printable)]
 
 
 class FileModel(BaseModel):
-    """Base of the file models: values are SI floats, instances are immutable and compare by value."""
+    """Base of the file models: values are SI floats, instances are immutable and compare by value.
+
+    A quantity may carry its standard uncertainty, "5 mm +/- 0.05 mm" or "120 kPa +/- 30 %", which is kept beside it.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid", validate_default=False)
+    _uncertainties: dict[str, float] = PrivateAttr(default_factory=dict)
+
+    @property
+    def own_uncertainties(self) -> Mapping[str, float]:
+        """Standard uncertainties that were stated, as shares of their values, by the keys of this table."""
+        return MappingProxyType(self._uncertainties)
+
+    def keeping_uncertainties(self, stated: Mapping[str, float]) -> Self:
+        """A copy with other uncertainties, shares of the values of this table's keys."""
+        copy = self.model_copy()
+        copy._uncertainties = dict(stated)
+        return copy
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _uncertainties_apart(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        if not isinstance(data, Mapping):
+            return handler(data)
+        plain, stated = dict(data), {}
+        for key, field in cls.model_fields.items():
+            if isinstance(value := data.get(key), str) and split_uncertainty(value)[1] is not None:
+                plain[key], share = _apart(value, field, key)
+                if share is not None:
+                    stated[key] = share
+        model = handler(plain)
+        if stated:
+            model._uncertainties = stated
+        return model
+
+    @model_serializer(mode="wrap")
+    def _with_uncertainties(self, handler: SerializerFunctionWrapHandler, info: SerializationInfo) -> dict[str, Any]:
+        table: dict[str, Any] = handler(self)
+        if info.mode == "json":
+            for key, share in self._uncertainties.items():
+                table[key] = f"{table[key]} +/- {format_quantity(share, FRACTION)}"
+        return table
 
     def to_table(self) -> dict[str, Any]:
         """The model as TOML types, every default explicit, quantities as text with units."""
@@ -57,6 +110,17 @@ def _without_none(value: Any) -> Any:
     if isinstance(value, list):
         return [_without_none(item) for item in value]
     return value
+
+
+def _apart(value: str, field: FieldInfo, key: str) -> tuple[str, float | None]:
+    """A value's text without its uncertainty, and that."""
+    dimension = next((found for each in (*field.metadata, field.annotation) if (found := quantity_of(each))), None)
+    if dimension is None:
+        return value, None
+    try:
+        return without_uncertainty(value, dimension)
+    except PydanticCustomError as error:
+        raise problem(error.message(), key=key) from None
 
 
 Model = TypeVar("Model", bound=BaseModel)

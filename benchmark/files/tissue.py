@@ -221,6 +221,11 @@ class Tissue(FileModel):
         """Total thickness in m; infinite where the last layer is endless."""
         return sum(layer.thickness for layer in self.layers)
 
+    @property
+    def uncertainties(self) -> dict[str, float]:
+        """Standard uncertainties that the file states of its layers, as shares of the values, by keys as in `--set`."""
+        return {f"{one.name}.{key}": share for one in self.layers for key, share in one.own_uncertainties.items()}
+
     def layer(self, name: str) -> Layer:
         """The layer of that name; KeyError where there is none."""
         return {layer.name: layer for layer in self.layers}[name]
@@ -233,7 +238,9 @@ class Tissue(FileModel):
         pydantic.ValidationError
             When a value lies outside its bounds.
         """
-        changed = Layer(**{**dict(self.layer(name)), **changes})
+        told = self.layer(name)
+        stated = {key: share for key, share in told.own_uncertainties.items() if key not in changes}
+        changed = Layer(**{**dict(told), **changes}).keeping_uncertainties(stated)
         layers = tuple(changed if layer.name == name else layer for layer in self.layers)
         return self.model_copy(update={"layers": layers})
 

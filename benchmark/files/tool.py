@@ -8,6 +8,7 @@ from pydantic import model_validator
 
 from benchmark.files.quantities import Length, SignedLength, Tilt, problem
 from benchmark.files.schema import FileModel
+from benchmark.files.tissue import Tissue
 
 Contact = Literal["uniform_pressure", "rigid_bonded", "rigid_frictionless", "rigid_frictional"]
 
@@ -73,6 +74,13 @@ class Support(FileModel):
         if self.kind == "hole" and self.hole_radius is None:
             raise problem('a support of kind "hole" needs it; give a length such as "30 mm"', key="hole_radius")
         return self
+
+
+def setup_uncertainties(tissue: Tissue, tool: Tool, support: Support) -> dict[str, float]:
+    """Standard uncertainties that are stated of a set-up, as shares of the values, by keys as in `--set`."""
+    parts = {"tool": tool, "support": support}
+    own = {f"{name}.{key}": share for name, part in parts.items() for key, share in part.own_uncertainties.items()}
+    return {**tissue.uncertainties, **own}
 
 
 def check_hole(tool: Tool, support: Support) -> None:

@@ -148,6 +148,46 @@ def parse_quantity(text: str, dimension: Dimension) -> float:
     return value
 
 
+_PLUS_MINUS = re.compile(r"\s*(?:\+/-|±)\s*")
+
+
+def split_uncertainty(text: str) -> tuple[str, str | None]:
+    """A quantity's text and that of its standard uncertainty, "5 mm" and "0.05 mm" of "5 mm +/- 0.05 mm"; or None."""
+    parts = _PLUS_MINUS.split(text, maxsplit=1)
+    return (parts[0], parts[1]) if len(parts) == 2 else (text, None)
+
+
+def relative_uncertainty(value: float, text: str, dimension: Dimension) -> float:
+    """Read a standard uncertainty as a share of its value.
+
+    Parameters
+    ----------
+    value : float
+        The value that it belongs to, in the dimension's SI unit.
+    text : str
+        A quantity of the same dimension, "0.05 mm", or a share of the value, "1 %".
+    dimension : Dimension
+        The value's.
+
+    Raises
+    ------
+    QuantityError
+        When it is no such quantity, or not above 0 and below 100 % of the value.
+    """
+    try:
+        share = text.rstrip().endswith("%")
+        size = parse_quantity(text, FRACTION) if share else parse_quantity(text, dimension)
+    except QuantityError as error:
+        raise QuantityError(f"the uncertainty {error}, or a share of the value such as '5 %'") from None
+    if not share and value:
+        size /= abs(value)
+    if not 0.0 < size < 1.0 or not value:
+        raise QuantityError(
+            f"the uncertainty {text!r} is outside what is allowed, above 0 % and below 100 % of the value"
+        )
+    return size
+
+
 def format_quantity(value: float, dimension: Dimension) -> str:
     """Write an SI value with a unit a person would choose, such that it reads back as the same float.
 

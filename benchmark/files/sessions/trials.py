@@ -17,7 +17,7 @@ from benchmark.files.sessions.description import Camera, TrialEntry
 from benchmark.files.sessions.session_folder import inside
 from benchmark.files.sources import Source
 from benchmark.files.tissue import Tissue
-from benchmark.files.tool import Support, Tool
+from benchmark.files.tool import Support, Tool, setup_uncertainties
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,6 +155,10 @@ class Session:
     def conditions(self) -> tuple[str, ...]:
         """The conditions in the order in which they first occur."""
         return tuple(dict.fromkeys(trial.condition for trial in self.trials))
+
+    def uncertainties(self, tool: Tool, support: Support) -> dict[str, float]:
+        """Standard uncertainties that are stated of a set-up, as shares of the values, by keys as in `--set`."""
+        return setup_uncertainties(self.specimen, tool, support)
 
     def scenario(self, tissue: Tissue, tool: Tool, support: Support, load: Load) -> Scenario:
         """A press as a scenario, named like the session, with the session's `settings` in it.
