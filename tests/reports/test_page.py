@@ -1,5 +1,3 @@
-"""WRITE"""
-
 import base64
 import gzip
 import hashlib

@@ -1,5 +1,3 @@
-"""WRITE"""
-
 import re
 import xml.etree.ElementTree as ElementTree
 

@@ -1,5 +1,3 @@
-"""WRITE"""
-
 import math
 
 import numpy as np

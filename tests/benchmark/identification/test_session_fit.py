@@ -1,5 +1,3 @@
-"""WRITE"""
-
 import json
 import re
 from dataclasses import replace

@@ -1,5 +1,3 @@
-"""WRITE"""
-
 from itertools import pairwise
 
 import numpy as np

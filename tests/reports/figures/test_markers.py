@@ -1,5 +1,3 @@
-"""WRITE"""
-
 import numpy as np
 import pytest
 
