@@ -7,7 +7,7 @@ import pytest
 
 from benchmark.files import load_session
 from benchmark.response.fem_table import fem_or_wave_table
-from benchmark.runs.session_tables import base_curves
+from benchmark.runs.trials.session_tables import base_curves
 
 TISSUE = """\
 schema = 1
