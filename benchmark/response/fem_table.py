@@ -80,7 +80,7 @@ def _fem_table(
         return _ramp(session, tissue, other, support, MARGIN * depth)
 
     curve = nearest_curve(tool, ramp_of)
-    told = curve.told
+    told = curve.under(tool)
     if told is not None and told.depth[-1] >= depth:
         pairs = {
             key: tuple(_ramp(session, *changed_setup(*setup, key, sign * STEP), MARGIN * depth) for sign in (-1.0, 1.0))

@@ -6,7 +6,7 @@ Each tool takes over where the one before it stops, with its growth over depth a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -41,8 +41,8 @@ class NearestCurve:
     ----------
     depth, force : (k,) array
         m and N, from 0 up.
-    told : Ramp or None
-        Under the tool as told, None where it is not covered.
+    followed : tuple of (Tool, Ramp)
+        Every tool that was tried and is covered, the one told first, with its own ramp.
     tried : tuple of str
         Each tool that does not reach the depth asked for, how deep it comes, and why no deeper.
     used : tuple of str
@@ -51,7 +51,7 @@ class NearestCurve:
 
     depth: Array
     force: Array
-    told: Ramp | None
+    followed: tuple[tuple[Tool, Ramp], ...] = ()
     tried: tuple[str, ...] = ()
     used: tuple[str, ...] = ()
 
@@ -59,6 +59,10 @@ class NearestCurve:
     def reach(self) -> float:
         """Deepest point, m."""
         return float(self.depth[-1])
+
+    def under(self, tool: Tool) -> Ramp | None:
+        """The ramp under one tool; None where it is not covered or was not tried."""
+        return next((ramp for other, ramp in self.followed if other == tool), None)
 
     def remark(self, depth: float) -> str:
         """What a reader must know of a curve that was asked for to a `depth`, m; empty where it is as told."""
@@ -76,7 +80,7 @@ def nearest_curve(tool: Tool, ramp_of: RampOf) -> NearestCurve:
     SolverError
         No tool is followed for two steps; says what became of each.
     """
-    found = NearestCurve(np.zeros(1), np.zeros(1), None)
+    found = NearestCurve(np.zeros(1), np.zeros(1))
     for other in nearest_tools(tool):
         name = "the tool as told" if other is tool else tool_name(other, tool)
         try:
@@ -84,6 +88,7 @@ def nearest_curve(tool: Tool, ramp_of: RampOf) -> NearestCurve:
         except (UncoveredError, TissuebenchError) as error:
             found = replace(found, tried=(*found.tried, f"{name} is not covered ({error})"))
             continue
+        found = replace(found, followed=(*found.followed, (other, ramp)))
         found = _joined(found, ramp, name, as_told=other is tool)
         if ramp.failure is None:
             break
@@ -137,12 +142,17 @@ def continued(curve: NearestCurve, depth: float) -> tuple[Array, Array, str]:
     return np.append(curve.depth, beyond), np.append(curve.force, force), said
 
 
+def carried_forces(followed: Sequence[tuple[Tool, Ramp]]) -> list[tuple[Tool, float]]:
+    """Each tool that was followed and the most its ramp carries, N; one that was followed to its end has no limit."""
+    return [(tool, np.inf if ramp.failure is None else float(_rising(ramp)[1][-1])) for tool, ramp in followed]
+
+
 def _joined(found: NearestCurve, ramp: Ramp, name: str, *, as_told: bool) -> NearestCurve:
     """The curve, gone on by a ramp where that comes deeper."""
     stop, tried = ramp.failure, found.tried
     if stop is not None:
         tried = (*tried, f"{name} is followed to {1e3 * stop.reached:.3g} mm ({stop.reason.partition(';')[0]})")
-    found = replace(found, tried=tried, told=ramp if as_told else found.told)
+    found = replace(found, tried=tried)
     depth, force = _rising(ramp)
     beyond = depth > found.reach
     if depth.size <= LEAST_STEPS or not beyond.any():

@@ -33,7 +33,7 @@ from benchmark.runs.report.values import fit_headline
 from benchmark.runs.trials.film_tables import Motion, motions_of
 from benchmark.runs.trials.filming import Films, session_films
 from benchmark.runs.trials.measured import FilmedSession
-from benchmark.runs.trials.session_tables import base_curves, session_sheets
+from benchmark.runs.trials.session_tables import BaseCurves, Followed, base_curves, session_sheets
 from benchmark.runs.trials.table_one import Placed, table_one
 
 Key = tuple[str, str]
@@ -54,6 +54,8 @@ class FittedSession:
         In the session's order, each with the force curve of its tool and support.
     warnings
         Of reading, of the curves, of the films, and of the fit.
+    followed
+        The tools that the finite elements cover in each set-up, the one told first, each with its ramp.
     filmed
         What the markers tell; None without any.
     sheets
@@ -66,6 +68,7 @@ class FittedSession:
     fit: SessionFit
     trials: tuple[TrialData, ...]
     warnings: tuple[str, ...]
+    followed: Mapping[Setup, Followed]
     filmed: FilmedSession | None = None
     sheets: Mapping[Key, tuple[FilmedTrial, RampTable]] = field(default_factory=dict)
     added: Mapping[Key, Array] = field(default_factory=dict)
@@ -103,11 +106,11 @@ def fit_trials(
     try:
         trials = tuple(_trial_data(trial, base.curves[trial.tool, trial.support]) for trial in session.trials)
         if repair is not None:
-            return _fitted_with(repair, session, trials, base.warnings)
+            return _fitted_with(repair, session, trials, base)
         fit = fit_session(trials, session.specimen.layers)
     except FittingError as error:
         raise InputError(f"session {session.folder}: {error}") from None
-    found = FittedSession(session, fit, trials, (*session.warnings, *base.warnings, *fit.warnings))
+    found = FittedSession(session, fit, trials, (*session.warnings, *base.warnings, *fit.warnings), base.followed)
     return _with_films(found, session_films(session, listener), listener) if films else found
 
 
@@ -154,7 +157,7 @@ def _placed(model: RampTable, own: SheetTrial) -> Placed:
 
 
 def _fitted_with(
-    repair: RepairedModel, session: Session, trials: tuple[TrialData, ...], said: tuple[str, ...]
+    repair: RepairedModel, session: Session, trials: tuple[TrialData, ...], base: BaseCurves
 ) -> FittedSession:
     """The fit with the effects of a model file; raises FittingError."""
     names = ", ".join(repair.slugs) or "no effect"
@@ -162,8 +165,8 @@ def _fitted_with(
     warnings = [f"fitted with {names} of {repair.name} switched on, to the force alone"]
     if not made.settled:
         warnings.append("the stiffness did not come to rest with the effects in the fit: take it with care")
-    everything = (*session.warnings, *said, *made.fit.warnings, *warnings)
-    return FittedSession(session, made.fit, trials, everything, added=made.added)
+    everything = (*session.warnings, *base.warnings, *made.fit.warnings, *warnings)
+    return FittedSession(session, made.fit, trials, everything, base.followed, added=made.added)
 
 
 def _depths(session: Session) -> dict[Setup, float]:

@@ -10,15 +10,17 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmark.files import Load, Scenario, Session, Tissue, scaled_tissue
-from benchmark.identification import SessionFit, TrialData, predict, sheet_force
+from benchmark.files import Load, Scenario, Session, Support, Tissue, Tool, scaled_tissue
+from benchmark.identification import TrialData, predict, sheet_force
 from benchmark.identification.effects_in_fit import trial_context
 from benchmark.identification.sheet_model import relaxed
 from benchmark.identification.sheet_session import held_out_state
 from benchmark.model_file import RepairedModel
 from benchmark.models import NOTHING, Array, Drive, Own, PreparedModel, UncoveredError, prepare
+from benchmark.models.prepare import scenario_drive
 from benchmark.response import depth_ramp, trial_force
 from benchmark.response.model_with_effects import effects_of, on_its_base
+from benchmark.response.nearest_curve import carried_forces, tool_name
 from benchmark.response.ramp import Setup, setup_scenario
 from benchmark.runs.fitted_session import FittedSession, fit_trials
 from benchmark.runs.options import Listener, RunOptions
@@ -29,6 +31,8 @@ from benchmark.side_by_side import NAMES
 
 OBSERVATIONS = 100
 STEPS = 60
+SAFE = 0.8
+"""Share of what a tool carries to which both models press where none carries the trials' force."""
 REACH = 1.2
 """The wave's elastic law is ramped this much deeper than the trial."""
 
@@ -48,18 +52,44 @@ def run_session(
     found = fit_trials(path, specimen, settings, listener, repair=own.repair)
     session, fit = found.session, found.fit
     fitted = scaled_tissue(session.specimen, found.stiffness_factor, f"{session.specimen.name}, fitted")
-    scenario = session_scenario(session, fitted, fit)
+    scenario, other = session_scenario(found, fitted, as_told=own.reference is not None)
     predictions, said = _predictions(found, fitted, own)
-    measured, warnings = MeasuredComparison(session, fit, predictions, found.filmed), (*found.warnings, *said)
+    measured, warnings = MeasuredComparison(session, fit, predictions, found.filmed), (*found.warnings, *said, *other)
     return run_scenario(scenario, options, listener, name=session.name, measured=measured, warnings=warnings, own=own)
 
 
-def session_scenario(session: Session, tissue: Tissue, fit: SessionFit) -> Scenario:
-    """Return a press to the trials' median peak force with the tool and support of the first trial."""
-    peak = float(np.median([trial.peak for trial in fit.trials]))
+def session_scenario(found: FittedSession, tissue: Tissue, *, as_told: bool) -> tuple[Scenario, tuple[str, ...]]:
+    """Return a press to the trials' median peak force with the tool and support of the first trial, and remarks.
+
+    Where the finite elements do not carry that force, the nearest tool that does takes its place, at the most that one
+    carries; a scenario `as_told` keeps tool and force.
+    """
+    session = found.session
+    first, peak = session.trials[0], float(np.median([trial.peak for trial in found.fit.trials]))
+    carried = carried_forces(found.followed[first.tool, first.support])
+    if as_told or carried[0] == (first.tool, np.inf):
+        return _press(session, tissue, first.tool, first.support, peak), ()
+    forces = {tool: most * found.stiffness_factor for tool, most in carried}
+    for tool, most in forces.items():
+        scenario = _press(session, tissue, tool, first.support, peak)
+        if most >= peak and _followed(scenario):
+            name = tool_name(tool, first.tool)
+            said = f"the finite elements do not follow the tool as told to {peak:.3g} N: both models have {name}"
+            return scenario, (() if tool == first.tool else (said,))
+    strongest = max(forces, key=lambda tool: forces[tool])
+    name, most = tool_name(strongest, first.tool), min(SAFE * forces[strongest], peak)
+    said = f"the finite elements do not follow the trials' median peak of {peak:.3g} N: both models have {name}"
+    return _press(session, tissue, strongest, first.support, most), (f"{said}, to {most:.3g} N",)
+
+
+def _press(session: Session, tissue: Tissue, tool: Tool, support: Support, peak: float) -> Scenario:
     load = Load(control="force", peak=peak, shape="triangle", duration=10.0, observations=OBSERVATIONS)
-    first = session.trials[0]
-    return session.scenario(tissue, first.tool, first.support, load)
+    return session.scenario(tissue, tool, support, load)
+
+
+def _followed(scenario: Scenario) -> bool:
+    """Whether the finite elements come to the end of a press, whose steps are other ones than a ramp's."""
+    return prepare("fem", scenario).run(scenario_drive(scenario)).failure is None
 
 
 def _predictions(found: FittedSession, tissue: Tissue, own: Own) -> tuple[tuple[TrialPrediction, ...], tuple[str, ...]]:

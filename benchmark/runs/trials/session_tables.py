@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from benchmark.errors import InputError, SolverError
 from benchmark.files import Session, Tool
 from benchmark.models import StepProgress, UncoveredError, prepare
 from benchmark.models.model_result import OnStep
 from benchmark.response import CameraView, FaceField, ForceCurve, Neighbour, Ramp, RampTable, depth_ramp
-from benchmark.response.nearest_curve import continued, nearest_curve
+from benchmark.response.nearest_curve import NearestCurve, continued, nearest_curve
 from benchmark.response.ramp import Setup, setup_scenario
 from benchmark.response.setup_change import THICKNESS, changed_setup
 from benchmark.runs.options import Advance, Listener
@@ -27,11 +28,18 @@ THICKER = 0.1
 FACE_STEPS = 24
 
 
+Followed: TypeAlias = tuple[tuple[Tool, Ramp], ...]
+
+
 @dataclass(frozen=True)
 class BaseCurves:
-    """One curve for each tool and support, and what a reader must know of them."""
+    """One curve for each tool and support, and what a reader must know of them.
+
+    `followed` are the tools that the solver covers in each set-up, the one told first, each with its own ramp.
+    """
 
     curves: Mapping[Setup, ForceCurve]
+    followed: Mapping[Setup, Followed]
     warnings: tuple[str, ...]
 
 
@@ -46,16 +54,18 @@ def base_curves(session: Session, depths: Mapping[Setup, float], listener: Liste
     SolverError
         There is no curve at all.
     """
-    curves, warnings = {}, []
+    curves, followed, warnings = {}, {}, []
     with listener.progress(f"{session.name}: force over depth of the specimen") as advance:
         for number, (setup, depth) in enumerate(depths.items(), start=1):
-            curves[setup], said = _curve(session, setup, depth, _told(advance, f"FEM {number}"))
-            warnings += said
-    return BaseCurves(curves, tuple(dict.fromkeys(warnings)))
+            found = _followed(session, setup, depth, _told(advance, f"FEM {number}"))
+            points, force, beyond = continued(found, depth)
+            curves[setup], followed[setup] = ForceCurve(points, force), found.followed
+            warnings += ["; ".join(text for text in (found.remark(depth), beyond) if text)]
+    return BaseCurves(curves, followed, tuple(dict.fromkeys(text for text in warnings if text)))
 
 
-def _curve(session: Session, setup: Setup, depth: float, on_step: OnStep) -> tuple[ForceCurve, list[str]]:
-    """The curve of one tool and support, and what was put in the place of what the solver does not follow."""
+def _followed(session: Session, setup: Setup, depth: float, on_step: OnStep) -> NearestCurve:
+    """The curve of one tool and support, by the nearest tools where the solver does not follow it."""
     steps = min(max(math.ceil(depth / STEP), LEAST_STEPS), MOST_STEPS)
 
     def ramp_of(tool: Tool) -> Ramp:
@@ -63,12 +73,9 @@ def _curve(session: Session, setup: Setup, depth: float, on_step: OnStep) -> tup
         return depth_ramp(model, depth, steps, on_step)
 
     try:
-        found = nearest_curve(setup[0], ramp_of)
+        return nearest_curve(setup[0], ramp_of)
     except SolverError as error:
         raise SolverError(f"session {session.name}: {error}") from None
-    points, force, beyond = continued(found, depth)
-    said = "; ".join(text for text in (found.remark(depth), beyond) if text)
-    return ForceCurve(points, force), [said] if said else []
 
 
 def session_sheets(

@@ -6,7 +6,7 @@ import pytest
 from benchmark.errors import InputError, SolverError
 from benchmark.files.tool import Tool
 from benchmark.models import RunFailure, UncoveredError
-from benchmark.response.nearest_curve import continued, nearest_curve, nearest_tools, stuck_tool
+from benchmark.response.nearest_curve import carried_forces, continued, nearest_curve, nearest_tools, stuck_tool
 from benchmark.response.ramp import Ramp
 
 TOLD = Tool(radius=10e-3, contact="rigid_frictionless", edge_radius=1e-3)
@@ -36,7 +36,7 @@ def ramps(by_edge, stuck=None):
 def test_a_tool_that_is_followed_is_taken_as_told() -> None:
     told = made(DEPTH)
     curve = nearest_curve(TOLD, ramps({1.0: told}))
-    assert curve.told is told
+    assert curve.under(TOLD) is told
     assert (curve.depth, curve.force) == (pytest.approx(told.depth), pytest.approx(told.force))
     assert curve.remark(DEPTH) == ""
     assert continued(curve, DEPTH)[2] == ""
@@ -72,7 +72,7 @@ def test_each_tool_takes_over_with_its_growth_where_the_one_before_stops() -> No
 
 def test_a_tool_that_is_not_covered_gives_way_to_the_nearest() -> None:
     curve = nearest_curve(TOLD, ramps({}, made(DEPTH)))
-    assert curve.told is None
+    assert curve.under(TOLD) is None
     assert curve.force == pytest.approx(made(DEPTH).force)
     assert "the tool as told is not covered" in curve.remark(DEPTH)
 
@@ -102,3 +102,9 @@ def test_only_a_set_up_without_any_curve_is_refused() -> None:
         nearest_curve(TOLD, refuse)
     with pytest.raises(SolverError, match="is followed to 0"):
         nearest_curve(TOLD, ramps({1.0: made(0.5e-3)}))
+
+
+def test_a_tool_carries_what_its_ramp_reached_and_any_force_where_it_came_to_its_end() -> None:
+    stuck = stuck_tool(TOLD)
+    carried = carried_forces(((TOLD, made(3e-3)), (stuck, made(DEPTH))))
+    assert carried == [(TOLD, pytest.approx(9.0)), (stuck, np.inf)]

@@ -5,8 +5,12 @@ from contextlib import nullcontext
 import numpy as np
 import pytest
 
-from benchmark.files import load_session
+from benchmark.files import load_session, scaled_tissue
+from benchmark.models import prepare
+from benchmark.models.prepare import scenario_drive
 from benchmark.response.fem_table import fem_or_wave_table
+from benchmark.runs.fitted_session import fit_trials
+from benchmark.runs.session_run import session_scenario
 from benchmark.runs.trials.session_tables import base_curves
 
 TISSUE = """\
@@ -65,6 +69,9 @@ def test_a_flat_tool_that_slides_is_followed_by_the_nearest_tools(pad) -> None:
     (said,) = found.warnings
     assert "the tool as told is followed to" in said
     assert "goes on with the growth of an edge of 1.25 mm" in said
+    tools = [tool for tool, _ in found.followed[setup]]
+    assert tools[0] == setup[0]
+    assert len(tools) > 1
 
 
 def test_the_discovery_has_a_base_where_neither_model_covers_the_tool(pad) -> None:
@@ -89,3 +96,16 @@ def test_a_sphere_is_followed_and_differentiated(pad) -> None:
     assert 1.4 < power < 2.6  # 1.5 by Hertz, more on a thin layer; 1 under a flat end
     rise = table.by["tool.radius"].force[0, -1] / table.force[-1]
     assert 0.3 < rise < 1.2  # 0.5 by Hertz, more on a thin layer
+
+
+def test_a_run_takes_the_tool_that_carries_the_trials_force(pad) -> None:
+    fitted = fit_trials(pad().folder, None, {"fem.mesh": "coarse"}, Quiet())
+    told, warnings = session_scenario(fitted, fitted.session.specimen, as_told=True)
+    assert told.tool.edge_radius == pytest.approx(0.5e-3)
+    assert not warnings
+    tissue = scaled_tissue(fitted.session.specimen, fitted.stiffness_factor, "fitted")
+    scenario, (said, *_) = session_scenario(fitted, tissue, as_told=False)
+    assert scenario.tool != told.tool
+    assert "the finite elements do not follow the tool as told to" in said
+    drive = scenario_drive(scenario)
+    assert prepare("fem", scenario).run(drive).failure is None
