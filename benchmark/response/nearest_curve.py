@@ -82,7 +82,7 @@ def nearest_curve(tool: Tool, ramp_of: RampOf) -> NearestCurve:
     """
     found = NearestCurve(np.zeros(1), np.zeros(1))
     for other in nearest_tools(tool):
-        name = "the tool as told" if other is tool else tool_name(other, tool)
+        name = tool_name(other, tool)
         try:
             ramp = ramp_of(other)
         except (UncoveredError, TissuebenchError) as error:
@@ -119,6 +119,8 @@ def stuck_tool(tool: Tool) -> Tool:
 
 def tool_name(other: Tool, told: Tool) -> str:
     """What is different about a tool that takes another's place."""
+    if other == told:
+        return "the tool as told"
     if other.contact != told.contact:
         return "a flat tool to which the surface sticks"
     if other.edge_radius == told.edge_radius:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmark.errors import TissuebenchError
 from benchmark.files import Load, Scenario, Session, Support, Tissue, Tool, scaled_tissue
 from benchmark.identification import TrialData, predict, sheet_force
 from benchmark.identification.effects_in_fit import trial_context
@@ -20,7 +21,7 @@ from benchmark.models import NOTHING, Array, Drive, Own, PreparedModel, Uncovere
 from benchmark.models.prepare import scenario_drive
 from benchmark.response import depth_ramp, trial_force
 from benchmark.response.model_with_effects import effects_of, on_its_base
-from benchmark.response.nearest_curve import carried_forces, tool_name
+from benchmark.response.nearest_curve import carried_forces, nearest_tools, tool_name
 from benchmark.response.ramp import Setup, setup_scenario
 from benchmark.runs.fitted_session import FittedSession, fit_trials
 from benchmark.runs.options import Listener, RunOptions
@@ -70,14 +71,14 @@ def session_scenario(found: FittedSession, tissue: Tissue, *, as_told: bool) -> 
     if as_told or carried[0] == (first.tool, np.inf):
         return _press(session, tissue, first.tool, first.support, peak), ()
     forces = {tool: most * found.stiffness_factor for tool, most in carried}
-    for tool, most in forces.items():
+    for tool in nearest_tools(first.tool):
         scenario = _press(session, tissue, tool, first.support, peak)
-        if most >= peak and _followed(scenario):
+        if forces.get(tool, np.inf) >= peak and _followed(scenario):
             name = tool_name(tool, first.tool)
             said = f"the finite elements do not follow the tool as told to {peak:.3g} N: both models have {name}"
             return scenario, (() if tool == first.tool else (said,))
     strongest = max(forces, key=lambda tool: forces[tool])
-    name, most = tool_name(strongest, first.tool), min(SAFE * forces[strongest], peak)
+    name, most = tool_name(strongest, first.tool), SAFE * min(forces[strongest], peak)
     said = f"the finite elements do not follow the trials' median peak of {peak:.3g} N: both models have {name}"
     return _press(session, tissue, strongest, first.support, most), (f"{said}, to {most:.3g} N",)
 
@@ -89,7 +90,10 @@ def _press(session: Session, tissue: Tissue, tool: Tool, support: Support, peak:
 
 def _followed(scenario: Scenario) -> bool:
     """Whether the finite elements come to the end of a press, whose steps are other ones than a ramp's."""
-    return prepare("fem", scenario).run(scenario_drive(scenario)).failure is None
+    try:
+        return prepare("fem", scenario).run(scenario_drive(scenario)).failure is None
+    except (UncoveredError, TissuebenchError):
+        return False
 
 
 def _predictions(found: FittedSession, tissue: Tissue, own: Own) -> tuple[tuple[TrialPrediction, ...], tuple[str, ...]]:
