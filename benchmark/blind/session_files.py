@@ -12,7 +12,7 @@ from benchmark.blind.cases import BlindCase, CaseName, generator, make_case
 from benchmark.blind.motion import Array, Integers, ReportedMotion, motion
 from benchmark.blind.scene import Noise
 from benchmark.blind.simulate import Signals, simulate
-from benchmark.blind.specimens import HOLE_RADIUS, ToldSpecimen, misjudged
+from benchmark.blind.specimens import HOLE_RADIUS, MODULUS_ERROR, THICKNESS_ERROR, ToldSpecimen, misjudged
 from reports import write_text
 
 TAILS = 4.0
@@ -78,8 +78,11 @@ def write_case(made: BlindCase, folder: Path) -> Path:
         text += _write_trial(made, moved, folder, number, fault, rng)
     write_text(folder / "session.toml", text)
     told = made.scene.body.specimen
-    told = misjudged(told, generator(made.name, "layers")) if made.name.wrong_layers else told
-    write_text(folder / "specimen.toml", specimen_text(told))
+    wrong = made.name.wrong_layers
+    text = (
+        specimen_text(misjudged(told, generator(made.name, "layers")), uncertain=True) if wrong else specimen_text(told)
+    )
+    write_text(folder / "specimen.toml", text)
     return folder
 
 
@@ -146,13 +149,15 @@ def _head(made: BlindCase) -> str:
     )
 
 
-def specimen_text(specimen: ToldSpecimen) -> str:
-    """The tissue file of what is told of a specimen; its moduli are not the true ones."""
+def specimen_text(specimen: ToldSpecimen, *, uncertain: bool = False) -> str:
+    """The tissue file of what is told of a specimen, with how well it is known; its moduli are not the true ones."""
+    modulus = f" +/- {100 * MODULUS_ERROR:g} %" if uncertain else ""
+    thickness = f" +/- {100 * THICKNESS_ERROR:g} %" if uncertain else ""
     text = f'schema = 1\nname = "{specimen.name}"\ncitation = "Synthetic: {MAKER}."\n'
     for layer in specimen.layers:
         text += (
-            f'\n[[layers]]\nname = "{layer.name}"\nthickness = "{1e3 * layer.thickness:g} mm"\n'
-            f'density = "{layer.density:g} kg/m^3"\nyoungs_modulus = "{1e-3 * layer.youngs_modulus:g} kPa"\n'
+            f'\n[[layers]]\nname = "{layer.name}"\nthickness = "{1e3 * layer.thickness:g} mm{thickness}"\n'
+            f'density = "{layer.density:g} kg/m^3"\nyoungs_modulus = "{1e-3 * layer.youngs_modulus:g} kPa{modulus}"\n'
             f"poisson_ratio = {layer.poisson_ratio:g}\n"
         )
     return text

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from benchmark.discovery.base.setup_priors import setup_priors
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence.pool import forget
 from benchmark.discovery.from_run import at_small_strain, is_run, read_run, repair_run
@@ -146,7 +147,7 @@ def store_folder(out: Path | None, session: Session, model: str) -> Path:
 def _found(
     session: Session, request: DiscoverRequest, own: tuple[Effect, ...], listener: Listener, store: Path
 ) -> Findings:
-    table_of = fem_table(session) if request.model == "fem" else None
+    table_of = fem_table(session, tuple(setup_priors(session))) if request.model == "fem" else None
     settings = Settings(seed=request.seed)
     with listener.progress(f"{session.name}: what the model lacks") as advance:
 

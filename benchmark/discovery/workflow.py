@@ -31,7 +31,7 @@ from benchmark.physics import Effect, catalogue
 from benchmark.response.elastic_table import TableOf
 
 DEFAULT = Settings()
-VERSION = 2
+VERSION = 3
 """Of the method: fits kept by another are done anew."""
 
 

@@ -82,17 +82,23 @@ def _fem_table(
     curve = nearest_curve(tool, ramp_of)
     told = curve.under(tool)
     if told is not None and told.depth[-1] >= depth:
-        pairs = {
-            key: tuple(_ramp(session, *changed_setup(*setup, key, sign * STEP), MARGIN * depth) for sign in (-1.0, 1.0))
-            for key in keys
-        }
+        pairs = {key: pair for key in keys if (pair := _changed_ramps(session, setup, key, depth))}
         reached = min(float(ramp.depth[-1]) for ramp in (told, *(one for pair in pairs.values() for one in pair)))
-        if reached >= depth:
+        if RADIUS in pairs or RADIUS not in keys:
             return _table(told, pairs, np.linspace(0.0, reached, POINTS))
     note = curve.remark(MARGIN * depth) or "the finite elements stop early for a slightly changed set-up"
     if curve.reach < depth:
         note = f"{note}; beyond {1e3 * curve.reach:.3g} mm the base goes on like the wave model"
     return _noted(_with_force(_wave(*setup, depth, keys), curve.depth, curve.force), note)
+
+
+def _changed_ramps(session: Session, setup: tuple[Tissue, Tool, Support], key: str, depth: float) -> tuple[Ramp, ...]:
+    """Ramps with a set-up parameter smaller and larger; none where one of them cannot be pressed to the depth."""
+    try:
+        pair = tuple(_ramp(session, *changed_setup(*setup, key, sign * STEP), MARGIN * depth) for sign in (-1.0, 1.0))
+    except TissuebenchError:
+        return ()
+    return pair if all(ramp.depth[-1] >= depth for ramp in pair) else ()
 
 
 def _wave(tissue: Tissue, tool: Tool, support: Support, depth: float, keys: Sequence[str]) -> ElasticTable:

@@ -12,7 +12,7 @@ import numpy as np
 from benchmark.discovery import criteria
 from benchmark.discovery.base.calibration import pure_errors
 from benchmark.discovery.base.effect_model import EffectModel, Fit, White, fit, settled
-from benchmark.discovery.base.trials_problem import FOLLOWED, only
+from benchmark.discovery.base.trials_problem import followed, only
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.discovery_result import Array, ChannelGap, Trace
 from benchmark.discovery.evidence.gains import conditions
@@ -36,7 +36,7 @@ def unbent(chosen: Fit) -> Fit:
     A missing effect bends the base; what it hides by that is part of the gap.
     """
     names = chosen.model.problem.shapes
-    pinned = tuple((n, float(v)) for n, v in zip(names, chosen.vector, strict=False) if n not in FOLLOWED)
+    pinned = tuple((n, float(v)) for n, v in zip(names, chosen.vector, strict=False) if not followed(n))
     return fit(EffectModel(chosen.model.problem, (), pinned), chosen.vector[: len(names)], chosen.nuisance, most=6)
 
 

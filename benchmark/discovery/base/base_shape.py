@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -11,7 +11,6 @@ import numpy as np
 from benchmark.physics import LowerFaceMotion
 from benchmark.response.elastic_table import ElasticTable, SeparableField
 from benchmark.response.force_curve import Array
-from benchmark.response.setup_change import RADIUS
 
 
 @dataclass(frozen=True)
@@ -22,8 +21,10 @@ class Shape:
     ----------
     modulus : float
         Natural logarithm of the common factor on the moduli.
-    radius, exponent : float
-        Relative change of the tool's radius, change of the force's exponent.
+    setup : mapping of str to float
+        Relative changes of set-up parameters by their keys, as in `--set`.
+    exponent : float
+        Change of the force's exponent.
     bend, turn : float
         Amounts of the second and third shifted Legendre polynomial over depth in the force.
     width, marker_exponent, marker_size : float
@@ -31,18 +32,13 @@ class Shape:
     """
 
     modulus: float = 0.0
-    radius: float = 0.0
+    setup: Mapping[str, float] = field(default_factory=dict)
     exponent: float = 0.0
     bend: float = 0.0
     turn: float = 0.0
     width: float = 0.0
     marker_exponent: float = 0.0
     marker_size: float = 0.0
-
-    @property
-    def setup(self) -> Mapping[str, float]:
-        """The set-up parameters among them, by their keys."""
-        return {RADIUS: self.radius}
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,6 +9,7 @@ import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import EffectModel, Fit, fit, nuisance_count
+from benchmark.discovery.base.setup_priors import setup_priors, unused
 from benchmark.discovery.base.trials_problem import OWN, NoiseModel, TrialPrior, TrialRef, TrialsProblem, trial_refs
 from benchmark.discovery.trials.study import Study
 from benchmark.files import Session
@@ -32,8 +33,9 @@ class Calibrated:
 
 def calibrate(session: Session, study: Study, table_of: TableOf | None = None) -> Calibrated:
     """Fit the base and estimate noise and spreads, twice over."""
-    tables = _tables(session, study, table_of or fem_or_wave_table(session))
-    problem = TrialsProblem(study, tables, _first_noise(study), _wide(study), trial_refs(study))
+    setup = setup_priors(session)
+    tables = _tables(session, study, table_of or fem_or_wave_table(session, tuple(setup)))
+    problem = TrialsProblem(study, tables, _first_noise(study), _wide(study), trial_refs(study), setup=setup)
     vector, state = _first_guess(problem)
     model = EffectModel(problem, ())
     start = fit(model, vector, state, most=6)
@@ -41,7 +43,7 @@ def calibrate(session: Session, study: Study, table_of: TableOf | None = None) -
     second = fit(EffectModel(problem, ()), start.vector, _kept_state(start, problem), most=6)
     problem = _estimated(second)[0]
     base = fit(EffectModel(problem, ()), second.vector, _kept_state(second, problem), most=8)
-    notes = [table.note for table in tables if table.note]
+    notes = [*(table.note for table in tables if table.note), *unused(session, tables)]
     return Calibrated(problem, base, tuple(dict.fromkeys([*notes, *warnings])))
 
 

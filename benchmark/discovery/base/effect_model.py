@@ -11,6 +11,7 @@ import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.base_shape import Shape, ShapedTable
+from benchmark.discovery.base.setup_priors import farthest, is_setup, shares
 from benchmark.discovery.base.trials_problem import OFFSETS, OWN, TrialsProblem
 from benchmark.physics import Effect, EffectParameter, Readings, catalogue
 from benchmark.physics.effect import Values
@@ -94,7 +95,7 @@ class EffectModel:
     def bounds(self) -> tuple[Array, Array]:
         """Lower and upper bounds of the vector."""
         held = dict(self.pinned)
-        reach = [criteria.FAR_RADIUS if name == "radius" else np.inf for name in self.problem.shapes]
+        reach = [farthest(name) if is_setup(name) else np.inf for name in self.problem.shapes]
         shapes = [(held.get(n, -far), held.get(n, far)) for n, far in zip(self.problem.shapes, reach, strict=True)]
         low = [low for low, _ in shapes] + [_inner(p, p.low) for _, p in self.parameters]
         high = [high for _, high in shapes] + [_inner(p, p.high) for _, p in self.parameters]
@@ -103,8 +104,7 @@ class EffectModel:
     def prior(self, start: Array) -> tuple[Array, Array]:
         """Mean and precision (p,) of the priors; logarithmic parameters round their start."""
         mean, precision = np.zeros(self.size), np.zeros(self.size)
-        for k, name in enumerate(self.problem.shapes):
-            precision[k] = criteria.SHAPE_PRIOR[name] ** -2
+        precision[: self.shape_count] = np.array(list(self.problem.shape_priors.values())) ** -2.0
         for k, (_, parameter) in enumerate(self.parameters, start=self.shape_count):
             if parameter.logarithmic:
                 mean[k], precision[k] = start[k], criteria.LOG_PRIOR**-2
@@ -120,7 +120,9 @@ class EffectModel:
 
     def shape(self, vector: Array) -> Shape:
         """The base's shape."""
-        return Shape(**dict(zip(self.problem.shapes, vector.tolist(), strict=False)))
+        values = dict(zip(self.problem.shapes, vector.tolist(), strict=False))
+        forms = {name: value for name, value in values.items() if not is_setup(name)}
+        return Shape(setup=shares(values), **forms)
 
     def values(self, vector: Array) -> dict[str, dict[str, float]]:
         """Values of each effect's parameters, in SI."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmark.discovery.base.base_shape import Shape
+from benchmark.discovery import criteria
+from benchmark.discovery.base.setup_priors import is_setup
 from benchmark.discovery.trials.study import Study
 from benchmark.physics import Motion
 from benchmark.response.elastic_table import ElasticTable
@@ -16,12 +17,16 @@ from benchmark.response.force_curve import Array
 from benchmark.response.noise import Whitener, whitener
 
 MARKER_SHAPES = ("width", "marker_exponent", "marker_size")
-FOLLOWED = ("modulus", "radius", "exponent", "width")
-"""Nuisances in which a base may well be wrong; the others stand for its last per cent."""
+FOLLOWED = ("modulus", "exponent", "width")
 OWN = ("gain", "zero", "shift", "height")
 """What each trial has of its own whatever is measured; the zeros of its markers follow."""
 OFFSETS = ("x", "y", "tangential")
 """Marker combinations with a zero of their own in each trial."""
+
+
+def followed(name: str) -> bool:
+    """Whether a base may well be wrong in a nuisance; the others stand for its last per cent."""
+    return name in FOLLOWED or is_setup(name)
 
 
 @dataclass(frozen=True)
@@ -82,6 +87,8 @@ class TrialsProblem:
         All trials, condition by condition.
     mask : tuple of (n, C) bool arrays or None
         Cells that count, by condition; None: all.
+    setup : mapping of str to float
+        Relative standard deviations of set-up parameters, by their keys.
     """
 
     study: Study
@@ -90,13 +97,19 @@ class TrialsProblem:
     prior: TrialPrior
     trials: tuple[TrialRef, ...]
     mask: tuple[np.ndarray, ...] | None = None
+    setup: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def shapes(self) -> tuple[str, ...]:
         """Names of the base's nuisances in use."""
-        names = tuple(item.name for item in fields(Shape))
+        return tuple(self.shape_priors)
+
+    @property
+    def shape_priors(self) -> Mapping[str, float]:
+        """Their standard deviations."""
         moving = self.study.layout is not None and any(table.outward is not None for table in self.tables)
-        return names if moving else tuple(name for name in names if name not in MARKER_SHAPES)
+        forms = {k: size for k, size in criteria.SHAPE_PRIOR.items() if moving or k not in MARKER_SHAPES}
+        return {"modulus": forms.pop("modulus"), **self.setup, **forms}
 
     def whiteners(self, index: int) -> list[Whitener]:
         """One a signal for a trial, its scale included."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import EffectModel, Fit, White, nuisance_precision
-from benchmark.discovery.base.trials_problem import FOLLOWED
+from benchmark.discovery.base.trials_problem import followed
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.cells import Cell, one_sided
 from benchmark.discovery.detection.disagreement import Detection
@@ -97,10 +97,10 @@ class _Shown:
 
 
 def _unfollowed(fitted: Fit, rows: Sequence[Array]) -> list[Array]:
-    """White rows (N,) of each trial less what `FOLLOWED` and the trial's nuisances can take up, as (n, C)."""
+    """White rows (N,) of each trial less what `followed` and the trial's own nuisances can take up, as (n, C)."""
     problem = fitted.model.problem
     weight = np.diag(nuisance_precision(problem))
-    shapes = [k for k, name in enumerate(problem.shapes) if name in FOLLOWED]
+    shapes = [k for k, name in enumerate(problem.shapes) if followed(name)]
     columns = [each[:, shapes] for each in fitted.columns.vector]
 
     def own(i: int, of: Array) -> Array:

@@ -57,3 +57,5 @@ def test_a_session_with_wrong_layers_has_the_same_trials_and_tells_other_layers(
     assert 0.0 < abs(np.log(told.youngs_modulus / true.youngs_modulus)) < 1.0
     assert 0.0 < abs(told.thickness / true.thickness - 1.0) < 0.2
     assert told.poisson_ratio == true.poisson_ratio
+    assert told.own_uncertainties == {"thickness": pytest.approx(0.04), "youngs_modulus": pytest.approx(0.25)}
+    assert true.own_uncertainties == {}

@@ -34,7 +34,7 @@ def test_three_tests_of_chance_keep_the_level():
 
 
 def bent(*vector):
-    names = ("modulus", "radius", "exponent")
+    names = ("modulus", "tool.radius", "exponent")
     model = SimpleNamespace(problem=SimpleNamespace(shapes=names))
     return SimpleNamespace(model=model, vector=np.array(vector), precision=np.array([0.1, 400.0, 1e4]))
 

@@ -1,0 +1,77 @@
+"""How far a set-up may lie from what a person told of it: the base's nuisances by their keys, and their priors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import isinf
+
+import numpy as np
+
+from benchmark.discovery import criteria
+from benchmark.files import Session, Support, Tissue
+from benchmark.response.elastic_table import ElasticTable
+from benchmark.response.setup_change import RADIUS
+
+MODULUS = ".youngs_modulus"
+
+
+def setup_priors(session: Session) -> dict[str, float]:
+    """Relative standard deviations of the set-up parameters in which a session's base may be wrong.
+
+    The tool's radius always, and what files state an uncertainty of: the hole's radius, and each layer's thickness and
+    modulus. One layer's modulus is the common factor on all; a law with constants of its own does not follow it.
+    """
+    able = set(_able(session.specimen, session.support))
+    return {RADIUS: criteria.RADIUS_PRIOR} | {key: size for key, size in stated(session).items() if key in able}
+
+
+def stated(session: Session) -> dict[str, float]:
+    """Relative uncertainties that the files of a session state of its set-ups, the largest over its trials."""
+    found: dict[str, float] = {}
+    for tool, support in dict.fromkeys((trial.tool, trial.support) for trial in session.trials):
+        for key, share in session.uncertainties(tool, support).items():
+            found[key] = max(share, found.get(key, 0.0))
+    return found
+
+
+def _able(tissue: Tissue, support: Support) -> Iterator[str]:
+    """Set-up parameters that can be nuisances of the base."""
+    yield RADIUS
+    if support.kind == "hole":
+        yield "support.hole_radius"
+    for layer in tissue.layers:
+        if not isinf(layer.thickness):
+            yield f"{layer.name}.thickness"
+        if len(tissue.layers) > 1 and layer.hyperelastic.shear_modulus is None:
+            yield f"{layer.name}{MODULUS}"
+
+
+def unused(session: Session, tables: Sequence[ElasticTable]) -> tuple[str, ...]:
+    """A warning of stated uncertainties that the base does not take up."""
+    known = set.intersection(*(set(table.by) for table in tables)) | set(_common(session.specimen))
+    keys = [key for key in stated(session) if key not in known]
+    return (f"stated uncertainties that the base does not take up: {', '.join(keys)}",) if keys else ()
+
+
+def _common(tissue: Tissue) -> list[str]:
+    """The modulus that is the common factor, which is free in any case."""
+    return [f"{tissue.layers[0].name}{MODULUS}"] if len(tissue.layers) == 1 else []
+
+
+def is_setup(name: str) -> bool:
+    """Whether a nuisance of the base is a set-up parameter."""
+    return "." in name
+
+
+def farthest(name: str) -> float:
+    """How far a set-up parameter may go: the table's second order serves no farther."""
+    return criteria.FAR_MODULUS if name.endswith(MODULUS) else criteria.FAR_SETUP
+
+
+def shares(values: Mapping[str, float]) -> dict[str, float]:
+    """Relative changes of set-up parameters from the base's vector, which has moduli by their logarithm."""
+    return {
+        key: float(np.expm1(value)) if key.endswith(MODULUS) else value
+        for key, value in values.items()
+        if is_setup(key)
+    }
