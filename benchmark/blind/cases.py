@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -53,6 +53,8 @@ class CaseName:
         D of each effect, in standard deviations of the trial mean.
     wrong_layers : bool
         Whether the session tells each layer's modulus and thickness as a laboratory knows them, not as they are.
+    print_scatter : float
+        Standard deviation by which each marker is printed off its grid, along x and along y, m.
     """
 
     kind: CaseKind
@@ -60,15 +62,17 @@ class CaseName:
     seed: int
     strength: float = 20.0
     wrong_layers: bool = False
+    print_scatter: float = 0.0
 
     @property
     def text(self) -> str:
         """Unique among the cases."""
-        return self.truth + (":wrong-layers" if self.wrong_layers else "")
+        printed = f":print{1e3 * self.print_scatter:g}mm" if self.print_scatter else ""
+        return self.truth + (":wrong-layers" if self.wrong_layers else "") + printed
 
     @property
     def truth(self) -> str:
-        """What the true world is drawn from, whatever the session tells of it."""
+        """What the true world is drawn from, whatever the session tells of it and however its markers are printed."""
         return f"{self.kind}:{self.slug or '-'}:{self.seed}:D{self.strength:g}"
 
     @property
@@ -140,12 +144,21 @@ def draw_scene(name: CaseName, rng: np.random.Generator) -> Scene:
         body=body,
         plans=plans,
         repeats=10 if chosen == "one_condition" else 5,
-        grid=FaceMarkers() if specimen.has_markers else None,
+        grid=_grid(name) if specimen.has_markers else None,
         rate=float(rng.choice([100.0, 125.0, 200.0])),
         frame_rate=30.0,
         force_noise=Noise(peak * float(rng.uniform(0.005, 0.02)), float(rng.uniform(0.5, 0.95))),
         marker_noise=Noise(float(rng.uniform(0.005e-3, 0.02e-3)), float(rng.uniform(0.5, 0.95))),
     )
+
+
+def _grid(name: CaseName) -> FaceMarkers:
+    """The markers as they were printed on the sheet of all trials."""
+    grid = FaceMarkers()
+    if not name.print_scatter:
+        return grid
+    off = generator(name, "print").normal(0.0, name.print_scatter, (grid.rows * grid.columns, 2))
+    return replace(grid, off=tuple((x, y) for x, y in off.tolist()))
 
 
 def _shape(rng: np.random.Generator, *, wrong: bool) -> TrueShape:

@@ -17,17 +17,31 @@ SETTLED = 1e-7
 
 @dataclass(frozen=True)
 class FaceMarkers:
-    """Markers on the lower face, numbered row by row round the nominal tool axis; spacing in m."""
+    """Markers on the lower face, numbered row by row round the nominal tool axis.
+
+    Attributes
+    ----------
+    rows, columns : int
+    spacing : float
+        m.
+    off : tuple of (x, y)
+        How far each is printed off the grid, m; empty where they are exact.
+    """
 
     rows: int = 3
     columns: int = 6
     spacing: float = 6e-3
+    off: tuple[tuple[float, float], ...] = ()
 
     def positions(self) -> tuple[Array, Array]:
         """Resting x and y (markers,) m."""
         x = self.spacing * (np.arange(self.columns) - 0.5 * (self.columns - 1))
         y = self.spacing * (np.arange(self.rows) - 0.5 * (self.rows - 1))
-        return np.tile(x, self.rows), np.repeat(y, self.columns)
+        x, y = np.tile(x, self.rows), np.repeat(y, self.columns)
+        if not self.off:
+            return x, y
+        off: Array = np.array(self.off)
+        return x + off[:, 0], y + off[:, 1]
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -14,12 +15,19 @@ if TYPE_CHECKING:
 Suite = Annotated[str, typer.Option("--suite", help="small | first | medium | full.")]
 Cases = Annotated[str, typer.Option("--cases", metavar="SLUG,...", help="Only these effects, pairs, or null.")]
 Workers = Annotated[int, typer.Option("--workers", min=1, help="Processes.")]
+PrintScatter = Annotated[
+    str, typer.Option("--print-scatter", metavar="LENGTH", help='How far markers are printed off, as "0.06 mm".')
+]
 Named = Annotated[
     str,
     typer.Option(
         "--discoverer", metavar="MODULE:FUNCTION", help="Another discovery, called with a session and a seed."
     ),
 ]
+
+
+MOST_SCATTER = 1e-3
+"""Markers printed farther off than this are no grid, m."""
 
 
 def register(app: typer.Typer) -> None:
@@ -33,6 +41,7 @@ def blind(
     out: Out = None,
     seed: Seed = 0,
     workers: Workers = 2,
+    print_scatter: PrintScatter = "",
     discoverer: Named = "benchmark.discovery:discover",
     json: Json = False,
     quiet: Quiet = False,
@@ -54,8 +63,10 @@ def blind(
 
     console = Console(quiet=quiet)
     slugs = tuple(each.strip() for each in cases.split(",") if each.strip())
-    names = chosen(cases_of(suite, seed), slugs)
+    scatter = _scatter(print_scatter)
+    names = tuple(replace(each, print_scatter=scatter) for each in chosen(cases_of(suite, seed), slugs))
     settings = {"suite": suite, "seed": seed, "cases": list(slugs), "discoverer": discoverer}
+    settings |= {"print_scatter": print_scatter} if scatter else {}
     folder = fresh("blind") if out is None else out
     load_discoverer(discoverer)
     journal = open_folder(folder, settings)
@@ -72,3 +83,19 @@ def blind(
     else:
         print(f"{text_table(table(judged))}\n\ntaken for something else:\n{confusion_text(judged)}\n  tables: {folder}")
     return 0
+
+
+def _scatter(text: str) -> float:
+    """A print scatter in m; raises InputError."""
+    from benchmark.errors import InputError
+    from benchmark.files.units import LENGTH, QuantityError, parse_quantity
+
+    if not text:
+        return 0.0
+    try:
+        value = parse_quantity(text, LENGTH)
+    except QuantityError as error:
+        raise InputError(f"--print-scatter {text!r}: {error}") from None
+    if not 0.0 <= value <= MOST_SCATTER:
+        raise InputError(f'--print-scatter {text!r}: allowed: 0 mm to {1e3 * MOST_SCATTER:g} mm, as "0.06 mm"')
+    return value

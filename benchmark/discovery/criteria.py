@@ -80,6 +80,8 @@ SHORT_REST = 0.15
 """A rest up to this share of a trial counts to the motion before it where not all trials show it. First choice."""
 MARKER_SEEN = 0.5
 """Share of the frames in which a marker must be seen. First choice."""
+PRINT_LEVEL = 0.999
+"""Of the F test that markers scatter round their grid by more than tracking shows. First choice."""
 LEAST_MARKERS = 4
 """Markers that all trials must show; a translation, a turn and a size need no fewer. Arithmetic."""
 REVERSAL = 0.1

@@ -29,6 +29,8 @@ class Shape:
         Amounts of the second and third shifted Legendre polynomial over depth in the force.
     width, marker_exponent, marker_size : float
         Relative width of the marker field, change of its exponent over depth, relative size.
+    grid_scale : float
+        Relative size of the printed marker grid.
     """
 
     modulus: float = 0.0
@@ -39,6 +41,7 @@ class Shape:
     width: float = 0.0
     marker_exponent: float = 0.0
     marker_size: float = 0.0
+    grid_scale: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import EffectModel, Fit, fit, nuisance_count
 from benchmark.discovery.base.setup_priors import setup_priors, unused
 from benchmark.discovery.base.trials_problem import OWN, NoiseModel, TrialPrior, TrialRef, TrialsProblem, trial_refs
+from benchmark.discovery.trials.marker_layout import PLACED
 from benchmark.discovery.trials.study import Study
 from benchmark.files import Session
 from benchmark.response.elastic_table import ElasticTable, TableOf
@@ -213,7 +214,10 @@ def _size(values: Array) -> float:
 def _spreads(fitted: Fit, scale: Array) -> TrialPrior:
     state = fitted.nuisance
     noise = float(np.median(scale[:, 0]))
-    offset = _spread(state[:, len(OWN) :].ravel()) if state.shape[1] > len(OWN) else 1.0
+    zeros = fitted.model.problem.zeros
+    placed = np.array([name in PLACED for name in zeros], dtype=bool)
+    offset = _spread(state[:, len(OWN) :][:, placed].ravel()) if zeros else 1.0
+    rest = float(np.mean(np.std(state[:, len(OWN) :][:, ~placed], axis=0, ddof=1))) if not placed.all() else 1.0
     deepest = max(condition.around.peak_depth for condition in fitted.model.problem.study.conditions)
     floor = float(np.median(scale[:, 1:])) if scale.shape[1] > 1 else 1.0
     return TrialPrior(
@@ -222,4 +226,5 @@ def _spreads(fitted: Fit, scale: Array) -> TrialPrior:
         shift=max(_size(state[:, 2]), 0.05 * fitted.model.problem.study.raw_interval, 1e-4),
         height=max(_spread(state[:, 3]), criteria.LEAST_HEIGHT * deepest),
         offset=max(offset, 0.3 * floor, 1e-9),
+        rest=max(rest, 0.3 * floor, 1e-9),
     )

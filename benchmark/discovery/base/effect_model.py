@@ -12,7 +12,8 @@ import numpy as np
 from benchmark.discovery import criteria
 from benchmark.discovery.base.base_shape import Shape, ShapedTable
 from benchmark.discovery.base.setup_priors import farthest, is_setup, shares
-from benchmark.discovery.base.trials_problem import OFFSETS, OWN, TrialsProblem
+from benchmark.discovery.base.trials_problem import OWN, TrialsProblem
+from benchmark.discovery.trials.marker_layout import PLACED
 from benchmark.physics import Effect, EffectParameter, Readings, catalogue
 from benchmark.physics.effect import Values
 from benchmark.response.force_curve import Array
@@ -160,6 +161,8 @@ class EffectModel:
         pipeline, table = self.pipelines[trial.condition], tables[trial.condition]
         readings = pipeline.readings(table, values, trial.motion, float(np.exp(gain)), shift, height)
         signals = self.as_signals(readings, zero, nuisance[len(OWN) :])
+        if table.shape.grid_scale and self.problem.study.layout is not None:
+            signals[:, 1:] += table.shape.grid_scale * self.problem.study.layout.scale_pattern
         signals[:, 1:] = trial.at_frames(signals[:, 1:])
         return signals
 
@@ -170,7 +173,7 @@ class EffectModel:
         if layout is None or readings.markers is None:
             return force
         markers = layout.signals(readings.markers)
-        for k, name in enumerate(OFFSETS):
+        for k, name in enumerate(layout.zeros):
             markers[:, layout.names.index(name)] += offsets[k]
         return np.concatenate([force, markers], axis=1)
 
@@ -232,7 +235,7 @@ class EffectModel:
             for k, step in steps.items():
                 columns[..., k] = (moved[k][i] - base) / step
             if study.layout is not None:
-                for k, name in enumerate(OFFSETS, start=len(OWN)):
+                for k, name in enumerate(study.layout.zeros, start=len(OWN)):
                     columns[:, 1 + study.layout.names.index(name), k] = 1.0
             out.append(np.column_stack([self.white.flat(i, columns[..., k]) for k in range(columns.shape[2])]))
         return out
@@ -293,11 +296,12 @@ def _inner(parameter: EffectParameter, value: float) -> float:
 
 def nuisance_count(problem: TrialsProblem) -> int:
     """Nuisances of a trial: gain, zero, shift, height, and the marker zeros."""
-    return len(OWN) + (len(OFFSETS) if problem.study.layout is not None else 0)
+    return len(OWN) + len(problem.zeros)
 
 
 def nuisance_precision(problem: TrialsProblem) -> Array:
     """(q,) prior precisions of a trial's nuisances."""
     prior = problem.prior
-    sizes = [getattr(prior, name) for name in OWN] + [prior.offset] * (nuisance_count(problem) - len(OWN))
+    sizes = [getattr(prior, name) for name in OWN]
+    sizes += [prior.offset if name in PLACED else prior.rest for name in problem.zeros]
     return np.array(sizes) ** -2.0

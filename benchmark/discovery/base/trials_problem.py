@@ -16,12 +16,11 @@ from benchmark.response.elastic_table import ElasticTable
 from benchmark.response.force_curve import Array
 from benchmark.response.noise import Whitener, whitener
 
+GRID_SCALE = "grid_scale"
 MARKER_SHAPES = ("width", "marker_exponent", "marker_size")
 FOLLOWED = ("modulus", "exponent", "width")
 OWN = ("gain", "zero", "shift", "height")
 """What each trial has of its own whatever is measured; the zeros of its markers follow."""
-OFFSETS = ("x", "y", "tangential")
-"""Marker combinations with a zero of their own in each trial."""
 
 
 def followed(name: str) -> bool:
@@ -31,13 +30,17 @@ def followed(name: str) -> bool:
 
 @dataclass(frozen=True)
 class TrialPrior:
-    """Standard deviations over trials: log gain, force zero (N), time shift (s), touching depth, marker zeros (m)."""
+    """Standard deviations over trials: log gain, force zero (N), time shift (s), touching depth, marker zeros (m).
+
+    `offset` is of zeros that tell where the camera stands, `rest` of the others, where the layout has them.
+    """
 
     gain: float
     zero: float
     shift: float
     height: float
     offset: float
+    rest: float = 1e-2
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,9 +110,16 @@ class TrialsProblem:
     @property
     def shape_priors(self) -> Mapping[str, float]:
         """Their standard deviations."""
-        moving = self.study.layout is not None and any(table.outward is not None for table in self.tables)
+        layout = self.study.layout
+        moving = layout is not None and any(table.outward is not None for table in self.tables)
         forms = {k: size for k, size in criteria.SHAPE_PRIOR.items() if moving or k not in MARKER_SHAPES}
-        return {"modulus": forms.pop("modulus"), **self.setup, **forms}
+        printed = {GRID_SCALE: layout.scale_error} if layout is not None and layout.scale_error > 0.0 else {}
+        return {"modulus": forms.pop("modulus"), **self.setup, **forms, **printed}
+
+    @property
+    def zeros(self) -> tuple[str, ...]:
+        """Marker combinations with a zero of their own in each trial."""
+        return self.study.layout.zeros if self.study.layout is not None else ()
 
     def whiteners(self, index: int) -> list[Whitener]:
         """One a signal for a trial, its scale included."""

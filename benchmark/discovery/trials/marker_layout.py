@@ -11,21 +11,43 @@ from benchmark.discovery.discovery_result import Array
 from benchmark.files import Camera
 
 RINGS = 3
+PLACED = ("x", "y", "tangential")
+"""Combinations that tell where the camera stands, which has a zero of its own in each trial."""
 CENTRAL = 0.2
 """Markers nearer to the axis than this share of the spacing have no direction."""
 
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """The marker grid: resting positions (m, 2) m, and (signals, m, 2) weights of the combinations that are compared.
+    """The marker grid and the combinations of markers that are compared.
 
-    `names` are the combinations; `channels` where each is reported.
+    Attributes
+    ----------
+    rest : (m, 2)
+        Resting positions, m.
+    weights : (signals, m, 2)
+    names, channels : tuple of str
+        The combinations, and where each is reported.
+    zeros : tuple of str
+        Combinations with a zero of their own in each trial.
+    origin : (2,)
+        Where the camera sees the grid's centre, m.
+    scale_error : float
+        Standard error of the grid's scale; 0 where the grid is trusted.
     """
 
     rest: Array
     weights: Array
     names: tuple[str, ...]
     channels: tuple[str, ...]
+    zeros: tuple[str, ...]
+    origin: Array
+    scale_error: float = 0.0
+
+    @property
+    def scale_pattern(self) -> Array:
+        """(signals,) m by which a grid of twice the size differs."""
+        return np.asarray(np.tensordot(self.rest, self.weights, axes=([0, 1], [1, 2])))
 
     def signals(self, positions: Array) -> Array:
         """(..., signals) combinations of positions (..., m, 2), m, less their resting places."""
@@ -62,7 +84,7 @@ def layout(rest: Array, spacing: float) -> Layout:
     others.append(("sin_2", "marker_tangential", around * np.sin(angle)[:, None]))
     rows += [(name, channel, _free_of(plain, pattern)) for name, channel, pattern in others]
     names, channels, weights = zip(*rows, strict=True)
-    return Layout(rest, np.array(weights), tuple(names), tuple(channels))
+    return Layout(rest, np.array(weights), tuple(names), tuple(channels), PLACED, np.zeros(2))
 
 
 def _rings(radius: Array, outside: np.ndarray) -> Sequence[Array]:

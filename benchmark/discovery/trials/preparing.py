@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.trials.marker_layout import Layout, layout
+from benchmark.discovery.trials.printed_grid import printed_grid, resting_places
 from benchmark.discovery.trials.protocols import most_odd, same_protocol
 from benchmark.discovery.trials.rows import (
     RawTrial,
@@ -78,14 +80,20 @@ def _few(session: Session) -> list[str]:
 def _grid(
     camera: Camera, groups: Sequence[Sequence[RawTrial]], seen: NDArray[np.bool_] | None, warnings: list[str]
 ) -> Layout | None:
-    """The combinations of the markers (m,) that all trials saw; None without any."""
+    """The combinations of the markers (m,) that all trials saw, at their own resting places; None without any."""
     if seen is None:
         warnings.append("[camera] is given, but no four markers are seen in all trials: force alone is compared")
         return None
     if not seen.all():
         warnings.append(f"{int((~seen).sum())} markers were not seen often enough and are left out")
     positions = np.array([r.markers for group in groups for r in group if r.markers is not None][:1])
-    return layout(resting_grid(camera, positions)[seen], camera.marker_spacing)
+    nominal = resting_grid(camera, positions)[seen]
+    printed = printed_grid(camera, nominal, resting_places([raw for group in groups for raw in group], seen))
+    plain = replace(layout(nominal, camera.marker_spacing), scale_error=printed.scale_error)
+    if printed.exact:
+        return plain
+    warnings.append(printed.remark)
+    return replace(plain, rest=printed.places, origin=printed.origin, zeros=plain.names)
 
 
 def _usable(session: Session, warnings: list[str]) -> list[RawTrial]:

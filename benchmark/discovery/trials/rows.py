@@ -201,7 +201,9 @@ def binned(raw: RawTrial, plan: BinPlan, layout: Layout | None, seen: NDArray[np
     if raw.markers is None or raw.frames is None:
         nothing = np.zeros_like(missing)
         return Binned(np.hstack([rows, missing]), np.column_stack([samples, nothing]), rows[:, 0])
-    signals, frames, moment = frame_means(raw.frames, layout.signals(raw.markers[:, seen]), _edges(raw, plan))
+    signals, frames, moment = frame_means(
+        raw.frames, layout.signals(raw.markers[:, seen] - layout.origin), _edges(raw, plan)
+    )
     return Binned(np.hstack([rows, signals]), np.column_stack([samples, *[frames] * len(layout.names)]), moment)
 
 

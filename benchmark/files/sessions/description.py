@@ -9,7 +9,7 @@ from typing import Annotated, Any, Final, Literal, Self
 from pydantic import Field, StrictBool, model_validator
 
 from benchmark.errors import InputError
-from benchmark.files.quantities import Bounds, Length, Number
+from benchmark.files.quantities import Bounds, Length, Margin, Number
 from benchmark.files.schema import FileModel, Name, Schema, nearest, validated
 from benchmark.files.sources import Source
 from benchmark.files.tool import TOUCHING, Support, Tool, check_hole
@@ -58,6 +58,11 @@ class Camera(FileModel):
         A camera.toml inside the session's folder.
     centre_marker : int or None
         Number of the marker whose 3 x 3 block is taken; None for the one nearest the tool axis.
+    print_scatter : float or None
+        Standard deviation by which markers are printed off their grid, along x and along y, m; None: the resting grid
+        tells it.
+    scale_uncertainty : float or None
+        Relative standard uncertainty of the grid's scale beyond the print scatter's; None for none.
     """
 
     marker_rows: GridSize
@@ -66,6 +71,8 @@ class Camera(FileModel):
     distance: Length | None = None
     file: Name | None = None
     centre_marker: MarkerNumber | None = None
+    print_scatter: Length | None = None
+    scale_uncertainty: Margin | None = None
 
 
 class ConditionKeys(FileModel):

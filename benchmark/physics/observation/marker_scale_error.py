@@ -1,4 +1,7 @@
-"""Marker scale error: wrong millimetres per pixel."""
+"""Marker scale error: wrong millimetres per pixel.
+
+How well the resting grid tells of it is the base's matter: its printed size has a standard error of its own.
+"""
 
 from __future__ import annotations
 

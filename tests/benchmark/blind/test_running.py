@@ -91,6 +91,15 @@ def test_what_cannot_be_used_is_said(option, value, said, tmp_path: Path, capsys
     assert not out.exists()
 
 
+def test_a_print_scatter_is_in_the_cases_names(stub: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["blind", "--cases", "perspective", "--discoverer", "stub_for_blind:always", "--workers", "1", "--quiet"]
+    assert main([*command, "--print-scatter", "0.06 mm", "--out", str(tmp_path / "out")]) == 0
+    assert "perspective:0:D20:print0.06mm" in (tmp_path / "out/cases.csv").read_text()
+    assert json.loads((tmp_path / "out/settings.json").read_text())["print_scatter"] == "0.06 mm"
+    assert main([*command, "--print-scatter", "6 mm"]) == 2
+    assert "allowed: 0 mm to 1 mm" in capsys.readouterr().err
+
+
 def test_a_foreign_folder_is_refused(stub: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["blind", "--discoverer", "stub_for_blind:always", "--out", str(tmp_path)]) == 2
     assert "no blind run" in capsys.readouterr().err.replace("\n", " ")

@@ -34,6 +34,23 @@ def test_the_resting_grid_is_the_nominal_one(sheet: Path) -> None:
     assert rest == pytest.approx([-15e-3, 15e-3, 15e-3], abs=0.03e-3)
 
 
+def test_print_scatter_moves_the_markers_and_nothing_else(sheet: Path, tmp_path: Path) -> None:
+    name = CaseName("null", "", 0, 0.0, 0.06e-3)
+    assert name.text == f"{name.truth}:print0.06mm" == "null:-:0:D0:print0.06mm"
+    exact, printed = load_session(sheet), load_session(case(name, tmp_path)[0])
+    assert exact.name != printed.name
+    off = []
+    for one, other in zip(exact.trials, printed.trials, strict=True):
+        assert one.table.force == pytest.approx(other.table.force, abs=0.0)
+        assert one.markers is not None
+        assert other.markers is not None
+        still = one.markers.time < 0.8
+        moved = [other.markers.x - one.markers.x, other.markers.y - one.markers.y]
+        off.append([[each[still & (one.markers.marker == k)].mean() for k in range(18)] for each in moved])
+    assert np.std(off[0]) == pytest.approx(0.06e-3, rel=0.4)
+    assert np.ptp(off, axis=0).max() < 2e-8
+
+
 def test_a_force_only_session(tmp_path: Path) -> None:
     folder, made = case(CaseName("effect", "dry_friction", 3), tmp_path)
     session = load_session(folder)

@@ -23,6 +23,13 @@ def test_a_camera_has_a_grid():
     camera = read(camera={"marker_rows": 3, "marker_columns": 6, "marker_spacing": "8 mm", "distance": "70 mm"}).camera
     assert (camera.marker_rows, camera.marker_columns, camera.marker_spacing, camera.distance) == (3, 6, 8e-3, 0.07)
     assert (camera.file, camera.centre_marker) == (None, None)
+    assert (camera.print_scatter, camera.scale_uncertainty) == (None, None)
+
+
+def test_how_well_markers_were_made():
+    grid = {"marker_rows": 3, "marker_columns": 6, "marker_spacing": "8 mm"}
+    camera = read(camera={**grid, "print_scatter": "0.1 mm", "scale_uncertainty": "0.3 %"}).camera
+    assert (camera.print_scatter, camera.scale_uncertainty) == (1e-4, 0.003)
 
 
 @pytest.mark.parametrize(

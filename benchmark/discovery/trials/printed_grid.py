@@ -1,0 +1,142 @@
+"""The marker grid as it was printed: where each marker rests, by how much they scatter, how well the scale is known."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import f as f_distribution
+
+from benchmark.discovery import criteria
+from benchmark.discovery.discovery_result import Array
+from benchmark.discovery.trials.rows import RawTrial
+from benchmark.files import Camera
+
+FAR = 4.5
+"""A marker farther off the others' grid than so many standard deviations says nothing of scale and scatter."""
+ROUNDS = 5
+PLANE_FREEDOM = 6
+"""Degrees of freedom that a plane not quite parallel to the camera's must leave to be fitted."""
+
+
+@dataclass(frozen=True, eq=False)
+class PrintedGrid:
+    """A sheet's markers at rest.
+
+    Attributes
+    ----------
+    places : (m, 2)
+        Resting places round the tool axis, m: what was measured, less its translation and its scale.
+    origin : (2,)
+        Where the camera sees the grid's centre, m.
+    scatter : float
+        Standard deviation of the print along x and along y, m; 0 where tracking hides it.
+    scale, scale_error : float
+        Of the measured grid relative to the nominal one, and its standard error from the print; 1 and 0 where the
+        nominal grid is trusted.
+    """
+
+    places: Array
+    origin: Array
+    scatter: float
+    scale: float
+    scale_error: float
+
+    @property
+    def exact(self) -> bool:
+        """Whether the nominal grid is trusted."""
+        return self.scatter == 0.0
+
+    @property
+    def remark(self) -> str:
+        """What a reader must know of it; "" for nothing."""
+        if self.exact:
+            return ""
+        return (
+            f"markers scatter by {1e3 * self.scatter:.2g} mm round their grid: each is followed from its own resting "
+            f"place, and the grid's scale is known to {100 * self.scale_error:.2g} %"
+        )
+
+
+def resting_places(trials: Sequence[RawTrial], seen: NDArray[np.bool_]) -> Array:
+    """(R, m, 2) mean places of the markers (mask) before contact, m, in each trial that has frames then."""
+    return np.array([place for raw in trials if (place := _before_contact(raw, seen)) is not None]).reshape(
+        -1, int(seen.sum()), 2
+    )
+
+
+def _before_contact(raw: RawTrial, seen: NDArray[np.bool_]) -> Array | None:
+    if raw.markers is None or raw.frames is None:
+        return None
+    touching = np.flatnonzero(raw.depth > 0.0)
+    still = raw.frames < raw.time[touching[0]] if touching.size else np.ones(raw.frames.size, dtype=bool)
+    return np.asarray(raw.markers[still][:, seen].mean(axis=0)) if still.any() else None
+
+
+def printed_grid(camera: Camera, nominal: Array, rests: Array) -> PrintedGrid:
+    """Fit the nominal grid (m, 2) to resting places (R, m, 2), m.
+
+    A turn, a translation and a scale are the camera's and the grid's placing; what is left of a plane fit is the print
+    scatter, where it is more than trials at rest differ by (an F test) or `camera` tells it.
+    """
+    stated = camera.scale_uncertainty or 0.0
+    plain = PrintedGrid(nominal, np.zeros(2), 0.0, 1.0, stated)
+    if len(rests) < (2 if camera.print_scatter is None else 1):
+        return plain
+    mean = rests.mean(axis=0)
+    usual = _usual(nominal, mean)
+    scale, origin, _ = _similar(nominal, mean, usual)
+    variance, freedom = _off_plane(nominal, mean, usual)
+    tracking, known = _tracking(rests)
+    if camera.print_scatter is not None:
+        scatter = camera.print_scatter
+    elif variance <= tracking * f_distribution.ppf(criteria.PRINT_LEVEL, freedom, known):
+        return plain
+    else:
+        scatter = float(np.sqrt(variance - tracking))
+    centred = nominal[usual] - nominal[usual].mean(axis=0)
+    error = float(np.hypot(scatter / np.sqrt(np.sum(centred**2)), stated))
+    return PrintedGrid((mean - origin) / scale, origin, scatter, scale, error)
+
+
+def _similar(nominal: Array, mean: Array, usual: NDArray[np.bool_]) -> tuple[float, Array, Array]:
+    """Scale, translation (2,) and distances (m,) of the grid (m, 2) scaled, turned and moved to its usual markers."""
+    grid, seen = (each[:, 0] + 1j * each[:, 1] for each in (nominal, mean))
+    middle, there = grid[usual].mean(), seen[usual].mean()
+    turned = np.vdot(grid[usual] - middle, seen[usual] - there) / np.sum(np.abs(grid[usual] - middle) ** 2)
+    origin = there - turned * middle
+    return float(abs(turned)), np.array([origin.real, origin.imag]), np.abs(seen - origin - turned * grid)
+
+
+def _usual(nominal: Array, mean: Array) -> NDArray[np.bool_]:
+    """Markers (m,) that are no farther off the grid than the others scatter."""
+    usual = np.ones(len(nominal), dtype=bool)
+    for _ in range(ROUNDS):
+        off = _similar(nominal, mean, usual)[2]
+        near = off <= FAR * np.median(off) / np.sqrt(np.log(4.0))
+        if near.sum() < criteria.LEAST_MARKERS or (near == usual).all():
+            break
+        usual = near
+    return usual
+
+
+def _off_plane(nominal: Array, mean: Array, usual: NDArray[np.bool_]) -> tuple[float, int]:
+    """Variance (m2, along one axis) of the usual markers round a plane of the grid, and its degrees of freedom."""
+    count = int(usual.sum())
+    if 2 * count - 6 < PLANE_FREEDOM:
+        return float(np.sum(_similar(nominal, mean, usual)[2][usual] ** 2)) / (2 * count - 4), 2 * count - 4
+    plane = np.column_stack([np.ones(count), nominal[usual]])
+    rest = mean[usual] - plane @ np.linalg.lstsq(plane, mean[usual], rcond=None)[0]
+    return float(np.sum(rest**2)) / (2 * count - 6), 2 * count - 6
+
+
+def _tracking(rests: Array) -> tuple[float, int]:
+    """Variance (m2, along one axis) of a marker's mean place by what trials at rest differ in, and its freedom.
+
+    Where the camera stood in each trial is left out.
+    """
+    own = rests - rests.mean(axis=1, keepdims=True)
+    freedom = (len(rests) - 1) * 2 * (rests.shape[1] - 1)
+    return float(np.sum((own - own.mean(axis=0)) ** 2)) / max(freedom, 1) / len(rests), max(freedom, 1)
