@@ -37,11 +37,8 @@ class FaceMarkers:
         """Resting x and y (markers,) m."""
         x = self.spacing * (np.arange(self.columns) - 0.5 * (self.columns - 1))
         y = self.spacing * (np.arange(self.rows) - 0.5 * (self.rows - 1))
-        x, y = np.tile(x, self.rows), np.repeat(y, self.columns)
-        if not self.off:
-            return x, y
-        off: Array = np.array(self.off)
-        return x + off[:, 0], y + off[:, 1]
+        off: Array = np.array(self.off) if self.off else np.zeros((self.rows * self.columns, 2))
+        return np.tile(x, self.rows) + off[:, 0], np.repeat(y, self.columns) + off[:, 1]
 
 
 @dataclass(frozen=True, eq=False)
