@@ -35,7 +35,7 @@ def test_the_resting_grid_is_the_nominal_one(sheet: Path) -> None:
 
 
 def test_print_scatter_moves_the_markers_and_nothing_else(sheet: Path, tmp_path: Path) -> None:
-    name = CaseName("null", "", 0, 0.0, 0.06e-3)
+    name = CaseName("null", "", 0, 0.0, print_scatter=0.06e-3)
     assert name.text == f"{name.truth}:print0.06mm" == "null:-:0:D0:print0.06mm"
     exact, printed = load_session(sheet), load_session(case(name, tmp_path)[0])
     assert exact.name != printed.name

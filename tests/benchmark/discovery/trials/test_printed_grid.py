@@ -77,7 +77,7 @@ def test_what_is_stated_is_used():
 @pytest.fixture(scope="module")
 def sheet(tmp_path_factory):
     """A sheet without any effect, its markers printed 0.06 mm off."""
-    return case(CaseName("null", "", 140, 0.0, SCATTER), tmp_path_factory.mktemp("printed"))[0]
+    return case(CaseName("null", "", 140, 0.0, print_scatter=SCATTER), tmp_path_factory.mktemp("printed"))[0]
 
 
 def changed(sheet, folder, change):
