@@ -35,7 +35,9 @@ def leave_current_folder(root: str) -> list[str]:
     if here == os.path.realpath(root):
         return []
     others = [entry for entry in sys.path if os.path.realpath(entry or here) != here]
-    sys.path[:] = [*others, *([] if root in others else [root]), here]
+    if root not in others:  # an editable installation finds our packages by other means than the path
+        others.append(root)
+    sys.path[:] = [*others, here]
     return _shadowing(here, others)
 
 
