@@ -270,11 +270,12 @@ def scaled_tissue(tissue: Tissue, factor: float, name: str) -> Tissue:
     Forces of all the hyperelastic laws are homogeneous of degree one in these parameters: a force-depth curve
     scales with the same factor.
     """
-    layers = tuple(_scaled_layer(layer, factor) for layer in tissue.layers)
+    layers = tuple(scaled_layer(layer, factor) for layer in tissue.layers)
     return tissue.model_copy(update={"name": name, "layers": layers})
 
 
-def _scaled_layer(layer: Layer, factor: float) -> Layer:
+def scaled_layer(layer: Layer, factor: float) -> Layer:
+    """Return the layer with every modulus times `factor`: its own, its law's and its fibres'."""
     changes: dict[str, object] = {"youngs_modulus": factor * layer.youngs_modulus}
     changes["hyperelastic"] = _scaled(layer.hyperelastic, factor)
     if layer.fibre is not None:

@@ -14,8 +14,10 @@ import numpy as np
 
 from benchmark.errors import InputError
 from benchmark.files import Support, Tissue, Tool
+from benchmark.models.model_result import LowerFace
 from benchmark.response.elastic_table import POINTS, ElasticTable, SeparableField, SetupDerivative
 from benchmark.response.force_curve import Array
+from benchmark.response.ramp import Ramp
 from benchmark.response.setup_change import RADIUS, changed_setup
 
 LEVELS = 24
@@ -58,6 +60,27 @@ def wave_table(
         return _bonded(setup, MARGIN * depth, keys)
     except WaveError as error:
         raise InputError(f"the base model of {tissue.name!r} cannot be worked out: {error}.") from None
+
+
+def wave_ramp(tissue: Tissue, tool: Tool, support: Support, levels: Array) -> Ramp:
+    """The wave's answer at depths (k,) from 0 up, m, as a ramp; over a hole with the lower face.
+
+    Raises
+    ------
+    InputError
+        The wave models do not cover the set-up.
+    """
+    from wavemodel import WaveError
+
+    layers = np.zeros((levels.size, 0))
+    try:
+        if support.kind != "hole":
+            return Ramp(levels, _layered_force(tissue, tool, levels), layers)
+        radii = np.linspace(0.0, float(support.hole_radius or 0.0), RADII)
+        force, outward, sunk = _sheet_fields(tissue, tool, support, levels, levels, radii)
+    except WaveError as error:
+        raise InputError(f"the wave does not cover {tissue.name!r}: {error}.") from None
+    return Ramp(levels, force, layers, LowerFace(levels, radii, outward, sunk))
 
 
 def _bonded(setup: Specimen, depth: float, keys: Sequence[str]) -> ElasticTable:

@@ -2,7 +2,7 @@ import pytest
 
 from benchmark.errors import InputError
 from benchmark.files import Support, Tool, load_tissue
-from benchmark.response.setup_change import RADIUS, THICKNESS, changed_setup
+from benchmark.response.setup_change import RADIUS, THICKNESS, changed_setup, natural_change
 
 SETUP = (load_tissue("skin_forearm"), Tool(radius=5e-3), Support(kind="hole", hole_radius=30e-3))
 
@@ -37,3 +37,24 @@ def test_what_is_no_number_of_the_set_up_is_refused(key) -> None:
 def test_a_sphere_stays_one_and_an_edge_within_its_radius(told, share, changed) -> None:
     tool = Tool(radius=5e-3, contact="rigid_frictionless", edge_radius=told)
     assert changed_setup(SETUP[0], tool, SETUP[2], RADIUS, share)[1].edge_radius == pytest.approx(changed)
+
+
+def test_constants_of_a_law_change_by_their_keys() -> None:
+    told = SETUP[0].layers[0]
+    law = {"law": "ogden", "terms": [{"mu": 1e3, "alpha": 2.0}, {"mu": 2e3, "alpha": 4.0}]}
+    tissue = SETUP[0].with_layer(told.name, hyperelastic=law)
+    changed = changed_setup(tissue, *SETUP[1:], f"{told.name}.hyperelastic.terms.1.mu", 0.1)[0].layers[0]
+    assert [term.mu for term in changed.hyperelastic.terms] == pytest.approx([1e3, 2.2e3])
+    stiffer = changed_setup(tissue, *SETUP[1:], f"{told.name}.stiffness", 0.1)[0].layers[0]
+    assert [term.mu for term in stiffer.hyperelastic.terms] == pytest.approx([1.1e3, 2.2e3])
+    assert stiffer.youngs_modulus == pytest.approx(1.1 * told.youngs_modulus)
+
+
+def test_what_may_be_zero_changes_by_an_amount() -> None:
+    told = SETUP[0].layers[0]
+    tissue = SETUP[0].with_layer(told.name, hyperelastic={"law": "yeoh", "c10": 1e4})
+    key = f"{told.name}.hyperelastic.c20"
+    assert changed_setup(tissue, *SETUP[1:], key, 500.0)[0].layers[0].hyperelastic.c20 == 500.0
+    assert natural_change(tissue, key) == pytest.approx(2e4)
+    assert natural_change(tissue, f"{told.name}.poisson_ratio") == pytest.approx(0.5 - told.poisson_ratio)
+    assert natural_change(tissue, RADIUS) == 1.0

@@ -1,0 +1,167 @@
+"""A ramp of depth of one set-up with its first derivatives by set-up parameters.
+
+`differentiated_ramp` is the one door: identification asks it for the sensitivity of a press, discovery for how a base
+may be wrong. A change of kind (another clamp, contact or law) is no derivative: it has a ramp of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Literal, TypeAlias
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from benchmark.errors import InputError
+from benchmark.files import Session, Support, Tissue, Tool
+from benchmark.models import RunFailure, UncoveredError, prepare
+from benchmark.models.model_result import LowerFace
+from benchmark.response.force_curve import Array
+from benchmark.response.ramp import Ramp, depth_ramp, setup_scenario
+from benchmark.response.setup_change import changed_setup, natural_change
+
+STEPS = 24
+"""Load steps of a ramp."""
+DIFFERENCE = 0.01
+"""Step of a central difference, in natural changes of the parameter."""
+
+Setup: TypeAlias = tuple[Tissue, Tool, Support]
+
+
+@dataclass(frozen=True, eq=False)
+class RampDerivative:
+    """First derivatives of a ramp by one parameter at fixed depths and radii.
+
+    By its relative change (p d/dp), or by its amount in SI units (d/dp) where `setup_change.is_absolute`.
+
+    Attributes
+    ----------
+    force : (k,) array
+        N, or N over the parameter's unit.
+    outward, sunk : (k, q) array or None
+        Of the lower face, m (over the parameter's unit).
+    """
+
+    force: Array
+    outward: Array | None = None
+    sunk: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class DifferentiatedRamp:
+    """A press in equal steps of depth, as far as the model followed it.
+
+    Attributes
+    ----------
+    depth, force : (k,) array
+        m and N, from 0 up.
+    face : LowerFace or None
+        Outward and sunk, (k, q) m over depth (k,) and radius (q,); None on a rigid base.
+    by : mapping of key to RampDerivative
+        Keys as in `--set` and `benchmark.response.setup_change`.
+    failure : RunFailure or None
+        Where the model stopped before the depth asked for.
+    """
+
+    depth: Array
+    force: Array
+    face: LowerFace | None = None
+    by: Mapping[str, RampDerivative] = field(default_factory=lambda: MappingProxyType({}))
+    failure: RunFailure | None = None
+
+
+def differentiated_ramp(
+    session: Session,
+    tissue: Tissue,
+    tool: Tool,
+    support: Support,
+    depth: float,
+    keys: Sequence[str],
+    model: Literal["fem", "wave"] = "fem",
+    steps: int = STEPS,
+) -> DifferentiatedRamp:
+    """Press a set-up to a depth and differentiate the press; the layers' relaxation is left out.
+
+    Parameters
+    ----------
+    session : Session
+        Its settings (mesh, physics) hold.
+    tissue, tool, support
+        The set-up.
+    depth : float
+        m.
+    keys : sequence of str
+        Parameters: `LAYER.youngs_modulus`, `LAYER.poisson_ratio`, `LAYER.thickness`, `LAYER.stiffness`,
+        `LAYER.hyperelastic.NAME`, `LAYER.fibre.NAME`, `thickness` (all layers), `tool.radius`, `tool.edge_radius`,
+        `support.hole_radius`.
+    model
+        "fem", or "wave" (differences of explicit solutions; it has no failure).
+    steps : int
+        Load steps.
+
+    Raises
+    ------
+    InputError
+        The model does not cover the set-up, or a key points to no number of it.
+    """
+    if model == "wave":
+        from benchmark.response.wave_table import wave_ramp
+
+        return _by_differences(
+            lambda setup: wave_ramp(*setup, np.linspace(0.0, depth, steps + 1)), (tissue, tool, support), keys
+        )
+    return _by_differences(lambda setup: elastic_ramp(session, *setup, depth, steps), (tissue, tool, support), keys)
+
+
+def elastic_ramp(session: Session, tissue: Tissue, tool: Tool, support: Support, depth: float, steps: int) -> Ramp:
+    """A ramp of the finite elements without the layers' relaxation, over a hole with the lower face.
+
+    Raises
+    ------
+    InputError
+        The finite elements do not cover it.
+    """
+    elastic = tissue.model_copy(
+        update={"layers": tuple(one.model_copy(update={"relaxation": ()}) for one in tissue.layers)}
+    )
+    try:
+        model = prepare("fem", setup_scenario(session, elastic, (tool, support)), every_field=True)
+        return depth_ramp(model, depth, steps, face=support.kind == "hole")
+    except UncoveredError as error:
+        raise InputError(f"the finite elements do not cover {session.name}: {error}") from None
+
+
+def _by_differences(ramp_of: Callable[[Setup], Ramp], setup: Setup, keys: Sequence[str]) -> DifferentiatedRamp:
+    """Derivatives by central differences of two more ramps a parameter, to the depth that all of them reach."""
+    told = ramp_of(setup)
+    steps = {key: DIFFERENCE * natural_change(setup[0], key) for key in keys}
+    pairs = {
+        key: tuple(ramp_of(changed_setup(*setup, key, sign * step)) for sign in (-1.0, 1.0))
+        for key, step in steps.items()
+    }
+    ramps = [told, *(ramp for pair in pairs.values() for ramp in pair)]
+    worst = min(ramps, key=lambda ramp: float(ramp.depth[-1]))
+    reached = told.depth <= worst.depth[-1] * (1.0 + 1e-9)
+    depth, face = told.depth[reached], told.face
+    if face is not None:
+        face = LowerFace(face.depth[reached], face.radius, face.outward[reached], face.sunk[reached])
+    by = {key: _difference(pair[0], pair[1], depth, face, 2.0 * steps[key]) for key, pair in pairs.items()}
+    return DifferentiatedRamp(depth, told.force[reached], face, by, worst.failure)
+
+
+def _difference(less: Ramp, more: Ramp, depth: Array, face: LowerFace | None, width: float) -> RampDerivative:
+    force = (CubicSpline(more.depth, more.force)(depth) - CubicSpline(less.depth, less.force)(depth)) / width
+    if face is None or less.face is None or more.face is None:
+        return RampDerivative(np.asarray(force))
+    both = [(each, face.radius, depth) for each in (less.face, more.face)]
+    outward = [at_places(one, one.outward, radius, levels) for one, radius, levels in both]
+    sunk = [at_places(one, one.sunk, radius, levels) for one, radius, levels in both]
+    return RampDerivative(np.asarray(force), (outward[1] - outward[0]) / width, (sunk[1] - sunk[0]) / width)
+
+
+def at_places(face: LowerFace, table: Array, radius: Array, levels: Array) -> Array:
+    """A table (k, m) of a lower face at other depths (levels,) and radii (q,), m."""
+    over_depth = CubicSpline(face.depth, table)(levels)
+    return np.asarray(CubicSpline(face.radius, over_depth, axis=1)(np.clip(radius, 0.0, face.radius[-1])))

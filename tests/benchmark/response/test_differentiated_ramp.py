@@ -1,0 +1,37 @@
+"""Derivatives of a press by its set-up."""
+
+from __future__ import annotations
+
+import pytest
+
+from benchmark.errors import InputError
+from benchmark.files import load_session
+from benchmark.response.differentiated_ramp import differentiated_ramp
+
+HOLE = '[support]\nkind = "hole"\nhole_radius = "30 mm"\n'
+
+
+@pytest.fixture
+def sheet(tmp_path, quick_session):
+    """A session over a hole."""
+    folder = quick_session.write_session(tmp_path / "sheet", trials=3)
+    file = folder / "session.toml"
+    file.write_text(file.read_text().replace('[support]\nkind = "bonded"\n', HOLE))
+    (folder / "layer.toml").write_text((folder / "layer.toml").read_text().replace("12 mm", "5 mm"))
+    return load_session(folder)
+
+
+def test_the_force_goes_with_the_stiffness_and_the_face_does_not(sheet) -> None:
+    trial, layer = sheet.trials[0], sheet.specimen.layer_names[0]
+    key = f"{layer}.stiffness"
+    ramp = differentiated_ramp(sheet, sheet.specimen, trial.tool, trial.support, 2e-3, [key], steps=6)
+    assert ramp.face is not None
+    assert ramp.by[key].force == pytest.approx(ramp.force, rel=1e-6)
+    assert ramp.by[key].outward == pytest.approx(0.0, abs=1e-9)
+    assert ramp.by[key].sunk.shape == ramp.face.sunk.shape == (7, ramp.face.radius.size)
+
+
+def test_a_key_that_the_set_up_lacks_is_refused(sheet) -> None:
+    trial = sheet.trials[0]
+    with pytest.raises(InputError, match=r"nowhere\.thickness"):
+        differentiated_ramp(sheet, sheet.specimen, trial.tool, trial.support, 1e-3, ["nowhere.thickness"], steps=3)
