@@ -69,8 +69,10 @@ def fit_memory(errors: Array, counts: Array) -> float:
     for memory in MEMORIES:
         total = 0.0
         for error, count in zip(errors, counts, strict=True):
-            use = whitener(count, memory)
             some = count > 0.0
+            if not some.any():
+                continue
+            use = whitener(count, memory)
             white = use(error)[some]
             total += white.size * np.log(np.mean(white**2) + 1e-300) + 2.0 * np.log(use.scale[some]).sum()
         if total < best:
@@ -79,9 +81,13 @@ def fit_memory(errors: Array, counts: Array) -> float:
 
 
 def scales(errors: Array, counts: Array, memory: float) -> Array:
-    """(R,) standard deviation of a raw sample in each trial."""
-    pairs = zip(errors, counts, strict=True)
-    return np.array([np.sqrt(np.mean(whitener(count, memory)(error)[count > 0.0] ** 2)) for error, count in pairs])
+    """(R,) standard deviation of a raw sample in each trial; NaN in one without samples, such as one not filmed."""
+    return np.array([_scale(error, count, memory) for error, count in zip(errors, counts, strict=True)])
+
+
+def _scale(error: Array, count: Array, memory: float) -> float:
+    some = count > 0.0
+    return float(np.sqrt(np.mean(whitener(count, memory)(error)[some] ** 2))) if some.any() else np.nan
 
 
 def lag_one(residual: Array, parameters: int = 1) -> float:

@@ -193,6 +193,7 @@ def _pooled_memory(errors: list[Array], counts: list[Array]) -> float:
 def _shrunk(errors: list[Array], counts: list[Array], memory: float, known: list[int], total: int) -> Array:
     """(total,) scales, each halfway (in logarithm) to the median's; the median's where nothing is known."""
     own = np.array([scales(e[None], c[None], memory)[0] for e, c in zip(errors, counts, strict=True)])
+    own = np.where(np.isfinite(own), own, np.nanmedian(own))
     own = np.maximum(own, 1e-3 * np.median(own) + 1e-12)
     middle = float(np.median(own))
     out = np.full(total, middle)

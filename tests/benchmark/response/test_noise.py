@@ -34,6 +34,15 @@ def test_rows_of_different_sizes_come_out_alike():
     assert white.std(axis=0) == pytest.approx(np.ones(sizes.size), rel=0.06)
 
 
+def test_a_trial_without_samples_has_no_scale_and_no_say():
+    errors = 0.02 * remembered(np.random.default_rng(4), 3, 200, 0.5)
+    counts = np.ones((3, 200))
+    counts[1] = 0.0
+    found = scales(errors, counts, 0.5)
+    assert np.isfinite(found).tolist() == [True, False, True]
+    assert fit_memory(errors, counts) == fit_memory(errors[::2], counts[::2])
+
+
 def test_the_memory_and_the_scale_are_found():
     rng = np.random.default_rng(3)
     errors = 0.02 * remembered(rng, 6, 400, 0.85)

@@ -1,11 +1,15 @@
 """What differs from trial to trial is found and taken off: the noise that is left is the sensor's."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.trials.preparing import prepare
+from benchmark.files import load_session
 from benchmark.response.wave_table import wave_table
+from benchmark.sessions import SHIPPED
 
 TOUCH = 60e-6  # m, what a touch by force leaves between trials
 
@@ -28,3 +32,15 @@ def test_the_depth_at_touch_is_each_trials_own(session_of, quick_session):
 def test_trials_that_touch_alike_have_little_of_it(session_of):
     found, _ = _noise(session_of(trials=6))
     assert found.problem.prior.height < 0.1 * TOUCH
+
+
+def test_a_trial_that_was_not_filmed_counts_with_its_force_alone():
+    session = load_session(SHIPPED / "phantom")  # the film of its first trial is in an MCAP file, not tracked here
+    few = [trial for name in session.conditions for trial in [t for t in session.trials if t.condition == name][:3]]
+    some = replace(session, trials=tuple(few))
+    found = calibrate(some, prepare(some, 60), wave_table)
+    unfilmed = [trial.markers is None for trial in some.trials]
+    assert any(unfilmed) and not all(unfilmed)
+    assert np.isfinite(found.problem.noise.scale).all()
+    assert [not trial.count[:, 1:].any() for trial in found.problem.trials] == unfilmed
+    assert np.isfinite(found.base.vector).all()
