@@ -14,6 +14,7 @@ from reports.figures.pressed_layers import moving_surface
 from reports.figures.rows import GapRow, ParameterRow, RankedCandidate, fitted_parameters, gap_bars, ranking
 from reports.figures.style import Pair
 from reports.figures.timing import timing
+from reports.figures.tool_outline import ToolShape
 
 __all__ = [
     "Disagreement",
@@ -24,6 +25,7 @@ __all__ = [
     "RankedCandidate",
     "RepairedTrace",
     "StackLayer",
+    "ToolShape",
     "TrialCurve",
     "circle_radius",
     "fitted_parameters",

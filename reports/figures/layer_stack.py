@@ -11,6 +11,7 @@ import numpy as np
 from reports.blocks import Figure
 from reports.figures.arrays import Floats
 from reports.figures.style import INK, MUTED, PAPER, WIDE, draw
+from reports.figures.tool_outline import ToolShape
 from reports.formatting import format_number, shortened
 from reports.palette import PALETTE
 
@@ -54,23 +55,21 @@ class CrossSection:
 
     layers: Sequence[StackLayer]
     faces: Floats
-    tool_radius: float
+    tool: ToolShape
     half_width: float
     endless: bool
     hole_radius: float | None
 
     @classmethod
-    def of(
-        cls, layers: Sequence[StackLayer], tool_radius: float, support: str, hole_radius: float | None
-    ) -> CrossSection:
+    def of(cls, layers: Sequence[StackLayer], tool: ToolShape, support: str, hole_radius: float | None) -> CrossSection:
         """Return the section of a stack; an endless layer is drawn as deep as makes a good picture."""
         endless = support == "half_space" or layers[-1].thickness_mm is None
         given = [layer.thickness_mm or 0.0 for layer in layers]
         if endless:
-            given[-1] = max(2.5 * tool_radius, 0.8 * sum(given[:-1]))
+            given[-1] = max(2.5 * tool.radius_mm, 0.8 * sum(given[:-1]))
         hole = hole_radius if support == "hole" else None
-        half_width = max(2.6 * tool_radius, 0.9 * sum(given), 1.25 * (hole or 0.0))
-        return cls(layers, np.cumsum([0.0, *given]), tool_radius, half_width, endless, hole)
+        half_width = max(2.6 * tool.radius_mm, 0.9 * sum(given), 1.25 * (hole or 0.0))
+        return cls(layers, np.cumsum([0.0, *given]), tool, half_width, endless, hole)
 
     @property
     def depth(self) -> float:
@@ -80,7 +79,7 @@ class CrossSection:
     @property
     def top(self) -> float:
         """Height in mm of the drawing above the surface, which holds the tool."""
-        return 0.34 * self.depth
+        return max(0.34 * self.depth, 1.3 * self.tool.edge_radius_mm)
 
     @property
     def bottom(self) -> float:
@@ -129,13 +128,14 @@ def _paint_layers(axes: Axes, section: CrossSection) -> None:
 
 
 def _paint_tool(axes: Axes, section: CrossSection) -> None:
-    from matplotlib.patches import Rectangle
+    from matplotlib.patches import Polygon
 
-    radius, height = section.tool_radius, 0.82 * section.top
-    axes.add_patch(Rectangle((-radius, -height), 2 * radius, height, facecolor=_TOOL, edgecolor="none", zorder=3))
+    tool, height = section.tool, 0.82 * section.top
+    corners = tool.outline(height)
+    axes.add_patch(Polygon(corners, closed=True, facecolor=_TOOL, edgecolor="none", zorder=3))
     axes.annotate(
-        f"tool, radius {format_number(float(radius), 3, trim=True)} mm",
-        (radius, -0.5 * height),
+        f"tool, radius {format_number(float(tool.radius_mm), 3, trim=True)} mm",
+        (corners[:, 0].max(), -0.5 * height),
         xytext=(8, 0),
         textcoords="offset points",
         va="center",
@@ -206,7 +206,7 @@ def spread(wanted: Floats, gap: float, low: float, high: float) -> Floats:
 
 def layer_stack(
     layers: Sequence[StackLayer],
-    tool_radius_mm: float,
+    tool: ToolShape,
     support: str = "bonded",
     hole_radius_mm: float | None = None,
 ) -> Figure:
@@ -216,8 +216,8 @@ def layer_stack(
     ----------
     layers
         From the surface down; only the last may be endless.
-    tool_radius_mm
-        Radius of the tool in mm.
+    tool
+        What stands on it.
     support
         `bonded`, `hole` (needs `hole_radius_mm`) or `half_space` (the last layer is endless).
     hole_radius_mm
@@ -228,14 +228,15 @@ def layer_stack(
     ValueError
         Without a layer, for a thickness, modulus or radius that is not above zero, or another support.
     """
-    _check(layers, tool_radius_mm, support, hole_radius_mm)
-    section = CrossSection.of(layers, tool_radius_mm, support, hole_radius_mm)
+    _check(layers, tool.radius_mm, support, hole_radius_mm)
+    section = CrossSection.of(layers, tool, support, hole_radius_mm)
     held = _support_words(support, hole_radius_mm)
     caption = f"Cross-section through the tool axis, thicknesses to scale, stronger colour where stiffer; {held}."
     if abs(section.stretch - 1) > 0.05:
         caption += f" The vertical scale is {format_number(section.stretch, 2)} times the horizontal one."
     words = "From the surface down: " + "; ".join(f"{layer.name}, {layer.text()}" for layer in layers)
-    words += f". A tool of {format_number(float(tool_radius_mm), 3, trim=True)} mm radius stands on it; {held}."
+    radius = format_number(float(tool.radius_mm), 3, trim=True)
+    words += f". A tool of {radius} mm radius ({tool.words}) stands on it; {held}."
     svg = draw(lambda drawing: paint_section(drawing, section), WIDE, section.picture_height, placed=True)
     return Figure.of(svg, caption, words, "Layers")
 

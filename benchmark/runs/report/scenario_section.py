@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from benchmark.files import Scenario
+from benchmark.files import Scenario, Tool
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.values import MM, padded, pair_names
 from reports import Block, Column, Fact, Facts, Listing, Paragraph, Section, Table
 from reports.figures.layer_stack import StackLayer, layer_stack
 from reports.figures.load_curves import load_history
+from reports.figures.tool_outline import ToolShape
 
 CONTACTS = {
     "uniform_pressure": "uniform pressure",
@@ -39,7 +40,7 @@ def _facts(scenario: Scenario) -> Facts:
         (
             Fact("Tissue", scenario.tissue.name),
             Fact("Source", scenario.tissue.citation or "not stated in the file"),
-            Fact("Tool", f"flat, radius {MM * tool.radius:g} mm, {CONTACTS[tool.contact]}"),
+            Fact("Tool", f"{tool_shape(tool).words}, radius {MM * tool.radius:g} mm, {CONTACTS[tool.contact]}"),
             Fact("Support", support),
             Fact(
                 "Load",
@@ -51,7 +52,7 @@ def _facts(scenario: Scenario) -> Facts:
 
 
 def layer_stack_of(scenario: Scenario) -> Block:
-    """Return the picture of the layers."""
+    """Return the picture of the layers, of what stands on them, and of what holds them."""
     layers = [
         StackLayer(
             layer.name,
@@ -60,7 +61,14 @@ def layer_stack_of(scenario: Scenario) -> Block:
         )
         for layer in scenario.tissue.layers
     ]
-    return layer_stack(layers, MM * scenario.tool.radius)
+    support = scenario.support
+    hole = None if support.hole_radius is None else MM * support.hole_radius
+    return layer_stack(layers, tool_shape(scenario.tool), support.kind, hole)
+
+
+def tool_shape(tool: Tool) -> ToolShape:
+    """The tool as it is drawn and called."""
+    return ToolShape(MM * tool.radius, MM * (tool.edge_radius or 0.0), tool.tilt)
 
 
 def layer_table(scenario: Scenario) -> Table:
