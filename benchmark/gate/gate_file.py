@@ -13,9 +13,14 @@
     atol = "1 nm"
     [[cases]]
     name = "press"
-    model = "wave"                    # fem | wave | fit
-    scenario = "press.toml"           # a shipped name or a path; a fit has session = "FOLDER" instead
+    model = "wave"                    # fem | wave, or of a session: fit | track | discover
+    scenario = "press.toml"           # a shipped name or a path; of a session: session = "FOLDER" instead
     own = "my_model.py"               # optional: your own model in the wave's place
+    [[cases]]
+    name = "lab"
+    model = "discover"
+    session = "phantom"
+    expected = "viscoelastic_relaxation"    # the effect that it should name
     [[timed]]
     name = "wave.step"
     workload = "history"              # history | wave_frame | fem_assembly | fit
@@ -114,13 +119,26 @@ Found = TypeVar("Found", bound=GatedWork)
 
 
 class GatedCase(GatedWork):
-    """A gated scenario or session; `model` says what computes it: fem | wave | fit."""
+    """A gated scenario or session.
 
-    model: Literal["fem", "wave", "fit"]
+    Attributes
+    ----------
+    model : str
+        What computes it: fem | wave of a scenario, fit | track (its films) | discover of a session.
+    expected : str or None
+        The effect that a discovery should name.
+    """
+
+    model: Literal["fem", "wave", "fit", "track", "discover"]
+    expected: Name | None = None
 
     @model_validator(mode="after")
     def _has_input(self) -> Self:
-        return _with_input(self, "session" if self.model == "fit" else "scenario", wave=self.model == "wave")
+        if (self.expected is None) == (self.model == "discover"):
+            needs = "needs" if self.expected is None else "is no discovery and has no use for"
+            raise problem(f"{self.name!r} {needs} an expected effect", key="expected")
+        needed = "scenario" if self.model in ("fem", "wave") else "session"
+        return _with_input(self, needed, wave=self.model == "wave")
 
 
 class Timed(GatedWork):

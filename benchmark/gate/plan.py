@@ -114,7 +114,7 @@ def load_plan(path: Path | None) -> GatePlan:
     found = gate_path(path).resolve()
     table, source = read_file(found, "gate")
     file = validated(GateFile, table, source)
-    cases = tuple({**_job(case, found), "model": case.model} for case in file.cases)
+    cases = tuple({**_job(case, found), "model": case.model, "expected": case.expected} for case in file.cases)
     jobs = tuple(_timed_job(timed, found) for timed in file.timed)
     references = tuple(dict.fromkeys(name for timed in file.timed for name in timed.references))
     return GatePlan(file, found, cases, jobs, references, _fingerprint(jobs, references))

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchmark.files import Scenario, load_scenario
+from benchmark.files import Scenario, load_scenario, load_session
 from benchmark.gate.measuring.references import Work
 from benchmark.models import ModelResult, PreparedModel, prepare, scenario_drive
 
@@ -119,6 +119,41 @@ def fit_values(case: Mapping[str, Any]) -> list[GatedValue]:
     ]
 
 
+def tracking_values(case: Mapping[str, Any]) -> list[GatedValue]:
+    """Frames, share of markers missed, and the farthest mean motion of the markers, over the films tracked now."""
+    session_films = first_of("benchmark.runs.trials.filming:session_films", "benchmark.runs.films:session_films")
+    films = session_films(load_session(Path(case["session"])), SilentListener())
+    tracked = [(one, films.films[key]) for one in films.tracked for key in films.films if key[1] == one.trial]
+    farthest = [float(np.nanmax(np.nanmean(_moved(film.places), axis=1))) for _, film in tracked]
+    missing = None if tracked else "no film of this session is tracked: its markers come as tables"
+    return [
+        _value("frames", float(sum(one.frames for one, _ in tracked)), "", missing),
+        _value("missing_percent", max((one.missing_percent for one, _ in tracked), default=0.0), "", missing),
+        _value("farthest_mean_motion_mm", MM * max(farthest, default=0.0), "mm", missing),
+    ]
+
+
+def _moved(places: Any) -> Any:
+    """(f, m) m from where markers (f, m, 2) are in the first frame."""
+    return np.linalg.norm(places - places[0], axis=2)
+
+
+def discovery_values(case: Mapping[str, Any]) -> list[GatedValue]:
+    """Whether the expected effect is named, how many others are, and the share of the force gap that they close."""
+    with_markers = first_of("benchmark.runs.trials.filming:with_markers", "benchmark.runs.films:with_markers")
+    found = discover(
+        with_markers(load_session(Path(case["session"])), SilentListener())[0], settings=Settings(workers=1)
+    )
+    said = [effect.slug for effect in found.effects]
+    known = case["expected"] in said
+    closed = {gap.channel: gap.closed for gap in found.gap}.get("force") or 0.0
+    return [
+        _value("expected_named", float(known), "", None),
+        _value("others_named", float(len(said) - known), "", None),
+        _value("force_gap_closed", closed, "", None),
+    ]
+
+
 def _value(name: str, value: float, unit: str, reason: str | None) -> GatedValue:
     """A value; none where a run stopped early, since a part of a history is another problem."""
     if reason is None and not np.isfinite(value):
@@ -127,7 +162,13 @@ def _value(name: str, value: float, unit: str, reason: str | None) -> GatedValue
 
 
 CASES: Mapping[str, Callable[[Mapping[str, Any]], list[GatedValue]]] = MappingProxyType(
-    {"fem": press_values, "wave": press_values, "fit": fit_values}
+    {
+        "fem": press_values,
+        "wave": press_values,
+        "fit": fit_values,
+        "track": tracking_values,
+        "discover": discovery_values,
+    }
 )
 """How the values of a case are found, by its model."""
 
@@ -207,8 +248,6 @@ def _problem(scenario: Scenario) -> fem.Problem:
 
 def fit(job: Job) -> Work:
     """Fit two trials of a session with a curve that is given: no finite elements in it."""
-    from benchmark.files import load_session
-
     force_curve = first_of("benchmark.response:ForceCurve", "benchmark.fitting:ForceCurve")
     trial_data = first_of("benchmark.identification:TrialData", "benchmark.fitting:TrialData")
     fit_session = first_of("benchmark.identification:fit_session", "benchmark.fitting:fit_session")

@@ -6,15 +6,41 @@ from pathlib import Path
 import pytest
 
 from benchmark.errors import InputError
+from benchmark.files import load_scenario
 from benchmark.gate.gate_file import GateFile, Timing, gate_path
 from benchmark.gate.plan import load_plan
 
 
 def test_the_shipped_gate_covers_every_model_and_the_three_speeds() -> None:
     file = load_plan(None).file
-    assert {case.model for case in file.cases} == {"fem", "wave", "fit"}
+    assert {case.model for case in file.cases} == {"fem", "wave", "fit", "track", "discover"}
     assert {"wave_frame", "fem_assembly", "history", "fit"} == {timed.workload for timed in file.timed}
     assert {timed.model for timed in file.timed if timed.workload == "history"} == {"fem", "wave"}
+
+
+def test_the_shipped_gate_covers_what_a_run_does() -> None:
+    pressed = [case for case in load_plan(None).cases if case["scenario"]]
+    scenarios = {(case["model"], case["name"]): load_scenario(case["scenario"], case["set"]) for case in pressed}
+    for model in ("fem", "wave"):
+        mine = [scenario for (one, _), scenario in scenarios.items() if one == model]
+        assert {"linear", "finite"} == {scenario.fem.kinematics for scenario in mine}
+        assert {"bonded", "hole"} == {scenario.support.kind for scenario in mine}
+        assert {"uniform_pressure", "rigid_bonded", "rigid_frictionless"} <= {each.tool.contact for each in mine}
+    assert {"axisymmetric", "block"} == {scenario.fem.geometry for scenario in scenarios.values()}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('model = "wave"', 'model = "discover"', "needs an expected effect"),
+        ('model = "wave"', 'model = "wave"\nexpected = "adhesion"', "no use for an expected effect"),
+    ],
+)
+def test_a_discovery_and_nothing_else_has_an_expected_effect(tiny_gate, old: str, new: str, words: str) -> None:
+    gate = tiny_gate()
+    gate.change("gate.toml", old, new)
+    with pytest.raises(InputError, match=words):
+        load_plan(gate.path)
 
 
 def test_its_margin_is_between_nothing_and_a_quarter() -> None:

@@ -1,6 +1,7 @@
 """Commands to a measured process, answered in this one."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -33,9 +34,12 @@ def test_values_of_a_users_model(service: Service, tiny_gate) -> None:
 
 def test_values_of_the_shipped_gate(service: Service) -> None:
     plan = load_plan(None)
-    found = values_of(service, plan)
+    pressed = tuple(case for case in plan.cases if case["model"] in ("fem", "wave"))
+    found = values_of(
+        service, replace(plan, cases=(*pressed, *(case for case in plan.cases if case["model"] == "fit")))
+    )
     assert {name.rsplit(".", 1)[0] for name in found if "max_deformation_mm" in name} == {
-        f"{case['name']}.max_deformation_mm" for case in plan.cases if case["model"] != "fit"
+        f"{case['name']}.max_deformation_mm" for case in pressed
     }
     assert all(math.isfinite(each["value"]) and each["reason"] is None for each in found.values())
     fem, wave = (found[f"linear.{model}.max_deformation_mm.dermis"]["value"] for model in ("fem", "wave"))
