@@ -120,14 +120,14 @@ def single_figures() -> dict[str, object]:
                 figures.StackLayer("dermis", 1.6, 300.0),
                 figures.StackLayer("subcutaneous fat", 10.0, 3.2),
             ],
-            TOOL_RADIUS,
+            figures.ToolShape(TOOL_RADIUS),
         ),
         "layer_stack_hole": figures.layer_stack(
-            [figures.StackLayer("silicone with oil", 4.0, 45.0)], TOOL_RADIUS, "hole", 30.0
+            [figures.StackLayer("silicone with oil", 4.0, 45.0)], figures.ToolShape(TOOL_RADIUS), "hole", 30.0
         ),
         "layer_stack_half_space": figures.layer_stack(
             [figures.StackLayer("dermis", 1.6, 300.0), figures.StackLayer("muscle", None, 12.0)],
-            TOOL_RADIUS,
+            figures.ToolShape(TOOL_RADIUS),
             "half_space",
         ),
         "growth": growth({"fem": ([510, 1328, 5344], [8.1, 20.4, 91.0]), "wave": ([3696, 14832], [0.034, 0.035])}),

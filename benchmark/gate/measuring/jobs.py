@@ -141,12 +141,12 @@ def _moved(places: Any) -> Any:
 def discovery_values(case: Mapping[str, Any]) -> list[GatedValue]:
     """Whether the expected effect is named, how many others are, and the share of the force gap that they close."""
     with_markers = first_of("benchmark.runs.trials.filming:with_markers", "benchmark.runs.films:with_markers")
-    found = discover(
-        with_markers(load_session(Path(case["session"])), SilentListener())[0], settings=Settings(workers=1)
-    )
+    discover, settings = (first_of(f"benchmark.discovery:{name}") for name in ("discover", "Settings"))
+    session, _ = with_markers(load_session(Path(case["session"])), SilentListener())
+    found = discover(session, settings=settings(workers=1))
     said = [effect.slug for effect in found.effects]
     known = case["expected"] in said
-    closed = {gap.channel: gap.closed for gap in found.gap}.get("force") or 0.0
+    closed = {gap.channel: gap.closed for gap in found.gap}.get("force_z") or 0.0
     return [
         _value("expected_named", float(known), "", None),
         _value("others_named", float(len(said) - known), "", None),
