@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
 
 from bench_hw.errors import InputError
+from bench_hw.storage.regular_file import read_regular
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -48,11 +49,19 @@ def find_file(kind: str, name_or_path: str | Path, shipped: Mapping[str, Path]) 
         No such file or shipped name.
     """
     path = Path(name_or_path)
-    if path.is_file():
+    if _is_there(path):
         return path
     if str(name_or_path) not in shipped:
         raise InputError(f"{kind} {str(name_or_path)!r}: no such file; shipped are {', '.join(shipped)}")
     return shipped[str(name_or_path)]
+
+
+def _is_there(path: Path) -> bool:
+    """Whether there is anything but a folder of this name; what no file can be called is not there."""
+    try:
+        return path.exists() and not path.is_dir()
+    except (OSError, ValueError):
+        return False
 
 
 def read_toml(path: Path) -> tuple[dict[str, Any], str]:
@@ -69,7 +78,7 @@ def read_toml(path: Path) -> tuple[dict[str, Any], str]:
         The file is missing, unreadable, not UTF-8 or not TOML.
     """
     try:
-        text = path.read_bytes().decode("utf-8")
+        text = read_regular(path).decode("utf-8-sig")
         return tomllib.loads(text), text
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error
@@ -77,6 +86,8 @@ def read_toml(path: Path) -> tuple[dict[str, Any], str]:
         raise InputError(f"{path}: not UTF-8 text (byte {error.start})") from error
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path}: not a TOML file: {error}") from error
+    except (RecursionError, ValueError) as error:
+        raise InputError(f"{path}: cannot be read ({error})") from error
 
 
 def validated(model: type[Model], tables: dict[str, Any], source: str) -> Model:
@@ -99,24 +110,96 @@ def validated(model: type[Model], tables: dict[str, Any], source: str) -> Model:
     try:
         return model.model_validate(tables)
     except ValidationError as error:
-        raise InputError(f"{source}: {describe(error)}") from error
+        mistakes = dict.fromkeys(_mistake(part, tables) for part in _own_mistakes(error))
+        raise InputError(f"{source}: {'; '.join(mistakes)}") from error
 
 
-def describe(error: ValidationError) -> str:
-    """Say in one line what a model refused: key, value and reason of each mistake."""
-    return "; ".join(_mistake(part) for part in error.errors(include_url=False))
+_WORDS: Mapping[str, str] = {
+    "missing": "is missing",
+    "extra_forbidden": "is unknown here",
+    "literal_error": "allowed is {expected}",
+    "union_tag_invalid": "{tag!r} is no kind of this; allowed is {expected_tags}",
+    "union_tag_not_found": "its kind is missing; write kind = ...",
+    "string_type": "is no text; write it in quotes",
+    "string_too_short": "allowed are at least {min_length} characters",
+    "string_too_long": "allowed are at most {max_length} characters",
+    "int_type": "allowed is a whole number",
+    "int_parsing": "allowed is a whole number",
+    "int_from_float": "allowed is a whole number",
+    "int_parsing_size": "allowed is a whole number of fewer digits",
+    "float_type": "allowed is a number",
+    "float_parsing": "allowed is a number",
+    "finite_number": "allowed is a finite number",
+    "bool_type": "allowed is true or false",
+    "bool_parsing": "allowed is true or false",
+    "tuple_type": "allowed is a list",
+    "list_type": "allowed is a list",
+    "dict_type": "allowed is a table of keys and values",
+    "model_type": "allowed is a table of keys and values",
+    "model_attributes_type": "allowed is a table of keys and values",
+    "too_short": "it has {actual_length} entries; allowed are at least {min_length}",
+    "too_long": "it has too many entries; allowed are at most {max_length}",
+}
+"""What is wrong, by pydantic's kind of error; its own message stands where the kind is not here."""
+
+_BOUNDS = {"ge": "at least", "gt": "more than", "le": "at most", "lt": "less than"}
+_SHOWN = {"m": (1e3, "mm"), "m/s": (1e3, "mm/s"), "s": (1.0, "s"), "N": (1.0, "N"), "Hz": (1.0, "Hz")}
+"""Factor and name of the unit in which a bound in SI is shown."""
+_LONGEST = 60
 
 
-def _mistake(part: Any) -> str:
-    key = ".".join(str(place) for place in part["loc"]) or "the file"
-    reason = str(part["msg"]).removeprefix("Value error, ")
-    if part["type"] == "missing":
-        return f"key {key}: is missing"
-    if part["type"] == "extra_forbidden":
-        return f"key {key}: is unknown here"
+def _own_mistakes(error: ValidationError) -> list[Any]:
+    """What is wrong, without a list's being too short for no other reason than a wrong entry."""
+    parts: list[Any] = list(error.errors(include_url=False))
+    places = [part["loc"] for part in parts]
+    return [
+        part
+        for part in parts
+        if part["type"] != "too_short"
+        or not any(place != part["loc"] and place[: len(part["loc"])] == part["loc"] for place in places)
+    ]
+
+
+def _mistake(part: Any, tables: Any) -> str:
+    """One mistake: key, value and what is allowed, in the file's own terms and units."""
+    key = _key(part, tables)
+    context = part.get("ctx", {})
+    bounds = [
+        f"allowed is {words} {_bound(context[end], part['input'])}" for end, words in _BOUNDS.items() if end in context
+    ]
+    reason = bounds[0] if bounds else _WORDS.get(part["type"], str(part["msg"])).format(**context)
+    reason = reason.removeprefix("Value error, ")
+    if part["type"] in ("missing", "extra_forbidden"):
+        return f"key {key}: {reason}"
     value = repr(part["input"])
-    shown = "" if value in reason or len(value) > 60 else f" = {value}"
-    return f"key {key}{shown}: {reason}"
+    plain = not isinstance(part["input"], Mapping | list)
+    return f"key {key}{f' = {value}' if plain and value not in reason and len(value) <= _LONGEST else ''}: {reason}"
+
+
+def _bound(value: Any, given: object) -> str:
+    """A bound with the unit of what was given; of a bare number without."""
+    match = _QUANTITY.fullmatch(given) if isinstance(given, str) else None
+    if match is None:
+        return f"{value:g}" if isinstance(value, int | float) else str(value)
+    dimension = _registry().Unit(match["unit"]).dimensionality
+    unit = next((unit for unit in _SHOWN if _registry().Unit(unit).dimensionality == dimension), None)
+    factor, name = _SHOWN.get(unit or "", (1.0, ""))
+    return f"{value * factor:g} {name}".rstrip()
+
+
+def _key(part: Any, tables: Any) -> str:
+    """The key of a mistake as it stands in the file: without pydantic's names of kinds, list entries from 1."""
+    text, node = "", tables
+    places = part["loc"]
+    for number, place in enumerate(places, start=1):
+        last_missing = number == len(places) and part["type"] == "missing"
+        if isinstance(place, int):
+            text += f"[{place + 1}]"
+            node = node[place] if isinstance(node, list | tuple) and place < len(node) else None
+        elif last_missing or (isinstance(node, Mapping) and place in node):
+            text += f".{place}" if text else str(place)
+            node = node.get(place) if isinstance(node, Mapping) else None
+    return text or "the file"
 
 
 @lru_cache(maxsize=1)

@@ -41,6 +41,22 @@ def leave_current_folder(root: str) -> list[str]:
     return _shadowing(here, others)
 
 
+def speak_utf8() -> None:
+    """Start anew in Python's UTF-8 mode where the locale is ASCII, in which names of files would not be text.
+
+    Python does so by itself in the C locale, unless `PYTHONUTF8=0` or an older setting is in the way.
+    """
+    if os.name == "posix" and not sys.flags.utf8_mode and sys.getfilesystemencoding() != "utf-8":
+        os.environ["PYTHONUTF8"] = "1"
+        try:  # noqa: SIM105 - nothing may be imported here
+            os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
+        except OSError:
+            pass
+    reconfigure = getattr(sys.stdout, "reconfigure", None)
+    if reconfigure is not None:
+        reconfigure(errors="backslashreplace")  # names of files need be no text at all
+
+
 def tell(names: list[str], arguments: list[str]) -> None:
     """Say on stderr, in one line, what is passed over; nothing with --quiet."""
     if not names or "--quiet" in arguments:

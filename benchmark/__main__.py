@@ -8,9 +8,10 @@ def start() -> int:
     """Run the command line with modules from the installation alone; see `bench_hw.safe_path`."""
     root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     sys.path.insert(0, root)
-    from bench_hw.safe_path import leave_current_folder, tell
+    from bench_hw.safe_path import leave_current_folder, speak_utf8, tell
 
     sys.path.remove(root)
+    speak_utf8()
     tell(leave_current_folder(root), sys.argv)
     from benchmark.cli.app import main
 

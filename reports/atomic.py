@@ -54,8 +54,11 @@ def write_bytes(path: StrPath, data: bytes) -> Path:
 
 
 def write_text(path: StrPath, text: str) -> Path:
-    """Write `text` as UTF-8 with its line ends as they are; see `write_bytes`."""
-    return write_bytes(path, text.encode("utf-8"))
+    """Write `text` as UTF-8 with its line ends as they are; see `write_bytes`.
+
+    What is no text, as parts of the names of files may be, is written by its number, with a backslash.
+    """
+    return write_bytes(path, text.encode("utf-8", "backslashreplace"))
 
 
 def write_json(path: StrPath, value: Any) -> Path:

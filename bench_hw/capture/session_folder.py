@@ -13,12 +13,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from bench_hw.atomic import write_text
 from bench_hw.capture.order import CaptureOrder
+from bench_hw.capture.session_keys import check_session, check_session_file
 from bench_hw.configuration import read_toml
 from bench_hw.devices.protocols import DeviceInfo
 from bench_hw.errors import InputError
 from bench_hw.rig.rig_file import LoadedRig, Rig, SimulatedCameraConfig
+from bench_hw.storage.atomic import write_text
+from bench_hw.storage.regular_file import read_regular
 
 SESSION_FILE = "session.toml"
 LOG_FILE = "capture.json"
@@ -45,6 +47,7 @@ class SessionFolder:
     def __init__(self, order: CaptureOrder) -> None:
         self.path = order.out
         self._session = self._existing() if order.append else {}
+        check_session(_keys_of(order), "--set")
         self._log: list[dict[str, Any]] = []
         if not order.append and self.path.exists():
             self._check_empty()
@@ -69,8 +72,7 @@ class SessionFolder:
         if order.rig.rig.simulated:
             self._session["synthetic"] = True
         _merge(self._session, keys)
-        for key, value in order.session_keys.items():
-            _merge(self._session, _nested(key, value))
+        _merge(self._session, _keys_of(order))
 
     def add_trial(self, file: Path, condition: str) -> None:
         """Add a trial to `session.toml`.
@@ -84,7 +86,7 @@ class SessionFolder:
 
         trials = [*self._session.get("trials", []), {"file": file.name, "condition": condition}]
         self._session = {**{key: value for key, value in self._session.items() if key != "trials"}, "trials": trials}
-        write_text(self.path / SESSION_FILE, tomli_w.dumps(self._session))
+        write_text(self.path / SESSION_FILE, tomli_w.dumps(self._session), check_session_file)
 
     def write_log(self, order: CaptureOrder, devices: dict[str, DeviceInfo], entry: dict[str, Any]) -> None:
         """Note a trial, good or not, with the devices that made it, in `capture.json`.
@@ -162,6 +164,14 @@ def _numbered(number: int) -> str:
     return LOG_FILE if number == 1 else f"capture-{number}.json"
 
 
+def _keys_of(order: CaptureOrder) -> dict[str, Any]:
+    """The keys of `session.toml` that were asked for."""
+    tables: dict[str, Any] = {}
+    for key, value in order.session_keys.items():
+        _merge(tables, _nested(key, value))
+    return tables
+
+
 def _nested(key: str, value: str) -> dict[str, Any]:
     first, dot, rest = key.partition(".")
     return {first: _nested(rest, value) if dot else _plain(value)}
@@ -171,7 +181,7 @@ def _plain(text: str) -> Any:
     """A number, truth value or list as TOML reads it, else the text."""
     try:
         return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):  # no TOML, or a number of too many digits
         return text
 
 
@@ -195,7 +205,7 @@ def camera_text(loaded: LoadedRig) -> str | None:
     if camera is None:
         return None
     if camera.calibration is not None:
-        return loaded.resolve(camera.calibration).read_text(encoding="utf-8")
+        return read_regular(loaded.resolve(camera.calibration)).decode("utf-8-sig")
     return _of_simulated(loaded) if isinstance(camera, SimulatedCameraConfig) else None
 
 

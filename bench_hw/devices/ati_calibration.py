@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench_hw.errors import DeviceError
+from bench_hw.storage.regular_file import read_regular
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -69,7 +70,7 @@ def read_calibration(path: Path) -> AtiCalibration:
     import defusedxml.ElementTree
 
     try:
-        data = path.read_bytes()
+        data = read_regular(path)
         root: Element = defusedxml.ElementTree.fromstring(data)
     except OSError as error:
         raise DeviceError(f"calibration {path}: cannot be read ({error.strerror})") from error

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import re
 import socket
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from urllib.parse import urlsplit
+from urllib.parse import SplitResult, urlsplit
 
 from bench_hw.clock import Clock, MonotonicClock
 from bench_hw.devices.grabbing import FrameCounter
@@ -150,11 +151,9 @@ class HttpCamera(Connection):
             No such address, no answer in time, another status than 200, or no multipart stream.
         """
         self.close()
-        parts = urlsplit(self._url)
-        if parts.scheme != "http" or not parts.hostname:
-            raise DeviceError(f"camera at {self._url}: allowed is an address like http://host:port/path")
+        host, port, parts = self._address()
         try:
-            opened = socket.create_connection((parts.hostname, parts.port or 80), self._timeout)
+            opened = socket.create_connection((host, port), self._timeout)
         except OSError as error:
             raise self._lost(error) from error
         try:
@@ -204,10 +203,22 @@ class HttpCamera(Connection):
             self._socket.close()
             self._socket = None
 
+    def _address(self) -> tuple[str, int, SplitResult]:
+        """Host, port and parts of the stream's address."""
+        try:
+            parts = urlsplit(self._url)
+            host, port = parts.hostname, parts.port or 80
+        except ValueError:
+            host, port = None, 80
+        if host is None or parts.scheme != "http" or not self._url.isprintable() or " " in self._url:
+            raise DeviceError(f"camera at {self._url!r}: allowed is an address like http://host:port/path")
+        return host, port, parts
+
     def _begin(self, opened: socket.socket) -> None:
-        head = b""
+        head, end = b"", time.monotonic() + self._timeout
         try:
             while b"\r\n\r\n" not in head and len(head) < _LARGEST_HEAD:
+                opened.settimeout(max(end - time.monotonic(), 1e-3))  # for all of it, however slowly it comes
                 data = opened.recv(4096)
                 if not data:
                     break

@@ -8,6 +8,7 @@ from bench_hw.clock import Clock, MonotonicClock
 from bench_hw.devices.grabbing import FrameCounter
 from bench_hw.devices.protocols import CameraFrame, CameraHealth, Connection, DeviceInfo
 from bench_hw.errors import DeviceError
+from bench_hw.storage.regular_file import DOCUMENT, read_regular
 
 _FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}
 
@@ -100,7 +101,7 @@ class ImagesCamera(Connection):
         assert self._begun is not None
         path = self._files[k]
         try:
-            data = path.read_bytes()
+            data = read_regular(path, DOCUMENT)
         except OSError as error:
             raise DeviceError(f"camera: {path} cannot be read ({error.strerror})") from error
         return self._counter.frame(self._begun + k / self._rate, data, _FORMATS[path.suffix.lower()], k)

@@ -9,6 +9,9 @@ from __future__ import annotations
 import hashlib
 import http.client
 import socket
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -31,6 +34,8 @@ _TORQUE_UNITS = {
     "lbfft": 1.3558179483314004,
     "kgfcm": 0.0980665,
 }
+_PATIENCE = 3.0
+"""Times the time-out of one piece that a whole answer may take."""
 _LARGEST_DATAGRAM = 65_536
 _RECEIVE_BUFFER = 4 * 1024 * 1024
 _MOST_DATAGRAMS = 8192
@@ -78,18 +83,21 @@ def fetch(host: str, port: int, path: str, timeout: float) -> bytes:
     Raises
     ------
     DeviceError
-        No connection, no answer in time, another status than 200 or 302, or a page above 1 MB.
+        No connection, no answer in time, another status than 200 or 302, or a page above 1 MB. `timeout` (s) holds for
+        each piece of the answer, and `_PATIENCE` times as long for the whole.
     """
     where = f"force sensor at http://{host}:{port}{path}"
     connection = http.client.HTTPConnection(host, port, timeout=timeout)
     try:
-        connection.request("GET", path)
-        answer = connection.getresponse()
-        page = answer.read(_LARGEST_PAGE + 1)
-    except (OSError, http.client.HTTPException) as error:
+        with _ended_after(connection, _PATIENCE * timeout):
+            connection.request("GET", path)
+            answer = connection.getresponse()
+            page = answer.read(_LARGEST_PAGE + 1)
+    except (OSError, http.client.HTTPException, AttributeError) as error:  # the last: ended while it was read
         reason = str(error) or type(error).__name__
         raise DeviceError(
-            f"{where}: no answer ({reason}) within {timeout:g} s; check host, http_port, cable and power"
+            f"{where}: no answer ({reason}) within {timeout:g} s, or no whole one within {_PATIENCE * timeout:g} s; "
+            "check host, http_port, cable and power"
         ) from error
     finally:
         connection.close()
@@ -98,6 +106,35 @@ def fetch(host: str, port: int, path: str, timeout: float) -> bytes:
     if len(page) > _LARGEST_PAGE:
         raise DeviceError(f"{where}: the page is larger than {_LARGEST_PAGE} bytes; this is no Net F/T box")
     return page
+
+
+@contextmanager
+def _ended_after(connection: http.client.HTTPConnection, seconds: float) -> Iterator[None]:
+    """Shut a connection down after a time: one byte a second would otherwise keep it open for ever.
+
+    Raises
+    ------
+    TimeoutError
+        The time was over; what came may be cut.
+    """
+    over = threading.Event()
+
+    def end() -> None:
+        over.set()
+        opened = connection.sock
+        if opened is not None:
+            with suppress(OSError):
+                opened.shutdown(socket.SHUT_RDWR)
+
+    timer = threading.Timer(seconds, end)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+    if over.is_set():
+        raise TimeoutError("it answers too slowly")
 
 
 def read_configuration(host: str, port: int, timeout: float) -> NetFTConfiguration:

@@ -171,7 +171,7 @@ def write_plot(plan: MotionPlan, path: Path) -> Path:
 
     from matplotlib.figure import Figure
 
-    from bench_hw.atomic import write_bytes
+    from bench_hw.storage.atomic import write_bytes
 
     figure = Figure(figsize=(8.0, 3.0), layout="constrained")
     axes = figure.add_subplot()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from bench_hw.configuration import (
     Duration,
@@ -25,6 +25,15 @@ from bench_hw.configuration import (
 Axis = Literal["+x", "-x", "+y", "-y", "+z", "-z"]
 Port = Annotated[int, Field(ge=1, le=65_535, strict=True)]
 Text = Annotated[str, Field(min_length=1, max_length=200)]
+
+
+def _address(text: str) -> str:
+    if not text.isprintable() or any(sign.isspace() or sign in "/?#@\\" for sign in text):
+        raise ValueError("allowed is the name or address of a host, without blanks and slashes")
+    return text
+
+
+Host = Annotated[str, Field(min_length=1, max_length=253), AfterValidator(_address)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Size = Annotated[int, Field(ge=16, le=10_000, strict=True)]
 Frames = Annotated[Frequency, Field(ge=0.1, le=1000.0)]
@@ -43,7 +52,7 @@ class NetFTConfig(_Force):
     """A Net F/T box."""
 
     kind: Literal["netft"]
-    host: Text
+    host: Host
     http_port: Port = 80
     rdt_port: Port = 49_152
     mode: Literal["realtime", "buffered"] = "realtime"

@@ -16,9 +16,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.signal import lfilter
 
-from bench_hw.atomic import write_text
 from bench_hw.errors import InputError
 from bench_hw.simulated.specimen import FloatArray, MarkerGrid, Response
+from bench_hw.storage.atomic import write_text
 
 SCHEMA = 1
 _GRID = MarkerGrid()

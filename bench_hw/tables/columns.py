@@ -19,10 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
-from bench_hw.tables.units import FloatArray, split_unit
+from bench_hw.storage.regular_file import TABLE, read_regular
+from bench_hw.tables.units import UNITS, FloatArray, split_unit
 
 MINIMUM_ROWS = 20
 """A measured table with fewer rows than this is refused."""
+
+LARGEST = {"s": 1e10, "m": 1e3, "N": 1e9}
+"""Largest magnitudes of a measured time, length and force, SI: squares of what is larger overflow in a fit."""
 
 _NUMERIC_BYTES = b"0123456789+-.eE,\n \t"
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
@@ -74,7 +78,7 @@ def read_source(path: Path, required: Sequence[str]) -> CsvText:
 def _bytes_of(path: Path) -> bytes:
     allowed = "the path of a readable CSV file"
     try:
-        return path.read_bytes()
+        return read_regular(path, TABLE)
     except FileNotFoundError as error:
         raise TableError(path, "no such file", allowed) from error
     except OSError as error:
@@ -196,7 +200,7 @@ def read_columns(source: CsvText, required: Sequence[str], may_be_empty: Collect
     Raises
     ------
     TableError
-        A ragged or blank row, or a cell that is no finite number.
+        A ragged or blank row, or a cell that is no finite number, or larger than a bench measures.
     """
     matrix = numeric_matrix(source)
     if matrix is not None:
@@ -204,6 +208,7 @@ def read_columns(source: CsvText, required: Sequence[str], may_be_empty: Collect
         values = {name: matrix[:, index] for index, name in enumerate(source.names)}
         for name, column in values.items():
             _check_finite(source.path, name, column, lines)
+            _check_size(source.path, name, column, lines)
         return NumericColumns(source.path, values, lines)
     columns, line_list = text_columns(source)
     lines = np.array(line_list, dtype=np.int64)
@@ -212,6 +217,7 @@ def read_columns(source: CsvText, required: Sequence[str], may_be_empty: Collect
         strict = name in required or name in may_be_empty or split_unit(name)[1] != ""
         if strict or all(map(_NUMBER.fullmatch, cells)):
             values[name] = numbers_of(source.path, name, cells, lines, empty=name in may_be_empty)
+            _check_size(source.path, name, values[name], lines)
     return NumericColumns(source.path, values, lines)
 
 
@@ -251,6 +257,19 @@ def _check_finite(path: Path, name: str, column: FloatArray, lines: NDArray[np.i
         row, value = int(lines[wrong[0]]), f"{column[wrong[0]]}"
         problem = "the number is beyond what a double holds"
         raise TableError(path, problem, "a finite number", row=row, column=name, value=value)
+
+
+def _check_size(path: Path, name: str, column: FloatArray, lines: NDArray[np.int64]) -> None:
+    """Refuse a time, length or force that no bench measures; NaN passes."""
+    factor, unit = UNITS.get(split_unit(name)[1], (None, ""))
+    if factor is None or unit not in LARGEST:
+        return
+    most = LARGEST[unit] / float(factor)
+    wrong = np.flatnonzero(np.abs(column) > most)
+    if len(wrong):
+        row, value = int(lines[wrong[0]]), f"{column[wrong[0]]:g}"
+        allowed = f"numbers from {-most:g} to {most:g}"
+        raise TableError(path, "the number is too large", allowed, row=row, column=name, value=value)
 
 
 def check_increasing(path: Path, name: str, column: FloatArray, lines: NDArray[np.int64]) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench_hw.errors import InputError, TableError
+from bench_hw.storage.regular_file import TABLE, read_regular
 from bench_hw.tables.columns import check_increasing, check_row_count, numbers_of
 from bench_hw.tables.measurement import MARKER_COLUMNS, TRIAL_COLUMNS
 from bench_hw.tables.output import write_columns
@@ -111,7 +112,7 @@ def _numbered_lines(path: Path, layout: ForeignFormat) -> Iterator[tuple[int, st
 
 def _text(path: Path, encoding: str) -> str:
     try:
-        return path.read_bytes().decode(encoding).removeprefix("\ufeff")
+        return read_regular(path, TABLE).decode(encoding).removeprefix("\ufeff")
     except OSError as error:
         problem = f"the file cannot be read ({error.strerror})"
         raise TableError(path, problem, "the path of a readable CSV file") from error

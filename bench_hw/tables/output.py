@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from bench_hw.atomic import write_text
 from bench_hw.errors import TableError
+from bench_hw.storage.atomic import write_text
 from bench_hw.tables.columns import check_increasing, check_row_count
 from bench_hw.tables.units import FloatArray
 

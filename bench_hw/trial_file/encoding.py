@@ -189,41 +189,84 @@ def decode_force(time: float, data: bytes) -> ForceRecord:
     ValueError, KeyError, TypeError
         The message is none.
     """
-    message = json.loads(data.decode())
+    message = _message(data)
     counts = message["counts"]
     return ForceRecord(
         time,
-        message["rdt_sequence"],
-        message["ft_sequence"],
-        message["status"],
+        _whole(message["rdt_sequence"]),
+        _whole(message["ft_sequence"]),
+        _whole(message["status"]),
         _vector(message["force"]),
         _vector(message["torque"]),
-        None if counts is None else tuple(counts),
+        None if counts is None else _six(counts),
     )
 
 
-def _vector(axes: Mapping[str, float | None]) -> Vector:
+def _vector(axes: Mapping[str, object]) -> Vector:
     return _float(axes["x"]), _float(axes["y"]), _float(axes["z"])
 
 
-def _float(value: float | None) -> float:
-    return math.nan if value is None else float(value)
+def _float(value: object) -> float:
+    """A number, NaN for null; raises ValueError for anything else."""
+    if value is None:
+        return math.nan
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError(f"{value!r:.40} is no number")
+    try:
+        return float(value)
+    except OverflowError:
+        raise ValueError("a number beyond what a double holds") from None
+
+
+def _whole(value: object) -> int:
+    """A whole number of at most 63 bits; raises ValueError for anything else."""
+    if isinstance(value, bool) or not isinstance(value, int) or abs(value) >= 1 << 63:
+        raise ValueError(f"{value!r:.40} is no such whole number")
+    return value
+
+
+def _six(values: Any) -> tuple[int, int, int, int, int, int]:
+    fx, fy, fz, tx, ty, tz = map(_whole, values)
+    return fx, fy, fz, tx, ty, tz
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        raise ValueError(f"{value!r:.40} is no text")
+    return value
+
+
+def _message(data: bytes) -> dict[str, Any]:
+    """The object of a message; raises ValueError where it is none."""
+    try:
+        message = json.loads(data.decode())
+    except RecursionError:
+        raise ValueError("nested too deeply") from None
+    if not isinstance(message, dict):
+        raise ValueError("no object")
+    return message
 
 
 def decode_depth(time: float, data: bytes) -> DepthRecord:
     """Read a message of `/depth`; raises as `decode_force`."""
-    message = json.loads(data.decode())
-    return DepthRecord(time, _float(message["depth"]), message["counts"], message["target"])
+    message = _message(data)
+    counts, target = message["counts"], message["target"]
+    return DepthRecord(
+        time,
+        _float(message["depth"]),
+        None if counts is None else _whole(counts),
+        None if target is None else _float(target),
+    )
 
 
 def decode_frame(time: float, data: bytes) -> FrameRecord:
     """Read a message of `/camera`; raises as `decode_force`."""
-    message = json.loads(data.decode())
-    picture = base64.b64decode(message["data"])
-    return FrameRecord(time, message["frame"], picture, message["format"])
+    message = _message(data)
+    picture = base64.b64decode(_text(message["data"]))
+    return FrameRecord(time, _whole(message["frame"]), picture, _text(message["format"]))
 
 
 def decode_event(time: float, data: bytes) -> EventRecord:
     """Read a message of `/events`; raises as `decode_force`."""
-    message = json.loads(data.decode())
-    return EventRecord(time, message["name"], message["message"], _LEVEL_NAMES[message["level"]])
+    message = _message(data)
+    return EventRecord(time, _text(message["name"]), _text(message["message"]), _LEVEL_NAMES[_whole(message["level"])])

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bench_hw.atomic import replacing, write_bytes, write_text
 from bench_hw.errors import TrialFileError
+from bench_hw.storage.atomic import replacing, write_bytes, write_text
 from bench_hw.tables.output import csv_text, exact_cells, rounded_cells
 from bench_hw.trial_file.encoding import CAMERA, decode_frame
 from bench_hw.trial_file.reading import TrialContents, read_contents, trial_rows

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from bench_hw.devices.rdt import Status
 from bench_hw.errors import TrialFileError
 from bench_hw.tables import MINIMUM_ROWS, TrialTable
+from bench_hw.tables.columns import LARGEST
 from bench_hw.trial_file.encoding import (
     CAMERA,
     DEPTH,
@@ -206,7 +207,8 @@ def read_trial_mcap(path: Path | str) -> TrialTable:
     Raises
     ------
     TrialFileError
-        The file cannot be read, is damaged or cut, lacks its metadata, or has fewer than 20 usable rows.
+        The file cannot be read, is damaged or cut, lacks its metadata, has fewer than 20 usable rows, or larger values
+        than a bench measures.
     """
     contents = read_contents(Path(path), (FORCE.topic, DEPTH.topic))
     if not contents.scan.whole:
@@ -216,6 +218,10 @@ def read_trial_mcap(path: Path | str) -> TrialTable:
     if len(table.time) < MINIMUM_ROWS:
         problem = f"the trial has {len(table.time)} rows with force and depth; allowed: at least {MINIMUM_ROWS}"
         raise TrialFileError(contents.scan.path, problem)
+    for name, values, unit in (("time", table.time, "s"), ("depth", table.depth, "m"), ("force", table.force, "N")):
+        if not np.abs(values).max() <= LARGEST[unit]:
+            problem = f"{name} reaches {np.abs(values).max():g} {unit}; allowed: at most {LARGEST[unit]:g} {unit}"
+            raise TrialFileError(contents.scan.path, problem)
     return table
 
 

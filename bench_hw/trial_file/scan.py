@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from bench_hw.errors import TrialFileError
+from bench_hw.storage.regular_file import RECORDING, open_regular
 from bench_hw.trial_file.encoding import CHANNELS, ChannelInfo
 from bench_hw.trial_file.mcap_records import (
     RawMessage,
@@ -110,7 +111,7 @@ def opened(path: Path) -> Iterator[mmap.mmap]:
         No such file, no file at all, empty, not readable.
     """
     try:
-        with path.open("rb") as file:
+        with open_regular(path, RECORDING) as file:
             if path.stat().st_size == 0:
                 raise TrialFileError(path, "the file is empty; allowed: a trial recorded by this bench")
             with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as buffer:
@@ -222,5 +223,5 @@ def trial_header(scan: Scan) -> TrialHeader | None:
         return None
     try:
         return read_header(scan.header)
-    except (ValueError, KeyError) as error:
+    except (ValueError, KeyError, OverflowError) as error:
         raise TrialFileError(scan.path, f"the trial's metadata cannot be read ({error})") from error

@@ -15,6 +15,11 @@ Progress = Callable[[int, int | None], None]
 """Called after each picture with how many are done and how many there should be, None if unknown."""
 
 
+MOST_PIXELS = 1 << 28
+"""Pixels of the largest picture that is decoded; OpenCV reads this limit when it is loaded."""
+os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(MOST_PIXELS))
+
+
 def silence_opencv() -> None:
     """Silence what OpenCV's libraries print to standard error when a file is broken, for this process.
 

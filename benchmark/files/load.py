@@ -17,10 +17,10 @@ from bench_hw.tables.columns import check_increasing, read_columns, read_source
 from bench_hw.tables.units import to_si
 from benchmark.errors import InputError
 from benchmark.files import units
-from benchmark.files.quantities import Bounds, Duration, Number, Quantity, problem, quantity
+from benchmark.files.quantities import Bounds, Duration, Number, Quantity, problem, quantity, shortened
 from benchmark.files.schema import FileModel
 from benchmark.files.sources import folder_of
-from benchmark.files.units import format_quantity
+from benchmark.files.units import format_quantity, shown_quantity
 
 Rows = tuple[tuple[float, float], ...]
 
@@ -29,6 +29,9 @@ LOADS: Final[dict[str, Quantity]] = {
     "depth": quantity(units.LENGTH, -1e3, 1e3),
 }
 """What the values of a load measure under each control."""
+
+LEAST: Final[dict[str, float]] = {"force": 1e-9, "length": 1e-12}
+"""Smallest magnitudes of a peak, N and m: squares of what a smaller one moves are lost in double precision."""
 
 _TIME = quantity(units.DURATION, 0.0, 1e7)
 _COLUMNS: Final = {"force": ("force_N", "N"), "depth": ("depth_mm", "mm")}
@@ -167,8 +170,12 @@ class Load(FileModel):
     def _peak_in_its_unit(cls, value: Any, info: ValidationInfo) -> float:
         kind = LOADS[info.data.get("control", "force")]
         peak = kind.validate(value, info)
-        if not peak:
-            raise problem(f"{value!r} is no press; allowed: any {kind.dimension.name} but zero, within {kind.allowed}")
+        least = LEAST[kind.dimension.name]
+        if peak is None or abs(peak) < least:
+            wanted = (
+                f"any {kind.dimension.name} but zero, of {shown_quantity(least, kind.dimension)} or more in magnitude"
+            )
+            raise problem(f"{shortened(value)} is no press; allowed: {wanted}, within {kind.allowed}")
         return peak
 
     @field_serializer("peak", "table", when_used="json")

@@ -17,7 +17,7 @@ def parsed_value(text: str) -> Any:
     """The value of an override: a TOML number, boolean, list or table where it reads as one, the text otherwise."""
     try:
         table = tomllib.loads(f"value = {text}")
-    except (tomllib.TOMLDecodeError, RecursionError):
+    except (ValueError, RecursionError):  # no TOML, or a number of too many digits
         return text
     value = table["value"]
     usable = isinstance(value, int | float | str | list | dict) and len(table) == 1

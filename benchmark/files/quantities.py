@@ -31,6 +31,10 @@ FROM_FILE: Final = {"from_file": True}
 """The validation context of values that were written by a person: quantities must carry their unit."""
 
 
+LONGEST: Final = 60
+"""Characters of a value in a message."""
+
+
 def problem(text: str, **context: Any) -> PydanticCustomError:
     """A validation error whose text goes to the person as it is.
 
@@ -42,6 +46,12 @@ def problem(text: str, **context: Any) -> PydanticCustomError:
         `key`: the dotted key it belongs to, where a rule over several keys failed; list entries by their index.
     """
     return PydanticCustomError("tissuebench", "{text}", {"text": text, **context})
+
+
+def shortened(value: Any) -> str:
+    """A value as a message shows it: at most 60 characters."""
+    text = repr(value)
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
 
 
 @dataclass(frozen=True)
@@ -117,19 +127,19 @@ class Quantity:
             except QuantityError as error:
                 raise problem(f"{error} (allowed: {self.allowed})") from None
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise problem(f"{value!r} is not {self.dimension.article}; allowed: {self.allowed}")
+            raise problem(f"{shortened(value)} is not {self.dimension.article}; allowed: {self.allowed}")
         if from_file and self.dimension.si:
             number = value if 0 < value < math.inf else self.dimension.example.split(" ")[0]
             hint = f'"{number} {self.dimension.usual_unit}"'
             raise problem(
-                f"the bare number {value!r} has no unit; write {self.dimension.article} as text with its unit, such "
-                f"as {hint} (allowed: {self.allowed})"
+                f"the bare number {shortened(value)} has no unit; write {self.dimension.article} as text with its "
+                f"unit, such as {hint} (allowed: {self.allowed})"
             )
         return float(value)
 
     def _shown(self, value: Any, number: float) -> str:
         if isinstance(value, str) or not math.isfinite(number):
-            return f"{value!r}"
+            return shortened(value)
         return shown_quantity(number, self.dimension)
 
 
@@ -172,9 +182,9 @@ class Number:
         except (TypeError, ValueError, OverflowError):
             number = math.nan
         if math.isnan(number) or (self.whole and not number.is_integer()):
-            raise problem(f"{value!r} is not {kind}; allowed: {self.allowed}")
+            raise problem(f"{shortened(value)} is not {kind}; allowed: {self.allowed}")
         if not self.bounds.admit(number):
-            raise problem(f"{value} is outside what is allowed, {self.allowed}")
+            raise problem(f"{shortened(value)} is outside what is allowed, {self.allowed}")
         return int(number) if self.whole else number
 
     def serialize(self, value: float | None, info: SerializationInfo) -> float | str | None:

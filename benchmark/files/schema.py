@@ -27,7 +27,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from pydantic_core.core_schema import SerializationInfo
 
 from benchmark.errors import InputError
-from benchmark.files.quantities import problem, quantity_of, without_uncertainty
+from benchmark.files.quantities import problem, quantity_of, shortened, without_uncertainty
 from benchmark.files.sources import KeyPath, Source
 from benchmark.files.units import FRACTION, format_quantity, split_uncertainty
 
@@ -164,7 +164,7 @@ def check_schema(table: Mapping[str, Any], source: Source) -> None:
     number = table.get("schema", SCHEMA)
     if number != SCHEMA or isinstance(number, bool):
         place = source.place(("schema",), "schema")
-        raise InputError(f"{place}: {number!r} is not a schema that this version reads; allowed: {SCHEMA}.")
+        raise InputError(f"{place}: {shortened(number)} is not a schema that this version reads; allowed: {SCHEMA}.")
 
 
 def nearest(word: str, known: Iterable[str]) -> str:

@@ -121,17 +121,22 @@ def write_new_tissue(name: str) -> Path:
     Raises
     ------
     InputError
-        There is such a file, such a tissue ships, the folder is missing, or the name cannot be one.
+        There is such a file, such a tissue ships, the folder is missing or cannot be written, or the name cannot be
+        one. No file is left then.
     """
+    from reports.atomic import write_text
+
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     stem = path.stem
     if not stem.strip() or not stem.isprintable() or any(sign in stem for sign in '"\\'):
         raise InputError(f"{name!r} is no name for a tissue; allowed: printable characters without quotes")
     if stem in shipped_tissues():
         raise InputError(f"a tissue {stem!r} ships with tissuebench; give yours another name")
+    if path.exists() or path.is_symlink():
+        raise InputError(f"{path} is there already and is left as it is; give another name")
+    if not path.absolute().parent.is_dir():
+        raise InputError(f"{path}: there is no folder {path.parent}; make it first, or give another name")
     try:
-        with path.open("x", encoding="utf-8") as stream:
-            stream.write(TEMPLATE.format(name=stem, file=path))
-    except FileExistsError:
-        raise InputError(f"{path} is there already and is left as it is; give another name") from None
-    return path
+        return write_text(path, TEMPLATE.format(name=stem, file=path))
+    except OSError as error:
+        raise InputError(f"{path} cannot be written: {error.strerror or error}") from error

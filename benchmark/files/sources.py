@@ -11,6 +11,7 @@ from typing import Any
 
 from pydantic_core.core_schema import ValidationInfo
 
+from bench_hw.storage.regular_file import read_regular
 from benchmark.errors import InputError
 
 KeyPath = tuple[str | int, ...]
@@ -182,7 +183,7 @@ def read_toml(path: Path, what: str) -> tuple[dict[str, Any], Source]:
         When there is no such file, or it is no TOML.
     """
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        text = read_regular(path).decode("utf-8-sig")
         table = tomllib.loads(text)
     except FileNotFoundError:
         raise InputError(f"{path}: there is no such {what} file.") from None

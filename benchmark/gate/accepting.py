@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError, SolverError, TissuebenchError
+from benchmark.gate.accuracy import tolerance_of
 from benchmark.gate.baseline import (
     Baseline,
     HistoryEntry,
@@ -95,6 +96,8 @@ def _measured(plan: GatePlan, origin: Origin, listener: Listener) -> Baseline:
     missing = [f"{name} ({value.reason})" for name, value in values.items() if value.value is None]
     if missing:
         raise SolverError(f"no baseline was made: there is no value of {', '.join(missing)}")
+    for name, value in values.items():
+        tolerance_of(name, value.unit, file.tolerances)  # a check must be able to use the file
     with listener.progress(f"gate {file.name}: {len(file.timed)} times") as advance:
         measured = measure((head,), lambda _: False, lambda done, most: advance("processes", done, most, ""))
     return Baseline(

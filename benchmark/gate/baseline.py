@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from bench_hw.storage.regular_file import DOCUMENT, read_regular
 from benchmark.errors import InputError, NotComparableError
 from reports import write_json
 
@@ -126,7 +127,7 @@ def how_to(path: Path) -> str:
 
 def _table(path: Path) -> dict[str, Any]:
     try:
-        table = json.loads(path.read_text(encoding="utf-8"))
+        table = json.loads(read_regular(path, DOCUMENT).decode("utf-8-sig"))
     except FileNotFoundError:
         raise NotComparableError(f"there is no baseline {path} to compare with; {how_to(path)}") from None
     except OSError as error:

@@ -39,10 +39,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal, Self, TypeVar
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from benchmark.files.quantities import Bounds, Margin, Number, problem
 from benchmark.files.schema import FileModel, Name, Schema
+from benchmark.files.units import DIMENSIONS, QuantityError, dimension_of, parse_quantity
 
 Count = Annotated[int, Number("1 to 1000 (a whole number)", Bounds(1, 1000), whole=True)]
 Reference = Literal["dense", "elements", "calls", "batched"]
@@ -75,6 +76,19 @@ class Timing(FileModel):
         return self
 
 
+def _some_quantity(text: str) -> str:
+    """Refuse what is no quantity of any dimension, or a negative one; which one it must be, the gated value says."""
+    for dimension in (*DIMENSIONS, dimension_of("")):
+        try:
+            if parse_quantity(text, dimension) >= 0.0:
+                return text
+        except QuantityError:
+            continue
+    raise problem(
+        f'{text!r} is no tolerance; allowed: a quantity from 0 with its unit, such as "1 nm", or a plain number'
+    )
+
+
 class Tolerance(FileModel):
     """How far the quantities whose names fit a pattern may be from the baseline: rtol |baseline| + atol.
 
@@ -90,7 +104,7 @@ class Tolerance(FileModel):
 
     quantity: Name
     rtol: Margin
-    atol: Name
+    atol: Annotated[Name, AfterValidator(_some_quantity)]
 
 
 class GatedWork(FileModel):

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from bench_hw.errors import TableError
+from bench_hw.storage.regular_file import TABLE, read_regular
 from bench_hw.tables.columns import numbers_of, read_source, text_columns
 from benchmark.errors import InputError
 from benchmark.files import Scenario
@@ -84,7 +85,7 @@ def read_reference(path: Path, scenario: Scenario) -> Reference:
         unknowns=None,
         notes={
             "model": f"the user's own FEA, {path}",
-            "SHA-256 of the file": hashlib.sha256(path.read_bytes()).hexdigest(),
+            "SHA-256 of the file": hashlib.sha256(read_regular(path, TABLE)).hexdigest(),
         },
         warnings=(EMPTY,),
     )

@@ -17,6 +17,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from bench_hw.storage.regular_file import read_regular
 from benchmark.errors import InputError
 from benchmark.models.model_result import UncoveredError
 
@@ -57,7 +58,7 @@ def read_user_file(path: Path) -> UserFile:
         No such file, no UTF-8, no Python, or a `NAME` that cannot be shown.
     """
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        text = read_regular(path).decode("utf-8-sig")
         tree = ast.parse(text, str(path))
     except SyntaxError as error:
         raise InputError(f"{path}, line {error.lineno}: this is no valid Python ({error.msg})") from None

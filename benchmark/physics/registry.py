@@ -75,7 +75,7 @@ def load_effects(path: str | Path) -> tuple[Effect, ...]:
     sys.modules[name] = module
     try:
         specification.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise InputError(f"{file}: this effects file does not run ({type(error).__name__}: {error}).") from error
     found = [value for value in vars(module).values() if isinstance(value, Effect)]
     shared = {each.richer for each in found if each.richer is not None}

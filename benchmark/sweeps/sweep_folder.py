@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from bench_hw.storage.regular_file import DOCUMENT, read_regular
 from benchmark.errors import InputError
 from benchmark.resumable import Journal, check_files, read_rows
 from benchmark.runs.output.unfinished import is_kept
@@ -158,8 +159,8 @@ def _check_holds(path: Path, plan: SweepPlan) -> None:
 
 def _read_plan(path: Path) -> Mapping[str, Any]:
     try:
-        table = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError:
+        table = json.loads(read_regular(path, DOCUMENT))
+    except (ValueError, RecursionError):
         table = None
     if not isinstance(table, dict):
         raise InputError(f"{path} is no sweep of this program: it cannot be read as JSON")

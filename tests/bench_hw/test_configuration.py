@@ -1,13 +1,14 @@
 """Reading configuration files."""
 
 from contextlib import suppress
+from typing import Annotated, Literal
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import BaseModel, ConfigDict, Field
 
-from bench_hw.configuration import parse_quantity, read_toml, validated
+from bench_hw.configuration import Length, StrictModel, parse_quantity, read_toml, validated
 from bench_hw.errors import InputError
 
 
@@ -49,7 +50,7 @@ def test_names_every_wrong_key():
     assert "key name: is missing" in message
     assert "key inner.colour: is unknown here" in message
     assert "key inner.depth = -1" in message
-    assert "greater than 0" in message
+    assert "allowed is more than 0" in message
 
 
 @pytest.mark.parametrize(
@@ -89,3 +90,51 @@ def test_any_text_is_read_or_refused_with_what_is_allowed(text):
         return
     with pytest.raises(ValueError, match="allowed"):
         parse_quantity(text, "m")
+
+
+class Part(StrictModel):
+    kind: Literal["part"]
+    length: Annotated[Length, Field(gt=0.0, le=0.1)]
+    count: Annotated[int, Field(strict=True)] = 1
+    on: bool = True
+
+
+class Other(StrictModel):
+    kind: Literal["other"]
+
+
+class Parts(StrictModel):
+    parts: Annotated[tuple[Annotated[Part | Other, Field(discriminator="kind")], ...], Field(min_length=1)]
+
+
+@pytest.mark.parametrize(
+    ("part", "says"),
+    [
+        ({"kind": "part", "length": "2 m"}, "key parts[1].length = '2 m': allowed is at most 100 mm"),
+        ({"kind": "part", "length": "-1 um"}, "key parts[1].length = '-1 um': allowed is more than 0 mm"),
+        ({"kind": "part", "length": "1e400 mm"}, "key parts[1].length: '1e400 mm' is not finite"),
+        ({"kind": "part"}, "key parts[1].length: is missing"),
+        ({"kind": "prt"}, "key parts[1]: 'prt' is no kind of this; allowed is 'part', 'other'"),
+        ({"kind": "part", "length": "1 mm", "count": 1.5}, "key parts[1].count = 1.5: allowed is a whole number"),
+        ({"kind": "part", "length": "1 mm", "on": "ja"}, "key parts[1].on = 'ja': allowed is true or false"),
+        ("part", "key parts[1] = 'part': allowed is a table of keys and values"),
+    ],
+)
+def test_a_mistake_is_told_in_the_file_s_own_keys_and_units(part, says):
+    with pytest.raises(InputError) as caught:
+        validated(Parts, {"parts": [part]}, "rig.toml")
+    assert says in str(caught.value)
+    assert "Input should" not in str(caught.value)
+    assert "at least 1" not in str(caught.value), "the list is not too short, its entry is wrong"
+
+
+def test_a_byte_order_mark_is_no_part_of_a_file(tmp_path):
+    (tmp_path / "a.toml").write_bytes(b"\xef\xbb\xbfx = 1\n")
+    assert read_toml(tmp_path / "a.toml")[0] == {"x": 1}
+
+
+@pytest.mark.parametrize("text", ["x = " + "9" * 5000, "x = " + "[" * 100_000])
+def test_what_the_parser_cannot_take_is_refused(tmp_path, text):
+    (tmp_path / "a.toml").write_text(text)
+    with pytest.raises(InputError, match=r"a\.toml"):
+        read_toml(tmp_path / "a.toml")

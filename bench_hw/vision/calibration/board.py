@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench_hw.errors import InputError
+from bench_hw.storage.regular_file import DOCUMENT, read_regular
+from bench_hw.vision import MOST_PIXELS
 from bench_hw.vision.camera.pinhole import FloatArray
 
 _CORNERS = (3, 100)
@@ -105,12 +107,16 @@ def read_picture(path: Path) -> Picture:
         There is no such file, or it is no picture.
     """
     try:
-        data = np.frombuffer(path.read_bytes(), np.uint8)
+        data = np.frombuffer(read_regular(path, DOCUMENT), np.uint8)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error
-    picture = cv2.imdecode(data, cv2.IMREAD_GRAYSCALE) if len(data) else None
+    try:
+        picture = cv2.imdecode(data, cv2.IMREAD_GRAYSCALE) if len(data) else None
+    except cv2.error:  # more pixels than any camera has
+        picture = None
     if picture is None:
-        raise InputError(f"{path}: no picture; allowed: what OpenCV reads, such as .png, .jpg, .tif")
+        allowed = f"what OpenCV reads, such as .png, .jpg, .tif, of at most {MOST_PIXELS / 1e6:.0f} million pixels"
+        raise InputError(f"{path}: no picture; allowed: {allowed}")
     return np.asarray(picture, dtype=np.uint8)
 
 

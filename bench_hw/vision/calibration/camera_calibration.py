@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from bench_hw.atomic import check_replaceable
 from bench_hw.errors import InputError
+from bench_hw.storage.atomic import check_replaceable
 from bench_hw.vision import Progress
 from bench_hw.vision.calibration.board import Board, BoardView, look_for_board, read_picture
 from bench_hw.vision.calibration.fit import NAMES, CameraFit, MapError, fit_camera, held_out_map_error
@@ -101,6 +102,10 @@ class CalibrationOutcome:
         }
 
 
+FARTHEST_ORIGIN = 100_000.0
+"""Of the marker plane, px from the picture's first one."""
+
+
 def calibrate(order: CalibrationOrder, progress: Progress | None = None) -> CalibrationOutcome:
     """Calibrate a camera and write its file.
 
@@ -121,6 +126,7 @@ def calibrate(order: CalibrationOrder, progress: Progress | None = None) -> Cali
     if order.out.resolve() in [path.resolve() for path in (*order.images, order.plane or order.out.parent)]:
         raise InputError(f"{order.out}: this file is read; allowed: another name")
     check_replaceable(order.out, b"[matrix]", "a camera file")
+    _given_origin(order.origin)
     views, size = _views(order, progress)
     corners = check_number(views, order.board)
     check_variety(corners, size)
@@ -169,13 +175,22 @@ def _origin(text: str, camera: Camera, scale: PlaneScale) -> tuple[float, float]
         return camera.centre
     if text == "plane":
         return scale.middle
-    x, comma, y = text.partition(",")
+    return _given_origin(text) or camera.centre
+
+
+def _given_origin(text: str) -> tuple[float, float] | None:
+    """The origin in pixels where it is given so; None for a name. Raises InputError."""
+    if text in ("axis", "plane"):
+        return None
+    x, _, y = text.partition(",")
     try:
-        if not comma:
-            raise ValueError
-        return float(x), float(y)
+        place = float(x), float(y)
     except ValueError:
-        raise InputError(f"origin {text!r}: allowed are axis, plane, or X,Y in undistorted pixels") from None
+        place = (math.nan, math.nan)
+    if not all(abs(each) <= FARTHEST_ORIGIN for each in place):
+        allowed = f"axis, plane, or X,Y in undistorted pixels, each from {-FARTHEST_ORIGIN:g} to {FARTHEST_ORIGIN:g}"
+        raise InputError(f"origin {text!r}: allowed are {allowed}")
+    return place
 
 
 def _remarks(

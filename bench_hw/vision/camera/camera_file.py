@@ -9,8 +9,8 @@ from typing import Annotated, Any, Literal
 import tomli_w
 from pydantic import Field
 
-from bench_hw.atomic import write_text
 from bench_hw.configuration import StrictModel, read_toml, validated
+from bench_hw.storage.atomic import write_text
 from bench_hw.vision.camera.pinhole import Camera, Plane, Quality
 
 SCHEMA = 1
@@ -129,8 +129,10 @@ def write_camera(path: Path | str, camera: Camera, remarks: Mapping[str, str] | 
 
     Raises
     ------
+    InputError
+        A value that `read_camera` would refuse; nothing is written.
     OSError
         The folder cannot be written.
     """
     head = "".join(f"# {name}: {text}\n" for name, text in (remarks or {}).items())
-    return write_text(Path(path), head + tomli_w.dumps(camera_tables(camera)))
+    return write_text(Path(path), head + tomli_w.dumps(camera_tables(camera)), read_camera)

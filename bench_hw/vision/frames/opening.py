@@ -15,6 +15,7 @@ import cv2
 import numpy as np
 
 from bench_hw.errors import InputError, TrialFileError
+from bench_hw.storage.regular_file import DOCUMENT, read_regular
 from bench_hw.trial_file.encoding import CAMERA, NANOSECONDS, decode_frame, nanoseconds
 from bench_hw.trial_file.scan import read_messages, scan_trial, trial_header
 from bench_hw.vision.frames.source import Frame, FrameSource, decode_grey, to_grey
@@ -88,7 +89,9 @@ class PictureFrames:
     def frames(self) -> Iterator[Frame]:
         """Give the pictures, number / rate as time."""
         for number, file in enumerate(self._files):
-            yield Frame(number, number / self.rate, decode_grey(file.read_bytes(), KINDS[file.suffix.lower()]))
+            yield Frame(
+                number, number / self.rate, decode_grey(read_regular(file, DOCUMENT), KINDS[file.suffix.lower()])
+            )
 
     def notes(self) -> tuple[str, ...]:
         """Say what was assumed."""

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 
-from bench_hw.atomic import check_replaceable
 from bench_hw.errors import InputError
+from bench_hw.storage.atomic import check_replaceable
 from bench_hw.vision import Progress
 from bench_hw.vision.camera.camera_file import read_camera
 from bench_hw.vision.camera.pinhole import Camera, survey_domain

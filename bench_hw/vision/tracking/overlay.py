@@ -13,8 +13,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from bench_hw.atomic import write_bytes
 from bench_hw.errors import InputError
+from bench_hw.storage.atomic import write_bytes
 from bench_hw.vision.markers.grid import FloatArray, Picture, Sighting
 
 _GREEN, _RED, _BLUE, _AMBER = (60, 180, 0), (40, 40, 220), (200, 110, 0), (0, 140, 255)

@@ -15,8 +15,8 @@ from typing import TextIO
 
 import numpy as np
 
-from bench_hw.atomic import replacing
 from bench_hw.errors import InputError
+from bench_hw.storage.atomic import replacing
 from bench_hw.tables.columns import check_increasing, read_columns, read_source
 from bench_hw.tables.output import rounded_cells
 from bench_hw.vision.camera.pinhole import Camera, FloatArray, plane_of, to_plane

@@ -104,7 +104,13 @@ def fingerprint(folder: Path, files: Iterable[Path]) -> str:
 
 
 def _made(name: str, trials: list[dict[str, str]]) -> dict[str, Any]:
-    return {"schema": SCHEMA, "name": name, "trials": trials}
+    """The table of a session that has none; names of folders that are no printable text are made so."""
+    named = [{**entry, "condition": _printable(entry["condition"])} for entry in trials]
+    return {"schema": SCHEMA, "name": _printable(name), "trials": named}
+
+
+def _printable(name: str) -> str:
+    return "".join(letter if letter.isprintable() else "_" for letter in name)[:200].strip() or "session"
 
 
 def _entries(folder: Path, name: str) -> list[dict[str, str]]:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from bench_hw.storage.regular_file import DOCUMENT, read_regular
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
 from benchmark.models import Array, ModelResult, RunFailure, scenario_drive
@@ -83,8 +84,8 @@ def _document(folder: Path, name: str) -> dict[str, Any]:
     """A JSON file of the folder."""
     path = folder / name
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        found = json.loads(read_regular(path, DOCUMENT).decode("utf-8-sig"))
+    except (OSError, ValueError, RecursionError) as error:
         raise InputError(f"{path} cannot be read ({error}); needed: the result folder of a run") from None
     if not isinstance(found, dict) or found.get("schema") != SCHEMA:
         schema = found.get("schema") if isinstance(found, dict) else None

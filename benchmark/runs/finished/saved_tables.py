@@ -81,7 +81,7 @@ class SavedTables:
         path = self._folder / name
         try:
             rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8"))))
-        except OSError as error:
+        except (OSError, ValueError, csv.Error) as error:
             raise InputError(f"{path} cannot be read ({error}); needed: the result folder of a run") from None
         head, *body = rows or [[]]
         if not head or any(len(row) != len(head) for row in body):

@@ -1,11 +1,10 @@
 """A triangulated surface, and the files it is read from: STL, OBJ, PLY and VTK by pyvista.
 
-Light to import: the libraries are loaded by the first file.
+Light to import: the libraries are loaded by the first file. What could crash the reader is read apart.
 """
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +12,7 @@ import numpy as np
 
 from fem.arrays import FloatArray, IntArray
 from fem.errors import FemError, require_one_of
+from fem.mesh.surface.reading_process import read_apart, read_triangles
 
 UNITS = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 25.4e-3}
 SUFFIXES = (".stl", ".obj", ".ply", ".vtk", ".vtp")
@@ -91,17 +91,9 @@ def read_surface(path: str | Path, unit: str) -> Surface:
         raise FemError(f"surface {file}: the suffix {file.suffix!r} is not one of {', '.join(SUFFIXES)}")
     if not file.is_file() or file.stat().st_size == 0:
         raise FemError(f"surface {file}: {'is empty' if file.is_file() else 'there is no such file'}")
-    import pyvista
-
-    try:
-        with warnings.catch_warnings():  # what the reader has to say ends in the error below
-            warnings.simplefilter("ignore", UserWarning)
-            data = pyvista.read(file)
-        polygons = data if isinstance(data, pyvista.PolyData) else data.extract_surface(algorithm="dataset_surface")
-        triangles = polygons.triangulate().clean(tolerance=1e-9)
-    except (ValueError, RuntimeError, OSError, AttributeError) as error:
-        raise FemError(f"surface {file}: cannot be read ({error})") from error
-    if triangles.n_cells == 0 or triangles.faces.size == 0:
-        raise FemError(f"surface {file}: has no triangles")
-    corners = np.asarray(triangles.faces).reshape(-1, 4)[:, 1:].astype(np.int64)
-    return Surface(UNITS[unit] * np.asarray(triangles.points, dtype=np.float64), corners, source=str(file))
+    points, corners = read_triangles(file) if file.suffix.lower() == ".stl" else read_apart(file)
+    if not np.isfinite(points).all():
+        raise FemError(f"surface {file}: has a point that is no finite number")
+    if corners.min() < 0 or corners.max() >= len(points):
+        raise FemError(f"surface {file}: has a face that names a point which is not there")
+    return Surface(UNITS[unit] * points, corners, source=str(file))

@@ -1,6 +1,7 @@
 """The Net F/T box's XML configuration and its web interface."""
 
 import math
+import time
 
 import pytest
 
@@ -101,10 +102,24 @@ def test_what_is_no_box_is_said_to_be_none(tcp_server, answer, says):
 
 def test_a_silent_address_ends_at_the_time_out(tcp_server):
     port = tcp_server(lambda client: client.recv(4096) and client.recv(4096))
-    with pytest.raises(DeviceError, match=r"no answer .* within 0\.2 s; check host"):
+    with pytest.raises(DeviceError, match=r"no answer .* within 0\.2 s, .*; check host"):
         fetch("127.0.0.1", port, "/", 0.2)
 
 
 def test_nobody_there_is_one_clear_error(ear):
     with pytest.raises(DeviceError, match="no answer"):
         fetch("127.0.0.1", ear.port, "/", 1.0)
+
+
+def test_a_box_that_drips_is_given_up_after_a_total_time(tcp_server):
+    def drip(client):
+        client.recv(4096)
+        client.sendall(b"HTTP/1.1 200 OK\r\nContent-Length: 1000\r\n\r\n")
+        for _ in range(200):  # each byte within the time-out of a piece
+            client.sendall(b"x")
+            time.sleep(0.05)
+
+    started = time.monotonic()
+    with pytest.raises(DeviceError, match=r"no whole one within 0\.6 s"):
+        fetch("127.0.0.1", tcp_server(drip), "/", 0.2)
+    assert time.monotonic() - started < 8.0, "10 s is what the box would take"

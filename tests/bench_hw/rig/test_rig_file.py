@@ -53,17 +53,23 @@ def test_a_daq_names_its_calibration(load):
     [
         (HEAD + ACTUATOR, "force: is missing"),
         (HEAD + FORCE + "colour = 1\n" + ACTUATOR, "colour: is unknown here"),
-        (HEAD + FORCE + 'rate = "8 kHz"\n' + ACTUATOR, "less than or equal to 7000"),
+        (HEAD + FORCE + 'rate = "8 kHz"\n' + ACTUATOR, "allowed is at most 7000 Hz"),
         (HEAD + FORCE + 'press_axis = "z"\n' + ACTUATOR, "press_axis"),
         (HEAD + FORCE + "http_port = 99999\n" + ACTUATOR, "http_port"),
         (HEAD + FORCE.replace("netft", "scale") + ACTUATOR, "force"),
         (HEAD + FORCE + ACTUATOR + 'contact = "60 mm"\n', "outside safety.travel"),
         (HEAD + FORCE + ACTUATOR + '[safety]\ntravel = ["5 mm", "60 mm"]\n', "allowed is 0 <= low < high <= stroke"),
         (HEAD + FORCE + ACTUATOR + '[safety]\ntravel = ["9 mm", "5 mm"]\n', "5 mm"),
-        (HEAD + FORCE + ACTUATOR + '[safety]\nforce_limit = "0 N"\n', "greater than 0"),
+        (HEAD + FORCE + ACTUATOR + '[safety]\nforce_limit = "0 N"\n', "allowed is more than 0 N"),
         (HEAD + FORCE + ACTUATOR + '[camera]\nkind = "simulated"\n', "knows nothing of a real tool"),
         (HEAD + '[force]\nkind = "simulated"\n' + ACTUATOR, "could not protect the specimen"),
         ("schema = 3\n" + FORCE + ACTUATOR, "schema"),
+        (
+            HEAD + '[force]\nkind = "netft"\nhost = "my box"\n' + ACTUATOR,
+            "key force.host = 'my box': allowed is the name",
+        ),
+        (HEAD + '[force]\nkind = "netft"\nhost = "a\\nb"\n' + ACTUATOR, "allowed is the name or address of a host"),
+        (HEAD + '[force]\nkind = "netft"\nhost = "box/path"\n' + ACTUATOR, "without blanks and slashes"),
     ],
 )
 def test_refuses_with_file_and_key(load, text, says):

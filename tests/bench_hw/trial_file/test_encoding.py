@@ -98,3 +98,37 @@ def test_what_is_not_finite_is_null_and_never_a_zero(value):
 def test_seconds_become_the_nearest_nanosecond():
     assert nanoseconds(0.1) == 100_000_000
     assert nanoseconds(123456.000000001) == 123456_000000001
+
+
+FORCE = {"rdt_sequence": 1, "ft_sequence": 1, "status": 0, "counts": None}
+AXES = {"x": 0.0, "y": 0.0, "z": 0.0}
+
+
+@pytest.mark.parametrize(
+    ("decode", "message"),
+    [
+        (decode_force, []),
+        (decode_force, {**FORCE, "force": AXES, "torque": [1, 2, 3]}),
+        (decode_force, {**FORCE, "force": {**AXES, "x": "1"}, "torque": AXES}),
+        (decode_force, {**FORCE, "force": {**AXES, "x": 10**400}, "torque": AXES}),
+        (decode_force, {**FORCE, "rdt_sequence": "1", "force": AXES, "torque": AXES}),
+        (decode_force, {**FORCE, "rdt_sequence": 2**64, "force": AXES, "torque": AXES}),
+        (decode_force, {**FORCE, "counts": [1, 2], "force": AXES, "torque": AXES}),
+        (decode_depth, {"depth": True, "counts": 1, "target": None}),
+        (decode_depth, {"depth": 0.1, "counts": [1], "target": None}),
+        (decode_depth, {"depth": 0.1, "counts": 1, "target": "down"}),
+        (decode_frame, {"frame": 1, "format": 7, "data": ""}),
+        (decode_frame, {"frame": 1.5, "format": "jpeg", "data": ""}),
+        (decode_frame, {"frame": 1, "format": "jpeg", "data": [1]}),
+        (decode_event, {"name": 1, "message": "a", "level": 2}),
+        (decode_event, {"name": "a", "message": "a", "level": [2]}),
+    ],
+)
+def test_records_of_wrong_types_are_no_records(decode, message):
+    with pytest.raises((ValueError, KeyError, TypeError)):
+        decode(0.0, json.dumps(message).encode())
+
+
+def test_nesting_without_end_is_no_record():
+    with pytest.raises(ValueError, match="nested too deeply"):
+        decode_depth(0.0, b"[" * 200_000)

@@ -75,3 +75,13 @@ def test_processes_start_without_the_folder_and_own_modules_still_load(tmp_path)
         tmp_path, "-m", "benchmark", "sweep", "skin-5N", *small, "--vary", "tool.radius=4 mm,5 mm", "--out", "sweep"
     )
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.skipif(os.name != "posix", reason="locales of POSIX")
+def test_names_are_text_under_an_ascii_locale_too(tmp_path):
+    environment = {**ENVIRONMENT, "PYTHONUTF8": "0", "LC_ALL": "C", "PYTHONCOERCECLOCALE": "0"}
+    command = [sys.executable, "-m", "benchmark", "tissues", "new", "Haut_Müller"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert [path.name for path in tmp_path.iterdir()] == ["Haut_Müller.toml"]
+    assert "Haut_Müller.toml" in done.stdout.decode()

@@ -4,10 +4,11 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from pydantic import ValidationError
 
 from benchmark.errors import InputError
 from benchmark.files import load_scenario
-from benchmark.gate.gate_file import GateFile, Timing, gate_path
+from benchmark.gate.gate_file import GateFile, Timing, Tolerance, gate_path
 from benchmark.gate.plan import load_plan
 
 
@@ -113,3 +114,9 @@ def test_missing_files_are_named(tmp_path: Path) -> None:
 def test_defaults_are_those_of_the_shipped_gate() -> None:
     shipped = load_plan(gate_path(None)).file.timing
     assert shipped == Timing()
+
+
+@pytest.mark.parametrize("atol", ["abc", "1 parsec_", "-1 nm", "nan mm", ""])
+def test_a_tolerance_is_a_quantity(atol):
+    with pytest.raises(ValidationError, match=r"tolerance|name"):
+        Tolerance.model_validate({"quantity": "*", "rtol": "1 %", "atol": atol}, context={"from_file": True})

@@ -70,6 +70,13 @@ def test_the_origin_can_be_chosen(boards, lens, board, true_camera, plane, text,
         _origin("there", true_camera, scale)
 
 
+@pytest.mark.parametrize("origin", ["nan,nan", "inf,1", "1e999,1", "1e6,0", "1", ",", "1,2,3"])
+def test_an_origin_that_cannot_be_read_again_is_refused_before_anything_else(views, board, tmp_path, origin):
+    with pytest.raises(InputError, match="allowed are axis, plane, or X,Y in undistorted pixels, each from -100000 to"):
+        calibrate(CalibrationOrder(tuple(views[:1]), board, tmp_path / "camera.toml", origin=origin))
+    assert not (tmp_path / "camera.toml").exists()
+
+
 def test_too_few_views_and_mixed_sizes_leave_no_file(views, board, tmp_path):
     order = CalibrationOrder(tuple(views[:4]), board, tmp_path / "camera.toml")
     with pytest.raises(InputError, match="4 of 4 pictures"):

@@ -1,8 +1,18 @@
 import pytest
 
+from bench_hw.capture import session_keys
 from benchmark.errors import InputError
-from benchmark.files.schema import validated
-from benchmark.files.sessions.description import SessionFile, assumptions, base_setup, setups
+from benchmark.files.schema import known_keys, validated
+from benchmark.files.sessions.description import (
+    Camera,
+    ConditionKeys,
+    Drive,
+    SessionFile,
+    TrialEntry,
+    assumptions,
+    base_setup,
+    setups,
+)
 from benchmark.files.sources import Source
 from benchmark.files.tool import Support, Tool
 
@@ -133,3 +143,18 @@ def test_bad_keys_are_refused_with_their_place(keys, says):
     with pytest.raises(InputError) as refusal:
         setups(session(**keys), ["slow", "fast"], SOURCE)
     assert str(refusal.value).startswith(says)
+
+
+def test_the_bench_writes_the_keys_that_are_read():
+    """`bench_hw` knows nothing of this package and checks what it writes by a list of its own."""
+    pairs = [
+        (session_keys.ToolKeys, Tool),
+        (session_keys.SupportKeys, Support),
+        (session_keys.CameraKeys, Camera),
+        (session_keys.DriveKeys, Drive),
+        (session_keys.TrialKeys, TrialEntry),
+        (session_keys.ConditionKeys, ConditionKeys),
+    ]
+    for written, read in pairs:
+        assert set(written.model_fields) == set(read.model_fields), read.__name__
+    assert set(known_keys(SessionFile)) <= set(known_keys(session_keys.SessionKeys))

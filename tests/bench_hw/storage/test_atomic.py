@@ -2,8 +2,8 @@
 
 import pytest
 
-from bench_hw.atomic import check_replaceable, replacing, write_text
 from bench_hw.errors import InputError
+from bench_hw.storage.atomic import check_replaceable, replacing, write_text
 
 
 def test_a_file_is_made_with_its_folder_and_the_usual_permissions(tmp_path):

@@ -7,24 +7,28 @@ from __future__ import annotations
 
 import os
 import secrets
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from bench_hw.errors import InputError
+
+ReadBack = Callable[[Path], object]
 
 _BEGINNING = 1 << 12
 """Bytes in which the sign of a file's kind must stand."""
 
 
 @contextmanager
-def replacing(path: Path) -> Iterator[Path]:
+def replacing(path: Path, read_back: ReadBack | None = None) -> Iterator[Path]:
     """Give a temporary path in the target's folder and rename it to the target when the block succeeds.
 
     Parameters
     ----------
     path : pathlib.Path
         The file to make or replace. Its folder is made where it is missing.
+    read_back : callable, optional
+        Reads what was written, from its temporary path, before it is put in place; what it raises is raised.
 
     Yields
     ------
@@ -41,34 +45,36 @@ def replacing(path: Path) -> Iterator[Path]:
     try:
         yield temporary
         _sync(temporary)
+        if read_back is not None:
+            read_back(temporary)
         temporary.replace(path)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
 
 
-def write_bytes(path: Path, data: bytes) -> Path:
-    """Write bytes whole or not at all; return the path.
+def write_bytes(path: Path, data: bytes, read_back: ReadBack | None = None) -> Path:
+    """Write bytes whole or not at all, and return the path; `read_back` as in `replacing`.
 
     Raises
     ------
     OSError
         The folder cannot be made or written, or the disk is full.
     """
-    with replacing(path) as temporary:
+    with replacing(path, read_back) as temporary:
         temporary.write_bytes(data)
     return path
 
 
-def write_text(path: Path, text: str) -> Path:
-    """Write text as UTF-8 with the line ends as given, whole or not at all; return the path.
+def write_text(path: Path, text: str, read_back: ReadBack | None = None) -> Path:
+    """Write text as UTF-8 with the line ends as given, whole or not at all; return the path; see `write_bytes`.
 
     Raises
     ------
     OSError
         The folder cannot be made or written, or the disk is full.
     """
-    return write_bytes(path, text.encode("utf-8"))
+    return write_bytes(path, text.encode("utf-8"), read_back)
 
 
 def check_replaceable(path: Path, sign: bytes, kind: str) -> None:
