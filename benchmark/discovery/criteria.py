@@ -188,6 +188,15 @@ A ratio of e^8 that has not seen the data.
 """
 BROAD_LOST = 0.1
 """It does not count where the other trials lose more than this share of it. Development seeds."""
+LEAST_UNLOADED = 0.2
+"""Of the peak depth: less travel back is no unloading, and less travel in no press with a rate. First choice."""
+SECOND_RATE = 1.5
+"""Presses of one session have two rates where their speeds differ by this factor. First choice: memory over one decade
+then shows, specimens' heights and a rig's control do not."""
+DETERMINED = 0.95
+"""Level at which the strengths of an effect must differ from none for it to be named. First choice."""
+AT_BOUND = 0.98
+"""Of a range: a strength beyond it stands at its bound. First choice."""
 TIE = 0.03
 """Candidates whose gain lacks no more than this share of the best one's are equals. Pig tissue (0.02 before)."""
 CLOSE = 0.1
@@ -195,6 +204,11 @@ CLOSE = 0.1
 
 Development seeds: what a wrong form costs the true effect.
 """
+CLOSE_TISSUE = 0.25
+"""The same where the best is an effect of rig or sensor and the rival one of the tissue: to blame the instrument needs
+more, since its textbook form is nearer to what it does than a tissue's. First choice."""
+NEAREST = 3
+"""Rivals of each round that are tried in the place of one of several effects. Cost."""
 LEAST_ERROR = 0.02
 """A gain's standard error is at least this share of the gain: trials alike to the last digit do not make z endless."""
 SAME_ERRORS = 3.0
@@ -211,6 +225,16 @@ PARTLY = 0.1
 """Share left from which the answer is told to be partial. First choice."""
 LEAST_GAP = 0.05
 """Where the base leaves less than this share above the floor there is nothing to close. First choice."""
+WORSE = 0.02
+"""A held-out condition whose mean square grows by more than this share is predicted worse. First choice: round-off and
+the last steps of a fit are below it."""
+TOLERANCE_FORCE = 0.02
+"""Of the peak force: a model that misses by more is never called good. First choice, stated beforehand."""
+TOLERANCE_MARKERS = 5e-5
+"""m: a model that misses a marker combination by more is never called good. First choice, stated beforehand."""
+SAME_HEIGHT = 0.005
+"""Relative difference of measured heights up to which trials are of one specimen. First choice: the touch is found to
+less, another specimen differs by more."""
 SMALL_IN_PRACTICE = 2.0
 """Of a channel's largest signal, %: what is smaller is told to be small in practice. First choice."""
 NORMAL_95 = 1.96

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,38 @@ class Estimate:
 
 
 @dataclass(frozen=True)
+class ConditionEstimate:
+    """A parameter as one condition alone tells it: value and 95 % interval in `unit`; whether it agrees with all."""
+
+    name: str
+    condition: str
+    value: float
+    unit: str
+    ci95: tuple[float, float]
+    agrees: bool
+
+
+@dataclass(frozen=True)
+class LookAlike:
+    """An effect in the place of a named one: its own parameters, and by how much it predicts unseen trials worse.
+
+    Attributes
+    ----------
+    slug : str
+    parameters : tuple of Estimate
+    lacking : float
+        Share of the named effect's gain in held-out log density that it lacks; negative where it gains more.
+    errors : float
+        The same in standard errors over trials; below two the data do not separate them.
+    """
+
+    slug: str
+    parameters: tuple[Estimate, ...]
+    lacking: float
+    errors: float
+
+
+@dataclass(frozen=True)
 class NamedEffect:
     """An effect of the answer.
 
@@ -43,16 +76,50 @@ class NamedEffect:
     slug : str
         Of the catalogue.
     confidence : float
-        0 to 1: the weight of this effect among the candidates within reach of the best.
+        0 to 1: how often such an answer was right in blind trials, shared with its look-alikes.
     lookalikes : tuple of str
-        Effects that these data cannot separate from it.
+        Effects that these data cannot rule out in its place.
     parameters : tuple of Estimate
+    rivals : tuple of LookAlike
+        The look-alikes with their own parameters.
+    by_condition : tuple of ConditionEstimate
+        Its parameters from each condition alone; empty with one condition.
+    gain : float
+        What it adds to the held-out log density of a trial, beside the other effects; NaN where that was not asked.
     """
 
     slug: str
     confidence: float
     lookalikes: tuple[str, ...]
     parameters: tuple[Estimate, ...]
+    rivals: tuple[LookAlike, ...] = ()
+    by_condition: tuple[ConditionEstimate, ...] = ()
+    gain: float = math.nan
+
+
+@dataclass(frozen=True)
+class ChannelSize:
+    """How large the misfit of a channel is, whatever its p.
+
+    Attributes
+    ----------
+    channel : str
+    before, after : float
+        Root mean square over trials of the mean residual in a cell, the largest cell's, without and with the effects, N
+        or m.
+    tolerance : float
+        Stated beforehand, N or m: a model that misses by more is never called good.
+    """
+
+    channel: str
+    before: float
+    after: float
+    tolerance: float
+
+    @property
+    def within(self) -> bool:
+        """Whether the model of the answer is within the tolerance."""
+        return self.after <= self.tolerance
 
 
 @dataclass(frozen=True)
@@ -69,11 +136,14 @@ class Place:
     depth : (low, high)
         m.
     size : float
-        Mean residual (measured minus simulated) over the trials, N for the force and m for markers.
+        Mean residual (measured minus simulated without the effects) over the trials, N for the force and m for markers.
     percent_of_signal : float
         Its size as a share of the channel's largest signal.
     p : float
         Family-wise, by sign flips of whole trials.
+    contribution : float or None
+        What the answer's effects add to the simulation there, in the same unit; None without effects. It may differ
+        from `size`, even in sign: without the effects the base bends towards the data.
     """
 
     channel: str
@@ -84,6 +154,7 @@ class Place:
     size: float
     percent_of_signal: float
     p: float
+    contribution: float | None = None
 
 
 @dataclass(frozen=True)
@@ -106,9 +177,9 @@ class ChannelGap:
     rmse_before, rmse_after : float
         N or m.
     noise_floor : float or None
-        Pure error of the replicates, N or m; None where no trial was repeated.
+        Pure error of replicates of one specimen, N or m; None (not known) where no trial was repeated on one.
     closed : float or None
-        (before^2 - after^2) / (before^2 - floor^2), an unknown floor as 0; None where nothing was to be closed.
+        (before^2 - after^2) / (before^2 - floor^2); None where nothing was to be closed, or the floor is not known.
     ci95 : (low, high) or None
         By bootstrap over trials.
     held_out : str
@@ -204,6 +275,14 @@ class Discovery:
     conditions, channels, trials : tuple of str
     seconds : float
         Wall time.
+    sizes : tuple of ChannelSize
+        One a channel; empty where it was not asked.
+    not_shown : mapping
+        Effects that such trials cannot show, and what they lack, in words.
+    worse : tuple of str
+        Held-out conditions that the effects predict worse than the base does.
+    undetermined : tuple of str
+        Effects of the answer whose strength the data do not tell; they are not named.
     """
 
     verdict: str
@@ -223,6 +302,15 @@ class Discovery:
     channels: tuple[str, ...]
     trials: tuple[str, ...]
     seconds: float
+    sizes: tuple[ChannelSize, ...] = ()
+    not_shown: Mapping[str, str] = field(default_factory=dict)
+    worse: tuple[str, ...] = ()
+    undetermined: tuple[str, ...] = ()
+
+    @property
+    def within_tolerance(self) -> bool:
+        """Whether the model of the answer is within the stated tolerance in every channel."""
+        return all(each.within for each in self.sizes)
 
 
 def channel_unit(channel: str) -> tuple[str, float]:

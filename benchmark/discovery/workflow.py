@@ -10,8 +10,18 @@ from pathlib import Path
 import numpy as np
 
 from benchmark.discovery import criteria
-from benchmark.discovery.answer.estimates import base_estimates, candidates, named_effects, remains, transfers
-from benchmark.discovery.answer.gap import HeldOut, closed_overall, gaps, held_out_residuals, share_left, traces, unbent
+from benchmark.discovery.answer.estimates import base_estimates, candidates, named_effects, own_gain, remains, transfers
+from benchmark.discovery.answer.gap import (
+    HeldOut,
+    closed_overall,
+    gaps,
+    held_out_residuals,
+    share_left,
+    traces,
+    unbent,
+    worse,
+)
+from benchmark.discovery.answer.sizes import channel_sizes
 from benchmark.discovery.answer.verdict import Facts, statement, verdict
 from benchmark.discovery.base.calibration import Calibrated, calibrate
 from benchmark.discovery.base.effect_model import Fit
@@ -22,16 +32,18 @@ from benchmark.discovery.detection.disagreement import Detection, combined, dete
 from benchmark.discovery.detection.places import places
 from benchmark.discovery.discovery_result import Discovery
 from benchmark.discovery.evidence.gains import conditions
+from benchmark.discovery.evidence.parameter_evidence import undetermined
 from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fingerprint, own_code, pool, silent
 from benchmark.discovery.evidence.selection import Selection, first_gain, select, usable
 from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, remark, screen
+from benchmark.discovery.evidence.showing import not_shown
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import Session
 from benchmark.physics import Effect, catalogue
 from benchmark.response.elastic_table import TableOf
 
 DEFAULT = Settings()
-VERSION = 3
+VERSION = 4
 """Of the method: fits kept by another are done anew."""
 
 
@@ -127,6 +139,8 @@ class _Answer:
     ----------
     base, chosen : Fit
         Of all trials; the same where nothing was chosen.
+    plain : Fit
+        Without effects, unbent: the "before" of pictures, places and gap.
     selection : Selection
     before, after : Detection
         Without and with the effects.
@@ -137,6 +151,7 @@ class _Answer:
 
     base: Fit
     chosen: Fit
+    plain: Fit
     selection: Selection
     before: Detection
     after: Detection
@@ -147,10 +162,10 @@ class _Answer:
 def _verified(base: Fit, selection: Selection, before: Detection, settings: Settings) -> _Answer:
     chosen = on_all(base, selection.chosen)
     if chosen is base:
-        return _Answer(base, base, selection, before, before, held_out_residuals(base, base), 0.0)
-    after, plain = detect(chosen, settings), unbent(chosen)
+        return _Answer(base, base, base, selection, before, before, held_out_residuals(base, base), 0.0)
+    after, plain = detect(chosen, settings), unbent(base, chosen)
     held = held_out_residuals(plain, chosen)
-    return _Answer(base, chosen, selection, before, after, held, share_left(plain, chosen))
+    return _Answer(base, chosen, plain, selection, before, after, held, share_left(plain, chosen))
 
 
 def _discovery(
@@ -160,8 +175,8 @@ def _discovery(
     base, chosen, before = answer.base, answer.chosen, answer.before
     facts = _facts(answer, known, settings)
     word = verdict(facts)
-    untested = word == "cannot_tell"
-    nothing = untested or word == "no_discrepancy"
+    untested = not facts.enough
+    nothing = word in ("cannot_tell", "no_discrepancy")
     problem, slugs = base.model.problem, tuple(effect.slug for effect in chosen.model.effects)
     closed = {slugs: closed_overall(base, answer.held)} if slugs else {}
     few = remark(len(answer.selection.base.model.problem.trials), len(problem.trials))
@@ -170,7 +185,9 @@ def _discovery(
         statement=statement(word, facts),
         p=None if untested else before.p_cells if nothing else before.p,
         effects=() if nothing else named_effects(answer.selection),
-        where=() if untested else places(base, base if nothing else chosen, before, settings),
+        where=()
+        if untested
+        else places(base, *((base, base) if nothing else (answer.plain, chosen)), before, settings),
         contrasts=contrasts(base, before, settings),
         gap=gaps(base, answer.held, settings),
         smallest_visible={} if untested else smallest_visible(base, before),
@@ -183,6 +200,10 @@ def _discovery(
         channels=tuple(dict.fromkeys(problem.study.channels)),
         trials=tuple(trial.name for trial in problem.trials),
         seconds=time.perf_counter() - began,
+        sizes=channel_sizes(answer.plain, base if nothing else chosen),
+        not_shown=not_shown(problem.study, known),
+        worse=() if nothing else facts.worse,
+        undetermined=() if nothing else facts.undetermined,
     )
 
 
@@ -194,10 +215,14 @@ def _facts(answer: _Answer, known: Sequence[Effect], settings: Settings) -> Fact
         p=answer.before.p,
         p_cells=answer.before.p_cells,
         enough=reachable(conditions(answer.base), settings),
-        effects=tuple(selection.chosen.model.effects),
+        effects=tuple(sorted(selection.chosen.model.effects, key=lambda each: -own_gain(selection, each.slug))),
         lookalikes=tuple(by_slug[slug] for slug in sorted(alike)),
         left=answer.left,
         p_after=answer.after.p,
         transfers=transfers(selection),
         level=settings.level,
+        within=all(each.before <= each.tolerance for each in channel_sizes(answer.base, answer.base)),
+        worse=() if answer.chosen is answer.base else worse(answer.base, answer.held),
+        conditions=len(answer.base.model.problem.study.conditions),
+        undetermined=undetermined(answer.chosen),
     )

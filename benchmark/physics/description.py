@@ -3,7 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from types import MappingProxyType
+from typing import Literal, TypeAlias
+
+Sign: TypeAlias = Literal["unloading", "hold", "second_rate", "lift_off", "interface"]
+SIGNS = MappingProxyType[Sign, str](
+    {
+        "unloading": "unloading",
+        "hold": "a hold",
+        "second_rate": "a second rate",
+        "lift_off": "a lift-off",
+        "interface": "a second layer or a clamp",
+    }
+)
+"""What a session's motion or set-up may have, in words, without which some effects cannot show."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +107,8 @@ class EffectDescription:
         How the wave and the FEM carry it; "" where they do not.
     retired : tuple of (str, str)
         Parameters of older model files that cannot be converted, and what to do instead.
+    needs : tuple of tuples of str
+        What trials must have to show it, one of each tuple; without it nothing tells it from the base's own form.
     """
 
     slug: str
@@ -106,6 +121,7 @@ class EffectDescription:
     in_wave: str = ""
     in_fem: str = ""
     retired: tuple[tuple[str, str], ...] = ()
+    needs: tuple[tuple[Sign, ...], ...] = ()
 
     @property
     def keys(self) -> dict[str, EffectParameter]:

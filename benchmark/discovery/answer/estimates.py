@@ -4,31 +4,52 @@ from __future__ import annotations
 
 import numpy as np
 
-from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.detection.disagreement import Detection
 from benchmark.discovery.detection.places import flagged_places
-from benchmark.discovery.discovery_result import Array, Candidate, Estimate, NamedEffect, channel_unit
+from benchmark.discovery.discovery_result import Candidate, Estimate, LookAlike, NamedEffect, channel_unit
 from benchmark.discovery.evidence.gains import conditions, gain, held_out, held_out_conditions
-from benchmark.discovery.evidence.selection import Scored, Selection, constant
+from benchmark.discovery.evidence.parameter_evidence import by_condition, constant, effect_estimates, half_widths
+from benchmark.discovery.evidence.selection import Scored, Selection
 
 MOST_REMAINS = 5
 """Sentences of what the answer leaves."""
 
 
 def named_effects(selection: Selection) -> tuple[NamedEffect, ...]:
-    """The chosen effects in the model's order, with parameters, confidence and look-alikes."""
+    """The chosen effects by what each gains, with parameters, confidence and look-alikes."""
     chosen = selection.chosen
-    estimates = effect_estimates(chosen)
-    return tuple(
+    estimates, parts = effect_estimates(chosen), by_condition(chosen)
+    named = (
         NamedEffect(
             effect.slug,
             confidence(selection, effect.slug),
             selection.lookalikes.get(effect.slug, ()),
             tuple(each for slug, each in estimates if slug == effect.slug),
+            look_alikes(selection, effect.slug),
+            tuple(each for slug, each in parts if slug == effect.slug),
+            own_gain(selection, effect.slug),
         )
         for effect in chosen.model.effects
     )
+    return tuple(sorted(named, key=lambda each: -each.gain))
+
+
+def own_gain(selection: Selection, slug: str) -> float:
+    """What a chosen effect adds to the held-out log density of a trial beside the others."""
+    own = selection.own.get(slug)
+    return 0.0 if own is None else own.mean
+
+
+def look_alikes(selection: Selection, slug: str) -> tuple[LookAlike, ...]:
+    """The rivals of a chosen effect with their own parameters, best first."""
+    groups, now = conditions(selection.chosen), held_out(selection.chosen)
+    own, out = max(own_gain(selection, slug), 1e-12), []
+    for rival in selection.rivals.get(slug, ()):
+        name, lead = rival.model.effects[-1].slug, gain(now, held_out(rival), groups)
+        parameters = tuple(each for of, each in effect_estimates(rival) if of == name)
+        out.append(LookAlike(name, parameters, lead.mean / own, lead.z))
+    return tuple(out)
 
 
 def confidence(selection: Selection, slug: str) -> float:
@@ -42,23 +63,9 @@ def confidence(selection: Selection, slug: str) -> float:
     return 1.0 / (1.0 + weights)
 
 
-def effect_estimates(fitted: Fit) -> tuple[tuple[str, Estimate], ...]:
-    """(slug, estimate) of every parameter of the effects."""
-    first, half = fitted.model.shape_count, _half_widths(fitted)
-    values = fitted.model.values(fitted.vector)
-    out = []
-    for k, (slug, p) in enumerate(fitted.model.parameters, start=first):
-        low, high = fitted.vector[k] - half[k], fitted.vector[k] + half[k]
-        if p.logarithmic:
-            low, high = np.exp(np.clip([low, high], -700.0, 700.0))
-        ends = (float(np.clip(low, p.low, p.high)), float(np.clip(high, p.low, p.high)))
-        out.append((slug, Estimate(p.name, values[slug][p.name], p.unit, ends)))
-    return tuple(out)
-
-
 def base_estimates(fitted: Fit) -> tuple[Estimate, ...]:
     """The base's nuisances; the modulus as a factor."""
-    widths, out = _half_widths(fitted), []
+    widths, out = half_widths(fitted), []
     for k, name in enumerate(fitted.model.problem.shapes):
         value, half = float(fitted.vector[k]), float(widths[k])
         if name == "modulus":
@@ -67,16 +74,6 @@ def base_estimates(fitted: Fit) -> tuple[Estimate, ...]:
         else:
             out.append(Estimate(name, value, "", (value - half, value + half)))
     return tuple(out)
-
-
-def _half_widths(fitted: Fit) -> Array:
-    """(p,) half widths of the vector's 95 % intervals, widened to the trials' actual scatter (sandwich estimate)."""
-    inner = fitted.covariance
-    slopes = fitted.blocks.slope - fitted.blocks.slope.mean(axis=0)
-    count = len(slopes)
-    sandwich = inner @ (slopes.T @ slopes * count / max(count - 1, 1)) @ inner
-    variance = np.maximum(np.diag(inner), np.diag(sandwich))
-    return np.asarray(criteria.NORMAL_95 * np.sqrt(np.maximum(variance, 0.0)))
 
 
 def candidates(selection: Selection, closed: dict[tuple[str, ...], float | None]) -> tuple[Candidate, ...]:

@@ -11,14 +11,19 @@ import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.calibration import pure_errors
-from benchmark.discovery.base.effect_model import EffectModel, Fit, White, fit, settled
-from benchmark.discovery.base.trials_problem import followed, only
+from benchmark.discovery.base.effect_model import EffectModel, Fit, White, settled
+from benchmark.discovery.base.trials_problem import followed, only, replicates
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.discovery_result import Array, ChannelGap, Trace
 from benchmark.discovery.evidence.gains import conditions
+from benchmark.response.least_squares import Search, least_squares
 
 DECIMALS = 6
 """Of the share that is closed; what lies beyond is round-off, as in a channel that no effect touches."""
+CONVERGED = Search(most=40, gain=0.03, share=1e-5)
+"""Of a fit whose prediction is shown: few steps from where effects ended leave a base that no one would use."""
+FOLDS = 5
+"""Parts of a single condition that are held out in turn, each by a fit of its own."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,34 +35,39 @@ class HeldOut:
     kind: str
 
 
-def unbent(chosen: Fit) -> Fit:
+def unbent(base: Fit, chosen: Fit) -> Fit:
     """The base fitted again, with bends and marker field as they are beside the effects.
 
-    A missing effect bends the base; what it hides by that is part of the gap.
+    A missing effect bends the base; what it hides by that is part of the gap. It is fitted until it has converged, from
+    where the base stands and from where the effects left it, and the better fit is taken.
     """
     names = chosen.model.problem.shapes
     pinned = tuple((n, float(v)) for n, v in zip(names, chosen.vector, strict=False) if not followed(n))
-    return fit(EffectModel(chosen.model.problem, (), pinned), chosen.vector[: len(names)], chosen.nuisance, most=6)
+    model = EffectModel(chosen.model.problem, (), pinned)
+    starts = (base, chosen)
+    fits = [least_squares(model, f.vector[: len(names)], f.nuisance, search=CONVERGED) for f in starts]
+    return min(fits, key=lambda each: each.objective)
 
 
 def held_out_residuals(base: Fit, chosen: Fit) -> HeldOut:
-    """Fit without each condition (or, with one, without each trial) and settle only its own nuisances there."""
+    """Fit without each condition (or, with one, without each fifth of its trials); only their nuisances are settled."""
     groups = conditions(base)
     if np.unique(groups).size > 1:
         parts, kind = [groups == number for number in np.unique(groups)], "condition"
     else:
-        parts, kind = [np.arange(groups.size) == k for k in range(groups.size)], "trial"
-    before = _residuals(base, parts, kind)
-    after = before if chosen is base else _residuals(chosen, parts, kind)
+        turn = np.arange(groups.size) % min(FOLDS, groups.size)
+        parts, kind = [turn == k for k in np.unique(turn)], "trial"
+    before = _residuals(base, parts)
+    after = before if chosen is base else _residuals(chosen, parts)
     return HeldOut(before, after, kind)
 
 
-def _residuals(fitted: Fit, parts: list[np.ndarray], kind: str) -> list[Array]:
+def _residuals(fitted: Fit, parts: list[np.ndarray]) -> list[Array]:
     """Each part's trials alone are simulated with what the others gave."""
     problem = fitted.model.problem
     out: list[Array] = [np.zeros(0)] * len(problem.trials)
     for left in parts:
-        vector = _without_condition(fitted, left) if kind == "condition" else fitted.without(left)
+        vector = _without(fitted, left)
         mine = np.flatnonzero(left)
         model = replace(fitted.model, problem=only(problem, mine.tolist()))
         state = settled(model, vector, fitted.nuisance[mine])
@@ -66,17 +76,22 @@ def _residuals(fitted: Fit, parts: list[np.ndarray], kind: str) -> list[Array]:
     return out
 
 
-def _without_condition(fitted: Fit, left: np.ndarray) -> Array:
-    """The vector fitted to the trials of the other conditions."""
+def _without(fitted: Fit, left: np.ndarray) -> Array:
+    """The vector fitted to the other trials (mask (R,) of those left out), until it has converged."""
     kept = np.flatnonzero(~left)
     model = replace(fitted.model, problem=only(fitted.model.problem, kept.tolist()))
-    return fit(model, fitted.vector, fitted.nuisance[kept], most=5).vector
+    return least_squares(model, fitted.vector, fitted.nuisance[kept], search=CONVERGED).vector
+
+
+def floors(base: Fit) -> list[Array]:
+    """Pure error (n, C) of each trial's replicates: trials of one condition and one specimen; NaN without any."""
+    return pure_errors(base, replicates(base.model.problem))
 
 
 def gaps(base: Fit, held: HeldOut, settings: Settings) -> tuple[ChannelGap, ...]:
     """The gap in each channel."""
     channels, groups = base.model.problem.study.channels, conditions(base)
-    tables = [_squares(base, rows) for rows in (held.before, held.after, pure_errors(base))]
+    tables = [_squares(base, rows) for rows in (held.before, held.after, floors(base))]
     generator = np.random.default_rng(settings.seed)
     draws = [_draw(groups, generator) for _ in range(settings.bootstraps)]
     out = []
@@ -84,11 +99,14 @@ def gaps(base: Fit, held: HeldOut, settings: Settings) -> tuple[ChannelGap, ...]
         mine = [k for k, other in enumerate(channels) if other == channel]
         before, after, floor = (table[:, mine].mean(axis=1) for table in tables)
         told = np.isfinite(floor)
-        floor = np.where(told, floor, np.nanmedian(floor) if told.any() else 0.0)
+        one, two = (float(np.sqrt(values.mean())) for values in (before, after))
+        if not told.any():
+            out.append(ChannelGap(channel, one, two, None, None, None, held.kind))
+            continue
+        floor = np.where(told, floor, np.median(floor[told]))
         closed = share_closed(before.mean(), after.mean(), floor.mean())
         interval = None if closed is None else _interval((before, after, floor), draws)
-        one, two, least = (float(np.sqrt(values.mean())) for values in (before, after, floor))
-        out.append(ChannelGap(channel, one, two, least if told.any() else None, closed, interval, held.kind))
+        out.append(ChannelGap(channel, one, two, float(np.sqrt(floor.mean())), closed, interval, held.kind))
     return tuple(out)
 
 
@@ -127,13 +145,38 @@ def share_closed(before: float, after: float, floor: float) -> float | None:
 
 def closed_overall(base: Fit, held: HeldOut) -> float | None:
     """The gap closed in all channels together, each in units of its noise; None where no replicates tell the noise."""
-    floor = _squares(base, pure_errors(base))
+    floor = _squares(base, floors(base))
     if not np.isfinite(floor).any():
         return None
     known = np.where(np.isfinite(floor), floor, np.nanmedian(floor, axis=0))
     unit = np.maximum(known.mean(axis=0), 1e-300)
     before, after = (float((_squares(base, rows) / unit).mean()) for rows in (held.before, held.after))
     return share_closed(before, after, float((known / unit).mean()))
+
+
+def worse(base: Fit, held: HeldOut) -> tuple[str, ...]:
+    """Conditions that the effects, fitted to the others, predict worse than the base does, in units of the noise.
+
+    With one condition, its name where its held-out trials are predicted worse. Force and markers count alike, each
+    channel by the noise with which fits weigh it.
+    """
+    problem, groups = base.model.problem, conditions(base)
+    before, after = (_misfits(base, rows) for rows in (held.before, held.after))
+    names = []
+    for number in np.unique(groups):
+        mine = groups == number
+        if after[mine].mean() > (1.0 + criteria.WORSE) * before[mine].mean():
+            names.append(problem.study.conditions[number].name)
+    return tuple(names)
+
+
+def _misfits(base: Fit, rows: list[Array]) -> Array:
+    """(R,) mean square of each trial's residual (n, C) in units of its signals' noise, the mean of channel means."""
+    problem = base.model.problem
+    squares = _squares(base, rows) / np.median(problem.noise.scale, axis=0) ** 2
+    channels = np.array(problem.study.channels)
+    each = [squares[:, channels == channel].mean(axis=1) for channel in dict.fromkeys(problem.study.channels)]
+    return np.asarray(np.mean(each, axis=0))
 
 
 def shared_misfit(fitted: Fit) -> float:
@@ -167,7 +210,7 @@ def share_left(before: Fit, after: Fit) -> float:
 def traces(base: Fit, held: HeldOut) -> tuple[Trace, ...]:
     """One trace a trial and channel; of a channel's marker combinations the liveliest."""
     problem = base.model.problem
-    errors, groups, shown = pure_errors(base), conditions(base), _shown(base)
+    errors, groups, shown = floors(base), conditions(base), _shown(base)
     out = []
     for index, trial in enumerate(problem.trials):
         mates = np.flatnonzero(groups == trial.condition)

@@ -32,6 +32,13 @@ class Facts:
     transfers : bool or None
         Whether the effects gain on held-out conditions, their parameters constant; None with one condition.
     level : float
+    within : bool
+        Whether the base misses by no more than the stated tolerance.
+    worse : tuple of str
+        Held-out conditions that the effects predict worse than the base.
+    conditions : int
+    undetermined : tuple of str
+        Accepted effects whose strength the data do not tell.
     """
 
     p: float
@@ -43,25 +50,37 @@ class Facts:
     p_after: float
     transfers: bool | None
     level: float
+    within: bool = True
+    worse: tuple[str, ...] = ()
+    conditions: int = 2
+    undetermined: tuple[str, ...] = ()
+
+    @property
+    def predicts(self) -> bool:
+        """Whether the effects predict some of what was held out better than the base does."""
+        return len(self.worse) < self.conditions
 
 
 def verdict(facts: Facts) -> str:
     """One of `VERDICTS`."""
     if not facts.enough:
         return "cannot_tell"
-    if facts.p >= facts.level:
-        return "no_discrepancy"
-    if not facts.effects:
-        return "outside_catalogue" if facts.p_cells < facts.level else "no_discrepancy"
-    if facts.left > criteria.OUTSIDE and facts.p_after < facts.level:
+    seen = facts.p < facts.level if facts.effects else max(facts.p, facts.p_cells) < facts.level
+    if not seen:
+        return "no_discrepancy" if facts.within else "cannot_tell"
+    if not facts.effects or _fails(facts):
         return "outside_catalogue"
     if facts.lookalikes:
         return "instrument_first" if _mixed((*facts.effects, *facts.lookalikes)) else "lookalikes"
-    if facts.transfers is None:
-        return "conditional"
-    if facts.p_after < facts.level and facts.left > criteria.PARTLY:
+    if facts.worse or (facts.p_after < facts.level and facts.left > criteria.PARTLY and facts.transfers is not None):
         return "partly_explained"
     return "named" if facts.transfers else "conditional"
+
+
+def _fails(facts: Facts) -> bool:
+    """Whether the accepted effects are no answer: they leave most, predict nothing, or are of no known strength."""
+    leaves = facts.left > criteria.OUTSIDE and facts.p_after < facts.level
+    return leaves or not facts.predicts or bool(facts.undetermined)
 
 
 def _mixed(effects: Sequence[Effect]) -> bool:
@@ -75,21 +94,47 @@ def statement(word: str, facts: Facts) -> str:
     alike = ", ".join(effect.slug.replace("_", " ") for effect in facts.lookalikes)
     sentences = {
         "no_discrepancy": "No disagreement beyond the base model's own uncertainty is visible "
-        f"(p = {facts.p_cells:.2g}).",
-        "cannot_tell": "These trials cannot tell: too few trials, or none repeated, to show a disagreement at the "
-        f"{100.0 * facts.level:g} % level; nothing is named, and agreement is not shown either.",
+        f"(p = {facts.p_cells:.2g}), and what is left is within the stated tolerance.",
+        "cannot_tell": _untold(facts),
         "named": f"The model lacks {names}: it holds on trials and on conditions that the fit has not seen.",
         "conditional": f"The model lacks {names}, as far as these conditions tell; another rate, depth or tool must "
         "show that it holds there with the same parameters.",
-        "lookalikes": f"The model lacks {names}, or what these data cannot tell from it: {alike}.",
-        "partly_explained": f"The model lacks {names}, and something more: cells still disagree with it in the model.",
-        "outside_catalogue": _outside(names),
-        "instrument_first": f"The model lacks {names}, but an effect of rig or sensor cannot be told from one of the "
-        f"tissue ({alike}): a calibration measurement comes first.",
+        "lookalikes": f"The model lacks {names}, or what these data cannot rule out in its place: {alike}.",
+        "partly_explained": f"The model lacks {names}, and something more: {_more(facts)}.",
+        "outside_catalogue": _outside(names, facts),
+        "instrument_first": f"The model lacks {names}, but these data cannot tell rig or sensor from tissue here "
+        f"(in question: {alike}): a calibration measurement comes first.",
     }
     return sentences[word]
 
 
-def _outside(names: str) -> str:
+def _untold(facts: Facts) -> str:
+    """Why these trials cannot tell."""
+    if not facts.enough:
+        return (
+            "These trials cannot tell: too few trials, or none repeated, to show a disagreement at the "
+            f"{100.0 * facts.level:g} % level; nothing is named, and agreement is not shown either."
+        )
+    return (
+        f"These trials cannot tell: the model misses them by more than the stated tolerance, but they differ so much "
+        f"that this may be chance (p = {facts.p:.2g}); nothing is named, and agreement is not shown either."
+    )
+
+
+def _more(facts: Facts) -> str:
+    """What speaks against the effects being all."""
+    if facts.worse:
+        return f"held out, {', '.join(facts.worse)} is predicted worse with it than without"
+    return "cells still disagree with it in the model"
+
+
+def _outside(names: str, facts: Facts) -> str:
     start = "Simulation and measurement disagree, and no entry of the catalogue accounts for it"
-    return f"{start}; the nearest is {names}." if names else f"{start}."
+    if not names:
+        return f"{start}."
+    why = ""
+    if facts.undetermined:
+        why = ", whose strength these data do not tell"
+    elif not facts.predicts:
+        why = ", which predicts unseen data worse than the model without it"
+    return f"{start}; the nearest is {names}{why}."

@@ -100,27 +100,30 @@ def _first_guess(problem: TrialsProblem) -> tuple[Array, Array]:
     return vector, state
 
 
-def pure_errors(fitted: Fit) -> list[Array]:
-    """What each trial's residual (n, C) does not share with its condition's, its own nuisances taken out.
+def pure_errors(fitted: Fit, alike: Sequence[int] | None = None) -> list[Array]:
+    """What each trial's residual (n, C) does not share with its mates', its own nuisances taken out.
 
-    Scaled so that its variance is the noise's; NaN for a condition of one trial.
+    Mates are the trials of its condition, or those of the same number in `alike` (R,). Scaled so that the variance is
+    the noise's; NaN for a trial without mates.
     """
     problem = fitted.model.problem
     signals = fitted.model.signals(fitted.vector, fitted.nuisance)
-    out: list[Array] = []
-    for number, condition in enumerate(problem.study.conditions):
-        mine = [i for i, trial in enumerate(problem.trials) if trial.condition == number]
+    groups = [trial.condition for trial in problem.trials] if alike is None else list(alike)
+    out: list[Array] = [np.zeros(0)] * len(groups)
+    for number in dict.fromkeys(groups):
+        mine = [i for i, group in enumerate(groups) if group == number]
         if len(mine) < 2:
-            out += [np.full_like(problem.trials[i].signals, np.nan) for i in mine]
+            out[mine[0]] = np.full_like(problem.trials[mine[0]].signals, np.nan)
             continue
-        gains = np.ones((len(mine), 1, condition.signals.shape[2]))
+        gains = np.ones((len(mine), 1, problem.trials[mine[0]].signals.shape[1]))
         gains[:, 0, 0] = np.exp(fitted.nuisance[mine, 0])
         rows = np.array([problem.trials[i].signals - signals[i] for i in mine]) / gains
         counts = np.array([problem.trials[i].count for i in mine]) > 0.0
         mean = np.sum(rows * counts, axis=0) / np.maximum(counts.sum(axis=0), 1)
         factor = np.sqrt(len(mine) / (len(mine) - 1.0))
         own = (rows - mean) * counts * gains * factor
-        out += [_less_nuisances(own[k], signals[i]) for k, i in enumerate(mine)]
+        for k, i in enumerate(mine):
+            out[i] = _less_nuisances(own[k], signals[i])
     return out
 
 

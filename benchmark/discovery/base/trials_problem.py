@@ -151,6 +151,13 @@ def _between(time: Array, frames: Array) -> tuple[NDArray[np.int64], Array]:
     return row, np.clip((frames - time[row]) / (time[row + 1] - time[row]), 0.0, 1.0)
 
 
+def replicates(problem: TrialsProblem) -> tuple[int, ...]:
+    """(R,) numbers by which trials of one condition and one specimen are alike."""
+    keys = [(t.condition, int(problem.study.conditions[t.condition].specimens[t.row])) for t in problem.trials]
+    known = {key: number for number, key in enumerate(dict.fromkeys(keys))}
+    return tuple(known[key] for key in keys)
+
+
 def only(problem: TrialsProblem, trials: Sequence[int]) -> TrialsProblem:
     """The problem of some of its trials, whose nuisances are then in the same order."""
     noise = NoiseModel(problem.noise.memory, problem.noise.scale[list(trials)])

@@ -19,51 +19,64 @@ BOTH = ("radial_x", "radial_y")
 """Combinations whose change is as much tangential as radial."""
 
 
-def places(base: Fit, chosen: Fit, detection: Detection, settings: Settings) -> tuple[Place, ...]:
-    """Where the effects of `chosen` show, then cells flagged without it in channels and phases not among these."""
-    flagged = flagged_places(base, detection, settings.level)
-    if chosen is base:
+def places(base: Fit, before: Fit, chosen: Fit, detection: Detection, settings: Settings) -> tuple[Place, ...]:
+    """Where the effects of `chosen` show, then cells flagged without it in channels and phases not among these.
+
+    Sizes are of `before`, the model without effects that pictures and gap show; `detection` is of `base`.
+    """
+    changes = None if chosen is base else effect_changes(chosen)
+    flagged = flagged_places(base, detection, settings.level, before, changes)
+    if changes is None:
         return flagged
-    first = effect_places(chosen, settings)
+    first = effect_places(chosen, before, changes, settings)
     have = {(place.channel, place.phase) for place in first}
     return (*first, *(place for place in flagged if (place.channel, place.phase) not in have))
 
 
-def flagged_places(fitted: Fit, detection: Detection, level: float) -> tuple[Place, ...]:
-    """Flagged cells in words and numbers, marker combinations under their channel, largest t first."""
-    test, ranges = detection.test, _signal_ranges(fitted)
+def flagged_places(
+    fitted: Fit, detection: Detection, level: float, before: Fit | None = None, changes: Sequence[Array] | None = None
+) -> tuple[Place, ...]:
+    """Flagged cells in words and numbers, marker combinations under their channel, largest t first.
+
+    Sizes are of the residual of `before`, by default of `fitted` itself; `changes` is what effects add to the signals.
+    """
+    test, view = detection.test, _View.of(before or fitted, changes)
     found: dict[tuple[object, ...], tuple[float, Place]] = {}
     for k, cell in enumerate(detection.table.cells):
         if test.p[k] >= level:
             continue
-        number, size = _largest(fitted, detection.table.means[k], cell)
-        place = _place(fitted, ranges, (number, cell.signal), cell.rows[number], cell.cycle, size, float(test.p[k]))
+        number = _largest(fitted, detection.table.means[k], cell)
+        place = view.place((number, cell.signal), cell.rows[number], cell.cycle, float(test.p[k]))
         key = (place.channel, place.phase, place.condition, place.cycle, cell.part)
         if key not in found or abs(test.t[k]) > found[key][0]:
             found[key] = (abs(float(test.t[k])), place)
     return tuple(place for _, place in sorted(found.values(), key=lambda pair: -pair[0]))
 
 
-def _largest(fitted: Fit, means: Array, cell: Cell) -> tuple[int, float]:
-    """The condition where a cell's mean is largest, and that mean."""
+def _largest(fitted: Fit, means: Array, cell: Cell) -> int:
+    """The condition where a cell's mean is largest."""
     groups = np.array([trial.condition for trial in fitted.model.problem.trials])
-    each = {number: float(means[groups == number].mean()) for number in cell.rows}
-    number = max(each, key=lambda key: abs(each[key]))
-    return number, each[number]
+    return max(cell.rows, key=lambda number: abs(float(means[groups == number].mean())))
 
 
-def effect_places(chosen: Fit, settings: Settings) -> tuple[Place, ...]:
+def effect_changes(chosen: Fit) -> list[Array]:
+    """(n, C) of each trial: what the effects of a fit add to its signals."""
+    bare = EffectModel(chosen.model.problem, ())
+    with_them = chosen.model.signals(chosen.vector, chosen.nuisance)
+    without = bare.signals(chosen.vector[: bare.size], chosen.nuisance)
+    return [more - less for more, less in zip(with_them, without, strict=True)]
+
+
+def effect_places(chosen: Fit, before: Fit, changes: Sequence[Array], settings: Settings) -> tuple[Place, ...]:
     """Channels and phases in which the effects of a fit show, the clearest first.
 
     The change is what the model with the effects gives more than without them, less what a base could follow that is
-    wrong in modulus, tool radius, exponent and width alone. Its size is the norm of its whitened mean over all
-    conditions; the residual without the effects must lie along it, trial by trial.
+    wrong in modulus, tool radius, exponent and width alone. Its norm is that of its whitened mean over all conditions;
+    the residual without the effects must lie along it, trial by trial. The size told is the residual of `before`.
     """
     problem = chosen.model.problem
     bare = EffectModel(problem, ())
-    with_them = chosen.model.signals(chosen.vector, chosen.nuisance)
     without = bare.signals(chosen.vector[: bare.size], chosen.nuisance)
-    changes = [more - less for more, less in zip(with_them, without, strict=True)]
     white = White(problem)
     moved = _unfollowed(chosen, [white.flat(i, change) for i, change in enumerate(changes)])
     residual = _unfollowed(chosen, white.residuals(without))
@@ -81,8 +94,8 @@ def effect_places(chosen: Fit, settings: Settings) -> tuple[Place, ...]:
     p = one_sided(np.array([each.along for each in found]), groups, settings.flips, settings.seed)
     clear = [(each, float(value)) for each, value in zip(found, p, strict=True) if value < settings.level]
     clear.sort(key=lambda pair: -pair[0].size)
-    ranges = _signal_ranges(chosen)
-    return tuple(_largest_change(chosen, changes, ranges, each, value) for each, value in clear)
+    view = _View.of(before, changes)
+    return tuple(_largest_change(view, changes, each, value) for each, value in clear)
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,42 +159,67 @@ def _size(fitted: Fit, moved: Sequence[Array], pick: Sequence[np.ndarray]) -> fl
     return float(np.sqrt(total))
 
 
-def _largest_change(fitted: Fit, changes: Sequence[Array], ranges: Array, shown: _Shown, p: float) -> Place:
+def _largest_change(view: _View, changes: Sequence[Array], shown: _Shown, p: float) -> Place:
     """The place in the condition and signal where the change is largest."""
-    problem = fitted.model.problem
     best, at = 0.0, (0, 0)
-    for number, condition in enumerate(problem.study.conditions):
+    conditions = view.fitted.model.problem.study.conditions
+    for number, condition in enumerate(conditions):
         rows = condition.phase == shown.phase
-        mine = [i for i, trial in enumerate(problem.trials) if trial.condition == number]
         if not rows.any():
             continue
         for signal in shown.signals:
-            size = float(np.mean([changes[i][rows, signal].mean() for i in mine]))
+            size = view.mean(changes, (number, signal), rows)
             if abs(size) >= abs(best):
                 best, at = size, (number, signal)
-    condition = problem.study.conditions[at[0]]
-    rows = condition.phase == shown.phase
-    place = _place(fitted, ranges, at, rows, int(condition.cycle[rows].min()), best, p)
+    rows = conditions[at[0]].phase == shown.phase
+    place = view.place(at, rows, int(conditions[at[0]].cycle[rows].min()), p)
     return replace(place, channel=shown.channel)
 
 
-def _place(
-    fitted: Fit, ranges: Array, at: tuple[int, int], rows: np.ndarray, cycle: int, size: float, p: float
-) -> Place:
-    """Rows (n,) of a condition and signal (`at`) as a place."""
-    study, (number, signal) = fitted.model.problem.study, at
-    condition = study.conditions[number]
-    depth = np.median(condition.depth[:, rows], axis=0)
-    return Place(
-        channel=study.channels[signal],
-        phase=PHASES[condition.phase[rows][0]],
-        condition=condition.name,
-        cycle=cycle,
-        depth=(float(depth.min()), float(depth.max())),
-        size=size,
-        percent_of_signal=float(100.0 * abs(size) / ranges[signal]),
-        p=p,
-    )
+@dataclass(frozen=True, eq=False)
+class _View:
+    """The model without effects as readers see it: its residuals (n, C) by trial, what effects add, ranges (C,)."""
+
+    fitted: Fit
+    residuals: Sequence[Array]
+    changes: Sequence[Array] | None
+    ranges: Array
+
+    @staticmethod
+    def of(fitted: Fit, changes: Sequence[Array] | None) -> _View:
+        signals = fitted.model.signals(fitted.vector, fitted.nuisance)
+        trials = fitted.model.problem.trials
+        residuals = [trial.signals - signal for trial, signal in zip(trials, signals, strict=True)]
+        return _View(fitted, residuals, changes, _signal_ranges(fitted))
+
+    def mean(self, rows_of: Sequence[Array], at: tuple[int, int], rows: np.ndarray) -> float:
+        """Mean over rows (n,) bool and trials of a condition of one signal (`at`), rows weighted by their samples."""
+        number, signal = at
+        mine = [i for i, trial in enumerate(self.fitted.model.problem.trials) if trial.condition == number]
+        weights = [self.fitted.model.problem.trials[i].count[rows, signal] for i in mine]
+        total = [
+            float(np.sum(rows_of[i][rows, signal] * weight) / max(weight.sum(), 1e-12))
+            for i, weight in zip(mine, weights, strict=True)
+        ]
+        return float(np.mean(total))
+
+    def place(self, at: tuple[int, int], rows: np.ndarray, cycle: int, p: float) -> Place:
+        """Rows (n,) of a condition and signal (`at`) as a place."""
+        study, (number, signal) = self.fitted.model.problem.study, at
+        condition = study.conditions[number]
+        depth = np.median(condition.depth[:, rows], axis=0)
+        size = self.mean(self.residuals, at, rows)
+        return Place(
+            channel=study.channels[signal],
+            phase=PHASES[condition.phase[rows][0]],
+            condition=condition.name,
+            cycle=cycle,
+            depth=(float(depth.min()), float(depth.max())),
+            size=size,
+            percent_of_signal=float(100.0 * abs(size) / self.ranges[signal]),
+            p=p,
+            contribution=None if self.changes is None else self.mean(self.changes, at, rows),
+        )
 
 
 def _signal_ranges(fitted: Fit) -> Array:

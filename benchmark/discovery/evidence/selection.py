@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.stats import t as t_distribution
@@ -21,8 +22,10 @@ from benchmark.discovery.evidence.gains import (
     held_out,
     held_out_conditions,
 )
+from benchmark.discovery.evidence.parameter_evidence import added_terms, determined
 from benchmark.discovery.evidence.pool import Pool
 from benchmark.discovery.evidence.shortlist import Screened, screen
+from benchmark.discovery.evidence.showing import missing
 from benchmark.physics import Effect
 
 
@@ -47,7 +50,8 @@ class Selection:
     """The chosen fit (the base's where nothing was accepted), its steps and its look-alikes.
 
     `candidates` are those fitted, round by round, the best of a round first; `screened` all effects by what one step
-    gains. `lookalikes` and `rivals` are by the slug of a chosen effect.
+    gains. `lookalikes`, `rivals` and `own` are by the slug of a chosen effect: who does as well in its place, their
+    fits, and what it gains itself over the others.
     """
 
     base: Fit
@@ -57,6 +61,7 @@ class Selection:
     screened: tuple[Screened, ...]
     lookalikes: dict[str, tuple[str, ...]]
     rivals: dict[str, tuple[Fit, ...]]
+    own: dict[str, Gain] = field(default_factory=dict)
 
 
 def select(
@@ -83,10 +88,12 @@ def select(
         steps.append(_simplest(accepted, effects))
         current = steps[-1].fit
     current = _pruned(base, current, settings, work)
-    current = _swapped(base, current, rounds, work)
-    lookalikes, rivals = _lookalikes(base, current, rounds, settings, work)
+    current = _told(base, _swapped(base, current, rounds, work), work)
+    places = [_in_place(base, current, effect, rounds, settings, work) for effect in current.model.effects]
     tried = tuple(scored for each in rounds for scored in each)
-    return Selection(base, current, tuple(steps), tried, first_screen, lookalikes, rivals)
+    lookalikes = {slug: tuple(fit.model.effects[-1].slug for fit in fits) for slug, fits, _ in places}
+    rivals, own = {slug: fits for slug, fits, _ in places}, {slug: gained for slug, _, gained in places}
+    return Selection(base, current, tuple(steps), tried, first_screen, lookalikes, rivals, own)
 
 
 def first_gain(selection: Selection) -> float:
@@ -104,8 +111,8 @@ def first_gain(selection: Selection) -> float:
 
 
 def usable(base: Fit, effect: Effect) -> bool:
-    """Whether the session's channels can show an effect."""
-    return not effect.needs_markers or base.model.problem.study.layout is not None
+    """Whether the session's channels, motion and set-up can show an effect."""
+    return not missing(base.model.problem.study, effect)
 
 
 def score(current: Fit, fits: Sequence[Fit]) -> list[Scored]:
@@ -131,24 +138,29 @@ def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
     """The simplest of those that gain as much as the best, which no data tell apart; then the catalogue's order."""
     order = {effect.slug: (len(effect.names), place) for place, effect in enumerate(effects)}
     ties = [s for s in accepted if s.gain.mean >= (1.0 - criteria.TIE) * accepted[0].gain.mean]
-    return min(ties, key=lambda each: order[each.slug])
+    told = [s for s in ties if determined(s.fit, s.fit.model.effects[-1])]
+    return min(told or ties, key=lambda each: order[each.slug])
 
 
 def _accepted(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:
     worth = not steps or scored.gain.mean >= criteria.WORTH * steps[0].gain.mean
+    if steps and not determined(scored.fit, scored.fit.model.effects[-1]):
+        return False
     evident = scored.gain.z >= settings.accept_z or broad(scored.gain) > criteria.BROAD
     return worth and evident and scored.delta_bic < criteria.ACCEPT_BIC
 
 
 def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
-    """Memory effects near the top with one more term, where BIC prefers it."""
+    """Memory effects near the top with one more term, where BIC prefers it and the data tell how strong it is."""
     if not scored:
         return scored
     top = scored[0].gain.mean
     near = [s for s in scored[:3] if s.gain.mean > criteria.RICHER_SHARE * top and s.gain.z >= criteria.RICHER_Z]
-    wanted = [effect for effect in (s.fit.model.effects[-1].richer for s in near) if effect is not None]
-    richer = work.fits("second terms", [(current, effect) for effect in wanted])
-    better = {s.slug: s for s in score(current, richer)}
+    pairs = [(s, effect) for s in near if (effect := s.fit.model.effects[-1].richer) is not None]
+    richer = work.fits("second terms", [(current, effect) for _, effect in pairs])
+    added = {effect.slug: added_terms(s.fit.model.effects[-1], effect) for s, effect in pairs}
+    told = [fit for fit in richer if determined(fit, fit.model.effects[-1], added[fit.model.effects[-1].slug])]
+    better = {s.slug: s for s in score(current, told)}
     chosen = []
     for s in scored:
         other = better.get(s.slug)
@@ -183,6 +195,16 @@ def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> Fit:
     return current
 
 
+def _told(base: Fit, current: Fit, work: Pool) -> Fit:
+    """Drop further effects whose strength the data do not tell beside the others."""
+    while len(current.model.effects) > 1:
+        kept = [effect for effect in current.model.effects if determined(current, effect)]
+        if len(kept) == len(current.model.effects):
+            return current
+        current = _rebuilt(base, kept or current.model.effects[:1], work, "backward")
+    return current
+
+
 def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], work: Pool) -> Fit:
     """With two effects or more, put the best rivals in the place of each and keep what gains more than a tie."""
     if len(current.model.effects) < 2 or not rounds:
@@ -200,53 +222,41 @@ def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], work: 
     return best
 
 
-def _lookalikes(
-    base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], settings: Settings, work: Pool
-) -> tuple[dict[str, tuple[str, ...]], dict[str, tuple[Fit, ...]]]:
-    """For each chosen effect the slugs that do as well in its place, and their fits."""
-    names: dict[str, tuple[str, ...]] = {}
-    fits: dict[str, tuple[Fit, ...]] = {}
-    chosen = current.model.effects
-    taken = {effect.slug for effect in chosen}
-    groups, now, before = conditions(current), held_out(current), held_out(base)
-    total = float((now - before).mean())
-    for effect in chosen:
-        others = [other for other in chosen if other is not effect]
-        if others:
-            under = _rebuilt(base, others, work, "look-alikes")
-            near = [s.fit.model.effects[-1] for s in rounds[0] if s.slug not in taken][:3]
-            made = work.fits("look-alikes", [(under, rival) for rival in near])
-        else:
-            made = [s.fit for s in rounds[0] if s.slug not in taken]
-        alike = []
-        for rival in made:
-            lead = gain(now, held_out(rival), groups)
-            if lead.z < settings.lookalike_z or lead.mean < criteria.CLOSE * total:
-                alike.append((lead.mean, rival))
-        alike.sort(key=lambda pair: pair[0])
-        names[effect.slug] = tuple(rival.model.effects[-1].slug for _, rival in alike)
-        fits[effect.slug] = tuple(rival for _, rival in alike)
-    return names, fits
+def _in_place(
+    base: Fit, current: Fit, effect: Effect, rounds: Sequence[Sequence[Scored]], settings: Settings, work: Pool
+) -> tuple[str, tuple[Fit, ...], Gain]:
+    """A chosen effect's slug, the fits of those that do as well in its place, best first, and its own gain.
 
-
-def constant(fitted: Fit) -> bool | None:
-    """Whether the effects' parameters agree between conditions, each told from its own trials; None with one.
-
-    Each condition's own estimate is one step from the joint fit. It agrees where it differs by less than three standard
-    errors or by less than a share of the value (`SAME_SHARE`; in the logarithm `SAME_LOG`).
+    Its own gain is over the model with the other effects alone, and what a rival lacks is measured against that.
     """
-    groups = conditions(fitted)
-    if np.unique(groups).size < 2 or not fitted.model.effects:
-        return None
-    first = fitted.model.shape_count
-    logarithmic = np.array([parameter.logarithmic for _, parameter in fitted.model.parameters])
-    joint = fitted.vector[first:]
-    size = np.where(logarithmic, criteria.SAME_LOG, criteria.SAME_SHARE * np.abs(joint))
-    agree = True
-    for number in np.unique(groups):
-        own = fitted.without(groups != number)[first:]
-        matrix = fitted.blocks.matrix[groups == number].sum(axis=0) + np.diag(fitted.precision)
-        error = criteria.SAME_ERRORS * np.sqrt(np.diag(np.linalg.pinv(matrix, hermitian=True)))[first:]
-        moved = np.abs(own - joint)
-        agree &= bool(np.all(moved < np.maximum(error, size)))
-    return agree
+    chosen = current.model.effects
+    others, taken = [other for other in chosen if other is not effect], {each.slug for each in chosen}
+    groups, now = conditions(current), held_out(current)
+    under = _rebuilt(base, others, work, "look-alikes") if others else base
+    own = gain(now, held_out(under), groups)
+    if others:
+        made = work.fits("look-alikes", [(under, rival) for rival in _nearest(rounds, taken)])
+    else:
+        made = [s.fit for s in rounds[0] if s.slug not in taken]
+    alike = []
+    for rival in made:
+        lead = gain(now, held_out(rival), groups)
+        if lead.z < settings.lookalike_z or lead.mean < _close(effect, rival.model.effects[-1]) * own.mean:
+            alike.append((lead.mean, rival))
+    alike.sort(key=lambda pair: pair[0])
+    return effect.slug, tuple(rival for _, rival in alike), own
+
+
+def _nearest(rounds: Sequence[Sequence[Scored]], taken: AbstractSet[str]) -> list[Effect]:
+    """The best rivals of each round, which each look for another part of what is missing."""
+    found: dict[str, Effect] = {}
+    for each in rounds:
+        left = [s.fit.model.effects[-1] for s in each if s.slug not in taken]
+        found |= {effect.slug: effect for effect in left[: criteria.NEAREST] if effect.slug not in found}
+    return list(found.values())
+
+
+def _close(effect: Effect, rival: Effect) -> float:
+    """Share of an effect's own gain that a rival may lack: more where an instrument stands against the tissue."""
+    instrument = effect.description.acts_on != "body" and rival.description.acts_on == "body"
+    return criteria.CLOSE_TISSUE if instrument else criteria.CLOSE

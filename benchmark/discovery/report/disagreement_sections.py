@@ -13,6 +13,8 @@ from reports import Block, Bullets, Column, Download, Paragraph, Section, Subsec
 from reports.figures import Disagreement, GapRow, RepairedTrace, gap_bars, repaired, where_map
 
 MOST_PANELS = 6
+NOT_KNOWN = "not known"
+"""In the place of a floor, and of the share closed, where no trial was repeated on one specimen."""
 UNTESTED = "Not tested: sign flips of these trials cannot reach the level."
 
 
@@ -75,17 +77,22 @@ def _panel(trace: Trace, record: DiscoveryRecord) -> RepairedTrace:
 MOST_ROWS = 8
 
 
+def _untested(record: DiscoveryRecord) -> bool:
+    """Whether the test could not reach its level."""
+    return record.found.verdict == "cannot_tell" and record.found.p is None
+
+
 def where_section(record: DiscoveryRecord) -> Section:
     """Return the map of significant cells, their table, and the contrasts."""
     found = record.found
     if not found.where:
         nothing = (
             UNTESTED
-            if found.verdict == "cannot_tell"
+            if _untested(record)
             else f"No place in which the disagreement is more than chance ({probability(found.p)} over all places)."
         )
         text = record.labels.get("where", nothing)
-        return Section("Where", [Paragraph(text), *_contrasts(found.contrasts)])
+        return Section("Where", [Paragraph(text), *_size_table(record), *_contrasts(found.contrasts)])
     cells = [_cell(place, record) for place in found.where]
     rows = list(dict.fromkeys(cell.row for cell in sorted(cells, key=lambda cell: not cell.row.startswith("press"))))
     text = (
@@ -94,7 +101,24 @@ def where_section(record: DiscoveryRecord) -> Section:
     )
     blocks: list[Block] = [Paragraph(record.labels.get("where", text))]
     blocks += [where_map(cells, rows[:MOST_ROWS], list(map(phase_name, PHASES)))] if len(rows) <= MOST_ROWS else []
-    return Section("Where", [*blocks, _where_table(record), *_contrasts(found.contrasts)])
+    return Section("Where", [*blocks, _where_table(record), *_size_table(record), *_contrasts(found.contrasts)])
+
+
+def _size_table(record: DiscoveryRecord) -> list[Block]:
+    """How large the misfit is against the tolerance, whatever its p; nothing where it was not asked."""
+    if not record.found.sizes:
+        return []
+    columns = (
+        "channel", "unit", Column("largest miss before", "", 3), Column("largest miss after", "", 3),
+        Column("tolerance", "", 3), "within",
+    )  # fmt: skip
+    rows = []
+    for each in record.found.sizes:
+        unit, scale = channel_unit(each.channel)
+        sizes = (scale * each.before, scale * each.after, scale * each.tolerance)
+        rows.append((channel_name(each.channel), unit, *sizes, each.within))
+    caption = "Size of the misfit: rms over trials of the mean residual in the worst cell, and the stated tolerance"
+    return [Table(caption, columns, rows, folded=False)]
 
 
 def _cell(place: Place, record: DiscoveryRecord) -> Disagreement:
@@ -114,7 +138,8 @@ def _cell(place: Place, record: DiscoveryRecord) -> Disagreement:
 def _where_table(record: DiscoveryRecord) -> Table:
     columns = (
         "channel", "phase", "condition", "cycle", Column("from", "mm", 3), Column("to", "mm", 3),
-        Column("measured minus simulated", "", 3), "unit", Column("of the signal", "%", 3), Column("p", "", 2),
+        Column("measured minus simulated", "", 3), Column("effect's contribution", "", 3), "unit",
+        Column("of the signal", "%", 3), Column("p", "", 2),
     )  # fmt: skip
     rows = [
         (
@@ -124,6 +149,7 @@ def _where_table(record: DiscoveryRecord) -> Table:
             place.cycle or None,
             *(1e3 * end for end in place.depth),
             channel_unit(place.channel)[1] * place.size,
+            None if place.contribution is None else channel_unit(place.channel)[1] * place.contribution,
             channel_unit(place.channel)[0],
             place.percent_of_signal,
             place.p,
@@ -187,8 +213,9 @@ def _gap_table(record: DiscoveryRecord) -> Table:
 def _gap_row(gap: ChannelGap) -> tuple[object, ...]:
     unit, scale = channel_unit(gap.channel)
     ends = (None, None) if gap.ci95 is None else tuple(100 * end for end in gap.ci95)
-    closed = None if gap.closed is None else 100 * gap.closed
-    floor = None if gap.noise_floor is None else scale * gap.noise_floor
+    unknown = gap.noise_floor is None
+    closed = (NOT_KNOWN if unknown else None) if gap.closed is None else 100 * gap.closed
+    floor = NOT_KNOWN if gap.noise_floor is None else scale * gap.noise_floor
     sizes = (scale * gap.rmse_before, scale * gap.rmse_after, floor)
     return (channel_name(gap.channel), unit, *sizes, closed, *ends, gap.held_out)
 
@@ -240,7 +267,7 @@ def remains_section(record: DiscoveryRecord) -> Section:
     blocks: list[Block] = (
         [Bullets(remains)]
         if remains
-        else [Paragraph(UNTESTED if record.found.verdict == "cannot_tell" else "Nothing significant remains.")]
+        else [Paragraph(UNTESTED if _untested(record) else "Nothing significant remains.")]
     )
     if record.found.smallest_visible:
         columns = ("channel", Column("smallest visible mean residual", "", 3), "unit")

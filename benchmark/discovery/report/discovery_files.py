@@ -11,6 +11,8 @@ from typing import Any
 from benchmark.discovery.discovery_result import (
     Candidate,
     ChannelGap,
+    ChannelSize,
+    ConditionEstimate,
     Contrast,
     Estimate,
     NamedEffect,
@@ -46,6 +48,11 @@ def discovery_document(record: DiscoveryRecord) -> dict[str, Any]:
         "contrasts": [_contrast(contrast) for contrast in found.contrasts],
         "gap": {gap.channel: _gap(gap) for gap in found.gap},
         "smallest_visible_effect": {channel: _sized(channel, size) for channel, size in found.smallest_visible.items()},
+        "size": {each.channel: _size(each) for each in found.sizes},
+        "within_tolerance": found.within_tolerance if found.sizes else None,
+        "not_looked_for": dict(found.not_shown),
+        "worse_held_out": list(found.worse),
+        "undetermined": list(found.undetermined),
         "candidates": [_candidate(candidate) for candidate in found.candidates],
         "base": {estimate.name: _estimate(estimate) for estimate in found.base},
         "remains": list(found.remains),
@@ -69,10 +76,24 @@ def _effect(effect: NamedEffect) -> dict[str, Any]:
         "confidence": effect.confidence,
         "lookalikes": list(effect.lookalikes),
         "parameters": {estimate.name: _estimate(estimate) for estimate in effect.parameters},
+        "gain": None if math.isnan(effect.gain) else effect.gain,
+        "rivals": [
+            {
+                "name": rival.slug,
+                "lacking_share": rival.lacking,
+                "lacking_standard_errors": rival.errors,
+                "parameters": {estimate.name: _estimate(estimate) for estimate in rival.parameters},
+            }
+            for rival in effect.rivals
+        ],
+        "by_condition": [
+            {"name": each.name, "condition": each.condition, **_estimate(each), "agrees": each.agrees}
+            for each in effect.by_condition
+        ],
     }
 
 
-def _estimate(estimate: Estimate) -> dict[str, Any]:
+def _estimate(estimate: Estimate | ConditionEstimate) -> dict[str, Any]:
     value, unit = shown(estimate.value, estimate.unit)
     return {"value": value, "unit": unit, "ci95": [shown(end, estimate.unit)[0] for end in estimate.ci95]}
 
@@ -92,6 +113,7 @@ def _place(place: Place) -> dict[str, Any]:
         **_sized(place.channel, place.size),
         "percent_of_signal": place.percent_of_signal,
         "p": place.p,
+        "contribution": None if place.contribution is None else channel_unit(place.channel)[1] * place.contribution,
     }
 
 
@@ -102,6 +124,12 @@ def _contrast(contrast: Contrast) -> dict[str, Any]:
         **_sized(contrast.channel, contrast.size),
         "p": contrast.p,
     }
+
+
+def _size(size: ChannelSize) -> dict[str, Any]:
+    unit, scale = channel_unit(size.channel)
+    sizes = {"before": size.before, "after": size.after, "tolerance": size.tolerance}
+    return {"unit": unit, **{name: scale * each for name, each in sizes.items()}, "within": size.within}
 
 
 def _gap(gap: ChannelGap) -> dict[str, Any]:
@@ -152,7 +180,7 @@ def _proposal(proposal: NextExperiment) -> dict[str, Any]:
 Columns = dict[str, list[Any]]
 COLUMNS = {
     "where.csv": ("channel", "phase", "condition", "cycle", "depth_low_mm", "depth_high_mm", "size", "unit",
-                  "percent_of_signal", "p"),
+                  "percent_of_signal", "p", "contribution"),
     "contrasts.csv": ("question", "channel", "size", "unit", "p"),
     "candidates.csv": ("name", "z", "gain", "gain_standard_error", "delta_bic", "gap_closed", "constant"),
     "gap.csv": ("channel", "unit", "rmse_before", "rmse_after", "noise_floor", "closed", "ci95_low", "ci95_high",

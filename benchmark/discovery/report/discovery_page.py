@@ -134,11 +134,11 @@ def _downloads(record: DiscoveryRecord, tables: Sequence[str]) -> tuple[Download
 STATUS = {"no_discrepancy": "good", "named": "good", "cannot_tell": "unknown"}
 """Of the verdicts that are no finding."""
 MEANING = {
-    "cannot_tell": "Verdict cannot_tell: no disagreement could have been significant here, whatever its size.",
+    "cannot_tell": "Verdict cannot_tell: neither a disagreement nor agreement is shown.",
     "no_discrepancy": "Verdict no_discrepancy: what is left between model and measurement is no more than chance.",
     "named": "Verdict named: one answer, and it holds on a condition that it was not fitted to.",
     "conditional": "Verdict conditional: the effect stands out here, but transfer to another condition is not shown.",
-    "lookalikes": "Verdict lookalikes: these data cannot separate the effects in the set.",
+    "lookalikes": "Verdict lookalikes: these data cannot rule out any effect in the set.",
     "partly_explained": "Verdict partly_explained: a real gain, and something significant is left.",
     "outside_catalogue": "Verdict outside_catalogue: a real disagreement that no entry of the catalogue describes.",
     "instrument_first": "Verdict instrument_first: the rig or a sensor could do this as well as the tissue. Calibrate.",
@@ -149,22 +149,36 @@ def discovery_verdict(record: DiscoveryRecord) -> Verdict:
     """Return the verdict of the page."""
     found = record.found
     status = STATUS.get(found.verdict, "finding")
+    if status == "good" and not found.within_tolerance:
+        status = "finding"
     points = [MEANING[found.verdict]]
     if found.where:
         points.append(f"Largest disagreement: {place_words(found.where[0])}.")
         small = criteria.SMALL_IN_PRACTICE
         if all(abs(place.percent_of_signal) < small for place in found.where):
             points.append(f"All of it lies below {small:g} % of the signal: visible, but small in practice.")
+    points.extend(_sizes(record))
     points.extend(_closed(record))
     similar = sorted({name for effect in found.effects for name in effect.lookalikes})
     if similar:
-        points.append(f"Not separable from it here: {', '.join(effect_name(name) for name in similar)}.")
+        points.append(f"Not ruled out in its place: {', '.join(effect_name(name) for name in similar)}.")
     if found.verdict == "no_discrepancy" and found.smallest_visible:
         smallest = ", ".join(
             f"{sized(name, size)} in {channel_name(name)}" for name, size in found.smallest_visible.items()
         )
         points.append(f"The smallest disagreement these data could have shown: {smallest}.")
     return Verdict(status, found.statement, points)
+
+
+def _sizes(record: DiscoveryRecord) -> list[str]:
+    """Channels that the model of the answer misses by more than the stated tolerance."""
+    beyond = [
+        f"{channel_name(each.channel)} by {sized(each.channel, each.after)} (tolerance "
+        f"{sized(each.channel, each.tolerance)})"
+        for each in record.found.sizes
+        if not each.within
+    ]
+    return [f"The model still misses {', '.join(beyond)}."] if beyond else []
 
 
 def _closed(record: DiscoveryRecord) -> list[str]:

@@ -9,11 +9,13 @@ from benchmark.discovery.discovery_result import Candidate, Estimate, NamedEffec
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, NextExperiment
 from benchmark.discovery.report.words import effect_name
 from benchmark.files.units import shown
-from reports import Block, Column, Download, Fact, Facts, Listing, Paragraph, Section, Subsection, Table
+from reports import Block, Bullets, Column, Download, Fact, Facts, Listing, Paragraph, Section, Subsection, Table
 from reports.figures import RankedCandidate, ranking
 from reports.formatting import format_number
 
 MOST_CANDIDATES = 12
+APART = 5.0
+"""Standard deviations from which rivals are told to be apart as they stand, by their forms."""
 
 
 def candidates_section(record: DiscoveryRecord) -> Section:
@@ -21,13 +23,22 @@ def candidates_section(record: DiscoveryRecord) -> Section:
     candidates = record.found.candidates
     if not candidates:
         text = "No candidate was tried: there is nothing that an effect would have to explain."
-        return Section("Which effect", [Paragraph(record.labels.get("no_candidates", text))])
+        return Section("Which effect", [Paragraph(record.labels.get("no_candidates", text)), *_not_shown(record)])
     text = (
         "Each candidate was fitted together with the base model and scored on trials that it had not seen. An effect "
         f"is accepted from z = {Settings.accept_z:g} up, with BIC on the effective sample size agreeing."
     )
     figure = ranking([_ranked(each, record) for each in candidates[:MOST_CANDIDATES]])
-    return Section("Which effect", [Paragraph(record.labels.get("candidates", text)), figure, _table(record)])
+    blocks: list[Block] = [Paragraph(record.labels.get("candidates", text)), figure, _table(record)]
+    return Section("Which effect", [*blocks, *_not_shown(record)])
+
+
+def _not_shown(record: DiscoveryRecord) -> list[Block]:
+    """Effects that were not looked for, and what such trials lack."""
+    if not record.found.not_shown:
+        return []
+    items = [f"{effect_name(slug)}: needs {lacks}" for slug, lacks in record.found.not_shown.items()]
+    return [Subsection("Not looked for: these trials cannot show it", [Bullets(items)])]
 
 
 def _ranked(candidate: Candidate, record: DiscoveryRecord) -> RankedCandidate:
@@ -76,21 +87,66 @@ def effects_section(record: DiscoveryRecord) -> Section:
 
 def _effect(effect: NamedEffect, record: DiscoveryRecord) -> list[Block]:
     card = record.cards.get(effect.slug)
-    facts = [
-        Fact(
-            "Confidence",
-            f"{format_number(100 * effect.confidence, 3, trim=True)} %, among the candidates within reach of the best",
-        )
-    ]
+    facts = _confidence(effect, record)
     blocks: list[Block] = []
     meanings: dict[str, str] = {}
     if card is not None:
         blocks += [Paragraph(card.sentence), Listing(card.equation, "Its term", folded=False)]
         facts = [Fact("Acts on", card.acts_on), *facts, Fact("Source", card.source)]
         meanings = {parameter.name: parameter.meaning for parameter in card.parameters}
-    if effect.lookalikes:
-        facts.append(Fact("Not separable from", ", ".join(map(effect_name, effect.lookalikes))))
-    return [*blocks, Facts(facts), parameter_table(effect, meanings)]
+    facts.append(Fact("Across conditions", _constancy(effect, record)))
+    tables: list[Block] = [parameter_table(effect, meanings)]
+    tables += [_condition_table(effect)] if effect.by_condition else []
+    tables += [_rival_table(effect)] if effect.rivals else []
+    return [*blocks, Facts(facts), *tables]
+
+
+def _confidence(effect: NamedEffect, record: DiscoveryRecord) -> list[Fact]:
+    """How often such an answer was right; nothing for an entry that is not named."""
+    if not record.named:
+        return []
+    told = f"{format_number(100 * effect.confidence, 2, trim=True)} %"
+    return [
+        Fact(
+            "Confidence",
+            told if record.source == "run" else f"{told}: so often was such an answer right in blind trials",
+        )
+    ]
+
+
+def _constancy(effect: NamedEffect, record: DiscoveryRecord) -> str:
+    """Whether the parameters are the same in every condition."""
+    if not effect.by_condition:
+        return "not known: there is one condition" if len(record.found.conditions) < 2 else "not known"
+    moved = dict.fromkeys(f"{each.name} in {each.condition}" for each in effect.by_condition if not each.agrees)
+    return "the same parameters in all" if not moved else f"other parameters: {', '.join(moved)}"
+
+
+def _condition_table(effect: NamedEffect) -> Table:
+    """The parameters as each condition alone tells them."""
+    columns = (
+        "parameter", "condition", Column("value", "", 4), Column("95 % low"), Column("95 % high"), "unit", "agrees",
+    )  # fmt: skip
+    rows = []
+    for each in effect.by_condition:
+        value, unit = shown(each.value, each.unit)
+        low, high = (shown(end, each.unit)[0] for end in each.ci95)
+        rows.append((each.name, each.condition, value, low, high, unit, each.agrees))
+    return Table(f"{effect_name(effect.slug)}: each condition alone", columns, rows)
+
+
+def _rival_table(effect: NamedEffect) -> Table:
+    """What stands in the effect's place, with its own parameters."""
+    columns = (
+        "in its place", Column("lacks", "% of the gain", 2), Column("lacks", "standard errors", 2), "parameter",
+        Column("value", "", 4), Column("95 % low"), Column("95 % high"), "unit",
+    )  # fmt: skip
+    rows: list[tuple[object, ...]] = []
+    for rival in effect.rivals:
+        for each in rival.parameters:
+            name, _, value, low, high, unit = _row(each, "")
+            rows.append((effect_name(rival.slug), 100 * rival.lacking, rival.errors, name, value, low, high, unit))
+    return Table("What these data cannot rule out in its place", columns, rows, folded=False)
 
 
 def parameter_table(effect: NamedEffect, meanings: dict[str, str]) -> Table:
@@ -107,7 +163,8 @@ def _row(estimate: Estimate, meaning: str) -> tuple[object, ...]:
 
 
 ADVICE = {
-    "cannot_tell": f"Repeat the press: at least {ENOUGH_TRIALS} trials in all, two or more of one condition.",
+    "cannot_tell": f"Repeat the press on one specimen: at least {ENOUGH_TRIALS} trials in all, two or more of one "
+    "condition, and more where they scatter.",
     "no_discrepancy": "Nothing needs to be added. A smaller disagreement would need more trials: its size falls with "
     "the root of their number.",
     "conditional": "Measure a second condition (another rate, depth or tool) and run this again with both: only then "
@@ -130,10 +187,20 @@ def next_section(record: DiscoveryRecord) -> Section:
     text = (
         f"{proposal.words} Expected distance of {first} and {second}: "
         f"{proposal.separation:.1f} standard deviations instead of {proposal.separation_now:.1f}, in "
-        f"{proposal.minutes:.0f} minutes at the bench."
+        f"{proposal.minutes:.0f} minutes at the bench.{_apart(proposal)}"
     )
     listing = Listing(proposal.toml, "next_experiment.toml, for python -m bench_hw capture")
     return Section("What to measure next", [Paragraph(text), _menu(proposal), listing])
+
+
+def _apart(proposal: NextExperiment) -> str:
+    """Why rivals stay in question that are far apart already."""
+    if proposal.separation_now < APART:
+        return ""
+    return (
+        " Their textbook forms are far apart in this session already; the rival stays in question because the true "
+        "form may be another, by which a good fit loses about as much."
+    )
 
 
 def _menu(proposal: NextExperiment) -> Table:

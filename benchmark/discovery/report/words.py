@@ -62,4 +62,13 @@ def place_words(place: Place) -> str:
         f"{channel_name(place.channel)}, {phase_name(place.phase)}{cycle} ({place.condition}), {low} to {high} mm: "
         f"{sized(place.channel, abs(place.size))} {more} than simulated, "
         f"{format_number(abs(place.percent_of_signal), 2)} % of the signal, {probability(place.p)}"
+        f"{_added(place)}"
     )
+
+
+def _added(place: Place) -> str:
+    """What the effects of the answer add there."""
+    if place.contribution is None:
+        return ""
+    unit, scale = channel_unit(place.channel)
+    return f" (the effect adds {scale * place.contribution:+.2g} {unit} to the simulation)"

@@ -12,7 +12,7 @@ from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.trials.marker_layout import Layout, layout
 from benchmark.discovery.trials.printed_grid import printed_grid, resting_places
-from benchmark.discovery.trials.protocols import most_odd, same_protocol
+from benchmark.discovery.trials.protocols import most_odd, same_protocol, specimens
 from benchmark.discovery.trials.rows import (
     RawTrial,
     acceleration,
@@ -180,6 +180,7 @@ def _condition(
         cycle=cycle,
         part=part,
         around=_context(session, first, data, grid),
+        specimens=specimens(group),
     )
 
 

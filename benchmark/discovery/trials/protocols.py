@@ -60,6 +60,18 @@ def most_odd(trials: int) -> float:
     return max(criteria.MOST_ODD * trials, 1.0 if trials >= criteria.LEAST_TRIALS else 0.0)
 
 
+def specimens(group: Sequence[RawTrial]) -> NDArray[np.int64]:
+    """(R,) numbers of the specimens, told apart by their heights; all one where these were not measured."""
+    heights = np.array([_height(raw) for raw in group])
+    if not np.isfinite(heights).all():
+        return np.zeros(len(group), dtype=np.int64)
+    order = np.argsort(heights, kind="stable")
+    steps = np.diff(np.log(heights[order]), prepend=np.log(heights[order[0]])) > criteria.SAME_HEIGHT
+    numbers = np.empty(len(group), dtype=np.int64)
+    numbers[order] = np.cumsum(steps)
+    return numbers
+
+
 def _kinds(raw: RawTrial) -> tuple[str, ...]:
     return tuple(piece.kind for piece in raw.pieces)
 

@@ -36,6 +36,8 @@ class ConditionData:
     phase, cycle, part : (n,)
         Index in PHASES, number of the press, and a half (0 or 1) of a phase.
     around : TrialContext
+    specimens : (R,) int
+        Trials of the same number are of one specimen, as far as its height tells.
     """
 
     name: str
@@ -53,6 +55,7 @@ class ConditionData:
     cycle: NDArray[np.int64]
     part: NDArray[np.int64]
     around: TrialContext
+    specimens: NDArray[np.int64]
 
     @property
     def size(self) -> int:

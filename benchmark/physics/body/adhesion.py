@@ -22,6 +22,7 @@ DESCRIPTION = EffectDescription(
     acts_on="body",
     sentence="The tissue sticks to the tool: lifting it takes a pull before it lets go.",
     equation="F = -f(|d|) above the surface until -F exceeds the pull-off force; a tearing bond adds -p (1 - |d| / r)",
+    needs=(("lift_off",),),
     source="K. Kendall 1971, J Phys D 4:1186; Geubelle and Baylor 1998, Compos B 29:589 (bilinear cohesive law)",
     parameters=(
         linear("tear", "N", 0.0, 100.0, "pull p of a bond that tears gradually"),

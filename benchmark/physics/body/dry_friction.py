@@ -13,6 +13,7 @@ DESCRIPTION = EffectDescription(
     acts_on="body",
     sentence="Rubbing adds a force against the motion that does not depend on its speed.",
     equation="F = f + z, dz/dd = (F_c sign(d') - z) / length sign(d'), F_c = force + share f",
+    needs=(("unloading",),),
     source="P. R. Dahl 1968, A solid friction model, TOR-0158(3107-18)-1",
     parameters=(
         linear(

@@ -22,6 +22,7 @@ DESCRIPTION = EffectDescription(
     sentence="Layers slide over each other beyond a shear limit: the lower face is carried along less than it should.",
     equation="F = (1 - s) f + y, y follows s f within +-s F_s; the markers' part q of the depth follows within +-d_s, "
     "f(d_s) = F_s; a share of the slip may go back at once",
+    needs=(("interface",), ("unloading",)),
     source="W. D. Iwan 1966, J Appl Mech 33:893 (Jenkin element)",
     parameters=(
         logarithmic(

@@ -16,6 +16,7 @@ DESCRIPTION = EffectDescription(
     acts_on="body",
     sentence="The pressed surface does not come back all the way: it is left sooner and met later in the next cycle.",
     equation="surface s = permanent_set max(d_max - onset, 0); the tool meets d_c = (d - s) d_max / (d_max - s)",
+    needs=(("unloading",),),
     source="Oliver and Pharr 1992, J Mater Res 7:1564 (elastic unloading of an elastic-plastic body)",
     parameters=(
         linear(

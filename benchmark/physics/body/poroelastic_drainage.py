@@ -13,6 +13,7 @@ DESCRIPTION = EffectDescription(
     acts_on="body",
     sentence="Fluid leaves the pressed tissue: the force decays over a time that grows with the contact size squared.",
     equation="F = int (1 - g (1 - phi(xi - xi'))) df, xi = int D / a^2 dt, phi of one-dimensional consolidation",
+    needs=(("hold", "second_rate"),),
     source="H. F. Wang, Theory of Linear Poroelasticity, section 6.3; Hu et al. 2010, Appl Phys Lett 96:121904",
     parameters=(
         linear(

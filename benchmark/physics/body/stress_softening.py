@@ -13,6 +13,7 @@ DESCRIPTION = EffectDescription(
     acts_on="body",
     sentence="Below the deepest depth reached so far the tissue is softer than at first, at any rate (Mullins).",
     equation="F = f (1 - s erf((1 - W / W_max) / m))",
+    needs=(("unloading",),),
     source="Ogden and Roxburgh 1999, Proc R Soc A 455:2861",
     parameters=(
         linear(

@@ -26,6 +26,7 @@ def _description(terms: int) -> EffectDescription:
         equation="F(t) = int G(t - t') df(t'), G = 1 - g_1 (1 - exp(-t / tau_1)) - (1 - g_1) g_2 (1 - exp(-t / tau_2))"
         if terms > 1
         else "F(t) = int G(t - t') df(t'), G = 1 - g_1 (1 - exp(-t / tau_1))",
+        needs=(("hold", "second_rate"),),
         source="Y. C. Fung, Biomechanics: Mechanical Properties of Living Tissues, section 7.6",
         parameters=tuple(parameters),
         in_wave="Prony series on top of its elastic law; a scenario's layers have series of their own (`relaxation`)",

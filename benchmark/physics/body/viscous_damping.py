@@ -16,6 +16,7 @@ DESCRIPTION = EffectDescription(
     acts_on="body",
     sentence="The tissue resists the speed of the press, without any memory in a hold.",
     equation="F = f + eta df/dt + c v_0 sign(v) |v / v_0|^n, v_0 = 1 mm/s",
+    needs=(("unloading", "hold", "second_rate"),),
     source="Kelvin-Voigt solid; Simo and Hughes, Computational Inelasticity, chapter 10; power-law fluid for n < 1",
     parameters=(
         linear(

@@ -12,6 +12,7 @@ DESCRIPTION = EffectDescription(
     acts_on="drive",
     sentence="The drive has play: at each reversal the tool stands still until the play is taken up.",
     equation="d -> p + side width, p follows d by the play operator, d - width <= p <= d",
+    needs=(("unloading",),),
     source="M. Brokate and J. Sprekels, Hysteresis and Phase Transitions, section 2.1 (play)",
     parameters=(
         linear("width", "m", 0.0, 5e-3, "lost motion at a reversal"),

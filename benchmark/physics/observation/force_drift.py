@@ -14,6 +14,7 @@ DESCRIPTION = EffectDescription(
     acts_on="observation",
     sentence="The force sensor's zero creeps with time, whatever the tool does.",
     equation="F_read = F + rate tau (1 - exp(-t / tau)), t from the first sample",
+    needs=(("hold", "second_rate", "lift_off"),),
     source="first-order thermal settling of a strain-gauge sensor",
     parameters=(
         linear("rate", "N/s", -10.0, 10.0, "of the drift at the start"),

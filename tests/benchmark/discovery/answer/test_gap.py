@@ -92,7 +92,7 @@ def held(before, after, kind="trial"):
 
 
 def floors(monkeypatch, values):
-    monkeypatch.setattr(module, "pure_errors", lambda base: list(np.asarray(values, dtype=float)))
+    monkeypatch.setattr(module, "floors", lambda base: list(np.asarray(values, dtype=float)))
 
 
 def test_the_gap_of_a_channel_is_its_root_mean_square_over_trials_and_samples(monkeypatch):
@@ -130,8 +130,8 @@ def test_where_no_replicates_tell_the_noise_the_whole_gap_is_unknown_and_nothing
         warnings.simplefilter("error")
         assert closed_overall(measured(before, (0, 1)), held(before, 0.5 * before)) is None
         (gap,) = gaps(measured(before, (0, 1)), held(before, 0.5 * before), Settings(bootstraps=5))
-    assert gap.noise_floor is None
-    assert gap.closed == pytest.approx(0.75)
+    assert (gap.noise_floor, gap.closed, gap.ci95) == (None, None, None)
+    assert (gap.rmse_before, gap.rmse_after) == (2.0, 1.0)
 
 
 def test_channels_count_together_in_units_of_their_noise(monkeypatch):
@@ -143,14 +143,15 @@ def test_channels_count_together_in_units_of_their_noise(monkeypatch):
 
 def test_a_condition_held_out_is_predicted_by_the_others_and_a_trial_by_its_mates(monkeypatch):
     asked = []
-    monkeypatch.setattr(module, "_residuals", lambda fit, parts, kind: asked.append((kind, np.array(parts))) or [])
-    two, one = (measured(np.zeros((3, 4, 1)), conditions) for conditions in ((0, 0, 1), (0, 0, 0)))
+    monkeypatch.setattr(module, "_residuals", lambda fit, parts: asked.append(np.array(parts)) or [])
+    two, one, many = (measured(np.zeros((len(c), 4, 1)), c) for c in ((0, 0, 1), (0, 0, 0), (0,) * 7))
     assert held_out_residuals(two, two).kind == "condition"
     assert held_out_residuals(one, one).kind == "trial"
-    (kind, conditions), (other, trials) = asked
-    assert (kind, other) == ("condition", "trial")
+    held_out_residuals(many, many)
+    conditions, trials, fifths = asked
     np.testing.assert_array_equal(conditions, [[True, True, False], [False, False, True]])
     np.testing.assert_array_equal(trials, np.eye(3, dtype=bool))
+    assert (fifths.shape, fifths.sum(axis=0).tolist()) == ((5, 7), [1] * 7)
 
 
 def test_curves_are_measured_less_residual_and_empty_where_nothing_was_seen(monkeypatch):

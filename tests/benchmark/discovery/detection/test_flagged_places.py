@@ -30,10 +30,19 @@ def study():
     return SimpleNamespace(conditions=conditions, channels=("force_z",), names=("force_z",))
 
 
+RESIDUAL = ((0.1, -0.4), (0.1, -0.4), (0.2, -0.1), (0.2, -0.1))
+"""Of each trial while it loads and in its hold, N."""
+
+
 @pytest.fixture
 def base():
     signals = np.array([[0.0], [2.0], [4.0], [3.0]])
-    trials = tuple(SimpleNamespace(condition=number, signals=signals) for number in (0, 0, 1, 1))
+    missed = [np.array([[load], [load], [hold], [hold]]) for load, hold in RESIDUAL]
+    count = np.ones((4, 1))
+    trials = tuple(
+        SimpleNamespace(condition=number, signals=signals + missing, count=count)
+        for number, missing in zip((0, 0, 1, 1), missed, strict=True)
+    )
     problem = SimpleNamespace(study=study(), trials=trials)
     model = SimpleNamespace(problem=problem, signals=lambda vector, nuisance: [signals] * 4)
     return SimpleNamespace(model=model, vector=None, nuisance=None)
@@ -62,7 +71,9 @@ def test_a_place_has_the_sign_size_depth_and_share_of_its_largest_condition(base
     assert (place.size, place.percent_of_signal) == pytest.approx((-0.4, 10.0))  # of a range of 4 N
     assert place.depth == pytest.approx((2e-3, 2e-3))
     (later,) = flagged_places(base, detection((1.0, 1.0, 0.02), (3.0, -9.0, 4.0), MEANS), 0.05)
-    assert (later.condition, later.size, later.p) == ("fast", 0.3, 0.02)
+    assert (later.condition, later.p) == ("fast", 0.02)
+    assert later.size == pytest.approx(-0.1)  # what the picture shows, whatever was left on clean cells
+    assert later.contribution is None
     assert later.depth == pytest.approx((4e-3, 4e-3))
 
 
@@ -71,7 +82,13 @@ def test_cells_of_one_kind_are_shown_once_by_the_clearest(base):
     twice = replace(made, table=replace(made.table, cells=(*made.table.cells[:2], made.table.cells[1])))
     twice = replace(twice, table=replace(twice.table, means=np.array([MEANS[0], MEANS[1], MEANS[1]])))
     (place,) = flagged_places(base, twice, 0.05)
-    assert place.size == -0.4
+    assert place.size == pytest.approx(-0.4)
+
+
+def test_what_effects_add_stands_beside_the_residual_with_its_own_sign(base):
+    changes = [np.full((4, 1), 0.88)] * 4
+    (place,) = flagged_places(base, detection((1.0, 0.02, 1.0), (3.0, -9.0, 4.0), MEANS), 0.05, base, changes)
+    assert (place.size, place.contribution) == pytest.approx((-0.4, 0.88))
 
 
 def place(channel, phase):
@@ -82,5 +99,6 @@ def test_flagged_cells_follow_where_no_effect_shows(base, monkeypatch):
     shown, flagged = (place("force_z", "hold"),), (place("force_z", "hold"), place("force_z", "load"))
     monkeypatch.setattr(module, "effect_places", lambda *all_of: shown)
     monkeypatch.setattr(module, "flagged_places", lambda *all_of: flagged)
-    assert places(base, object(), None, Settings()) == (shown[0], flagged[1])
-    assert places(base, base, None, Settings()) == flagged
+    monkeypatch.setattr(module, "effect_changes", lambda chosen: [])
+    assert places(base, base, object(), None, Settings()) == (shown[0], flagged[1])
+    assert places(base, base, base, None, Settings()) == flagged

@@ -9,14 +9,17 @@ from benchmark.discovery import criteria
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence import selection
 from benchmark.discovery.evidence.gains import Gain
-from benchmark.discovery.evidence.selection import Scored, constant
+from benchmark.discovery.evidence.parameter_evidence import by_condition, constant, determined
+from benchmark.discovery.evidence.selection import Scored
 from benchmark.discovery.evidence.shortlist import Screened
+from benchmark.physics.description import EffectParameter
 
 SETTINGS = Settings()
 
 
-def effect(slug, parameters=1, richer=None):
-    return SimpleNamespace(slug=slug, names=("p",) * parameters, richer=richer)
+def effect(slug, parameters=1, richer=None, acts_on="body"):
+    description = SimpleNamespace(acts_on=acts_on, parameters=())
+    return SimpleNamespace(slug=slug, names=("p",) * parameters, richer=richer, description=description)
 
 
 def fitted(*effects, density=0.0, objective=0.0, conditions=(0,) * 8):
@@ -30,6 +33,11 @@ def fitted(*effects, density=0.0, objective=0.0, conditions=(0,) * 8):
 def scored(slug, mean, z=9.0, bic=-50.0, each=None, **changes):
     values = np.full(8, mean) if each is None else np.asarray(each, dtype=float)
     return Scored(fitted(effect(slug, **changes), density=values), slug, Gain(values, mean, 1.0, z), None, bic)
+
+
+@pytest.fixture(autouse=True)
+def all_determined(monkeypatch):
+    monkeypatch.setattr(selection, "determined", lambda fit, effect, names=(): "vague" not in effect.slug)
 
 
 @pytest.fixture
@@ -110,9 +118,46 @@ def test_a_rival_is_a_lookalike_within_two_errors_or_a_tenth_of_the_gain(known_d
         scored("unsure", 0.0, each=60.0 - 90.0 * wave),  # lacks 40 %, but not in every trial
         scored("far", 0.0, each=np.full(8, 89.0)),  # lacks 11 %
     ]
-    names, fits = selection._lookalikes(fitted(), chosen, [rivals], SETTINGS, Work())
-    assert names == {"true": ("near", "unsure")}
-    assert [fit.model.effects[-1].slug for fit in fits["true"]] == ["near", "unsure"]
+    slug, fits, own = selection._in_place(fitted(), chosen, chosen.model.effects[0], [rivals], SETTINGS, Work())
+    assert (slug, own.mean) == ("true", 100.0)
+    assert [fit.model.effects[-1].slug for fit in fits] == ["near", "unsure"]
+
+
+def test_a_rival_of_a_second_effect_is_measured_against_what_that_gains_itself(known_densities):
+    large, small = effect("large"), effect("small")
+    both = fitted(large, small, density=100.0)
+    without_small, without_large = fitted(large, density=90.0), fitted(small, density=5.0)
+    rivals = [scored("rival", 0.0, each=np.full(8, 50.0))]
+    rivals[0].fit.model.effects[-1].slug = "rival"
+    beside = fitted(large, rivals[0].fit.model.effects[-1], density=95.0)  # lacks half of what the small one gains
+    in_large = fitted(small, rivals[0].fit.model.effects[-1], density=40.0)
+    work = Work(without_small, without_large, fitted(large), fitted(small), beside, in_large)
+    work.by_slugs[("large",)], work.by_slugs[("small",)] = without_small, without_large
+    _, fits, own = selection._in_place(fitted(), both, small, [rivals], SETTINGS, work)
+    assert (own.mean, fits) == (10.0, ())  # 5 of 100 in all would have been a look-alike
+    assert selection._in_place(fitted(), both, large, [rivals], SETTINGS, work)[2].mean == 95.0
+
+
+@pytest.mark.parametrize(("acts_on", "alike"), [("observation", True), ("body", False)])
+def test_an_instrument_must_beat_the_tissue_by_more(known_densities, acts_on, alike):
+    chosen = fitted(effect("chosen", acts_on=acts_on), density=100.0)
+    rivals = [scored("tissue", 0.0, each=np.full(8, 80.0))]  # lacks a fifth
+    _, fits, _ = selection._in_place(fitted(), chosen, chosen.model.effects[0], [rivals], SETTINGS, Work())
+    assert bool(fits) is alike
+
+
+def test_of_equals_one_of_known_strength_is_taken_and_no_further_one_of_unknown_strength():
+    catalogue = [effect("vague"), effect("clear", 3)]
+    assert selection._simplest([scored("vague", 10.0), scored("clear", 9.8, parameters=3)], catalogue).slug == "clear"
+    assert selection._simplest([scored("vague", 10.0), scored("clear", 9.6, parameters=3)], catalogue).slug == "vague"
+    assert not selection._accepted(scored("vague", 9.0), [scored("first", 10.0)], SETTINGS)
+    assert selection._accepted(scored("vague", 9.0), [], SETTINGS)  # the verdict then names it nearest only
+
+
+def test_a_further_effect_of_unknown_strength_is_dropped():
+    both, alone = fitted(effect("clear"), effect("vague")), fitted(effect("clear"))
+    assert selection._told(fitted(), both, Work(alone)) is alone
+    assert selection._told(fitted(), alone, Work()) is alone
 
 
 def test_an_effect_that_another_makes_needless_is_dropped(known_densities):
@@ -139,6 +184,8 @@ class Linear:
     """A fit whose conditions each tell of one parameter: values by condition, all of the same weight."""
 
     def __init__(self, values, weight, logarithmic=False):
+        low, high = (1e-9, 1e9) if logarithmic else (-1e9, 1e9)
+        parameter = EffectParameter("size", "N", (1.0,), low, high, logarithmic, "size")
         self.values = np.asarray(values, dtype=float)
         self.vector = np.array([self.values.mean()])
         self.precision = np.array([1e-12])
@@ -146,8 +193,11 @@ class Linear:
         self.model = SimpleNamespace(
             effects=("one",),
             shape_count=0,
-            parameters=(("one", SimpleNamespace(logarithmic=logarithmic)),),
-            problem=SimpleNamespace(trials=tuple(SimpleNamespace(condition=k) for k in range(len(values)))),
+            parameters=(("one", parameter),),
+            problem=SimpleNamespace(
+                trials=tuple(SimpleNamespace(condition=k) for k in range(len(values))),
+                study=SimpleNamespace(conditions=[SimpleNamespace(name=f"c{k}") for k in range(len(values))]),
+            ),
         )
 
     def without(self, trials):
@@ -165,7 +215,52 @@ class Linear:
     ],
 )
 def test_parameters_agree_between_conditions_by_error_or_share(values, weight, logarithmic, expected):
-    assert constant(Linear(values, weight, logarithmic)) is expected
+    made = Linear(values, weight, logarithmic)
+    assert constant(made) is expected
+    told = [each for _, each in by_condition(made)]
+    assert [each.condition for each in told] == ["c0", "c1"]
+    shown = np.exp(values) if logarithmic else values
+    np.testing.assert_allclose([each.value for each in told], shown)
+    assert all(each.ci95[0] < each.value < each.ci95[1] for each in told)
+
+
+class Told:
+    """A fit of one effect with strengths (k,), their covariance, and trials that scatter as it says."""
+
+    def __init__(self, values, variance, *parameters):
+        self.vector, self.covariance = np.asarray(values, dtype=float), np.diag(np.asarray(variance, dtype=float))
+        self.blocks = SimpleNamespace(slope=np.zeros((6, len(values))))
+        self.model = SimpleNamespace(
+            shape_count=0,
+            parameters=tuple(("one", p) for p in parameters),
+            values=lambda vector: {"one": {p.name: v for p, v in zip(parameters, values, strict=True)}},
+        )
+
+
+SHARE = EffectParameter("share", "", (0.2,), 0.0, 0.95, False, "share")
+WHOLE = EffectParameter("part", "", (0.2,), 0.0, 1.0, False, "share that may be whole")
+FORCE = EffectParameter("force", "N", (1.0,), 0.0, 100.0, False, "force")
+LIMIT = EffectParameter("limit", "N", (1.0,), 1e-3, 1e3, True, "limit")
+
+
+@pytest.mark.parametrize(
+    ("values", "variance", "parameters", "expected"),
+    [
+        ((0.3,), (0.01,), (SHARE,), True),  # three standard errors off none
+        ((0.08,), (0.002,), (SHARE,), False),  # [0, 0.17]: the second term that the phantom was given
+        ((0.949,), (1e-6,), (SHARE,), False),  # at its bound
+        ((1.0,), (1e-6,), (WHOLE,), True),  # whole is no bound of a fit
+        ((0.3, 5.0), (0.04, 0.01), (SHARE, FORCE), True),  # one of two is enough
+        ((0.3, 5.0), (0.04, 9.0), (SHARE, FORCE), False),
+        ((0.0, 5.0), (0.04, 1.0), (SHARE, FORCE), True),  # one that is not there says nothing against the other
+        ((0.0,), (0.01,), (SHARE,), False),
+        ((5.0,), (0.1,), (LIMIT,), True),
+        ((5.0,), (16.0,), (LIMIT,), False),  # an interval over the whole range
+    ],
+)
+def test_a_strength_is_told_where_it_is_off_its_bounds_and_off_nothing(values, variance, parameters, expected):
+    one = SimpleNamespace(slug="one", amplitude=parameters[0].name, amplitudes=tuple(p.name for p in parameters[1:]))
+    assert determined(Told(values, variance, *parameters), one) is expected
 
 
 def test_one_condition_or_no_effect_tells_nothing_of_constancy():

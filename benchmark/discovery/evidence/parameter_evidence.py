@@ -1,0 +1,140 @@
+"""What data tell of the effects' parameters: intervals, whether a strength is determined, what each condition says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from benchmark.discovery import criteria
+from benchmark.discovery.base.effect_model import Fit
+from benchmark.discovery.discovery_result import Array, ConditionEstimate, Estimate
+from benchmark.discovery.evidence.gains import conditions
+from benchmark.physics import Effect, EffectParameter
+
+
+def effect_estimates(fitted: Fit) -> tuple[tuple[str, Estimate], ...]:
+    """(slug, estimate) of every parameter of the effects."""
+    first, half = fitted.model.shape_count, half_widths(fitted)
+    values = fitted.model.values(fitted.vector)
+    out = []
+    for k, (slug, p) in enumerate(fitted.model.parameters, start=first):
+        ends = _outer(p, fitted.vector[k] - half[k]), _outer(p, fitted.vector[k] + half[k])
+        out.append((slug, Estimate(p.name, values[slug][p.name], p.unit, ends)))
+    return tuple(out)
+
+
+def _outer(parameter: EffectParameter, inner: float) -> float:
+    """A number of the vector as the parameter's value, within its bounds."""
+    value = np.exp(np.clip(inner, -700.0, 700.0)) if parameter.logarithmic else inner
+    return float(np.clip(value, parameter.low, parameter.high))
+
+
+def half_widths(fitted: Fit) -> Array:
+    """(p,) half widths of the vector's 95 % intervals, widened to the trials' actual scatter (sandwich estimate)."""
+    inner = fitted.covariance
+    variance = np.maximum(np.diag(inner), np.diag(sandwich(fitted)))
+    return np.asarray(criteria.NORMAL_95 * np.sqrt(np.maximum(variance, 0.0)))
+
+
+def sandwich(fitted: Fit) -> Array:
+    """(p, p) covariance of the vector from how the trials' slopes scatter."""
+    inner = fitted.covariance
+    slopes = fitted.blocks.slope - fitted.blocks.slope.mean(axis=0)
+    count = len(slopes)
+    return np.asarray(inner @ (slopes.T @ slopes * count / max(count - 1, 1)) @ inner)
+
+
+@dataclass(frozen=True)
+class _Strength:
+    """A parameter by which an effect grows from nothing, and its place in the vector."""
+
+    place: int
+    parameter: EffectParameter
+    value: float
+
+    @property
+    def free(self) -> bool:
+        """Whether it stands within its range, off nothing and off a bound."""
+        p = self.parameter
+        if p.logarithmic:
+            share = np.log(self.value / p.low) / np.log(p.high / p.low)
+            return bool(1.0 - criteria.AT_BOUND < share < criteria.AT_BOUND)
+        return bool(self.value != max(p.low, 0.0) and p.low < self.value / criteria.AT_BOUND < p.high)
+
+
+def strengths(fitted: Fit, effect: Effect, names: tuple[str, ...] = ()) -> list[_Strength]:
+    """The parameters by which an effect grows, or those of `names`."""
+    wanted = names or (effect.amplitude, *effect.amplitudes)
+    values = fitted.model.values(fitted.vector).get(effect.slug, {})
+    return [
+        _Strength(place, p, values[p.name])
+        for place, (slug, p) in enumerate(fitted.model.parameters, start=fitted.model.shape_count)
+        if slug == effect.slug and p.name in wanted
+    ]
+
+
+def determined(fitted: Fit, effect: Effect, names: tuple[str, ...] = ()) -> bool:
+    """Whether the data tell how strong an effect is.
+
+    Some strength must stand off its bounds (a share may be whole), and those that do must differ from none together:
+    Wald's statistic on the larger of the model's covariance and the trials' own scatter. A logarithmic strength has no
+    none: its interval must be narrower than its range.
+    """
+    found = strengths(fitted, effect, names)
+    whole = [each for each in found if each.parameter.high == 1.0 and each.value > criteria.AT_BOUND]
+    free = [each for each in found if each.free]
+    if not free:
+        return bool(whole)
+    places = [each.place for each in free]
+    covariance = max((m[np.ix_(places, places)] for m in (fitted.covariance, sandwich(fitted))), key=np.trace)
+    if all(each.parameter.logarithmic for each in free):
+        widths = 2.0 * criteria.NORMAL_95 * np.sqrt(np.diag(covariance))
+        return all(w < np.log(e.parameter.high / e.parameter.low) for w, e in zip(widths, free, strict=True))
+    plain = [k for k, each in enumerate(free) if not each.parameter.logarithmic]
+    amount = np.array([free[k].value for k in plain])
+    size = float(amount @ np.linalg.pinv(covariance[np.ix_(plain, plain)], hermitian=True) @ amount)
+    return bool(size > chi2.ppf(criteria.DETERMINED, len(plain)))
+
+
+def undetermined(fitted: Fit) -> tuple[str, ...]:
+    """Effects of a fit whose strength the data do not tell."""
+    return tuple(effect.slug for effect in fitted.model.effects if not determined(fitted, effect))
+
+
+def added_terms(effect: Effect, richer: Effect) -> tuple[str, ...]:
+    """The strengths that a richer form of an effect has beyond it."""
+    return tuple(p.name for p in richer.description.parameters if p.name not in effect.names and not p.logarithmic)
+
+
+def by_condition(fitted: Fit) -> tuple[tuple[str, ConditionEstimate], ...]:
+    """(slug, estimate) of each parameter from each condition alone; empty with one condition.
+
+    Each condition's own estimate is one step from the joint fit. It agrees where it differs by less than three standard
+    errors or by less than a share of the value (`SAME_SHARE`; in the logarithm `SAME_LOG`).
+    """
+    groups = conditions(fitted)
+    numbers = np.unique(groups)
+    if numbers.size < 2:
+        return ()
+    first, out = fitted.model.shape_count, []
+    for number in numbers:
+        own = fitted.without(groups != number)
+        matrix = fitted.blocks.matrix[groups == number].sum(axis=0) + np.diag(fitted.precision)
+        error = np.sqrt(np.maximum(np.diag(np.linalg.pinv(matrix, hermitian=True)), 0.0))
+        name = fitted.model.problem.study.conditions[number].name
+        for k, (slug, p) in enumerate(fitted.model.parameters, start=first):
+            size = criteria.SAME_LOG if p.logarithmic else criteria.SAME_SHARE * abs(fitted.vector[k])
+            agrees = bool(abs(own[k] - fitted.vector[k]) < max(criteria.SAME_ERRORS * error[k], size))
+            half = criteria.NORMAL_95 * error[k]
+            ends = _outer(p, own[k] - half), _outer(p, own[k] + half)
+            out.append((slug, ConditionEstimate(p.name, name, _outer(p, own[k]), p.unit, ends, agrees)))
+    return tuple(out)
+
+
+def constant(fitted: Fit) -> bool | None:
+    """Whether the effects' parameters agree between conditions, each told from its own trials; None with one."""
+    if np.unique(conditions(fitted)).size < 2 or not fitted.model.effects:
+        return None
+    return all(each.agrees for _, each in by_condition(fitted))
