@@ -9,6 +9,7 @@ import sys
 import textwrap
 import traceback
 from collections.abc import Sequence
+from typing import Annotated
 
 import typer
 
@@ -20,7 +21,6 @@ EXIT_BUG = 70
 
 app = typer.Typer(
     name="benchmark",
-    help="Validate and benchmark fast soft-tissue models against finite elements and measured trials.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,
@@ -28,6 +28,23 @@ app = typer.Typer(
 )
 for verb in (run, fit, discover, blind, check, sweep, report, reproduce, verify, tissues, scenarios):
     verb.register(app)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"tissuebench {version('tissuebench')}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", help="Print the version and leave.", callback=_show_version, is_eager=True)
+    ] = False,
+) -> None:
+    """Validate and benchmark fast soft-tissue models against finite elements and measured trials."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -38,13 +55,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        code = app(args=arguments, prog_name="python -m benchmark", standalone_mode=False)
+        code = app(args=arguments or ["--help"], prog_name="python -m benchmark", standalone_mode=False)
     except KeyboardInterrupt:
         code = EXIT_INTERRUPTED
     except Exception as error:
         return _report(error, debug="--debug" in arguments)
     if code == EXIT_INTERRUPTED:  # by the command-line library or from before it
         return _fail("interrupted; results that were not finished were not written", EXIT_INTERRUPTED)
+    if not arguments:
+        return EXIT_USAGE
     return code if isinstance(code, int) else 0
 
 

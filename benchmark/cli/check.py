@@ -28,6 +28,9 @@ History = Annotated[
     Path | None, typer.Option("--history", help="File that each check is added to; by default beside the baseline.")
 ]
 
+Junit = Annotated[Path | None, typer.Option("--junit", metavar="FILE", help="Write the verdict as JUnit XML, too.")]
+Markdown = Annotated[Path | None, typer.Option("--markdown", metavar="FILE", help="Write it as Markdown, too.")]
+
 
 def register(app: typer.Typer) -> None:
     """Add the verb to the command line."""
@@ -40,6 +43,8 @@ def check(
     accept: Accept = False,
     gate: Gate = None,
     history: History = None,
+    junit: Junit = None,
+    markdown: Markdown = None,
     out: Out = None,
     seed: Seed = 0,
     json: Json = False,
@@ -55,7 +60,7 @@ def check(
     from benchmark.gate.plan import CheckRequest
 
     console = Console(quiet=quiet)
-    request = CheckRequest(baseline, against, gate, history, out, seed)
+    request = CheckRequest(baseline, against, gate, history, out, seed, junit, markdown)
     if accept:
         return _show_accepted(accepting.accept(request, console), console, as_json=json)
     return _show_check(checking.check(request, console), console, as_json=json)

@@ -89,7 +89,7 @@ def _timing_section(verdict: CheckVerdict) -> Section:
             100.0 * row.slowdown,
             row.allowed,
             100.0 * row.caught,
-            "within limits" if row.passed else "slower",
+            "slower" if not row.passed else "faster" if row.faster else "within limits",
         )
         for row in verdict.timing
     ]

@@ -13,14 +13,15 @@ from benchmark.gate.accuracy import compare_values
 from benchmark.gate.baseline import HistoryEntry, append, read_history
 from benchmark.gate.check_basis import CheckBasis, stored_baseline
 from benchmark.gate.check_page import check_page
+from benchmark.gate.ci_files import junit_text, markdown_text
 from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
 from benchmark.gate.processes import Measured, Party, measure
 from benchmark.gate.timing import Judge, TimingRow
 from benchmark.gate.verdict import CheckVerdict
 from benchmark.gate.versions import Origin, gated_values, origin_of, rival, this_version
 from benchmark.runs.options import Listener
-from benchmark.runs.output.destination import destination
-from reports import whole_folder, write_csv, write_json, write_page
+from benchmark.runs.output.destination import check_file, destination
+from reports import whole_folder, write_csv, write_json, write_page, write_text
 
 NOTABLE = 0.25
 """The slowdown that a check should catch; where the scatter does not allow it, the check says so."""
@@ -55,6 +56,8 @@ def check(request: CheckRequest, listener: Listener) -> CheckOutcome:
         Where the file system refuses; no report is written then.
     """
     folder = destination(request.out, "check", (request.baseline_path, request.gate, request.history_path))
+    for option, path in (("--junit", request.junit), ("--markdown", request.markdown)):
+        check_file(path, option)
     plan = load_plan(request.gate)
     baseline = stored_baseline(request, plan)
     origin = origin_of(plan, request.seed)
@@ -64,7 +67,15 @@ def check(request: CheckRequest, listener: Listener) -> CheckOutcome:
         verdict, measured = _verdict(plan, basis, origin, request.seed, listener)
     verdict = replace(verdict, warnings=(*verdict.warnings, *_record(request, origin, verdict)))
     entries, _ = read_history(request.history_path)
+    _write_for_ci(request, verdict)
     return CheckOutcome(folder, verdict, write_check(folder, verdict, measured, entries, origin))
+
+
+def _write_for_ci(request: CheckRequest, verdict: CheckVerdict) -> None:
+    if request.junit is not None:
+        write_text(request.junit, junit_text(verdict))
+    if request.markdown is not None:
+        write_text(request.markdown, markdown_text(verdict))
 
 
 def _verdict(

@@ -37,6 +37,8 @@ class CheckRequest:
         Folder of the report; None for `results/check-DATE-TIME`.
     seed
         Of the bootstrap.
+    junit, markdown
+        Files for a CI service; None for none.
     """
 
     baseline: Path | None = None
@@ -45,6 +47,8 @@ class CheckRequest:
     history: Path | None = None
     out: Path | None = None
     seed: int = 0
+    junit: Path | None = None
+    markdown: Path | None = None
 
     @property
     def baseline_path(self) -> Path:

@@ -56,6 +56,11 @@ class TimingRow:
         """How much slower than the baseline, a fraction; negative where it is faster."""
         return self.now / self.baseline - 1.0
 
+    @property
+    def faster(self) -> bool:
+        """Whether it is as much faster as what would have to be slower to fail, and its interval says so."""
+        return self.now * self.allowed <= self.baseline**2 and self.ci95[1] < self.baseline
+
     def to_dict(self) -> dict[str, Any]:
         """The row for `check.json`."""
         return {
@@ -65,6 +70,7 @@ class TimingRow:
             "ci95": list(self.ci95),
             "allowed": self.allowed,
             "passed": self.passed,
+            "faster": self.faster,
             "slowdown_percent": 100.0 * self.slowdown,
             "caught_19_of_20_percent": 100.0 * self.caught,
         }

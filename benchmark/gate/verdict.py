@@ -51,6 +51,10 @@ class CheckVerdict:
         values = [value_words(row) for row in self.accuracy if not row.passed]
         return values + [time_words(row) for row in self.timing if not row.passed]
 
+    def improvements(self) -> list[str]:
+        """One line for each time that got better by more than its margin; a new baseline would keep it."""
+        return [time_words(row) for row in self.timing if row.faster]
+
     def summary(self) -> list[str]:
         """One line for the values and one for each time."""
         worst = max((row.share for row in self.accuracy), default=0.0)
@@ -62,7 +66,11 @@ class CheckVerdict:
         """The verdict in one sentence."""
         values, times = len(self.accuracy), len(self.timing)
         if self.passed:
-            return f"Nothing got worse: {_count(values, 'value')} and {_count(times, 'timing')} are within limits."
+            faster = len(self.improvements())
+            better = f" {_count(faster, 'timing')} got faster." if faster else ""
+            return (
+                f"Nothing got worse: {_count(values, 'value')} and {_count(times, 'timing')} are within limits.{better}"
+            )
         bad_values = sum(not row.passed for row in self.accuracy)
         bad_times = sum(not row.passed for row in self.timing)
         return f"{bad_values} of {_count(values, 'value')} changed, {bad_times} of {_count(times, 'timing')} slower."

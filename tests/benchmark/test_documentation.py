@@ -1,9 +1,11 @@
 """The documentation's pages, links and ready files belong together."""
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -22,7 +24,22 @@ def test_links_lead_to_pages_of_the_navigation(page: Path) -> None:
         assert target in listed, f"{page.name} links to {target}"
 
 
-def test_the_ready_ci_file_is_the_one_explained() -> None:
-    explained = re.search(r"```yaml\n(.*?)```", (DOCS / "gate.md").read_text(), re.DOTALL)
-    assert explained is not None
-    assert (DOCS / "ci-gate.yml").read_text().partition("\n")[2] == explained[1]
+@pytest.mark.parametrize("name", ["github-gate.yml", "gitlab-gate.yml"])
+def test_the_ready_ci_files_run_the_gate_with_options_that_it_has(name: str) -> None:
+    text = (ROOT / "ci" / name).read_text()
+    assert name in (DOCS / "gate.md").read_text()
+    (command,) = re.findall(r"tissuebench check [^\n]*\n[^\n]*", "\n".join(_strings(yaml.safe_load(text))) + "\n\n")
+    options = set(re.findall(r"--[a-z]+", command))
+    assert {"--against", "--junit", "--markdown", "--history"} <= options
+    known = (ROOT / "benchmark" / "cli" / "check.py").read_text() + (
+        ROOT / "benchmark" / "cli" / "options.py"
+    ).read_text()
+    assert options <= set(re.findall(r'"(--[a-z]+)"', known))
+
+
+def _strings(node: object) -> Iterator[str]:
+    """All texts of a YAML document."""
+    if isinstance(node, str):
+        yield node
+    for inner in node.values() if isinstance(node, dict) else node if isinstance(node, list) else ():
+        yield from _strings(inner)

@@ -60,6 +60,15 @@ def check_ready(out: Path, inputs: Iterable[Path | str | None] = ()) -> None:
     _check_writable(out, f"--out {out}")
 
 
+def check_file(path: Path | None, option: str) -> None:
+    """Refuse a file that cannot be written, or a folder in its place."""
+    if path is None:
+        return
+    if path.is_dir():
+        raise InputError(f"{option} {path} is a folder; give a file")
+    _check_writable(path, f"{option} {path}")
+
+
 def fresh(name: str) -> Path:
     """Return `results/NAME-DATE-TIME`, which does not exist yet."""
     return _fresh(RESULTS, f"{file_name(name)}-{datetime.now():%Y%m%d-%H%M%S}")

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -49,3 +50,15 @@ def test_an_interruption_has_its_own_code(benchmark_cli, monkeypatch: pytest.Mon
 
     monkeypatch.setattr(app, "app", interrupted)
     assert benchmark_cli("tissues").code == app.EXIT_INTERRUPTED
+
+
+def test_without_a_verb_the_help_is_shown_as_it_is(benchmark_cli) -> None:
+    called = benchmark_cli()
+    assert called.code == 2
+    assert called.out == benchmark_cli("--help").out
+    assert called.err == ""
+
+
+def test_the_version_is_told(benchmark_cli) -> None:
+    called = benchmark_cli("--version")
+    assert (called.code, called.out) == (0, f"tissuebench {version('tissuebench')}\n")

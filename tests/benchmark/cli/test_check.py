@@ -103,8 +103,10 @@ def test_a_deflection_off_by_one_per_cent_is_exit_one(call) -> None:
     call("--accept", "--quiet")
     change("tissuebench-baseline.json", lambda table: table["timing"]["spring.history"].update(ratios=[1e9]))
     Path("my_model.py").write_text(MODEL.replace("1e-3", "1.01e-3"))
-    called = call("--json", "--quiet", "--out", "out")
+    called = call("--json", "--quiet", "--out", "out", "--junit", "ci/check.xml", "--markdown", "ci/check.md")
     assert called.code == 1
+    assert 'failures="1"' in Path("ci/check.xml").read_text()
+    assert Path("ci/check.md").read_text().startswith("### ❌ Regression check")
     document = json.loads(called.out)
     assert document["passed"] is False
     assert document["accuracy"][0]["passed"] is False
@@ -123,6 +125,13 @@ def test_slower_is_exit_one(call) -> None:
     assert "warning: the baseline's times come from another machine" in paragraph(called)
     assert "spring.history: baseline 1e-09 x the reference workload" in paragraph(called)
     assert "slower" in called.out
+
+
+def test_a_folder_in_the_place_of_a_ci_file_is_found_before_measuring(call) -> None:
+    Path("here").mkdir()
+    called = call("--junit", "here")
+    assert called.code == 2
+    assert "--junit here is a folder" in paragraph(called)
 
 
 def test_another_schema_is_exit_three_and_a_broken_file_exit_two(call) -> None:
