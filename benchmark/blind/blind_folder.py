@@ -8,7 +8,10 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
-from benchmark.blind.judging import BlindRow, Judged, confusion, table, verdicts
+from benchmark.blind.scoring.judging import Judged, confusion, table, verdicts
+from benchmark.blind.scoring.lab_measures import lab_table
+from benchmark.blind.scoring.measure_rows import BlindRow
+from benchmark.blind.suites import MIXED
 from benchmark.errors import InputError
 from benchmark.resumable import check_files
 from benchmark.runs.output.destination import check_ready
@@ -58,7 +61,7 @@ def _settings_in(path: Path) -> dict[str, Any] | None:
 
 def finish(path: Path, settings: dict[str, Any], cases: Sequence[Judged]) -> dict[str, Any]:
     """Write blind.json, cases.csv, confusion.csv and table.md, and end the journal; returns the document."""
-    rows = table(cases)
+    rows = rows_of(settings, cases)
     result = document(settings, rows, cases)
     columns = {each.name: [getattr(case, each.name) for case in cases] for each in fields(Judged)}
     pairs = [(truth, said, n) for truth, names in confusion(cases).items() for said, n in names.most_common()]
@@ -72,6 +75,11 @@ def finish(path: Path, settings: dict[str, Any], cases: Sequence[Judged]) -> dic
     with extended_folder(path, growing=()):
         pass
     return result
+
+
+def rows_of(settings: dict[str, Any], cases: Sequence[Judged]) -> tuple[BlindRow, ...]:
+    """The measures of a run; those over labs and families where its suite has them."""
+    return (*table(cases), *(lab_table(cases) if settings["suite"] in MIXED else ()))
 
 
 def document(settings: dict[str, Any], rows: Sequence[BlindRow], cases: Sequence[Judged]) -> dict[str, Any]:
@@ -90,6 +98,9 @@ def text_table(rows: Sequence[BlindRow]) -> str:
     """The rows as a Markdown table."""
     lines = ["| measure | value | 95 % | cases | bar | passed |", "|---|---|---|---|---|---|"]
     for row in rows:
+        if not row.n:
+            lines.append(f"| {row.measure} | not measured |  | 0 | {row.bar} |  |")
+            continue
         passed = "" if row.passed is None else "yes" if row.passed else "no"
         low, high = row.ci95
         lines.append(f"| {row.measure} | {row.value:.3g} | {low:.3g} to {high:.3g} | {row.n} | {row.bar} | {passed} |")

@@ -32,6 +32,10 @@ class PressPlan:
         At the first peak, and in air at the end, s.
     air : float
         How far above the surface the trial begins and ends, m.
+    second : float
+        Depth of the second press, of the first.
+    unloading : bool
+        Whether the trial goes on after the hold.
     """
 
     name: str
@@ -40,6 +44,8 @@ class PressPlan:
     hold: float = 5.0
     rest: float = 5.0
     air: float = 1e-3
+    second: float = 1.0
+    unloading: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +96,9 @@ def _corners(plan: PressPlan, depth_factor: float) -> tuple[Array, Array]:
     """Times and depths between which the tool moves evenly."""
     peak = depth_factor * plan.depth
     lift = -0.2 * plan.air
-    stops = [(-plan.air, 1.0), (peak, plan.hold), (lift, 0.1), (peak, 0.1), (-plan.air, plan.rest)]
+    stops = [(-plan.air, 1.0), (peak, plan.hold)]
+    if plan.unloading:
+        stops += [(lift, 0.1), (plan.second * peak, 0.1), (-plan.air, plan.rest)]
     times, depths = [0.0], [-plan.air]
     for depth, pause in stops:
         arrival = times[-1] + abs(depth - depths[-1]) / plan.speed

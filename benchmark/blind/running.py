@@ -16,13 +16,14 @@ from pathlib import Path
 from typing import Any, Protocol, cast
 
 from benchmark.blind.cases import CaseName
-from benchmark.blind.judging import Judged, failed, judge
+from benchmark.blind.scoring.judging import IMPOSSIBLE, Judged, failed, judge, unanswered
 from benchmark.blind.session_files import case
 from benchmark.child_processes import end_with_parent, single_threaded_children
 from benchmark.discovery.discovery_result import Discovery
 from benchmark.errors import InputError
 from benchmark.files.sessions.trials import Session
 from benchmark.resumable import Journal, read_rows
+from benchmark.sweeps.cluster import on_cluster
 
 PRODUCT = "benchmark.discovery:discover"
 OnCase = Callable[[int, int, Judged | None], None]
@@ -73,12 +74,16 @@ def _function(name: str) -> Any:
 def run_case(name: CaseName, discover: Discoverer) -> Judged:
     """Make the case, let `discover` answer for its session folder, and judge the answer.
 
-    A discovery that raises is judged as one that says nothing; its time is the discovery's, reading included.
+    A discovery that raises is judged as one that says nothing; its time is the discovery's, reading included. A case
+    whose effect cannot be as strong as wanted in its lab is not put to it.
     """
     from benchmark.files.sessions.session_loading import load_session
 
     with tempfile.TemporaryDirectory(prefix="blind-") as parent:
-        folder, made = case(name, Path(parent))
+        try:
+            folder, made = case(name, Path(parent))
+        except ValueError as error:
+            return unanswered(name, IMPOSSIBLE, str(error))
         started = time.perf_counter()
         try:
             answer = discover(load_session(folder), seed=name.seed)
@@ -88,7 +93,7 @@ def run_case(name: CaseName, discover: Discoverer) -> Judged:
 
 
 def run_cases(
-    cases: Sequence[CaseName], discoverer: str, journal: Path, workers: int, on_case: OnCase
+    cases: Sequence[CaseName], discoverer: str, journal: Path, workers: int | str, on_case: OnCase
 ) -> tuple[Judged, ...]:
     """Run the cases that the journal does not have yet.
 
@@ -99,8 +104,8 @@ def run_cases(
         `module:function`.
     journal : Path
         Where each finished case is kept at once, a line of JSON.
-    workers : int
-        Processes; 1 is this one.
+    workers : int or str
+        Processes; 1 is this one. Or the address of a Dask scheduler.
     on_case : callable
         Told how many of how many are finished, and the last one.
 
@@ -120,8 +125,12 @@ def run_cases(
     return tuple(finished[name.text] for name in cases)
 
 
-def _work(waiting: Sequence[CaseName], discoverer: str, workers: int) -> Iterator[Judged]:
+def _work(waiting: Sequence[CaseName], discoverer: str, workers: int | str) -> Iterator[Judged]:
     """Yield finished cases as they come; one worker is this process."""
+    if isinstance(workers, str):
+        jobs = [(name, discoverer) for name in waiting]
+        yield from on_cluster(_job, jobs, lambda job, reason: unanswered(job[0], "error", reason), workers, _unheard)
+        return
     if workers == 1 or not waiting:
         yield from (_in_process(name, discoverer) for name in waiting)
         return
@@ -134,6 +143,14 @@ def _work(waiting: Sequence[CaseName], discoverer: str, workers: int) -> Iterato
                 yield future.result()
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _job(job: tuple[CaseName, str]) -> Judged:
+    return _in_process(*job)
+
+
+def _unheard(_: str) -> None:
+    """Remarks on the cluster go nowhere."""
 
 
 def _in_process(name: CaseName, discoverer: str) -> Judged:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from benchmark.blind.body.true_body import TrueBody
 from benchmark.blind.hidden import Hidden, SessionScale
+from benchmark.blind.labs import LabConditions
 from benchmark.blind.motion import Array, Flags, PressPlan, ReportedMotion, motion, phases
 from benchmark.blind.simulate import FaceMarkers, Signals, simulate
-from benchmark.blind.specimens import TrueBody
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,8 @@ class Scene:
     rate, frame_rate : float
         Hz.
     force_noise, marker_noise : Noise
+    lab : LabConditions
+        What of the rest is not as told.
     """
 
     body: TrueBody
@@ -46,6 +49,7 @@ class Scene:
     frame_rate: float
     force_noise: Noise
     marker_noise: Noise
+    lab: LabConditions = field(default_factory=LabConditions)
 
     @property
     def scale(self) -> SessionScale:
@@ -60,9 +64,15 @@ class Scene:
         """The nominal motion of a condition."""
         return motion(plan, self.rate, self.frame_rate, delay=delay)
 
-    def mean(self, plan: PressPlan, effects: Sequence[Hidden], delay: float = 0.0) -> Signals:
-        """A condition's mean trial; with `delay` the specimen follows its reported depth that much later, s."""
-        return simulate(self.body, self.grid, self.motion(plan, delay), effects)
+    def mean(self, plan: PressPlan, effects: Sequence[Hidden], delay: float = 0.0, deeper: float = 0.0) -> Signals:
+        """A condition's mean trial.
+
+        With `delay` the specimen follows its reported depth that much later, s; with `deeper` it is touched that much
+        before the reported zero, m.
+        """
+        moved = self.motion(plan, delay)
+        moved = replace(moved, depth=moved.depth + deeper) if deeper else moved
+        return simulate(self.body, self.grid, moved, effects)
 
     def with_body(self, body: TrueBody) -> Scene:
         """The same session with another body."""

@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from scipy.signal import lfilter
 
+from benchmark.blind.body.presses import ALL_THICKNESSES
+from benchmark.blind.body.specimens import HOLE_RADIUS, MODULUS_ERROR, THICKNESS_ERROR, ToldSpecimen, misjudged
+from benchmark.blind.body.true_body import TrueBody
 from benchmark.blind.cases import BlindCase, CaseName, generator, make_case
 from benchmark.blind.motion import Array, Integers, ReportedMotion, motion
-from benchmark.blind.scene import Noise
+from benchmark.blind.scene import Noise, Scene
 from benchmark.blind.simulate import Signals, simulate
-from benchmark.blind.specimens import HOLE_RADIUS, MODULUS_ERROR, THICKNESS_ERROR, ToldSpecimen, misjudged
 from reports import write_text
 
 TAILS = 4.0
 ZERO_SCATTER = 0.005
 DELAY_SCATTER = 8e-3
 DEPTH_SCATTER = 0.01
+MOST_HIGHER = 0.1
+"""A specimen is at most so much higher or lower than told, as a share."""
+LATEST_TOUCH = 0.3
+"""Share of the shallow press by which a rig has found the surface in any case."""
 MAKER = "computed by the blind trials' generator, not measured"
 
 
@@ -77,13 +84,20 @@ def write_case(made: BlindCase, folder: Path) -> Path:
         fault = made.bad_trial if number - 1 == bad else ""
         text += _write_trial(made, moved, folder, number, fault, rng)
     write_text(folder / "session.toml", text)
-    told = made.scene.body.specimen
-    wrong = made.name.wrong_layers
-    text = (
-        specimen_text(misjudged(told, generator(made.name, "layers")), uncertain=True) if wrong else specimen_text(told)
-    )
-    write_text(folder / "specimen.toml", text)
+    write_text(folder / "specimen.toml", _specimen(made))
     return folder
+
+
+def _specimen(made: BlindCase) -> str:
+    """What the lab tells of the specimen."""
+    told, lab = made.scene.body.specimen, made.scene.lab
+    modulus, thickness = lab.modulus_error, lab.thickness_error
+    if made.name.wrong_layers:
+        modulus, thickness = MODULUS_ERROR, THICKNESS_ERROR
+    if not modulus and not thickness:
+        return specimen_text(told)
+    wrong = misjudged(told, generator(made.name, "layers"), modulus, thickness)
+    return specimen_text(wrong, (modulus, thickness) if made.name.wrong_layers or lab.stated else None)
 
 
 def _write_trial(
@@ -98,14 +112,17 @@ def _write_trial(
         np.interp(moved.time - rng.normal(0.0, DELAY_SCATTER), moved.time, moved.depth),
         moved.frames,
     )
-    signals = simulate(scene.body, scene.grid, late, effects, float(np.exp(rng.normal(0.0, made.gain_scatter))))
+    gain = float(np.exp(rng.normal(0.0, made.gain_scatter)))
+    body = _specimen_of_trial(scene, rng)
+    signals = simulate(body, scene.grid, late, effects, gain)
+    touch = _touch(scene, late, signals, rng)
     loudness = 4.0 if fault == "shaky" else 1.0
     force = signals.force + loudness * remembered(scene.force_noise, signals.force.shape, rng)
     force += peak * ZERO_SCATTER * rng.normal()
     if fault == "spike":
         force += spike(moved.time, 0.3 * peak, rng)
     rows = dropout(moved.time, rng) if fault == "dropout" else np.arange(moved.time.size)
-    columns = {"time_s": moved.time[rows], "depth_mm": 1e3 * moved.depth[rows], "force_N": force[rows]}
+    columns = {"time_s": moved.time[rows], "depth_mm": 1e3 * (moved.depth[rows] - touch), "force_N": force[rows]}
     pd.DataFrame(columns).round({"time_s": 5, "depth_mm": 4, "force_N": 6}).to_csv(
         folder / f"trial_{number:03d}.csv", index=False
     )
@@ -113,6 +130,23 @@ def _write_trial(
         return ""
     _write_markers(made, moved, signals, folder / f"markers_{number:03d}.csv", rng)
     return f'markers = "markers_{number:03d}.csv"\n'
+
+
+def _specimen_of_trial(scene: Scene, rng: np.random.Generator) -> TrueBody:
+    """The body that this trial presses: the same, or one of another height."""
+    if not scene.lab.height_spread:
+        return scene.body
+    higher = float(np.clip(rng.normal(0.0, scene.lab.height_spread), -MOST_HIGHER, MOST_HIGHER))
+    return replace(scene.body, setup=((ALL_THICKNESSES, higher),))
+
+
+def _touch(scene: Scene, moved: ReportedMotion, signals: Signals, rng: np.random.Generator) -> float:
+    """True depth (m) at which this trial's reported depth is 0: where the force crosses a threshold, and scatter."""
+    lab, found = scene.lab, 0.0
+    if lab.touch_threshold:
+        over = np.flatnonzero((signals.force > lab.touch_threshold * scene.scale.force) & (moved.depth > 0.0))
+        found = min(float(moved.depth[over[0]]), LATEST_TOUCH * scene.scale.shallow) if over.size else 0.0
+    return found + float(rng.normal(0.0, lab.touch_scatter)) if lab.touch_scatter else found
 
 
 def _write_markers(
@@ -143,16 +177,20 @@ def _head(made: BlindCase) -> str:
     )
     if grid is None:
         return text
+    lab = made.scene.lab
+    stated = f'print_scatter = "{1e3 * lab.print_scatter:.3f} mm"\n' if lab.print_stated and lab.print_scatter else ""
     return text + (
         f"\n[camera]\nmarker_rows = {grid.rows}\nmarker_columns = {grid.columns}\n"
-        f'marker_spacing = "{1e3 * grid.spacing:g} mm"\n'
+        f'marker_spacing = "{1e3 * grid.spacing:g} mm"\n{stated}'
     )
 
 
-def specimen_text(specimen: ToldSpecimen, *, uncertain: bool = False) -> str:
-    """The tissue file of what is told of a specimen, with how well it is known; its moduli are not the true ones."""
-    modulus = f" +/- {100 * MODULUS_ERROR:g} %" if uncertain else ""
-    thickness = f" +/- {100 * THICKNESS_ERROR:g} %" if uncertain else ""
+def specimen_text(specimen: ToldSpecimen, errors: tuple[float, float] | None = None) -> str:
+    """The tissue file of what is told of a specimen; its moduli are not the true ones.
+
+    `errors` are the shares by which moduli and thicknesses are said to be known, where that is said.
+    """
+    modulus, thickness = ("", "") if errors is None else (f" +/- {100 * error:.3g} %" for error in errors)
     text = f'schema = 1\nname = "{specimen.name}"\ncitation = "Synthetic: {MAKER}."\n'
     for layer in specimen.layers:
         text += (

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmark.blind.body.true_body import TrueBody
 from benchmark.blind.hidden import Hidden
 from benchmark.blind.motion import Array, ReportedMotion
-from benchmark.blind.specimens import TrueBody
 
 ROUNDS = 60
 SETTLED = 1e-7
+LENS_REACH = 15e-3
 
 
 @dataclass(frozen=True)
@@ -26,12 +27,15 @@ class FaceMarkers:
         m.
     off : tuple of (x, y)
         How far each is printed off the grid, m; empty where they are exact.
+    lens : float
+        Radial distortion: by which share places `LENS_REACH` from the middle look farther out.
     """
 
     rows: int = 3
     columns: int = 6
     spacing: float = 6e-3
     off: tuple[tuple[float, float], ...] = ()
+    lens: float = 0.0
 
     def positions(self) -> tuple[Array, Array]:
         """Resting x and y (markers,) m."""
@@ -39,6 +43,13 @@ class FaceMarkers:
         y = self.spacing * (np.arange(self.rows) - 0.5 * (self.rows - 1))
         off: Array = np.array(self.off) if self.off else np.zeros((self.rows * self.columns, 2))
         return np.tile(x, self.rows) + off[:, 0], np.repeat(y, self.columns) + off[:, 1]
+
+    def through_lens(self, x: Array, y: Array) -> tuple[Array, Array]:
+        """Where the camera sees places (f, markers) m."""
+        if self.lens == 0.0:
+            return x, y
+        farther = 1.0 + self.lens * (x**2 + y**2) / LENS_REACH**2
+        return x * farther, y * farther
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +67,12 @@ class Signals:
     force: Array
     x: Array | None
     y: Array | None
+
+    def minus(self, other: Signals) -> Signals:
+        """Their difference."""
+        x = None if self.x is None or other.x is None else self.x - other.x
+        y = None if self.y is None or other.y is None else self.y - other.y
+        return Signals(self.force - other.force, x, y)
 
 
 def simulate(
@@ -125,7 +142,7 @@ def _seen(
     x, y, sinking = _face(body, grid, effects, followed)
     for effect in effects:
         x, y = effect.sight(x, y, sinking)
-    return x, y
+    return grid.through_lens(x, y)
 
 
 def _face(body: TrueBody, grid: FaceMarkers, effects: Sequence[Hidden], followed: Array) -> tuple[Array, Array, Array]:

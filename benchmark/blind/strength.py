@@ -1,7 +1,9 @@
 """How strong a hidden effect is and where it shows: what is left once the base model has explained what it can.
 
 Base parameters and nuisances, each projected off by its derivative: tool radius, exponent of force over depth and width
-of the lower face's field for the session; gain, zero and time shift for each trial.
+of the lower face's field for the session; gain, zero and time shift for each trial. Where the lab is not as told, what
+it does not know is projected off too, as far as its error goes (`doubts`): an effect that only a better set-up would
+show is not strong.
 """
 
 from __future__ import annotations
@@ -9,10 +11,13 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import brentq
 
+from benchmark.blind.doubts import doubts
 from benchmark.blind.hidden import Hidden
 from benchmark.blind.motion import Array, PressPlan, phases
 from benchmark.blind.scene import Scene, Whitened, frame_phases, whiten
@@ -21,6 +26,8 @@ from benchmark.blind.simulate import FaceMarkers, Signals
 SHAPE_STEPS = {"radius": 0.01, "exponent": 0.01, "width": 0.01}
 DELAY_STEP = 5e-3
 TOLERANCE = 0.003
+FREE = 1e3
+"""Norm of a free parameter's tangent, in standard deviations: what it explains is charged a millionth."""
 SHOWS = 5.0
 MAY_SHOW = 2.5
 Cell = tuple[str, str]
@@ -36,10 +43,30 @@ class Base:
         One a condition, without effects.
     tangents : (samples of all conditions, parameters)
         Whitened, each condition's rows times the root of its repeats.
+    errors : (parameters,) or None
+        Standard deviation of each parameter, in units of its tangent; None where all are free.
     """
 
     means: tuple[Signals, ...]
     tangents: Array
+    errors: Array | None = None
+
+    def unexplained(self, whole: Array) -> tuple[Array, float]:
+        """What no parameter explains, and the squared pull on those that are known."""
+        if self.errors is None:
+            scaled = self.tangents / np.linalg.norm(self.tangents, axis=0).clip(1e-30)
+            return whole - scaled @ np.linalg.lstsq(scaled, whole, rcond=1e-9)[0], 0.0
+        scaled, factor = self._factor
+        pull = cho_solve(factor, scaled.T @ whole)
+        return whole - scaled @ pull, float(pull @ pull)
+
+    @cached_property
+    def _factor(self) -> tuple[Array, tuple[Array, bool]]:
+        """Tangents in units of their errors, a free one's so large that nothing holds it, and their normal matrix."""
+        assert self.errors is not None
+        free = FREE / np.linalg.norm(self.tangents, axis=0).clip(1e-30)
+        scaled = self.tangents * np.minimum(self.errors, free)
+        return scaled, cho_factor(scaled.T @ scaled + np.eye(scaled.shape[1]))
 
 
 def base_of(scene: Scene) -> Base:
@@ -48,25 +75,34 @@ def base_of(scene: Scene) -> Base:
     columns = [_session_column(scene, means, name, step) for name, step in SHAPE_STEPS.items()]
     for number, (plan, mean) in enumerate(zip(scene.plans, means, strict=True)):
         columns += [_placed(scene, means, number, each) for each in _trial_tangents(scene, plan, mean)]
-    return Base(means, np.stack(columns, axis=1))
+    unsure = doubts(scene, means)
+    if not unsure:
+        return Base(means, np.stack(columns, axis=1))
+    free = [np.inf] * len(columns)
+    columns += [
+        _weight(scene) * np.concatenate([whiten(scene, part).stacked() for part in each.change]) for each in unsure
+    ]
+    return Base(means, np.stack(columns, axis=1), np.array(free + [each.error for each in unsure]))
 
 
 def leftover(scene: Scene, base: Base, effects: Sequence[Hidden]) -> tuple[Whitened, ...]:
     """What the base cannot explain of the effects, whitened, times the root of the repeats; one a condition."""
+    return _left(scene, base, effects)[0]
+
+
+def _left(scene: Scene, base: Base, effects: Sequence[Hidden]) -> tuple[tuple[Whitened, ...], float]:
+    """The leftover, and the squared pull on what the lab knows."""
     changes = [
-        whiten(scene, _minus(scene.mean(plan, effects), mean))
-        for plan, mean in zip(scene.plans, base.means, strict=True)
+        whiten(scene, scene.mean(plan, effects).minus(mean)) for plan, mean in zip(scene.plans, base.means, strict=True)
     ]
-    whole = _weight(scene) * np.concatenate([change.stacked() for change in changes])
-    scaled = base.tangents / np.linalg.norm(base.tangents, axis=0).clip(1e-30)
-    rest = whole - scaled @ np.linalg.lstsq(scaled, whole, rcond=1e-9)[0]
-    return tuple(_split(rest, changes))
+    rest, pull = base.unexplained(_weight(scene) * np.concatenate([change.stacked() for change in changes]))
+    return tuple(_split(rest, changes)), pull
 
 
 def strength(scene: Scene, base: Base, effects: Sequence[Hidden]) -> float:
     """D: the norm of what the base cannot explain, in standard deviations of the trial mean."""
-    rest = leftover(scene, base, effects)
-    return float(np.sqrt(sum(np.sum(each.stacked() ** 2) for each in rest)))
+    rest, pull = _left(scene, base, effects)
+    return float(np.sqrt(sum(np.sum(each.stacked() ** 2) for each in rest) + pull))
 
 
 def scaled_to(scene: Scene, base: Base, effect: Hidden, wanted: float) -> Hidden:
@@ -94,7 +130,7 @@ def _session_column(scene: Scene, means: Sequence[Signals], name: str, step: flo
     shape = scene.body.shape
     shifted = scene.with_body(replace(scene.body, shape=replace(shape, **{name: getattr(shape, name) + step})))
     parts = [
-        whiten(scene, _minus(shifted.mean(plan, ()), mean)).stacked()
+        whiten(scene, shifted.mean(plan, ()).minus(mean)).stacked()
         for plan, mean in zip(scene.plans, means, strict=True)
     ]
     return _weight(scene) * np.concatenate(parts)
@@ -107,7 +143,7 @@ def _trial_tangents(scene: Scene, plan: PressPlan, mean: Signals) -> list[Signal
     return [
         Signals(mean.force, still_x, still_y),
         Signals(np.full_like(mean.force, abs(mean.force).max()), still_x, still_y),
-        _minus(scene.mean(plan, (), DELAY_STEP), mean),
+        scene.mean(plan, (), DELAY_STEP).minus(mean),
     ]
 
 
@@ -129,12 +165,6 @@ def _split(rest: Array, changes: Sequence[Whitened]) -> list[Whitened]:
             y, rest = rest[: change.y.size].reshape(change.y.shape), rest[change.y.size :]
         out.append(Whitened(force, x, y))
     return out
-
-
-def _minus(first: Signals, second: Signals) -> Signals:
-    x = None if first.x is None or second.x is None else first.x - second.x
-    y = None if first.y is None or second.y is None else first.y - second.y
-    return Signals(first.force - second.force, x, y)
 
 
 def _size(signals: Signals) -> int:

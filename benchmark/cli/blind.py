@@ -10,10 +10,14 @@ import typer
 from benchmark.cli.options import Debug, Json, Out, Quiet, Seed
 
 if TYPE_CHECKING:
-    from benchmark.blind.judging import Judged
+    from benchmark.blind.scoring.judging import Judged
 
-Suite = Annotated[str, typer.Option("--suite", help="small | first | medium | full.")]
+Suite = Annotated[str, typer.Option("--suite", help="small | first | medium | labs | full.")]
 Cases = Annotated[str, typer.Option("--cases", metavar="SLUG,...", help="Only these effects, pairs, or null.")]
+Most = Annotated[int, typer.Option("--most", min=0, metavar="N", help="Only the first N cases; 0 for all.")]
+Scheduler = Annotated[
+    str, typer.Option("--scheduler", metavar="ADDRESS", help="A Dask cluster that works instead of local processes.")
+]
 Workers = Annotated[int, typer.Option("--workers", min=1, help="Processes.")]
 PrintScatter = Annotated[
     str, typer.Option("--print-scatter", metavar="LENGTH", help='How far markers are printed off, as "0.06 mm".')
@@ -41,6 +45,8 @@ def blind(
     out: Out = None,
     seed: Seed = 0,
     workers: Workers = 2,
+    scheduler: Scheduler = "",
+    most: Most = 0,
     print_scatter: PrintScatter = "",
     discoverer: Named = "benchmark.discovery:discover",
     json: Json = False,
@@ -52,11 +58,10 @@ def blind(
     Writes table.md, cases.csv, confusion.csv and blind.json. The same command goes on where it was stopped. Exit code
     0 whatever it finds.
     """
-    from benchmark.blind.blind_folder import confusion_text, finish, open_folder, text_table
-    from benchmark.blind.cases import chosen
-    from benchmark.blind.cases import suite as cases_of
-    from benchmark.blind.judging import table
+    from benchmark.blind.blind_folder import confusion_text, finish, open_folder, rows_of, text_table
     from benchmark.blind.running import load_discoverer, run_cases
+    from benchmark.blind.suites import chosen
+    from benchmark.blind.suites import suite as cases_of
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
     from benchmark.runs.output.destination import fresh
@@ -64,9 +69,10 @@ def blind(
     console = Console(quiet=quiet)
     slugs = tuple(each.strip() for each in cases.split(",") if each.strip())
     scatter = _scatter(print_scatter)
-    names = tuple(replace(each, print_scatter=scatter) for each in chosen(cases_of(suite, seed), slugs))
+    names = tuple(replace(each, print_scatter=scatter) for each in chosen(cases_of(suite, seed), slugs))[: most or None]
     settings = {"suite": suite, "seed": seed, "cases": list(slugs), "discoverer": discoverer}
     settings |= {"print_scatter": print_scatter} if scatter else {}
+    settings |= {"most": most} if most else {}
     folder = fresh("blind") if out is None else out
     load_discoverer(discoverer)
     journal = open_folder(folder, settings)
@@ -76,12 +82,13 @@ def blind(
             remark = "" if last is None else f"{last.truth or 'null'}: {last.verdict} {last.said}"
             advance("cases", done, total, remark)
 
-        judged = run_cases(names, discoverer, journal, workers, on_case)
+        judged = run_cases(names, discoverer, journal, scheduler or workers, on_case)
     result = finish(folder, settings, judged)
     if json:
         print_json({**result, "out": str(folder)})
     else:
-        print(f"{text_table(table(judged))}\n\ntaken for something else:\n{confusion_text(judged)}\n  tables: {folder}")
+        print(text_table(rows_of(settings, judged)))
+        print(f"\ntaken for something else:\n{confusion_text(judged)}\n  tables: {folder}")
     return 0
 
 

@@ -1,4 +1,4 @@
-"""Errors of a sweep that are nobody's scenario."""
+"""Work on a Dask cluster, and what can go wrong with it that is nobody's scenario."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from importlib import metadata
-from typing import Any
+from typing import Any, TypeVar
 
 from benchmark.errors import InputError
 from benchmark.sweeps.point import PointResult, Task, evaluate, failed
@@ -17,12 +17,37 @@ class ClusterError(InputError):
     """The Dask cluster is not there, cannot serve, or is gone; what is finished is on disk."""
 
 
+Job = TypeVar("Job")
+Row = TypeVar("Row")
 PATIENCE = 10.0
 """Seconds for the scheduler to answer."""
 
 
 def work_on_cluster(tasks: Sequence[Task], address: str, say: Callable[[str], None]) -> Iterator[PointResult]:
-    """Compute points on the cluster at `address` and yield each as it finishes; `say` gets remarks on it.
+    """Compute points on the cluster at `address` and yield each as it finishes; as `on_cluster`."""
+    yield from on_cluster(evaluate, tasks, lambda task, reason: failed(task.point, reason), address, say)
+
+
+def on_cluster(
+    work: Callable[[Job], Row],
+    jobs: Sequence[Job],
+    lost: Callable[[Job, str], Row],
+    address: str,
+    say: Callable[[str], None],
+) -> Iterator[Row]:
+    """Work on the cluster at `address` and yield each row as it finishes.
+
+    Parameters
+    ----------
+    work : callable
+        Of a job: its row. Importable by the workers.
+    jobs : sequence
+    lost : callable
+        The row of a job for which the cluster has no result, and why.
+    address : str
+        Of the Dask scheduler.
+    say : callable
+        Gets remarks on the cluster.
 
     Raises
     ------
@@ -37,23 +62,25 @@ def work_on_cluster(tasks: Sequence[Task], address: str, say: Callable[[str], No
             else f"{address}: no worker yet, waiting for one"
         )
         try:
-            yield from _rows(client, tasks)
+            yield from _rows(client, work, jobs, lost)
         except (OSError, CancelledError):
             raise ClusterError(
                 f"the Dask scheduler at {address} is gone; what is finished is kept, the same command goes on with it"
             ) from None
 
 
-def _rows(client: Any, tasks: Sequence[Task]) -> Iterator[PointResult]:
-    """The points as they finish; an `OSError` or a cancelled future where the scheduler is gone."""
+def _rows(
+    client: Any, work: Callable[[Job], Row], jobs: Sequence[Job], lost: Callable[[Job, str], Row]
+) -> Iterator[Row]:
+    """The rows as they finish; an `OSError` or a cancelled future where the scheduler is gone."""
     import distributed
 
     as_completed: Any = distributed.as_completed
-    futures = [client.submit(evaluate, task, pure=False) for task in tasks]
-    points = {future.key: task.point for future, task in zip(futures, tasks, strict=True)}
+    futures = [client.submit(work, job, pure=False) for job in jobs]
+    known = {future.key: job for future, job in zip(futures, jobs, strict=True)}
     for future in as_completed(futures):
         if future.status == "error":
-            yield failed(points[future.key], _fault(future.exception()))
+            yield lost(known[future.key], _fault(future.exception()))
         else:
             yield future.result()
         future.release()

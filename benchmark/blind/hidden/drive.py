@@ -7,9 +7,9 @@ from typing import Self
 
 import numpy as np
 
+from benchmark.blind.body.specimens import HOLE_RADIUS
 from benchmark.blind.hidden.hidden_effect import Hidden, SessionScale, play
 from benchmark.blind.motion import Array
-from benchmark.blind.specimens import HOLE_RADIUS
 
 WIDTHS = (0.6, 1.0, 1.4)
 

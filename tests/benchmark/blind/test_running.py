@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmark.blind.cases import chosen, suite
+from benchmark.blind.suites import chosen, suite
 from benchmark.cli.app import main
 from benchmark.errors import InputError
 
@@ -62,8 +62,8 @@ def test_the_verb_counts_resumes_and_redoes(stub: Path, tmp_path: Path, capsys: 
     }
     assert len(stub.read_text().splitlines()) == 2
 
-    from benchmark.blind.judging import Judged
     from benchmark.blind.running import run_cases
+    from benchmark.blind.scoring.judging import Judged
 
     journal = tmp_path / "cases.jsonl"
     names = chosen(suite("small"), ("adhesion", "camera_latency"))

@@ -4,8 +4,19 @@ from dataclasses import replace
 
 import pytest
 
-from benchmark.blind.cases import BlindCase
-from benchmark.blind.judging import BlindRow, Judged, clopper_pearson, confusion, f1, failed, judge, table
+from benchmark.blind.cases import BlindCase, CaseName
+from benchmark.blind.scoring.judging import (
+    IMPOSSIBLE,
+    Judged,
+    confusion,
+    f1,
+    failed,
+    judge,
+    table,
+    unanswered,
+)
+from benchmark.blind.scoring.lab_measures import lab_table, right
+from benchmark.blind.scoring.measure_rows import BlindRow, clopper_pearson
 
 HOLD, LOAD, LIFTED = ("force_z", "hold"), ("force_z", "load"), ("force_z", "after_lift_off")
 
@@ -130,3 +141,50 @@ def test_confusion_counts_the_first_name_or_the_verdict() -> None:
     found = confusion([CASE, WRONG, SILENT, NULL])
     assert found["adhesion"] == {"adhesion": 1, "force_drift": 1, "(no_discrepancy)": 1}
     assert found["none"] == {"(no_discrepancy)": 1}
+
+
+def lab_rows(*cases: Judged) -> dict[str, BlindRow]:
+    return {row.measure: row for row in lab_table(cases)}
+
+
+def test_in_a_lab_the_set_up_may_be_the_answer() -> None:
+    clamped = replace(CASE, lab="clamped_otherwise", setup_off="setup.support.clamp")
+    setup = replace(clamped, said="setup.support.clamp+adhesion")
+    instrument = replace(clamped, said="perspective", reported="perspective")
+    unsure = replace(instrument, verdict="lookalikes")
+    rows = lab_rows(clamped, setup, instrument, unsure)
+    assert rows["clamped otherwise: right name or set-up first"].value == 0.5
+    assert rows["clamped otherwise: wrong instrument, confident"].value == 0.25
+    assert rows["clamped otherwise: wrong instrument, confident"].passed is False
+    assert rows["tissue: sensor named with confidence"].value == 0.25
+    assert rows["printed: right name first"].n == 0
+    assert rows["printed: right name first"].passed is None
+
+
+def test_a_set_up_that_is_wrong_is_no_effect_named_on_a_null() -> None:
+    setup = replace(NULL, verdict="named", said="setup.tool.radius", reported="setup.tool.radius")
+    rows = lab_rows(NULL, setup, replace(setup, setup_off="setup.tool.radius"), replace(setup, said="adhesion"))
+    assert rows["nulls named, all labs"].value == 0.25
+    assert rows["nulls whose told set-up is right: set-up named"].value == 0.25
+
+
+def test_too_few_trials_count_by_themselves() -> None:
+    few = replace(CASE, trials=4, lab="printed")
+    rows = lab_rows(few, replace(CASE, lab="printed"), replace(WRONG, lab="printed"))
+    assert rows["printed: right name first"].n == 2
+    assert rows["fewer than six trials: something named"].value == 1.0
+    assert rows["effects in the set in 80 % of their cases"].passed is True
+
+
+def test_a_case_that_cannot_be_made_counts_nowhere() -> None:
+    none = unanswered(CaseName("effect", "adhesion", 3, lab="printed"), IMPOSSIBLE, "out of reach")
+    assert rows_of(CASE, none)["right name first"].n == 1
+    assert lab_rows(none)["printed: right name first"].n == 0
+
+
+@pytest.mark.parametrize(
+    ("case", "said"),
+    [(CASE, True), (WRONG, False), (NULL, True), (replace(CASE, kind="pair", truth="adhesion+force_drift"), False)],
+)
+def test_what_is_right_depends_on_the_kind(case: Judged, said: bool) -> None:
+    assert right(case) is said

@@ -6,20 +6,20 @@ The table has shares with Clopper-Pearson bounds against the bars, and who was t
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-from scipy.stats import beta
-
-from benchmark.blind.cases import BlindCase
+from benchmark.blind.cases import BlindCase, CaseName
+from benchmark.blind.scoring.measure_rows import BlindRow, average, median, share
 from benchmark.discovery.discovery_result import Discovery
 
 NAMING = ("named", "conditional", "lookalikes", "instrument_first", "partly_explained")
 """Verdicts under which the effects of an answer are claimed."""
 
 CONFIDENT = ("named", "conditional")
-Interval = tuple[float, float]
+SETUP = "setup."
+IMPOSSIBLE = "not made"
+"""Verdict of a case whose effect cannot be as strong as wanted in its lab; it counts nowhere."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +55,12 @@ class Judged:
         Wall time of the discovery.
     remark : str
         The error, where there was one.
+    family, lab, conditions : str
+        Of the case; the lab's conditions in words.
+    markers : bool
+    trials : int
+    setup_off : str
+        Set-up entries that an answer may rightly name, with + between: what the session tells otherwise than it is.
     """
 
     case: str
@@ -74,6 +80,22 @@ class Judged:
     gap_closed: float | None
     seconds: float
     remark: str = ""
+    family: str = "first"
+    lab: str = "as_told"
+    conditions: str = ""
+    markers: bool = True
+    trials: int = 10
+    setup_off: str = ""
+
+    @property
+    def first(self) -> str:
+        """The effect or set-up entry that was said first; "" where nothing was."""
+        return self.said.split("+")[0]
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """The effects that were said, without set-up entries."""
+        return tuple(slug for slug in self.said.split("+") if slug and not slug.startswith(SETUP))
 
 
 def judge(case: BlindCase, answer: Discovery, seconds: float) -> Judged:
@@ -101,6 +123,31 @@ def failed(case: BlindCase, error: Exception, seconds: float) -> Judged:
     return replace(_silent(case, "error", seconds), remark=f"{type(error).__name__}: {error}")
 
 
+def unanswered(name: CaseName, verdict: str, reason: str) -> Judged:
+    """A case that cannot be made, or whose process died."""
+    return Judged(
+        case=name.text,
+        kind=name.kind,
+        truth=name.slug,
+        seed=name.seed,
+        session="",
+        strength=0.0,
+        verdict=verdict,
+        said="",
+        reported="",
+        first_set="",
+        p=None,
+        strongest="",
+        place_found=None,
+        place_f1=None,
+        gap_closed=None,
+        seconds=0.0,
+        remark=reason,
+        family=name.family,
+        lab=name.lab,
+    )
+
+
 def _silent(case: BlindCase, verdict: str, seconds: float) -> Judged:
     """A case of which nothing was said and no place was found."""
     strongest = case.cells.strongest
@@ -121,7 +168,26 @@ def _silent(case: BlindCase, verdict: str, seconds: float) -> Judged:
         place_f1=None if strongest is None else 0.0,
         gap_closed=None,
         seconds=seconds,
+        family=case.name.family,
+        lab=case.name.lab,
+        conditions=case.scene.lab.in_words,
+        markers=case.scene.grid is not None,
+        trials=case.scene.repeats * len(case.scene.plans),
+        setup_off="+".join(_setup_off(case)),
     )
+
+
+def _setup_off(case: BlindCase) -> list[str]:
+    """Keys of the set-up that are not as the session tells."""
+    body, lab = case.scene.body, case.scene.lab
+    keys = [f"{SETUP}tool.radius"] if body.shape.radius != 1.0 else []
+    keys += [f"{SETUP}support.clamp"] if body.clamp != "plate" else []
+    layers = [layer.name for layer in body.specimen.layers]
+    if lab.thickness_error or case.name.wrong_layers:
+        keys += [f"{SETUP}{layer}.thickness" for layer in layers]
+    if lab.modulus_error or case.name.wrong_layers:
+        keys += [f"{SETUP}{layer}.youngs_modulus" for layer in layers]
+    return keys
 
 
 def f1(found: set[tuple[str, str]], true: set[tuple[str, str]], allowed: set[tuple[str, str]]) -> float:
@@ -150,32 +216,9 @@ def _gap_closed(answer: Discovery, channel: str) -> float | None:
     return gaps[0] if gaps else None
 
 
-@dataclass(frozen=True)
-class BlindRow:
-    """A measure: its value with a 95 % interval over `n` cases, and its bar.
-
-    Attributes
-    ----------
-    measure : str
-    value : float
-    ci95 : (low, high)
-    n : int
-    bar : str
-        As in ">= 0.9"; "" where there is none.
-    passed : bool or None
-        None without a bar.
-    """
-
-    measure: str
-    value: float
-    ci95: Interval
-    n: int
-    bar: str
-    passed: bool | None
-
-
 def table(cases: Sequence[Judged]) -> tuple[BlindRow, ...]:
     """The rows of all measures for which there are cases."""
+    cases = [case for case in cases if case.verdict != IMPOSSIBLE]
     effects = [case for case in cases if case.kind == "effect"]
     nulls = [case for case in cases if case.kind == "null"]
     pairs = [case for case in cases if case.kind == "pair"]
@@ -184,27 +227,25 @@ def table(cases: Sequence[Judged]) -> tuple[BlindRow, ...]:
     named = [case for case in effects if case.reported]
     gaps = [case for case in effects if case.gap_closed is not None]
     rows = [
-        _share("right name first", effects, lambda case: case.said.split("+")[0] == case.truth, ">= 0.9"),
-        _share(
+        share("right name first", effects, lambda case: case.first == case.truth, ">= 0.9"),
+        share(
             "right name first, up to look-alikes",
             effects,
             lambda case: case.truth in case.first_set.split("+"),
             ">= 0.95",
         ),
-        _share(
-            "truth inside the reported set", effects, lambda case: case.truth in case.reported.split("+"), ">= 0.95"
-        ),
-        _average("mean size of the reported set", named, lambda case: len(case.reported.split("+")), "<= 1.6"),
-        _share("effects named on nulls", nulls, lambda case: bool(case.said), "<= 0.02"),
-        _share("nulls without a discrepancy", nulls, lambda case: case.verdict == "no_discrepancy", ""),
-        _share("outside: wrong confident name", outside, lambda case: case.verdict in CONFIDENT, "<= 0.1"),
-        _share("outside: flagged", outside, lambda case: case.verdict == "outside_catalogue", ">= 0.8"),
-        _share("pairs: both named", pairs, _both_named, ">= 0.7"),
-        _share("place contains the true one", placed, lambda case: bool(case.place_found), ">= 0.95"),
-        _average("F1 over cells", placed, lambda case: case.place_f1 or 0.0, ">= 0.85"),
-        _median("gap closed on a held-out condition", gaps, lambda case: case.gap_closed or 0.0, ">= 0.8"),
-        _median("seconds a case", cases, lambda case: case.seconds, ""),
-        _share("cases with an error", cases, lambda case: case.verdict == "error", ""),
+        share("truth inside the reported set", effects, lambda case: case.truth in case.reported.split("+"), ">= 0.95"),
+        average("mean size of the reported set", named, lambda case: len(case.reported.split("+")), "<= 1.6"),
+        share("effects named on nulls", nulls, lambda case: bool(case.said), "<= 0.02"),
+        share("nulls without a discrepancy", nulls, lambda case: case.verdict == "no_discrepancy", ""),
+        share("outside: wrong confident name", outside, lambda case: case.verdict in CONFIDENT, "<= 0.1"),
+        share("outside: flagged", outside, lambda case: case.verdict == "outside_catalogue", ">= 0.8"),
+        share("pairs: both named", pairs, both_named, ">= 0.7"),
+        share("place contains the true one", placed, lambda case: bool(case.place_found), ">= 0.95"),
+        average("F1 over cells", placed, lambda case: case.place_f1 or 0.0, ">= 0.85"),
+        median("gap closed on a held-out condition", gaps, lambda case: case.gap_closed or 0.0, ">= 0.8"),
+        median("seconds a case", cases, lambda case: case.seconds, ""),
+        share("cases with an error", cases, lambda case: case.verdict == "error", ""),
     ]
     return tuple(row for row in rows if row.n)
 
@@ -213,7 +254,7 @@ def confusion(cases: Sequence[Judged]) -> dict[str, Counter[str]]:
     """For each truth ("none" for nulls) how often which name came first (or the verdict, where none did)."""
     out: dict[str, Counter[str]] = {}
     for case in cases:
-        first = case.said.split("+")[0] or f"({case.verdict})"
+        first = case.first or f"({case.verdict})"
         out.setdefault(case.truth or "none", Counter())[first] += 1
     return out
 
@@ -223,47 +264,6 @@ def verdicts(cases: Sequence[Judged]) -> Counter[str]:
     return Counter(case.verdict for case in cases)
 
 
-def clopper_pearson(hits: int, n: int, level: float = 0.95) -> Interval:
-    """Exact interval of a share."""
-    tail = 0.5 * (1.0 - level)
-    low = float(beta.ppf(tail, hits, n - hits + 1)) if hits else 0.0
-    high = float(beta.ppf(1.0 - tail, hits + 1, n - hits)) if hits < n else 1.0
-    return low, high
-
-
-def _share(measure: str, cases: Sequence[Judged], right: Callable[[Judged], bool], bar: str) -> BlindRow:
-    hits, n = sum(right(case) for case in cases), len(cases)
-    if n == 0:
-        return BlindRow(measure, 0.0, (0.0, 1.0), 0, bar, None)
-    return BlindRow(measure, hits / n, clopper_pearson(hits, n), n, bar, _passed(hits / n, bar))
-
-
-def _average(measure: str, cases: Sequence[Judged], value: Callable[[Judged], float], bar: str) -> BlindRow:
-    return _statistic(measure, [value(case) for case in cases], bar, middle=False)
-
-
-def _median(measure: str, cases: Sequence[Judged], value: Callable[[Judged], float], bar: str) -> BlindRow:
-    return _statistic(measure, [value(case) for case in cases], bar, middle=True)
-
-
-def _statistic(measure: str, values: Sequence[float], bar: str, *, middle: bool) -> BlindRow:
-    """A mean or median with an interval by 2000 resamples of the cases."""
-    if not values:
-        return BlindRow(measure, 0.0, (0.0, 0.0), 0, bar, None)
-    of = np.median if middle else np.mean
-    data = np.array(values, dtype=np.float64)
-    drawn = np.random.default_rng(0).integers(data.size, size=(2000, data.size))
-    low, high = np.quantile(of(data[drawn], axis=1), [0.025, 0.975])
-    value = float(of(data))
-    return BlindRow(measure, value, (float(low), float(high)), data.size, bar, _passed(value, bar))
-
-
-def _passed(value: float, bar: str) -> bool | None:
-    if not bar:
-        return None
-    sign, limit = bar.split()
-    return value >= float(limit) if sign == ">=" else value <= float(limit)
-
-
-def _both_named(case: Judged) -> bool:
+def both_named(case: Judged) -> bool:
+    """Whether both effects of a pair were said."""
     return set(case.truth.split("+")) <= set(case.said.split("+"))
