@@ -14,7 +14,7 @@ SI units; a press and its deflection are positive into the tissue. The package k
 reports or other models.
 """
 
-from fem.errors import CheckpointError, FemError
+from fem.errors import CheckpointError, FemError, NotDifferentiableError
 from fem.load import Load
 from fem.materials import Fibre, FibreReinforced, Gent, LinearElastic, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from fem.materials.prony import PronyTerm
@@ -22,10 +22,13 @@ from fem.mesh.surface.surface_file import read_surface
 from fem.problem.parts import Discretisation, Layer, Support, Tool
 from fem.problem.problem import Problem
 from fem.results.solution import Failure, Resumed, Solution, StepReport
+from fem.sensitivity.differentiate import differentiate
+from fem.sensitivity.problem_change import DifferentiatedSolution, ProblemChange, SolutionDerivative
 from fem.setup.prepare import prepare
 
 __all__ = [
     "CheckpointError",
+    "DifferentiatedSolution",
     "Discretisation",
     "Failure",
     "FemError",
@@ -38,15 +41,19 @@ __all__ = [
     "Material",
     "MooneyRivlin",
     "NeoHookean",
+    "NotDifferentiableError",
     "Ogden",
     "Problem",
+    "ProblemChange",
     "PronyTerm",
     "Resumed",
     "Solution",
+    "SolutionDerivative",
     "StepReport",
     "Support",
     "Tool",
     "Yeoh",
+    "differentiate",
     "prepare",
     "read_surface",
 ]

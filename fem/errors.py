@@ -28,6 +28,10 @@ class CheckpointError(FemError):
         self.problem = problem
 
 
+class NotDifferentiableError(FemError):
+    """A change of a problem by which its steps cannot be differentiated directly; differences of runs may do."""
+
+
 def require_positive(name: str, value: float, unit: str) -> None:
     """Refuse a value that is not a finite number above zero.
 

@@ -71,6 +71,11 @@ class FemModel:
         except fem.FemError as error:
             raise InputError(f"scenario {scenario.name}: {error}") from None
 
+    @property
+    def prepared(self) -> Model:
+        """The solver's own model."""
+        return self._model
+
     def run(self, drive: Drive, on_step: OnStep = silent) -> ModelResult:
         """Follow a load history and read everything off it."""
         return self.follow(drive, on_step)()
@@ -110,7 +115,7 @@ class FemModel:
             choices=choices,
             warnings=(*self.carried.remarks, *solution.warnings),
             resumed=_resumption(solution, load),
-            failure=_failure(solution, load),
+            failure=run_failure(solution, load),
             last=_last(solution),
             fields=tuple(_snapshot(solution, step) for step in self._field_steps(peak, steps)),
         )
@@ -132,7 +137,7 @@ def _resumption(solution: fem.Solution, load: fem.Load) -> Resumption | None:
     return None if earlier is None else Resumption(earlier.steps, load.time.size, earlier.seconds)
 
 
-def _failure(solution: fem.Solution, load: fem.Load) -> RunFailure | None:
+def run_failure(solution: fem.Solution, load: fem.Load) -> RunFailure | None:
     """The solver's failure in the harness's terms."""
     stop = solution.failure
     if stop is None:

@@ -9,23 +9,31 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from benchmark.errors import InputError
-from benchmark.files import Session, Support, Tissue, Tool
-from benchmark.models import RunFailure, UncoveredError, prepare
+from benchmark.files import Scenario, Session, Support, Tissue, Tool
+from benchmark.models import Drive, RunFailure, UncoveredError, prepare
 from benchmark.models.model_result import LowerFace
 from benchmark.response.force_curve import Array
 from benchmark.response.ramp import Ramp, depth_ramp, setup_scenario
 from benchmark.response.setup_change import changed_setup, natural_change
+from fem.errors import NotDifferentiableError
+
+if TYPE_CHECKING:
+    from benchmark.models.fem_derivatives import ScenarioChange
 
 STEPS = 24
 """Load steps of a ramp."""
 DIFFERENCE = 0.01
 """Step of a central difference, in natural changes of the parameter."""
+
+SMALL = 1e-5
+"""Step by which the solver's equations are differentiated, in natural changes: its square, and round-off over it, stay
+below 1e-6 of the derivative up to a Poisson ratio of 0.4999."""
 
 Setup: TypeAlias = tuple[Tissue, Tool, Support]
 
@@ -106,13 +114,15 @@ def differentiated_ramp(
     InputError
         The model does not cover the set-up, or a key points to no number of it.
     """
+    setup = (tissue, tool, support)
     if model == "wave":
         from benchmark.response.wave_table import wave_ramp
 
-        return _by_differences(
-            lambda setup: wave_ramp(*setup, np.linspace(0.0, depth, steps + 1)), (tissue, tool, support), keys
-        )
-    return _by_differences(lambda setup: elastic_ramp(session, *setup, depth, steps), (tissue, tool, support), keys)
+        return _by_differences(lambda other: wave_ramp(*other, np.linspace(0.0, depth, steps + 1)), setup, keys)
+    try:
+        return _direct(session, setup, depth, keys, steps)
+    except NotDifferentiableError:
+        return _by_differences(lambda other: elastic_ramp(session, *other, depth, steps), setup, keys)
 
 
 def elastic_ramp(session: Session, tissue: Tissue, tool: Tool, support: Support, depth: float, steps: int) -> Ramp:
@@ -123,14 +133,58 @@ def elastic_ramp(session: Session, tissue: Tissue, tool: Tool, support: Support,
     InputError
         The finite elements do not cover it.
     """
-    elastic = tissue.model_copy(
-        update={"layers": tuple(one.model_copy(update={"relaxation": ()}) for one in tissue.layers)}
-    )
     try:
-        model = prepare("fem", setup_scenario(session, elastic, (tool, support)), every_field=True)
+        model = prepare("fem", _elastic(session, (tissue, tool, support)), every_field=support.kind == "hole")
         return depth_ramp(model, depth, steps, face=support.kind == "hole")
     except UncoveredError as error:
         raise InputError(f"the finite elements do not cover {session.name}: {error}") from None
+
+
+def _elastic(session: Session, setup: Setup) -> Scenario:
+    tissue, tool, support = setup
+    layers = tuple(one.model_copy(update={"relaxation": ()}) for one in tissue.layers)
+    return setup_scenario(session, tissue.model_copy(update={"layers": layers}), (tool, support))
+
+
+def _direct(session: Session, setup: Setup, depth: float, keys: Sequence[str], steps: int) -> DifferentiatedRamp:
+    """Derivatives by the solver's own, of each step of one ramp."""
+    from benchmark.models.fem_derivatives import differentiated_press
+
+    fractions = np.arange(1, steps + 1) / steps
+    try:
+        press = differentiated_press(
+            _elastic(session, setup),
+            Drive("depth", fractions, depth * fractions),
+            {key: _change(session, setup, key) for key in keys},
+            face=setup[2].kind == "hole",
+        )
+    except UncoveredError as error:
+        raise InputError(f"the finite elements do not cover {session.name}: {error}") from None
+    face, depths = press.face, np.append(0.0, press.depth)
+    if face is not None:
+        face = LowerFace(depths, face.radius, _from_rest(face.outward), _from_rest(face.sunk))
+    by = {
+        key: RampDerivative(
+            np.append(0.0, each.force),
+            None if each.outward is None else _from_rest(each.outward),
+            None if each.sunk is None else _from_rest(each.sunk),
+        )
+        for key, each in press.by.items()
+    }
+    return DifferentiatedRamp(depths, np.append(0.0, press.force), face, by, press.failure)
+
+
+def _from_rest(rows: Array) -> Array:
+    return np.vstack([np.zeros((1, rows.shape[1])), rows])
+
+
+def _change(session: Session, setup: Setup, key: str) -> ScenarioChange:
+    """The scenario with a parameter a little smaller and larger."""
+    from benchmark.models.fem_derivatives import ScenarioChange
+
+    step = SMALL * natural_change(setup[0], key)
+    less, more = (_elastic(session, changed_setup(*setup, key, sign * step)) for sign in (-1.0, 1.0))
+    return ScenarioChange(less, more, step, step)
 
 
 def _by_differences(ramp_of: Callable[[Setup], Ramp], setup: Setup, keys: Sequence[str]) -> DifferentiatedRamp:

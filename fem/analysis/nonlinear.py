@@ -13,7 +13,7 @@ from fem.analysis.equilibrium import Equilibrium, State
 from fem.analysis.linear import unit_state
 from fem.analysis.newton import NewtonSettings
 from fem.analysis.record import Record, largest_strain
-from fem.analysis.stepping import Advance, Stepper, settle
+from fem.analysis.stepping import Advance, Stepper, Watch, settle
 from fem.assembly.system import System
 from fem.load import Load
 from fem.results.solution import Failure, Resumed, Solution, StepReport
@@ -28,6 +28,7 @@ def run_nonlinear(
     warnings: tuple[str, ...],
     on_step: Callable[[StepReport], None] | None,
     checkpoint: Keeper | None = None,
+    watch: Watch | None = None,
 ) -> Solution:
     """Follow a load history in finite strain.
 
@@ -46,6 +47,8 @@ def run_nonlinear(
     checkpoint
         Where the accepted steps are kept (CheckpointError if it cannot be used); what it holds already is not computed
         again.
+    watch
+        Told of each state of equilibrium that is found.
 
     Returns
     -------
@@ -58,7 +61,7 @@ def run_nonlinear(
     if reason:
         failure = Failure(1, float(load.time[0]), load.control, 0.0, float(load.value[0]), reason)
         return record.solution(failure, warnings)
-    stepper = Stepper(problem, load.control, scale, settings, start, load.start)
+    stepper = Stepper(problem, load.control, scale, settings, start, load.start, watch)
     return _Run(record, load, stepper, start, began, warnings, on_step, checkpoint).solution()
 
 

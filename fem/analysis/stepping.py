@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from fem.assembly.system import Evaluation, System
 SMALLEST_PART = 2.0**-8
 MOST_PARTS = 400
 MOST_CORRECTIONS = 60
+
+Watch: TypeAlias = Callable[[System, State, float], None]
+"""Told of each state of equilibrium with the equations that it fits and its time in s, also between two steps."""
 
 
 def at_rest(problem: Equilibrium) -> Evaluation:
@@ -111,6 +114,8 @@ class Stepper:
         State without force to start from; None for rest.
     time
         Time in s of the start; matters to equations with a memory only.
+    watch
+        Told of each state of equilibrium that is found.
     """
 
     def __init__(
@@ -121,11 +126,13 @@ class Stepper:
         settings: NewtonSettings,
         start: State | None = None,
         time: float = 0.0,
+        watch: Watch | None = None,
     ) -> None:
         self._problem = problem
         self._control: Literal["force", "depth"] = control
         self._force_scale = force_scale
         self._settings = settings
+        self._watch = watch
         self._state = State(*problem.system.rest(), 0.0) if start is None else start
         self._value = 0.0 if control == "force" else problem.depth(self._state.y)
         self._time = time
@@ -223,6 +230,8 @@ class Stepper:
         return NewtonResult(guess, iterations, f"friction does not settle in {MOST_CORRECTIONS} rounds"), system
 
     def _accept(self, state: State, value: float, time: float, system: System) -> None:
+        if self._watch is not None:
+            self._watch(system, state, time)
         self._problem = replace(self._problem, system=system.accepted(state.y))
         self._state, self._value, self._time = state, value, time
         self._times.append(time)

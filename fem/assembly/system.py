@@ -156,6 +156,10 @@ class System:
         """The equations that fit a state with unknowns y (n,) and a press in N; None if these do."""
         return self._with([item.corrected(y, press) for item in self.items])
 
+    def fitted(self, y: FloatArray) -> System:
+        """The equations whose limits are exactly those of a state with unknowns y (n,)."""
+        return replace(self, items=tuple(item.fitted(y) for item in self.items)) if self.items else self
+
     def lightened(self, share: float) -> System | None:
         """The equations to begin with where a share of the press is left; None if they are these."""
         return self._with([item.lightened(share) for item in self.items])

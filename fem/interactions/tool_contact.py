@@ -202,6 +202,14 @@ class ToolContact(EquationItem):
         friction = self.friction.following(limit, max(abs(press), self.peak))
         return None if friction is None else replace(self, friction=friction)
 
+    def fitted(self, y: FloatArray) -> ToolContact:
+        """The contact whose friction limits are those of unknowns y (n,)."""
+        touch = None if self.punch.friction == 0.0 else self.touch(y)
+        if touch is None:
+            return self
+        limit = self.punch.friction * np.maximum(touch.push, 0.0)
+        return replace(self, friction=replace(self.friction, limit=limit))
+
     def lightened(self, share: float) -> ToolContact | None:
         """The contact with a share of the friction limits; None without friction."""
         return replace(self, friction=self.friction.lightened(share)) if self.punch.friction > 0.0 else None

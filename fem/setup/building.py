@@ -20,7 +20,7 @@ from fem.assembly.system import make_system
 from fem.errors import FemError
 from fem.linear_solver import make_solver
 from fem.materials.components import Components
-from fem.materials.element_laws import element_laws
+from fem.materials.element_laws import ElementLaws, element_laws
 from fem.mesh.quads import Mesh, split_interfaces
 from fem.mesh.solid import AnyMesh, SolidMesh
 from fem.problem.problem import Problem
@@ -116,13 +116,7 @@ def set_up(
     """
     displacements = _numbered(problem, mesh, fixed, conditions.tied)
     numbering, items, tool = make_items(problem, mesh, displacements, conditions)
-    laws = element_laws(
-        tuple(layer.material for layer in problem.layers),
-        mesh.layer,
-        tuple(layer.relaxation for layer in problem.layers),
-        _pretension(problem, geometry.components),
-    )
-    elements = make_elements(geometry, laws, _stabilisation(problem))
+    elements = make_elements(geometry, layer_laws(problem, mesh, geometry.components), stabilisation(problem))
     system = make_system(elements, numbering, build_scatter(mesh.elements, numbering), items)
     solver = make_solver(linear_solver, system.scatter.indptr, system.scatter.indices)
     if tool is not None:
@@ -140,6 +134,16 @@ def _numbered(problem: Problem, mesh: AnyMesh, fixed: BoolArray, tied: BoolArray
     return number_unknowns(fixed, tied)
 
 
+def layer_laws(problem: Problem, mesh: AnyMesh, components: Components) -> ElementLaws:
+    """Laws of the mesh's elements."""
+    return element_laws(
+        tuple(layer.material for layer in problem.layers),
+        mesh.layer,
+        tuple(layer.relaxation for layer in problem.layers),
+        _pretension(problem, components),
+    )
+
+
 def _pretension(problem: Problem, components: Components) -> FloatArray | None:
     """In-plane stress (components, 1, 1) in Pa; the last axis is the normal of the layers."""
     if problem.pretension == 0.0:
@@ -150,6 +154,6 @@ def _pretension(problem: Problem, components: Components) -> FloatArray | None:
     return out
 
 
-def _stabilisation(problem: Problem) -> float:
-    """Small strain needs none."""
+def stabilisation(problem: Problem) -> float:
+    """Part of the bulk modulus, in shear moduli, that acts at the Gauss points; small strain needs none."""
     return problem.discretisation.stabilisation if problem.kinematics == "finite" else 0.0

@@ -1,0 +1,165 @@
+"""The finite-element solver's own derivatives of a press by what scenarios differ in, in the harness's terms."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+import fem
+from benchmark.errors import InputError
+from benchmark.files import Scenario
+from benchmark.models.fem_model import FemModel, run_failure
+from benchmark.models.fem_problem import problem_of
+from benchmark.models.fem_steps import follow_deeper
+from benchmark.models.model_result import Array, Drive, LowerFace, RunFailure
+from fem.analysis.prepared import Model
+from fem.arrays import IntArray
+
+
+@dataclass(frozen=True)
+class ScenarioChange:
+    """A scenario with one parameter `below` and `above` its value, in its own unit."""
+
+    less: Scenario
+    more: Scenario
+    below: float
+    above: float
+
+
+@dataclass(frozen=True, eq=False)
+class PressDerivative:
+    """Derivatives of a press over its n steps by one parameter; units are divided by the parameter's.
+
+    Attributes
+    ----------
+    force : (n,) array
+        N; at fixed depths, where depth is prescribed.
+    outward, sunk : (n, m) array or None
+        Of the lower face at fixed radii, m.
+    """
+
+    force: Array
+    outward: Array | None = None
+    sunk: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class DifferentiatedPress:
+    """A press of n steps, as far as it was followed, and its derivatives.
+
+    Attributes
+    ----------
+    depth, force : (n,) array
+        m and N.
+    face : LowerFace or None
+        Where it was asked for.
+    by : mapping of str to PressDerivative
+    failure : RunFailure or None
+        Where the solver stopped early.
+    """
+
+    depth: Array
+    force: Array
+    face: LowerFace | None
+    by: Mapping[str, PressDerivative]
+    failure: RunFailure | None
+
+
+def differentiated_press(
+    scenario: Scenario, drive: Drive, changes: Mapping[str, ScenarioChange], *, face: bool = False
+) -> DifferentiatedPress:
+    """Follow a load history and differentiate each step directly.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    drive : Drive
+    changes : mapping of str to ScenarioChange
+        By any name.
+    face : bool
+        Whether the lower face is wanted (axial symmetry only).
+
+    Raises
+    ------
+    UncoveredError, InputError
+        As by `FemModel`.
+    fem.NotDifferentiableError
+        The solver has no direct derivative here.
+    """
+    load = fem.Load(drive.control, drive.time, drive.value)
+    prepared = FemModel(scenario).prepared
+    problems = {key: _change(prepared.problem, each, key) for key, each in changes.items()}
+    found: dict[int, fem.DifferentiatedSolution] = {}
+
+    def run(model: Model, edge: float) -> fem.Solution:
+        del edge
+        steps = {
+            key: replace(each, less=_meshed_like(each.less, model), more=_meshed_like(each.more, model))
+            for key, each in problems.items()
+        }
+        found[id(model)] = fem.differentiate(model, load, steps)
+        return found[id(model)].solution
+
+    model, solution = follow_deeper(prepared, run)
+    row = _lower_row(model) if face else None
+    return DifferentiatedPress(
+        solution.depth,
+        solution.force,
+        None if row is None else _face(solution, row),
+        {key: _derivative(solution, each, row) for key, each in found[id(model)].by.items()},
+        run_failure(solution, load),
+    )
+
+
+def _change(told: fem.Problem, change: ScenarioChange, key: str) -> fem.ProblemChange:
+    """The change in the solver's terms; on one side alone where the other is outside what the solver takes."""
+    sides: list[tuple[fem.Problem, float]] = []
+    for scenario, offset in ((change.less, change.below), (change.more, change.above)):
+        try:
+            sides.append((problem_of(scenario), offset))
+        except fem.FemError as error:
+            sides.append((told, 0.0))
+            reason = str(error)
+    (less, below), (more, above) = sides
+    if below + above == 0.0:
+        raise InputError(f"{key}: {reason}")
+    return fem.ProblemChange(less, more, below, above)
+
+
+def _meshed_like(problem: fem.Problem, model: Model) -> fem.Problem:
+    return replace(problem, discretisation=model.problem.discretisation)
+
+
+def _lower_row(model: Model) -> IntArray:
+    """Nodes (m,) of the lower face from the axis outwards, corners and mid-sides of elements in turn."""
+    nodes: IntArray = np.flatnonzero(model.mesh.base)
+    return nodes[np.argsort(model.mesh.specimen_distance[nodes])]
+
+
+def _face(solution: fem.Solution, row: IntArray) -> LowerFace:
+    moved = solution.displacement[:, row]
+    return LowerFace(solution.depth, solution.mesh.specimen_distance[row], moved[:, :, 0], -moved[:, :, -1])
+
+
+def _derivative(solution: fem.Solution, by: fem.SolutionDerivative, row: IntArray | None) -> PressDerivative:
+    """At fixed radii: what moving nodes bring is taken off, du/dp - du/dr dr/dp."""
+    if row is None:
+        return PressDerivative(by.force)
+    radius = solution.mesh.specimen_distance[row]
+    moved, velocity = solution.displacement[:, row], by.velocity[row, 0]
+    still = by.displacement[:, row] - slopes(radius, moved) * velocity[None, :, None]
+    return PressDerivative(by.force, still[:, :, 0], -still[:, :, -1])
+
+
+def slopes(radius: Array, values: Array) -> Array:
+    """Derivative over the radius (2 e + 1,) of values (n, 2 e + 1, c) on e quadratic elements; at corners the mean."""
+    start, middle, end = values[:, :-2:2], values[:, 1:-1:2], values[:, 2::2]
+    length = np.diff(radius[::2])[None, :, None]
+    first, last = (-3.0 * start + 4.0 * middle - end) / length, (start - 4.0 * middle + 3.0 * end) / length
+    out = np.empty_like(values)
+    out[:, 1::2] = (end - start) / length
+    out[:, 0], out[:, -1] = first[:, 0], last[:, -1]
+    out[:, 2:-1:2] = 0.5 * (last[:, :-1] + first[:, 1:])
+    return out

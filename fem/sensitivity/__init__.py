@@ -1,0 +1,1 @@
+"""Derivatives of converged steps by parameters of the problem, by direct differentiation."""

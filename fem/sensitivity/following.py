@@ -1,0 +1,199 @@
+"""Derivatives of the states of a run as it goes.
+
+The equations at an offset are evaluated at the state beside, y + offset dy/dp; what they leave unbalanced over the
+offset is zero for the right derivative. The first correction, from none, is -K^-1 dR/dp. Further ones bring in what the
+tangent has not: limits of Coulomb's friction, which follow the pressure, and what its symmetric form leaves out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+
+from fem.analysis.equilibrium import Equilibrium, State
+from fem.analysis.linear import run_linear, unit_state
+from fem.analysis.nonlinear import run_nonlinear
+from fem.analysis.prepared import Model
+from fem.analysis.record import Record
+from fem.arrays import FloatArray
+from fem.assembly.system import System
+from fem.errors import NotDifferentiableError
+from fem.linear_solver.factory import suited_threads
+from fem.load import Load
+from fem.results.solution import Solution, StepReport
+from fem.sensitivity.changed_equations import ChangedEquations, changed_equations
+from fem.sensitivity.problem_change import DifferentiatedSolution, ProblemChange, SolutionDerivative
+
+MOST_CORRECTIONS = 80
+SETTLED = 1e-8  # last correction over the derivative
+
+
+@dataclass(frozen=True)
+class StateDerivative:
+    """Derivatives of the unknowns (n, k) and of the press (k,) by k parameters."""
+
+    y: FloatArray
+    force: FloatArray
+
+
+@dataclass
+class Following:
+    """A watch on a run that differentiates each state.
+
+    Attributes
+    ----------
+    equilibrium
+        The equations as told, with the linear solver.
+    control
+        What is prescribed.
+    sides
+        For each parameter the equations below and above, as they remember.
+    time
+        Of the last state, s.
+    found
+        Each state with its derivative.
+    """
+
+    equilibrium: Equilibrium
+    control: Literal["force", "depth"]
+    sides: list[tuple[ChangedEquations, ChangedEquations]]
+    time: float = 0.0
+    found: list[tuple[State, StateDerivative]] = field(default_factory=list)
+
+    def __call__(self, system: System, state: State, time: float) -> None:
+        """Differentiate a state that fits the equations, and remember what these remember."""
+        evaluation = system.evaluate(state.y, state.pressure)
+        if evaluation is None:
+            raise ArithmeticError("an accepted state cannot be evaluated")
+        self.equilibrium.solver.factorise(system.tangent(evaluation))
+        remembers = system.remembers
+        if remembers:
+            self._each(lambda side: side.system.advanced(time - self.time))
+        derivative = self._refined(state) if remembers else self._first(state)
+        if remembers:
+            self._accept(state, derivative)
+        self.time = time
+        self.found.append((state, derivative))
+
+    def _each(self, change: Callable[[ChangedEquations], System]) -> None:
+        self.sides = [
+            (replace(less, system=change(less)), replace(more, system=change(more))) for less, more in self.sides
+        ]
+
+    def _first(self, state: State) -> StateDerivative:
+        """The derivative without a memory: one correction from none."""
+        columns = [
+            (more.unbalanced(state) - less.unbalanced(state)) / (more.offset - less.offset) for less, more in self.sides
+        ]
+        return _correction(self.equilibrium, self.control, np.stack(columns, axis=1))
+
+    def _refined(self, state: State) -> StateDerivative:
+        """The derivative with a memory, corrected until it stays."""
+        count = len(self.sides)
+        y, force = np.zeros((len(state.y), count)), np.zeros(count)
+        for _ in range(MOST_CORRECTIONS):
+            left = [self._left(pair, state, y[:, n], float(force[n])) for n, pair in enumerate(self.sides)]
+            more = _correction(self.equilibrium, self.control, np.stack(left, axis=1))
+            y, force = y + more.y, force + more.force
+            if (np.abs(more.y).max(axis=0) <= SETTLED * np.abs(y).max(axis=0)).all():
+                return StateDerivative(y, force)
+        raise NotDifferentiableError(f"the derivative of friction does not settle in {MOST_CORRECTIONS} rounds")
+
+    @staticmethod
+    def _left(pair: tuple[ChangedEquations, ChangedEquations], state: State, dy: FloatArray, df: float) -> FloatArray:
+        """What the changed equations leave unbalanced at the states beside, over the parameter, (n,)."""
+        forces = []
+        for side in pair:
+            beside = side.beside(state, dy, df)
+            forces.append(replace(side, system=side.system.fitted(beside.y)).unbalanced(beside))
+        out: FloatArray = (forces[1] - forces[0]) / (pair[1].offset - pair[0].offset)
+        return out
+
+    def _accept(self, state: State, derivative: StateDerivative) -> None:
+        """Let the changed equations remember the states beside."""
+        kept = []
+        for n, pair in enumerate(self.sides):
+            both = []
+            for side in pair:
+                y = side.beside(state, derivative.y[:, n], float(derivative.force[n])).y
+                both.append(replace(side, system=side.system.fitted(y).accepted(y)))
+            kept.append((both[0], both[1]))
+        self.sides = kept
+
+
+def _correction(problem: Equilibrium, control: str, unbalanced: FloatArray) -> StateDerivative:
+    """Derivatives by which unbalanced forces (n, k) vanish, with the factors that the solver has."""
+    count = unbalanced.shape[1]
+    if control == "force":
+        return StateDerivative(problem.solver.solve(-unbalanced), np.zeros(count))
+    solved = problem.solver.solve(np.column_stack((-unbalanced, problem.unit_load)))
+    free, loaded = solved[:, :count], solved[:, count]
+    force = -free[problem.probe] / loaded[problem.probe]
+    return StateDerivative(free + loaded[:, None] * force, force)
+
+
+def differentiated_run(
+    model: Model,
+    load: Load,
+    changes: Mapping[str, ProblemChange],
+    on_step: Callable[[StepReport], None] | None = None,
+) -> DifferentiatedSolution:
+    """See :func:`fem.differentiate`."""
+    sides = [
+        (changed_equations(model, each.less, -each.below), changed_equations(model, each.more, each.above))
+        for each in changes.values()
+    ]
+    names = tuple(layer.name for layer in model.problem.layers)
+    record = Record(model.mesh, model.equilibrium, model.recovery, names)
+    with suited_threads(model.unknowns):
+        if model.problem.kinematics == "linear":
+            solution = run_linear(record, load, model.warnings, on_step)
+            derivatives = _linear(model, load, sides, record)
+        else:
+            watch = Following(model.equilibrium, load.control, sides, load.start)
+            solution = run_nonlinear(record, load, model.newton, model.warnings, on_step, None, watch)
+            known = {id(state): derivative for state, derivative in watch.found}
+            derivatives = [known[id(state)] for state in record.states]
+    return DifferentiatedSolution(solution, _by_name(model, changes, sides, derivatives, solution))
+
+
+def _linear(
+    model: Model, load: Load, sides: list[tuple[ChangedEquations, ChangedEquations]], record: Record
+) -> list[StateDerivative]:
+    """Derivatives of states in small strain, with the tangent at rest."""
+    if model.equilibrium.system.elements.memory is not None:
+        raise NotDifferentiableError(
+            "kinematics = 'linear' with relaxation has no derivative here; use kinematics = 'finite'"
+        )
+    unit_state(model.equilibrium)
+    found = []
+    for state in record.states:
+        columns = [
+            (more.unbalanced_linear(state) - less.unbalanced_linear(state)) / (more.offset - less.offset)
+            for less, more in sides
+        ]
+        found.append(_correction(model.equilibrium, load.control, np.stack(columns, axis=1)))
+    return found
+
+
+def _by_name(
+    model: Model,
+    changes: Mapping[str, ProblemChange],
+    sides: list[tuple[ChangedEquations, ChangedEquations]],
+    derivatives: list[StateDerivative],
+    solution: Solution,
+) -> dict[str, SolutionDerivative]:
+    numbering = replace(model.equilibrium.system.numbering, prescribed=None)
+    steps, found = len(solution.time), {}
+    for n, (name, (less, more)) in enumerate(zip(changes, sides, strict=True)):
+        y = np.array([each.y[:, n] for each in derivatives]).reshape(steps, numbering.count)
+        found[name] = SolutionDerivative(
+            force=np.array([each.force[n] for each in derivatives]),
+            depth=-y[:, model.equilibrium.probe],
+            displacement=numbering.expand(y).swapaxes(1, 2),
+            velocity=(more.nodes - less.nodes) / (more.offset - less.offset),
+        )
+    return found

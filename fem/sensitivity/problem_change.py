@@ -1,0 +1,63 @@
+"""What a parameter is, two problems beside the one as told, and what a run has by it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from fem.arrays import FloatArray
+from fem.problem.problem import Problem
+from fem.results.solution import Solution
+
+
+@dataclass(frozen=True)
+class ProblemChange:
+    """One parameter a little smaller and a little larger.
+
+    Attributes
+    ----------
+    less, more
+        The problem with the parameter on either side of its value; one of them may be the problem itself.
+    below, above
+        How far the parameter is from its value there, not negative, in its own unit; together above 0.
+    """
+
+    less: Problem
+    more: Problem
+    below: float
+    above: float
+
+    @property
+    def width(self) -> float:
+        """Difference of the parameter between the two."""
+        return self.below + self.above
+
+
+@dataclass(frozen=True)
+class SolutionDerivative:
+    """Derivatives of a solution with n steps and N nodes by one parameter, by whose unit all units are divided.
+
+    Attributes
+    ----------
+    force
+        Of the press, (n,) in N; zero where it is prescribed.
+    depth
+        (n,) in m; zero where it is prescribed.
+    displacement
+        Of the nodes, (n, N, components) in m, with the nodes moving.
+    velocity
+        Of the nodes' places at rest, (N, components) in m.
+    """
+
+    force: FloatArray
+    depth: FloatArray
+    displacement: FloatArray
+    velocity: FloatArray
+
+
+@dataclass(frozen=True)
+class DifferentiatedSolution:
+    """A solution, and its derivatives by the name of each parameter."""
+
+    solution: Solution
+    by: Mapping[str, SolutionDerivative]
