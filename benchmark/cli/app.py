@@ -13,7 +13,20 @@ from typing import Annotated
 
 import typer
 
-from benchmark.cli import blind, check, discover, fit, report, reproduce, run, scenarios, sweep, tissues, verify
+from benchmark.cli import (
+    blind,
+    check,
+    discover,
+    fit,
+    reference,
+    report,
+    reproduce,
+    run,
+    scenarios,
+    sweep,
+    tissues,
+    verify,
+)
 
 EXIT_USAGE = 2
 EXIT_INTERRUPTED = 130
@@ -26,7 +39,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for verb in (run, fit, discover, blind, check, sweep, report, reproduce, verify, tissues, scenarios):
+for verb in (run, fit, discover, blind, check, sweep, report, reproduce, verify, tissues, scenarios, reference):
     verb.register(app)
 
 

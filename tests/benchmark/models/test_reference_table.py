@@ -1,0 +1,125 @@
+"""An FEA's own output in the place of the scenario's steps: interpolated as far as it reaches, else refused."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from benchmark.errors import InputError
+from benchmark.files import load_scenario
+from benchmark.models import read_reference, scenario_drive
+from benchmark.models.own_models import write_template
+
+SCENARIO = load_scenario("skin-5N", {"load.observations": "40", "load.peak": "2 N"})
+LAYERS = SCENARIO.tissue.layer_names
+DRIVE = scenario_drive(SCENARIO)
+
+
+def law(force, number):
+    """Deflection in mm of a layer: it stiffens."""
+    return (1.0 - np.exp(-np.asarray(force))) / (number + 1.0)
+
+
+def by_time(count=201, **columns) -> pd.DataFrame:
+    """An FEA that wrote its own `count` instants of the scenario's history."""
+    time = np.linspace(0.0, DRIVE.time[-1], count)
+    force = np.interp(time, np.concatenate([[0.0], DRIVE.time]), np.concatenate([[0.0], DRIVE.value]))
+    frames = [
+        pd.DataFrame({"time_s": time, "force_N": force, "layer": layer, "fem_mm": law(force, number)})
+        for number, layer in enumerate(LAYERS)
+    ]
+    return pd.concat(frames).assign(**columns)
+
+
+def read(frame: pd.DataFrame, folder: Path, scenario=SCENARIO):
+    path = folder / "fea.csv"
+    frame.to_csv(path, index=False)
+    return read_reference(path, scenario).result
+
+
+EXPECTED = 1e-3 * np.column_stack([law(DRIVE.value, number) for number in range(len(LAYERS))])
+
+
+def test_other_instants_are_interpolated_to_the_steps(tmp_path: Path) -> None:
+    found = read(by_time(), tmp_path)
+    np.testing.assert_allclose(found.top_deflection, EXPECTED, atol=2e-6)
+    np.testing.assert_allclose(found.force, DRIVE.value)
+    assert found.notes["its steps"] == "201 rows a layer, interpolated over time_s"
+
+
+def test_more_rows_come_closer(tmp_path: Path) -> None:
+    errors = [np.abs(read(by_time(n), tmp_path).top_deflection - EXPECTED).max() for n in (23, 91, 363)]
+    assert errors[0] > 4.0 * errors[1] > 16.0 * errors[2]
+
+
+def test_a_curve_over_force_alone_will_do(tmp_path: Path) -> None:
+    force = np.linspace(0.1, 2.0, 60)
+    frames = [
+        pd.DataFrame({"force_N": force, "layer": layer, "fem_mm": law(force, n)}) for n, layer in enumerate(LAYERS)
+    ]
+    found = read(pd.concat(frames), tmp_path)
+    np.testing.assert_allclose(found.top_deflection, EXPECTED, atol=1e-6)
+    assert "nothing that depends on time" in found.notes["its steps"]
+
+
+def test_a_depth_history_takes_the_forces_from_the_table(tmp_path: Path) -> None:
+    scenario = load_scenario("skin-5N", {"load.observations": "9", "load.control": "depth", "load.peak": "2 mm"})
+    depth = np.linspace(0.0, 2.0, 80)
+    frames = [
+        pd.DataFrame({"depth_mm": depth, "force_N": depth**2, "layer": layer, "fem_mm": depth / (n + 1.0)})
+        for n, layer in enumerate(LAYERS)
+    ]
+    found = read(pd.concat(frames), tmp_path, scenario)
+    drive = scenario_drive(scenario)
+    np.testing.assert_allclose(found.force, (1e3 * drive.value) ** 2, atol=2e-3)
+    np.testing.assert_allclose(found.depth, drive.value)
+
+
+def test_a_profile_at_peak_load_comes_with_its_radii(tmp_path: Path) -> None:
+    radius, peak = np.linspace(0.5, 12.0, 40), law(2.0, 0)
+    off = pd.DataFrame({"radius_mm": radius, "layer": LAYERS[0], "fem_mm": peak * np.exp(-((radius / 5.0) ** 2))})
+    off = off.assign(time_s=DRIVE.time[-1], force_N=0.0)
+    found = read(pd.concat([by_time(radius_mm=np.nan), off]), tmp_path)
+    inside = found.profile_radii <= 12e-3
+    expected = 1e-3 * peak * np.exp(-((found.profile_radii[inside] / 5e-3) ** 2))
+    np.testing.assert_allclose(found.profile[0, inside], expected, atol=1e-5)
+    assert np.isnan(found.profile[0, ~inside]).all()
+    assert np.isnan(found.profile[1:]).all()
+
+
+@given(st.permutations(range(3 * 11)))
+def test_the_order_of_rows_does_not_matter(tmp_path_factory, order: list[int]) -> None:
+    frame, folder = by_time(11), tmp_path_factory.mktemp("order")
+    np.testing.assert_array_equal(read(frame.iloc[order], folder).top_deflection, read(frame, folder).top_deflection)
+
+
+BAD = {
+    "it ends before the scenario": (by_time().query("time_s < 8"), ["time_s", "must reach as far"]),
+    "an instant twice": (pd.concat([by_time(), by_time().iloc[5:6]]), ["line 605", "twice", "epidermis"]),
+    "another history": (by_time().assign(force_N=1.0), ["force_N", "press alike"]),
+    "neither step, time nor load": (by_time().drop(columns=["time_s", "force_N"]), ["step", "time_s", "force_N"]),
+    "a layer too few": (by_time().query("layer != 'dermis'"), ["dermis", "must be the same"]),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_what_cannot_be_interpolated_is_refused(tmp_path: Path, case: str) -> None:
+    frame, words = BAD[case]
+    with pytest.raises(InputError) as caught:
+        read(frame, tmp_path)
+    for word in ["fea.csv", *words]:
+        assert word in str(caught.value)
+
+
+def test_the_template_filled_in_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "mine.csv"
+    write_template(path, SCENARIO)
+    frame = pd.read_csv(path)
+    assert frame["fem_mm"].isna().all()
+    found = read(frame.assign(fem_mm=law(frame["force_N"], 0)), tmp_path)
+    np.testing.assert_allclose(found.top_deflection[:, 0], EXPECTED[:, 0], rtol=1e-12)
+    with pytest.raises(InputError, match="is there already"):
+        write_template(path, SCENARIO)
