@@ -7,6 +7,7 @@ so that both models meet the same state of the machine.
 
 from __future__ import annotations
 
+import math
 import os
 import statistics
 from collections.abc import Callable, Mapping, Sequence
@@ -30,11 +31,33 @@ OnRemark = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Speedup:
-    """FEM wall time over wave wall time of interleaved repeats: median and 95 % bootstrap interval."""
+    """FEM wall time over wave wall time of interleaved repeats.
+
+    Attributes
+    ----------
+    median, ci95
+        Of the load history alone, with its 95 % bootstrap interval.
+    with_setup
+        Of one load history with the set-up before it, median.
+    pays_from
+        How many load histories of one set-up it takes until the wave model is ahead; None where it never is.
+    repeats
+        Pairs.
+    """
 
     median: float
     ci95: tuple[float, float]
+    with_setup: float
+    pays_from: int | None
     repeats: int
+
+    @property
+    def spread(self) -> str:
+        """What the interval is: of up to five pairs a bootstrap of the median spans them all."""
+        return "95 % bootstrap" if self.repeats > FEW_PAIRS else "range"
+
+
+FEW_PAIRS = 5
 
 
 def median_seconds(repeats: Sequence[Seconds]) -> Seconds:
@@ -52,7 +75,21 @@ def speedup(slow: Sequence[Seconds], fast: Sequence[Seconds], *, seed: int, resa
     ratios = np.array([s.wall / f.wall for s, f in zip(slow, fast, strict=True)])
     draws = np.random.default_rng(seed).integers(0, ratios.size, size=(resamples, ratios.size))
     low, high = np.quantile(np.median(ratios[draws], axis=1), [0.025, 0.975])
-    return Speedup(float(np.median(ratios)), (float(low), float(high)), int(ratios.size))
+    whole = [(s.setup + s.wall) / (f.setup + f.wall) for s, f in zip(slow, fast, strict=True)]
+    return Speedup(
+        float(np.median(ratios)),
+        (float(low), float(high)),
+        float(np.median(whole)),
+        _pays_from(median_seconds(slow), median_seconds(fast)),
+        int(ratios.size),
+    )
+
+
+def _pays_from(slow: Seconds, fast: Seconds) -> int | None:
+    """Load histories until the faster model has made up for its set-up; None where it is not faster."""
+    if fast.wall >= slow.wall:
+        return None
+    return max(1, math.ceil((fast.setup - slow.setup) / (slow.wall - fast.wall)))
 
 
 def unheard(_: str) -> None:

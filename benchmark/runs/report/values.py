@@ -8,6 +8,7 @@ from benchmark.identification import SessionFit, SheetFit
 from benchmark.models import Array, ModelResult
 from benchmark.runs.record import RunRecord
 from benchmark.runs.trials.measured import MeasuredComparison
+from benchmark.side_by_side import Speedup
 from reports.figures.style import Pair
 
 MM = 1e3
@@ -55,6 +56,20 @@ def peak_errors(record: RunRecord) -> dict[str, float]:
         for column, name in enumerate(record.layers)
         if np.isfinite(fem[column]) and fem[column] != 0.0
     }
+
+
+def speedup_words(ratio: Speedup) -> str:
+    """A speed-up with what its interval is."""
+    low, high = ratio.ci95
+    return f"{ratio.median:.3g} ({ratio.spread} {low:.3g} to {high:.3g}, {ratio.repeats} interleaved pairs)"
+
+
+def setup_words(ratio: Speedup, wave: str) -> str:
+    """What is left of it with the set-up, and from how many load histories on it pays."""
+    first = f"with the set-up before it, one load history is {ratio.with_setup:.3g} times as fast"
+    if ratio.pays_from is None:
+        return f"{first}; the {wave} is never ahead"
+    return f"{first}; the {wave} is ahead from load history {ratio.pays_from} of one set-up on"
 
 
 def fit_headline(fit: SessionFit) -> str:

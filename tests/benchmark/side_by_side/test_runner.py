@@ -111,3 +111,19 @@ def test_a_dead_process_is_said_to_be_dead(scenario: Scenario) -> None:
 
 def test_no_core_is_chosen_where_there_are_too_few() -> None:
     assert cores(10_000) == [None] * 10_000
+
+
+def test_set_up_counts_beside_the_load_history() -> None:
+    slow = [Seconds(setup=1.0, wall=10.0, cpu=10.0)] * 3
+    fast = [Seconds(setup=30.0, wall=1.0, cpu=1.0)] * 3
+    found = speedup(slow, fast, seed=1)
+    assert found.median == pytest.approx(10.0)
+    assert found.with_setup == pytest.approx(11.0 / 31.0)
+    assert found.pays_from == 4  # 1 + 4 x 10 > 30 + 4 x 1, and 1 + 3 x 10 < 30 + 3 x 1
+    assert speedup(fast, slow, seed=1).pays_from is None
+    assert speedup(slow, [Seconds(0.5, 1.0, 1.0)] * 3, seed=1).pays_from == 1
+
+
+def test_few_pairs_have_a_range_and_many_an_interval() -> None:
+    assert speedup(repeats(8.0, 10.0, 12.0), repeats(1.0, 1.0, 1.0), seed=1).spread == "range"
+    assert speedup(repeats(*[8.0] * 9), repeats(*[1.0] * 9), seed=1).spread == "95 % bootstrap"
