@@ -184,7 +184,7 @@ def _discovery(
         verdict=word,
         statement=statement(word, facts),
         p=None if untested else before.p_cells if nothing else before.p,
-        effects=() if nothing else named_effects(answer.selection),
+        effects=() if nothing else named_effects(answer.selection, sure=word != "outside_catalogue"),
         where=()
         if untested
         else places(base, *((base, base) if nothing else (answer.plain, chosen)), before, settings),

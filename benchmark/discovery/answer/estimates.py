@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.detection.disagreement import Detection
 from benchmark.discovery.detection.places import flagged_places
@@ -16,14 +17,14 @@ MOST_REMAINS = 5
 """Sentences of what the answer leaves."""
 
 
-def named_effects(selection: Selection) -> tuple[NamedEffect, ...]:
-    """The chosen effects by what each gains, with parameters, confidence and look-alikes."""
+def named_effects(selection: Selection, sure: bool = True) -> tuple[NamedEffect, ...]:
+    """The chosen effects by what each gains, with parameters, look-alikes and confidence (0 where nothing is named)."""
     chosen = selection.chosen
     estimates, parts = effect_estimates(chosen), by_condition(chosen)
     named = (
         NamedEffect(
             effect.slug,
-            confidence(selection, effect.slug),
+            confidence(selection, effect.slug) if sure else 0.0,
             selection.lookalikes.get(effect.slug, ()),
             tuple(each for slug, each in estimates if slug == effect.slug),
             look_alikes(selection, effect.slug),
@@ -53,14 +54,17 @@ def look_alikes(selection: Selection, slug: str) -> tuple[LookAlike, ...]:
 
 
 def confidence(selection: Selection, slug: str) -> float:
-    """Weight among the candidates within reach: exp(-z^2 / 2) of each rival's shortfall."""
-    chosen = selection.chosen
+    """How often such an answer was right first in blind trials, and no more than its weight among its look-alikes.
+
+    The weight of a rival is exp(-z^2 / 2) of its shortfall over unseen trials. The share of right answers among k of n
+    is (k + 1) / (n + 2).
+    """
+    chosen, rivals = selection.chosen, selection.rivals.get(slug, ())
+    right, answers = criteria.RIGHT_AMONG if rivals else criteria.RIGHT_ALONE
     groups, now = conditions(chosen), held_out(chosen)
-    weights = 0.0
-    for rival in selection.rivals.get(slug, ()):
-        lead = gain(now, held_out(rival), groups)
-        weights += float(np.exp(-0.5 * max(lead.z, 0.0) ** 2))
-    return 1.0 / (1.0 + weights)
+    shortfalls = [max(gain(now, held_out(rival), groups).z, 0.0) for rival in rivals]
+    weight = 1.0 / (1.0 + sum(float(np.exp(-0.5 * z**2)) for z in shortfalls))
+    return min((right + 1.0) / (answers + 2.0), weight)
 
 
 def base_estimates(fitted: Fit) -> tuple[Estimate, ...]:

@@ -84,8 +84,17 @@ def _without(fitted: Fit, left: np.ndarray) -> Array:
 
 
 def floors(base: Fit) -> list[Array]:
-    """Pure error (n, C) of each trial's replicates: trials of one condition and one specimen; NaN without any."""
-    return pure_errors(base, replicates(base.model.problem))
+    """Pure error (n, C) of each trial's replicates: trials of one condition and one specimen; NaN without any.
+
+    Trials whose gains differ by more than a specimen's own do are of different ones, whatever is told.
+    """
+    alike = np.array(replicates(base.model.problem))
+    gains = base.nuisance[:, 0]
+    for number in np.unique(alike):
+        mine = np.flatnonzero(alike == number)
+        if mine.size > 1 and np.std(gains[mine], ddof=1) > criteria.ONE_SPECIMEN:
+            alike[mine] = alike.max() + 1 + np.arange(mine.size)
+    return pure_errors(base, tuple(alike.tolist()))
 
 
 def gaps(base: Fit, held: HeldOut, settings: Settings) -> tuple[ChannelGap, ...]:

@@ -96,7 +96,7 @@ class EffectModel:
     def bounds(self) -> tuple[Array, Array]:
         """Lower and upper bounds of the vector."""
         held = dict(self.pinned)
-        reach = [farthest(name) if is_setup(name) else np.inf for name in self.problem.shapes]
+        reach = [farthest(name) for name in self.problem.shapes]
         shapes = [(held.get(n, -far), held.get(n, far)) for n, far in zip(self.problem.shapes, reach, strict=True)]
         low = [low for low, _ in shapes] + [_inner(p, p.low) for _, p in self.parameters]
         high = [high for _, high in shapes] + [_inner(p, p.high) for _, p in self.parameters]

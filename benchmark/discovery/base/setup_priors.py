@@ -64,7 +64,9 @@ def is_setup(name: str) -> bool:
 
 
 def farthest(name: str) -> float:
-    """How far a set-up parameter may go: the table's second order serves no farther."""
+    """How far a nuisance of the base may go: the table's second order serves no farther, nor is a power law another."""
+    if not is_setup(name):
+        return criteria.FAR_EXPONENT if name == "exponent" else np.inf
     return criteria.FAR_MODULUS if name.endswith(MODULUS) else criteria.FAR_SETUP
 
 

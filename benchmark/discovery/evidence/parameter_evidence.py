@@ -98,6 +98,16 @@ def determined(fitted: Fit, effect: Effect, names: tuple[str, ...] = ()) -> bool
     return bool(size > chi2.ppf(criteria.DETERMINED, len(plain)))
 
 
+def told_parameters(fitted: Fit, effect: Effect) -> int:
+    """How many parameters of an effect the data tell of: those that only show in markers count where there are some."""
+    shares = 1.0 - np.diag(fitted.covariance) * fitted.precision
+    return sum(
+        bool(shares[place] > criteria.TOLD)
+        for place, (slug, _) in enumerate(fitted.model.parameters, start=fitted.model.shape_count)
+        if slug == effect.slug
+    )
+
+
 def undetermined(fitted: Fit) -> tuple[str, ...]:
     """Effects of a fit whose strength the data do not tell."""
     return tuple(effect.slug for effect in fitted.model.effects if not determined(fitted, effect))

@@ -22,7 +22,7 @@ from benchmark.discovery.evidence.gains import (
     held_out,
     held_out_conditions,
 )
-from benchmark.discovery.evidence.parameter_evidence import added_terms, determined
+from benchmark.discovery.evidence.parameter_evidence import added_terms, determined, told_parameters
 from benchmark.discovery.evidence.pool import Pool
 from benchmark.discovery.evidence.shortlist import Screened, screen
 from benchmark.discovery.evidence.showing import missing
@@ -136,10 +136,10 @@ def _promising(ranked: Sequence[Screened], count: int) -> list[Screened]:
 
 def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
     """The simplest of those that gain as much as the best, which no data tell apart; then the catalogue's order."""
-    order = {effect.slug: (len(effect.names), place) for place, effect in enumerate(effects)}
+    places = {effect.slug: place for place, effect in enumerate(effects)}
     ties = [s for s in accepted if s.gain.mean >= (1.0 - criteria.TIE) * accepted[0].gain.mean]
     told = [s for s in ties if determined(s.fit, s.fit.model.effects[-1])]
-    return min(told or ties, key=lambda each: order[each.slug])
+    return min(told or ties, key=lambda s: (told_parameters(s.fit, s.fit.model.effects[-1]), places[s.slug]))
 
 
 def _accepted(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:

@@ -16,6 +16,8 @@ from benchmark.discovery.answer.gap import (
     share_left,
     shared_misfit,
     traces,
+    unbent,
+    worse,
 )
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
@@ -163,3 +165,58 @@ def test_curves_are_measured_less_residual_and_empty_where_nothing_was_seen(monk
     np.testing.assert_allclose(first.noise, 0.5)
     np.testing.assert_allclose(second.measured, [5.0, np.nan, 5.0])
     assert (first.trial, second.trial, first.condition, first.channel) == ("t0", "t1", "c0", "force_z")
+
+
+def graded(before, after, conditions):
+    """What `worse` says of residuals (R, n, C) in a problem whose noise is 1 in force and 1e-6 in markers."""
+    base = measured(before, conditions)
+    noise = np.array([1.0, 1e-6, 1e-6])[: np.shape(before)[2]]
+    base.model.problem.noise = SimpleNamespace(scale=np.tile(noise, (len(conditions), 1)))
+    return worse(base, held(before, after))
+
+
+def test_a_condition_that_is_predicted_worse_is_told_by_name_force_and_markers_alike():
+    before = np.ones((4, 5, 2)) * [3.0, 3e-6]
+    assert graded(before, 0.5 * before, (0, 0, 1, 1)) == ()
+    half = before * np.array([0.5, 0.5, 2.0, 2.0])[:, None, None]
+    assert graded(before, half, (0, 0, 1, 1)) == ("c1",)
+    assert graded(before, 1.005 * before, (0, 0, 1, 1)) == ()  # the last steps of a fit
+    markers = before * [0.9, 2.0]  # a little better in force, twice as bad in markers
+    assert graded(before, markers, (0, 0, 0, 0)) == ("c0",)
+
+
+def exponential(time, depth, elastic):
+    """A purely elastic force that no base follows."""
+    return 0.3 * np.expm1(1.2e3 * np.maximum(depth, 0.0))
+
+
+@pytest.mark.slow
+def test_before_has_converged_and_stays_near_what_was_measured(session_of):
+    session = session_of(force=exponential, noise=0.003, trials=3)
+    base = calibrate(session, prepare(session, 60)).base
+    chosen = fit_candidate(base, BY_SLUG["pretension"], most=2)  # where a search may leave it
+    plain = unbent(base, chosen)
+    again = unbent(plain, plain)
+    assert again.objective == pytest.approx(plain.objective, rel=1e-3)
+    peak = max(trial.signals.max() for trial in base.model.problem.trials)
+    predicted = [
+        (trial.signals - rows).max()
+        for trial, rows in zip(base.model.problem.trials, held_out_residuals(plain, plain).before, strict=True)
+    ]
+    assert max(predicted) < 1.3 * peak
+    assert np.ptp(predicted) > 0.0
+
+
+def test_specimens_that_differ_are_no_replicates(monkeypatch):
+    base = measured(np.zeros((4, 3, 1)), (0, 0, 0, 0))
+    asked = []
+    monkeypatch.setattr(module, "pure_errors", lambda fit, alike: asked.append(alike) or [])
+    for trial, row in zip(base.model.problem.trials, range(4), strict=True):
+        trial.row = row
+    base.nuisance = np.zeros((4, 4))
+    base.model.problem.study.conditions[0].specimens = np.array([0, 0, 1, 2])
+    module.floors(base)
+    assert asked[-1] == (0, 0, 1, 2)
+    base.nuisance[:, 0] = [0.0, 0.8, 0.0, 0.0]  # twice as stiff: another specimen, whatever is told
+    module.floors(base)
+    assert len(set(asked[-1])) == 4

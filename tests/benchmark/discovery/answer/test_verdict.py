@@ -71,6 +71,9 @@ CHOICES = {
     "left": (0.02, 0.2, 0.5),
     "p_after": (0.6, 0.002),
     "transfers": (True, False, None),
+    "within": (True, False),
+    "worse": ((), ("fast",), ("slow", "fast")),
+    "undetermined": ((), ("viscoelastic_relaxation",)),
 }
 EVERY = [facts(**dict(zip(CHOICES, each, strict=True))) for each in itertools.product(*CHOICES.values())]
 
@@ -86,7 +89,31 @@ def test_every_combination_of_facts_has_one_of_the_verdicts_and_a_sentence():
 
 def test_nothing_is_named_of_too_few_trials_or_of_chance():
     assert verdicts_where(lambda each: not each.enough) == {"cannot_tell"}
-    assert verdicts_where(lambda each: each.enough and each.p >= each.level) == {"no_discrepancy"}
+    chance = verdicts_where(lambda each: each.enough and each.p >= each.level)
+    assert chance == {"no_discrepancy", "cannot_tell"}
+
+
+def test_what_misses_by_more_than_the_tolerance_is_never_called_agreement():
+    assert "no_discrepancy" not in verdicts_where(lambda each: not each.within)
+    large = facts(effects=(), p=0.4, p_cells=0.4, within=False)
+    assert verdict(large) == "cannot_tell"
+    assert "more than the stated tolerance" in statement("cannot_tell", large)
+    assert "too few" not in statement("cannot_tell", large)
+
+
+def test_a_held_out_condition_predicted_worse_forbids_a_name_and_all_of_them_an_effect():
+    one, both = facts(worse=("fast",)), facts(worse=("slow", "fast"))
+    assert (verdict(one), verdict(both)) == ("partly_explained", "outside_catalogue")
+    assert "fast is predicted worse" in statement("partly_explained", one)
+    assert "predicts unseen data worse" in statement("outside_catalogue", both)
+    single = facts(worse=("slow",), conditions=1, transfers=None)
+    assert verdict(single) == "outside_catalogue"
+
+
+def test_an_effect_of_unknown_strength_is_the_nearest_entry_only():
+    unknown = facts(undetermined=("viscoelastic_relaxation",))
+    assert verdict(unknown) == "outside_catalogue"
+    assert "strength these data do not tell" in statement("outside_catalogue", unknown)
 
 
 def test_only_one_effect_that_holds_elsewhere_and_leaves_nothing_is_named():
@@ -98,6 +125,8 @@ def test_only_one_effect_that_holds_elsewhere_and_leaves_nothing_is_named():
             assert not each.lookalikes
             assert each.transfers is True
             assert each.left <= 0.1 or each.p_after >= each.level
+            assert not each.worse
+            assert not each.undetermined
 
 
 def test_what_leaves_a_third_for_sure_is_never_an_answer():

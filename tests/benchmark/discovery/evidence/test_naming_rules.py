@@ -9,7 +9,7 @@ from benchmark.discovery import criteria
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence import selection
 from benchmark.discovery.evidence.gains import Gain
-from benchmark.discovery.evidence.parameter_evidence import by_condition, constant, determined
+from benchmark.discovery.evidence.parameter_evidence import by_condition, constant, determined, told_parameters
 from benchmark.discovery.evidence.selection import Scored
 from benchmark.discovery.evidence.shortlist import Screened
 from benchmark.physics.description import EffectParameter
@@ -38,6 +38,7 @@ def scored(slug, mean, z=9.0, bic=-50.0, each=None, **changes):
 @pytest.fixture(autouse=True)
 def all_determined(monkeypatch):
     monkeypatch.setattr(selection, "determined", lambda fit, effect, names=(): "vague" not in effect.slug)
+    monkeypatch.setattr(selection, "told_parameters", lambda fit, effect: len(effect.names))
 
 
 @pytest.fixture
@@ -77,7 +78,7 @@ def test_a_further_effect_must_gain_an_eighth_of_the_first(mean, expected):
 
 def test_of_equals_the_simplest_is_taken_then_the_first_of_the_catalogue():
     catalogue = [effect("two", 2), effect("first"), effect("second")]
-    best = scored("two", 10.0)
+    best = scored("two", 10.0, parameters=2)
     assert selection._simplest([best, scored("second", 9.71), scored("first", 9.7)], catalogue).slug == "first"
     assert selection._simplest([best, scored("second", 9.71), scored("first", 9.69)], catalogue).slug == "second"
     assert selection._simplest([best, scored("first", 9.69)], catalogue).slug == "two"
@@ -261,6 +262,14 @@ LIMIT = EffectParameter("limit", "N", (1.0,), 1e-3, 1e3, True, "limit")
 def test_a_strength_is_told_where_it_is_off_its_bounds_and_off_nothing(values, variance, parameters, expected):
     one = SimpleNamespace(slug="one", amplitude=parameters[0].name, amplitudes=tuple(p.name for p in parameters[1:]))
     assert determined(Told(values, variance, *parameters), one) is expected
+
+
+def test_a_parameter_that_only_its_prior_holds_does_not_count():
+    made = Told((0.3, 0.5), (0.01, 0.999), SHARE, WHOLE)
+    made.precision = np.array([1.0, 1.0])
+    assert told_parameters(made, SimpleNamespace(slug="one")) == 1
+    made.covariance = np.diag([0.01, 0.5])
+    assert told_parameters(made, SimpleNamespace(slug="one")) == 2
 
 
 def test_one_condition_or_no_effect_tells_nothing_of_constancy():

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 import benchmark.discovery.report.discovery_files as module
+from benchmark.discovery.discovery_result import ChannelSize, ConditionEstimate, Estimate, LookAlike
 from benchmark.discovery.report.discovery_files import discovery_document, write_discovery
 from benchmark.discovery.report.discovery_record import NextExperiment
 from benchmark.model_file import read_model
@@ -114,3 +115,22 @@ def test_an_unknown_floor_is_null_in_every_file(record, tmp_path: Path) -> None:
     assert made.document["gap"]["force_z"]["noise_floor"] is None
     assert pd.read_csv(tmp_path / "new/tables/gap.csv")["noise_floor"].isna().all()
     assert "noise_floor" not in read_model(tmp_path / "new/model.toml", record.cards).evidence["gap"]["force_z"]
+
+
+def test_signs_sizes_and_rivals_stand_in_the_files(record, tmp_path: Path) -> None:
+    where = (replace(record.found.where[3], size=3.4e-5, contribution=-8.8e-5),)
+    rival = LookAlike("poroelastic_drainage", (Estimate("drainage_share", 0.4, "", (0.3, 0.5)),), 0.06, 7.0)
+    part = ConditionEstimate("tau_1", "slow", 3.0, "s", (2.9, 3.1), True)
+    effect = replace(record.found.effects[0], rivals=(rival,), by_condition=(part,), gain=41.0)
+    found = replace(
+        record.found, where=where, effects=(effect,), sizes=(ChannelSize("marker_radial", 1e-4, 2e-5, 5e-5),)
+    )
+    document = write_discovery(replace(record, found=found), tmp_path / "new").document
+    assert (document["where"][0]["size"], document["where"][0]["contribution"]) == pytest.approx((0.034, -0.088))
+    table = pd.read_csv(tmp_path / "new/tables/where.csv")
+    assert table["contribution"].tolist() == pytest.approx([-0.088])
+    assert document["size"]["marker_radial"] == pytest.approx(
+        {"unit": "mm", "before": 0.1, "after": 0.02, "tolerance": 0.05, "within": True}
+    )
+    assert document["effects"][0]["rivals"][0]["parameters"]["drainage_share"]["ci95"] == [0.3, 0.5]
+    assert document["effects"][0]["by_condition"][0]["agrees"] is True

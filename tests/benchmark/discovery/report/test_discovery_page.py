@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from benchmark.discovery.discovery_result import VERDICTS
+from benchmark.discovery.discovery_result import VERDICTS, ChannelSize, ConditionEstimate, Estimate, LookAlike
 from benchmark.discovery.report.disagreement_sections import representative
 from benchmark.discovery.report.discovery_page import discovery_page, discovery_verdict
 from benchmark.discovery.report.discovery_record import NextExperiment
@@ -94,3 +94,63 @@ def test_one_trial_a_channel_and_condition_is_shown_the_held_out_one(found) -> N
         ("force_z", "slow"), ("force_z", "fast"), ("marker_radial", "slow"), ("marker_radial", "fast"),
     ]  # fmt: skip
     assert [trace.held_out for trace in chosen] == [False, True, False, True]
+
+
+def test_a_miss_beyond_the_tolerance_is_never_green(record, empty) -> None:
+    sizes = (ChannelSize("force_z", 2.0, 0.3, 0.16),)
+    for each in (record, empty):
+        shown = discovery_verdict(replace(each, found=replace(each.found, sizes=sizes)))
+        assert shown.status == "finding"
+        assert any("still misses press force by 0.30 N (tolerance 0.16 N)" in point for point in shown.points)
+    small = (ChannelSize("force_z", 2.0, 0.1, 0.16),)
+    assert discovery_verdict(replace(record, found=replace(record.found, sizes=small))).status == "good"
+
+
+def test_an_unknown_floor_is_called_so(record) -> None:
+    gap = tuple(replace(each, noise_floor=None, closed=None, ci95=None) for each in record.found.gap)
+    assert "not known" in _text(replace(record, found=replace(record.found, gap=gap)))
+
+
+def test_residual_and_contribution_stand_side_by_side(record) -> None:
+    first = replace(record.found.where[0], size=0.34, contribution=-0.88)
+    found = replace(record.found, where=(first, *record.found.where[1:]))
+    text = _text(replace(record, found=found))
+    assert "0.34 N more than simulated" in text
+    assert "the effect adds -0.88 N" in text
+    assert "effect's contribution" in text or "effect&#x27;s contribution" in text or "effect&#39;s" in text
+
+
+@pytest.mark.parametrize("verdict", ["named", "conditional", "lookalikes", "partly_explained", "outside_catalogue"])
+def test_constancy_and_the_rivals_own_parameters_stand_under_every_verdict(record, verdict: str) -> None:
+    (effect,) = record.found.effects
+    moved = tuple(
+        ConditionEstimate("tau_1", condition, value, "s", (0.9 * value, 1.1 * value), agrees)
+        for condition, value, agrees in (("slow", 3.0, True), ("fast", 30.0, False))
+    )
+    rival = LookAlike("poroelastic_drainage", (Estimate("drainage_share", 0.417, "", (0.4, 0.43)),), 0.06, 7.0)
+    changed = replace(effect, by_condition=moved, rivals=(rival,))
+    text = _text(replace(record, found=replace(record.found, verdict=verdict, effects=(changed,))))
+    assert "other parameters: tau_1 in fast" in text
+    assert "0.417" in text
+    alone = replace(record.found, verdict=verdict, conditions=("slow",))
+    assert "not known: there is one condition" in _text(replace(record, found=alone))
+
+
+def test_what_was_not_looked_for_says_what_it_needs(record, empty) -> None:
+    for each in (record, empty):
+        found = replace(each.found, not_shown={"dry_friction": "unloading"})
+        assert "dry friction: needs unloading" in _text(replace(each, found=found))
+
+
+def test_a_miss_that_chance_may_explain_was_tested(empty) -> None:
+    found = replace(empty.found, verdict="cannot_tell", p=0.4)
+    text = _text(replace(empty, found=found))
+    assert "cannot reach the level" not in text
+    assert discovery_verdict(replace(empty, found=found)).status == "unknown"
+
+
+def test_rivals_that_are_far_apart_already_say_why_they_stay(record) -> None:
+    rivals = ("viscoelastic_relaxation", "poroelastic_drainage")
+    far = NextExperiment(rivals, "rest", "Rest.", 96.0, 140.0, 22.0, {"rest": (140.0, 22.0)}, "")
+    assert "textbook forms are far apart" in _text(replace(record, proposal=far))
+    assert "textbook forms" not in _text(replace(record, proposal=replace(far, separation_now=2.0)))

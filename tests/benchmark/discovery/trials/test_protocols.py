@@ -93,3 +93,11 @@ def test_a_condition_whose_trials_all_tell_nothing_is_left_out(session) -> None:
     study = prepare(session(trials, ["slow"] * 7 + ["off"]), 100)
     assert [condition.name for condition in study.conditions] == ["slow"]
     assert any("trial_07" in text for text in study.warnings)
+
+
+def test_specimens_are_told_apart_by_their_height_and_taken_for_one_without(session) -> None:
+    heights = [10.0, 12.0, 10.02, 14.0, 12.01, 10.03]
+    made = session([press(3.0, height=height) for height in heights])
+    assert prepare(made, 100).conditions[0].specimens.tolist() == [0, 1, 0, 2, 1, 0]
+    plain = session([press(3.0) for _ in heights])
+    assert prepare(plain, 100).conditions[0].specimens.tolist() == [0] * 6
