@@ -74,3 +74,44 @@ def test_few_trials_cannot_tell_whatever_they_show(session_of):
     assert (found.p, found.effects, found.where, found.remains, found.smallest_visible) == (None, (), (), (), {})
     assert "too few trials" in found.statement
     assert found.gap[0].rmse_before > 0.0
+
+
+def exponential(time, depth, elastic):
+    """A purely elastic force that grows far faster than any base."""
+    return 0.3 * np.expm1(1.2e3 * np.maximum(depth, 0.0))
+
+
+@pytest.mark.slow
+def test_a_steep_elastic_force_is_stiffening_and_before_is_near_what_was_measured(
+    session_of, quick_session, monkeypatch
+):
+    plain = quick_session.motion
+    monkeypatch.setattr(quick_session, "motion", lambda speed, hold: plain(speed, peak=4e-3, hold=hold))
+    answer = findings(session_of(force=exponential, noise=0.003), settings=SETTINGS).discovery
+    assert answer.effects[0].slug == "strain_stiffening"
+    assert answer.verdict in ("named", "conditional", "lookalikes", "partly_explained")
+    (gap,) = answer.gap
+    assert gap.rmse_after < 0.1 * gap.rmse_before
+    peak = max(np.nanmax(trace.measured) for trace in answer.traces)
+    assert max(np.nanmax(trace.before) for trace in answer.traces) < 1.2 * peak
+    assert answer.effects[0].by_condition
+    for place in answer.where:
+        assert abs(place.size) < peak
+
+
+@pytest.mark.slow
+def test_loading_alone_names_nothing_that_needs_more(session_of, quick_session, monkeypatch):
+    plain = quick_session.motion
+
+    def loading(speed, hold):
+        time, depth = plain(3e-3, hold=hold, cycles=1)
+        rows = slice(0, int(depth.argmax()) + 1)
+        return time[rows], depth[rows]
+
+    monkeypatch.setattr(quick_session, "motion", loading)
+    answer = findings(session_of(force=damped, noise=0.003), settings=SETTINGS).discovery
+    hidden = {"viscous_damping", "viscoelastic_relaxation", "dry_friction", "stress_softening", "permanent_set"}
+    assert hidden <= set(answer.not_shown)
+    said = {slug for effect in answer.effects for slug in (effect.slug, *effect.lookalikes)}
+    assert not hidden & said
+    assert not hidden & {slug for each in answer.candidates for slug in each.slugs}
