@@ -4,23 +4,25 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, fields
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 from benchmark.blind.scoring.judging import Judged, confusion, table, verdicts
 from benchmark.blind.scoring.lab_measures import lab_table
 from benchmark.blind.scoring.measure_rows import BlindRow
+from benchmark.blind.scoring.scoreboard import scoreboard
 from benchmark.blind.suites import MIXED
 from benchmark.errors import InputError
 from benchmark.resumable import check_files
 from benchmark.runs.output.destination import check_ready
-from reports import extended_folder, write_csv, write_json, write_text
+from benchmark.runs.output.document import describe_environment
+from reports import extended_folder, write_csv, write_json, write_page, write_text
 from reports.result_folder import clear_leftovers
 
 SCHEMA = 1
 SETTINGS, JOURNAL, DOCUMENT = "settings.json", "cases.jsonl", "blind.json"
-FILES = (SETTINGS, DOCUMENT, "cases.csv", "confusion.csv", "table.md", JOURNAL)
+FILES = (SETTINGS, DOCUMENT, "cases.csv", "confusion.csv", "table.md", "report.html", JOURNAL)
 
 
 def open_folder(path: Path, settings: dict[str, Any]) -> Path:
@@ -60,7 +62,7 @@ def _settings_in(path: Path) -> dict[str, Any] | None:
 
 
 def finish(path: Path, settings: dict[str, Any], cases: Sequence[Judged]) -> dict[str, Any]:
-    """Write blind.json, cases.csv, confusion.csv and table.md, and end the journal; returns the document."""
+    """Write the page, tables and blind.json, and end the journal; returns the document."""
     rows = rows_of(settings, cases)
     result = document(settings, rows, cases)
     columns = {each.name: [getattr(case, each.name) for case in cases] for each in fields(Judged)}
@@ -70,6 +72,7 @@ def finish(path: Path, settings: dict[str, Any], cases: Sequence[Judged]) -> dic
         write_csv(new / "cases.csv", columns)
         write_csv(new / "confusion.csv", confused)
         write_text(new / "table.md", f"# Blind trials (synthetic), suite {settings['suite']}\n\n{text_table(rows)}\n")
+        write_page(new / "report.html", scoreboard(settings, rows, cases, describe_environment(seed=settings["seed"])))
         write_json(new / DOCUMENT, result)
     (path / JOURNAL).unlink(missing_ok=True)
     with extended_folder(path, growing=()):
@@ -88,7 +91,7 @@ def document(settings: dict[str, Any], rows: Sequence[BlindRow], cases: Sequence
         "schema": SCHEMA,
         "synthetic": True,
         **settings,
-        "rows": [asdict(row) for row in rows],
+        "rows": [row.to_dict() for row in rows],
         "verdicts": dict(verdicts(cases)),
         "confusion": {truth: dict(names) for truth, names in confusion(cases).items()},
     }

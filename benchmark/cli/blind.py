@@ -55,8 +55,8 @@ def blind(
 ) -> int:
     """Hide effects in synthetic sessions and count how often the discovery finds and names them.
 
-    Writes table.md, cases.csv, confusion.csv and blind.json. The same command goes on where it was stopped. Exit code
-    0 whatever it finds.
+    Writes report.html, table.md, cases.csv, confusion.csv and blind.json. The same command goes on where it was
+    stopped. Exit code 0 whatever it finds.
     """
     from benchmark.blind.blind_folder import confusion_text, finish, open_folder, rows_of, text_table
     from benchmark.blind.running import load_discoverer, run_cases
@@ -88,7 +88,7 @@ def blind(
         print_json({**result, "out": str(folder)})
     else:
         print(text_table(rows_of(settings, judged)))
-        print(f"\ntaken for something else:\n{confusion_text(judged)}\n  tables: {folder}")
+        print(f"\ntaken for something else:\n{confusion_text(judged)}\n  report: {folder / 'report.html'}")
     return 0
 
 

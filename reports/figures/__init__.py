@@ -11,7 +11,16 @@ from reports.figures.markers import circle_radius, marker_motion
 from reports.figures.measured import TrialCurve, measured
 from reports.figures.normal_fit import Normal, normal_fit
 from reports.figures.pressed_layers import moving_surface
-from reports.figures.rows import GapRow, ParameterRow, RankedCandidate, fitted_parameters, gap_bars, ranking
+from reports.figures.rows import (
+    GapRow,
+    ParameterRow,
+    RankedCandidate,
+    ShareRow,
+    fitted_parameters,
+    gap_bars,
+    ranking,
+    shares,
+)
 from reports.figures.style import Pair
 from reports.figures.timing import timing
 from reports.figures.tool_outline import ToolShape
@@ -24,6 +33,7 @@ __all__ = [
     "ParameterRow",
     "RankedCandidate",
     "RepairedTrace",
+    "ShareRow",
     "StackLayer",
     "ToolShape",
     "TrialCurve",
@@ -41,6 +51,7 @@ __all__ = [
     "profile",
     "ranking",
     "repaired",
+    "shares",
     "timing",
     "where_map",
 ]

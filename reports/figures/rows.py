@@ -1,4 +1,4 @@
-"""A row for each name: fitted parameters with intervals, ranked candidates with evidence, gaps before and after."""
+"""A row for each name: fitted parameters with intervals, ranked candidates, gaps before and after, shares with bars."""
 
 from __future__ import annotations
 
@@ -13,12 +13,14 @@ from reports.blocks import Figure
 from reports.figures.disagreement import AFTER, BEFORE
 from reports.figures.style import FEM, INK, MUTED, PAPER, WIDE, draw, legend_above
 from reports.formatting import format_number, shortened
+from reports.palette import PALETTE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Drawing
 
 _TWO_SIDED = 1.96
+GOOD, FAILED = PALETTE["good"].light, PALETTE["failed"].light
 
 
 @dataclass(frozen=True)
@@ -256,6 +258,51 @@ def _paint_gap(axes: Axes, row: int, gap: GapRow) -> None:
 
 def _floor(gap: GapRow) -> str:
     return "" if gap.floor is None else f", floor {format_number(gap.floor, 3)} {gap.unit}"
+
+
+@dataclass(frozen=True)
+class ShareRow:
+    """A share of `n` cases with its 95 % interval, 0 to 1; its bar, where there is one, and whether it is reached."""
+
+    name: str
+    value: float
+    low: float
+    high: float
+    n: int
+    bar: float | None = None
+    reached: bool | None = None
+
+    def text(self) -> str:
+        """The share in words."""
+        return f"{round(100 * self.value):d} % of {self.n}"
+
+
+def shares(rows: Sequence[ShareRow], caption: str, title: str) -> Figure:
+    """Draw each share with its interval, and the bar that it should reach as a line.
+
+    Raises
+    ------
+    ValueError
+        Without a share.
+    """
+    if not rows:
+        raise ValueError("rows is empty; at least one share is needed")
+
+    def paint(drawing: Drawing) -> None:
+        axes = drawing.subplots()
+        for place, row in enumerate(rows):
+            colour = FEM.colour if row.reached is None else GOOD if row.reached else FAILED
+            _interval(axes, place, (100 * row.low, 100 * row.high), colour)
+            _dot(axes, place, 100 * row.value, colour, PAPER if row.reached is False else colour)
+            if row.bar is not None:
+                axes.plot((100 * row.bar,) * 2, (place - 0.35, place + 0.35), color=INK, linewidth=1.8)
+            _note(axes, place, row.text(), "small")
+        _name_rows(axes, [row.name for row in rows], 36)
+        axes.set_xlim(-3, 103)
+        axes.set_xlabel("cases (%)")
+
+    words = "; ".join(f"{row.name}: {row.text()}" for row in rows) + "."
+    return Figure.of(draw(paint, WIDE, 70 + 27 * len(rows)), caption, words, title)
 
 
 def _name_rows(axes: Axes, names: Sequence[str], length: int) -> None:

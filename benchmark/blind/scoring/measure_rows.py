@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import TypeVar
+from dataclasses import asdict, dataclass
+from typing import Any, TypeVar
 
 import numpy as np
 from scipy.stats import beta
@@ -27,6 +27,8 @@ class BlindRow:
         As in ">= 0.9"; "" where there is none.
     passed : bool or None
         None without a bar.
+    is_share : bool
+        Whether it is a share of cases, not a mean or median.
     """
 
     measure: str
@@ -35,6 +37,11 @@ class BlindRow:
     n: int
     bar: str
     passed: bool | None
+    is_share: bool = False
+
+    def to_dict(self) -> dict[str, Any]:
+        """Its columns in files."""
+        return {name: value for name, value in asdict(self).items() if name != "is_share"}
 
 
 def clopper_pearson(hits: int, n: int, level: float = 0.95) -> Interval:
@@ -50,7 +57,7 @@ def share(measure: str, cases: Sequence[Case], right: Callable[[Case], bool], ba
     hits, n = sum(right(case) for case in cases), len(cases)
     if n == 0:
         return BlindRow(measure, 0.0, (0.0, 1.0), 0, bar, None)
-    return BlindRow(measure, hits / n, clopper_pearson(hits, n), n, bar, _passed(hits / n, bar))
+    return BlindRow(measure, hits / n, clopper_pearson(hits, n), n, bar, _passed(hits / n, bar), True)
 
 
 def average(measure: str, cases: Sequence[Case], value: Callable[[Case], float], bar: str) -> BlindRow:

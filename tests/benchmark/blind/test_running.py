@@ -59,6 +59,7 @@ def test_the_verb_counts_resumes_and_redoes(stub: Path, tmp_path: Path, capsys: 
         "confusion.csv",
         "table.md",
         "manifest.json",
+        "report.html",
     }
     assert len(stub.read_text().splitlines()) == 2
 

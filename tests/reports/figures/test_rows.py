@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from reports.figures import ParameterRow, fitted_parameters
+from reports.figures import ParameterRow, ShareRow, fitted_parameters, shares
 
 MODULUS = ParameterRow("youngs_modulus", 45.2, "kPa", 44.1, 46.3)
 
@@ -42,3 +42,13 @@ def test_a_wide_span_of_positive_values_is_logarithmic(texts):
 def test_no_parameter_is_refused():
     with pytest.raises(ValueError, match="parameters is empty"):
         fitted_parameters([])
+
+
+def test_a_share_shows_its_interval_and_its_bar(texts, lines):
+    rows = [ShareRow("named first", 0.75, 0.5, 0.9, 12, 0.9, False), ShareRow("in the set", 1.0, 0.8, 1.0, 12)]
+    figure = shares(rows, "Each share.", "Shares")
+    assert {"named first", "75 % of 12", "100 % of 12", "cases (%)"} <= set(texts(figure.panels[0].svg))
+    assert sum(len(line) == 2 and np.ptp(line[:, 1]) == 0 for line in lines(figure.panels[0].svg, "failed")) == 1
+    assert any(np.ptp(line[:, 0]) == 0 and np.ptp(line[:, 1]) > 10 for line in lines(figure.panels[0].svg, "ink"))
+    with pytest.raises(ValueError, match="at least one share"):
+        shares([], "", "")

@@ -153,10 +153,10 @@ def test_in_a_lab_the_set_up_may_be_the_answer() -> None:
     instrument = replace(clamped, said="perspective", reported="perspective")
     unsure = replace(instrument, verdict="lookalikes")
     rows = lab_rows(clamped, setup, instrument, unsure)
-    assert rows["clamped otherwise: right name or set-up first"].value == 0.5
-    assert rows["clamped otherwise: wrong instrument, confident"].value == 0.25
-    assert rows["clamped otherwise: wrong instrument, confident"].passed is False
-    assert rows["tissue: sensor named with confidence"].value == 0.25
+    assert rows["clamp: right name or set-up first"].value == 0.5
+    assert rows["clamp: wrong instrument, confident"].value == 0.25
+    assert rows["clamp: wrong instrument, confident"].passed is False
+    assert rows["tissue: sensor, confident"].value == 0.25
     assert rows["printed: right name first"].n == 0
     assert rows["printed: right name first"].passed is None
 
@@ -165,7 +165,7 @@ def test_a_set_up_that_is_wrong_is_no_effect_named_on_a_null() -> None:
     setup = replace(NULL, verdict="named", said="setup.tool.radius", reported="setup.tool.radius")
     rows = lab_rows(NULL, setup, replace(setup, setup_off="setup.tool.radius"), replace(setup, said="adhesion"))
     assert rows["nulls named, all labs"].value == 0.25
-    assert rows["nulls whose told set-up is right: set-up named"].value == 0.25
+    assert rows["nulls: set-up named that is right"].value == 0.25
 
 
 def test_too_few_trials_count_by_themselves() -> None:
@@ -173,7 +173,7 @@ def test_too_few_trials_count_by_themselves() -> None:
     rows = lab_rows(few, replace(CASE, lab="printed"), replace(WRONG, lab="printed"))
     assert rows["printed: right name first"].n == 2
     assert rows["fewer than six trials: something named"].value == 1.0
-    assert rows["effects in the set in 80 % of their cases"].passed is True
+    assert rows["effects with 80 % in the set"].passed is True
 
 
 def test_a_case_that_cannot_be_made_counts_nowhere() -> None:
