@@ -28,7 +28,7 @@ Named = Annotated[
         "--discoverer", metavar="MODULE:FUNCTION", help="Another discovery, called with a session and a seed."
     ),
 ]
-
+Without = Annotated[str, typer.Option("--without", metavar="PART", help="The discovery without one of its parts.")]
 
 MOST_SCATTER = 1e-3
 """Markers printed farther off than this are no grid, m."""
@@ -49,6 +49,7 @@ def blind(
     most: Most = 0,
     print_scatter: PrintScatter = "",
     discoverer: Named = "benchmark.discovery:discover",
+    without: Without = "",
     json: Json = False,
     quiet: Quiet = False,
     debug: Debug = False,
@@ -70,6 +71,7 @@ def blind(
     slugs = tuple(each.strip() for each in cases.split(",") if each.strip())
     scatter = _scatter(print_scatter)
     names = tuple(replace(each, print_scatter=scatter) for each in chosen(cases_of(suite, seed), slugs))[: most or None]
+    discoverer = _discoverer(discoverer, without)
     settings = {"suite": suite, "seed": seed, "cases": list(slugs), "discoverer": discoverer}
     settings |= {"print_scatter": print_scatter} if scatter else {}
     settings |= {"most": most} if most else {}
@@ -90,6 +92,19 @@ def blind(
         print(text_table(rows_of(settings, judged)))
         print(f"\ntaken for something else:\n{confusion_text(judged)}\n  report: {folder / 'report.html'}")
     return 0
+
+
+def _discoverer(discoverer: str, without: str) -> str:
+    """The discovery that is put on trial; raises InputError."""
+    from benchmark.blind.rivals.ablations import discoverer_without
+    from benchmark.blind.running import PRODUCT
+    from benchmark.errors import InputError
+
+    if not without:
+        return discoverer
+    if discoverer != PRODUCT:
+        raise InputError(f"--without {without!r}: only the product's own discovery has parts; leave --discoverer out")
+    return discoverer_without(without)
 
 
 def _scatter(text: str) -> float:
