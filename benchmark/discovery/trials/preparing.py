@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import Array
+from benchmark.discovery.trials.cycles import by_cycles
 from benchmark.discovery.trials.marker_layout import Layout, layout
 from benchmark.discovery.trials.printed_grid import printed_grid, resting_places
 from benchmark.discovery.trials.protocols import most_odd, same_protocol, specimens
@@ -47,9 +48,11 @@ def prepare(session: Session, rows: int) -> Study:
     Raises
     ------
     InputError
-        Fewer than three trials, more than single ones without motion or force, or different protocols in a condition.
+        Fewer than three trials (or presses of one long record), more than single ones without motion or force, or
+        different protocols in a condition.
     """
-    warnings = [*session.warnings, *_few(session)]
+    session, split = by_cycles(session)
+    warnings = [*session.warnings, *split, *_few(session)]
     rows = min(rows, max(LEAST_IN_TRIAL, MOST_IN_ALL // len(session.trials)))
     raw = _usable(session, warnings)
     groups = [[r for r in raw if r.trial.condition == name] for name in session.conditions]
