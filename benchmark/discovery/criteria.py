@@ -244,6 +244,9 @@ less, another specimen differs by more."""
 RIGHT_ALONE, RIGHT_AMONG = (77, 78), (18, 30)
 """Right effect first, of how many answers: without a look-alike, and with some. Blind trials of seed 71, synthetic and
 of our own generator: sessions by others were right less often (`docs/blind.md`), so these are upper bounds there."""
+STRAINED = 1e-3
+"""P of the base's bends under their priors, beside the effects, below which no effect is called all that is missing:
+a set-up that was told wrongly may look like one. First choice: sessions told rightly rarely reach it."""
 ONE_SPECIMEN = 0.3
 """Scatter of the logarithm of the trials' gains from which they are no replicates of one specimen. First choice."""
 SMALL_IN_PRACTICE = 2.0

@@ -28,7 +28,14 @@ from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.cells import reachable
 from benchmark.discovery.detection.contrasts import contrasts
-from benchmark.discovery.detection.disagreement import Detection, combined, detect, exchangeable, smallest_visible
+from benchmark.discovery.detection.disagreement import (
+    Detection,
+    combined,
+    detect,
+    exchangeable,
+    smallest_visible,
+    strained,
+)
 from benchmark.discovery.detection.places import places
 from benchmark.discovery.discovery_result import Discovery
 from benchmark.discovery.evidence.gains import conditions
@@ -225,4 +232,5 @@ def _facts(answer: _Answer, known: Sequence[Effect], settings: Settings) -> Fact
         worse=() if answer.chosen is answer.base else worse(answer.base, answer.held),
         conditions=len(answer.base.model.problem.study.conditions),
         undetermined=undetermined(answer.chosen),
+        p_strained=strained(answer.chosen),
     )

@@ -39,6 +39,8 @@ class Facts:
     conditions : int
     undetermined : tuple of str
         Accepted effects whose strength the data do not tell.
+    p_strained : float
+        Of the base's having to bend so far beside the effects, by the priors of what was told of the set-up.
     """
 
     p: float
@@ -54,6 +56,12 @@ class Facts:
     worse: tuple[str, ...] = ()
     conditions: int = 2
     undetermined: tuple[str, ...] = ()
+    p_strained: float = 1.0
+
+    @property
+    def strained(self) -> bool:
+        """Whether the base must surely bend further beside the effects than its set-up as told allows."""
+        return self.p_strained < criteria.STRAINED
 
     @property
     def predicts(self) -> bool:
@@ -72,7 +80,11 @@ def verdict(facts: Facts) -> str:
         return "outside_catalogue"
     if facts.lookalikes:
         return "instrument_first" if _mixed((*facts.effects, *facts.lookalikes)) else "lookalikes"
-    if facts.worse or (facts.p_after < facts.level and facts.left > criteria.PARTLY and facts.transfers is not None):
+    if (
+        facts.worse
+        or facts.strained
+        or (facts.p_after < facts.level and facts.left > criteria.PARTLY and facts.transfers is not None)
+    ):
         return "partly_explained"
     return "named" if facts.transfers else "conditional"
 
@@ -125,6 +137,8 @@ def _more(facts: Facts) -> str:
     """What speaks against the effects being all."""
     if facts.worse:
         return f"held out, {', '.join(facts.worse)} is predicted worse with it than without"
+    if facts.strained:
+        return "beside it the set-up must still be another than was told"
     return "cells still disagree with it in the model"
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from benchmark.discovery.answer import estimates
+from benchmark.discovery.discovery_result import Estimate
 from benchmark.discovery.evidence.gains import Gain
 from benchmark.discovery.evidence.selection import Scored, Selection
 from benchmark.discovery.evidence.shortlist import Screened
@@ -98,3 +99,25 @@ def test_a_logarithmic_parameter_has_its_interval_in_ratios():
     low, high = estimates.effect_estimates(linear_fit(np.zeros((5, 1)), [time], [np.log(2.0)], [0.04]))[0][1].ci95
     assert low * high == pytest.approx(4.0)
     assert high / low == pytest.approx(np.exp(4 * 0.196 * 1.0))
+
+
+def test_effects_stand_in_the_order_of_their_own_gain_with_their_rivals_parameters(known_densities, monkeypatch):
+    """A rival that lacks a tenth of what the effect gains itself, with the parameters of its own fit."""
+    chosen = fitted("small", np.full(8, 50.0))
+    chosen.model.effects = (SimpleNamespace(slug="small"), SimpleNamespace(slug="large"))
+    rival = fitted("rival", np.full(8, 49.0))
+    own = {name: Gain(np.full(8, size), size, 1.0, 9.0) for name, size in (("small", 10.0), ("large", 40.0))}
+    values = {id(chosen): (("small", 1.0), ("large", 2.0)), id(rival): (("large", 3.0), ("rival", 4.0))}
+    monkeypatch.setattr(
+        estimates,
+        "effect_estimates",
+        lambda fit: tuple((slug, Estimate("p", value, "N", (0.0, 9.0))) for slug, value in values[id(fit)]),
+    )
+    monkeypatch.setattr(estimates, "by_condition", lambda fit: ())
+    made = selected(chosen, own=own, rivals={"small": (rival,)}, lookalikes={"small": ("rival",)})
+    first, second = estimates.named_effects(made)
+    assert (first.slug, first.gain, first.rivals) == ("large", 40.0, ())
+    assert (second.slug, second.gain, second.lookalikes) == ("small", 10.0, ("rival",))
+    assert [each.value for each in second.rivals[0].parameters] == [4.0]
+    assert second.rivals[0].lacking == pytest.approx(0.1)
+    assert all(each.confidence == 0.0 for each in estimates.named_effects(made, sure=False))

@@ -74,6 +74,7 @@ CHOICES = {
     "within": (True, False),
     "worse": ((), ("fast",), ("slow", "fast")),
     "undetermined": ((), ("viscoelastic_relaxation",)),
+    "p_strained": (1.0, 1e-4),
 }
 EVERY = [facts(**dict(zip(CHOICES, each, strict=True))) for each in itertools.product(*CHOICES.values())]
 
@@ -127,6 +128,7 @@ def test_only_one_effect_that_holds_elsewhere_and_leaves_nothing_is_named():
             assert each.left <= 0.1 or each.p_after >= each.level
             assert not each.worse
             assert not each.undetermined
+            assert not each.strained
 
 
 def test_what_leaves_a_third_for_sure_is_never_an_answer():
@@ -145,3 +147,11 @@ def test_the_statement_names_effects_and_rivals():
     made = facts(effects=(RELAXATION, DRIFT), lookalikes=(DRAINAGE,))
     words = statement("lookalikes", made)
     assert all(name in words for name in ("viscoelastic relaxation and force drift", "poroelastic drainage"))
+
+
+def test_where_the_set_up_must_be_another_no_effect_is_called_all():
+    told = facts(p_strained=1e-4)
+    assert verdict(told) == "partly_explained"
+    assert "another than was told" in statement("partly_explained", told)
+    assert verdict(facts(p_strained=0.01)) == "named"
+    assert verdict(facts(p_strained=1e-4, transfers=None)) == "partly_explained"
