@@ -9,7 +9,7 @@ BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-
 .PHONY: help run test test-slow $(BENCHES) lint types imports check docs lock clean
 
 help:
-	@echo "make run              measured phantom trials and the 5 N skin press to two reports"
+	@echo "make run              phantom trials, the 5 N skin press, and a hidden effect found: three reports"
 	@echo "make test             the tests (under 10 minutes on 2 cores)"
 	@echo "make test-slow        the long checks"
 	@echo "make check            lint, types and import rules"

@@ -32,6 +32,7 @@ from reports.blocks import (
     Notice,
     Picture,
     Section,
+    Story,
     Subsection,
     Table,
     Verdict,
@@ -60,6 +61,8 @@ class Page:
         Scenario, date, versions and the like, under the subtitle.
     notices
         What must be known before any figure is looked at, under the verdict.
+    story
+        What the page tells on one screen, before its tables; None without.
     key_figures
         The few numbers worth large type.
     downloads
@@ -74,6 +77,7 @@ class Page:
     subtitle: str = ""
     facts: Sequence[Fact] = ()
     notices: Sequence[Notice] = ()
+    story: Story | None = None
     key_figures: Sequence[KeyFigure] = ()
     downloads: Sequence[Download] = ()
     footer: str = ""
@@ -138,12 +142,14 @@ def render_page(page: Page) -> str:
     if page.downloads:
         sections.append(Section("Downloads", (Downloads(page.downloads),)))
     numbering = _Numbering()
+    story = None if page.story is None else numbering.place([page.story.figure], "story")[0]
     placed = [
         (f"section-{position}", section.title, numbering.place(section.blocks, f"section-{position}"))
         for position, section in enumerate(sections, 1)
     ]
-    live = scripts() if any(_is_live(block) for section in sections for block in section.blocks) else None
-    html = environment().get_template("page.html.j2").render(page=page, sections=placed, scripts=live)
+    blocks = [block for section in sections for block in section.blocks]
+    live = scripts() if any(map(_is_live, blocks)) else None
+    html = environment().get_template("page.html.j2").render(page=page, story=story, sections=placed, scripts=live)
     return html if html.endswith("\n") else html + "\n"
 
 
@@ -153,6 +159,8 @@ def write_page(path: StrPath, page: Page) -> Path:
 
 
 _FOLD_FROM = 17
+_LONG_TEXT = 40
+"""Letters from which a column of texts would stand in tall, narrow cells on a small screen."""
 
 
 @dataclass(frozen=True)
@@ -256,11 +264,18 @@ def _table_grid(table: Table) -> dict[str, Any]:
     by_column = [_column_cells([row[index] for row in shown], column) for index, column in enumerate(columns)]
     return {
         "columns": columns,
-        "numeric": [any(number for _, _, number in cells) for cells in by_column],
+        "classes": [_cell_class(cells) for cells in by_column],
         "rows": list(zip(*by_column, strict=True)),
         "hidden": len(table.rows) - len(shown),
         "folded": len(table.rows) >= _FOLD_FROM if table.folded is None else table.folded,
     }
+
+
+def _cell_class(cells: Sequence[tuple[str, str, bool]]) -> str:
+    """The class attribute of a column: numbers to the right, long texts wide enough to be read."""
+    if any(number for _, _, number in cells):
+        return ' class="n"'
+    return ' class="long"' if any(len(text) > _LONG_TEXT for text, _, _ in cells) else ""
 
 
 def _column_cells(values: Sequence[Any], column: Column) -> list[tuple[str, str, bool]]:

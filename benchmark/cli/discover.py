@@ -13,7 +13,7 @@ Paths = Annotated[
     list[Path],
     typer.Argument(
         metavar="SESSION_OR_RUN...",
-        help="A trial session; or a result folder of run, and a second one to hold out.",
+        help="A trial session (a folder, or a shipped name); or a result folder of run, and a second one to hold out.",
     ),
 ]
 Model = Annotated[Literal["wave", "fem"], typer.Option("--model", help="The model under repair.")]
@@ -47,19 +47,10 @@ def discover(
     Exit code 0 whatever is found.
     """
     from benchmark.cli.console import Console
-    from benchmark.cli.show import print_json
+    from benchmark.cli.show import show_discovery
     from benchmark.discovery.discovery_request import DiscoverRequest, carry_out
 
     console = Console(quiet=quiet)
     request = DiscoverRequest(paths, model, effects, specimen, parse_settings(settings), out, seed)
     outcome = carry_out(request, console)
-    for warning in outcome.warnings:
-        console.say(f"  warning: {warning}")
-    if json:
-        print_json({**outcome.document, "out": str(outcome.folder)})
-    else:
-        print(
-            f"{outcome.document['name']}: {outcome.document['verdict']}: {outcome.headline}\n"
-            f"  report: {outcome.folder / 'report.html'}"
-        )
-    return 0
+    return show_discovery(outcome, console, as_json=json)

@@ -9,7 +9,7 @@ import typer
 
 from benchmark.cli.options import Debug, Json, Out, Quiet, Seed, Set, parse_settings
 
-SessionFolder = Annotated[Path, typer.Argument(help="A trial session: a folder of CSV files.")]
+SessionFolder = Annotated[Path, typer.Argument(help="A trial session: a folder of CSV files, or a shipped name.")]
 Specimen = Annotated[str | None, typer.Option("--specimen", help="Tissue of the trials: a name or a TOML file.")]
 Model = Annotated[Path | None, typer.Option("--model", help="Switch on the effects of a model file of discover.")]
 Effects = Annotated[Path | None, typer.Option("--effects", help="Effects of your own that the model file names.")]

@@ -10,7 +10,9 @@ import typer
 from benchmark.cli.options import Debug, Json, Out, Quiet, Seed, Set, parse_settings
 
 Scenario = Annotated[str | None, typer.Argument(help="A shipped scenario's name or a TOML file.")]
-Trials = Annotated[Path | None, typer.Option("--trials", help="A trial session: a folder of CSV files.")]
+Trials = Annotated[
+    Path | None, typer.Option("--trials", help="A trial session: a folder of CSV files, or a shipped name.")
+]
 Specimen = Annotated[str | None, typer.Option("--specimen", help="Tissue of the trials: a name or a TOML file.")]
 Fields = Annotated[Literal["peak", "all"], typer.Option("--fields", help="Which steps' fields are written as VTU.")]
 Tissue = Annotated[
@@ -59,10 +61,12 @@ def run(
     """Run FEM and wave model side by side, compare them, and write a report.
 
     With SCENARIO that scenario; with --trials a session, its specimen fitted first; with neither the shipped
-    phantom session and the scenario skin-5N, each into a folder of its own.
+    phantom session, the scenario skin-5N and, last, discover on the shipped session gel_pad, in which an effect is
+    hidden, each into a folder of its own.
     """
     from benchmark.cli.console import Console
-    from benchmark.cli.show import show_runs
+    from benchmark.cli.show import show_discovery, show_runs
+    from benchmark.discovery.discovery_request import discover_shipped
     from benchmark.runs import RunOptions, RunRequest, carry_out
 
     console = Console(quiet=quiet)
@@ -70,4 +74,9 @@ def run(
         scenario, trials, specimen, parse_settings(settings), out, wave, reference, tuple(tissue or ()), model, effects
     )
     options = RunOptions(every_field=fields == "all", repeats=repeats, refine=refine, seed=seed)
-    return show_runs(carry_out(request, options, console), console, as_json=json)
+    outcomes = carry_out(request, options, console)
+    if scenario is not None or trials is not None:
+        return show_runs(outcomes, console, as_json=json)
+    found = discover_shipped(out, seed, console)
+    code = show_runs(outcomes, console, as_json=json, found=found)
+    return code if json else show_discovery(found, console, as_json=False)

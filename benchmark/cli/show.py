@@ -6,15 +6,20 @@ import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from benchmark.cli.console import Console
 from benchmark.errors import SolverError
 from benchmark.runs import RunOutcome
 
+if TYPE_CHECKING:
+    from benchmark.discovery.report.discovery_files import DiscoveryOutcome
 
-def show_runs(outcomes: Sequence[RunOutcome], console: Console, *, as_json: bool) -> int:
-    """Print the outcomes and return the exit code.
+
+def show_runs(
+    outcomes: Sequence[RunOutcome], console: Console, *, as_json: bool, found: DiscoveryOutcome | None = None
+) -> int:
+    """Print the outcomes and return the exit code; `found` joins them in the JSON object.
 
     Raises
     ------
@@ -23,7 +28,8 @@ def show_runs(outcomes: Sequence[RunOutcome], console: Console, *, as_json: bool
     """
     if as_json:
         objects = [{**outcome.document, "out": str(outcome.folder)} for outcome in outcomes]
-        print_json(objects[0] if len(objects) == 1 else {"schema": 1, "runs": objects})
+        more = {} if found is None else {"discovery": {**found.document, "out": str(found.folder)}}
+        print_json(objects[0] if len(objects) == 1 else {"schema": 1, "runs": objects, **more})
     for outcome in outcomes:
         for warning in outcome.warnings:
             console.say(f"  warning: {warning}")
@@ -38,6 +44,20 @@ def show_runs(outcomes: Sequence[RunOutcome], console: Console, *, as_json: bool
             if model["failure"]
         ]
         raise SolverError(f"{'; '.join(failures)}. Results up to there are in {stopped[0].folder}, marked incomplete")
+    return 0
+
+
+def show_discovery(outcome: DiscoveryOutcome, console: Console, *, as_json: bool) -> int:
+    """Print what a discovery found and return exit code 0."""
+    for warning in outcome.warnings:
+        console.say(f"  warning: {warning}")
+    if as_json:
+        print_json({**outcome.document, "out": str(outcome.folder)})
+    else:
+        print(
+            f"{outcome.document['name']}: {outcome.document['verdict']}: {outcome.headline}\n"
+            f"  report: {outcome.folder / 'report.html'}"
+        )
     return 0
 
 

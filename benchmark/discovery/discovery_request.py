@@ -23,6 +23,7 @@ from benchmark.physics import SLUGS, Effect, catalogue, load_effects
 from benchmark.response.fem_table import fem_table
 from benchmark.runs.options import Listener
 from benchmark.runs.output.destination import destination, file_name
+from benchmark.sessions import HIDDEN_EFFECT, SHIPPED
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,12 @@ def carry_out(request: DiscoverRequest, listener: Listener) -> DiscoveryOutcome:
     """
     destination(request.out, "", (*request.paths, request.effects, request.specimen, *request.settings.values()))
     return put_down(answer(request, listener), request.out)
+
+
+def discover_shipped(out: Path | None, seed: int, listener: Listener) -> DiscoveryOutcome:
+    """Answer for the shipped session in which an effect is hidden, into a folder of its name in `out`."""
+    folder = None if out is None else out / HIDDEN_EFFECT
+    return carry_out(DiscoverRequest([SHIPPED / HIDDEN_EFFECT], out=folder, seed=seed), listener)
 
 
 def answer(request: DiscoverRequest, listener: Listener) -> DiscoveryRecord:

@@ -40,6 +40,18 @@ def shipped_scenarios() -> Mapping[str, Entry]:
     return _entries("scenarios")
 
 
+def shipped_sessions() -> Mapping[str, Path]:
+    """The folders of the shipped trial sessions by name, in alphabetical order."""
+    return {file.parent.name: file.parent for file in sorted((_SHIPPED / "sessions").glob("*/session.toml"))}
+
+
+def session_folder(path: Path) -> Path:
+    """The shipped session that a bare name means where no file or folder is called so; any other path as it is."""
+    if len(path.parts) == 1 and not path.exists():
+        return shipped_sessions().get(path.name, path)
+    return path
+
+
 def find(name_or_path: str | Path, what: str, base: Path | None = None) -> Path:
     """The file that a name or a path means.
 

@@ -18,7 +18,7 @@ from benchmark.runs.record import RunRecord
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.session_run import run_session
 from benchmark.runs.tissues_run import run_tissues
-from benchmark.sessions import SHIPPED
+from benchmark.sessions import HIDDEN_EFFECT, SHIPPED
 
 DEFAULT_SCENARIO = "skin-5N"
 DEFAULT_SESSION = "phantom"
@@ -107,7 +107,7 @@ def _check_places(request: RunRequest) -> None:
     texts = (request.scenario, request.specimen, *request.tissues, *(request.settings or {}).values())
     inputs = (request.trials, request.wave, request.reference, request.model, request.effects, *texts)
     shipped = request.scenario is None and request.trials is None
-    for name in (DEFAULT_SESSION, DEFAULT_SCENARIO) if shipped else ("",):
+    for name in (DEFAULT_SESSION, DEFAULT_SCENARIO, HIDDEN_EFFECT) if shipped else ("",):
         destination(None if request.out is None else request.out / name, "", inputs)
 
 

@@ -3,3 +3,5 @@
 from pathlib import Path
 
 SHIPPED = Path(__file__).parent
+HIDDEN_EFFECT = "gel_pad"
+"""The session in which an effect is hidden: what `discover` should find there is in gel_pad_truth.toml beside."""

@@ -4,7 +4,19 @@ A block type is a dataclass here and a template of its own in `templates/blocks/
 of it. How blocks become HTML is in `reports.page` and the templates.
 """
 
-from reports.blocks.figure import Figure, Live, LiveAxes, LiveBody, LiveFace, LiveLine, LivePlot, Panel, Picture
+from reports.blocks.figure import (
+    Figure,
+    Live,
+    LiveAxes,
+    LiveBody,
+    LiveFace,
+    LiveLine,
+    LivePlot,
+    Panel,
+    Picture,
+    Story,
+    StoryStep,
+)
 from reports.blocks.table import Column, Download, Downloads, Table
 from reports.blocks.text import (
     NOTICES,
@@ -48,6 +60,8 @@ __all__ = [
     "Paragraph",
     "Picture",
     "Section",
+    "Story",
+    "StoryStep",
     "Subsection",
     "Table",
     "Verdict",

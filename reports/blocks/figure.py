@@ -206,3 +206,20 @@ class Figure(Block):
     def of_picture(cls, data: bytes, caption: str, alt: str, title: str = "") -> Figure:
         """Return a figure of a single PNG or GIF."""
         return cls(panels=(Picture(data, alt, title),), caption=caption, title=title)
+
+
+@dataclass(frozen=True)
+class StoryStep:
+    """A step of a story: the question, its answer in a few words, and a sentence or two of detail."""
+
+    question: str
+    answer: str
+    detail: str = ""
+
+
+@dataclass(frozen=True)
+class Story:
+    """What a page tells on one screen: the one picture that shows it, and the steps beside it, in order."""
+
+    figure: Figure
+    steps: Sequence[StoryStep]

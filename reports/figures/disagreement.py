@@ -233,7 +233,9 @@ class RepairedTrace:
         object.__setattr__(self, "arrays", (x, *rest))
 
 
-def repaired(traces: Sequence[RepairedTrace], changed: bool = True, measured: str = MEASURED.label) -> Figure:
+def repaired(
+    traces: Sequence[RepairedTrace], changed: bool = True, measured: str = MEASURED.label, width: float = WIDE
+) -> Figure:
     """Draw each trace in a panel: above the values, below measured minus model.
 
     Parameters
@@ -244,6 +246,8 @@ def repaired(traces: Sequence[RepairedTrace], changed: bool = True, measured: st
         Whether the model was repaired; otherwise only `before` is drawn, as the model.
     measured
         What the measured line is called.
+    width
+        Natural width of a single panel, px; several are small.
 
     Raises
     ------
@@ -257,7 +261,7 @@ def repaired(traces: Sequence[RepairedTrace], changed: bool = True, measured: st
         Panel(
             draw(
                 _Panel(trace, place if several else None, changed, measured).paint,
-                *((SMALL, 370) if several else (WIDE, 430)),
+                *((SMALL, 370) if several else (width, 0.72 * width)),
             ),
             _words(trace, changed),
             trace.title,

@@ -25,7 +25,7 @@ def comparison_section(record: DiscoveryRecord) -> Section:
     if not chosen:
         return Section(title, [Paragraph("No trial could be simulated, so there is nothing to compare.")])
     measured = record.labels.get("measured", "Measured")
-    panels = [_panel(trace, record) for trace in chosen]
+    panels = [traced(trace, record) for trace in chosen]
     text = (
         "One trial a condition stands for the rest, the one in the middle of its group; held-out trials are marked. "
         "Gain, zero, time shift and depth at touch of each trial are fitted, before and after alike."
@@ -56,7 +56,8 @@ def _rms(trace: Trace) -> float:
     return float(np.sqrt(np.mean(present**2))) if present.size else 0.0
 
 
-def _panel(trace: Trace, record: DiscoveryRecord) -> RepairedTrace:
+def traced(trace: Trace, record: DiscoveryRecord) -> RepairedTrace:
+    """Return a trace as the figures take it."""
     unit, scale = channel_unit(trace.channel)
     over_depth = record.source == "run"
     held = ", held out" if trace.held_out else ""

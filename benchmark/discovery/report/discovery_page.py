@@ -14,9 +14,9 @@ from benchmark.discovery.report.disagreement_sections import (
 )
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
 from benchmark.discovery.report.effect_sections import candidates_section, effects_section, next_section
-from benchmark.discovery.report.words import channel_name, effect_name, place_words, sized
-from reports import Download, Fact, KeyFigure, Notice, Page, Section, Verdict
-from reports.formatting import format_number
+from benchmark.discovery.report.story import story
+from benchmark.discovery.report.words import channel_name, sized
+from reports import Download, Fact, Facts, Notice, Page, Section, Verdict
 
 SYNTHETIC = "These trials were computed, not measured. They show that the chain works."
 DESCRIPTIONS = {
@@ -45,13 +45,13 @@ def discovery_page(record: DiscoveryRecord, environment: Mapping[str, Any], tabl
     sections += [effects_section(record)] if record.found.effects else []
     sections += [gap_section(record)] if record.found.gap or record.layers else []
     sections += [remains_section(record), next_section(record)]
+    sections.append(Section("How this was found", [Facts(_facts(record, environment))]))
     return Page(
         title=f"{record.name}: what the model lacks",
         subtitle=_subtitle(record),
         verdict=discovery_verdict(record),
-        facts=_facts(record, environment),
+        story=story(record),
         notices=_notices(record),
-        key_figures=_key_figures(record),
         sections=sections,
         downloads=_downloads(record, tables),
         footer=f"tissuebench {environment['packages']['tissuebench']}",
@@ -63,7 +63,8 @@ def _subtitle(record: DiscoveryRecord) -> str:
         return "The wave model against the FEM of a finished run"
     found = record.found
     conditions = f"{len(found.conditions)} condition{'s' * (len(found.conditions) != 1)}"
-    return f"{len(found.trials)} trials, {conditions}, against the elastic model of {record.tissue}"
+    kind = "synthetic trials" if record.synthetic else "trials"
+    return f"{len(found.trials)} {kind}, {conditions}, against the elastic model of {record.tissue}"
 
 
 def _base(record: DiscoveryRecord) -> str:
@@ -93,29 +94,6 @@ def _notices(record: DiscoveryRecord) -> tuple[Notice, ...]:
     if record.found.warnings:
         notices.append(Notice("warning", "Read these before you quote a figure.", record.found.warnings))
     return tuple(notices)
-
-
-def _key_figures(record: DiscoveryRecord) -> tuple[KeyFigure, ...]:
-    """Verdict, the effect's confidence, and the gap closed in the channel with the largest part of it."""
-    found = record.found
-    figures = [KeyFigure("verdict", found.verdict.replace("_", " "))]
-    if record.named:
-        best = found.effects[0]
-        figures.append(KeyFigure(effect_name(best.slug), 100 * best.confidence, "%", "confidence"))
-    closed = [gap for gap in found.gap if gap.closed is not None]
-    if record.named and closed:
-        gap = closed[0]
-        note = "" if gap.ci95 is None else f"95 % {_percent(gap.ci95[0])} to {_percent(gap.ci95[1])}"
-        figures.append(
-            KeyFigure(
-                "gap closed", _percent(gap.closed or 0.0), "%", f"{channel_name(gap.channel)}, held out {note}".strip()
-            )
-        )
-    return tuple(figures)
-
-
-def _percent(share: float) -> str:
-    return format_number(100 * share, 3, trim=True)
 
 
 def _downloads(record: DiscoveryRecord, tables: Sequence[str]) -> tuple[Download, ...]:
@@ -152,16 +130,10 @@ def discovery_verdict(record: DiscoveryRecord) -> Verdict:
     if status == "good" and not found.within_tolerance:
         status = "finding"
     points = [MEANING[found.verdict]]
-    if found.where:
-        points.append(f"Largest disagreement: {place_words(found.where[0])}.")
-        small = criteria.SMALL_IN_PRACTICE
-        if all(abs(place.percent_of_signal) < small for place in found.where):
-            points.append(f"All of it lies below {small:g} % of the signal: visible, but small in practice.")
+    small = criteria.SMALL_IN_PRACTICE
+    if found.where and all(abs(place.percent_of_signal) < small for place in found.where):
+        points.append(f"All of it lies below {small:g} % of the signal: visible, but small in practice.")
     points.extend(_sizes(record))
-    points.extend(_closed(record))
-    similar = sorted({name for effect in found.effects for name in effect.lookalikes})
-    if similar:
-        points.append(f"Not ruled out in its place: {', '.join(effect_name(name) for name in similar)}.")
     if found.verdict == "no_discrepancy" and found.smallest_visible:
         smallest = ", ".join(
             f"{sized(name, size)} in {channel_name(name)}" for name, size in found.smallest_visible.items()
@@ -179,14 +151,3 @@ def _sizes(record: DiscoveryRecord) -> list[str]:
         if not each.within
     ]
     return [f"The model still misses {', '.join(beyond)}."] if beyond else []
-
-
-def _closed(record: DiscoveryRecord) -> list[str]:
-    """How much of the gap closed, channel by channel."""
-    closed = [gap for gap in record.found.gap if gap.closed is not None] if record.named else []
-    if not closed:
-        return []
-    told = "; ".join(
-        f"{channel_name(gap.channel)} {format_number(100 * (gap.closed or 0.0), 3, trim=True)} %" for gap in closed
-    )
-    return [f"Explainable gap closed on held-out data: {told}."]

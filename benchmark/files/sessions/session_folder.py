@@ -11,6 +11,7 @@ from typing import Any
 from benchmark.errors import InputError
 from benchmark.files.loading import read_file
 from benchmark.files.schema import SCHEMA
+from benchmark.files.shipped import session_folder, shipped_sessions
 from benchmark.files.sources import Source, is_file
 
 SESSION_FILE = "session.toml"
@@ -25,7 +26,7 @@ def session_table(path: Path) -> tuple[dict[str, Any], Source]:
     Parameters
     ----------
     path : Path
-        A folder, a session.toml, or one trial file.
+        A folder, a session.toml, one trial file, or the name of a session that ships.
 
     Returns
     -------
@@ -37,6 +38,7 @@ def session_table(path: Path) -> tuple[dict[str, Any], Source]:
     InputError
         When there is nothing to read.
     """
+    path = session_folder(path)
     if is_file(path):
         if path.name == SESSION_FILE:
             return read_file(path, "session")
@@ -48,13 +50,18 @@ def session_table(path: Path) -> tuple[dict[str, Any], Source]:
         return _made(path.stem, [entry]), Source(str(path), "", path.parent)
     try:
         if not path.is_dir():
-            raise InputError(f"{path}: there is no such session folder.")
+            raise InputError(f"{path}: there is no such session folder{_shipped(path)}.")
         if (path / SESSION_FILE).exists():
             return read_file(path / SESSION_FILE, "session")
         name = path.resolve().name or "session"
         return _made(name, _entries(path, name)), Source(str(path), "", path)
     except OSError as error:
         raise InputError(f"{path}: this session folder cannot be read ({error.strerror or error}).") from None
+
+
+def _shipped(path: Path) -> str:
+    """Which sessions ship, where a bare name was given."""
+    return f", and the shipped ones are {', '.join(shipped_sessions())}" if len(path.parts) == 1 else ""
 
 
 def inside(folder: Path, name: str, place: str) -> Path:

@@ -23,11 +23,34 @@ def test_the_story_is_told_in_order(record) -> None:
     text = _text(record)
     story = [
         record.found.statement, "Measured against simulated", "Where", "Which effect", "The effect",
-        "The gap, before and after", "What remains", "What to measure next",
+        "The gap, before and after", "What remains", "What to measure next", "How this was found",
     ]  # fmt: skip
     sections = [section.title for section in discovery_page(record, ENVIRONMENT, []).sections]
     assert sections == story[1:]
     assert text.index(record.found.statement) < text.index(story[1])
+
+
+def test_one_screen_tells_where_which_what_and_how_much(record) -> None:
+    page = discovery_page(record, ENVIRONMENT, [])
+    steps = {step.question: f"{step.answer} {step.detail}" for step in page.story.steps}
+    assert list(steps) == [
+        "Where", "Which effect", "What it does to the model", "How the gap shrinks", "What to measure next",
+    ]  # fmt: skip
+    assert re.search(r"press force, \w+.*[+−]\d", steps["Where"])
+    assert "viscoelastic relaxation, or" in steps["Which effect"]
+    assert re.search(r"Misfit 0\.024 → 0\.0007\d* mm", steps["What it does to the model"])
+    assert "% of it is closed" in steps["How the gap shrinks"]
+    text = _text(record)
+    assert text.index("How the gap shrinks") < text.index("Contents")
+
+
+def test_without_an_effect_the_story_claims_nothing(empty) -> None:
+    untested = replace(empty, found=replace(empty.found, verdict="cannot_tell", p=None))
+    for record, where in ((empty, "Nowhere beyond chance"), (untested, "Not tested")):
+        story = discovery_page(record, ENVIRONMENT, []).story
+        if story is not None:
+            assert [step.answer for step in story.steps[:2]] == [where, "None is named"]
+            assert len(story.steps) == 3
 
 
 def test_the_named_effect_has_equation_parameters_and_source(record) -> None:
