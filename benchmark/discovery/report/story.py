@@ -50,14 +50,15 @@ def _where(record: DiscoveryRecord) -> StoryStep:
         text = "Nowhere beyond chance" if found.verdict == "no_discrepancy" else "Not tested"
         return StoryStep("Where", text, "" if found.p is None else f"{probability(found.p)} over all places.")
     place = max(found.where, key=lambda each: abs(each.percent_of_signal))
-    answer = f"{channel_name(place.channel)}, {phase_name(place.phase)}: {_signed(place)}"
+    sign = "more" if place.size > 0 else "less"
+    answer = f"{channel_name(place.channel)}, {phase_name(place.phase)}: {_signed(place)}, {sign} than simulated"
     more = len(found.where) - 1
     others = f"; {more} more place{'s' * (more != 1)} below" if more else ""
     return StoryStep("Where", answer, f"{_range(place)}, {probability(place.p)}{others}.")
 
 
 def _signed(place: Place) -> str:
-    """What is missing there, with its share of the signal: +0.61 N (16 %)."""
+    """Measured minus simulated, with its share of the signal: +0.61 N (16 %)."""
     sign = "+" if place.size > 0 else "−"
     return f"{sign}{sized(place.channel, abs(place.size))} ({format_number(abs(place.percent_of_signal), 2)} %)"
 
