@@ -18,6 +18,8 @@ def test_it_is_whole_small_and_says_that_it_is_synthetic() -> None:
     session = load_session(PAD)
     assert session.synthetic
     assert [trial.condition for trial in session.trials] == [press.name for press in PRESSES for _ in range(TRIALS)]
+    named = {trial.path.name for trial in session.trials} | {"session.toml", "pad.toml"}
+    assert {file.name for file in PAD.iterdir()} == named
     assert sum(file.stat().st_size for file in PAD.iterdir()) < 300_000
 
 
