@@ -38,11 +38,14 @@ class PressDerivative:
         N; at fixed depths, where depth is prescribed.
     outward, sunk : (n, m) array or None
         Of the lower face at fixed radii, m.
+    second : PressDerivative or None
+        The second derivatives, where asked for.
     """
 
     force: Array
     outward: Array | None = None
     sunk: Array | None = None
+    second: PressDerivative | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +71,7 @@ class DifferentiatedPress:
 
 
 def differentiated_press(
-    scenario: Scenario, drive: Drive, changes: Mapping[str, ScenarioChange], *, face: bool = False
+    scenario: Scenario, drive: Drive, changes: Mapping[str, ScenarioChange], *, face: bool = False, second: bool = False
 ) -> DifferentiatedPress:
     """Follow a load history and differentiate each step directly.
 
@@ -80,6 +83,8 @@ def differentiated_press(
         By any name.
     face : bool
         Whether the lower face is wanted (axial symmetry only).
+    second : bool
+        Whether second derivatives are wanted.
 
     Raises
     ------
@@ -99,7 +104,7 @@ def differentiated_press(
             key: replace(each, less=_meshed_like(each.less, model), more=_meshed_like(each.more, model))
             for key, each in problems.items()
         }
-        found[id(model)] = fem.differentiate(model, load, steps)
+        found[id(model)] = fem.differentiate(model, load, steps, second=second)
         return found[id(model)].solution
 
     model, solution = follow_deeper(prepared, run)
@@ -144,13 +149,24 @@ def _face(solution: fem.Solution, row: IntArray) -> LowerFace:
 
 
 def _derivative(solution: fem.Solution, by: fem.SolutionDerivative, row: IntArray | None) -> PressDerivative:
-    """At fixed radii: what moving nodes bring is taken off, du/dp - du/dr dr/dp."""
+    """At fixed radii: what moving nodes bring is taken off, du/dr dr/dp of the first derivative.
+
+    The second derivative of the face is left out there: near a clamped rim, where the face is steep, it says nothing.
+    """
     if row is None:
-        return PressDerivative(by.force)
+        second = None if by.second is None else PressDerivative(by.second.force)
+        return PressDerivative(by.force, second=second)
     radius = solution.mesh.specimen_distance[row]
-    moved, velocity = solution.displacement[:, row], by.velocity[row, 0]
-    still = by.displacement[:, row] - slopes(radius, moved) * velocity[None, :, None]
-    return PressDerivative(by.force, still[:, :, 0], -still[:, :, -1])
+    moved, velocity = solution.displacement[:, row], by.velocity[row, 0][None, :, None]
+    still = by.displacement[:, row] - slopes(radius, moved) * velocity
+    if by.second is None:
+        second = None
+    elif velocity.any():
+        second = PressDerivative(by.second.force)
+    else:
+        bend = by.second.displacement[:, row]
+        second = PressDerivative(by.second.force, bend[:, :, 0], -bend[:, :, -1])
+    return PressDerivative(by.force, still[:, :, 0], -still[:, :, -1], second)
 
 
 def slopes(radius: Array, values: Array) -> Array:

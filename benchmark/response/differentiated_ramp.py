@@ -24,16 +24,16 @@ from benchmark.response.setup_change import changed_setup, natural_change
 from fem.errors import NotDifferentiableError
 
 if TYPE_CHECKING:
-    from benchmark.models.fem_derivatives import ScenarioChange
+    from benchmark.models.fem_derivatives import PressDerivative, ScenarioChange
 
 STEPS = 24
 """Load steps of a ramp."""
-DIFFERENCE = 0.01
-"""Step of a central difference, in natural changes of the parameter."""
+DIFFERENCE = 0.06
+"""Step of a central difference, in natural changes: large, for each ramp has a mesh of its own."""
 
-SMALL = 1e-5
-"""Step by which the solver's equations are differentiated, in natural changes: its square, and round-off over it, stay
-below 1e-6 of the derivative up to a Poisson ratio of 0.4999."""
+SMALL = 3e-5
+"""Step by which the solver's equations are differentiated, in natural changes: its square, and round-off over it, are
+below 1e-6 of a first derivative up to a Poisson ratio of 0.499."""
 
 Setup: TypeAlias = tuple[Tissue, Tool, Support]
 
@@ -50,11 +50,14 @@ class RampDerivative:
         N, or N over the parameter's unit.
     outward, sunk : (k, q) array or None
         Of the lower face, m (over the parameter's unit).
+    second : RampDerivative or None
+        Second derivatives (p^2 d2/dp2, or d2/dp2), where asked for and known.
     """
 
     force: Array
     outward: Array | None = None
     sunk: Array | None = None
+    second: RampDerivative | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +82,11 @@ class DifferentiatedRamp:
     by: Mapping[str, RampDerivative] = field(default_factory=lambda: MappingProxyType({}))
     failure: RunFailure | None = None
 
+    @property
+    def ramp(self) -> Ramp:
+        """The press alone."""
+        return Ramp(self.depth, self.force, np.zeros((self.depth.size, 0)), self.face, self.failure)
+
 
 def differentiated_ramp(
     session: Session,
@@ -89,6 +97,8 @@ def differentiated_ramp(
     keys: Sequence[str],
     model: Literal["fem", "wave"] = "fem",
     steps: int = STEPS,
+    *,
+    second: bool = False,
 ) -> DifferentiatedRamp:
     """Press a set-up to a depth and differentiate the press; the layers' relaxation is left out.
 
@@ -108,6 +118,8 @@ def differentiated_ramp(
         "fem", or "wave" (differences of explicit solutions; it has no failure).
     steps : int
         Load steps.
+    second : bool
+        Whether second derivatives are wanted.
 
     Raises
     ------
@@ -120,7 +132,7 @@ def differentiated_ramp(
 
         return _by_differences(lambda other: wave_ramp(*other, np.linspace(0.0, depth, steps + 1)), setup, keys)
     try:
-        return _direct(session, setup, depth, keys, steps)
+        return _direct(session, setup, depth, keys, steps, second=second)
     except NotDifferentiableError:
         return _by_differences(lambda other: elastic_ramp(session, *other, depth, steps), setup, keys)
 
@@ -146,7 +158,9 @@ def _elastic(session: Session, setup: Setup) -> Scenario:
     return setup_scenario(session, tissue.model_copy(update={"layers": layers}), (tool, support))
 
 
-def _direct(session: Session, setup: Setup, depth: float, keys: Sequence[str], steps: int) -> DifferentiatedRamp:
+def _direct(
+    session: Session, setup: Setup, depth: float, keys: Sequence[str], steps: int, *, second: bool
+) -> DifferentiatedRamp:
     """Derivatives by the solver's own, of each step of one ramp."""
     from benchmark.models.fem_derivatives import differentiated_press
 
@@ -157,21 +171,23 @@ def _direct(session: Session, setup: Setup, depth: float, keys: Sequence[str], s
             Drive("depth", fractions, depth * fractions),
             {key: _change(session, setup, key) for key in keys},
             face=setup[2].kind == "hole",
+            second=second,
         )
     except UncoveredError as error:
         raise InputError(f"the finite elements do not cover {session.name}: {error}") from None
     face, depths = press.face, np.append(0.0, press.depth)
     if face is not None:
         face = LowerFace(depths, face.radius, _from_rest(face.outward), _from_rest(face.sunk))
-    by = {
-        key: RampDerivative(
-            np.append(0.0, each.force),
-            None if each.outward is None else _from_rest(each.outward),
-            None if each.sunk is None else _from_rest(each.sunk),
-        )
-        for key, each in press.by.items()
-    }
+    by = {key: _ramp_derivative(each) for key, each in press.by.items()}
     return DifferentiatedRamp(depths, np.append(0.0, press.force), face, by, press.failure)
+
+
+def _ramp_derivative(press: PressDerivative) -> RampDerivative:
+    """With the state at rest, which nothing changes."""
+    second = None if press.second is None else _ramp_derivative(press.second)
+    if press.outward is None or press.sunk is None:
+        return RampDerivative(np.append(0.0, press.force), second=second)
+    return RampDerivative(np.append(0.0, press.force), _from_rest(press.outward), _from_rest(press.sunk), second)
 
 
 def _from_rest(rows: Array) -> Array:

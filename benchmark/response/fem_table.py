@@ -1,4 +1,4 @@
-"""Elastic tables by the finite elements: a depth ramp of the set-up as told, and two of each parameter that is changed.
+"""Elastic tables by the finite elements: one depth ramp of the set-up as told, with the solver's own derivatives.
 
 Where the solver stops early, or does not cover the tool, the force is that of the nearest tools that it follows, and
 goes on like the wave model's; where there is none, the wave's table serves.
@@ -6,7 +6,7 @@ goes on like the wave model's; where there is none, the wave's table serves.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,23 +14,22 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from benchmark.errors import InputError, TissuebenchError
 from benchmark.files import Session, Support, Tissue, Tool
-from benchmark.models import UncoveredError, prepare
-from benchmark.models.model_result import LowerFace
-from benchmark.response.elastic_table import (
-    POINTS,
-    ElasticTable,
-    SeparableField,
-    SetupDerivative,
-    TableOf,
-    orders,
+from benchmark.response.differentiated_ramp import (
+    DifferentiatedRamp,
+    RampDerivative,
+    differentiated_ramp,
+    elastic_ramp,
 )
+from benchmark.response.elastic_table import POINTS, ElasticTable, SeparableField, SetupDerivative, TableOf
 from benchmark.response.force_curve import Array
 from benchmark.response.nearest_curve import nearest_curve, stuck_tool
-from benchmark.response.ramp import Ramp, depth_ramp, setup_scenario
+from benchmark.response.ramp import Ramp
 from benchmark.response.setup_change import RADIUS, changed_setup
-from benchmark.response.wave_table import MARGIN, STEP, wave_table
+from benchmark.response.wave_table import MARGIN, wave_table
 
 STEPS = 24
+SECOND_TERMS = 2
+"""Terms of the second order of a field, which is small."""
 
 
 def fem_or_wave_table(session: Session, keys: Sequence[str] = (RADIUS,)) -> TableOf:
@@ -75,30 +74,33 @@ def _fem_table(
         The solver has no answer for it, nor for a tool near it.
     """
     tissue, tool, support = setup
+    known = [key for key in keys if _has(setup, key)]
+    told: list[DifferentiatedRamp] = []
 
     def ramp_of(other: Tool) -> Ramp:
-        return _ramp(session, tissue, other, support, MARGIN * depth)
+        if other != tool:
+            return elastic_ramp(session, tissue, other, support, MARGIN * depth, STEPS)
+        told.append(
+            differentiated_ramp(session, tissue, tool, support, MARGIN * depth, known, steps=STEPS, second=True)
+        )
+        return told[0].ramp
 
     curve = nearest_curve(tool, ramp_of)
-    told = curve.under(tool)
-    if told is not None and told.depth[-1] >= depth:
-        pairs = {key: pair for key in keys if (pair := _changed_ramps(session, setup, key, depth))}
-        reached = min(float(ramp.depth[-1]) for ramp in (told, *(one for pair in pairs.values() for one in pair)))
-        if RADIUS in pairs or RADIUS not in keys:
-            return _table(told, pairs, np.linspace(0.0, reached, POINTS))
+    if told and told[0].depth[-1] >= depth:
+        return _table(told[0], np.linspace(0.0, float(told[0].depth[-1]), POINTS))
     note = curve.remark(MARGIN * depth) or "the finite elements stop early for a slightly changed set-up"
     if curve.reach < depth:
         note = f"{note}; beyond {1e3 * curve.reach:.3g} mm the base goes on like the wave model"
     return _noted(_with_force(_wave(*setup, depth, keys), curve.depth, curve.force), note)
 
 
-def _changed_ramps(session: Session, setup: tuple[Tissue, Tool, Support], key: str, depth: float) -> tuple[Ramp, ...]:
-    """Ramps with a set-up parameter smaller and larger; none where one of them cannot be pressed to the depth."""
+def _has(setup: tuple[Tissue, Tool, Support], key: str) -> bool:
+    """Whether a set-up has a parameter."""
     try:
-        pair = tuple(_ramp(session, *changed_setup(*setup, key, sign * STEP), MARGIN * depth) for sign in (-1.0, 1.0))
-    except TissuebenchError:
-        return ()
-    return pair if all(ramp.depth[-1] >= depth for ramp in pair) else ()
+        changed_setup(*setup, key, 0.0)
+    except InputError:
+        return False
+    return True
 
 
 def _wave(tissue: Tissue, tool: Tool, support: Support, depth: float, keys: Sequence[str]) -> ElasticTable:
@@ -116,47 +118,33 @@ def _wave(tissue: Tissue, tool: Tool, support: Support, depth: float, keys: Sequ
         )
 
 
-def _ramp(session: Session, tissue: Tissue, tool: Tool, support: Support, deepest: float) -> Ramp:
-    elastic = tissue.model_copy(
-        update={"layers": tuple(one.model_copy(update={"relaxation": ()}) for one in tissue.layers)}
-    )
-    try:
-        model = prepare("fem", setup_scenario(session, elastic, (tool, support)), every_field=True)
-        return depth_ramp(model, deepest, STEPS, face=support.kind == "hole")
-    except UncoveredError as error:
-        raise InputError(f"the finite elements do not cover {session.name}: {error}") from None
-
-
-def _table(told: Ramp, pairs: Mapping[str, tuple[Ramp, ...]], grid: Array) -> ElasticTable:
-    """The table on a grid of depths that all ramps reached."""
-    force = _force(told, grid)
-    by_force = {
-        key: np.stack(orders(_force(less, grid), force, _force(more, grid), STEP))
-        for key, (less, more) in pairs.items()
-    }
-    face = told.face
+def _table(ramp: DifferentiatedRamp, grid: Array) -> ElasticTable:
+    """The table on a grid of depths that the ramp reached."""
+    force = np.asarray(CubicSpline(ramp.depth, ramp.force)(grid))
+    face = ramp.face
+    levels = ramp.depth
+    by = {key: _setup_derivative(ramp, each, force, grid) for key, each in ramp.by.items()}
     if face is None:
-        plain = {key: SetupDerivative(each) for key, each in by_force.items()}
-        return ElasticTable(grid, force, np.array([0.0, 1.0]), by=plain)
-    levels = face.depth[face.depth <= grid[-1] * (1.0 + 1e-9)]
-    outward = _at(face, face.outward, levels, face.radius)
-    by = {}
-    for key, (less, more) in pairs.items():
-        sides = [_at(ramp.face, ramp.face.outward, levels, face.radius) for ramp in (less, more) if ramp.face]
-        fields = tuple(SeparableField.of(levels, one, grid) for one in orders(sides[0], outward, sides[1], STEP))
-        by[key] = SetupDerivative(by_force[key], fields)
-    sunk = SeparableField.of(levels, face.sunk[: levels.size], grid)
-    return ElasticTable(grid, force, face.radius, SeparableField.of(levels, outward, grid), sunk, by)
+        return ElasticTable(grid, force, np.array([0.0, 1.0]), by=by)
+    outward, sunk = (SeparableField.of(levels, each, grid) for each in (face.outward, face.sunk))
+    return ElasticTable(grid, force, face.radius, outward, sunk, by)
 
 
-def _force(ramp: Ramp, grid: Array) -> Array:
-    return np.asarray(CubicSpline(ramp.depth, ramp.force)(grid))
+def _setup_derivative(ramp: DifferentiatedRamp, by: RampDerivative, force: Array, grid: Array) -> SetupDerivative:
+    """Both orders of the force, and those of the face that are known; see `RampDerivative`.
 
-
-def _at(face: LowerFace, table: Array, levels: Array, radius: Array) -> Array:
-    """A table of a lower face at other depths (levels,) and radii (q,)."""
-    over_depth = CubicSpline(face.depth, table)(levels)
-    return np.asarray(CubicSpline(face.radius, over_depth, axis=1)(np.clip(radius, 0.0, face.radius[-1])))
+    Shares of the force are read between the steps, not forces: near rest both go to zero.
+    """
+    levels, second = ramp.depth, by.second
+    parts = [by.force] if second is None else [by.force, 0.5 * second.force]
+    share = np.divide(parts, ramp.force, out=np.zeros((len(parts), levels.size)), where=ramp.force > 0.0)
+    orders = force * np.asarray(PchipInterpolator(levels[1:], share[:, 1:], axis=1)(np.maximum(grid, levels[1])))
+    if by.outward is None:
+        return SetupDerivative(orders)
+    fields = [SeparableField.of(levels, by.outward, grid)]
+    if second is not None and second.outward is not None:
+        fields.append(SeparableField.of(levels, 0.5 * second.outward, grid, SECOND_TERMS))
+    return SetupDerivative(orders, tuple(fields))
 
 
 def _with_force(wave: ElasticTable, depth: Array, force: Array) -> ElasticTable:

@@ -33,6 +33,11 @@ def is_absolute(key: str) -> bool:
     return key.rpartition(".")[2] in ABSOLUTE
 
 
+def way_of(key: str, change: float) -> float:
+    """How far a change goes: the logarithm of the ratio that a share makes; an amount as it is."""
+    return change if is_absolute(key) else math.log1p(change)
+
+
 def natural_change(tissue: Tissue, key: str) -> float:
     """A change of the parameter that matters, of which steps of differences are parts.
 

@@ -18,12 +18,12 @@ from benchmark.models.model_result import LowerFace
 from benchmark.response.elastic_table import POINTS, ElasticTable, SeparableField, SetupDerivative
 from benchmark.response.force_curve import Array
 from benchmark.response.ramp import Ramp
-from benchmark.response.setup_change import RADIUS, changed_setup
+from benchmark.response.setup_change import RADIUS, changed_setup, natural_change, way_of
 
 LEVELS = 24
 RADII = 90
 STEP = 0.06
-"""Share of a set-up parameter by which tables are differentiated."""
+"""Natural change of a set-up parameter by which tables are differentiated."""
 MARGIN = 1.25
 """A table reaches this much deeper than the trials."""
 Specimen: TypeAlias = tuple[Tissue, Tool, Support]
@@ -88,8 +88,9 @@ def _bonded(setup: Specimen, depth: float, keys: Sequence[str]) -> ElasticTable:
     force = _layered_force(*setup[:2], grid)
     by = {}
     for key in keys:
-        tissue, tool, _ = changed_setup(*setup, key, STEP)
-        by[key] = SetupDerivative(((_layered_force(tissue, tool, grid) - force) / STEP)[None])
+        step = STEP * natural_change(setup[0], key)
+        tissue, tool, _ = changed_setup(*setup, key, step)
+        by[key] = SetupDerivative(_slope(force, _layered_force(tissue, tool, grid), key, step))
     return ElasticTable(grid, force, np.array([0.0, 1.0]), by=by)
 
 
@@ -100,11 +101,18 @@ def _sheet(setup: Specimen, depth: float, keys: Sequence[str]) -> ElasticTable:
     force, outward, sink = _sheet_fields(*setup, grid, levels, radii)
     by = {}
     for key in keys:
-        more = _sheet_fields(*changed_setup(*setup, key, STEP), grid, levels, radii)
-        field = SeparableField.of(levels, (more[1] - outward) / STEP, grid)
-        by[key] = SetupDerivative(((more[0] - force) / STEP)[None], (field,))
+        step = STEP * natural_change(setup[0], key)
+        more = _sheet_fields(*changed_setup(*setup, key, step), grid, levels, radii)
+        field = SeparableField.of(levels, (more[1] - outward) / way_of(key, step), grid)
+        by[key] = SetupDerivative(_slope(force, more[0], key, step), (field,))
     out, sunk = (SeparableField.of(levels, each, grid) for each in (outward, sink))
     return ElasticTable(grid, force, radii, out, sunk, by)
+
+
+def _slope(force: Array, more: Array, key: str, step: float) -> Array:
+    """(1, k) first order of a force that goes with a power of the parameter, from that of one step."""
+    ratio = np.divide(more, force, out=np.ones_like(force), where=(force > 0.0) & (more > 0.0))
+    return np.asarray(force * np.log(ratio) / way_of(key, step))[None]
 
 
 def _sheet_fields(

@@ -9,6 +9,9 @@ most constants of laws do.
 A parameter is whatever two problems differ in. The mesh keeps its topology: its nodes move with tool, rims and layers
 (:mod:`fem.sensitivity.held_mesh`), and its outer border stays.
 
+What the equations leave unbalanced at p +- h and y +- h dy/dp is -h^2/2 K d2y/dp2: second derivatives cost one more
+solve. They want a change of 1e-5 to 1e-3 of what matters in both directions, for round-off grows with its square.
+
 Touch, stick and slip are those of the state: where a node is about to change, the derivative is that of one side. What
 friction and relaxation remember is differentiated step by step.
 """
@@ -31,6 +34,8 @@ def differentiate(
     load: Load,
     changes: Mapping[str, ProblemChange],
     on_step: Callable[[StepReport], None] | None = None,
+    *,
+    second: bool = False,
 ) -> DifferentiatedSolution:
     """Follow a load history and differentiate each of its steps.
 
@@ -44,6 +49,8 @@ def differentiate(
         The problem with one parameter changed a little, by any name.
     on_step
         Called after each accepted step.
+    second
+        Whether second derivatives by each parameter are wanted as well; with friction or relaxation there are none.
 
     Raises
     ------
@@ -53,4 +60,4 @@ def differentiate(
     """
     from fem.sensitivity.following import differentiated_run
 
-    return differentiated_run(model, load, changes, on_step)
+    return differentiated_run(model, load, changes, on_step, second=second)

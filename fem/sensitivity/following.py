@@ -25,7 +25,7 @@ from fem.linear_solver.factory import suited_threads
 from fem.load import Load
 from fem.results.solution import Solution, StepReport
 from fem.sensitivity.changed_equations import ChangedEquations, changed_equations
-from fem.sensitivity.problem_change import DifferentiatedSolution, ProblemChange, SolutionDerivative
+from fem.sensitivity.problem_change import DifferentiatedSolution, ProblemChange, SecondDerivative, SolutionDerivative
 
 MOST_CORRECTIONS = 80
 SETTLED = 1e-8  # last correction over the derivative
@@ -33,10 +33,11 @@ SETTLED = 1e-8  # last correction over the derivative
 
 @dataclass(frozen=True)
 class StateDerivative:
-    """Derivatives of the unknowns (n, k) and of the press (k,) by k parameters."""
+    """Derivatives of the unknowns (n, k) and of the press (k,) by k parameters, and the second ones by each."""
 
     y: FloatArray
     force: FloatArray
+    second: StateDerivative | None = None
 
 
 @dataclass
@@ -51,6 +52,8 @@ class Following:
         What is prescribed.
     sides
         For each parameter the equations below and above, as they remember.
+    second
+        Whether second derivatives are wanted.
     time
         Of the last state, s.
     found
@@ -60,6 +63,7 @@ class Following:
     equilibrium: Equilibrium
     control: Literal["force", "depth"]
     sides: list[tuple[ChangedEquations, ChangedEquations]]
+    second: bool = False
     time: float = 0.0
     found: list[tuple[State, StateDerivative]] = field(default_factory=list)
 
@@ -73,6 +77,9 @@ class Following:
         if remembers:
             self._each(lambda side: side.system.advanced(time - self.time))
         derivative = self._refined(state) if remembers else self._first(state)
+        if self.second and not remembers:
+            left = evaluation.residual - state.force * self.equilibrium.unit_load
+            derivative = replace(derivative, second=self._curved(state, derivative, left))
         if remembers:
             self._accept(state, derivative)
         self.time = time
@@ -102,15 +109,35 @@ class Following:
                 return StateDerivative(y, force)
         raise NotDifferentiableError(f"the derivative of friction does not settle in {MOST_CORRECTIONS} rounds")
 
-    @staticmethod
-    def _left(pair: tuple[ChangedEquations, ChangedEquations], state: State, dy: FloatArray, df: float) -> FloatArray:
+    def _curved(self, state: State, first: StateDerivative, left: FloatArray) -> StateDerivative:
+        """Second derivatives: by what the right first ones leave on both sides beyond what the state leaves (n,)."""
+        columns = []
+        for n, (less, more) in enumerate(self.sides):
+            low, high = self._both((less, more), state, first.y[:, n], float(first.force[n]))
+            below, above = -less.offset, more.offset
+            if below <= 0.0 or above <= 0.0:
+                raise NotDifferentiableError("a second derivative needs a change to both sides")
+            columns.append(2.0 * ((low - left) / below + (high - left) / above) / (below + above))
+        return _correction(self.equilibrium, self.control, np.stack(columns, axis=1))
+
+    def _left(
+        self, pair: tuple[ChangedEquations, ChangedEquations], state: State, dy: FloatArray, df: float
+    ) -> FloatArray:
         """What the changed equations leave unbalanced at the states beside, over the parameter, (n,)."""
+        low, high = self._both(pair, state, dy, df)
+        out: FloatArray = (high - low) / (pair[1].offset - pair[0].offset)
+        return out
+
+    @staticmethod
+    def _both(
+        pair: tuple[ChangedEquations, ChangedEquations], state: State, dy: FloatArray, df: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """What each of the changed equations leaves unbalanced at the state beside, (n,) N."""
         forces = []
         for side in pair:
             beside = side.beside(state, dy, df)
             forces.append(replace(side, system=side.system.fitted(beside.y)).unbalanced(beside))
-        out: FloatArray = (forces[1] - forces[0]) / (pair[1].offset - pair[0].offset)
-        return out
+        return forces[0], forces[1]
 
     def _accept(self, state: State, derivative: StateDerivative) -> None:
         """Let the changed equations remember the states beside."""
@@ -140,8 +167,12 @@ def differentiated_run(
     load: Load,
     changes: Mapping[str, ProblemChange],
     on_step: Callable[[StepReport], None] | None = None,
+    *,
+    second: bool = False,
 ) -> DifferentiatedSolution:
     """See :func:`fem.differentiate`."""
+    if second and model.problem.kinematics == "linear":
+        raise NotDifferentiableError("kinematics = 'linear' has first derivatives only")
     sides = [
         (changed_equations(model, each.less, -each.below), changed_equations(model, each.more, each.above))
         for each in changes.values()
@@ -151,12 +182,13 @@ def differentiated_run(
     with suited_threads(model.unknowns):
         if model.problem.kinematics == "linear":
             solution = run_linear(record, load, model.warnings, on_step)
-            derivatives = _linear(model, load, sides, record)
+            derivatives = _linear(model, load, sides, record) if changes else []
         else:
-            watch = Following(model.equilibrium, load.control, sides, load.start)
-            solution = run_nonlinear(record, load, model.newton, model.warnings, on_step, None, watch)
+            watch = Following(model.equilibrium, load.control, sides, second, load.start)
+            each = watch if changes else None
+            solution = run_nonlinear(record, load, model.newton, model.warnings, on_step, None, each)
             known = {id(state): derivative for state, derivative in watch.found}
-            derivatives = [known[id(state)] for state in record.states]
+            derivatives = [known[id(state)] for state in record.states] if changes else []
     return DifferentiatedSolution(solution, _by_name(model, changes, sides, derivatives, solution))
 
 
@@ -187,13 +219,18 @@ def _by_name(
     solution: Solution,
 ) -> dict[str, SolutionDerivative]:
     numbering = replace(model.equilibrium.system.numbering, prescribed=None)
-    steps, found = len(solution.time), {}
+    probe, steps = model.equilibrium.probe, len(solution.time)
+
+    def rows(each: list[StateDerivative], n: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Force (s,), depth (s,) and nodal displacements (s, N, components)."""
+        y = np.array([one.y[:, n] for one in each]).reshape(steps, numbering.count)
+        force: FloatArray = np.array([one.force[n] for one in each])
+        return force, -y[:, probe], numbering.expand(y).swapaxes(1, 2)
+
+    seconds = [each.second for each in derivatives if each.second is not None]
+    found = {}
     for n, (name, (less, more)) in enumerate(zip(changes, sides, strict=True)):
-        y = np.array([each.y[:, n] for each in derivatives]).reshape(steps, numbering.count)
-        found[name] = SolutionDerivative(
-            force=np.array([each.force[n] for each in derivatives]),
-            depth=-y[:, model.equilibrium.probe],
-            displacement=numbering.expand(y).swapaxes(1, 2),
-            velocity=(more.nodes - less.nodes) / (more.offset - less.offset),
-        )
+        velocity = (more.nodes - less.nodes) / (more.offset - less.offset)
+        second = SecondDerivative(*rows(seconds, n)) if seconds else None
+        found[name] = SolutionDerivative(*rows(derivatives, n), velocity, second)
     return found

@@ -34,6 +34,23 @@ class ProblemChange:
 
 
 @dataclass(frozen=True)
+class SecondDerivative:
+    """Second derivatives of a solution with n steps and N nodes by one parameter.
+
+    Attributes
+    ----------
+    force, depth
+        (n,) in N and m.
+    displacement
+        Of the nodes, (n, N, components) in m, with the nodes moving.
+    """
+
+    force: FloatArray
+    depth: FloatArray
+    displacement: FloatArray
+
+
+@dataclass(frozen=True)
 class SolutionDerivative:
     """Derivatives of a solution with n steps and N nodes by one parameter, by whose unit all units are divided.
 
@@ -47,12 +64,15 @@ class SolutionDerivative:
         Of the nodes, (n, N, components) in m, with the nodes moving.
     velocity
         Of the nodes' places at rest, (N, components) in m.
+    second
+        Second derivatives, where asked for.
     """
 
     force: FloatArray
     depth: FloatArray
     displacement: FloatArray
     velocity: FloatArray
+    second: SecondDerivative | None = None
 
 
 @dataclass(frozen=True)

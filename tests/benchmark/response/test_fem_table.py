@@ -82,7 +82,8 @@ def test_where_the_elements_have_no_answer_the_wave_goes_on_and_it_is_said(sheet
     def refuse(*_: object, **__: object) -> None:
         raise InputError("the finite elements do not cover it")
 
-    monkeypatch.setattr(module, "_ramp", refuse)
+    monkeypatch.setattr(module, "differentiated_ramp", refuse)
+    monkeypatch.setattr(module, "elastic_ramp", refuse)
     trial = sheet.trials[0]
     law = fem_or_wave_table(sheet)(sheet.specimen, trial.tool, trial.support, 2e-3)
     assert "do not cover it" in law.note

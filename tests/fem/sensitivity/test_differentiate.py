@@ -125,6 +125,24 @@ def test_small_strain() -> None:
     assert_right(problem, PRESS, ("fat.mu", "fat.poisson_ratio", "dermis.thickness", "tool.radius", "pretension"))
 
 
+def test_second_derivatives_are_those_of_differences() -> None:
+    model, keys, step = replace(fem.prepare(tied()), newton=TIGHT), ("dermis.c20", "support.hole_radius"), 2e-3
+    changes = {
+        key: fem.ProblemChange(*(changed(model.problem, key, sign * 1e-4) for sign in (-1.0, 1.0)), 1e-4, 1e-4)
+        for key in keys
+    }
+    found = fem.differentiate(model, PRESS, changes, second=True)
+    for key in keys:
+        less, more = (solved_anew(model, changed(model.problem, key, sign * step), PRESS) for sign in (-1.0, 1.0))
+        second = found.by[key].second
+        assert second is not None
+        for name in ("force", "displacement"):
+            middle = getattr(found.solution, name)
+            difference = (getattr(more, name) - 2.0 * middle + getattr(less, name)) / step**2
+            apart = np.abs(getattr(second, name) - difference).max()
+            assert apart < 1e-3 * np.abs(difference).max(), (key, name)
+
+
 def test_the_force_goes_with_all_moduli_together() -> None:
     """Forces of one degree in all stresses: their derivatives add up to the force itself."""
     keys = ("epidermis.youngs_modulus", "dermis.c10", "dermis.c20", "dermis.c30", "fat.mu")
