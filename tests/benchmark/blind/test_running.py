@@ -104,3 +104,24 @@ def test_a_print_scatter_is_in_the_cases_names(stub: Path, tmp_path: Path, capsy
 def test_a_foreign_folder_is_refused(stub: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["blind", "--discoverer", "stub_for_blind:always", "--out", str(tmp_path)]) == 2
     assert "no blind run" in capsys.readouterr().err.replace("\n", " ")
+
+
+@pytest.mark.slow
+def test_a_dask_cluster_works_instead_of_processes(stub: Path, tmp_path: Path) -> None:
+    import distributed
+
+    from benchmark.blind.running import run_cases
+
+    names = chosen(suite("small"), ("adhesion", "camera_latency"))
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
+        found = run_cases(
+            names, "stub_for_blind:always", tmp_path / "cases.jsonl", cluster.scheduler_address, lambda *_: None
+        )
+        assert {case.truth: case.said for case in found} == {"adhesion": "adhesion", "camera_latency": "adhesion"}
+        lost = run_cases(
+            names[:1], "no_module:at_all", tmp_path / "other.jsonl", cluster.scheduler_address, lambda *_: None
+        )
+    assert lost[0].verdict == "error"
+    assert "there is no such function" in lost[0].remark
