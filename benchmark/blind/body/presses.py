@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Literal
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -17,9 +18,12 @@ from benchmark.blind.body import taylor_hood
 from benchmark.blind.body.specimens import HOLE_RADIUS, ToldLayer, ToldSpecimen
 from benchmark.blind.motion import Array
 
+Density = Literal["coarse", "default", "fine"]
 DEEPEST = 5e-3
 RADIUS_FACTORS = (0.9, 1.0, 1.1)
 STEPS = 25
+SHEET_MESH: Density = "fine"
+SKIN_MESH: Density = "default"
 SECOND_SHARE = 0.2
 """Share of the shear modulus in the second Mooney-Rivlin constant, which no session tells of."""
 RIM = 1.0 + 1e-4
@@ -131,7 +135,7 @@ def _press_by_fem(specimen: ToldSpecimen, radius: float, clamp: str) -> Press:
         support=fem.Support(specimen.support, HOLE_RADIUS if specimen.support == "hole" else None),
         kinematics="finite",
         discretisation=fem.Discretisation(
-            "fine" if specimen.has_markers else "default",
+            SHEET_MESH if specimen.has_markers else SKIN_MESH,
             radius=RIM * HOLE_RADIUS if clamp == "rim" and specimen.support == "hole" else None,
         ),
     )

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import pytest
 
+from benchmark.blind.body import presses
 from benchmark.blind.cases import BlindCase, CaseName, make_case
 from benchmark.discovery.discovery_result import ChannelGap, Discovery, NamedEffect, Place
 
@@ -35,6 +36,19 @@ def an_answer(
         trials=(),
         seconds=1.0,
     )
+
+
+@pytest.fixture(scope="session", autouse=True)
+def quick_presses() -> Iterator[None]:
+    """Presses on coarse meshes in few steps: the blind trials' logic needs no converged bodies."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in (("SHEET_MESH", "coarse"), ("SKIN_MESH", "coarse"), ("COARSE_STEPS", 5)):
+            patch.setattr(presses, name, value)
+        presses.press_table.cache_clear()
+        presses.changed_press.cache_clear()
+        yield
+    presses.press_table.cache_clear()
+    presses.changed_press.cache_clear()
 
 
 @pytest.fixture
