@@ -9,10 +9,19 @@ import typer
 
 from benchmark.cli.options import Debug, Json, Out, Quiet, Seed, Set, parse_settings
 
-SessionFolder = Annotated[Path, typer.Argument(help="A trial session: a folder of CSV files, or a shipped name.")]
+Sessions = Annotated[
+    list[Path], typer.Argument(help="A trial session, a folder or a shipped name; several with --free.")
+]
 Specimen = Annotated[str | None, typer.Option("--specimen", help="Tissue of the trials: a name or a TOML file.")]
 Model = Annotated[Path | None, typer.Option("--model", help="Switch on the effects of a model file of discover.")]
 Effects = Annotated[Path | None, typer.Option("--effects", help="Effects of your own that the model file names.")]
+Free = Annotated[
+    str | None, typer.Option("--free", help="Parameters to fit, KEY,KEY: dermis.youngs_modulus,fat.thickness...")
+]
+Law = Annotated[str | None, typer.Option("--law", help="Law of all layers: yeoh, gent, ogden...")]
+Forward = Annotated[str | None, typer.Option("--forward", help="Model that is fitted: fem (default) or wave.")]
+Exact = Annotated[str | None, typer.Option("--exact", help="Told values to take as exact, KEY,KEY, or all.")]
+FitFile = Annotated[Path | None, typer.Option("--fit-file", help="A TOML file with a [fit] table.")]
 
 
 def register(app: typer.Typer) -> None:
@@ -21,10 +30,15 @@ def register(app: typer.Typer) -> None:
 
 
 def fit(
-    session: SessionFolder,
+    sessions: Sessions,
     specimen: Specimen = None,
     model: Model = None,
     effects: Effects = None,
+    free: Free = None,
+    law: Law = None,
+    forward: Forward = None,
+    exact: Exact = None,
+    fit_file: FitFile = None,
     out: Out = None,
     settings: Set = None,
     seed: Seed = 0,
@@ -34,14 +48,16 @@ def fit(
 ) -> int:
     """Fit the specimen of a trial session and say what the trials can tell.
 
-    Writes fit.json, fitted_parameters.csv and report.html.
+    Writes fit.json, fitted_parameters.csv and report.html; with --free also identified.toml, a tissue file.
     """
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
     from benchmark.runs import FitRequest, fit_to_folder
+    from benchmark.runs.parameters_run import ParameterWish
 
     console = Console(quiet=quiet)
-    request = FitRequest(session, specimen, parse_settings(settings), model, effects, seed)
+    wish = ParameterWish(_keys(free), _keys(exact), law, forward, tuple(sessions[1:]), fit_file)
+    request = FitRequest(sessions[0], specimen, parse_settings(settings), model, effects, seed, wish)
     outcome = fit_to_folder(request, out, console)
     for warning in outcome.warnings:
         console.say(f"  warning: {warning}")
@@ -50,3 +66,8 @@ def fit(
     else:
         print(f"{outcome.headline}\n  report: {outcome.folder / 'report.html'}")
     return 0
+
+
+def _keys(text: str | None) -> tuple[str, ...] | None:
+    """Keys of a list with commas."""
+    return None if text is None else tuple(key.strip() for key in text.split(",") if key.strip())

@@ -6,6 +6,7 @@ Rows may be means of raw samples: the variance of a mean and its covariance with
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,8 +64,8 @@ def _chain(count: Array, memory: float) -> tuple[Array, Array]:
     return back, scale
 
 
-def fit_memory(errors: Array, counts: Array) -> float:
-    """The memory of noise by maximum likelihood from errors (R, n), each trial with a scale of its own."""
+def fit_memory(errors: Array | Sequence[Array], counts: Array | Sequence[Array]) -> float:
+    """The memory of noise by maximum likelihood from R errors (n,), each trial with a scale of its own."""
     best, chosen = np.inf, 0.0
     for memory in MEMORIES:
         total = 0.0
@@ -80,7 +81,7 @@ def fit_memory(errors: Array, counts: Array) -> float:
     return chosen
 
 
-def scales(errors: Array, counts: Array, memory: float) -> Array:
+def scales(errors: Array | Sequence[Array], counts: Array | Sequence[Array], memory: float) -> Array:
     """(R,) standard deviation of a raw sample in each trial; NaN in one without samples, such as one not filmed."""
     return np.array([_scale(error, count, memory) for error, count in zip(errors, counts, strict=True)])
 

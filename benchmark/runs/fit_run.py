@@ -3,28 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError
-from benchmark.identification import SheetFit, parameter_columns
+from benchmark.files import Tissue
+from benchmark.identification import FittedParameter, SheetFit, parameter_columns
+from benchmark.identification.parameters.identified import Identified
+from benchmark.identification.parameters.identified_tissue import identified_tissue
 from benchmark.model_file import RepairedModel
 from benchmark.response.model_with_effects import load_repair
 from benchmark.runs.fitted_session import FittedSession, fit_trials
 from benchmark.runs.options import Listener
 from benchmark.runs.output.destination import destination
 from benchmark.runs.output.document import describe_environment
+from benchmark.runs.parameters_run import ParameterWish, common_factor_warnings, fit_parameters
 from benchmark.runs.report import fit_page
+from benchmark.runs.report.parameters_page import parameters_page
 from benchmark.runs.report.values import fit_headline, sheet_headline
-from reports import Page, whole_folder, write_csv, write_json, write_page
+from reports import Page, whole_folder, write_csv, write_json, write_page, write_text
 
 
 @dataclass(frozen=True)
 class FitRequest:
     """What is fitted: a session, the tissue of its trials, settings by KEY, a model file whose effects are in the fit.
 
-    `effects` is the user's own file that the model file may name.
+    `effects` is the user's own file that the model file may name; `wish` says which parameters are free.
     """
 
     session: Path
@@ -33,15 +38,28 @@ class FitRequest:
     model: Path | None = None
     effects: Path | None = None
     seed: int = 0
+    wish: ParameterWish = field(default_factory=ParameterWish)
 
 
 @dataclass(frozen=True)
 class FitRecord:
-    """A fit before it is written: what was found, with which effects switched on, and the seed."""
+    """A fit before it is written.
+
+    Attributes
+    ----------
+    found
+        The session with its fit of one common stiffness.
+    repair
+        Effects that were switched on.
+    seed
+    identified
+        The fit of parameters; None where none were free.
+    """
 
     found: FittedSession
     repair: RepairedModel | None
     seed: int
+    identified: Identified | None = None
 
     @property
     def sheet(self) -> SheetFit | None:
@@ -51,24 +69,49 @@ class FitRecord:
     @property
     def headline(self) -> str:
         """The fit in one sentence."""
+        if self.identified is not None:
+            return self.identified.headline
         return fit_headline(self.found.fit) if self.sheet is None else sheet_headline(self.sheet)
 
     def document(self) -> dict[str, Any]:
         """The content of `fit.json`."""
         session = self.found.session
+        common = self.found.fit.to_dict()
+        if self.identified is not None:
+            common = {**common, "common_factor": common["parameters"], **self.identified.to_dict()}
         return {
-            **self.found.fit.to_dict(),
+            **common,
             **({} if self.sheet is None else {"sheet": self.sheet.to_dict()}),
             "session": {"name": session.name, "fingerprint": session.fingerprint, "synthetic": session.synthetic},
             "specimen": session.specimen.name,
-            "warnings": list(self.found.warnings),
+            "warnings": list(self.warnings),
             **({} if self.repair is None else {"effects": list(self.repair.slugs)}),
         }
 
     def page(self) -> Page:
         """The page of the fit."""
-        found = self.found
-        return fit_page(found.session, found.fit, found.warnings, describe_environment(seed=self.seed), self.sheet)
+        found, environment = self.found, describe_environment(seed=self.seed)
+        if self.identified is not None:
+            return parameters_page(found.session, self.identified, self.warnings, environment)
+        return fit_page(found.session, found.fit, self.warnings, environment, self.sheet)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the reader must know: of the parameters first, where some were free."""
+        return self.found.warnings if self.identified is None else (*self.identified.warnings, *self.found.warnings)
+
+    @property
+    def rows(self) -> tuple[FittedParameter, ...]:
+        """Rows of `fitted_parameters.csv`."""
+        return self.found.fit.parameters if self.identified is None else self.identified.rows
+
+    def tissues(self) -> list[tuple[str, Tissue]]:
+        """The tissue file of each specimen, by its name."""
+        if self.identified is None:
+            return []
+        count = len(self.identified.specimens)
+        names = ["identified.toml", *(f"identified_{number}.toml" for number in range(2, count + 1))]
+        return [(name, identified_tissue(self.identified, number)) for number, name in enumerate(names)]
 
 
 @dataclass(frozen=True)
@@ -93,7 +136,16 @@ def carry_out_fit(request: FitRequest, listener: Listener) -> FitRecord:
         raise InputError("--effects brings effects that a model file names: give --model with it")
     repair = None if request.model is None else load_repair(request.model, request.effects)
     found = fit_trials(request.session, request.specimen, request.settings, listener, repair=repair)
-    return FitRecord(found, repair, request.seed)
+    table = request.wish.table(found.session.fit)
+    if not table.free:
+        if request.wish.sessions or table.law is not None:
+            raise InputError("several sessions, or a law, need parameters that are free: give --free KEY,KEY")
+        said = common_factor_warnings(found, listener) if repair is None else ()
+        return FitRecord(replace(found, warnings=(*said, *found.warnings)), repair, request.seed)
+    if repair is not None:
+        raise InputError("--free and --model do not go together: the effects of a model file act on a common factor")
+    others = [fit_trials(path, request.specimen, request.settings, listener) for path in request.wish.sessions]
+    return FitRecord(found, repair, request.seed, fit_parameters((found, *others), table, listener))
 
 
 def fit_to_folder(request: FitRequest, out: Path | None, listener: Listener) -> FitOutcome:
@@ -118,6 +170,8 @@ def write_fit(record: FitRecord, folder: Path) -> FitOutcome:
     document, page = record.document(), record.page()
     with whole_folder(folder) as new:
         write_json(new / "fit.json", document)
-        write_csv(new / "fitted_parameters.csv", parameter_columns(record.found.fit.parameters))
+        write_csv(new / "fitted_parameters.csv", parameter_columns(record.rows))
         write_page(new / "report.html", page)
-    return FitOutcome(folder, document, page.verdict.headline, record.found.warnings)
+        for name, tissue in record.tissues():
+            write_text(new / name, tissue.to_toml())
+    return FitOutcome(folder, document, page.verdict.headline, record.warnings)

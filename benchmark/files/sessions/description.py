@@ -11,6 +11,7 @@ from pydantic import Field, StrictBool, model_validator
 from benchmark.errors import InputError
 from benchmark.files.quantities import Bounds, Length, Margin, Number
 from benchmark.files.schema import FileModel, Name, Schema, nearest, validated
+from benchmark.files.sessions.fit_table import FitTable
 from benchmark.files.sources import Source
 from benchmark.files.tool import TOUCHING, Support, Tool, check_hole
 
@@ -94,6 +95,7 @@ class SessionFile(FileModel):
     drive: Drive = Drive()
     camera: Camera | None = None
     synthetic: StrictBool = False
+    fit: FitTable = FitTable()
     conditions: Mapping[str, ConditionKeys] = Field(default_factory=dict)
 
 

@@ -96,6 +96,7 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
         warnings=(*warnings, *([assumed] if assumed else [])),
         settings=settings,
         fingerprint=fingerprint(source.folder, files),
+        fit=file.fit,
     )
     _check_presses(session)
     return session

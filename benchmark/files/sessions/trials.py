@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from bench_hw.errors import BenchError
@@ -14,6 +14,7 @@ from benchmark.files.load import Load
 from benchmark.files.loading import scenario_from_table
 from benchmark.files.scenario import Scenario
 from benchmark.files.sessions.description import Camera, TrialEntry
+from benchmark.files.sessions.fit_table import FitTable
 from benchmark.files.sessions.session_folder import inside
 from benchmark.files.sources import Source
 from benchmark.files.tissue import Tissue
@@ -135,6 +136,8 @@ class Session:
         What the command line sets in the scenarios made of this session (`fem.mesh`...).
     fingerprint : str
         SHA-256 over all files of the session, in hex.
+    fit : FitTable
+        What its `[fit]` table says of a fit of parameters.
     """
 
     name: str
@@ -150,6 +153,7 @@ class Session:
     warnings: tuple[str, ...]
     settings: Mapping[str, str]
     fingerprint: str
+    fit: FitTable = field(default_factory=FitTable)
 
     @property
     def conditions(self) -> tuple[str, ...]:

@@ -1,0 +1,251 @@
+"""The parameters of a fit: their keys, values and bounds, the coordinate each is fitted in, and a set-up with them.
+
+Coordinates are logarithms of values, so that steps are shares; Poisson's ratio has log(1 - 2 nu), in which a nearly
+incompressible layer answers evenly. A layer's `youngs_modulus` takes all stresses of its law along, except constants
+that have a value of their own in the same fit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from benchmark.errors import InputError
+from benchmark.files import Support, Tissue, Tool, units
+from benchmark.files.overrides import layer_path
+from benchmark.files.tissue import Layer, scaled_layer
+from benchmark.files.units import Dimension, shown
+from benchmark.identification.parameters.law_shapes import LAW_SHAPES, shear_modulus, with_law
+from benchmark.response.force_curve import Array
+from benchmark.response.setup_change import RADIUS, THICKNESS, changed_setup
+
+SetUp: TypeAlias = tuple[Tissue, Tool, Support]
+Values: TypeAlias = Mapping[str, float]
+
+STRESS = ("youngs_modulus", "c10", "c01", "c20", "c30", "mu", "k1")
+LENGTHS = ("radius", "hole_radius", "edge_radius")
+
+COMMON = "stiffness_factor"
+"""Key of one factor on all stresses of all layers."""
+MODULUS, POISSON, RELAXATION = "youngs_modulus", "poisson_ratio", "relaxation"
+SHARE, TIME = ".relaxation.g", ".relaxation.tau"
+FAR = 30.0
+"""A parameter without bounds of its own may go this many times up or down."""
+POISSON_BOUNDS = (0.05, 0.4995)
+SHARE_BOUNDS, TIME_BOUNDS = (1e-3, 0.95), (1e-2, 1e4)
+
+
+def dimension_of_key(key: str) -> Dimension:
+    """The dimension of a key's value, by its last part; `thickness` of all layers is a factor."""
+    last = key.rpartition(".")[2]
+    if last in STRESS:
+        return units.PRESSURE
+    if last in LENGTHS or (last == "thickness" and key != THICKNESS):
+        return units.LENGTH
+    return units.DURATION if last == "tau" else units.dimension_of("")
+
+
+@dataclass(frozen=True)
+class Prior:
+    """What is known of a parameter beforehand: value, standard uncertainty of its coordinate, and who says so."""
+
+    value: float
+    deviation: float
+    source: str
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a fit.
+
+    Attributes
+    ----------
+    key : str
+        As in `--set`, or `thickness`, `stiffness_factor`, `law.NAME`.
+    start, low, high : float
+        SI.
+    prior : Prior or None
+    told : bool
+        Whether it is a value of the set-up that was told with an uncertainty, and no free parameter.
+    specimen : int or None
+        The specimen that alone has it; None for all.
+    tool : Tool or None
+        The tool that alone has it.
+    """
+
+    key: str
+    start: float
+    low: float
+    high: float
+    prior: Prior | None = None
+    told: bool = False
+    specimen: int | None = None
+    tool: Tool | None = None
+
+    @property
+    def unit(self) -> str:
+        """Of the value at the border."""
+        return shown(1.0, dimension_of_key(self.key).si)[1]
+
+    @property
+    def scale(self) -> float:
+        """The number of the border's unit for 1 in SI."""
+        return shown(1.0, dimension_of_key(self.key).si)[0]
+
+    @property
+    def fading(self) -> bool:
+        """Whether it belongs to the relaxation, and not to the elastic answer."""
+        return self.key.endswith((SHARE, TIME))
+
+    def coordinate(self, value: float) -> float:
+        """The coordinate of a value."""
+        return math.log(1.0 - 2.0 * value) if self._bulk else math.log(value)
+
+    def value(self, coordinate: float) -> float:
+        """The value at a coordinate."""
+        return 0.5 * (1.0 - math.exp(coordinate)) if self._bulk else math.exp(coordinate)
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Bounds of the coordinate, the lower first."""
+        ends = (self.coordinate(self.low), self.coordinate(self.high))
+        return min(ends), max(ends)
+
+    @property
+    def _bulk(self) -> bool:
+        return self.key.endswith(POISSON)
+
+
+def parameters_of(key: str, setup: SetUp, law: str | None) -> tuple[Parameter, ...]:
+    """The parameters that a key of `--free` stands for, as a set-up has them.
+
+    Raises
+    ------
+    InputError
+        The key points to no positive number of this specimen and set-up.
+    """
+    if key.partition(".")[2] == RELAXATION or key == RELAXATION:
+        return _relaxation(key, setup[0])
+    if key.startswith("law."):
+        return (_shape(key, law),)
+    if key in (COMMON, THICKNESS):
+        return (Parameter(key, 1.0, 1.0 / FAR, FAR),)
+    value = value_of(key, setup)
+    if not value > 0.0 or math.isinf(value):
+        raise InputError(f"--free {key}: {value:g} is nothing to vary by shares; allowed: values above 0")
+    if key.endswith(POISSON):
+        return (Parameter(key, value, min(POISSON_BOUNDS[0], value), max(POISSON_BOUNDS[1], value)),)
+    return (Parameter(key, value, value / FAR, value * FAR),)
+
+
+def _relaxation(key: str, tissue: Tissue) -> tuple[Parameter, ...]:
+    layers = tissue.layers
+    if key != RELAXATION:
+        path = layer_path(key, tissue.layer_names)
+        if path is None:
+            raise _no_key(key, tissue)
+        layers = (layers[int(path[1])],)
+    told = layers[0].relaxation
+    share, time = (told[0].g, told[0].tau) if told else (0.2, 2.0)
+    return (Parameter(f"{key}.g", share, *SHARE_BOUNDS), Parameter(f"{key}.tau", time, *TIME_BOUNDS))
+
+
+def _shape(key: str, law: str | None) -> Parameter:
+    shape = None if law is None else LAW_SHAPES[law]
+    if shape is None or shape.key != key:
+        known = ", ".join(f"{one.key} with --law {name}" for name, one in LAW_SHAPES.items() if one.key)
+        raise InputError(f"--free {key}: the fit has no such law; allowed: {known}")
+    return Parameter(key, shape.start, shape.low, shape.high)
+
+
+def value_of(key: str, setup: SetUp) -> float:
+    """The value of a key in a set-up, SI; raises InputError."""
+    tissue, tool, support = setup
+    head, _, name = key.partition(".")
+    parts = {"tool": tool, "support": support}
+    if head in parts and head not in tissue.layer_names:
+        found = getattr(parts[head], name, None)
+    else:
+        path = layer_path(key, tissue.layer_names)
+        if path is None:
+            raise _no_key(key, tissue)
+        found = _layer_value(tissue.layers[int(path[1])], [str(part) for part in path[2:]])
+    if not isinstance(found, float | int) or isinstance(found, bool):
+        raise _no_key(key, tissue)
+    return float(found)
+
+
+def _layer_value(layer: Layer, path: list[str]) -> object:
+    if path == [MODULUS]:
+        return 2.0 * (1.0 + layer.poisson_ratio) * shear_modulus(layer)
+    node: object = layer
+    for part in path:
+        node = getattr(node, part, None)
+    return node
+
+
+def _no_key(key: str, tissue: Tissue) -> InputError:
+    layers = ", ".join(tissue.layer_names)
+    return InputError(
+        f"--free {key}: this specimen and set-up have no such number; allowed: LAYER.youngs_modulus, LAYER.thickness, "
+        f"LAYER.poisson_ratio, LAYER.relaxation, LAYER.hyperelastic.NAME for the layers {layers}; thickness, "
+        f"relaxation, tool.radius, support.hole_radius, and a law's constant of shape"
+    )
+
+
+def with_values(setup: SetUp, values: Values, law: str | None = None) -> SetUp:
+    """A set-up with values (SI) put in by their keys; values of relaxation are left out, a fit has them by itself."""
+    tissue, tool, support = setup
+    layers = [_changed_layer(layer, values) for layer in tissue.layers]
+    tissue = tissue.model_copy(update={"layers": tuple(layers)})
+    if law is not None:
+        tissue = with_law(tissue, law, values.get(LAW_SHAPES[law].key, LAW_SHAPES[law].start))
+    constants = [_own_constants(layer, values) for layer in tissue.layers]
+    changed: SetUp = (tissue.model_copy(update={"layers": tuple(constants)}), tool, support)
+    for key in (THICKNESS, RADIUS, "tool.edge_radius", "support.hole_radius"):
+        if key in values:
+            told = 1.0 if key == THICKNESS else value_of(key, changed)
+            changed = changed_setup(*changed, key, values[key] / told - 1.0)
+    return changed
+
+
+def _changed_layer(layer: Layer, values: Values) -> Layer:
+    """A layer with thickness, Poisson's ratio and modulus put in, the law's stresses taken along."""
+    poisson = values.get(f"{layer.name}.{POISSON}", layer.poisson_ratio)
+    told = 2.0 * (1.0 + layer.poisson_ratio) * shear_modulus(layer)
+    modulus = values.get(f"{layer.name}.{MODULUS}", told) * values.get(COMMON, 1.0)
+    factor = modulus / told * (1.0 + layer.poisson_ratio) / (1.0 + poisson)
+    thickness = values.get(f"{layer.name}.thickness", layer.thickness)
+    changes = {POISSON: poisson, "thickness": thickness, MODULUS: modulus}
+    return scaled_layer(layer, factor).model_copy(update=changes)
+
+
+def _own_constants(layer: Layer, values: Values) -> Layer:
+    """A layer with constants of its law put in."""
+    for part in ("hyperelastic", "fibre"):
+        start = f"{layer.name}.{part}."
+        own = {key.removeprefix(start): value for key, value in values.items() if key.startswith(start)}
+        if own:
+            layer = layer.model_copy(update={part: getattr(layer, part).model_copy(update=own)})
+    return layer
+
+
+def elastic(tissue: Tissue) -> Tissue:
+    """A tissue without its relaxation."""
+    return tissue.model_copy(
+        update={"layers": tuple(one.model_copy(update={"relaxation": ()}) for one in tissue.layers)}
+    )
+
+
+def values_at(parameters: tuple[Parameter, ...], vector: Array) -> dict[str, float]:
+    """Values (SI) by key at coordinates (p,)."""
+    return {one.key: one.value(float(x)) for one, x in zip(parameters, vector, strict=True)}
+
+
+def start_vector(parameters: tuple[Parameter, ...]) -> Array:
+    """(p,) coordinates of the parameters' starts."""
+    return np.array([one.coordinate(one.start) for one in parameters])

@@ -1,0 +1,124 @@
+"""What trials can tell of free parameters, before a fit and after it: singular directions, and words for them.
+
+The sensitivity is white and free of priors on what is free; touch, zero and gain of the trials, and what was told of
+the set-up with an uncertainty, are eliminated.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from benchmark.identification.parameters.layer_fit import LayerFit
+from benchmark.identification.parameters.profile_likelihood import KNOWN
+from benchmark.response.force_curve import Array
+
+SHOWN = 0.2
+"""Parts of a direction smaller than this share of the largest are left out of its words."""
+LEAST = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Direction:
+    """A direction in the free parameters' coordinates.
+
+    Attributes
+    ----------
+    keys : tuple of str
+    parts : (f,) array
+        Unit vector.
+    deviation : float
+        Standard deviation along it that the trials leave, as a share (logarithm); infinite where they say nothing.
+    relative_information : float
+        Its information over that of the best known direction.
+    """
+
+    keys: tuple[str, ...]
+    parts: Array
+    deviation: float
+    relative_information: float
+
+    @property
+    def known(self) -> bool:
+        """Whether its 95 % interval lies within a factor of two."""
+        return 1.96 * self.deviation <= KNOWN
+
+    @property
+    def text(self) -> str:
+        """The direction in words."""
+        order = np.argsort(-np.abs(self.parts))
+        largest = self.parts[order[0]]
+        shown = [k for k in order if abs(self.parts[k]) >= SHOWN * abs(largest)]
+        names = [self.keys[k] for k in shown]
+        if len(shown) == 1:
+            what = f"{names[0]} by itself"
+        else:
+            ratios = " : ".join(f"{self.parts[k] / largest:.2g}" for k in shown)
+            what = f"{_joined(names)} trade {ratios}"
+        if not math.isfinite(self.deviation) or self.deviation > 10.0:
+            return f"{what}: the trials say nothing of this"
+        said = f"told to {100 * self.deviation:.2g} %" if self.deviation < 1.0 else "told to no better than threefold"
+        return f"{what}: {said} (standard error)"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Entry of `fit.json`."""
+        deviation = self.deviation if math.isfinite(self.deviation) else None
+        return {
+            "text": self.text,
+            "relative_information": self.relative_information,
+            "standard_error": deviation,
+            "known": self.known,
+            "parts": dict(zip(self.keys, self.parts.tolist(), strict=True)),
+        }
+
+
+def _joined(names: Sequence[str]) -> str:
+    return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def information(found: LayerFit) -> Array:
+    """(f, f) information of the trials on the free parameters, without priors on these."""
+    free = np.array(found.problem.free, dtype=int)
+    total = found.fit.blocks.matrix.sum(axis=0) + np.diag(found.fit.precision)
+    total[free, free] -= found.fit.precision[free]
+    rest = np.setdiff1d(np.arange(total.shape[0]), free)
+    across = total[np.ix_(rest, free)]
+    inner = total[np.ix_(rest, rest)]
+    return np.asarray(total[np.ix_(free, free)] - across.T @ np.linalg.solve(inner, across))
+
+
+def directions(found: LayerFit) -> tuple[Direction, ...]:
+    """Singular directions of what the trials tell, the least known first."""
+    matrix = information(found)
+    keys = tuple(found.problem.parameters[k].key for k in found.problem.free)
+    sizes, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
+    best = max(float(sizes[-1]), LEAST)
+    return tuple(
+        Direction(
+            keys,
+            vector * np.sign(vector[np.argmax(np.abs(vector))]),
+            1.0 / math.sqrt(size) if size > LEAST * best else math.inf,
+            max(float(size), 0.0) / best,
+        )
+        for size, vector in zip(sizes, vectors.T, strict=True)
+    )
+
+
+def correlation_words(found: LayerFit, least: float = 0.8) -> tuple[str, ...]:
+    """Pairs of free parameters whose estimates correlate strongly, in words."""
+    free = np.array(found.problem.free, dtype=int)
+    covariance = found.fit.covariance[np.ix_(free, free)]
+    spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    unit = covariance / np.outer(spread, spread)
+    keys = [found.problem.parameters[k].key for k in free]
+    return tuple(
+        f"{keys[i]} and {keys[j]} are estimated {'against each other' if unit[i, j] < 0.0 else 'together'} "
+        f"(correlation {unit[i, j]:.2f}): a mistake in one is one in the other"
+        for i in range(free.size)
+        for j in range(i)
+        if abs(unit[i, j]) >= least
+    )

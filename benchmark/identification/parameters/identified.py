@@ -1,0 +1,259 @@
+"""The answer of a fit of parameters: values with intervals, what is not determined, and why.
+
+A parameter whose interval does not end within a factor of two is not determined, whatever the fit's best value is; it
+is said so wherever it is quoted.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from benchmark.identification.fitted_parameters import FittedParameter
+from benchmark.identification.parameters.free_parameters import Parameter
+from benchmark.identification.parameters.held_out import HeldOut, held_out
+from benchmark.identification.parameters.identifiability import (
+    Direction,
+    correlation_words,
+    directions,
+    information,
+)
+from benchmark.identification.parameters.layer_fit import LayerFit
+from benchmark.identification.parameters.profile_likelihood import KNOWN, Profile, profile
+
+NOT_DETERMINED = "not determined"
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A free parameter's value and 95 % interval in `unit`; no interval where it is not determined.
+
+    Attributes
+    ----------
+    key : str
+        With the specimen's name in brackets where specimens have their own.
+    value : float
+    low, high : float or None
+    unit : str
+    identifiable : bool
+        Whether the trials determine it, without its prior.
+    prior : str or None
+        The prior and its source.
+    reason : str
+        Why it is not determined; empty where it is.
+    """
+
+    key: str
+    value: float
+    low: float | None
+    high: float | None
+    unit: str
+    identifiable: bool
+    prior: str | None
+    reason: str
+
+    @property
+    def text(self) -> str:
+        """Key, value and interval, or that there is none."""
+        unit = f" {self.unit}" if self.unit else ""
+        if not self.identifiable and self.low is None:
+            return f"{self.key} {NOT_DETERMINED}"
+        rests = "" if self.identifiable else ", on its prior alone"
+        return f"{self.key} {self.value:.4g}{unit} (95 % {self.low:.4g} to {self.high:.4g}{rests})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Entry of `fit.json`."""
+        interval = None if self.low is None else [self.low, self.high]
+        return {
+            "value": self.value,
+            "unit": self.unit,
+            "ci95": interval,
+            "identifiable": self.identifiable,
+            "interval": "profile likelihood" if interval is not None else NOT_DETERMINED,
+            "prior": self.prior,
+            **({"reason": self.reason} if self.reason else {}),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Identified:
+    """A fit of parameters with its intervals.
+
+    Attributes
+    ----------
+    found : LayerFit
+    names : tuple of str
+        Of the free parameters, as they are quoted.
+    profiles : tuple of Profile
+        One a free parameter.
+    before : tuple of Direction
+        What the trials could tell, with usual noise, where the fit began.
+    held_out : tuple of HeldOut
+    specimens : tuple of str
+        Names of the sessions.
+    remarks : tuple of str
+        What was changed of the presses, one sentence each.
+    """
+
+    found: LayerFit
+    names: tuple[str, ...]
+    profiles: tuple[Profile, ...]
+    before: tuple[Direction, ...]
+    held_out: tuple[HeldOut, ...]
+    specimens: tuple[str, ...]
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def free(self) -> tuple[Parameter, ...]:
+        """The free parameters."""
+        return tuple(self.found.problem.parameters[k] for k in self.found.problem.free)
+
+    @cached_property
+    def directions(self) -> tuple[Direction, ...]:
+        """What the trials tell, the least known first."""
+        return directions(self.found)
+
+    @cached_property
+    def estimates(self) -> tuple[Estimate, ...]:
+        """Values and intervals."""
+        alone = _alone(self.found)
+        return tuple(self._estimate(place, alone[place]) for place in range(len(self.names)))
+
+    def _estimate(self, place: int, deviation: float) -> Estimate:
+        index, own = self.found.problem.free[place], self.profiles[place]
+        parameter, at = self.found.problem.parameters[index], float(self.found.vector[index])
+        by_data = 1.96 * deviation <= KNOWN
+        ends = own.determined(at)
+        values = sorted(parameter.scale * parameter.value(each) for each in (own.low, own.high)) if ends else ()
+        low, high = values if values else (None, None)
+        prior = None if parameter.prior is None else f"{_prior(parameter)}; {parameter.prior.source}"
+        identifiable = ends and by_data
+        reason = "" if identifiable else self._reason(place, deviation)
+        value = parameter.scale * self.found.value(index)
+        return Estimate(self.names[place], value, low, high, parameter.unit, identifiable, prior, reason)
+
+    def _reason(self, place: int, deviation: float) -> str:
+        weak = [one for one in self.directions if not one.known and abs(one.parts[place]) > 0.3]
+        what = weak[0].text if weak else "its interval does not end within a factor of two"
+        size = "nothing of it" if deviation > 10.0 else f"it to {100 * deviation:.0f} % alone"
+        return f"the trials tell {size} (standard error without priors): {what}"
+
+    @property
+    def undetermined(self) -> tuple[Estimate, ...]:
+        """Those that the trials do not determine."""
+        return tuple(one for one in self.estimates if not one.identifiable)
+
+    @property
+    def headline(self) -> str:
+        """The fit in one sentence."""
+        trials = len(self.found.problem.trials)
+        law = "" if self.found.problem.law is None else f", law {self.found.problem.law}"
+        return f"{trials} trials{law}: {'; '.join(one.text for one in self.estimates)}"
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a reader must know before a figure is quoted."""
+        said = [*self.remarks]
+        said += [f"{one.key} is {NOT_DETERMINED}: {one.reason}" for one in self.undetermined]
+        if not self.found.settled:
+            said.append(
+                f"the fit did not settle in {self.found.rounds} rounds: model and surrogate still differ by "
+                f"{100 * self.found.disagreement:.2g} % of the force"
+            )
+        if self.found.problem.freedom < 1:
+            said.append("no set-up was pressed twice: the scatter of trials is assumed (1.5 %), not measured")
+        return tuple(said)
+
+    @property
+    def rows(self) -> tuple[FittedParameter, ...]:
+        """Rows of `fitted_parameters.csv`: free parameters, then what was told with an uncertainty."""
+        free = [
+            FittedParameter(
+                one.key, one.value, one.unit, one.low, one.high, one.identifiable, one.reason or "profile likelihood"
+            )
+            for one in self.estimates
+        ]
+        told = [self._told_row(k, one) for k, one in enumerate(self.found.problem.parameters) if one.told]
+        return (*free, *told)
+
+    def _told_row(self, index: int, one: Parameter) -> FittedParameter:
+        half = 1.96 * math.sqrt(float(self.found.fit.covariance[index, index]))
+        at = float(self.found.vector[index])
+        low, high = sorted(one.scale * one.value(at + sign * half) for sign in (-1.0, 1.0))
+        source = "told" if one.prior is None else one.prior.source
+        value = one.scale * self.found.value(index)
+        return FittedParameter(one.key, value, one.unit, low, high, False, f"{source}; moved along, not identified")
+
+    def to_dict(self) -> dict[str, Any]:
+        """What `fit.json` gains."""
+        found = self.found
+        predicted = zip(found.problem.trials, found.predicted, strict=True)
+        rms = [np.sqrt(np.mean((one.data.force - f) ** 2)) / np.ptp(one.data.force) for one, f in predicted]
+        return {
+            "parameters": {one.key: one.to_dict() for one in self.estimates},
+            "law": found.problem.law,
+            "forward": found.problem.forward,
+            "directions": [one.to_dict() for one in self.directions],
+            "directions_before": [one.to_dict() for one in self.before],
+            "correlations": list(correlation_words(found)),
+            "told": [row.to_dict() for row in self.rows if row.name not in self.names],
+            "residual_percent_of_peak": 100.0 * float(np.median(rms)),
+            "trial_scatter_percent": 100.0 * found.model.gain_deviation,
+            "noise_memory": found.memory,
+            "rounds": found.rounds,
+            "settled": found.settled,
+            "held_out": {one.condition: one.to_dict() for one in self.held_out},
+            "profiles": {name: _curve(self, k) for k, name in enumerate(self.names)},
+        }
+
+
+def _curve(identified: Identified, place: int) -> Mapping[str, list[float]]:
+    """The profile of a parameter: values in its unit, and rises of -2 log likelihood."""
+    parameter, own = identified.free[place], identified.profiles[place]
+    values = [parameter.scale * parameter.value(float(x)) for x in own.coordinate]
+    return {"value": values, "rise": own.rise.tolist()}
+
+
+def _alone(found: LayerFit) -> list[float]:
+    """Standard error of each free coordinate by the trials alone, without priors on what is free."""
+    matrix = information(found)
+    sizes, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
+    floor = max(float(sizes[-1]), 1e-300) * 1e-12
+    return [float(np.sqrt(np.sum(row**2 / np.maximum(sizes, floor)))) for row in vectors]
+
+
+def _prior(parameter: Parameter) -> str:
+    prior = parameter.prior
+    if prior is None:
+        return ""
+    unit = f" {parameter.unit}" if parameter.unit else ""
+    return f"{parameter.scale * prior.value:.4g}{unit} +/- {100 * prior.deviation:.3g} %"
+
+
+def identify(
+    found: LayerFit, before: Sequence[Direction], groups: Sequence[str], specimens: Sequence[str]
+) -> Identified:
+    """Intervals, directions and held-out predictions of a fit.
+
+    Parameters
+    ----------
+    found : LayerFit
+    before : sequence of Direction
+        Where the fit began.
+    groups : sequence of str
+        The group of each trial that is held out together.
+    specimens : sequence of str
+        Names of the sessions.
+    """
+    parameters = [found.problem.parameters[k] for k in found.problem.free]
+    names = tuple(
+        one.key if one.specimen is None or len(specimens) < 2 else f"{one.key} [{specimens[one.specimen]}]"
+        for one in parameters
+    )
+    profiles = tuple(profile(found, k) for k in found.problem.free)
+    return Identified(found, names, profiles, tuple(before), held_out(found, groups), tuple(specimens))

@@ -1,0 +1,222 @@
+"""What a fit of parameters says of its trials: force over time, with fading layers, and the derivatives of it.
+
+Each trial has three nuisances: the depth at which it touches, the force's zero, and a gain, whose scatter over trials
+is a random effect. A layer that fades takes its share of the force along: where its stiffness falls by the share g, the
+force falls by 1 - (1 - g)^s, s the sensitivity of the force to that layer; this share fades with the layer's time
+constant. That is exact at once and at last, and between them as far as the force follows the layer evenly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from benchmark.identification.parameters.press_surrogate import PressSurrogate
+from benchmark.identification.sheet_model import Relaxation, relaxed
+from benchmark.identification.trial_data import TrialData, reduced, rows_of
+from benchmark.identification.trial_features import ContactRange
+from benchmark.response.force_curve import Array
+from benchmark.response.noise import Whitener
+from benchmark.response.trials_model import TrialColumns, TrialsEvaluation
+
+TOUCH, ZERO, GAIN = 0, 1, 2
+NUISANCES = 3
+MM = 1e3
+"""Nuisances have the depth at touch in mm."""
+TOUCH_STEP, COORDINATE_STEP = 1e-3, 1e-4
+"""Steps of differences: mm, and of a time constant's logarithm."""
+MOST_ROWS = 250
+
+
+@dataclass(frozen=True, eq=False)
+class FitTrial:
+    """A trial as a fit of parameters takes it.
+
+    Attributes
+    ----------
+    data : TrialData
+        With few enough rows.
+    count : (n,) array
+        Measured rows in each.
+    press : int
+        Number of the press it belongs to.
+    touch : ContactRange
+        Where it may touch.
+    """
+
+    data: TrialData
+    count: Array
+    press: int
+    touch: ContactRange
+
+    @staticmethod
+    def of(trial: TrialData, press: int, touch: ContactRange) -> FitTrial:
+        """A measured trial with rows averaged in groups."""
+        group = -(-trial.rows // MOST_ROWS)
+        starts = np.arange(0, trial.rows, group)
+        count = np.diff(np.append(starts, trial.rows)).astype(np.float64)
+        return FitTrial(reduced(trial, MOST_ROWS), count, press, touch)
+
+    def up_to(self, depth: float) -> FitTrial:
+        """The trial without the rows that are deeper than `depth` (m) below the earliest touch."""
+        kept = self.data.depth <= self.touch.low + depth
+        return replace(self, data=rows_of(self.data, kept), count=self.count[kept])
+
+
+@dataclass(frozen=True)
+class Fading:
+    """A layer that fades in a press, or all of them (`layer` empty): where its share and time are in the vector."""
+
+    press: int
+    layer: str
+    share: int
+    time: int
+
+
+@dataclass(frozen=True, eq=False)
+class LayerModel:
+    """Trials of presses as functions of coordinates; a `benchmark.response.trials_model.TrialsModel`.
+
+    Attributes
+    ----------
+    surrogates : tuple of PressSurrogate
+        One a press; `by` has a row for each coordinate.
+    trials : tuple of FitTrial
+    fading : tuple of Fading
+    limits : (p,) and (p,) array
+        Bounds of the coordinates; equal ones fix them.
+    prior_mean, prior_precision : (p,) array
+        0 precision for none.
+    gain_deviation : float
+        Standard deviation of the trials' gains, as shares.
+    white : tuple of Whitener
+        Each trial's noise.
+    noise : (R,) array
+        Standard deviation of a measured row, N.
+    """
+
+    surrogates: tuple[PressSurrogate, ...]
+    trials: tuple[FitTrial, ...]
+    fading: tuple[Fading, ...]
+    limits: tuple[Array, Array]
+    prior_mean: Array
+    prior_precision: Array
+    gain_deviation: float
+    white: tuple[Whitener, ...]
+    noise: Array
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """Of the coordinates."""
+        return self.limits
+
+    @cached_property
+    def trial_precision(self) -> Array:
+        """Flat in touch and zero, normal in the gain."""
+        return np.array([0.0, 0.0, self.gain_deviation**-2])
+
+    @cached_property
+    def trial_bounds(self) -> tuple[Array, Array]:
+        """Where each trial may touch, mm; zero and gain are free."""
+        ranges = [(MM * one.touch.low, MM * one.touch.high) for one in self.trials]
+        low = np.array([[low, -np.inf, -1.0] for low, _ in ranges])
+        high = np.array([[high, np.inf, 1.0] for _, high in ranges])
+        return low, high
+
+    def prior(self, start: Array) -> tuple[Array, Array]:  # noqa: ARG002 - priors do not follow the start
+        """Mean and precision of the coordinates' priors."""
+        return self.prior_mean, self.prior_precision
+
+    def evaluated(self, vector: Array, nuisance: Array) -> TrialsEvaluation:
+        """White residuals; signals are predicted forces (n,) N."""
+        grids = [one.force_at(vector) for one in self.surrogates]
+        signals = [self._force(k, vector, own, grids) for k, own in enumerate(nuisance)]
+        residuals = [self._whitened(k, one.data.force - signals[k]) for k, one in enumerate(self.trials)]
+        return TrialsEvaluation(vector, nuisance, signals, residuals)
+
+    def columns(self, at: TrialsEvaluation, warm: TrialColumns | None = None) -> TrialColumns:  # noqa: ARG002
+        """Derivatives of all trials."""
+        grids = [one.force_at(at.vector) for one in self.surrogates]
+        vector = [self._vector_columns(k, at, grids) for k in range(len(self.trials))]
+        return TrialColumns(vector, self.nuisance_columns(at))
+
+    def nuisance_columns(self, at: TrialsEvaluation) -> list[Array]:
+        """By touch, zero and gain."""
+        grids = [one.force_at(at.vector) for one in self.surrogates]
+        out = []
+        for k, own in enumerate(at.nuisance):
+            step = np.array([TOUCH_STEP, 0.0, 0.0])
+            by_touch = (self._force(k, at.vector, own + step, grids) - self._force(k, at.vector, own - step, grids)) / (
+                2.0 * TOUCH_STEP
+            )
+            pressing = at.signals[k] - own[ZERO]
+            out.append(self._whitened(k, np.column_stack([by_touch, np.ones_like(pressing), pressing])))
+        return out
+
+    def fixed_at(self, index: int, value: float) -> LayerModel:
+        """The model with one coordinate held at a value."""
+        low, high = self.limits[0].copy(), self.limits[1].copy()
+        low[index] = high[index] = value
+        return replace(self, limits=(low, high))
+
+    def within(self, low: Array, high: Array) -> LayerModel:
+        """The model with other bounds (p,)."""
+        return replace(self, limits=(low, high))
+
+    def predicted(self, vector: Array, nuisance: Array) -> list[Array]:
+        """Force (n,) N of each trial."""
+        grids = [one.force_at(vector) for one in self.surrogates]
+        return [self._force(k, vector, own, grids) for k, own in enumerate(nuisance)]
+
+    def _whitened(self, k: int, rows: Array) -> Array:
+        return np.asarray(self.white[k](rows) / self.noise[k])
+
+    def _force(self, k: int, vector: Array, own: Array, grids: Sequence[Array]) -> Array:
+        trial = self.trials[k]
+        depth = trial.data.depth - own[TOUCH] / MM
+        elastic = self.surrogates[trial.press].curve(grids[trial.press], depth)
+        faded = self._faded(trial, vector, depth, elastic)
+        pressing = np.where(depth > 0.0, np.maximum(faded, 0.0), 0.0)
+        return np.asarray(own[ZERO] + np.exp(own[GAIN]) * pressing)
+
+    def _faded(self, trial: FitTrial, vector: Array, depth: Array, elastic: Array) -> Array:
+        """A history of force (n,), or of a change of it, less what has faded of it."""
+        for one in self._fading_of(trial):
+            weight = 1.0 - (1.0 - np.exp(vector[one.share])) ** self._sensitivity(trial, one, depth)
+            part = weight * elastic
+            kept = relaxed(trial.data.time, part, Relaxation(1.0, float(np.exp(vector[one.time]))))
+            elastic = elastic - (part - kept)
+        return elastic
+
+    def _fading_of(self, trial: FitTrial) -> list[Fading]:
+        return [one for one in self.fading if one.press == trial.press]
+
+    def _sensitivity(self, trial: FitTrial, one: Fading, depth: Array) -> Array | float:
+        if not one.layer:
+            return 1.0
+        table = self.surrogates[trial.press]
+        return np.asarray(np.interp(depth, table.depth, table.layers[one.layer]))
+
+    def _vector_columns(self, k: int, at: TrialsEvaluation, grids: Sequence[Array]) -> Array:
+        """(n, p) white derivatives of one trial's force by the coordinates."""
+        trial, own, vector = self.trials[k], at.nuisance[k], at.vector
+        table, grid = self.surrogates[trial.press], grids[trial.press]
+        depth, gain = trial.data.depth - own[TOUCH] / MM, np.exp(own[GAIN])
+        out = np.zeros((trial.data.rows, vector.size))
+        pressing = at.signals[k] > own[ZERO]
+        for index in np.flatnonzero(table.by.any(axis=1)):
+            moved = self._faded(trial, vector, depth, table.curve(grid * table.by[index], depth))
+            out[:, index] = np.where(pressing, gain * moved, 0.0)
+        for one in self._fading_of(trial):
+            for place in (one.share, one.time):
+                out[:, place] = self._by_difference(k, vector, own, grids, place)
+        return self._whitened(k, out)
+
+    def _by_difference(self, k: int, vector: Array, own: Array, grids: Sequence[Array], index: int) -> Array:
+        step = np.zeros_like(vector)
+        step[index] = COORDINATE_STEP
+        more, less = (self._force(k, vector + sign * step, own, grids) for sign in (1.0, -1.0))
+        return np.asarray((more - less) / (2.0 * COORDINATE_STEP))

@@ -1,0 +1,190 @@
+"""The elastic force of one set-up near a point: a ramp of a model, and its sensitivity to the fit's coordinates.
+
+The force goes with powers of the parameters, log F = log F_0 + sum of sensitivities times changes of coordinates, at
+each depth for itself. A fit refreshes it where it has come to. The model's own derivatives serve, by the chain rule.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from benchmark.errors import SolverError
+from benchmark.files import Session
+from benchmark.identification.parameters.free_parameters import (
+    COMMON,
+    MODULUS,
+    POISSON,
+    Parameter,
+    SetUp,
+    Values,
+    value_of,
+    with_values,
+)
+from benchmark.response.differentiated_ramp import DifferentiatedRamp, differentiated_ramp
+from benchmark.response.force_curve import Array
+from benchmark.response.setup_change import is_absolute
+
+Forward: TypeAlias = Literal["fem", "wave"]
+GRID = 600
+"""Depths between which forces are linear."""
+
+
+class StopsError(SolverError):
+    """The model does not follow a press to its depth; `reach` is how far it comes, m."""
+
+    def __init__(self, depth: float, reach: float):
+        super().__init__(f"the model follows the press to {1e3 * reach:.3g} of {1e3 * depth:.3g} mm")
+        self.reach = reach
+
+
+@dataclass(frozen=True, eq=False)
+class PressSurrogate:
+    """Elastic force of one set-up.
+
+    Attributes
+    ----------
+    depth : (k,) array
+        m, even, from 0.
+    force : (k,) array
+        N at `at`.
+    by : (p, k) array
+        Derivatives of the force's logarithm by the coordinates of the whole fit.
+    layers : mapping of layer to (k,) array
+        Derivatives of the force's logarithm by each relaxing layer's stiffness.
+    at : (p,) array
+        Coordinates.
+    """
+
+    depth: Array
+    force: Array
+    by: Array
+    layers: Mapping[str, Array]
+    at: Array
+
+    def force_at(self, vector: Array) -> Array:
+        """(k,) N at the depths of the grid, at other coordinates (p,)."""
+        return np.asarray(self.force * np.exp((vector - self.at) @ self.by))
+
+    def curve(self, grid: Array, depth: Array) -> Array:
+        """(n,) of a quantity on the grid (k,) at depths (n,), m; zero above the surface, straight on at the end."""
+        beyond = np.maximum(depth - self.depth[-1], 0.0)
+        slope = (grid[-1] - grid[-2]) / (self.depth[1] - self.depth[0])
+        return np.asarray(np.where(depth > 0.0, np.interp(depth, self.depth, grid) + slope * beyond, 0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Press:
+    """What is pressed with what: a specimen's number in the fit, its session, set-up as told, and how deep, m."""
+
+    specimen: int
+    session: Session
+    setup: SetUp
+    depth: float
+
+    def has(self, parameter: Parameter) -> bool:
+        """Whether a parameter acts on this press."""
+        specimen, tool = parameter.specimen, parameter.tool
+        return specimen in (None, self.specimen) and tool in (None, self.setup[1])
+
+
+def surrogate(
+    press: Press,
+    parameters: Sequence[Parameter],
+    vector: Array,
+    law: str | None,
+    relaxing: Sequence[str],
+    forward: Forward,
+) -> PressSurrogate:
+    """Press a set-up with the values that the coordinates (p,) give, and differentiate the press.
+
+    Raises
+    ------
+    SolverError
+        The model does not follow the press to its depth.
+    InputError
+        It does not cover the set-up.
+    """
+    acting = [k for k, one in enumerate(parameters) if press.has(one) and not one.fading]
+    values = acting_values(press, parameters, vector)
+    setup = with_values(press.setup, values, law)
+    chains = {k: _chain(parameters[k], values, setup) for k in acting}
+    wanted = {key for chain in chains.values() for key in chain} | {f"{name}.stiffness" for name in relaxing}
+    ramp = differentiated_ramp(press.session, *setup, press.depth, sorted(wanted), forward)
+    if ramp.failure is not None or ramp.depth[-1] < press.depth * (1.0 - 1e-9):
+        raise StopsError(press.depth, float(ramp.depth[-1]))
+    by = np.zeros((len(parameters), GRID))
+    for k, chain in chains.items():
+        by[k] = 1.0 if parameters[k].key == COMMON else _logarithmic(ramp, chain)
+    grid = np.linspace(0.0, press.depth, GRID)
+    layers = {name: _logarithmic(ramp, {f"{name}.stiffness": 1.0}) for name in relaxing}
+    return PressSurrogate(grid, np.asarray(PchipInterpolator(ramp.depth, ramp.force)(grid)), by, layers, vector.copy())
+
+
+def acting_values(press: Press, parameters: Sequence[Parameter], vector: Array) -> dict[str, float]:
+    """Values of the elastic parameters that act on a press, SI, by key."""
+    pairs = zip(parameters, vector, strict=True)
+    return {one.key: one.value(float(x)) for one, x in pairs if press.has(one) and not one.fading}
+
+
+def elastic_force(press: Press, setup: SetUp, forward: Forward) -> Array:
+    """(k,) N of a set-up at the depths of a press's grid; raises as `surrogate`."""
+    ramp = differentiated_ramp(press.session, *setup, press.depth, (), forward)
+    if ramp.failure is not None:
+        raise StopsError(press.depth, float(ramp.depth[-1]))
+    grid = np.linspace(0.0, press.depth, GRID)
+    return np.asarray(PchipInterpolator(ramp.depth, ramp.force)(grid))
+
+
+def _logarithmic(ramp: DifferentiatedRamp, chain: Mapping[str, float]) -> Array:
+    """(k,) derivative of the force's logarithm on the grid, by shares of keys; at the surface as at the first step."""
+    total = sum(weight * ramp.by[key].force for key, weight in chain.items())
+    share = np.asarray(total)[1:] / ramp.force[1:]
+    grid = np.linspace(0.0, ramp.depth[-1], GRID)
+    return np.asarray(PchipInterpolator(np.append(0.0, ramp.depth[1:]), np.append(share[0], share))(grid))
+
+
+def _chain(parameter: Parameter, values: Values, setup: SetUp) -> dict[str, float]:
+    """Keys of the ramp and by how much each changes with the parameter's coordinate, in the ramp's own terms."""
+    key, last = parameter.key, parameter.key.rpartition(".")[2]
+    if key == COMMON:
+        return {}
+    if key.startswith("law."):
+        shapes = [_shape_chain(name, values[key], setup) for name in setup[0].layer_names]
+        return {name: weight for chain in shapes for name, weight in chain.items()}
+    layer = key.rpartition(".")[0]
+    if last == MODULUS and layer in setup[0].layer_names:
+        own = [each for each in values if each.startswith(f"{layer}.hyperelastic.")]
+        return {f"{layer}.stiffness": 1.0} | {each: -_size(each, values[each]) for each in own}
+    if last == POISSON:
+        poisson = values[key]
+        way = -0.5 * (1.0 - 2.0 * poisson)
+        follows = setup[0].layer(layer).hyperelastic.shear_modulus is None
+        return {key: way} | ({} if follows else {f"{layer}.stiffness": -way / (1.0 + poisson)})
+    return {key: _size(key, values[key])}
+
+
+def _size(key: str, value: float) -> float:
+    """The change of a key, in the ramp's terms, with the logarithm of its value."""
+    return value if is_absolute(key) else 1.0
+
+
+def _shape_chain(layer: str, shape: float, setup: SetUp) -> dict[str, float]:
+    """The chain of a law's constant of shape in one layer, at a fixed shear modulus."""
+    own = f"{layer}.hyperelastic"
+    match setup[0].layer(layer).hyperelastic.law:
+        case "yeoh":
+            return {f"{own}.c20": value_of(f"{own}.c20", setup)}
+        case "gent":
+            return {f"{own}.jm": 1.0}
+        case "ogden":
+            return {f"{own}.terms.0.mu": -1.0, f"{own}.terms.0.alpha": 1.0}
+        case "mooney_rivlin":
+            c01 = value_of(f"{own}.c01", setup)
+            return {f"{own}.c10": -shape / (1.0 + shape), f"{own}.c01": c01 / (1.0 + shape)}
+        case _:
+            return {}

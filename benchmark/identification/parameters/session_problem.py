@@ -1,0 +1,261 @@
+"""What a fit of parameters takes from sessions: presses, trials, free parameters, and what was told and how surely."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from benchmark.errors import InputError
+from benchmark.files import Session, Tool
+from benchmark.files.sessions.fit_table import FitTable
+from benchmark.files.units import QuantityError, parse_quantity, relative_uncertainty, split_uncertainty
+from benchmark.identification.parameters.free_parameters import (
+    COMMON,
+    MODULUS,
+    POISSON,
+    RELAXATION,
+    Parameter,
+    Prior,
+    SetUp,
+    dimension_of_key,
+    parameters_of,
+    value_of,
+    with_values,
+)
+from benchmark.identification.parameters.law_shapes import law_shape
+from benchmark.identification.parameters.layer_fit import FitProblem
+from benchmark.identification.parameters.layer_model import FitTrial
+from benchmark.identification.parameters.press_surrogate import Press
+from benchmark.identification.session_fit import SessionFit
+from benchmark.identification.trial_data import LEAST_ROWS, TrialData
+from benchmark.identification.trial_features import contact_range
+from benchmark.response.force_curve import Array
+from benchmark.response.nearest_curve import tool_name
+from benchmark.response.ramp import Ramp, Setup
+from benchmark.response.setup_change import RADIUS, THICKNESS
+
+MARGIN = 1.02
+"""A press goes this much deeper than its trials."""
+UNSTATED = {"tool.radius": 0.01, "support.hole_radius": 0.01, "thickness": 0.035, "youngs_modulus": 0.25}
+"""Relative standard uncertainty of what is told without one: what people know of a set-up.
+
+A tool's radius to 1 %, a thickness to 2 to 5 %, a layer's modulus to 20 to 50 %. First choice; `exact` takes it away.
+"""
+UNSTATED_POISSON = 0.5
+"""Standard uncertainty of log(1 - 2 nu) where none is told: 0.45 to 0.488 round 0.475."""
+
+
+@dataclass(frozen=True, eq=False)
+class FittedBase:
+    """A session with the fit of one common stiffness, which a fit of parameters begins with.
+
+    `followed` are the tools that the model covers in each set-up, the one told first, each with its ramp.
+    """
+
+    session: Session
+    fit: SessionFit
+    trials: Sequence[TrialData]
+    followed: Mapping[Setup, tuple[tuple[Tool, Ramp], ...]]
+
+
+@dataclass(frozen=True, eq=False)
+class Assembled:
+    """A problem with where its trials begin, and what a reader must know of how it came about."""
+
+    problem: FitProblem
+    touches: Array
+    zeros: Array
+    warnings: tuple[str, ...]
+
+
+def assembled(bases: Sequence[FittedBase], wish: FitTable) -> Assembled:
+    """Put sessions together for a fit.
+
+    Raises
+    ------
+    InputError
+        A key that a specimen does not have, or values that cannot be used.
+    """
+    presses, trials, keys, warnings = _presses(bases, wish)
+    if not trials:
+        raise InputError("no trial is left for a fit of parameters: none reaches into the model's range")
+    free = _free(bases, presses, wish)
+    told = _told(presses, wish, {one.key for one in free})
+    problem = FitProblem(presses, trials, (*free, *told), wish.law, wish.forward)
+    problem = replace(problem, parameters=_started(problem, bases))
+    own = [bases[specimen].fit.trial(*key) for specimen, key in keys]
+    touches, zeros = np.array([one.onset for one in own]), np.array([one.zero for one in own])
+    return Assembled(problem, touches, zeros, warnings)
+
+
+def _presses(
+    bases: Sequence[FittedBase], wish: FitTable
+) -> tuple[tuple[Press, ...], tuple[FitTrial, ...], list[tuple[int, tuple[str, str]]], tuple[str, ...]]:
+    """Presses, their trials, each trial's specimen and name, and what was changed of them."""
+    presses: list[Press] = []
+    trials, keys, warnings = [], [], []
+    for specimen, base in enumerate(bases):
+        for setup in dict.fromkeys((trial.tool, trial.support) for trial in base.session.trials):
+            fitted = _trials_of(base, setup)
+            if not fitted:
+                continue
+            press, said = _press(specimen, base, setup, fitted)
+            press = replace(press, setup=with_values(press.setup, _fixed(press.setup, wish)))
+            warnings += said
+            for data in fitted:
+                touch = contact_range(data.depth, data.force)
+                if int((data.depth <= touch.low + press.depth).sum()) >= LEAST_ROWS:
+                    trials.append(FitTrial.of(data, len(presses), touch).up_to(press.depth))
+                    keys.append((specimen, (data.name, data.condition)))
+            presses.append(press)
+    return tuple(presses), tuple(trials), keys, tuple(warnings)
+
+
+def _trials_of(base: FittedBase, setup: Setup) -> list[TrialData]:
+    """The trials of a set-up that the first fit could use."""
+    used = {each.key for each in base.fit.trials}
+    pairs = zip(base.session.trials, base.trials, strict=True)
+    return [data for trial, data in pairs if (trial.tool, trial.support) == setup and data.key in used]
+
+
+def _press(specimen: int, base: FittedBase, setup: Setup, trials: Sequence[TrialData]) -> tuple[Press, list[str]]:
+    """A press under the tool that the model follows deepest, as deep as its trials, or as it goes."""
+    wanted = MARGIN * max(float(one.depth.max()) - contact_range(one.depth, one.force).low for one in trials)
+    told, support = setup
+    tool, reach, said = told, wanted, []
+    followed = base.followed.get(setup, ())
+    whole = [(other, ramp) for other, ramp in followed if ramp.failure is None]
+    deepest = whole[0] if whole else max(followed, key=lambda each: float(each[1].depth[-1]), default=None)
+    if deepest is not None:
+        tool, ramp = deepest
+        if ramp.failure is not None:
+            reach = min(wanted, 0.97 * float(ramp.depth[-1]))
+            said.append(f"parameters are fitted to the first {1e3 * reach:.3g} mm: deeper the model does not go")
+        if tool != told:
+            said.append(f"parameters are fitted with {tool_name(tool, told)} in the place of the tool as told")
+    return Press(specimen, base.session, (base.session.specimen, tool, support), reach), said
+
+
+def _free(bases: Sequence[FittedBase], presses: Sequence[Press], wish: FitTable) -> tuple[Parameter, ...]:
+    """The free parameters, shared ones once and per-specimen ones for each session that has them."""
+    keys = list(dict.fromkeys(wish.free))
+    shape = "" if wish.law is None else law_shape(wish.law).key
+    if shape and shape not in keys and not any(".hyperelastic." in key for key in keys):
+        keys.append(shape)
+    stray = [key for key in (*wish.per_specimen, *wish.bounds, *wish.priors) if not _covers(keys, key)]
+    if stray:
+        raise InputError(f"[fit]: {stray[0]} is not among what is free; allowed: {', '.join(keys)}")
+    out: list[Parameter] = []
+    for key in keys:
+        own = key in wish.per_specimen and len(bases) > 1
+        for specimen in range(len(bases)) if own else (None,):
+            at = next(one for one in presses if specimen in (None, one.specimen))
+            out += [replace(_informed(one, wish), specimen=specimen) for one in parameters_of(key, at.setup, wish.law)]
+    return tuple(out)
+
+
+def _fixed(setup: SetUp, wish: FitTable) -> dict[str, float]:
+    """Values that `[fit.fixed]` states, SI; raises InputError for a key that the set-up does not have."""
+    for key in wish.fixed:
+        value_of(key, setup)
+    return {key: quantity(key, text) for key, text in wish.fixed.items()}
+
+
+def _covers(keys: Sequence[str], key: str) -> bool:
+    return key in keys or any(key.startswith(f"{one}.") and one.endswith(RELAXATION) for one in keys)
+
+
+def _informed(parameter: Parameter, wish: FitTable) -> Parameter:
+    """A free parameter with the bounds and the prior that a person gives."""
+    key = parameter.key
+    if key in wish.bounds:
+        low, high = (quantity(key, end) for end in wish.bounds[key])
+        if not 0.0 < low < high:
+            raise InputError(f"[fit.bounds] {key}: allowed are two values above 0, the lower one first")
+        start = min(max(parameter.start, low * (1.0 + 1e-6)), high * (1.0 - 1e-6))
+        parameter = replace(parameter, low=low, high=high, start=start)
+    if key in wish.priors:
+        entry = wish.priors[key]
+        plain, uncertain = split_uncertainty(entry.value)
+        if uncertain is None:
+            raise InputError(f'[fit.priors] {key}: give a value with its uncertainty, such as "120 kPa +/- 30 %"')
+        value = quantity(key, plain)
+        try:
+            share = relative_uncertainty(value, uncertain, dimension_of_key(key))
+        except QuantityError as error:
+            raise InputError(f"[fit.priors] {key}: {error}") from None
+        parameter = replace(parameter, prior=Prior(value, _deviation(key, value, share), entry.source), start=value)
+    return parameter
+
+
+def quantity(key: str, text: str | float) -> float:
+    """A value of a key, SI; raises InputError."""
+    dimension = dimension_of_key(key)
+    if isinstance(text, float | int):
+        text = str(text)
+    try:
+        return parse_quantity(text, dimension)
+    except QuantityError as error:
+        raise InputError(f"[fit] {key}: {error}") from None
+
+
+def _deviation(key: str, value: float, share: float) -> float:
+    """Standard uncertainty of a coordinate from that of its value, as a share."""
+    return 2.0 * value * share / (1.0 - 2.0 * value) if key.endswith(POISSON) else share
+
+
+def _told(presses: Sequence[Press], wish: FitTable, free: set[str]) -> tuple[Parameter, ...]:
+    """What was told of set-ups and is not free, as parameters with a prior."""
+    if "all" in wish.exact:
+        return ()
+    out: dict[tuple[str, object], Parameter] = {}
+    taken = {*free, *wish.exact, *wish.fixed}
+    for press in presses:
+        stated = press.session.uncertainties(*press.setup[1:])
+        for key in _tellable(press.setup, free):
+            if key in taken:
+                continue
+            tool, specimen = (press.setup[1], None) if key == RADIUS else (None, press.specimen)
+            value = value_of(key, press.setup)
+            share = stated.get(key)
+            spread = _deviation(key, value, share) if share is not None else _unstated(key)
+            source = f"told to {100 * share:.2g} %" if share is not None else "told without its uncertainty"
+            one = parameters_of(key, press.setup, None)[0]
+            one = replace(one, prior=Prior(value, spread, source), told=True, specimen=specimen, tool=tool)
+            out.setdefault((key, tool if key == RADIUS else specimen), one)
+    return tuple(out.values())
+
+
+def _unstated(key: str) -> float:
+    if key.endswith(POISSON):
+        return UNSTATED_POISSON
+    return UNSTATED.get(key) or UNSTATED[key.rpartition(".")[2]]
+
+
+def _tellable(setup: SetUp, free: set[str]) -> Iterator[str]:
+    """Keys of a set-up that were told and move the force."""
+    tissue, _, support = setup
+    yield RADIUS
+    if support.kind == "hole":
+        yield "support.hole_radius"
+    for layer in tissue.layers:
+        if not math.isinf(layer.thickness) and THICKNESS not in free:
+            yield f"{layer.name}.thickness"
+        if COMMON not in free:
+            yield f"{layer.name}.{MODULUS}"
+        yield f"{layer.name}.{POISSON}"
+
+
+def _started(problem: FitProblem, bases: Sequence[FittedBase]) -> tuple[Parameter, ...]:
+    """The parameters with moduli that begin at the stiffness that the first fits found."""
+    out = []
+    for one in problem.parameters:
+        if one.key == COMMON or (one.key.endswith(MODULUS) and not one.told and one.prior is None):
+            specimens = range(len(bases)) if one.specimen is None else (one.specimen,)
+            factor = float(np.exp(np.mean([np.log(bases[k].fit.stiffness_factor) for k in specimens])))
+            one = replace(one, start=min(max(one.start * factor, 1.01 * one.low), 0.99 * one.high))
+        out.append(one)
+    return tuple(out)

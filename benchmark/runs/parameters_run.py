@@ -1,0 +1,130 @@
+"""`fit --free`: parameters of one or several sessions; and the warnings of one factor for several layers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from benchmark.errors import InputError, SolverError
+from benchmark.files.schema import validated
+from benchmark.files.sessions.fit_table import FitTable
+from benchmark.files.sources import Source, read_toml
+from benchmark.identification.parameters.free_parameters import COMMON, MODULUS
+from benchmark.identification.parameters.identifiability import directions
+from benchmark.identification.parameters.identified import Identified, identify
+from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit, begun, fit_layers
+from benchmark.identification.parameters.session_problem import Assembled, FittedBase, assembled
+from benchmark.response.least_squares import least_squares
+from benchmark.runs.fitted_session import FittedSession
+from benchmark.runs.options import Listener
+
+BETTER = 6.0
+"""Gain of -2 log likelihood per further parameter from which free layers follow the trials better than one factor.
+
+Beyond the 0.99 quantile of chi squared with one degree of freedom (6.6) for one parameter, more than that for several.
+"""
+
+
+@dataclass(frozen=True)
+class ParameterWish:
+    """What the command line, or a script, says of a fit of parameters; what is None is the session's own `[fit]`.
+
+    Attributes
+    ----------
+    free, exact : tuple of str or None
+    law, forward : str or None
+    sessions : tuple of Path
+        Further sessions that are fitted together with the first.
+    file : Path or None
+        A TOML file with a `[fit]` table in the place of the session's.
+    """
+
+    free: tuple[str, ...] | None = None
+    exact: tuple[str, ...] | None = None
+    law: str | None = None
+    forward: str | None = None
+    sessions: tuple[Path, ...] = field(default_factory=tuple)
+    file: Path | None = None
+
+    def table(self, own: FitTable) -> FitTable:
+        """The `[fit]` table with what was said put in; raises InputError."""
+        table, source = own.model_dump(), Source("[fit]")
+        if self.file is not None:
+            read, source = read_toml(self.file, "fit")
+            table = dict(read.get("fit", read))
+        said = {"free": self.free, "exact": self.exact, "law": self.law, "forward": self.forward}
+        return validated(FitTable, table | {key: value for key, value in said.items() if value is not None}, source)
+
+
+def fit_parameters(founds: Sequence[FittedSession], table: FitTable, listener: Listener) -> Identified:
+    """Fit what a `[fit]` table leaves free to the trials of sessions that have their first fit.
+
+    Raises
+    ------
+    InputError
+        Keys or values that cannot be used.
+    SolverError
+        The model does not follow the presses.
+    """
+    made = assembled([_base(one) for one in founds], table)
+    names = [one.session.name for one in founds]
+    count = len(made.problem.free)
+    listener.say(f"{names[0]}: fitting {count} parameters to {len(made.problem.trials)} trials")
+    start = begun(made.problem, made.touches, made.zeros)
+    found = fit_layers(start, listener.say)
+    groups = [_group(made, k, len(founds) > 1) for k in range(len(made.problem.trials))]
+    answer = identify(found, directions(start), groups, names)
+    return replace(answer, remarks=made.warnings)
+
+
+def _group(made: Assembled, number: int, several: bool) -> str:
+    """What is held out together: a condition, of one session where there are several."""
+    trial = made.problem.trials[number]
+    press = made.problem.presses[trial.press]
+    return f"{press.session.name}: {trial.data.condition}" if several else trial.data.condition
+
+
+def _base(found: FittedSession) -> FittedBase:
+    return FittedBase(found.session, found.fit, found.trials, found.followed)
+
+
+def common_factor_warnings(found: FittedSession, listener: Listener) -> tuple[str, ...]:
+    """What must be said of one factor for several layers: that layers cannot be told apart, or that they differ."""
+    layers = found.session.specimen.layers
+    if len(layers) < 2:
+        return ()
+    listener.say(f"{found.session.name}: can these trials tell the {len(layers)} layers apart?")
+    try:
+        free = _surrogate_fit(found, tuple(f"{one.name}.{MODULUS}" for one in layers))
+        common = _surrogate_fit(found, (COMMON,))
+    except (InputError, SolverError) as error:
+        return (f"whether the layers can be told apart was not worked out: {error}",)
+    said = []
+    unknown = [one for one in directions(free) if not one.known]
+    if unknown:
+        said.append(
+            f"one factor for {len(layers)} layers: these trials cannot tell which layer differs ({unknown[0].text}); a "
+            "press with another tool radius would tell more (fit --free)"
+        )
+    gain = 2.0 * (_misfit(common, free) - free.fit.objective)
+    if gain > BETTER * (len(layers) - 1):
+        said.append(
+            f"the layers differ from what was told by more than one factor: free moduli follow the trials better "
+            f"(-2 log likelihood falls by {gain:.0f} for {len(layers) - 1} more parameters); use --free "
+            f"{','.join(f'{one.name}.{MODULUS}' for one in layers)}"
+        )
+    return tuple(said)
+
+
+def _surrogate_fit(found: FittedSession, keys: tuple[str, ...]) -> LayerFit:
+    """A fit on the surrogates of the first fit, without uncertainties of the set-up."""
+    made = assembled([_base(found)], FitTable(free=keys, exact=("all",)))
+    return fit_layers(begun(made.problem, made.touches, made.zeros), rounds=1)
+
+
+def _misfit(common: LayerFit, free: LayerFit) -> float:
+    """The objective of the common factor's fit with the noise and scatter that the free one found."""
+    own, other = common.model, free.model
+    model = replace(own, white=other.white, noise=other.noise, gain_deviation=other.gain_deviation)
+    return least_squares(model, common.vector, common.fit.nuisance, search=SEARCH).objective

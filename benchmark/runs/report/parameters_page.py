@@ -1,0 +1,144 @@
+"""The page of a fit of parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from benchmark.files import Session
+from benchmark.identification.parameters.held_out import prediction_bands
+from benchmark.identification.parameters.identifiability import Direction, correlation_words
+from benchmark.identification.parameters.identified import NOT_DETERMINED, Identified
+from benchmark.runs.report.values import MM, sentence
+from reports import Block, Bullets, Column, Download, Fact, Notice, Page, Paragraph, Section, Table, Verdict
+from reports.figures.parameter_fit import BandedTrial, ProfileCurve, corner, fitted_bands, profile_curves
+
+
+def parameters_page(
+    session: Session, answer: Identified, warnings: Sequence[str], environment: Mapping[str, Any]
+) -> Page:
+    """Return the page of a fit of parameters."""
+    notices = []
+    if any(press.session.synthetic for press in answer.found.problem.presses):
+        notices.append(Notice("synthetic", "These trials were computed, not measured."))
+    if warnings:
+        notices.append(Notice("warning", "Read these before you quote a figure.", warnings))
+    trials = len(answer.found.problem.trials)
+    return Page(
+        title=f"{session.name}: parameters",
+        subtitle=f"{trials} trials of {', '.join(answer.specimens)}",
+        verdict=Verdict("finding", sentence(answer.headline)),
+        facts=(
+            Fact("Made", str(environment["made"])),
+            Fact("Session", session.fingerprint[:16]),
+            Fact("Model", answer.found.problem.forward),
+            Fact("Law", answer.found.problem.law or "the specimen's own"),
+        ),
+        notices=notices,
+        sections=(_values(answer), _told_apart(answer), _fit(answer), _held_out(answer)),
+        downloads=(
+            Download("identified.toml", "the specimen as identified, for run and sweep"),
+            Download("fitted_parameters.csv", "parameters with intervals"),
+            Download("fit.json", "the fit for programs", media_type="application/json"),
+        ),
+        footer=f"tissuebench {environment['packages']['tissuebench']}",
+    )
+
+
+def _values(answer: Identified) -> Section:
+    columns = ("parameter", Column("value"), "unit", Column("95 % low"), Column("95 % high"), "determined", "rests on")
+    rows = [
+        (
+            one.key,
+            one.value if one.low is not None else None,
+            one.unit,
+            one.low,
+            one.high,
+            "yes" if one.identifiable else NOT_DETERMINED,
+            one.prior or "the trials alone",
+        )
+        for one in answer.estimates
+    ]
+    blocks: list[Block] = [Table("Free parameters", columns, rows, folded=False)]
+    told = [(row.name, row.value, row.unit, row.ci95_low, row.ci95_high, row.source) for row in _told(answer)]
+    if told:
+        said = ("value", Column("after the fit"), "unit", Column("95 % low"), Column("95 % high"), "told")
+        text = (
+            "What was told of the set-up is taken with its uncertainty, stated or usual; the intervals above include "
+            "it. `exact` takes it away."
+        )
+        blocks += [Paragraph(text), Table("Told of the set-up, moved along", said, told)]
+    return Section("Parameters", blocks)
+
+
+def _told(answer: Identified) -> list[Any]:
+    return [row for row in answer.rows if row.name not in answer.names]
+
+
+def _told_apart(answer: Identified) -> Section:
+    found = answer.found
+    curves = [
+        ProfileCurve(
+            name,
+            parameter.unit,
+            np.array([parameter.scale * parameter.value(float(x)) for x in own.coordinate]),
+            own.rise,
+            one.value,
+            found.quantile**2,
+            one.low is not None,
+        )
+        for name, parameter, own, one in zip(answer.names, answer.free, answer.profiles, answer.estimates, strict=True)
+    ]
+    blocks: list[Block] = [
+        Paragraph("Before the fit, with usual noise, these trials could tell:"),
+        Bullets([one.text for one in answer.before]),
+        Paragraph("After the fit they tell, the least known first:"),
+        Bullets([_with_information(one) for one in answer.directions]),
+    ]
+    words = correlation_words(found)
+    if words:
+        blocks.append(Bullets(words))
+    blocks.append(profile_curves(curves))
+    free = [k for k, one in zip(found.problem.free, answer.estimates, strict=True) if one.low is not None]
+    if len(free) > 1:
+        parameters = [found.problem.parameters[k] for k in free]
+        names = [f"{one.key} ({one.unit})" if one.unit else one.key for one in parameters]
+        at = np.log([one.scale * found.value(k) for k, one in zip(free, parameters, strict=True)])
+        blocks.append(corner(names, at, found.fit.covariance[np.ix_(free, free)]))
+    return Section("What the trials tell apart", blocks)
+
+
+def _with_information(one: Direction) -> str:
+    return f"{one.text}; information {one.relative_information:.2g} of the best direction's"
+
+
+def _fit(answer: Identified) -> Section:
+    found, trials = answer.found, []
+    bands = prediction_bands(found)
+    for one, force, (low, high) in zip(found.problem.trials, found.predicted, bands, strict=True):
+        press = found.problem.presses[one.press]
+        group = f"{press.session.name}, {MM * press.setup[1].radius:.3g} mm tool"
+        trials.append(BandedTrial(one.data.name, group, MM * one.data.depth, one.data.force, force, low, high))
+    text = (
+        f"Gains of the trials scatter by {100 * found.model.gain_deviation:.2g} %; the model is trusted to "
+        f"{100 * found.problem.trust:.2g} % of the force in each set-up. {found.rounds} rounds of the model; in the "
+        f"last one it differed from its surrogate by {100 * found.disagreement:.1g} % of the force."
+    )
+    synthetic = any(press.session.synthetic for press in found.problem.presses)
+    return Section("Fitted against measured", [Paragraph(text), fitted_bands(trials, synthetic)])
+
+
+def _held_out(answer: Identified) -> Section:
+    if not answer.held_out:
+        return Section("Held out", [Paragraph("One condition only: nothing can be held out.")])
+    columns = (
+        "condition held out",
+        Column("trials"),
+        Column("residual, rms", "% of peak", 3),
+        Column("peaks within the band", "%", 3),
+    )
+    rows = [(one.condition, one.trials, one.rms_percent, 100.0 * one.covered) for one in answer.held_out]
+    text = "Each condition predicted by a fit to the others; its trials keep their own touch and zero."
+    return Section("Held out", [Paragraph(text), Table("Predictions of what was held out", columns, rows)])
