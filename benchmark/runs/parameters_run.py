@@ -14,6 +14,7 @@ from benchmark.identification.parameters.free_parameters import COMMON, MODULUS
 from benchmark.identification.parameters.identifiability import directions
 from benchmark.identification.parameters.identified import Identified, identify
 from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit, begun, fit_layers
+from benchmark.identification.parameters.other_answers import other_answers
 from benchmark.identification.parameters.session_problem import Assembled, FittedBase, assembled
 from benchmark.response.least_squares import least_squares
 from benchmark.runs.fitted_session import FittedSession
@@ -72,9 +73,9 @@ def fit_parameters(founds: Sequence[FittedSession], table: FitTable, listener: L
     count = len(made.problem.free)
     listener.say(f"{names[0]}: fitting {count} parameters to {len(made.problem.trials)} trials")
     start = begun(made.problem, made.touches, made.zeros)
-    found = fit_layers(start, listener.say)
+    found, others = other_answers(fit_layers(start, listener.say), listener.say)
     groups = [_group(made, k, len(founds) > 1) for k in range(len(made.problem.trials))]
-    answer = identify(found, directions(start), groups, names)
+    answer = identify(found, others, directions(start), groups, names)
     return replace(answer, remarks=made.warnings)
 
 

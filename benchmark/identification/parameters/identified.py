@@ -96,6 +96,8 @@ class Identified:
     held_out : tuple of HeldOut
     specimens : tuple of str
         Names of the sessions.
+    others : tuple of LayerFit
+        Answers away from this one that follow the trials as well.
     remarks : tuple of str
         What was changed of the presses, one sentence each.
     """
@@ -106,6 +108,7 @@ class Identified:
     before: tuple[Direction, ...]
     held_out: tuple[HeldOut, ...]
     specimens: tuple[str, ...]
+    others: tuple[LayerFit, ...] = ()
     remarks: tuple[str, ...] = ()
 
     @property
@@ -138,6 +141,8 @@ class Identified:
         return Estimate(self.names[place], value, low, high, parameter.unit, identifiable, prior, reason)
 
     def _reason(self, place: int, deviation: float) -> str:
+        if self.others and 1.96 * deviation <= KNOWN:
+            return "two or more answers away from each other follow the trials equally well"
         weak = [one for one in self.directions if not one.known and abs(one.parts[place]) > 0.3]
         what = weak[0].text if weak else "its interval does not end within a factor of two"
         size = "nothing of it" if deviation > 10.0 else f"it to {100 * deviation:.0f} % alone"
@@ -160,6 +165,7 @@ class Identified:
         """What a reader must know before a figure is quoted."""
         said = [*self.remarks]
         said += [f"{one.key} is {NOT_DETERMINED}: {one.reason}" for one in self.undetermined]
+        said += [f"another answer follows the trials as well: {self._values(one)}" for one in self.others]
         if not self.found.settled:
             said.append(
                 f"the fit did not settle in {self.found.rounds} rounds: model and surrogate still differ by "
@@ -168,6 +174,11 @@ class Identified:
         if self.found.problem.freedom < 1:
             said.append("no set-up was pressed twice: the scatter of trials is assumed (1.5 %), not measured")
         return tuple(said)
+
+    def _values(self, answer: LayerFit) -> str:
+        """The free parameters of an answer in words."""
+        free = zip(self.names, self.free, answer.problem.free, strict=True)
+        return ", ".join(f"{name} {one.scale * answer.value(k):.4g} {one.unit}".strip() for name, one, k in free)
 
     @property
     def rows(self) -> tuple[FittedParameter, ...]:
@@ -207,6 +218,7 @@ class Identified:
             "noise_memory": found.memory,
             "rounds": found.rounds,
             "settled": found.settled,
+            "other_answers": [self._values(one) for one in self.others],
             "held_out": {one.condition: one.to_dict() for one in self.held_out},
             "profiles": {name: _curve(self, k) for k, name in enumerate(self.names)},
         }
@@ -236,13 +248,19 @@ def _prior(parameter: Parameter) -> str:
 
 
 def identify(
-    found: LayerFit, before: Sequence[Direction], groups: Sequence[str], specimens: Sequence[str]
+    found: LayerFit,
+    others: Sequence[LayerFit],
+    before: Sequence[Direction],
+    groups: Sequence[str],
+    specimens: Sequence[str],
 ) -> Identified:
     """Intervals, directions and held-out predictions of a fit.
 
     Parameters
     ----------
     found : LayerFit
+    others : sequence of LayerFit
+        Answers that follow the trials as well.
     before : sequence of Direction
         Where the fit began.
     groups : sequence of str
@@ -255,5 +273,5 @@ def identify(
         one.key if one.specimen is None or len(specimens) < 2 else f"{one.key} [{specimens[one.specimen]}]"
         for one in parameters
     )
-    profiles = tuple(profile(found, k) for k in found.problem.free)
-    return Identified(found, names, profiles, tuple(before), held_out(found, groups), tuple(specimens))
+    profiles = tuple(profile(found, k, others) for k in found.problem.free)
+    return Identified(found, names, profiles, tuple(before), held_out(found, groups), tuple(specimens), tuple(others))

@@ -168,6 +168,18 @@ def begun(problem: FitProblem, touches: Array, zeros: Array) -> LayerFit:
     return LayerFit(problem, fit, FIRST_MEMORY, 0, np.inf)
 
 
+def restarted(found: LayerFit, vector: Array) -> LayerFit:
+    """A fit to be begun again at other coordinates, within their bounds; raises SolverError."""
+    problem = found.problem
+    low, high = np.array([one.limits for one in problem.parameters]).T
+    count = low.size
+    wanted = np.concatenate([np.clip(vector[:count], low, high), np.zeros(vector.size - count)])
+    pressed, reached = _pressed_anew(problem, wanted, found.vector)
+    model = _renewed(problem, found.model, pressed, reached)
+    fit = least_squares(model, reached, found.fit.nuisance, search=LOOKED_UP)
+    return LayerFit(problem, fit, found.memory, 0, np.inf)
+
+
 def fit_layers(start: LayerFit, say: Say = lambda _: None, rounds: int = MOST_ROUNDS) -> LayerFit:
     """Fit parameters.
 
@@ -336,8 +348,3 @@ def _disagreement(old: Sequence[PressSurrogate], new: Sequence[PressSurrogate], 
 
 def _renewed(problem: FitProblem, model: LayerModel, pressed: tuple[PressSurrogate, ...], vector: Array) -> LayerModel:
     return replace(model, surrogates=pressed, limits=_limits(problem, vector))
-
-
-def parameter_named(parameters: Sequence[Parameter], key: str) -> int:
-    """Number of a parameter by its key; StopIteration where there is none."""
-    return next(k for k, one in enumerate(parameters) if one.key == key)

@@ -8,7 +8,8 @@ model is pressed again.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -47,11 +48,26 @@ class Profile:
         return max(self.high - at, at - self.low) <= KNOWN
 
 
-def profile(found: LayerFit, index: int) -> Profile:
-    """The profile of one coordinate of a fit."""
-    walk = _Walk(found, index)
+def profile(found: LayerFit, index: int, others: Sequence[LayerFit] = ()) -> Profile:
+    """The profile of one coordinate of a fit; `others` follow the trials as well, and widen the interval."""
+    own = _around(found, index, found.quantile)
+    if not others:
+        return own
+    parts = [own]
+    for other in others:
+        lost = max(2.0 * (other.fit.objective - found.fit.objective), 0.0)
+        part = _around(other, index, math.sqrt(max(found.quantile**2 - lost, 0.0)))
+        parts.append(replace(part, rise=part.rise + lost))
+    points = np.array(sorted((x, y) for part in parts for x, y in zip(part.coordinate, part.rise, strict=True)))
+    low, high = min(part.low for part in parts), max(part.high for part in parts)
+    return Profile(points[:, 0], points[:, 1], low, high)
+
+
+def _around(found: LayerFit, index: int, wanted: float) -> Profile:
+    """The profile round one answer, to where the root of the rise is as wanted."""
+    walk = _Walk(found, index, wanted)
     spread = math.sqrt(max(float(found.fit.covariance[index, index]), 1e-12))
-    low, high = (walk.end(sign, min(found.quantile * spread, 2.0 * KNOWN)) for sign in (-1.0, 1.0))
+    low, high = (walk.end(sign, min(wanted * spread, 2.0 * KNOWN)) for sign in (-1.0, 1.0))
     at = float(found.vector[index])
     for end in (low, high):
         reach = (end if math.isfinite(end) else at + math.copysign(2.0 * KNOWN, end)) - at
@@ -64,8 +80,8 @@ def profile(found: LayerFit, index: int) -> Profile:
 class _Walk:
     """Refits of a model with one coordinate held, each begun where its neighbour ended."""
 
-    def __init__(self, found: LayerFit, index: int):
-        self._found, self._index = found, index
+    def __init__(self, found: LayerFit, index: int, wanted: float):
+        self._found, self._index, self._wanted = found, index, max(wanted, 1e-3)
         ends = [one.limits for one in found.problem.parameters]
         count = found.vector.size - len(ends)
         low, high = np.array([*ends, *[(-0.1, 0.1)] * count]).T
@@ -90,7 +106,7 @@ class _Walk:
 
         The root of the rise is close to straight: regula falsi on it.
         """
-        start, wanted = float(self._found.vector[self._index]), self._found.quantile
+        start, wanted = float(self._found.vector[self._index]), self._wanted
         bound = self._limits[1] if sign > 0.0 else self._limits[0]
         reach = min(abs(bound - start), 3.0 * KNOWN)
         inner, inner_root, outer = 0.0, 0.0, min(step, reach)
