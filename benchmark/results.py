@@ -18,6 +18,7 @@ from benchmark.discovery.discovery_request import put_down
 from benchmark.discovery.discovery_result import Discovery
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
 from benchmark.identification import SessionFit, parameter_columns
+from benchmark.identification.parameters.identified import Identified
 from benchmark.runs.finished.carrying_out import RunsSideBySide, write_side_by_side
 from benchmark.runs.fit_run import FitRecord, write_fit
 from benchmark.runs.output.destination import destination
@@ -129,11 +130,16 @@ class FitResult:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the reader must know."""
-        return self.record.found.warnings
+        return self.record.warnings
+
+    @property
+    def identified(self) -> Identified | None:
+        """The fit of parameters: estimates, profiles, directions; None where none were free."""
+        return self.record.identified
 
     def to_frame(self) -> pd.DataFrame:
         """The parameters with intervals: the rows of `fitted_parameters.csv`."""
-        return _frame(parameter_columns(self.fit.parameters))
+        return _frame(parameter_columns(self.record.rows))
 
     def summary(self) -> str:
         """The parameters, a line each."""

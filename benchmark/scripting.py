@@ -17,6 +17,7 @@ from benchmark.results import ComparisonResult, DiscoveryResult, FitResult, RunR
 from benchmark.runs.finished.carrying_out import set_side_by_side
 from benchmark.runs.fit_run import FitRequest, carry_out_fit
 from benchmark.runs.options import Advance, Listener, RunOptions
+from benchmark.runs.parameters_run import ParameterWish
 from benchmark.runs.requests import RunRequest, computed
 from benchmark.sweeps.sweep_run import SweepRequest, run_sweep
 
@@ -95,7 +96,12 @@ def run(
 
 def fit(
     session: StrPath,
-    *,
+    *others: StrPath,
+    free: Sequence[str] | None = None,
+    exact: Sequence[str] | None = None,
+    law: str | None = None,
+    forward: Literal["fem", "wave"] | None = None,
+    fit_file: StrPath | None = None,
     specimen: str | None = None,
     set: Settings | None = None,
     model: StrPath | None = None,
@@ -103,14 +109,31 @@ def fit(
     seed: int = 0,
     listener: Listener | None = None,
 ) -> FitResult:
-    """Fit the specimen of a trial session; see `run` for the arguments.
+    """Fit the specimen of a trial session; see `run` for the other arguments.
+
+    Parameters
+    ----------
+    session, *others
+        A trial session; with `free` several ones that are fitted together.
+    free
+        Keys of the parameters to fit (`dermis.youngs_modulus`, `fat.relaxation`...); by default one common stiffness.
+    exact
+        Told values to take without uncertainty, or ("all",).
+    law
+        Law of all layers: neo_hookean, mooney_rivlin, yeoh, gent or ogden.
+    forward
+        The model that is fitted.
+    fit_file
+        A TOML file with a `[fit]` table in the place of the session's.
 
     Raises
     ------
     InputError, SolverError
         Trials that cannot be used; a finite-element curve that cannot be computed deep enough.
     """
-    request = FitRequest(Path(session), specimen, set or {}, _path(model), _path(effects), seed)
+    keys = [None if each is None else tuple(each) for each in (free, exact)]
+    wish = ParameterWish(keys[0], keys[1], law, forward, tuple(map(Path, others)), _path(fit_file))
+    request = FitRequest(Path(session), specimen, set or {}, _path(model), _path(effects), seed, wish)
     return FitResult(carry_out_fit(request, listener or Unheard()))
 
 

@@ -199,8 +199,9 @@ def fit_layers(start: LayerFit, say: Say = lambda _: None, rounds: int = MOST_RO
         pressed, vector = _pressed_anew(problem, fit.vector, vector)
         disagreement = _disagreement(model.surrogates, pressed, vector)
         say(f"round {done}: model and surrogate differ by {100 * disagreement:.2g} % of the force")
+        stopped = _at_edge(problem, model, fit.vector)
         model, nuisance = _renewed(problem, model, pressed, vector), fit.nuisance
-        if disagreement <= AGREES:
+        if disagreement <= AGREES and not stopped:
             break
     model, fit, memory = _fitted(problem, model, vector, nuisance)
     return LayerFit(problem, fit, memory, done, disagreement)
@@ -344,6 +345,15 @@ def _disagreement(old: Sequence[PressSurrogate], new: Sequence[PressSurrogate], 
         float(np.abs(np.log(one.force_at(own)[deep] / two.force[deep])).max())
         for one, two in zip(old, new, strict=True)
     )
+
+
+def _at_edge(problem: FitProblem, model: LayerModel, vector: Array) -> bool:
+    """Whether a coordinate was held by the round's own limits, and not by its bounds."""
+    low, high = np.array([one.limits for one in problem.parameters]).T
+    own = vector[: low.size]
+    held_low = (own <= model.limits[0][: low.size]) & (own > low)
+    held_high = (own >= model.limits[1][: low.size]) & (own < high)
+    return bool((held_low | held_high).any())
 
 
 def _renewed(problem: FitProblem, model: LayerModel, pressed: tuple[PressSurrogate, ...], vector: Array) -> LayerModel:

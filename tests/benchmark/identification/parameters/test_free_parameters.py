@@ -1,0 +1,54 @@
+import math
+
+import pytest
+
+from benchmark.errors import InputError
+from benchmark.files import Support, Tool, load_tissue
+from benchmark.identification.parameters.free_parameters import parameters_of, value_of, with_values
+from benchmark.identification.parameters.law_shapes import LAW_SHAPES, shear_modulus, with_law
+
+SETUP = (load_tissue("skin_forearm"), Tool(radius=5e-3), Support())
+
+
+@pytest.mark.parametrize("law", LAW_SHAPES)
+def test_a_law_keeps_each_layers_shear_modulus_at_rest(law) -> None:
+    changed = with_law(SETUP[0], law, LAW_SHAPES[law].start)
+    before = [shear_modulus(one) for one in SETUP[0].layers]
+    assert [one.hyperelastic.shear_modulus for one in changed.layers] == pytest.approx(before)
+
+
+def test_a_modulus_takes_the_laws_stresses_along_except_those_with_a_value_of_their_own() -> None:
+    tissue = SETUP[0].with_layer("dermis", hyperelastic={"law": "yeoh", "c10": 1e5, "c20": 2e4, "c30": 1e3})
+    told = value_of("dermis.youngs_modulus", (tissue, *SETUP[1:]))
+    assert told == pytest.approx(2.0 * (1.0 + 0.48) * 2e5)
+    values = {"dermis.youngs_modulus": 2.0 * told, "dermis.hyperelastic.c20": 5e4}
+    law = with_values((tissue, *SETUP[1:]), values)[0].layer("dermis").hyperelastic
+    assert (law.c10, law.c20, law.c30) == pytest.approx((2e5, 5e4, 2e3))
+
+
+def test_poissons_ratio_changes_at_the_same_modulus() -> None:
+    tissue = SETUP[0].with_layer("dermis", hyperelastic={"law": "neo_hookean", "c10": 1e5})
+    changed = with_values((tissue, *SETUP[1:]), {"dermis.poisson_ratio": 0.3})
+    assert value_of("dermis.youngs_modulus", changed) == pytest.approx(2.0 * 1.48 * 2e5)
+    assert changed[0].layer("dermis").hyperelastic.c10 == pytest.approx(1e5 * 1.48 / 1.3)
+
+
+@pytest.mark.parametrize("key", ["dermis.youngs_modulus", "dermis.poisson_ratio", "tool.radius", "dermis.thickness"])
+def test_a_coordinate_gives_its_value_back(key) -> None:
+    (one,) = parameters_of(key, SETUP, None)
+    assert one.value(one.coordinate(one.start)) == pytest.approx(one.start)
+    assert one.limits[0] < one.coordinate(one.start) < one.limits[1]
+
+
+def test_relaxation_is_a_share_and_a_time() -> None:
+    share, time = parameters_of("dermis.relaxation", SETUP, None)
+    assert (share.key, time.key) == ("dermis.relaxation.g", "dermis.relaxation.tau")
+    assert time.unit == "s"
+    assert share.fading
+    assert math.isclose(share.start, 0.2)
+
+
+@pytest.mark.parametrize("key", ["dermis", "bone.youngs_modulus", "dermis.hyperelastic.c20", "law.jm", "tool.tilt"])
+def test_what_is_no_positive_number_is_refused_with_what_is_allowed(key) -> None:
+    with pytest.raises(InputError, match="allowed"):
+        parameters_of(key, SETUP, None)

@@ -1,0 +1,53 @@
+import math
+
+import numpy as np
+import pytest
+
+from benchmark.identification.parameters.identifiability import Direction, directions
+from benchmark.identification.parameters.identified import NOT_DETERMINED, identify
+from benchmark.identification.parameters.profile_likelihood import profile
+from tests.benchmark.identification.parameters.conftest import MODULI, TRUTH
+
+
+def answer(found):
+    groups = [one.data.condition for one in found.problem.trials]
+    return identify(found, (), directions(found), groups, ("toy",))
+
+
+def test_a_profile_is_the_parabola_of_the_covariance_where_the_problem_is_even(toy_fit) -> None:
+    found = toy_fit()
+    own, spread = profile(found, 1), math.sqrt(found.fit.covariance[1, 1])
+    assert own.high - found.vector[1] == pytest.approx(found.quantile * spread, rel=0.1)
+    assert own.rise.min() == pytest.approx(0.0, abs=1e-6)
+
+
+def test_one_tool_leaves_the_layers_apart_and_every_answer_says_so(toy_fit) -> None:
+    told = answer(toy_fit(tools=(1,)))
+    unknown = {one.key for one in told.undetermined}
+    assert "epidermis.youngs_modulus" in unknown
+    assert f"epidermis.youngs_modulus {NOT_DETERMINED}" in told.headline
+    assert any("epidermis.youngs_modulus is not determined" in text for text in told.warnings)
+    document = told.to_dict()["parameters"]["epidermis.youngs_modulus"]
+    assert document["ci95"] is None
+    assert document["interval"] == NOT_DETERMINED
+    assert not document["identifiable"]
+    row = next(row for row in told.rows if row.name == "epidermis.youngs_modulus")
+    assert not row.identifiable
+    assert row.ci95_low is None
+
+
+def test_the_two_tools_that_tell_them_are_held_out_in_turn(toy_fit) -> None:
+    told = answer(toy_fit())
+    assert not told.undetermined
+    assert {one.condition for one in told.held_out} == {"tool 0", "tool 1"}
+    assert all(0.0 <= one.covered <= 1.0 for one in told.held_out)
+    low, high = next((one.low, one.high) for one in told.estimates if one.key == MODULI[2])
+    assert low < 1e-3 * TRUTH[MODULI[2]] < high
+
+
+def test_directions_are_said_in_words() -> None:
+    trade = Direction(("a", "b", "c"), np.array([1.0, -0.4, 0.01]) / 1.077, 0.05, 1e-3)
+    assert trade.text == "a and b trade 1 : -0.4: told to 5 % (standard error)"
+    alone = Direction(("a", "b"), np.array([0.0, 1.0]), math.inf, 0.0)
+    assert alone.text == "b by itself: the trials say nothing of this"
+    assert not alone.known

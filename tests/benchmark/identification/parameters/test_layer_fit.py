@@ -1,0 +1,65 @@
+import numpy as np
+import pytest
+
+from benchmark.identification.parameters.layer_fit import USUAL_SCATTER
+from benchmark.identification.parameters.profile_likelihood import profile
+from benchmark.identification.sheet_model import Relaxation, relaxed
+from tests.benchmark.identification.parameters.conftest import MODULI, TRUTH
+
+
+def errors(found):
+    """(f,) logarithms of values over the truth, in standard errors."""
+    spread = np.sqrt(np.diag(found.fit.covariance))
+    free = [(k, one) for k, one in enumerate(found.problem.parameters) if one.key in TRUTH]
+    return np.array([(found.vector[k] - np.log(TRUTH[one.key])) / spread[k] for k, one in free])
+
+
+def test_two_tools_tell_three_moduli(toy_fit) -> None:
+    found = toy_fit(seed=3)
+    assert found.settled
+    assert np.abs(errors(found)).max() < found.quantile
+    assert found.value(2) == pytest.approx(TRUTH["subcutaneous_fat.youngs_modulus"], rel=0.1)
+
+
+def test_moduli_come_out_of_trials_with_hardly_any_noise(toy_fit) -> None:
+    found = toy_fit(noise=1e-4, gain=0.0)
+    assert [found.value(k) for k in range(3)] == pytest.approx(list(TRUTH.values()), rel=1e-2)
+
+
+def test_the_scatter_of_trials_is_told_from_their_noise(toy_fit) -> None:
+    calm, wild = (toy_fit(gain=gain, trials=8).model.gain_deviation for gain in (0.0, 0.05))
+    assert calm < 0.5 * USUAL_SCATTER
+    assert 0.03 < wild < 0.08
+
+
+def test_a_layer_that_fades_takes_its_share_of_the_force_along(toy_fit) -> None:
+    share, tau = 0.4, 2.0
+
+    def fade(time, force, shares):
+        part = (1.0 - (1.0 - share) ** shares[2]) * force
+        return force - part + relaxed(time, part, Relaxation(1.0, tau))
+
+    found = toy_fit(keys=(*MODULI, "subcutaneous_fat.relaxation"), noise=0.002, fade=fade)
+    spread = np.sqrt(np.diag(found.fit.covariance))
+    for k, truth in ((3, share), (4, tau)):
+        assert abs(found.vector[k] - np.log(truth)) < 3.0 * spread[k] < 1.0
+    assert np.abs(errors(found)).max() < 3.0
+
+
+def test_a_common_factor_is_one_number(toy_fit) -> None:
+    found = toy_fit(keys=("stiffness_factor",), truth={key: 1.3 * 0.5 * value for key, value in TRUTH.items()})
+    assert found.problem.free == (0,)
+    own = profile(found, 0)
+    assert own.determined(found.vector[0])
+
+
+@pytest.mark.slow
+def test_intervals_hold_the_truth_as_often_as_they_say(toy_fit) -> None:
+    inside = []
+    for seed in range(200, 260):
+        found = toy_fit(seed=seed)
+        own = [profile(found, k) for k in range(3)]
+        truth = [np.log(TRUTH[key]) for key in MODULI]
+        inside += [[one.low <= value <= one.high for one, value in zip(own, truth, strict=True)]]
+    share = np.mean(inside, axis=0)
+    assert (share >= 0.87).all()

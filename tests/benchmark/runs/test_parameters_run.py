@@ -1,0 +1,99 @@
+"""A session of one silicone layer through the verb: what is written, and what is refused."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from benchmark.errors import InputError
+from benchmark.files import load_scenario, load_tissue
+from benchmark.files.sessions.fit_table import FitTable
+from benchmark.runs.fit_run import FitRequest, fit_to_folder
+from benchmark.runs.parameters_run import ParameterWish
+from benchmark.scripting import Unheard
+
+SESSION = """schema = 1
+name = "one layer"
+specimen = "layer.toml"
+synthetic = true
+[tool]
+radius = "5 mm"
+contact = "rigid_bonded"
+[support]
+kind = "bonded"
+[fit]
+free = ["silicone.youngs_modulus"]
+exact = ["all"]
+"""
+TISSUE = """schema = 1
+name = "one layer"
+[[layers]]
+name = "silicone"
+thickness = "12 mm"
+density = "1000 kg/m^3"
+youngs_modulus = "50 kPa"
+poisson_ratio = 0.45
+"""
+
+
+@pytest.fixture
+def session(tmp_path):
+    folder, text = tmp_path / "session", SESSION
+    folder.mkdir()
+    generator = np.random.default_rng(5)
+    for number in range(3):
+        time = np.linspace(0.0, 10.0, 80)
+        depth = np.interp(time, [0, 1, 5, 9, 10], [-0.1, 0.0, 1.0, 0.0, -0.1])
+        force = 1.3 * np.maximum(depth, 0.0) * (1.0 + 0.01 * generator.normal()) + 0.004 * generator.normal(size=80)
+        with (folder / f"press_{number}.csv").open("w", newline="") as file:
+            rows = csv.writer(file)
+            rows.writerow(("time_s", "depth_mm", "force_N"))
+            rows.writerows(zip(time, depth, force, strict=True))
+        text += f'[[trials]]\nfile = "press_{number}.csv"\ncondition = "slow"\n'
+    (folder / "session.toml").write_text(text)
+    (folder / "layer.toml").write_text(TISSUE)
+    return folder
+
+
+def fit(session, out, wish=None):
+    request = FitRequest(session, settings={"fem.mesh": "coarse"}, wish=wish or ParameterWish())
+    return fit_to_folder(request, out, Unheard())
+
+
+def test_a_fit_of_parameters_writes_a_tissue_that_a_run_takes(session, tmp_path) -> None:
+    outcome = fit(session, tmp_path / "out")
+    found = json.loads((tmp_path / "out" / "fit.json").read_text())
+    told = found["parameters"]["silicone.youngs_modulus"]
+    assert told["identifiable"]
+    assert told["ci95"][0] < told["value"] < told["ci95"][1]
+    assert told["value"] == pytest.approx(50.0 * found["stiffness_factor"]["value"], rel=0.02)
+    assert "silicone.youngs_modulus" in outcome.headline
+    assert found["settled"]
+    assert "silicone.youngs_modulus" in (tmp_path / "out" / "report.html").read_text()
+    tissue = load_tissue(tmp_path / "out" / "identified.toml")
+    assert tissue.layers[0].youngs_modulus == pytest.approx(1e3 * told["value"])
+    assert 0.0 < tissue.uncertainties["silicone.youngs_modulus"] < 0.1
+    assert "one layer" in tissue.citation
+    scenario = load_scenario("phantom", {"tissue": str(tmp_path / "out" / "identified.toml")})
+    assert scenario.tissue == tissue
+
+
+def test_what_is_said_takes_the_place_of_the_sessions_table() -> None:
+    own = FitTable(free=("a",), law="yeoh", exact=("all",))
+    table = ParameterWish(free=("b", "c"), forward="wave").table(own)
+    assert (table.free, table.law, table.forward, table.exact) == (("b", "c"), "yeoh", "wave", ("all",))
+
+
+@pytest.mark.parametrize(
+    ("wish", "named"),
+    [
+        (ParameterWish(free=("bone.youngs_modulus",)), "bone.youngs_modulus"),
+        (ParameterWish(law="rubber"), "law"),
+        (ParameterWish(free=(), law="yeoh"), "--free"),
+    ],
+)
+def test_what_cannot_be_fitted_is_refused_by_its_name(session, tmp_path, wish, named) -> None:
+    with pytest.raises(InputError, match=named):
+        fit(session, tmp_path / "out", wish)
+    assert not (tmp_path / "out").exists()
