@@ -19,12 +19,12 @@ from benchmark.response.least_squares import least_squares
 
 AWAY = 1.0
 """How far from an answer the fit is begun again: a factor of e along the direction."""
-SURE = 0.02
+SURE = 0.04
 """A direction that is told to this standard error is not tried. First choice."""
 MOST_TRIED = 2
 SAME = 0.5
 """Answers that differ by less than so many standard errors in all free parameters are one."""
-ROUNDS = 4
+ROUNDS = 3
 
 
 def other_answers(found: LayerFit, say: Callable[[str], None]) -> tuple[LayerFit, tuple[LayerFit, ...]]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import CubicSpline
 
 from benchmark.errors import SolverError
 from benchmark.files import Session
@@ -30,6 +30,8 @@ from benchmark.response.force_curve import Array
 from benchmark.response.setup_change import is_absolute
 
 Forward: TypeAlias = Literal["fem", "wave"]
+STEPS = 12
+"""Load steps of a press: force over depth is smooth, and a spline goes between them."""
 GRID = 600
 """Depths between which forces are linear."""
 
@@ -114,7 +116,7 @@ def surrogate(
     setup = with_values(press.setup, values, law)
     chains = {k: _chain(parameters[k], values, setup) for k in acting}
     wanted = {key for chain in chains.values() for key in chain} | {f"{name}.stiffness" for name in relaxing}
-    ramp = differentiated_ramp(press.session, *setup, press.depth, sorted(wanted), forward)
+    ramp = differentiated_ramp(press.session, *setup, press.depth, sorted(wanted), forward, STEPS)
     if ramp.failure is not None or ramp.depth[-1] < press.depth * (1.0 - 1e-9):
         raise StopsError(press.depth, float(ramp.depth[-1]))
     by = np.zeros((len(parameters), GRID))
@@ -122,7 +124,7 @@ def surrogate(
         by[k] = 1.0 if parameters[k].key == COMMON else _logarithmic(ramp, chain)
     grid = np.linspace(0.0, press.depth, GRID)
     layers = {name: _logarithmic(ramp, {f"{name}.stiffness": 1.0}) for name in relaxing}
-    return PressSurrogate(grid, np.asarray(PchipInterpolator(ramp.depth, ramp.force)(grid)), by, layers, vector.copy())
+    return PressSurrogate(grid, np.asarray(CubicSpline(ramp.depth, ramp.force)(grid)), by, layers, vector.copy())
 
 
 def acting_values(press: Press, parameters: Sequence[Parameter], vector: Array) -> dict[str, float]:
@@ -133,19 +135,19 @@ def acting_values(press: Press, parameters: Sequence[Parameter], vector: Array) 
 
 def elastic_force(press: Press, setup: SetUp, forward: Forward) -> Array:
     """(k,) N of a set-up at the depths of a press's grid; raises as `surrogate`."""
-    ramp = differentiated_ramp(press.session, *setup, press.depth, (), forward)
+    ramp = differentiated_ramp(press.session, *setup, press.depth, (), forward, STEPS)
     if ramp.failure is not None:
         raise StopsError(press.depth, float(ramp.depth[-1]))
     grid = np.linspace(0.0, press.depth, GRID)
-    return np.asarray(PchipInterpolator(ramp.depth, ramp.force)(grid))
+    return np.asarray(CubicSpline(ramp.depth, ramp.force)(grid))
 
 
 def _logarithmic(ramp: DifferentiatedRamp, chain: Mapping[str, float]) -> Array:
-    """(k,) derivative of the force's logarithm on the grid, by shares of keys; at the surface as at the first step."""
+    """(k,) derivative of the force's logarithm on the grid, by shares of keys, straight on to the surface."""
     total = sum(weight * ramp.by[key].force for key, weight in chain.items())
     share = np.asarray(total)[1:] / ramp.force[1:]
     grid = np.linspace(0.0, ramp.depth[-1], GRID)
-    return np.asarray(PchipInterpolator(np.append(0.0, ramp.depth[1:]), np.append(share[0], share))(grid))
+    return np.asarray(CubicSpline(ramp.depth, np.append(2.0 * share[0] - share[1], share))(grid))
 
 
 def _chain(parameter: Parameter, values: Values, setup: SetUp) -> dict[str, float]:
