@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmark.discovery import criteria
-from benchmark.discovery.answer.estimates import base_estimates, candidates, named_effects, own_gain, remains, transfers
+from benchmark.discovery.answer.estimates import base_estimates, candidates, named_effects, own_gain, remains
 from benchmark.discovery.answer.gap import (
     HeldOut,
     closed_overall,
@@ -39,7 +39,7 @@ from benchmark.discovery.detection.disagreement import (
 from benchmark.discovery.detection.places import places
 from benchmark.discovery.discovery_result import Discovery
 from benchmark.discovery.evidence.gains import conditions
-from benchmark.discovery.evidence.parameter_evidence import undetermined
+from benchmark.discovery.evidence.parameter_evidence import constant, undetermined, unsteady
 from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fingerprint, own_code, pool, silent
 from benchmark.discovery.evidence.selection import Selection, first_gain, select, usable
 from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, remark, screen
@@ -50,6 +50,8 @@ from benchmark.physics import Effect, catalogue
 from benchmark.response.elastic_table import TableOf
 
 DEFAULT = Settings()
+MOST_CONFIDENCE = {"outside_catalogue": 0.0, "partly_explained": 0.5}
+"""Of an effect that is not named, and of one beside which something is missing, which it may stand for."""
 VERSION = 4
 """Of the method: fits kept by another are done anew."""
 
@@ -191,7 +193,7 @@ def _discovery(
         verdict=word,
         statement=statement(word, facts),
         p=None if untested else before.p_cells if nothing else before.p,
-        effects=() if nothing else named_effects(answer.selection, sure=word != "outside_catalogue"),
+        effects=() if nothing else named_effects(answer.selection, MOST_CONFIDENCE.get(word, 1.0)),
         where=()
         if untested
         else places(base, *((base, base) if nothing else (answer.plain, chosen)), before, settings),
@@ -226,11 +228,12 @@ def _facts(answer: _Answer, known: Sequence[Effect], settings: Settings) -> Fact
         lookalikes=tuple(by_slug[slug] for slug in sorted(alike)),
         left=answer.left,
         p_after=answer.after.p,
-        transfers=transfers(selection),
+        transfers=constant(answer.chosen),
         level=settings.level,
         within=all(each.before <= each.tolerance for each in channel_sizes(answer.base, answer.base)),
         worse=() if answer.chosen is answer.base else worse(answer.base, answer.held),
         conditions=len(answer.base.model.problem.study.conditions),
         undetermined=undetermined(answer.chosen),
+        unsteady=unsteady(answer.chosen),
         p_strained=strained(answer.chosen),
     )

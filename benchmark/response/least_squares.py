@@ -108,7 +108,7 @@ class TrialsFit(Generic[Model]):
     def covariance(self) -> Array:
         """(p, p) of the vector, for residuals of unit variance."""
         total = self.blocks.matrix.sum(axis=0) + np.diag(self.precision)
-        return np.asarray(np.linalg.pinv(total, hermitian=True))
+        return scaled_inverse(total)
 
     def without(self, trials: NDArray[np.bool_]) -> Array:
         """(p,) of the fit without some trials (mask (R,)), to first order, within the bounds."""
@@ -123,6 +123,16 @@ class TrialsFit(Generic[Model]):
         misfit = self.blocks.misfit - 2.0 * self.blocks.slope @ step
         misfit = misfit + np.einsum("i,rij,j->r", step, self.blocks.matrix, step)
         return np.asarray(-0.5 * np.maximum(misfit, 0.0) - 0.5 * self.blocks.log_size)
+
+
+def scaled_inverse(matrix: Array) -> Array:
+    """Pseudo-inverse of a symmetric matrix (p, p) whose rows may be of very unlike units, such as pascals and shares.
+
+    Without scaling, what is weakly told in large units falls below the cut-off and would seem exactly known.
+    """
+    size = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
+    scale = 1.0 / np.where(size > 1e-140, size, 1.0)
+    return np.asarray(np.linalg.pinv(matrix * np.outer(scale, scale), hermitian=True) * np.outer(scale, scale))
 
 
 def least_squares(

@@ -9,7 +9,7 @@ from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.detection.disagreement import Detection
 from benchmark.discovery.detection.places import flagged_places
 from benchmark.discovery.discovery_result import Candidate, Estimate, LookAlike, NamedEffect, channel_unit
-from benchmark.discovery.evidence.gains import conditions, gain, held_out, held_out_conditions
+from benchmark.discovery.evidence.gains import conditions, gain, held_out
 from benchmark.discovery.evidence.parameter_evidence import by_condition, constant, effect_estimates, half_widths
 from benchmark.discovery.evidence.selection import Scored, Selection
 
@@ -17,14 +17,14 @@ MOST_REMAINS = 5
 """Sentences of what the answer leaves."""
 
 
-def named_effects(selection: Selection, sure: bool = True) -> tuple[NamedEffect, ...]:
-    """The chosen effects by what each gains, with parameters, look-alikes and confidence (0 where nothing is named)."""
+def named_effects(selection: Selection, most: float = 1.0) -> tuple[NamedEffect, ...]:
+    """The chosen effects by what each gains, with parameters, look-alikes and confidence, `most` at most."""
     chosen = selection.chosen
     estimates, parts = effect_estimates(chosen), by_condition(chosen)
     named = (
         NamedEffect(
             effect.slug,
-            confidence(selection, effect.slug) if sure else 0.0,
+            min(confidence(selection, effect.slug), most),
             selection.lookalikes.get(effect.slug, ()),
             tuple(each for slug, each in estimates if slug == effect.slug),
             look_alikes(selection, effect.slug),
@@ -94,16 +94,6 @@ def candidates(selection: Selection, closed: dict[tuple[str, ...], float | None]
 def _candidate(scored: Scored, closed: dict[tuple[str, ...], float | None]) -> Candidate:
     g, slugs = scored.gain, scored.slugs
     return Candidate(slugs, g.z, g.mean, g.error, scored.delta_bic, closed.get(slugs), constant(scored.fit))
-
-
-def transfers(selection: Selection) -> bool | None:
-    """Whether the chosen effects gain on held-out conditions with constant parameters; None with one condition."""
-    same = constant(selection.chosen)
-    if same is None:
-        return None
-    groups = conditions(selection.chosen)
-    over = gain(held_out_conditions(selection.chosen), held_out_conditions(selection.base), groups)
-    return same and over.mean > 0.0
 
 
 def remains(fitted: Fit, after: Detection, level: float) -> tuple[str, ...]:

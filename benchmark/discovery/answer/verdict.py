@@ -30,7 +30,7 @@ class Facts:
     p_after : float
         Of any disagreement with the effects in the model.
     transfers : bool or None
-        Whether the effects gain on held-out conditions, their parameters constant; None with one condition.
+        Whether each condition alone tells the same parameters; None with one condition.
     level : float
     within : bool
         Whether the base misses by no more than the stated tolerance.
@@ -39,6 +39,8 @@ class Facts:
     conditions : int
     undetermined : tuple of str
         Accepted effects whose strength the data do not tell.
+    unsteady : tuple of str
+        Accepted effects of rig or sensor whose parameters are others in each condition, which an instrument's are not.
     p_strained : float
         Of the base's having to bend so far beside the effects, by the priors of what was told of the set-up.
     """
@@ -56,7 +58,13 @@ class Facts:
     worse: tuple[str, ...] = ()
     conditions: int = 2
     undetermined: tuple[str, ...] = ()
+    unsteady: tuple[str, ...] = ()
     p_strained: float = 1.0
+
+    @property
+    def partial(self) -> bool:
+        """Whether cells still disagree beside the effects, and something is surely left."""
+        return self.p_after < self.level and self.left > criteria.PARTLY
 
     @property
     def strained(self) -> bool:
@@ -80,19 +88,19 @@ def verdict(facts: Facts) -> str:
         return "outside_catalogue"
     if facts.lookalikes:
         return "instrument_first" if _mixed((*facts.effects, *facts.lookalikes)) else "lookalikes"
-    if (
-        facts.worse
-        or facts.strained
-        or (facts.p_after < facts.level and facts.left > criteria.PARTLY and facts.transfers is not None)
-    ):
+    if facts.worse or facts.strained or (facts.partial and facts.transfers is not None):
         return "partly_explained"
     return "named" if facts.transfers else "conditional"
 
 
 def _fails(facts: Facts) -> bool:
-    """Whether the accepted effects are no answer: they leave most, predict nothing, or are of no known strength."""
+    """Whether the accepted effects are no answer: they leave most, predict nothing, or are of no known strength.
+
+    An instrument of other parameters in each condition that leaves something is none either.
+    """
     leaves = facts.left > criteria.OUTSIDE and facts.p_after < facts.level
-    return leaves or not facts.predicts or bool(facts.undetermined)
+    unlike = bool(facts.unsteady) and facts.partial
+    return leaves or unlike or not facts.predicts or bool(facts.undetermined)
 
 
 def _mixed(effects: Sequence[Effect]) -> bool:
@@ -149,6 +157,8 @@ def _outside(names: str, facts: Facts) -> str:
     why = ""
     if facts.undetermined:
         why = ", whose strength these data do not tell"
+    elif facts.unsteady and facts.partial:
+        why = ", but it would be another instrument in each condition"
     elif not facts.predicts:
         why = ", which predicts unseen data worse than the model without it"
     return f"{start}; the nearest is {names}{why}."

@@ -12,6 +12,7 @@ from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.discovery_result import Array, ConditionEstimate, Estimate
 from benchmark.discovery.evidence.gains import conditions
 from benchmark.physics import Effect, EffectParameter
+from benchmark.response.least_squares import scaled_inverse
 
 
 def effect_estimates(fitted: Fit) -> tuple[tuple[str, Estimate], ...]:
@@ -94,7 +95,7 @@ def determined(fitted: Fit, effect: Effect, names: tuple[str, ...] = ()) -> bool
         return all(w < np.log(e.parameter.high / e.parameter.low) for w, e in zip(widths, free, strict=True))
     plain = [k for k, each in enumerate(free) if not each.parameter.logarithmic]
     amount = np.array([free[k].value for k in plain])
-    size = float(amount @ np.linalg.pinv(covariance[np.ix_(plain, plain)], hermitian=True) @ amount)
+    size = float(amount @ scaled_inverse(covariance[np.ix_(plain, plain)]) @ amount)
     return bool(size > chi2.ppf(criteria.DETERMINED, len(plain)))
 
 
@@ -132,7 +133,7 @@ def by_condition(fitted: Fit) -> tuple[tuple[str, ConditionEstimate], ...]:
     for number in numbers:
         own = fitted.without(groups != number)
         matrix = fitted.blocks.matrix[groups == number].sum(axis=0) + np.diag(fitted.precision)
-        error = np.sqrt(np.maximum(np.diag(np.linalg.pinv(matrix, hermitian=True)), 0.0))
+        error = np.sqrt(np.maximum(np.diag(scaled_inverse(matrix)), 0.0))
         name = fitted.model.problem.study.conditions[number].name
         for k, (slug, p) in enumerate(fitted.model.parameters, start=first):
             size = criteria.SAME_LOG if p.logarithmic else criteria.SAME_SHARE * abs(fitted.vector[k])
@@ -148,3 +149,10 @@ def constant(fitted: Fit) -> bool | None:
     if np.unique(conditions(fitted)).size < 2 or not fitted.model.effects:
         return None
     return all(each.agrees for _, each in by_condition(fitted))
+
+
+def unsteady(fitted: Fit) -> tuple[str, ...]:
+    """Effects of rig or sensor whose parameters differ between conditions."""
+    instruments = {effect.slug for effect in fitted.model.effects if effect.description.acts_on != "body"}
+    moved = dict.fromkeys(slug for slug, each in by_condition(fitted) if slug in instruments and not each.agrees)
+    return tuple(moved)

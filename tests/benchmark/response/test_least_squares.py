@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy
 
-from benchmark.response.least_squares import EXACT, Search, fit_record, least_squares, settled
+from benchmark.response.least_squares import EXACT, Search, fit_record, least_squares, scaled_inverse, settled
 from benchmark.response.trials_model import RecordModel, TrialColumns, TrialsEvaluation, differences
 
 TIME = np.linspace(0.0, 1.0, 40)
@@ -190,3 +190,12 @@ def test_nuisances_settle_where_two_undamped_steps_would_leap_away() -> None:
     assert np.abs(undamped[:, 0] - late).max() > 5e-3
     found = settled(model, np.zeros(0), start, EXACT)
     assert found[:, 0] == pytest.approx(late, abs=1e-5)
+
+
+def test_what_is_weakly_told_in_large_units_does_not_seem_known():
+    """Stiffnesses of 1e6 for a share and 1e-11 for a stress in Pa, slightly correlated: variances by hand."""
+    one, other, both = 1e6, 1e-11, 1e-3
+    found = scaled_inverse(np.array([[one, both], [both, other]]))
+    determinant = one * other - both**2
+    np.testing.assert_allclose(found, np.array([[other, -both], [-both, one]]) / determinant, rtol=1e-9)
+    np.testing.assert_allclose(scaled_inverse(np.zeros((2, 2))), 0.0)

@@ -44,16 +44,6 @@ def test_a_rival_that_does_better_is_no_more_than_an_equal(known_densities):
     assert estimates.confidence(selected(chosen, rivals={"true": (better,)}), "true") == 0.5
 
 
-@pytest.mark.parametrize(
-    ("same", "gained", "expected"), [(None, 9.0, None), (True, 1.0, True), (True, -1.0, False), (False, 9.0, False)]
-)
-def test_an_effect_transfers_with_constant_parameters_and_a_gain_elsewhere(monkeypatch, same, gained, expected):
-    chosen, base = fitted("true", np.full(8, gained)), fitted("base", np.zeros(8))
-    monkeypatch.setattr(estimates, "constant", lambda fit: same)
-    monkeypatch.setattr(estimates, "held_out_conditions", lambda fit: fit.density)
-    assert estimates.transfers(selected(chosen, base=base)) is expected
-
-
 def test_the_chosen_candidate_stands_first_then_single_ones_by_gain(monkeypatch):
     monkeypatch.setattr(estimates, "constant", lambda fit: None)
 
@@ -120,4 +110,4 @@ def test_effects_stand_in_the_order_of_their_own_gain_with_their_rivals_paramete
     assert (second.slug, second.gain, second.lookalikes) == ("small", 10.0, ("rival",))
     assert [each.value for each in second.rivals[0].parameters] == [4.0]
     assert second.rivals[0].lacking == pytest.approx(0.1)
-    assert all(each.confidence == 0.0 for each in estimates.named_effects(made, sure=False))
+    assert all(each.confidence == 0.0 for each in estimates.named_effects(made, 0.0))

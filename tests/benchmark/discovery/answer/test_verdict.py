@@ -75,6 +75,7 @@ CHOICES = {
     "worse": ((), ("fast",), ("slow", "fast")),
     "undetermined": ((), ("viscoelastic_relaxation",)),
     "p_strained": (1.0, 1e-4),
+    "unsteady": ((), ("force_drift",)),
 }
 EVERY = [facts(**dict(zip(CHOICES, each, strict=True))) for each in itertools.product(*CHOICES.values())]
 
@@ -155,3 +156,12 @@ def test_where_the_set_up_must_be_another_no_effect_is_called_all():
     assert "another than was told" in statement("partly_explained", told)
     assert verdict(facts(p_strained=0.01)) == "named"
     assert verdict(facts(p_strained=1e-4, transfers=None)) == "partly_explained"
+
+
+def test_an_instrument_that_differs_between_conditions_and_leaves_something_is_no_answer():
+    drift = facts(effects=(DRIFT,), unsteady=("force_drift",), transfers=False)
+    assert verdict(drift) == "conditional"
+    left = facts(effects=(DRIFT,), unsteady=("force_drift",), transfers=False, left=0.2, p_after=0.002)
+    assert verdict(left) == "outside_catalogue"
+    assert "another instrument in each condition" in statement("outside_catalogue", left)
+    assert verdict(facts(effects=(DRIFT,), left=0.2, p_after=0.002)) == "partly_explained"

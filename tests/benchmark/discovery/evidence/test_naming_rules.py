@@ -9,7 +9,13 @@ from benchmark.discovery import criteria
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence import selection
 from benchmark.discovery.evidence.gains import Gain
-from benchmark.discovery.evidence.parameter_evidence import by_condition, constant, determined, told_parameters
+from benchmark.discovery.evidence.parameter_evidence import (
+    by_condition,
+    constant,
+    determined,
+    told_parameters,
+    unsteady,
+)
 from benchmark.discovery.evidence.selection import Scored
 from benchmark.discovery.evidence.shortlist import Screened
 from benchmark.physics.description import EffectParameter
@@ -203,6 +209,17 @@ class Linear:
 
     def without(self, trials):
         return np.array([self.values[~trials].mean()])
+
+
+@pytest.mark.parametrize(("acts_on", "values", "expected"), [
+    ("observation", (10.0, 30.0), ("one",)),
+    ("observation", (10.0, 16.0), ()),
+    ("body", (10.0, 30.0), ()),  # a tissue's form may be another than the textbook's
+])  # fmt: skip
+def test_an_instrument_is_the_same_in_every_condition(acts_on, values, expected):
+    made = Linear(values, 1e6)
+    made.model.effects = (effect("one", acts_on=acts_on),)
+    assert unsteady(made) == expected
 
 
 @pytest.mark.parametrize(
