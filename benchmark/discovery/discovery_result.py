@@ -136,14 +136,15 @@ class Place:
     depth : (low, high)
         m.
     size : float
-        Mean residual (measured minus simulated without the effects) over the trials, N for the force and m for markers.
+        What the answer's effects add to the simulation there, N for the force and m for markers; without effects the
+        residual.
     percent_of_signal : float
-        Its size as a share of the channel's largest signal.
+        Size of the residual as a share of the channel's largest signal.
     p : float
         Family-wise, by sign flips of whole trials.
-    contribution : float or None
-        What the answer's effects add to the simulation there, in the same unit; None without effects. It may differ
-        from `size`, even in sign: without the effects the base bends towards the data.
+    residual : float or None
+        Mean of measured minus simulated without the effects over the trials, N or m; None where it is `size`. It may
+        differ from what the effects add, even in sign: without them the base bends towards the data.
     """
 
     channel: str
@@ -154,7 +155,17 @@ class Place:
     size: float
     percent_of_signal: float
     p: float
-    contribution: float | None = None
+    residual: float | None = None
+
+    @property
+    def missed(self) -> float:
+        """Measured minus simulated without the effects, N or m."""
+        return self.size if self.residual is None else self.residual
+
+    @property
+    def added(self) -> float | None:
+        """What the effects add to the simulation, N or m; None without effects."""
+        return None if self.residual is None else self.size
 
 
 @dataclass(frozen=True)

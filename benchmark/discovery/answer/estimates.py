@@ -103,7 +103,7 @@ def remains(fitted: Fit, after: Detection, level: float) -> tuple[str, ...]:
         unit, scale = channel_unit(place.channel)
         phase = place.phase.replace("_", " ") + (f", press {place.cycle}" if place.cycle else "")
         out.append(
-            f"{place.channel} in {phase} of {place.condition}: {scale * place.size:+.3g} {unit} "
+            f"{place.channel} in {phase} of {place.condition}: {scale * place.missed:+.3g} {unit} "
             f"({place.percent_of_signal:.2g} % of the signal, p = {place.p:.2g})"
         )
     return tuple(out)

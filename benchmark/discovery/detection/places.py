@@ -208,17 +208,17 @@ class _View:
         study, (number, signal) = self.fitted.model.problem.study, at
         condition = study.conditions[number]
         depth = np.median(condition.depth[:, rows], axis=0)
-        size = self.mean(self.residuals, at, rows)
+        residual = self.mean(self.residuals, at, rows)
         return Place(
             channel=study.channels[signal],
             phase=PHASES[condition.phase[rows][0]],
             condition=condition.name,
             cycle=cycle,
             depth=(float(depth.min()), float(depth.max())),
-            size=size,
-            percent_of_signal=float(100.0 * abs(size) / self.ranges[signal]),
+            size=residual if self.changes is None else self.mean(self.changes, at, rows),
+            percent_of_signal=float(100.0 * abs(residual) / self.ranges[signal]),
             p=p,
-            contribution=None if self.changes is None else self.mean(self.changes, at, rows),
+            residual=None if self.changes is None else residual,
         )
 
 

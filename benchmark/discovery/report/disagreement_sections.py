@@ -131,8 +131,8 @@ def _cell(place: Place, record: DiscoveryRecord) -> Disagreement:
         phase_name(place.phase),
         place.cycle,
         (1e3 * place.depth[0], 1e3 * place.depth[1]),
-        abs(place.percent_of_signal) * (1.0 if place.size >= 0 else -1.0),
-        sized(place.channel, place.size),
+        abs(place.percent_of_signal) * (1.0 if place.missed >= 0 else -1.0),
+        sized(place.channel, place.missed),
         place.p,
     )
 
@@ -150,8 +150,8 @@ def _where_table(record: DiscoveryRecord) -> Table:
             place.condition,
             place.cycle or None,
             *(1e3 * end for end in place.depth),
-            channel_unit(place.channel)[1] * place.size,
-            None if place.contribution is None else channel_unit(place.channel)[1] * place.contribution,
+            channel_unit(place.channel)[1] * place.missed,
+            None if place.added is None else channel_unit(place.channel)[1] * place.added,
             channel_unit(place.channel)[0],
             place.percent_of_signal,
             place.p,

@@ -113,7 +113,7 @@ def _place(place: Place) -> dict[str, Any]:
         **_sized(place.channel, place.size),
         "percent_of_signal": place.percent_of_signal,
         "p": place.p,
-        "contribution": None if place.contribution is None else channel_unit(place.channel)[1] * place.contribution,
+        "residual": channel_unit(place.channel)[1] * place.missed,
     }
 
 
@@ -180,7 +180,7 @@ def _proposal(proposal: NextExperiment) -> dict[str, Any]:
 Columns = dict[str, list[Any]]
 COLUMNS = {
     "where.csv": ("channel", "phase", "condition", "cycle", "depth_low_mm", "depth_high_mm", "size", "unit",
-                  "percent_of_signal", "p", "contribution"),
+                  "percent_of_signal", "p", "residual"),
     "contrasts.csv": ("question", "channel", "size", "unit", "p"),
     "candidates.csv": ("name", "z", "gain", "gain_standard_error", "delta_bic", "gap_closed", "constant"),
     "gap.csv": ("channel", "unit", "rmse_before", "rmse_after", "noise_floor", "closed", "ci95_low", "ci95_high",

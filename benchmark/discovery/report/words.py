@@ -57,10 +57,10 @@ def place_words(place: Place) -> str:
     """A place in a sentence: where, how deep, how large, how sure."""
     cycle = f" of cycle {place.cycle}" if place.cycle else ""
     low, high = (format_number(1e3 * end, 3, trim=True) for end in place.depth)
-    more = "more" if place.size > 0 else "less"
+    more = "more" if place.missed > 0 else "less"
     return (
         f"{channel_name(place.channel)}, {phase_name(place.phase)}{cycle} ({place.condition}), {low} to {high} mm: "
-        f"{sized(place.channel, abs(place.size))} {more} than simulated, "
+        f"{sized(place.channel, abs(place.missed))} {more} than simulated, "
         f"{format_number(abs(place.percent_of_signal), 2)} % of the signal, {probability(place.p)}"
         f"{_added(place)}"
     )
@@ -68,7 +68,7 @@ def place_words(place: Place) -> str:
 
 def _added(place: Place) -> str:
     """What the effects of the answer add there."""
-    if place.contribution is None:
+    if place.added is None:
         return ""
     unit, scale = channel_unit(place.channel)
-    return f" (the effect adds {scale * place.contribution:+.2g} {unit} to the simulation)"
+    return f" (the effect adds {scale * place.added:+.2g} {unit} to the simulation)"

@@ -73,7 +73,7 @@ def test_a_place_has_the_sign_size_depth_and_share_of_its_largest_condition(base
     (later,) = flagged_places(base, detection((1.0, 1.0, 0.02), (3.0, -9.0, 4.0), MEANS), 0.05)
     assert (later.condition, later.p) == ("fast", 0.02)
     assert later.size == pytest.approx(-0.1)  # what the picture shows, whatever was left on clean cells
-    assert later.contribution is None
+    assert (later.residual, later.added) == (None, None)
     assert later.depth == pytest.approx((4e-3, 4e-3))
 
 
@@ -88,7 +88,8 @@ def test_cells_of_one_kind_are_shown_once_by_the_clearest(base):
 def test_what_effects_add_stands_beside_the_residual_with_its_own_sign(base):
     changes = [np.full((4, 1), 0.88)] * 4
     (place,) = flagged_places(base, detection((1.0, 0.02, 1.0), (3.0, -9.0, 4.0), MEANS), 0.05, base, changes)
-    assert (place.size, place.contribution) == pytest.approx((-0.4, 0.88))
+    assert (place.missed, place.added, place.size) == pytest.approx((-0.4, 0.88, 0.88))
+    assert place.percent_of_signal == pytest.approx(10.0)  # of the residual
 
 
 def place(channel, phase):

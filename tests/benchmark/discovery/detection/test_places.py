@@ -29,10 +29,10 @@ def test_a_drift_shows_in_the_air_and_not_in_markers_that_there_are_none_of(sess
     assert all(place.p < 0.05 for place in shown)
     for place in shown:
         missed = [mean(base, i, place, residual(base, i)) for i in of_condition(base, place)]
-        assert place.size == pytest.approx(np.mean(missed))
+        assert place.residual == pytest.approx(np.mean(missed))
         added = [mean(base, i, place, changes[i]) for i in of_condition(base, place)]
-        assert place.contribution == pytest.approx(np.mean(added))
-    assert any(abs(place.size - place.contribution) > 0.2 * abs(place.contribution) for place in shown)
+        assert place.size == pytest.approx(np.mean(added))
+    assert any(abs(place.residual - place.size) > 0.2 * abs(place.size) for place in shown)
 
 
 def residual(fitted, i):

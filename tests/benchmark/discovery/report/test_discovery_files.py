@@ -118,7 +118,7 @@ def test_an_unknown_floor_is_null_in_every_file(record, tmp_path: Path) -> None:
 
 
 def test_signs_sizes_and_rivals_stand_in_the_files(record, tmp_path: Path) -> None:
-    where = (replace(record.found.where[3], size=3.4e-5, contribution=-8.8e-5),)
+    where = (replace(record.found.where[3], size=-8.8e-5, residual=3.4e-5),)
     rival = LookAlike("poroelastic_drainage", (Estimate("drainage_share", 0.4, "", (0.3, 0.5)),), 0.06, 7.0)
     part = ConditionEstimate("tau_1", "slow", 3.0, "s", (2.9, 3.1), True)
     effect = replace(record.found.effects[0], rivals=(rival,), by_condition=(part,), gain=41.0)
@@ -126,9 +126,9 @@ def test_signs_sizes_and_rivals_stand_in_the_files(record, tmp_path: Path) -> No
         record.found, where=where, effects=(effect,), sizes=(ChannelSize("marker_radial", 1e-4, 2e-5, 5e-5),)
     )
     document = write_discovery(replace(record, found=found), tmp_path / "new").document
-    assert (document["where"][0]["size"], document["where"][0]["contribution"]) == pytest.approx((0.034, -0.088))
+    assert (document["where"][0]["residual"], document["where"][0]["size"]) == pytest.approx((0.034, -0.088))
     table = pd.read_csv(tmp_path / "new/tables/where.csv")
-    assert table["contribution"].tolist() == pytest.approx([-0.088])
+    assert table["residual"].tolist() == pytest.approx([0.034])
     assert document["size"]["marker_radial"] == pytest.approx(
         {"unit": "mm", "before": 0.1, "after": 0.02, "tolerance": 0.05, "within": True}
     )

@@ -135,7 +135,7 @@ def test_an_unknown_floor_is_called_so(record) -> None:
 
 
 def test_residual_and_contribution_stand_side_by_side(record) -> None:
-    first = replace(record.found.where[0], size=0.34, contribution=-0.88)
+    first = replace(record.found.where[0], size=-0.88, residual=0.34)
     found = replace(record.found, where=(first, *record.found.where[1:]))
     text = _text(replace(record, found=found))
     assert "0.34 N more than simulated" in text
