@@ -29,7 +29,7 @@ from reports.blocks import (
     Verdict,
 )
 from reports.page import Page, render_page, write_page
-from reports.result_folder import check_place, extended_folder, whole_folder
+from reports.result_folder import check_place, extended_folder, whole_folder, write_whole
 from reports.tables import csv_text, write_csv
 
 __all__ = [
@@ -65,4 +65,5 @@ __all__ = [
     "write_json",
     "write_page",
     "write_text",
+    "write_whole",
 ]

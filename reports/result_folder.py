@@ -8,15 +8,16 @@ from __future__ import annotations
 
 import hashlib
 import json
-import secrets
-import shutil
-from collections.abc import Collection, Iterator, Mapping
+import tempfile
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
 from typing import Any
 
 from reports.atomic import StrPath, sync_folder, write_bytes, write_json
+from reports.folders.building import building, remove_dead_builds
+from reports.folders.reading_back import read_back
 from reports.manifest import (
     MANIFEST,
     PROGRAM,
@@ -32,8 +33,8 @@ from reports.manifest import (
 )
 
 
-class KeptBesideError(OSError):
-    """A finished result could not be put in its place; it is kept beside it."""
+class KeptElsewhereError(OSError):
+    """A finished result could not be put in its place; it is kept beside it, or where there was room."""
 
 
 @contextmanager
@@ -54,34 +55,70 @@ def whole_folder(path: StrPath) -> Iterator[Path]:
         If `path` is a file.
     ForeignFilesError
         If `path` holds what is not ours.
-    KeptBesideError
+    KeptElsewhereError
         If the result is complete but its place is not free any more; it is kept beside.
     OSError
         Where the file system refuses.
     """
     target = Path(path).resolve()
     check_place(target)
-    made = {folder for folder in target.parents if not folder.exists()}
-    temporary = _sibling(target)
-    try:
-        temporary.mkdir(parents=True)
+    with building(target) as temporary:
         yield temporary
+        read_back(temporary)
         write_manifest(temporary)
-    except BaseException:
-        shutil.rmtree(temporary, ignore_errors=True)
-        remove_empty(made)
-        raise
-    _put_in_place(temporary, target)
+        _put_in_place(temporary, target)
     sync_folder(target.parent)
+
+
+def write_whole(path: StrPath, fill: Callable[[Path], None]) -> None:
+    """Let `fill` write a result folder at `path`, as `whole_folder`; where that cannot be, keep it elsewhere.
+
+    What took hours to compute is not lost to a disk that has filled up, or a share that went away, in the meantime.
+
+    Raises
+    ------
+    ForeignFilesError, FileExistsError
+        As `whole_folder`; nothing is kept then.
+    KeptElsewhereError
+        The result is complete, but in another place, which the message names.
+    OSError
+        It can be written nowhere.
+    """
+    try:
+        with whole_folder(path) as new:
+            fill(new)
+    except (ForeignFilesError, FileExistsError, KeptElsewhereError):
+        raise
+    except OSError as error:
+        kept = _kept_elsewhere(Path(path).resolve(), fill)
+        if kept is None:
+            raise
+        raise KeptElsewhereError(
+            f"{path} cannot be written: {error.strerror or error}; the new result is kept in {kept}"
+        ) from error
+
+
+def _kept_elsewhere(target: Path, fill: Callable[[Path], None]) -> Path | None:
+    """Write a result to the first place that takes it, and return it; None where there is none."""
+    for place in (Path(tempfile.gettempdir()), Path.home()):
+        kept = _free(place / "tissuebench-kept" / target.name)
+        try:
+            with whole_folder(kept) as new:
+                fill(new)
+        except OSError:
+            continue
+        return kept
+    return None
 
 
 def check_place(path: Path, shown: object = None) -> None:
     """Refuse a place for a result folder that holds a file or what is not ours; `shown` is its name in messages.
 
-    What a kill left of an earlier replacement is put in order first.
+    What a kill left of an earlier replacement, and of building a result here, is put in order first.
     """
     target, name = path.resolve(), path if shown is None else shown
     recover(target)
+    remove_dead_builds(target)
     if target.exists() and not target.is_dir():
         raise FileExistsError(f"{name} is a file; it must be a folder that is new, empty, or an earlier result")
     if target.is_mount():
@@ -138,14 +175,11 @@ def extended_folder(path: StrPath, growing: Collection[str] | None = None) -> It
         A file of one of these names is not ours, or was changed. Others beside them stay.
     """
     target = Path(path).resolve()
-    temporary = _sibling(target)
-    try:
-        temporary.mkdir(parents=True)
+    with building(target) as temporary:
         yield temporary
+        read_back(temporary)
         refuse_foreign(target, path, manifest_of(temporary)["files"])
         _put_into(temporary, target, growing)
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
 
 
 def replace_file(path: Path, data: bytes) -> None:
@@ -204,7 +238,7 @@ def _put_in_place(temporary: Path, target: Path) -> None:
         if temporary.exists():
             temporary.rename(kept)
         if isinstance(error, OSError):
-            raise KeptBesideError(f"{error}; the new result is kept in {kept}") from error
+            raise KeptElsewhereError(f"{error}; the new result is kept in {kept}") from error
         raise
     if previous.exists():
         remove_ours(previous)
@@ -229,8 +263,3 @@ def _previous(target: Path) -> Path:
 def _free(target: Path) -> Path:
     """A free name beside `target` for a result that cannot be put there."""
     return next(path for n in count(2) if not (path := target.with_name(f"{target.name}-{n}")).exists())
-
-
-def _sibling(target: Path) -> Path:
-    """A free hidden name in the folder of `target`."""
-    return target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")

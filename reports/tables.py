@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,7 +20,8 @@ def write_csv(path: StrPath, columns: Mapping[str, Sequence[Any] | Any]) -> Path
     """Write columns of equal length to a CSV file, whole or not at all.
 
     Numbers are written with the shortest text that reads back to the same double, up to 17 digits.
-    None and NaN become empty cells, booleans `true` and `false`.
+    None and NaN become empty cells, booleans `true` and `false`. Text that a spreadsheet would take for a formula gets
+    an apostrophe before it; `read_cell` takes it off.
 
     Parameters
     ----------
@@ -71,6 +73,15 @@ def csv_text(columns: Mapping[str, Sequence[Any] | Any], where: str = "table") -
     return "".join(line.removesuffix("\r\n") + "\n" for line in lines)
 
 
+_FORMULA = re.compile(r"'*(?![+-]?[\d.]+(?:[eE][+-]?\d+)?$)[=+\-@\t\r]")
+"""How a text begins that a spreadsheet runs, or one that has its apostrophe already; a number is none."""
+
+
+def read_cell(text: str) -> str:
+    """The text that was written as a cell: without the apostrophe before what a spreadsheet would run."""
+    return text[1:] if text.startswith("'") and _FORMULA.match(text) else text
+
+
 def _values(column: Any, where: str) -> list[Any]:
     """Return a column as a list of plain values."""
     if getattr(column, "ndim", 1) != 1:
@@ -85,7 +96,7 @@ def _cell(value: Any, where: str) -> str:
     if value is None:
         return ""
     if isinstance(value, str):
-        return value
+        return f"'{value}" if _FORMULA.match(value) else value
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int):

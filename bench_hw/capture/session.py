@@ -23,6 +23,7 @@ from bench_hw.motion.plan import plan
 from bench_hw.rig.bench import Bench
 from bench_hw.rig.opening import open_bench
 from bench_hw.safety import SafetyLimits
+from bench_hw.storage.folder_lock import locked
 from bench_hw.trial_file import open_trial
 from bench_hw.trial_file.records import TrialHeader
 
@@ -71,6 +72,11 @@ def capture(order: CaptureOrder, progress: ProgressDisplay, *, specimen: Specime
         before the first trial; then the tool was sent back.
     """
     check_order(order)
+    with locked(order.out, "capture"):
+        return _captured(order, progress, specimen)
+
+
+def _captured(order: CaptureOrder, progress: ProgressDisplay, specimen: Specimen | None) -> SessionOutcome:
     folder = SessionFolder(order)
     clock: Clock = SimulatedClock(step=_SIMULATED_TURN) if order.fast else MonotonicClock()
     try:

@@ -21,6 +21,7 @@ from bench_hw.trial_file.scan import read_messages
 SCHEMA = 1
 ExportColumns = Mapping[str, NDArray[Any]]
 _ENDINGS = {"jpeg": "jpg", "png": "png", "webp": "webp"}
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
 _ROUNDED = ("depth_mm", "target_mm")
 
 
@@ -232,7 +233,15 @@ def text_cells(columns: ExportColumns) -> dict[str, list[str]]:
     return {name: _cells(name, column) for name, column in columns.items()}
 
 
+def _text_cell(text: str) -> str:
+    """Text as a cell: quoted where it must be, with an apostrophe before what a spreadsheet would run."""
+    shown = f"'{text}" if text.startswith(_FORMULA) else text
+    return '"' + shown.replace('"', '""') + '"' if any(sign in shown for sign in ',"\n\r') else shown
+
+
 def _cells(name: str, column: NDArray[Any]) -> list[str]:
+    if column.dtype.kind in "OU":
+        return [_text_cell(str(value)) for value in column.tolist()]
     if column.dtype != np.float64:
         return [str(value) for value in column.tolist()]
     if name == "counts":

@@ -16,6 +16,7 @@ import typer
 from benchmark.cli import (
     blind,
     check,
+    clean,
     discover,
     fit,
     reference,
@@ -39,7 +40,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for verb in (run, fit, discover, blind, check, sweep, report, reproduce, verify, tissues, scenarios, reference):
+for verb in (run, fit, discover, blind, check, sweep, report, reproduce, verify, tissues, scenarios, reference, clean):
     verb.register(app)
 
 

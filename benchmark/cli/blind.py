@@ -65,7 +65,7 @@ def blind(
     from benchmark.blind.suites import suite as cases_of
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
-    from benchmark.runs.output.destination import fresh
+    from benchmark.runs.output.destination import claimed, fresh
 
     console = Console(quiet=quiet)
     slugs = tuple(each.strip() for each in cases.split(",") if each.strip())
@@ -77,15 +77,15 @@ def blind(
     settings |= {"most": most} if most else {}
     folder = fresh("blind") if out is None else out
     load_discoverer(discoverer)
-    journal = open_folder(folder, settings)
-    with console.progress(f"blind trials, suite {suite} (synthetic)") as advance:
+    with claimed(folder, "blind"), console.progress(f"blind trials, suite {suite} (synthetic)") as advance:
+        journal = open_folder(folder, settings)
 
         def on_case(done: int, total: int, last: Judged | None) -> None:
             remark = "" if last is None else f"{last.truth or 'null'}: {last.verdict} {last.said}"
             advance("cases", done, total, remark)
 
         judged = run_cases(names, discoverer, journal, scheduler or workers, on_case)
-    result = finish(folder, settings, judged)
+        result = finish(folder, settings, judged)
     if json:
         print_json({**result, "out": str(folder)})
     else:

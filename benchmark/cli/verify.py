@@ -38,12 +38,14 @@ def verify(
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
     from benchmark.errors import GateError
-    from benchmark.runs.output.destination import destination
+    from benchmark.runs.output.destination import claimed, destination
     from benchmark.verification.verification_page import document, headline, text_table, write_verification
 
-    console, folder = Console(quiet=quiet), None if out is None else destination(out, "verification")
-    rows = _run(cases or [], console)
-    report = None if folder is None else write_verification(rows, folder)
+    console = Console(quiet=quiet)
+    with claimed(out, "verify"):
+        folder = None if out is None else destination(out, "verification")
+        rows = _run(cases or [], console)
+        report = None if folder is None else write_verification(rows, folder)
     for row in rows:
         if row.reason:
             console.say(f"  warning: {row.case}: {row.reason}")

@@ -22,7 +22,7 @@ from benchmark.files import Session, load_session
 from benchmark.physics import SLUGS, Effect, catalogue, load_effects
 from benchmark.response.fem_table import fem_table
 from benchmark.runs.options import Listener
-from benchmark.runs.output.destination import destination, file_name
+from benchmark.runs.output.destination import claimed, destination, file_name
 from benchmark.sessions import HIDDEN_EFFECT, SHIPPED
 
 
@@ -47,8 +47,10 @@ def carry_out(request: DiscoverRequest, listener: Listener) -> DiscoveryOutcome:
     InputError
         As `answer` and `destination`; nothing is written then.
     """
-    destination(request.out, "", (*request.paths, request.effects, request.specimen, *request.settings.values()))
-    return put_down(answer(request, listener), request.out)
+    inputs = (*request.paths, request.effects, request.specimen, *request.settings.values())
+    with claimed(request.out, "discover"):
+        destination(request.out, "", inputs)
+        return put_down(answer(request, listener), request.out)
 
 
 def discover_shipped(out: Path | None, seed: int, listener: Listener) -> DiscoveryOutcome:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,13 +18,17 @@ from benchmark.gate.baseline import (
     StoredValue,
     append,
     read_baseline,
+    staged_baseline,
     write_baseline,
 )
 from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
 from benchmark.gate.processes import measure
 from benchmark.gate.versions import Origin, gated_values, origin_of, this_version
 from benchmark.runs.options import Listener
+from benchmark.runs.output.destination import check_ready
 
+NEEDED = 1_000_000
+"""Bytes of a baseline and a line of its history, with room to spare."""
 TIMING_UNIT = "x the reference workload"
 
 
@@ -71,12 +76,27 @@ def accept(request: CheckRequest, listener: Listener) -> Accepted:
     if request.against is not None:
         raise InputError("--accept and --against exclude each other: a baseline is made from this version alone")
     plan = load_plan(request.gate)
+    for path in (request.baseline_path, request.history_path):
+        check_ready(path.absolute().parent, needed=NEEDED)
     origin = origin_of(plan, request.seed)
     old, warnings = _old(request.baseline_path)
     new = _measured(plan, origin, listener)
-    write_baseline(request.baseline_path, new)
-    append(request.history_path, _entry(new))
+    _put_down(request, new)
     return Accepted(request.baseline_path, _steps(old, new), tuple(warnings))
+
+
+def _put_down(request: CheckRequest, new: Baseline) -> None:
+    """Write baseline and history, both or none; one that cannot be written is kept elsewhere, and that is said."""
+    try:
+        with staged_baseline(request.baseline_path, new):
+            append(request.history_path, _entry(new))
+    except OSError as error:
+        kept = Path(tempfile.mkdtemp(prefix="tissuebench-kept-")) / request.baseline_path.name
+        write_baseline(kept, new)
+        raise InputError(
+            f"{request.baseline_path} and its history cannot be written and are as they were: "
+            f"{error.strerror or error}; the new baseline is kept in {kept}"
+        ) from error
 
 
 def _old(path: Path) -> tuple[Baseline | None, list[str]]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -97,6 +99,26 @@ def write_baseline(path: Path, baseline: Baseline) -> Path:
     return write_json(path, baseline.model_dump(by_alias=True))
 
 
+@contextmanager
+def staged_baseline(path: Path, baseline: Baseline) -> Iterator[None]:
+    """Write a baseline beside its place, read it back, and put it there when the block succeeds.
+
+    Raises
+    ------
+    OSError
+        Where the file system refuses; the old baseline then stays.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    beside = path.with_name(f".{path.name}.new")
+    try:
+        write_baseline(beside, baseline)
+        read_baseline(beside)
+        yield
+        beside.replace(path)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
 def read_baseline(path: Path) -> Baseline:
     """Read a baseline.
 
@@ -177,14 +199,19 @@ def history_path(baseline: Path) -> Path:
 
 
 def append(path: Path, entry: HistoryEntry) -> None:
-    """Append a check in one write; raises OSError where the file system refuses."""
+    """Append a check, whole or not at all; raises OSError where the file system refuses."""
     path.parent.mkdir(parents=True, exist_ok=True)
     line = json.dumps({"schema": HISTORY_SCHEMA, **asdict(entry)}, ensure_ascii=False, allow_nan=False)
     whole = f"{'' if _ends_with_newline(path) else chr(10)}{line}\n".encode()
     handle = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o644)
+    size = os.fstat(handle).st_size
     try:
-        os.write(handle, whole)
+        if os.write(handle, whole) < len(whole):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
         os.fsync(handle)
+    except OSError:
+        os.ftruncate(handle, size)
+        raise
     finally:
         os.close(handle)
 

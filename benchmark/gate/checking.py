@@ -20,8 +20,8 @@ from benchmark.gate.timing import Judge, TimingRow
 from benchmark.gate.verdict import CheckVerdict
 from benchmark.gate.versions import Origin, gated_values, origin_of, rival, this_version
 from benchmark.runs.options import Listener
-from benchmark.runs.output.destination import check_file, destination
-from reports import whole_folder, write_csv, write_json, write_page, write_text
+from benchmark.runs.output.destination import check_file, claimed, destination
+from reports import write_csv, write_json, write_page, write_text, write_whole
 
 NOTABLE = 0.25
 """The slowdown that a check should catch; where the scatter does not allow it, the check says so."""
@@ -55,7 +55,12 @@ def check(request: CheckRequest, listener: Listener) -> CheckOutcome:
     OSError
         Where the file system refuses; no report is written then.
     """
-    folder = destination(request.out, "check", (request.baseline_path, request.gate, request.history_path))
+    with claimed(request.out, "check"):
+        inputs = (request.baseline_path, request.gate, request.history_path)
+        return _checked(request, destination(request.out, "check", inputs), listener)
+
+
+def _checked(request: CheckRequest, folder: Path, listener: Listener) -> CheckOutcome:
     for option, path in (("--junit", request.junit), ("--markdown", request.markdown)):
         check_file(path, option)
     plan = load_plan(request.gate)
@@ -173,12 +178,15 @@ def write_check(
     """
     document = {**verdict.to_dict(), "revision": origin.revision}
     page = check_page(verdict, history, origin)
-    with whole_folder(folder) as new:
+
+    def fill(new: Path) -> None:
         write_json(new / DOCUMENT, document)
         write_json(new / "environment.json", origin.environment)
         write_csv(new / "tables" / "accuracy.csv", _columns([row.to_dict() for row in verdict.accuracy]))
         write_csv(new / "tables" / "rounds.csv", round_columns(measured))
         write_page(new / "report.html", page)
+
+    write_whole(folder, fill)
     return document
 
 

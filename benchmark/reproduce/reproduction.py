@@ -12,9 +12,9 @@ from benchmark.reproduce.article_wave import equation_items, table_one_items
 from benchmark.reproduce.evidence import Evidence, gather
 from benchmark.reproduce.items import Item, columns, document
 from benchmark.runs.options import Listener
-from benchmark.runs.output.destination import destination
+from benchmark.runs.output.destination import claimed, destination
 from benchmark.runs.output.document import describe_environment
-from reports import csv_text, whole_folder, write_json, write_page, write_text
+from reports import csv_text, write_json, write_page, write_text, write_whole
 
 
 @dataclass(frozen=True)
@@ -48,16 +48,23 @@ def reproduce(out: Path | None, listener: Listener) -> Reproduced:
     OSError
         Where the file system refuses; the folder is then as it was.
     """
-    folder = destination(out, "reproduce")
+    with claimed(out, "reproduce"):
+        return _reproduced(destination(out, "reproduce"), listener)
+
+
+def _reproduced(folder: Path, listener: Listener) -> Reproduced:
     evidence = gather(listener)
     items = all_items(evidence)
     text = csv_text(columns(items), where=ITEMS)
     page = reproduce_page(items, evidence, describe_environment(seed=0), text)
     found = document(items)
-    with whole_folder(folder) as new:
+
+    def fill(new: Path) -> None:
         write_text(new / ITEMS, text)
         write_json(new / "reproduce.json", found)
         write_page(new / "report.html", page)
+
+    write_whole(folder, fill)
     return Reproduced(folder, items, found)
 
 

@@ -16,13 +16,13 @@ from benchmark.model_file import RepairedModel
 from benchmark.response.model_with_effects import load_repair
 from benchmark.runs.fitted_session import FittedSession, fit_trials
 from benchmark.runs.options import Listener
-from benchmark.runs.output.destination import destination
+from benchmark.runs.output.destination import claimed, destination
 from benchmark.runs.output.document import describe_environment
 from benchmark.runs.parameters_run import ParameterWish, common_factor_warnings, fit_parameters
 from benchmark.runs.report import fit_page
 from benchmark.runs.report.parameters_page import parameters_page
 from benchmark.runs.report.values import fit_headline, sheet_headline
-from reports import Page, whole_folder, write_csv, write_json, write_page, write_text
+from reports import Page, write_csv, write_json, write_page, write_text, write_whole
 
 
 @dataclass(frozen=True)
@@ -158,20 +158,23 @@ def fit_to_folder(request: FitRequest, out: Path | None, listener: Listener) -> 
     OSError
         Where the file system refuses; `out` is then as it was.
     """
-    destination(
-        out, "", (request.session, request.model, request.effects, request.specimen, *request.settings.values())
-    )
-    record = carry_out_fit(request, listener)
-    return write_fit(record, destination(out, f"{record.found.session.name}-fit"))
+    inputs = (request.session, request.model, request.effects, request.specimen, *request.settings.values())
+    with claimed(out, "fit"):
+        destination(out, "", inputs)
+        record = carry_out_fit(request, listener)
+        return write_fit(record, destination(out, f"{record.found.session.name}-fit"))
 
 
 def write_fit(record: FitRecord, folder: Path) -> FitOutcome:
     """Write fit.json, fitted_parameters.csv and report.html; raises OSError, and `folder` is then as it was."""
     document, page = record.document(), record.page()
-    with whole_folder(folder) as new:
+
+    def fill(new: Path) -> None:
         write_json(new / "fit.json", document)
         write_csv(new / "fitted_parameters.csv", parameter_columns(record.rows))
         write_page(new / "report.html", page)
         for name, tissue in record.tissues():
             write_text(new / name, tissue.to_toml())
+
+    write_whole(folder, fill)
     return FitOutcome(folder, document, page.verdict.headline, record.warnings)

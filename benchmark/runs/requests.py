@@ -8,10 +8,11 @@ from pathlib import Path
 
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
+from benchmark.files.load import load_history
 from benchmark.models import NOTHING, Own, read_reference, read_user_file
 from benchmark.response.model_with_effects import load_repair
 from benchmark.runs.options import Listener, RunOptions
-from benchmark.runs.output.destination import destination
+from benchmark.runs.output.destination import NEEDED, claimed, destination
 from benchmark.runs.output.run_folder import RunOutcome, write_run
 from benchmark.runs.output.unfinished import unfinished
 from benchmark.runs.record import RunRecord
@@ -51,7 +52,13 @@ def carry_out(request: RunRequest, options: RunOptions, listener: Listener) -> l
         A model's process failed.
     """
     _check_together(request)
-    _check_places(request)
+    with claimed(request.out, "run"):
+        _check_places(request)
+        return _carried_out(request, options, listener)
+
+
+def _carried_out(request: RunRequest, options: RunOptions, listener: Listener) -> list[RunOutcome]:
+    """Run what was asked for, each where its result goes."""
     if request.trials is not None:
         return [_session(request, request.trials, request.out, options, listener)]
     if request.scenario is not None and len(request.tissues) > 1:
@@ -132,10 +139,20 @@ def _shipped(request: RunRequest, options: RunOptions, listener: Listener) -> li
 
 def _scenario(request: RunRequest, name: str, out: Path | None, options: RunOptions, listener: Listener) -> RunOutcome:
     scenario = _chosen(request, name)
-    folder = destination(out, scenario.name)
+    folder = destination(out, scenario.name, needed=room(scenario, options))
     own = _own(request, scenario)
     with unfinished(folder) as keep:
         return write_run(run_scenario(scenario, replace(options, keep=keep), listener, own=own), folder)
+
+
+STEP = {"axisymmetric": 500_000, "block": 8_000_000, "surface": 8_000_000}
+"""Bytes of one step's fields on the default mesh, rounded up."""
+
+
+def room(scenario: Scenario, options: RunOptions) -> int:
+    """About how many bytes the result of a run takes: its page and tables, and the fields of its steps."""
+    steps = load_history(scenario.load).time.size if options.every_field else 2
+    return NEEDED + steps * STEP[scenario.fem.geometry]
 
 
 def _chosen(request: RunRequest, name: str) -> Scenario:

@@ -20,10 +20,10 @@ from reports import (
     Section,
     Table,
     Verdict,
-    whole_folder,
     write_csv,
     write_json,
     write_page,
+    write_whole,
 )
 from reports.formatting import format_number
 
@@ -185,8 +185,11 @@ def write_verification(rows: Sequence[VerificationRow], folder: Path) -> Path:
     OSError
         Where the file system refuses; `folder` is then as it was.
     """
-    with whole_folder(folder) as new:
+
+    def fill(new: Path) -> None:
         write_json(new / "verification.json", document(rows))
         write_csv(new / "verification.csv", columns(rows))
         write_page(new / "report.html", verification_page(rows, describe_environment(seed=0)))
+
+    write_whole(folder, fill)
     return folder / "report.html"

@@ -1,7 +1,9 @@
+import errno
 import hashlib
 import json
 import os
 import shutil
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -9,7 +11,7 @@ import pytest
 from reports import result_folder
 from reports.atomic import write_text
 from reports.manifest import MANIFEST, ForeignFilesError, foreign_files
-from reports.result_folder import KeptBesideError, check_place, extended_folder, whole_folder
+from reports.result_folder import KeptElsewhereError, check_place, extended_folder, whole_folder, write_whole
 
 
 def names(folder):
@@ -84,7 +86,10 @@ def test_an_old_folder_comes_back_and_the_new_one_is_kept_if_it_cannot_take_its_
         return rename(self, to)
 
     monkeypatch.setattr(Path, "rename", refuse_the_place)
-    with pytest.raises(KeptBesideError, match=r"no rename today.*kept in .*result-2"), whole_folder(target) as folder:
+    with (
+        pytest.raises(KeptElsewhereError, match=r"no rename today.*kept in .*result-2"),
+        whole_folder(target) as folder,
+    ):
         (folder / "new").touch()
     assert tree(target) == before
     assert names(tmp_path) == ["result", "result-2"]
@@ -182,7 +187,7 @@ def test_what_comes_while_the_work_is_done_survives_and_the_result_is_kept_besid
             (folder / "new").touch()
             note(target)
 
-    with pytest.raises(KeptBesideError, match=r"notes.txt.*result-2"):
+    with pytest.raises(KeptElsewhereError, match=r"notes.txt.*result-2"):
         work()
     assert (target / "notes.txt").read_text() == "mine"
     assert (target / "tables" / "a").read_text() == "1"
@@ -198,7 +203,7 @@ def test_what_comes_between_the_check_and_the_renames_survives(tmp_path, monkeyp
         aside(place, previous)
 
     monkeypatch.setattr(result_folder, "_step_aside", late)
-    with pytest.raises(KeptBesideError, match=r"notes.txt"), whole_folder(target) as folder:
+    with pytest.raises(KeptElsewhereError, match=r"notes.txt"), whole_folder(target) as folder:
         (folder / "new").touch()
     assert (target / "notes.txt").read_text() == "mine"
     assert names(tmp_path) == ["result", "result-2"]
@@ -329,3 +334,44 @@ def test_a_folder_of_theirs_where_a_result_steps_aside_is_left(tmp_path):
     with pytest.raises(ForeignFilesError, match=r"\.result\.previous"):
         check_place(tmp_path / "result")
     assert tree(aside) == {"notes.txt": b"mine"}
+
+
+def full_disk(folder):
+    """Fill a folder until the disk is full, at its second file."""
+
+    def fill(new):
+        (new / "one").write_text("1")
+        if new.parent == folder:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        (new / "two").write_text("2")
+
+    return fill
+
+
+def test_a_result_that_cannot_be_written_is_kept_elsewhere_and_said(tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "other"))
+    with pytest.raises(KeptElsewhereError, match=r"No space left on device; the new result is kept in (.*)") as caught:
+        write_whole(tmp_path / "result", full_disk(tmp_path))
+    kept = tmp_path / "other" / "tissuebench-kept" / "result-2"
+    assert str(caught.value).endswith(str(kept))
+    assert sorted(path.name for path in kept.iterdir()) == ["manifest.json", "one", "two"]
+    assert [path.name for path in tmp_path.iterdir()] == ["other"], "nothing half-written where it should have gone"
+
+
+def test_without_any_room_the_first_error_is_told(tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "file"))
+    monkeypatch.setattr(Path, "home", lambda: tmp_path / "file")
+    (tmp_path / "file").write_text("no folder")
+    with pytest.raises(OSError, match="No space left") as caught:
+        write_whole(tmp_path / "result", full_disk(tmp_path))
+    assert not isinstance(caught.value, KeptElsewhereError)
+
+
+def test_what_was_left_of_building_a_result_goes_with_the_next(tmp_path):
+    dead = tmp_path / ".result.0123abcd.part"
+    dead.mkdir()
+    (dead / "manifest.json").write_text('{"schema": 1, "program": "tissuebench", "files": {}}')
+    (dead / "half").write_text("1")
+    with whole_folder(tmp_path / "result") as new:
+        (new / "whole").write_text("2")
+    assert [path.name for path in tmp_path.iterdir()] == ["result"]

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reports.tables import csv_text, write_csv
+from reports.tables import csv_text, read_cell, write_csv
 
 NUMBERS = st.one_of(st.none(), st.floats(), st.integers(-(2**60), 2**60))
 TEXTS = st.text(st.characters(codec="utf-8"), max_size=12)
@@ -36,7 +36,7 @@ def test_what_is_written_reads_back_to_the_same_doubles(tmp_path_factory, values
 @settings(max_examples=60, deadline=None)
 def test_any_text_reads_back(tmp_path_factory, texts):
     path = write_csv(tmp_path_factory.mktemp("t") / "a.csv", {"layer": texts, "n": [0] * len(texts)})
-    assert [row[0] for row in read(path)[1:]] == texts
+    assert [read_cell(row[0]) for row in read(path)[1:]] == texts
 
 
 def test_the_text_of_a_table_is_this():
@@ -75,3 +75,18 @@ def test_a_cell_that_is_no_value_is_named():
 def test_a_written_table_is_the_path_given(tmp_path):
     assert write_csv(tmp_path / "tables" / "a.csv", {"a": []}) == tmp_path / "tables" / "a.csv"
     assert (tmp_path / "tables" / "a.csv").read_bytes() == b"a\n"
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+cmd|' /C calc'!A0", "-2+3", "@SUM(A1)", "\t=1", "'=1"])
+def test_no_spreadsheet_runs_a_text(tmp_path, text):
+    path = write_csv(tmp_path / "a.csv", {"layer": [text], "n": [-1.5]})
+    ((_, _), (cell, number)) = read(path)
+    assert cell == f"'{text}"
+    assert read_cell(cell) == text
+    assert number == "-1.5"
+
+
+@pytest.mark.parametrize("text", ["-1.5", "+3e-4", "dermis", "'quoted'", "a=b", ""])
+def test_plain_text_and_numbers_stay_as_they_are(tmp_path, text):
+    ((_, _), (cell, _)) = read(write_csv(tmp_path / "a.csv", {"layer": [text], "n": [1]}))
+    assert (cell, read_cell(cell)) == (text, text)

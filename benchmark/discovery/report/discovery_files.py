@@ -24,7 +24,7 @@ from benchmark.discovery.report.discovery_record import DiscoveryRecord, LayerGa
 from benchmark.files.units import shown
 from benchmark.model_file import model_toml
 from benchmark.runs.output.document import describe_environment
-from reports import whole_folder, write_csv, write_json, write_page, write_text
+from reports import write_csv, write_json, write_page, write_text, write_whole
 
 SCHEMA = 1
 
@@ -247,7 +247,8 @@ def write_discovery(record: DiscoveryRecord, folder: Path) -> DiscoveryOutcome:
     document, environment = discovery_document(record), describe_environment(seed=record.seed)
     tables = discovery_tables(document)
     page = discovery_page(record, environment, list(tables))
-    with whole_folder(folder) as new:
+
+    def fill(new: Path) -> None:
         for name, columns in tables.items():
             write_csv(new / "tables" / name, columns)
         write_json(new / "discovery.json", document)
@@ -256,4 +257,6 @@ def write_discovery(record: DiscoveryRecord, folder: Path) -> DiscoveryOutcome:
         if record.proposal is not None:
             write_text(new / "next_experiment.toml", record.proposal.toml)
         write_page(new / "report.html", page)
+
+    write_whole(folder, fill)
     return DiscoveryOutcome(folder, document, page.verdict.headline, record.found.warnings)

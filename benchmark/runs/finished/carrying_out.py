@@ -10,11 +10,11 @@ from typing import Any
 from benchmark.errors import InputError
 from benchmark.runs.finished.comparison_page import Columns, changed_parameters, compare_page, result_columns
 from benchmark.runs.finished.saved_run import SavedRun, read_run
-from benchmark.runs.output.destination import destination, file_name
+from benchmark.runs.output.destination import claimed, destination, file_name
 from benchmark.runs.output.document import describe_environment
 from benchmark.runs.output.pressed import pressed_picture, read_drawn, write_drawn
 from benchmark.runs.report import run_page
-from reports import csv_text, extended_folder, whole_folder, write_json, write_page, write_text
+from reports import csv_text, extended_folder, write_json, write_page, write_text, write_whole
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,11 @@ def page_again(folder: Path, out: Path | None) -> ReportOutcome:
     InputError
         The folder is no result of `run`; see `read_run`.
     """
+    with claimed(folder if out is None else out, "report"):
+        return _page_again(folder, out)
+
+
+def _page_again(folder: Path, out: Path | None) -> ReportOutcome:
     target = folder if out is None else destination(out, "", (folder,))
     run = read_run(folder)
     drawn = read_drawn(folder)
@@ -43,13 +48,16 @@ def page_again(folder: Path, out: Path | None) -> ReportOutcome:
         with extended_folder(folder) as new:
             write_page(new / "report.html", page)
         return ReportOutcome(folder, page.verdict.headline, run.document)
-    with whole_folder(target) as new:
+
+    def fill(new: Path) -> None:
         for name, text in run.tables.items():
             write_text(new / "tables" / name, text)
         for name in ("results.json", "environment.json", "scenario.toml"):
             write_text(new / name, (folder / name).read_text(encoding="utf-8"))
         write_drawn(new, drawn)
         write_page(new / "report.html", page)
+
+    write_whole(target, fill)
     return ReportOutcome(target, page.verdict.headline, run.document)
 
 
@@ -92,8 +100,9 @@ def set_side_by_side(folders: Sequence[Path]) -> RunsSideBySide:
 
 def compare_runs(folders: Sequence[Path], out: Path | None) -> ReportOutcome:
     """Set finished runs side by side in a folder, whose place is checked first; see `set_side_by_side`."""
-    destination(out, "", folders)
-    return write_side_by_side(set_side_by_side(folders), out)
+    with claimed(out, "report"):
+        destination(out, "", folders)
+        return write_side_by_side(set_side_by_side(folders), out)
 
 
 def write_side_by_side(compared: RunsSideBySide, out: Path | None) -> ReportOutcome:
@@ -103,11 +112,14 @@ def write_side_by_side(compared: RunsSideBySide, out: Path | None) -> ReportOutc
     page = compare_page(runs, changed, columns, describe_environment(seed=0), texts)
     document = compared.document()
     target = destination(out, file_name(f"{next(iter(runs))}-compared"))
-    with whole_folder(target) as new:
+
+    def fill(new: Path) -> None:
         for name, text in texts.items():
             write_text(new / "tables" / name, text)
         write_json(new / "report.json", document)
         write_page(new / "report.html", page)
+
+    write_whole(target, fill)
     return ReportOutcome(target, page.verdict.headline, document)
 
 

@@ -17,6 +17,7 @@ from benchmark.runs.report.film_section import read_film
 from benchmark.runs.report.run_page import DESCRIPTIONS
 from benchmark.runs.report.trials_section import TrialsPart
 from benchmark.runs.trials.measured import TrialPrediction
+from reports.tables import read_cell
 
 MM = 1e-3
 """A column in mm times this is in m."""
@@ -86,7 +87,7 @@ class SavedTables:
         head, *body = rows or [[]]
         if not head or any(len(row) != len(head) for row in body):
             raise InputError(f"{path}: its rows are not all as long as its first one")
-        return Table(path, {name: [row[place] for row in body] for place, name in enumerate(head)})
+        return Table(path, {name: [read_cell(row[place]) for row in body] for place, name in enumerate(head)})
 
     def texts(self) -> dict[str, str]:
         """The text of every table by file name."""

@@ -4,22 +4,48 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import tempfile
-from collections.abc import Iterable
-from contextlib import suppress
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from datetime import datetime
 from pathlib import Path
 
+from bench_hw.storage.folder_lock import FolderInUseError, locked
 from benchmark.errors import InputError
 from benchmark.files.sources import is_file
 from reports import check_place
 
 RESULTS = Path("results")
 PROBE = 1 << 16
-"""Bytes that must fit before anything is computed."""
+"""Bytes that are written before anything is computed."""
+NEEDED = 16_000_000
+"""Bytes of a result without fields, its page with the embedded plots being the most of it (6 MB); an earlier result
+stays until the new one is complete."""
 
 
-def destination(out: Path | None, name: str, inputs: Iterable[Path | str | None] = ()) -> Path:
+@contextmanager
+def claimed(out: Path | None, doing: str) -> Iterator[None]:
+    """Keep other processes out of `out` while this one is `doing` something there; without `out` there is no need.
+
+    Raises
+    ------
+    InputError
+        Another process is at work in it, which the message names, or it cannot be written.
+    """
+    with ExitStack() as stack:
+        if out is not None:
+            try:
+                stack.enter_context(locked(out, doing))
+            except FolderInUseError as error:
+                raise InputError(f"--out {error}") from None
+            except (OSError, ValueError) as error:
+                reason = getattr(error, "strerror", None) or error
+                raise InputError(f"--out {out} cannot be written: {reason}") from error
+        yield
+
+
+def destination(out: Path | None, name: str, inputs: Iterable[Path | str | None] = (), needed: int = NEEDED) -> Path:
     """Return the folder for the result called `name`: `out`, or `results/NAME-DATE-TIME`.
 
     An unchanged earlier result at `out` will be replaced once the new one is complete. Anything else there is refused,
@@ -33,16 +59,19 @@ def destination(out: Path | None, name: str, inputs: Iterable[Path | str | None]
         Of the result.
     inputs
         What is read: paths, and texts that name a file or something that ships.
+    needed
+        Bytes that the result will take.
 
     Raises
     ------
     InputError
-        `out` is a file, holds what is not ours, cannot be written, or is in or around an input.
+        `out` is a file, holds what is not ours, cannot be written, or is in or around an input; or there is too little
+        room on its disk.
     """
     if out is None:
-        _check_writable(RESULTS, "--out is not given, and results")
+        _check_writable(RESULTS, "--out is not given, and results", needed)
         return fresh(name)
-    check_ready(out, inputs)
+    check_ready(out, inputs, needed)
     try:
         check_place(out, f"--out {out}")
     except OSError as error:
@@ -50,14 +79,14 @@ def destination(out: Path | None, name: str, inputs: Iterable[Path | str | None]
     return out
 
 
-def check_ready(out: Path, inputs: Iterable[Path | str | None] = ()) -> None:
+def check_ready(out: Path, inputs: Iterable[Path | str | None] = (), needed: int = NEEDED) -> None:
     """Refuse a folder that cannot be written, or is in or around an input; see `destination`."""
     for each in inputs:
         if each is not None and (isinstance(each, Path) or is_file(Path(each))):
             _check_apart(out, Path(each))
     if out.exists() and not out.is_dir():
         raise InputError(f"--out {out} is a file; it must be a folder that is new, empty, or an earlier result")
-    _check_writable(out, f"--out {out}")
+    _check_writable(out, f"--out {out}", needed)
 
 
 def check_file(path: Path | None, option: str) -> None:
@@ -66,7 +95,7 @@ def check_file(path: Path | None, option: str) -> None:
         return
     if path.is_dir():
         raise InputError(f"{option} {path} is a folder; give a file")
-    _check_writable(path, f"{option} {path}")
+    _check_writable(path, f"{option} {path}", PROBE)
 
 
 def fresh(name: str) -> Path:
@@ -100,7 +129,7 @@ def _same(first: Path, second: Path) -> bool:
     return first == second or (first.exists() and second.exists() and first.samefile(second))
 
 
-def _check_writable(out: Path, shown: str) -> None:
+def _check_writable(out: Path, shown: str, needed: int) -> None:
     """Try now what would otherwise fail after everything is computed: a file beside the folder that will be made."""
     parent = next((each for each in out.absolute().parents if each.exists()), Path("/"))
     try:
@@ -110,5 +139,11 @@ def _check_writable(out: Path, shown: str) -> None:
             probe.write(bytes(PROBE))
             probe.flush()
             os.fsync(probe.fileno())
+            free = shutil.disk_usage(parent).free
     except OSError as error:
         raise InputError(f"{shown} cannot be written: {error.strerror or error}") from error
+    if free < needed:
+        raise InputError(
+            f"{shown} has too little room: {free / 1e6:.0f} MB are free on its disk, and about {needed / 1e6:.0f} MB "
+            "will be needed; make room, or give a folder on another disk"
+        )

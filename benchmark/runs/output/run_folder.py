@@ -14,7 +14,7 @@ from benchmark.runs.record import RunRecord
 from benchmark.runs.report import TrialsPart, run_page
 from benchmark.runs.report.film_section import write_film
 from benchmark.runs.tables import run_tables
-from reports import csv_text, whole_folder, write_json, write_page, write_text
+from reports import csv_text, write_json, write_page, write_text, write_whole
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,8 @@ def write_run(record: RunRecord, folder: Path) -> RunOutcome:
     trials = None if record.measured is None else TrialsPart.of(record.measured)
     drawn = draw(record)
     page = run_page(record, environment, texts, trials, tables, pressed_picture(record, drawn))
-    with whole_folder(folder) as new:
+
+    def fill(new: Path) -> None:
         for name, text in texts.items():
             write_text(new / "tables" / name, text)
         if trials is not None and trials.markers is not None:
@@ -76,4 +77,6 @@ def write_run(record: RunRecord, folder: Path) -> RunOutcome:
         write_last(new / "fields", None if fem is None else fem.last)
         write_drawn(new, drawn)
         write_page(new / "report.html", page)
+
+    write_whole(folder, fill)
     return RunOutcome(folder, document, page.verdict.headline, record.complete, record.warnings)

@@ -100,11 +100,11 @@ def test_a_rigs_own_calibration_is_copied(record, session, tmp_path):
 
 
 def test_keys_of_the_session_file_can_be_given(record, session):
-    record(specimen=None, session_keys={"tool.radius": "5 mm", "drive.channel": "depth", "camera.centre": "3"})
+    record(specimen=None, session_keys={"tool.radius": "5 mm", "drive.channel": "depth", "camera.centre_marker": "3"})
     listed = tomllib.loads((session / "session.toml").read_text())
     assert listed["tool"] == {"radius": "5 mm"}
     assert listed["drive"] == {"channel": "depth"}
-    assert listed["camera"] == {"centre": 3}
+    assert listed["camera"] == {"centre_marker": 3}
 
 
 def test_depth_zero_is_found_by_touching_where_the_rig_does_not_say(order, watcher):

@@ -1,9 +1,12 @@
 """`--out` never loses what the program did not write: every byte of somebody else's survives every verb."""
 
+import os
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from bench_hw.storage.folder_lock import locked
 from benchmark.sessions import SHIPPED
 from reports import whole_folder
 
@@ -142,10 +145,37 @@ def test_what_is_read_from_a_result_is_not_replaced_by_the_answer(benchmark_cli,
     shipped = Path(__file__).parents[3] / "benchmark" / "scenarios" / "skin-5N.toml"
     with whole_folder(here / "press") as new:
         for name in ("results.json", "model.toml", "max_deformation.csv", "tissue.toml", "baseline.json"):
-            (new / name).write_text("{}")
+            (new / name).write_text("" if name.endswith(".toml") else "{}")
         (new / "scenario.toml").write_bytes(shipped.read_bytes())
     before = tree(here)
     called = benchmark_cli(*command, "--out", "press")
     assert called.code == 2
     assert "which is read" in called.err
     assert tree(here) == before
+
+
+@pytest.mark.parametrize("verb", ["fit", "run", "discover", "check", "reproduce", "verify"])
+def test_a_second_command_into_the_same_folder_is_refused_by_name(here, benchmark_cli, verb):
+    arguments = VERBS[verb]
+    with locked(here / "p", "fit"):
+        called = benchmark_cli(*arguments, "--out", "p")
+    assert called.code == 2
+    assert f"--out p is in use (fit, process {os.getpid()} on" in " ".join(called.err.split())
+    assert list(here.iterdir()) == []
+
+
+@pytest.mark.parametrize("verb", ["fit", "run", "discover", "check", "reproduce", "verify", "sweep"])
+def test_too_little_room_is_found_before_computing(here, benchmark_cli, monkeypatch, verb):
+    monkeypatch.setattr("shutil.disk_usage", lambda _: SimpleNamespace(total=1, used=1, free=1_000_000))
+    called = benchmark_cli(*VERBS[verb], "--out", "p")
+    assert called.code == 2
+    said = " ".join(called.err.split())
+    assert "--out p has too little room: 1 MB are free on its disk, and about" in said
+    assert list(here.iterdir()) == []
+
+
+def test_the_fields_of_every_step_count(here, benchmark_cli, monkeypatch):
+    monkeypatch.setattr("shutil.disk_usage", lambda _: SimpleNamespace(total=1, used=1, free=60_000_000))
+    called = benchmark_cli("run", "skin-5N", "--fields", "all", "--out", "p")
+    assert called.code == 2
+    assert "60 MB are free on its disk, and about 66 MB will be needed" in " ".join(called.err.split())

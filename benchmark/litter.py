@@ -1,0 +1,114 @@
+"""What dead processes left behind: found in a folder and below, told from what is at work, and removed.
+
+Only what carries our names and marks counts. A recording that was cut off is never litter: it is what a person comes
+for, and `python -m bench_hw recover` saves it.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from bench_hw.storage.folder_lock import is_free, lock_path
+from benchmark.discovery.evidence.pool import KEPT as KEPT_FIT
+from benchmark.runs.output.unfinished import is_kept
+from reports.folders.building import dead_builds
+from reports.manifest import read_manifest, remove_known, remove_ours
+from reports.result_folder import recover
+
+PART = re.compile(r"\.(?P<name>.+)\.[0-9a-f]{8}\.(?:part|tmp)")
+"""A file that was being written."""
+BESIDE = re.compile(r"\.(?P<name>.+)\.(?P<what>lock|previous|unfinished)")
+"""What stands beside a result's place."""
+RECORDING = ".mcap.part"
+OLD = 60.0
+"""Seconds after which a file that was being written is no longer being written."""
+
+
+@dataclass(frozen=True)
+class Litter:
+    """Something that a dead process left: where, what it is in words, and its bytes."""
+
+    path: Path
+    what: str
+    size: int
+
+
+def find_litter(folder: Path) -> Iterator[Litter]:
+    """What processes that are gone left in a folder and below; links are not followed."""
+    for parent, folders, files in os.walk(folder):
+        place = Path(parent)
+        dead = set(dead_builds(place))
+        for path in sorted(place / name for name in (*folders, *files)):
+            what = "a result that was being written" if path in dead else _what(path)
+            if what:
+                yield Litter(path, what, _size(path))
+        folders[:] = [name for name in folders if not (BESIDE.fullmatch(name) or PART.fullmatch(name))]
+
+
+def cut_recordings(folder: Path) -> list[Path]:
+    """Recordings in a folder and below that were cut off, which are not litter."""
+    return sorted(path for path in folder.rglob(f"*{RECORDING}") if path.is_file())
+
+
+def remove(litter: Litter) -> bool:
+    """Remove what was found, as far as it is ours; whether nothing of it is left."""
+    path = litter.path
+    if path.name.endswith(".previous"):
+        _finish_replacing(path)
+    elif path.name.endswith(".unfinished"):
+        remove_known(path, _is_kept)
+    elif path.is_dir():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)
+    return not path.exists()
+
+
+def _what(path: Path) -> str:
+    """What a file or folder is that a dead process left, in words; empty for anything else."""
+    if path.is_symlink():
+        return ""
+    beside = BESIDE.fullmatch(path.name)
+    if beside is None:
+        stale = PART.fullmatch(path.name) and path.is_file() and time.time() - path.stat().st_mtime > OLD
+        return "a file that was being written" if stale else ""
+    if beside["what"] == "lock":
+        return "a lock" if path.is_file() and is_free(path) else ""
+    if not path.is_dir() or _in_use(path.with_name(beside["name"])):
+        return ""
+    if beside["what"] == "previous":
+        return "a result that was being replaced" if read_manifest(path) is not None else ""
+    ours = all(_is_kept(each.name) for each in path.rglob("*") if not each.is_dir())
+    return "steps of a run that was stopped" if ours else ""
+
+
+def _in_use(target: Path) -> bool:
+    lock = lock_path(target)
+    return lock.is_file() and not is_free(lock)
+
+
+def _is_kept(name: str) -> bool:
+    """Whether a file in a folder of unfinished work is ours, by its name: of the FEM, or a fit of a discovery."""
+    return is_kept(name) or KEPT_FIT.fullmatch(name) is not None
+
+
+def _finish_replacing(previous: Path) -> None:
+    """Put the earlier result back where no new one is in its place, or finish removing it."""
+    match = BESIDE.fullmatch(previous.name)
+    assert match is not None
+    target = previous.with_name(match["name"])
+    if target.exists():
+        remove_ours(previous)
+    else:
+        recover(target)
+
+
+def _size(path: Path) -> int:
+    files = [path] if path.is_file() else [each for each in path.rglob("*") if each.is_file()]
+    return sum(file.lstat().st_size for file in files)

@@ -1,0 +1,69 @@
+"""What killed runs left is found and removed; everything else stays."""
+
+import os
+import time
+
+import pytest
+
+from bench_hw.storage.folder_lock import locked
+from benchmark.litter import cut_recordings, find_litter, remove
+from reports import whole_folder
+
+
+@pytest.fixture
+def place(tmp_path):
+    """A folder after a bad day: a good result, what four dead processes left, and files of somebody else."""
+    with whole_folder(tmp_path / "good") as new:
+        (new / "results.json").write_text("{}")
+    long_ago = time.time() - 3600
+    dead = tmp_path / ".fit.0123abcd.part"
+    dead.mkdir()
+    (dead / "manifest.json").write_text('{"schema": 1, "program": "tissuebench", "files": {}}')
+    (dead / "half.csv").write_text("a,")
+    (tmp_path / ".baseline.json.89abcdef.part").write_text("{")
+    (tmp_path / ".camera.toml.89abcdef.tmp").write_text("[")
+    for name in (".baseline.json.89abcdef.part", ".camera.toml.89abcdef.tmp"):
+        os.utime(tmp_path / name, (long_ago, long_ago))
+    (tmp_path / ".press.lock").write_text("tissuebench: run, process 1 on here since 10:00:00\n")
+    (tmp_path / ".press.unfinished").mkdir()
+    (tmp_path / ".press.unfinished" / "fem_mesh.kept").write_bytes(b"1")
+    (tmp_path / "session").mkdir()
+    (tmp_path / "session" / "trial_001.mcap.part").write_bytes(b"2")
+    (tmp_path / ".theirs.unfinished").mkdir()
+    (tmp_path / ".theirs.unfinished" / "thesis.docx").write_bytes(b"3")
+    (tmp_path / ".theirs.lock").write_text("mine")
+    (tmp_path / "notes.part").write_text("mine")
+    return tmp_path
+
+
+def test_each_kind_is_found_and_removed_and_nothing_else(place):
+    found = list(find_litter(place))
+    assert {each.path.name for each in found} == {
+        ".fit.0123abcd.part", ".baseline.json.89abcdef.part", ".camera.toml.89abcdef.tmp",
+        ".press.lock", ".press.unfinished",
+    }  # fmt: skip
+    assert all(remove(each) for each in found)
+    assert list(find_litter(place)) == []
+    assert sorted(path.name for path in place.iterdir()) == [
+        ".theirs.lock", ".theirs.unfinished", "good", "notes.part", "session",
+    ]  # fmt: skip
+    assert [path.name for path in cut_recordings(place)] == ["trial_001.mcap.part"]
+
+
+def test_what_is_at_work_is_left_alone(place):
+    with locked(place / "press", "run"):
+        assert {".press.lock", ".press.unfinished"}.isdisjoint(each.path.name for each in find_litter(place))
+
+
+def test_a_file_that_is_just_being_written_is_left_alone(tmp_path):
+    (tmp_path / ".a.json.0123abcd.part").write_text("{")
+    assert list(find_litter(tmp_path)) == []
+
+
+def test_an_earlier_result_that_stepped_aside_comes_back(tmp_path):
+    with whole_folder(tmp_path / "result") as new:
+        (new / "a").write_text("1")
+    (tmp_path / "result").rename(tmp_path / ".result.previous")
+    (found,) = find_litter(tmp_path)
+    assert remove(found)
+    assert (tmp_path / "result" / "a").read_text() == "1"
