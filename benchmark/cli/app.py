@@ -23,9 +23,8 @@ from benchmark.cli import (
     report,
     reproduce,
     run,
-    scenarios,
+    shipped,
     sweep,
-    tissues,
     verify,
 )
 
@@ -40,7 +39,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for verb in (run, fit, discover, blind, check, sweep, report, reproduce, verify, tissues, scenarios, reference, clean):
+for verb in (run, fit, discover, blind, check, sweep, report, reproduce, verify, shipped, reference, clean):
     verb.register(app)
 
 

@@ -1,4 +1,4 @@
-"""`benchmark tissues`: what ships, with sources, and a file to start from."""
+"""`benchmark tissues` and `benchmark scenarios`: what ships, with sources, and a file to start from."""
 
 from __future__ import annotations
 
@@ -6,16 +6,18 @@ from typing import Annotated
 
 import typer
 
-from benchmark.cli.options import Debug, Json
+from benchmark.cli.options import Debug, Json, Set, parse_settings
 
 Name = Annotated[str | None, typer.Argument(help="A shipped tissue or a TOML file, to see its layers; or: new.")]
 NewName = Annotated[str | None, typer.Argument(help="With new: the name of the tissue file to write.")]
+ScenarioName = Annotated[str | None, typer.Argument(help="A shipped scenario or a TOML file, to see it resolved.")]
 NEW = "new"
 
 
 def register(app: typer.Typer) -> None:
-    """Add the verb to the command line."""
+    """Add both verbs to the command line."""
     app.command("tissues", help=tissues.__doc__)(tissues)
+    app.command("scenarios", help=scenarios.__doc__)(scenarios)
 
 
 def tissues(name: Name = None, new_name: NewName = None, json: Json = False, debug: Debug = False) -> int:
@@ -69,3 +71,28 @@ def _list(*, as_json: bool) -> None:
     else:
         for key, each in found.items():
             print(f"{key}\n  layers: {', '.join(each.layer_names)}\n  source: {each.citation}")
+
+
+def scenarios(name: ScenarioName = None, settings: Set = None, json: Json = False, debug: Debug = False) -> int:
+    """List the shipped scenarios, or show one fully resolved."""
+    from benchmark.cli.show import print_json
+    from benchmark.files import load_scenario, shipped_scenarios
+
+    if name is not None:
+        scenario = load_scenario(name, parse_settings(settings))
+        if json:
+            print_json(scenario.to_table())
+        else:
+            print(scenario.to_toml(), end="")
+        return 0
+    found = {entry: load_scenario(entry) for entry in shipped_scenarios()}
+    rows = [
+        {"name": key, "tissue": each.tissue.name, "contact": each.tool.contact, "support": each.support.kind}
+        for key, each in found.items()
+    ]
+    if json:
+        print_json({"schema": 1, "scenarios": rows})
+    else:
+        for row in rows:
+            print(f"{row['name']}: {row['tissue']}, {row['contact']}, {row['support']}")
+    return 0
