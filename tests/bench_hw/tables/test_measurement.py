@@ -164,7 +164,7 @@ def test_a_file_of_a_hundred_thousand_rows_is_read_whole(tmp_path):
     np.testing.assert_allclose(read.force, table.force, rtol=1e-11, atol=1e-15)
 
 
-finite = st.floats(-1e9, 1e9, allow_subnormal=False)
+finite = st.floats(-999.0, 999.0, allow_subnormal=False)
 
 
 @st.composite
