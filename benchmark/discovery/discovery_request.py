@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from benchmark.discovery.base.setup_priors import setup_priors
+from benchmark.discovery.base.setup_priors import table_keys
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence.pool import forget
 from benchmark.discovery.from_run import at_small_strain, is_run, read_run, repair_run
@@ -130,7 +130,7 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
         tissue=session.specimen.name,
         model=request.model,
         found=replace(found.discovery, warnings=warnings),
-        cards={effect.slug: (effect.richer or effect).description for effect in effects},
+        cards={effect.slug: (effect.richer or effect).description for effect in (*effects, *found.entries)},
         seed=request.seed,
         proposal=propose(found),
         large_press="corrected",
@@ -156,7 +156,7 @@ def store_folder(out: Path | None, session: Session, model: str) -> Path:
 def _found(
     session: Session, request: DiscoverRequest, own: tuple[Effect, ...], listener: Listener, store: Path
 ) -> Findings:
-    table_of = fem_table(session, tuple(setup_priors(session))) if request.model == "fem" else None
+    table_of = fem_table(session, table_keys(session)) if request.model == "fem" else None
     settings = Settings(seed=request.seed)
     with listener.progress(f"{session.name}: what the model lacks") as advance:
 

@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmark.discovery.own_values import SetupEstimate, TrialValues
+
 Array = NDArray[np.float64]
 
 VERDICTS = (
@@ -294,6 +296,10 @@ class Discovery:
         Held-out conditions that the effects predict worse than the base does.
     undetermined : tuple of str
         Effects of the answer whose strength the data do not tell; they are not named.
+    setup : tuple of SetupEstimate
+        The set-up against what was told.
+    own : tuple of TrialValues
+        One a trial.
     """
 
     verdict: str
@@ -317,6 +323,8 @@ class Discovery:
     not_shown: Mapping[str, str] = field(default_factory=dict)
     worse: tuple[str, ...] = ()
     undetermined: tuple[str, ...] = ()
+    setup: tuple[SetupEstimate, ...] = ()
+    own: tuple[TrialValues, ...] = ()
 
     @property
     def within_tolerance(self) -> bool:

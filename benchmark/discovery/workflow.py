@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from benchmark.discovery import criteria
-from benchmark.discovery.answer.estimates import base_estimates, candidates, named_effects, own_gain, remains
+from benchmark.discovery.answer.estimates import (
+    base_estimates,
+    candidates,
+    named_effects,
+    own_gain,
+    remains,
+    setup_estimates,
+)
 from benchmark.discovery.answer.gap import (
     HeldOut,
     closed_overall,
@@ -25,6 +32,8 @@ from benchmark.discovery.answer.sizes import channel_sizes
 from benchmark.discovery.answer.verdict import Facts, statement, verdict
 from benchmark.discovery.base.calibration import Calibrated, calibrate
 from benchmark.discovery.base.effect_model import Fit
+from benchmark.discovery.base.setup_priors import setup_entries, told_priors
+from benchmark.discovery.base.trial_bounds import large_remarks, trial_values
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.cells import reachable
 from benchmark.discovery.detection.contrasts import contrasts
@@ -44,6 +53,7 @@ from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fing
 from benchmark.discovery.evidence.selection import Selection, first_gain, select, usable
 from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, remark, screen
 from benchmark.discovery.evidence.showing import not_shown
+from benchmark.discovery.evidence.told_setup import on_told, stands
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import Session
 from benchmark.physics import Effect, catalogue
@@ -68,11 +78,14 @@ class Findings:
         The base's fit, with noise and priors.
     selection : Selection
         The chosen fit, its look-alikes and their fits.
+    entries : tuple of Effect
+        Of the session's set-up, which were candidates beside the catalogue.
     """
 
     discovery: Discovery
     calibrated: Calibrated
     selection: Selection
+    entries: tuple[Effect, ...] = ()
 
 
 def discover(
@@ -117,16 +130,30 @@ def findings(
         The session cannot be used: too few trials, no motion, no force, or mixed protocols.
     """
     began = time.perf_counter()
-    known = (*catalogue(), *effects)
     listener("prepare", 0, 1, "")
     calibrated = calibrate(session, prepare(session, settings.rows), table_of)
+    entries = setup_entries(calibrated.problem.tables)
+    known = (*entries, *catalogue(), *effects)
     key = fingerprint(VERSION, code_version(), session.fingerprint, settings, [own_code(each) for each in effects])
     listener("detect", 0, 1, "")
     with pool(settings.workers, store, key, effects, listener) as work:
-        selection, before = _searched(calibrated.base, known, settings, work)
+        base, selection, before = _answered(calibrated.base, told_priors(session), known, settings, work)
     listener("verify", 0, 1, "")
-    answer = _verified(calibrated.base, selection, before, settings)
-    return Findings(_discovery(session, calibrated, answer, known, settings, began), calibrated, selection)
+    answer = _verified(base, selection, before, settings)
+    return Findings(_discovery(session, calibrated, answer, known, settings, began), calibrated, selection, entries)
+
+
+def _answered(
+    moving: Fit, told: Mapping[str, float], known: Sequence[Effect], settings: Settings, work: Pool
+) -> tuple[Fit, Selection, Detection]:
+    """The base that is taken and what was found on it: the set-up as told where that stands, else one that moves."""
+    trusted = on_told(moving, told)
+    selection, before = _searched(trusted, known, settings, work)
+    if trusted is not moving:
+        silent_on_it = before.p < settings.level and not selection.steps
+        if silent_on_it or not stands(selection.chosen, on_some(moving, compared(moving)), work):
+            return moving, *_searched(moving, known, settings, work)
+    return trusted, selection, before
 
 
 def _searched(base: Fit, known: Sequence[Effect], settings: Settings, work: Pool) -> tuple[Selection, Detection]:
@@ -188,6 +215,7 @@ def _discovery(
     nothing = word in ("cannot_tell", "no_discrepancy")
     problem, slugs = base.model.problem, tuple(effect.slug for effect in chosen.model.effects)
     closed = {slugs: closed_overall(base, answer.held)} if slugs else {}
+    large = large_remarks(problem, chosen.nuisance)
     few = remark(len(answer.selection.base.model.problem.trials), len(problem.trials))
     return Discovery(
         verdict=word,
@@ -203,7 +231,7 @@ def _discovery(
         candidates=candidates(answer.selection, closed),
         base=base_estimates(chosen),
         remains=() if nothing else remains(chosen, answer.after, settings.level),
-        warnings=(*problem.study.warnings, *calibrated.warnings, *exchangeable(before), *few),
+        warnings=(*problem.study.warnings, *calibrated.warnings, *exchangeable(before), *few, *large),
         traces=traces(base, answer.held),
         conditions=session.conditions,
         channels=tuple(dict.fromkeys(problem.study.channels)),
@@ -213,6 +241,8 @@ def _discovery(
         not_shown=not_shown(problem.study, known),
         worse=() if nothing else facts.worse,
         undetermined=() if nothing else facts.undetermined,
+        setup=setup_estimates(chosen),
+        own=trial_values(problem, chosen.nuisance),
     )
 
 

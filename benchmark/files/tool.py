@@ -64,15 +64,20 @@ class Support(FileModel):
         bonded | hole | half_space (the last layer is endless).
     hole_radius : float or None
         m; needed by a hole, ignored otherwise.
+    clamp : str
+        How a hole holds a sheet: plate (on a plate round the hole) | rim (at the hole's rim, where the sheet ends).
     """
 
     kind: Literal["bonded", "hole", "half_space"] = "bonded"
     hole_radius: Length | None = None
+    clamp: Literal["plate", "rim"] = "plate"
 
     @model_validator(mode="after")
     def _hole_has_a_radius(self) -> Self:
         if self.kind == "hole" and self.hole_radius is None:
             raise problem('a support of kind "hole" needs it; give a length such as "30 mm"', key="hole_radius")
+        if self.kind != "hole" and self.clamp == "rim":
+            raise problem('only a support of kind "hole" has a rim; leave it out', key="clamp")
         return self
 
 

@@ -86,6 +86,7 @@ def _without_effects(scenario: Scenario) -> fem.Problem:
         support=fem.Support(
             scenario.support.kind,
             scenario.support.hole_radius if scenario.support.kind == "hole" else None,
+            clamp=scenario.support.clamp,
         ),
         kinematics=options.kinematics,
         discretisation=fem.Discretisation(options.mesh, options.radius),

@@ -25,6 +25,8 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
         A value that the model does not take.
     """
     hole, load, options = scenario.support.hole_radius, scenario.load, scenario.wave
+    if scenario.support.clamp == "rim":
+        raise UncoveredError("the wave's clamp holds a sheet on a plate round the hole, not at its rim (support.clamp)")
     by_depth = load.control == "depth"
     explicit = options.model == "plate"
     series, warnings = _sheet_series(scenario)

@@ -93,7 +93,7 @@ class EffectDescription:
     ----------
     slug : str
     acts_on : str
-        "drive", "body" or "observation".
+        "drive", "body" or "observation"; "setup" for an entry of the set-up.
     sentence : str
         What it is.
     equation : str
@@ -112,7 +112,7 @@ class EffectDescription:
     """
 
     slug: str
-    acts_on: Literal["drive", "body", "observation"]
+    acts_on: Literal["drive", "body", "observation", "setup"]
     sentence: str
     equation: str
     source: str

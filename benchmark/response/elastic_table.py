@@ -6,9 +6,10 @@ of `--set` (`tool.radius`, `dermis.youngs_modulus`, `support.hole_radius`...). N
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import islice
 from typing import TypeAlias
 
 import numpy as np
@@ -24,6 +25,8 @@ TERMS = 5
 """Terms of a field."""
 MOST_GROWN = 5.0
 """Largest change of the logarithm of a force that is believed."""
+ROUND_OFF = 1e-5
+"""Terms of a basis below this share of the first are left out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,10 +50,21 @@ class SeparableField:
 
     def plus(self, parts: list[tuple[float, SeparableField]]) -> SeparableField:
         """Itself and factors times other fields on the same depths and radii."""
-        amplitudes = [self.amplitudes, *(factor * other.amplitudes for factor, other in parts)]
+        if all(other.shapes is self.shapes for _, other in parts):
+            amplitudes = self.amplitudes + sum(factor * other.amplitudes for factor, other in parts)
+            return SeparableField(amplitudes, self.shapes)
+        every = [self.amplitudes, *(factor * other.amplitudes for factor, other in parts)]
         return SeparableField(
-            np.concatenate(amplitudes), np.concatenate([self.shapes, *(other.shapes for _, other in parts)])
+            np.concatenate(every), np.concatenate([self.shapes, *(other.shapes for _, other in parts)])
         )
+
+    @staticmethod
+    def on_one_basis(fields: Sequence[SeparableField]) -> tuple[SeparableField, ...]:
+        """The same fields on shapes (c, q) that all share, so that their sums have no more terms than one of them."""
+        sizes = [np.linalg.qr(field.amplitudes.T, mode="r") @ field.shapes for field in fields]
+        _, values, basis = np.linalg.svd(np.concatenate(sizes), full_matrices=False)
+        shapes = np.ascontiguousarray(basis[values > ROUND_OFF * values[0]])
+        return tuple(SeparableField(shapes @ field.shapes.T @ field.amplitudes, shapes) for field in fields)
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,6 +147,21 @@ class ElasticTable:
         """The sinking with parameters changed, as `outward_with`."""
         parts = [part for key, change in self._known(changes) for part in _moved(self.by[key].sink, key, change)]
         return self.sink if self.sink is None or not parts else self.sink.plus(parts)
+
+    def compact(self) -> ElasticTable:
+        """The same table with the fields of each kind on one basis."""
+        if self.outward is None or self.sink is None:
+            return self
+        out = SeparableField.on_one_basis([self.outward, *(f for each in self.by.values() for f in each.outward)])
+        sunk = SeparableField.on_one_basis([self.sink, *(f for each in self.by.values() for f in each.sink)])
+        outs, sinks = iter(out[1:]), iter(sunk[1:])
+        by = {
+            key: SetupDerivative(
+                each.force, tuple(islice(outs, len(each.outward))), tuple(islice(sinks, len(each.sink)))
+            )
+            for key, each in self.by.items()
+        }
+        return replace(self, outward=out[0], sink=sunk[0], by=by)
 
     def _known(self, changes: Mapping[str, float]) -> list[tuple[str, float]]:
         return [(key, change) for key, change in changes.items() if key in self.by]

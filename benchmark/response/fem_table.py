@@ -17,6 +17,7 @@ from benchmark.files import Session, Support, Tissue, Tool
 from benchmark.response.differentiated_ramp import (
     DifferentiatedRamp,
     RampDerivative,
+    at_places,
     differentiated_ramp,
     elastic_ramp,
 )
@@ -24,7 +25,7 @@ from benchmark.response.elastic_table import POINTS, ElasticTable, SeparableFiel
 from benchmark.response.force_curve import Array
 from benchmark.response.nearest_curve import nearest_curve, stuck_tool
 from benchmark.response.ramp import Ramp
-from benchmark.response.setup_change import RADIUS, changed_setup
+from benchmark.response.setup_change import CHOICES, RADIUS, changed_setup, other_choice
 from benchmark.response.wave_table import MARGIN, wave_table
 
 STEPS = 24
@@ -87,7 +88,8 @@ def _fem_table(
 
     curve = nearest_curve(tool, ramp_of)
     if told and told[0].depth[-1] >= depth:
-        return _table(told[0], np.linspace(0.0, float(told[0].depth[-1]), POINTS))
+        table = _table(told[0], np.linspace(0.0, float(told[0].depth[-1]), POINTS))
+        return _with_choices(session, setup, table, [key for key in keys if key in CHOICES])
     note = curve.remark(MARGIN * depth) or "the finite elements stop early for a slightly changed set-up"
     if curve.reach < depth:
         note = f"{note}; beyond {1e3 * curve.reach:.3g} mm the base goes on like the wave model"
@@ -101,6 +103,38 @@ def _has(setup: tuple[Tissue, Tool, Support], key: str) -> bool:
     except InputError:
         return False
     return True
+
+
+def _with_choices(
+    session: Session, setup: tuple[Tissue, Tool, Support], table: ElasticTable, keys: Sequence[str]
+) -> ElasticTable:
+    """The table with the way to each other choice, where the solver follows that as deep."""
+    by = dict(table.by)
+    for key in keys:
+        try:
+            ramp = elastic_ramp(session, setup[0], *other_choice(*setup[1:], key), float(table.depth[-1]), STEPS)
+        except TissuebenchError:
+            continue
+        if ramp.depth[-1] >= table.depth[-1] * (1.0 - 1e-9):
+            by[key] = _way_to(ramp, table)
+    return replace(table, by=by)
+
+
+def _way_to(ramp: Ramp, table: ElasticTable) -> SetupDerivative:
+    """From a table to another ramp: the logarithm of the force and the fields go with the share of the way."""
+    other = np.asarray(CubicSpline(ramp.depth, ramp.force)(table.depth))
+    ratio = np.divide(other, table.force, out=np.ones_like(other), where=table.force > 0.0)
+    force = (table.force * np.log(np.maximum(ratio, 1e-3)))[None]
+    if ramp.face is None or table.outward is None or table.sink is None:
+        return SetupDerivative(force)
+    rows = np.searchsorted(table.depth, ramp.depth[ramp.depth <= table.depth[-1] * (1.0 + 1e-9)] * (1.0 - 1e-9))
+    levels = table.depth[np.unique(np.clip(rows, 0, table.depth.size - 1))]
+    fields = []
+    for name, told in (("outward", table.outward), ("sunk", table.sink)):
+        there = at_places(ramp.face, getattr(ramp.face, name), table.radius, levels)
+        here = told.table[np.searchsorted(table.depth, levels)]
+        fields.append((SeparableField.of(levels, there - here, table.depth),))
+    return SetupDerivative(force, *fields)
 
 
 def _wave(tissue: Tissue, tool: Tool, support: Support, depth: float, keys: Sequence[str]) -> ElasticTable:

@@ -21,7 +21,7 @@ from benchmark.response.force_curve import Array
 from benchmark.response.trials_model import RecordModel, TrialColumns, TrialsEvaluation, TrialsModel
 
 MOST_DAMPING = 1e5
-LENT = 3
+LENT = 6
 """Steps for which the derivatives of a start serve."""
 
 
@@ -301,6 +301,8 @@ def settled(model: TrialsModel, vector: Array, nuisance: Array, search: Search =
             n = columns[index]
             inner, pull = n.T @ n + np.diag(weight), n.T @ at.residuals[index] - weight * tried[index]
             tried[index] += _solve(inner + damping[index] * np.diag(np.diag(inner)), pull)
+        if model.trial_bounds is not None:
+            tried = np.clip(tried, *model.trial_bounds)
         other = model.evaluated(vector, tried)
         new = _trial_objectives(other, weight)
         better = going & (new < value)

@@ -1,4 +1,4 @@
-"""A set-up with one parameter changed, by the key that `--set` has for it.
+"""A set-up with one parameter changed, or with another choice, by the key that `--set` has for it.
 
 Most parameters change by a share of their value. Those that may be zero or of either sign, and Poisson's ratio, whose
 distance from one half counts, change by an amount; see `is_absolute`.
@@ -14,9 +14,16 @@ from pydantic import BaseModel
 from benchmark.errors import InputError
 from benchmark.files import Support, Tissue, Tool
 from benchmark.files.overrides import layer_path
+from benchmark.files.sessions.description import ASSUMED_EDGE
 from benchmark.files.tissue import Layer, scaled_layer
 
 Part = TypeVar("Part", bound=BaseModel)
+
+OTHER_CONTACT = {
+    "rigid_bonded": "rigid_frictionless",
+    "rigid_frictional": "rigid_frictionless",
+    "rigid_frictionless": "rigid_bonded",
+}
 
 RADIUS = "tool.radius"
 THICKNESS = "thickness"
@@ -26,11 +33,34 @@ STIFFNESS = "stiffness"
 constants of its own that is its modulus."""
 ABSOLUTE = ("poisson_ratio", "c01", "c20", "c30")
 """Last parts of the keys of layers whose changes are amounts in SI units."""
+CLAMP, CONTACT = "support.clamp", "tool.contact"
+CHOICES = (CLAMP, CONTACT)
+"""Keys that have no number: a set-up is as told, or the other way."""
+
+
+def choices(tool: Tool, support: Support) -> tuple[str, ...]:
+    """Keys of the choices that a set-up could have made otherwise.
+
+    A thick specimen on a base folds at the edge of a touching tool long before the depth of its trials, so that the
+    other contact is asked of sheets alone.
+    """
+    if support.kind != "hole":
+        return ()
+    return (CLAMP, CONTACT) if tool.contact in OTHER_CONTACT else (CLAMP,)
+
+
+def other_choice(tool: Tool, support: Support, key: str) -> tuple[Tool, Support]:
+    """Tool and support with the other clamp, or the other contact, whose edge is the assumed one."""
+    if key == CLAMP:
+        return tool, support.model_copy(update={"clamp": "plate" if support.clamp == "rim" else "rim"})
+    contact = OTHER_CONTACT[tool.contact]
+    edge = ASSUMED_EDGE * tool.radius if contact == "rigid_frictionless" else None
+    return tool.model_copy(update={"contact": contact, "edge_radius": edge}), support
 
 
 def is_absolute(key: str) -> bool:
-    """Whether a change of `key` is an amount in SI units instead of a share of its value."""
-    return key.rpartition(".")[2] in ABSOLUTE
+    """Whether a change of `key` is an amount in SI units, or the share of the way to a choice, not of its value."""
+    return key in CHOICES or key.rpartition(".")[2] in ABSOLUTE
 
 
 def way_of(key: str, change: float) -> float:

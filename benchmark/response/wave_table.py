@@ -18,7 +18,7 @@ from benchmark.models.model_result import LowerFace
 from benchmark.response.elastic_table import POINTS, ElasticTable, SeparableField, SetupDerivative
 from benchmark.response.force_curve import Array
 from benchmark.response.ramp import Ramp
-from benchmark.response.setup_change import RADIUS, changed_setup, natural_change, way_of
+from benchmark.response.setup_change import CHOICES, RADIUS, changed_setup, natural_change, way_of
 
 LEVELS = 24
 RADII = 90
@@ -44,7 +44,7 @@ def wave_table(
     depth : float
         Deepest depth of the trials, m.
     keys : sequence of str
-        Set-up parameters by which the table is differentiated.
+        Set-up parameters by which the table is differentiated; the wave has no other choices.
 
     Raises
     ------
@@ -54,6 +54,7 @@ def wave_table(
     from wavemodel import WaveError
 
     setup = (tissue, tool, support)
+    keys = [key for key in keys if key not in CHOICES]
     try:
         if support.kind == "hole":
             return _sheet(setup, MARGIN * depth, keys)
@@ -121,6 +122,8 @@ def _sheet_fields(
     """Force (k,) N on the grid; outward motion and sinking (levels, radii) m of the lower face."""
     from wavemodel import DiscTool, PlateSettings, PlateWave
 
+    if support.clamp == "rim":
+        raise InputError("the wave's clamp holds a sheet on a plate round the hole, not at its rim (support.clamp)")
     hole, settings = float(support.hole_radius or 0.0), PlateSettings(reach=float(grid[-1]))
     wave = PlateWave(_layers(tissue), DiscTool(tool.radius, _contact(tool)), "hole", hole, settings)
     faces = np.array([wave.field(float(level), radii)[:, -1] for level in levels[1:]])

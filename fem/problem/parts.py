@@ -12,6 +12,7 @@ from fem.materials.prony import PronyTerm, require_something_left
 
 CONTACTS = ("uniform_pressure", "rigid_bonded", "rigid_frictionless", "rigid_frictional")
 SUPPORTS = ("bonded", "hole", "half_space")
+CLAMPS = ("plate", "rim")
 TOUCHING = ("rigid_frictionless", "rigid_frictional")
 LARGEST_FRICTION, LARGEST_ADHESION = 10.0, 1e3  # adhesion in N
 LARGEST_SHEAR_LIMIT = 1e12  # Pa
@@ -129,11 +130,15 @@ class Support:
     clamp_shear_limit
         For "hole" in finite strain and axial symmetry: shear stress in Pa, 0 to 1e12, per area at rest, at which the
         lower face slides on the plate; it stays on the plate, and is held at the outer border. None: it does not slide.
+    clamp
+        For "hole": "plate" (the lower face is held outside the hole, the sheet goes on above it) or "rim" (the sheet
+        ends at the hole, where its whole edge is held).
     """
 
     kind: str
     hole_radius: float | None = None
     clamp_shear_limit: float | None = None
+    clamp: str = "plate"
 
     def __post_init__(self) -> None:
         require_one_of("support.kind", self.kind, SUPPORTS)
@@ -142,6 +147,9 @@ class Support:
             raise FemError(f"support.hole_radius = {state}: needed for the support 'hole', and only there")
         if self.hole_radius is not None:
             require_positive("support.hole_radius", self.hole_radius, "m")
+        require_one_of("support.clamp", self.clamp, CLAMPS)
+        if self.clamp == "rim" and (self.kind != "hole" or self.clamp_shear_limit is not None):
+            raise FemError("support.clamp = 'rim': only with the support 'hole', and without clamp_shear_limit")
         self._require_clamp()
 
     def _require_clamp(self) -> None:

@@ -119,6 +119,11 @@ class Problem:
             least, why = hole, "support.hole_radius"
         if radius is not None and radius <= least:
             raise FemError(f"discretisation.radius = {radius:g} m: must be above {why} = {least:g} m")
+        if self.support.clamp == "rim" and (radius is not None or self.geometry != "axisymmetric"):
+            raise FemError(
+                "support.clamp = 'rim': only with geometry = 'axisymmetric' and without discretisation.radius, since "
+                "the sheet ends at the hole"
+            )
 
     def _require_sliding(self) -> None:
         slides = self.support.clamp_shear_limit is not None

@@ -113,16 +113,18 @@ class HalfSpace:
 
 @dataclass(frozen=True)
 class Hole:
-    """Lower face fixed for r >= hole_radius, outer border fixed."""
+    """Lower face fixed for r >= hole_radius, outer border fixed; a clamp at the rim is the outer border alone."""
 
     def extent(self, problem: Problem) -> Extent:
-        """Border several thicknesses outside the hole; the rim of the hole is resolved."""
+        """Border several thicknesses outside the hole, or at its rim; the rim of the hole is resolved."""
         hole, thickness = hole_radius(problem), tuple(layer.thickness for layer in problem.layers)
         total = sum(thickness)
         radius = problem.discretisation.radius
         if radius is None:
             radius = max(hole, problem.tool.radius) + CLAMP_IN_THICKNESSES * total
         size = min(total, hole) / 8.0
+        if problem.support.clamp == "rim":
+            radius = hole
         rim = Feature(hole, size, 0.4)
         underside = Feature(total, 2.0 * size, 0.5)
         return Extent(radius, thickness, (rim,), (underside,), edge_factor=EDGE_FACTOR)

@@ -6,12 +6,15 @@ import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit
+from benchmark.discovery.base.setup_priors import is_setup
 from benchmark.discovery.detection.disagreement import Detection
 from benchmark.discovery.detection.places import flagged_places
 from benchmark.discovery.discovery_result import Candidate, Estimate, LookAlike, NamedEffect, channel_unit
 from benchmark.discovery.evidence.gains import conditions, gain, held_out
 from benchmark.discovery.evidence.parameter_evidence import by_condition, constant, effect_estimates, half_widths
 from benchmark.discovery.evidence.selection import Scored, Selection
+from benchmark.discovery.own_values import SetupEstimate
+from benchmark.physics.setup_entry import setup_key
 
 MOST_REMAINS = 5
 """Sentences of what the answer leaves."""
@@ -77,6 +80,20 @@ def base_estimates(fitted: Fit) -> tuple[Estimate, ...]:
             out.append(Estimate("modulus_factor", float(np.exp(value)), "", ends))
         else:
             out.append(Estimate(name, value, "", (value - half, value + half)))
+    return tuple(out)
+
+
+def setup_estimates(fitted: Fit) -> tuple[SetupEstimate, ...]:
+    """The set-up's parameters, whether nuisances of the base or entries that the answer names."""
+    problem, widths = fitted.model.problem, half_widths(fitted)
+    slugs = [*problem.shapes, *(slug for slug, _ in fitted.model.parameters)]
+    out = []
+    for name, value, half in zip(slugs, fitted.vector.tolist(), widths.tolist(), strict=True):
+        key = setup_key(name) or (name if is_setup(name) else None)
+        if key is not None:
+            named = name != key
+            prior = None if named else problem.setup[key]
+            out.append(SetupEstimate(key, value, (value - half, value + half), prior, named))
     return tuple(out)
 
 

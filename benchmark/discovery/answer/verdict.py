@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from benchmark.discovery import criteria
 from benchmark.physics import Effect
+from benchmark.physics.setup_entry import setup_key
 
 
 @dataclass(frozen=True)
@@ -111,21 +112,32 @@ def _mixed(effects: Sequence[Effect]) -> bool:
 def statement(word: str, facts: Facts) -> str:
     """The answer in one sentence."""
     names = " and ".join(effect.slug.replace("_", " ") for effect in facts.effects)
+    lacks = _lacks(facts.effects)
     alike = ", ".join(effect.slug.replace("_", " ") for effect in facts.lookalikes)
     sentences = {
         "no_discrepancy": "No disagreement beyond the base model's own uncertainty is visible "
         f"(p = {facts.p_cells:.2g}), and what is left is within the stated tolerance.",
         "cannot_tell": _untold(facts),
-        "named": f"The model lacks {names}: it holds on trials and on conditions that the fit has not seen.",
-        "conditional": f"The model lacks {names}, as far as these conditions tell; another rate, depth or tool must "
+        "named": f"{lacks}: it holds on trials and on conditions that the fit has not seen.",
+        "conditional": f"{lacks}, as far as these conditions tell; another rate, depth or tool must "
         "show that it holds there with the same parameters.",
-        "lookalikes": f"The model lacks {names}, or what these data cannot rule out in its place: {alike}.",
-        "partly_explained": f"The model lacks {names}, and something more: {_more(facts)}.",
+        "lookalikes": f"{lacks}, or what these data cannot rule out in its place: {alike}.",
+        "partly_explained": f"{lacks}, and something more: {_more(facts)}.",
         "outside_catalogue": _outside(names, facts),
-        "instrument_first": f"The model lacks {names}, but these data cannot tell rig or sensor from tissue here "
+        "instrument_first": f"{lacks}, but these data cannot tell set-up, rig or sensor from tissue here "
         f"(in question: {alike}): a calibration measurement comes first.",
     }
     return sentences[word]
+
+
+def _lacks(effects: Sequence[Effect]) -> str:
+    """What is wrong of the set-up, and what the model lacks."""
+    keys = [key for effect in effects if (key := setup_key(effect.slug)) is not None]
+    names = " and ".join(effect.slug.replace("_", " ") for effect in effects if setup_key(effect.slug) is None)
+    setup = f"The set-up is not as told ({', '.join(keys)})"
+    if not keys:
+        return f"The model lacks {names}"
+    return f"{setup}, and the model lacks {names}" if names else setup
 
 
 def _untold(facts: Facts) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import EffectModel, Fit, fit, nuisance_count
-from benchmark.discovery.base.setup_priors import setup_priors, unused
+from benchmark.discovery.base.setup_priors import setup_priors, table_keys, unused
 from benchmark.discovery.base.trials_problem import OWN, NoiseModel, TrialPrior, TrialRef, TrialsProblem, trial_refs
 from benchmark.discovery.trials.marker_layout import PLACED
 from benchmark.discovery.trials.study import Study
@@ -35,7 +35,8 @@ class Calibrated:
 def calibrate(session: Session, study: Study, table_of: TableOf | None = None) -> Calibrated:
     """Fit the base and estimate noise and spreads, twice over."""
     setup = setup_priors(session)
-    tables = _tables(session, study, table_of or fem_or_wave_table(session, tuple(setup)))
+    tables = _tables(session, study, table_of or fem_or_wave_table(session, table_keys(session)))
+    setup = {key: size for key, size in setup.items() if any(key in table.by for table in tables)}
     problem = TrialsProblem(study, tables, _first_noise(study), _wide(study), trial_refs(study), setup=setup)
     vector, state = _first_guess(problem)
     model = EffectModel(problem, ())
@@ -54,7 +55,7 @@ def _tables(session: Session, study: Study, table_of: TableOf) -> tuple[ElasticT
     deepest = dict.fromkeys(setups, 0.0)
     for setup, condition in zip(setups, study.conditions, strict=True):
         deepest[setup] = max(deepest[setup], condition.around.peak_depth)
-    made = {setup: table_of(session.specimen, *setup, depth) for setup, depth in deepest.items()}
+    made = {setup: table_of(session.specimen, *setup, depth).compact() for setup, depth in deepest.items()}
     return tuple(made[setup] for setup in setups)
 
 

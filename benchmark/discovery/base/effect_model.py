@@ -12,10 +12,12 @@ import numpy as np
 from benchmark.discovery import criteria
 from benchmark.discovery.base.base_shape import Shape, ShapedTable
 from benchmark.discovery.base.setup_priors import farthest, is_setup, shares
+from benchmark.discovery.base.trial_bounds import trial_bounds
 from benchmark.discovery.base.trials_problem import OWN, TrialsProblem
 from benchmark.discovery.trials.marker_layout import PLACED
 from benchmark.physics import Effect, EffectParameter, Readings, catalogue
 from benchmark.physics.effect import Values
+from benchmark.physics.setup_entry import setup_key
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import Search, TrialsFit, least_squares
 from benchmark.response.least_squares import settled as settled_nuisances
@@ -122,6 +124,10 @@ class EffectModel:
     def shape(self, vector: Array) -> Shape:
         """The base's shape."""
         values = dict(zip(self.problem.shapes, vector.tolist(), strict=False))
+        for k, (slug, _) in enumerate(self.parameters, start=self.shape_count):
+            key = setup_key(slug)
+            if key is not None:
+                values[key] = values.get(key, 0.0) + float(vector[k])
         forms = {name: value for name, value in values.items() if not is_setup(name)}
         return Shape(setup=shares(values), **forms)
 
@@ -182,9 +188,10 @@ class EffectModel:
         """(q,) prior precisions of a trial's nuisances."""
         return nuisance_precision(self.problem)
 
-    @property
-    def trial_bounds(self) -> None:
-        """Nuisances are held by their priors alone."""
+    @cached_property
+    def trial_bounds(self) -> tuple[Array, Array]:
+        """Lower and upper bounds (R, q) of the trials' nuisances."""
+        return trial_bounds(self.problem)
 
     def evaluated(self, vector: Array, nuisance: Array) -> TrialsEvaluation:
         """Signals and white residuals of all trials."""

@@ -9,8 +9,10 @@ import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.files import Session, Support, Tissue
+from benchmark.physics import Effect
+from benchmark.physics.setup_entry import setup_entry
 from benchmark.response.elastic_table import ElasticTable
-from benchmark.response.setup_change import RADIUS
+from benchmark.response.setup_change import CHOICES, RADIUS, choices
 
 MODULUS = ".youngs_modulus"
 
@@ -18,11 +20,37 @@ MODULUS = ".youngs_modulus"
 def setup_priors(session: Session) -> dict[str, float]:
     """Relative standard deviations of the set-up parameters in which a session's base may be wrong.
 
-    The tool's radius always, and what files state an uncertainty of: the hole's radius, and each layer's thickness and
-    modulus. One layer's modulus is the common factor on all; a law with constants of its own does not follow it.
+    The tool's radius, the hole's, and each layer's thickness and modulus: as files state them, else what people know of
+    them (`criteria.SETUP_PRIOR`). One layer's modulus is the common factor on all; a law with constants of its own does
+    not follow it.
     """
-    able = set(_able(session.specimen, session.support))
-    return {RADIUS: criteria.RADIUS_PRIOR} | {key: size for key, size in stated(session).items() if key in able}
+    told = stated(session)
+    return {key: told.get(key, _usual(key)) for key in _able(session.specimen, session.support)}
+
+
+def told_priors(session: Session) -> dict[str, float]:
+    """Those of a set-up that is trusted: what is stated, and the tool's radius, since an edge acts like another one."""
+    told = stated(session)
+    return {key: size for key, size in setup_priors(session).items() if key in told or key == RADIUS}
+
+
+def _usual(key: str) -> float:
+    """What people know of a parameter who do not say how well."""
+    return criteria.SETUP_PRIOR[key if key in criteria.SETUP_PRIOR else key.rpartition(".")[2]]
+
+
+def table_keys(session: Session) -> tuple[str, ...]:
+    """All keys by which a session's tables are differentiated: parameters, and choices that could have been others."""
+    setups = dict.fromkeys((trial.tool, trial.support) for trial in session.trials)
+    other = dict.fromkeys(key for setup in setups for key in choices(*setup))
+    return (*setup_priors(session), *other)
+
+
+def setup_entries(tables: Sequence[ElasticTable]) -> tuple[Effect, ...]:
+    """The catalogue's entries of a session's set-up: of every key that all its tables know."""
+    known = set.intersection(*(set(table.by) for table in tables))
+    keys = [key for key in tables[0].by if key in known]
+    return tuple(setup_entry(key, farthest(key), choice=key in CHOICES) for key in keys)
 
 
 def stated(session: Session) -> dict[str, float]:
@@ -67,6 +95,8 @@ def farthest(name: str) -> float:
     """How far a nuisance of the base may go: the table's second order serves no farther, nor is a power law another."""
     if not is_setup(name):
         return criteria.FAR_EXPONENT if name == "exponent" else np.inf
+    if name in CHOICES:
+        return 1.0
     return criteria.FAR_MODULUS if name.endswith(MODULUS) else criteria.FAR_SETUP
 
 

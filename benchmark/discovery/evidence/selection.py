@@ -27,6 +27,7 @@ from benchmark.discovery.evidence.pool import Pool
 from benchmark.discovery.evidence.shortlist import Screened, screen
 from benchmark.discovery.evidence.showing import missing
 from benchmark.physics import Effect
+from benchmark.physics.setup_entry import setup_key
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +144,8 @@ def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
 
 
 def _accepted(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:
-    worth = not steps or scored.gain.mean >= criteria.WORTH * steps[0].gain.mean
+    physics = [step for step in steps if setup_key(step.slug) is None]
+    worth = not physics or scored.gain.mean >= criteria.WORTH * physics[0].gain.mean
     if steps and not determined(scored.fit, scored.fit.model.effects[-1]):
         return False
     evident = scored.gain.z >= settings.accept_z or broad(scored.gain) > criteria.BROAD
@@ -168,7 +170,7 @@ def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
     return sorted(chosen, key=lambda each: -each.gain.mean)
 
 
-def _rebuilt(base: Fit, effects: Sequence[Effect], work: Pool, stage: str) -> Fit:
+def rebuilt(base: Fit, effects: Sequence[Effect], work: Pool, stage: str) -> Fit:
     """Fit the base with several effects, one after the other."""
     current = base
     for effect in effects:
@@ -183,7 +185,7 @@ def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> Fit:
         trials = []
         for effect in current.model.effects[:-1]:
             kept = [other for other in current.model.effects if other is not effect]
-            trials.append((effect, _rebuilt(base, kept, work, "backward")))
+            trials.append((effect, rebuilt(base, kept, work, "backward")))
         needless = [
             less
             for _, less in trials
@@ -201,7 +203,7 @@ def _told(base: Fit, current: Fit, work: Pool) -> Fit:
         kept = [effect for effect in current.model.effects if determined(current, effect)]
         if len(kept) == len(current.model.effects):
             return current
-        current = _rebuilt(base, kept or current.model.effects[:1], work, "backward")
+        current = rebuilt(base, kept or current.model.effects[:1], work, "backward")
     return current
 
 
@@ -215,7 +217,7 @@ def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], work: 
     density += criteria.TIE * max(density - float(held_out(base).sum()), 0.0)
     for effect in current.model.effects:
         others = [other for other in current.model.effects if other is not effect]
-        under = _rebuilt(base, others, work, "swaps")
+        under = rebuilt(base, others, work, "swaps")
         for made in work.fits("swaps", [(under, rival) for rival in rivals]):
             if float(held_out(made).sum()) > density:
                 best, density = made, float(held_out(made).sum())
@@ -232,7 +234,7 @@ def _in_place(
     chosen = current.model.effects
     others, taken = [other for other in chosen if other is not effect], {each.slug for each in chosen}
     groups, now = conditions(current), held_out(current)
-    under = _rebuilt(base, others, work, "look-alikes") if others else base
+    under = rebuilt(base, others, work, "look-alikes") if others else base
     own = gain(now, held_out(under), groups)
     if others:
         made = work.fits("look-alikes", [(under, rival) for rival in _nearest(rounds, taken)])

@@ -19,6 +19,7 @@ from benchmark.discovery.discovery_result import (
     Place,
     channel_unit,
 )
+from benchmark.discovery.own_values import SetupEstimate, TrialValues
 from benchmark.discovery.report.discovery_page import discovery_page
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, LayerGap, NextExperiment, gap_in_units
 from benchmark.files.units import shown
@@ -55,6 +56,8 @@ def discovery_document(record: DiscoveryRecord) -> dict[str, Any]:
         "undetermined": list(found.undetermined),
         "candidates": [_candidate(candidate) for candidate in found.candidates],
         "base": {estimate.name: _estimate(estimate) for estimate in found.base},
+        "setup": {each.key: _setup(each) for each in found.setup},
+        "own": [_own(each) for each in found.own],
         "remains": list(found.remains),
         "warnings": list(found.warnings),
         "conditions": list(found.conditions),
@@ -90,6 +93,27 @@ def _effect(effect: NamedEffect) -> dict[str, Any]:
             {"name": each.name, "condition": each.condition, **_estimate(each), "agrees": each.agrees}
             for each in effect.by_condition
         ],
+    }
+
+
+def _setup(estimate: SetupEstimate) -> dict[str, Any]:
+    return {
+        "change": estimate.change,
+        "ci95": list(estimate.ci95),
+        "prior": estimate.prior,
+        "of_prior": estimate.of_prior,
+        "named": estimate.named,
+    }
+
+
+def _own(values: TrialValues) -> dict[str, Any]:
+    return {
+        "trial": values.trial,
+        "gain": values.gain,
+        "zero_N": values.zero,
+        "late_ms": 1e3 * values.late,
+        "touch_mm": 1e3 * values.touch,
+        "at_bound": " ".join(values.at_bound),
     }
 
 
@@ -186,6 +210,7 @@ COLUMNS = {
     "gap.csv": ("channel", "unit", "rmse_before", "rmse_after", "noise_floor", "closed", "ci95_low", "ci95_high",
                 "held_out"),
     "parameters.csv": ("part", "name", "value", "unit", "ci95_low", "ci95_high"),
+    "trials.csv": ("trial", "gain", "zero_N", "late_ms", "touch_mm", "at_bound"),
     "layers.csv": ("layer", "rmse_before_mm", "rmse_after_mm", "closed", "percent_at_peak_before",
                    "percent_at_peak_after"),
 }  # fmt: skip
@@ -204,6 +229,8 @@ def discovery_tables(document: Mapping[str, Any]) -> dict[str, Columns]:
         "gap.csv": [{"channel": channel, **gap} for channel, gap in document["gap"].items()],
         "parameters.csv": parameters,
     }
+    if document["own"]:
+        rows["trials.csv"] = document["own"]
     if "layers" in document:
         rows["layers.csv"] = [{"layer": name, **each} for name, each in document["layers"].items()]
     return {file: _columns(map(_flat, each), COLUMNS[file]) for file, each in rows.items()}

@@ -14,6 +14,7 @@ from benchmark.discovery.report.disagreement_sections import (
 )
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
 from benchmark.discovery.report.effect_sections import candidates_section, effects_section, next_section
+from benchmark.discovery.report.own_sections import own_section
 from benchmark.discovery.report.story import story
 from benchmark.discovery.report.words import channel_name, sized
 from reports import Download, Fact, Facts, Notice, Page, Section, Verdict
@@ -24,6 +25,7 @@ DESCRIPTIONS = {
     "contrasts.csv": "one question at a time",
     "candidates.csv": "every candidate and its evidence",
     "gap.csv": "the gap before and after",
+    "trials.csv": "what each trial has of its own",
     "parameters.csv": "base and effects with intervals",
     "layers.csv": "the gap of each layer",
 }
@@ -45,6 +47,7 @@ def discovery_page(record: DiscoveryRecord, environment: Mapping[str, Any], tabl
     sections += [effects_section(record)] if record.found.effects else []
     sections += [gap_section(record)] if record.found.gap or record.layers else []
     sections += [remains_section(record), next_section(record)]
+    sections += [own_section(record)] if record.found.own else []
     sections.append(Section("How this was found", [Facts(_facts(record, environment))]))
     return Page(
         title=f"{record.name}: what the model lacks",

@@ -9,6 +9,7 @@ from pathlib import Path
 from benchmark.discovery.discovery_result import Array, ChannelGap, Discovery, Estimate, channel_unit
 from benchmark.model_file import AddedEffect, RepairedModel, Value
 from benchmark.physics.description import EffectDescription
+from benchmark.physics.setup_entry import setup_key
 
 NAMING = ("named", "conditional", "lookalikes", "partly_explained", "instrument_first")
 """Verdicts under which the effects of the answer are part of the model; elsewhere they are nearest entries only."""
@@ -131,11 +132,11 @@ class DiscoveryRecord:
         return self.found.verdict in NAMING and bool(self.found.effects)
 
     def repaired(self) -> RepairedModel:
-        """The model to write: base and, where something was named, the effects."""
+        """The model to write: base and, where something was named, the effects; what is wrong of a set-up is none."""
         effects = [
             AddedEffect(effect.slug, {each.name: _value(each) for each in effect.parameters})
             for effect in self.found.effects
-            if self.named
+            if self.named and setup_key(effect.slug) is None
         ]
         return RepairedModel("model.toml", self.tissue, self.model, tuple(effects), self._evidence(), self.large_press)
 

@@ -49,6 +49,33 @@ def test_the_border_costs_less_than_a_thousandth(contact, nu):
     np.testing.assert_allclose(depth(automatic), depth(4.0 * automatic), rtol=1e-3)
 
 
+def test_a_sheet_clamped_at_the_rim_ends_there_and_is_held_at_its_edge_alone():
+    p = problem(fem.Support("hole", 0.03, clamp="rim"))
+    mesh = lay_out(p)
+    fixed = SUPPORT_MODELS["hole"].fixed(mesh, p)
+    assert mesh.radius == 0.03
+    np.testing.assert_array_equal(fixed, mesh.border)
+
+
+@pytest.mark.parametrize("wrong", [{"kind": "bonded"}, {"kind": "hole", "hole_radius": 0.03, "clamp_shear_limit": 1e3}])
+def test_only_a_sheet_that_does_not_slide_has_a_rim(wrong):
+    with pytest.raises(fem.FemError, match=r"support.clamp = 'rim'"):
+        fem.Support(**wrong, clamp="rim")
+
+
+def test_a_clamp_at_the_rim_is_a_thin_plates_clamped_edge():
+    # w = F R^2 / (16 pi D) of a clamped plate under a small disc; a plate round the hole is softer
+    sheet = fem.Layer("sheet", 1e-3, 1000.0, fem.NeoHookean(1e5, 0.49))
+
+    def stiffness(clamp):
+        p = fem.Problem((sheet,), fem.Tool(1e-3, "uniform_pressure"), fem.Support("hole", 0.03, clamp=clamp), "linear")
+        return 1e-3 / fem.prepare(p).run(fem.Load("force", [1.0], [1e-3])).top_deflection[0, -1]
+
+    plate = 16 * np.pi * 1e5 * 1e-9 / 12 / (1 - 0.49**2) / 0.03**2
+    assert stiffness("rim") == pytest.approx(plate, rel=0.02)
+    assert stiffness("plate") < 0.98 * stiffness("rim")
+
+
 def test_hole_is_free_inside_and_has_its_rim_on_a_grid_line():
     p = problem(fem.Support("hole", 0.03))
     mesh = lay_out(p)

@@ -7,6 +7,7 @@ import pytest
 from benchmark.discovery.answer.verdict import Facts, statement, verdict
 from benchmark.discovery.discovery_result import VERDICTS
 from benchmark.physics import catalogue
+from benchmark.physics.setup_entry import setup_entry
 
 BY_SLUG = {effect.slug: effect for effect in catalogue()}
 RELAXATION, DRAINAGE = BY_SLUG["viscoelastic_relaxation"], BY_SLUG["poroelastic_drainage"]
@@ -165,3 +166,12 @@ def test_an_instrument_that_differs_between_conditions_and_leaves_something_is_n
     assert verdict(left) == "outside_catalogue"
     assert "another instrument in each condition" in statement("outside_catalogue", left)
     assert verdict(facts(effects=(DRIFT,), left=0.2, p_after=0.002)) == "partly_explained"
+
+
+def test_a_set_up_that_is_not_as_told_is_said_apart_from_what_the_model_lacks():
+    clamp = setup_entry("support.clamp", 1.0, choice=True)
+    alone = statement("named", facts(effects=(clamp,)))
+    both = statement("named", facts(effects=(clamp, BY_SLUG["pretension"])))
+    assert alone.startswith("The set-up is not as told (support.clamp): it holds")
+    assert both.startswith("The set-up is not as told (support.clamp), and the model lacks pretension:")
+    assert verdict(facts(effects=(clamp,), lookalikes=(BY_SLUG["pretension"],))) == "instrument_first"

@@ -6,7 +6,8 @@ import pytest
 from benchmark.discovery import criteria
 from benchmark.discovery.base.base_shape import Shape, ShapedTable
 from benchmark.discovery.base.calibration import calibrate
-from benchmark.discovery.base.setup_priors import setup_priors, shares, unused
+from benchmark.discovery.base.effect_model import EffectModel
+from benchmark.discovery.base.setup_priors import setup_entries, setup_priors, shares, table_keys, unused
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import load_session
 from benchmark.response.elastic_table import ElasticTable, SetupDerivative
@@ -43,17 +44,57 @@ def session_in(folder, quick_session, *, layers=None, hole=False, radius="5 mm")
     return load_session(folder)
 
 
-def test_where_nothing_is_stated_only_the_tool_may_be_another(tmp_path, quick_session):
-    assert setup_priors(session_in(tmp_path, quick_session, hole=True)) == {"tool.radius": criteria.RADIUS_PRIOR}
-
-
-def test_what_is_stated_moves_and_no_more(tmp_path, quick_session):
-    session = session_in(tmp_path, quick_session, layers=TWO_LAYERS, radius="5 mm +/- 2 %")
-    assert setup_priors(session) == {
-        "tool.radius": pytest.approx(0.02),
-        "dermis.thickness": pytest.approx(0.01),
-        "dermis.youngs_modulus": pytest.approx(0.1),
+def test_where_nothing_is_stated_a_set_up_is_known_as_people_know_it(tmp_path, quick_session):
+    priors = setup_priors(session_in(tmp_path, quick_session, hole=True))
+    usual = criteria.SETUP_PRIOR
+    assert priors == {
+        "tool.radius": usual["tool.radius"],
+        "support.hole_radius": usual["support.hole_radius"],
+        "layer.thickness": usual["thickness"],
     }
+
+
+def test_what_is_stated_takes_the_place_of_what_people_know(tmp_path, quick_session):
+    session = session_in(tmp_path, quick_session, layers=TWO_LAYERS, radius="5 mm +/- 2 %")
+    priors = setup_priors(session)
+    assert priors["tool.radius"] == pytest.approx(0.02)
+    assert priors["dermis.thickness"] == pytest.approx(0.01)
+    assert priors["dermis.youngs_modulus"] == pytest.approx(0.1)
+    assert priors["fat.youngs_modulus"] == criteria.SETUP_PRIOR["youngs_modulus"]
+
+
+def test_a_sheet_over_a_hole_could_be_held_and_touched_otherwise(tmp_path, quick_session):
+    assert table_keys(session_in(tmp_path / "bonded", quick_session)) == ("tool.radius", "layer.thickness")
+    assert table_keys(session_in(tmp_path / "hole", quick_session, hole=True))[-2:] == (
+        "support.clamp",
+        "tool.contact",
+    )
+
+
+def test_a_set_up_has_an_entry_for_each_key_that_all_tables_know():
+    depth = np.linspace(0.0, 1.0, 5)
+    zero = SetupDerivative(np.zeros((1, 5)))
+    tables = [ElasticTable(depth, depth, depth, by=dict.fromkeys(keys, zero)) for keys in ("ab", "b")]
+    assert [entry.slug for entry in setup_entries(tables)] == ["setup.b"]
+    clamp = setup_entries([ElasticTable(depth, depth, depth, by={"support.clamp": zero})])[0]
+    share = clamp.description.parameters[0]
+    assert (clamp.slug, share.low, share.high) == ("setup.support.clamp", 0.0, 1.0)
+
+
+def test_an_entry_changes_the_base_beyond_what_its_prior_allows(tmp_path, quick_session):
+    problem = calibrate(*prepared(tmp_path, quick_session)).problem
+    entry = next(one for one in setup_entries(problem.tables) if one.slug == "setup.layer.thickness")
+    model = EffectModel(problem, (entry,))
+    vector = model.vector(np.zeros(model.shape_count), {entry.slug: {"change": 0.1}})
+    assert model.shape(vector).setup["layer.thickness"] == pytest.approx(0.1)
+    plain = EffectModel(problem, ()).signals(np.zeros(model.shape_count), np.zeros((6, 4)))
+    moved = model.signals(vector, np.zeros((6, 4)))
+    assert moved[0][:, 0].max() < 0.97 * plain[0][:, 0].max()  # a thicker layer on a base is softer
+
+
+def prepared(folder, quick_session):
+    session = session_in(folder, quick_session)
+    return session, prepare(session, 60)
 
 
 def test_the_modulus_of_one_layer_is_the_common_factor_and_a_density_changes_nothing(tmp_path, quick_session):

@@ -1,0 +1,88 @@
+"""Bounds that physics gives to what each trial has of its own, and remarks on those that are large.
+
+A tool touches where the force has not yet risen over its noise, a sensor's zero is what it shows at rest, and a clock
+is late by a sample or two. Gain and marker zeros have priors alone.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from benchmark.discovery import criteria
+from benchmark.discovery.base.trials_problem import OWN, TrialRef, TrialsProblem
+from benchmark.discovery.discovery_result import PHASES
+from benchmark.discovery.own_values import TrialValues
+from benchmark.response.force_curve import Array
+
+APPROACH = PHASES.index("approach")
+
+
+def trial_bounds(problem: TrialsProblem) -> tuple[Array, Array]:
+    """Lower and upper bounds (R, q) of the trials' nuisances."""
+    count = len(OWN) + len(problem.zeros)
+    low, high = np.full((len(problem.trials), count), -np.inf), np.full((len(problem.trials), count), np.inf)
+    late = max(criteria.LATEST, criteria.LATE_ROWS * problem.study.raw_interval)
+    for index, trial in enumerate(problem.trials):
+        noise = float(problem.noise.scale[index, 0])
+        zero, touch = zero_range(problem, trial, noise), touch_range(problem, trial, noise)
+        for name, ends in (("zero", zero), ("shift", (-late, late)), ("height", touch)):
+            low[index, OWN.index(name)], high[index, OWN.index(name)] = ends
+    return low, high
+
+
+def zero_range(problem: TrialsProblem, trial: TrialRef, noise: float) -> tuple[float, float]:
+    """Between which forces, N, a sensor's zero lies by the rows in air before the press, give or take its noise."""
+    resting = _resting(problem, trial)
+    if not resting.any():
+        wide = criteria.UNSEEN_ZERO * problem.study.conditions[trial.condition].around.peak_force
+        return -wide, wide
+    force, spare = trial.signals[resting, 0], criteria.OVER_NOISE * noise
+    return float(force.min()) - spare, float(force.max()) + spare
+
+
+def touch_range(problem: TrialsProblem, trial: TrialRef, noise: float) -> tuple[float, float]:
+    """Between which depths, m, a tool touches: not beyond the row in which the force has risen, nor so far before zero.
+
+    Rows that rise are those of the first press whose force is over that at rest by several times its noise.
+    """
+    resting, force, depth = _resting(problem, trial), trial.signals[:, 0], trial.motion.depth
+    rest = float(np.median(force[resting])) if resting.any() else float(force[:2].min())
+    risen = np.flatnonzero((force > rest + criteria.RISEN * noise) & (depth > 0.0))
+    least = criteria.LEAST_TOUCH * float(depth.max())
+    reach = max(float(depth[risen[0]]) if risen.size else float(depth.max()), least)
+    return -reach, reach
+
+
+def _resting(problem: TrialsProblem, trial: TrialRef) -> Array:
+    """Mask (n,) of the rows in air before the first press."""
+    return np.asarray((problem.study.conditions[trial.condition].phase == APPROACH) & (trial.motion.depth <= 0.0))
+
+
+def trial_values(problem: TrialsProblem, nuisance: Array) -> tuple[TrialValues, ...]:
+    """The fitted nuisances (R, q) of the trials, and which stand at their bounds."""
+    low, high = trial_bounds(problem)
+    stuck = (nuisance <= low) | (nuisance >= high)
+    out = []
+    for index, trial in enumerate(problem.trials):
+        gain, zero, shift, height = nuisance[index, : len(OWN)].tolist()
+        names = tuple(name for name, at in zip(OWN, stuck[index], strict=False) if at)
+        out.append(TrialValues(trial.name, float(np.exp(gain)), zero, shift, height, names))
+    return tuple(out)
+
+
+def large_remarks(problem: TrialsProblem, nuisance: Array) -> tuple[str, ...]:
+    """A warning of zeros, time shifts and depths at touch that are large: at a bound, or a share of peak or press."""
+    found = []
+    for trial, own in zip(problem.trials, trial_values(problem, nuisance), strict=True):
+        around = problem.study.conditions[trial.condition].around
+        if abs(own.zero) > criteria.LARGE_SHARE * around.peak_force or "zero" in own.at_bound:
+            found.append(f"{own.trial}: {own.zero:.3g} N at rest")
+        if abs(own.touch) > criteria.LARGE_SHARE * around.peak_depth or "height" in own.at_bound:
+            found.append(f"{own.trial}: touches at {1e3 * own.touch:.3g} mm")
+        if "shift" in own.at_bound:
+            found.append(f"{own.trial}: force and frames late by {1e3 * own.late:.3g} ms, as far as allowed")
+    if not found:
+        return ()
+    shown = "; ".join(found[: criteria.MOST_LARGE])
+    more = f"; and {len(found) - criteria.MOST_LARGE} more" if len(found) > criteria.MOST_LARGE else ""
+    return (f"trials have large values of their own, which may hide an effect: {shown}{more}",)

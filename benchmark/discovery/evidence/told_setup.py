@@ -1,0 +1,47 @@
+"""Whether an answer on the set-up as told stands against a set-up that is off by no more than people are wrong.
+
+A base that may be off in every thickness and modulus takes up much of what a smooth effect of the body does; one that
+is trusted to the last digit takes the error of a set-up for an effect. So effects are looked for on the set-up as told,
+and what is found must hold against the other base: that base must not gain by moving once the effects are there, and
+without any one of them it must not do as well by moving alone. Otherwise the search is made on the base that moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from benchmark.discovery import criteria
+from benchmark.discovery.base.effect_model import EffectModel, Fit, fit
+from benchmark.discovery.base.setup_priors import is_setup
+from benchmark.discovery.evidence.gains import held_out
+from benchmark.discovery.evidence.pool import Pool
+from benchmark.discovery.evidence.selection import rebuilt
+
+
+def on_told(moving: Fit, told: Mapping[str, float]) -> Fit:
+    """The base of a fit with the set-up as told: only the keys of `told` may be others, by their standard deviations.
+
+    The fit itself where it moves no more than that.
+    """
+    problem = moving.model.problem
+    if set(problem.setup) <= set(told):
+        return moving
+    fixed = replace(problem, setup={key: size for key, size in told.items() if key in problem.setup})
+    kept = [k for k, name in enumerate(problem.shapes) if not is_setup(name) or name in fixed.setup]
+    return fit(EffectModel(fixed, ()), moving.vector[kept], moving.nuisance, most=8)
+
+
+def stands(chosen: Fit, moving: Fit, work: Pool) -> bool:
+    """Whether the effects of a fit on the set-up as told hold against the base that moves; so does no effect at all."""
+    effects = chosen.model.effects
+    if not effects:
+        return True
+    found = float(held_out(chosen).sum())
+    if found - float(held_out(moving).sum()) < criteria.OVER_SETUP:
+        return False
+    for left in range(len(effects)):
+        others = rebuilt(moving, effects[:left] + effects[left + 1 :], work, "set-up")
+        if found - float(held_out(others).sum()) < criteria.OVER_SETUP:
+            return False
+    return float(held_out(rebuilt(moving, effects, work, "set-up")).sum()) - found < criteria.OVER_SETUP

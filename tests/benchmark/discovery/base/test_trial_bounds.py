@@ -1,0 +1,65 @@
+"""What each trial has of its own stays within what physics allows, and what is large is said."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmark.discovery import criteria
+from benchmark.discovery.base.effect_model import EffectModel, fit
+from benchmark.discovery.base.trial_bounds import large_remarks, touch_range, trial_bounds, trial_values, zero_range
+from benchmark.discovery.base.trials_problem import NoiseModel, TrialPrior, TrialsProblem, trial_refs
+from benchmark.discovery.trials.preparing import prepare
+from benchmark.files import load_session
+from benchmark.response.elastic_table import ElasticTable
+
+LATE = 0.5
+
+
+@pytest.fixture(scope="module")
+def problem(tmp_path_factory, quick_session):
+    session = load_session(quick_session.write_session(tmp_path_factory.mktemp("own") / "own", trials=3))
+    study = prepare(session, 60)
+    depth = np.linspace(0.0, 4e-3, 400)
+    table = ElasticTable(depth, quick_session.law(depth), np.array([0.0, 1.0]))
+    noise = NoiseModel((0.6,), np.full((6, 1), 0.005 * float(table.force.max())))
+    return TrialsProblem(study, (table, table), noise, TrialPrior(0.1, 0.5, 1.0, 1e-3, 1e-2), trial_refs(study))
+
+
+def test_a_zero_is_what_the_sensor_shows_at_rest(problem):
+    trial, noise = problem.trials[0], float(problem.noise.scale[0, 0])
+    low, high = zero_range(problem, trial, noise)
+    resting = trial.signals[trial.motion.depth <= 0.0, 0][:5]
+    assert low <= resting.min() <= resting.max() <= high
+    assert high - low < np.ptp(resting) + 2.0 * criteria.OVER_NOISE * noise + 10.0 * noise
+
+
+def test_a_tool_touches_no_deeper_than_where_the_force_has_risen(problem):
+    trial, noise = problem.trials[0], float(problem.noise.scale[0, 0])
+    low, high = touch_range(problem, trial, noise)
+    risen = trial.signals[:, 0] > np.median(trial.signals[:4, 0]) + 3.0 * criteria.RISEN * noise
+    assert 0.0 < high <= trial.motion.depth[risen].min()
+    assert low == -high
+    later = replace(trial, motion=replace(trial.motion, depth=trial.motion.depth + 1e-3))
+    assert touch_range(problem, later, noise)[1] > high + 0.5e-3
+
+
+def test_a_clock_that_is_far_too_late_is_followed_to_its_bound_and_said(problem):
+    slow = [replace(t, motion=replace(t.motion, time=t.motion.time), signals=_later(t)) for t in problem.trials]
+    late = replace(problem, trials=tuple(slow))
+    model = EffectModel(late, ())
+    fitted = fit(model, np.zeros(model.size))
+    high = trial_bounds(late)[1][:, 2]
+    assert high == pytest.approx(max(criteria.LATEST, criteria.LATE_ROWS * problem.study.raw_interval))
+    assert (fitted.nuisance[:, 2] == high).any()
+    assert any("shift" in own.at_bound for own in trial_values(late, fitted.nuisance))
+    assert "late by" in large_remarks(late, fitted.nuisance)[0]
+
+
+def test_what_is_small_is_not_warned_of(problem):
+    assert large_remarks(problem, np.zeros((6, 4))) == ()
+
+
+def _later(trial):
+    shifted = np.interp(trial.motion.time - LATE, trial.motion.time, trial.signals[:, 0])
+    return shifted[:, None]
