@@ -10,7 +10,7 @@ import numpy as np
 Draw = Callable[[np.random.Generator], "LabConditions"]
 
 PRINTED = 0.06e-3
-"""Standard deviation of dots made by hand with a stencil, m (DISCOVERY.md, section 11)."""
+"""Standard deviation of dots made by hand with a stencil, m."""
 USUAL_RATE = 30.0
 AS_TOLD = "as_told"
 
