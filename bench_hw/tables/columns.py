@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -19,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
-from bench_hw.storage.regular_file import TABLE, read_regular
+from bench_hw.storage.regular_file import TABLE, open_regular, read_regular
 from bench_hw.tables.units import UNITS, FloatArray, split_unit
 
 MINIMUM_ROWS = 20
@@ -28,6 +29,10 @@ MINIMUM_ROWS = 20
 LARGEST = {"s": 1e10, "m": 1e3, "N": 1e9}
 """Largest magnitudes of a measured time, length and force, SI: squares of what is larger overflow in a fit."""
 
+LARGE = 16_000_000
+"""Bytes of a file from which on it is read piece by piece."""
+PIECE = 4_000_000
+_LONGEST_HEADER = 100_000
 _NUMERIC_BYTES = b"0123456789+-.eE,\n \t"
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
@@ -105,6 +110,45 @@ def _check_names(path: Path, names: tuple[str, ...], required: Sequence[str]) ->
             raise TableError(path, "a column has no name", "a name for every column", row=1, column=name)
         if count > 1:
             raise TableError(path, f"the column is there {count} times", "each name once", row=1, column=name)
+
+
+def read_table(path: Path, required: Sequence[str], may_be_empty: Collection[str] = ()) -> NumericColumns:
+    """Read a file of numbers: a large one piece by piece where it is plain, in a few times the memory of its numbers.
+
+    As `read_columns` of `read_source`, which reads what is small, and what holds anything but numbers.
+    """
+    return _streamed(path, required) or read_columns(read_source(path, required), required, may_be_empty)
+
+
+def _streamed(path: Path, required: Sequence[str]) -> NumericColumns | None:
+    """The columns of a large file that is numbers throughout; None for any other, and where anything is odd."""
+    try:
+        with open_regular(path, TABLE) as stream:
+            if os.fstat(stream.fileno()).st_size < LARGE:
+                return None
+            header = stream.readline(_LONGEST_HEADER).decode("utf-8-sig").rstrip("\r\n")
+            names = tuple(name for _, cells in _records(path, header, 1) for name in cells)
+            _check_names(path, names, required)
+            pieces = [_piece(lines, len(names)) for lines in iter(lambda: stream.readlines(PIECE), [])]
+    except (OSError, ValueError):
+        return None
+    plain = [piece for piece in pieces if piece is not None]
+    if not plain or len(plain) < len(pieces):
+        return None
+    lines = np.arange(2, sum(map(len, plain)) + 2)
+    values = {name: np.concatenate([piece[:, k] for piece in plain]) for k, name in enumerate(names)}
+    for name, column in values.items():
+        _check_finite(path, name, column, lines)
+        _check_size(path, name, column, lines)
+    return NumericColumns(path, values, lines)
+
+
+def _piece(lines: list[bytes], columns: int) -> FloatArray | None:
+    """The numbers of some lines, (rows, columns); None where they are anything else."""
+    if b"".join(lines).translate(None, _NUMERIC_BYTES + b"\r"):
+        return None
+    matrix = np.loadtxt(lines, delimiter=",", comments=None, ndmin=2)
+    return matrix if matrix.shape == (len(lines), columns) else None
 
 
 def numeric_matrix(source: CsvText) -> FloatArray | None:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
-from bench_hw.tables.columns import NumericColumns, check_increasing, check_row_count, read_columns, read_source
+from bench_hw.tables.columns import NumericColumns, check_increasing, check_row_count, read_table
 from bench_hw.tables.output import write_columns
 from bench_hw.tables.units import FloatArray, from_si, join_unit, split_unit, to_si
 
@@ -101,7 +101,7 @@ def read_trial_csv(path: Path | str) -> TrialTable:
         in a numeric column, time that does not increase, fewer than 20 rows.
     """
     path = Path(path)
-    columns = read_columns(read_source(path, TRIAL_COLUMNS), TRIAL_COLUMNS)
+    columns = read_table(path, TRIAL_COLUMNS)
     check_increasing(path, "time_s", columns.values["time_s"], columns.lines)
     check_row_count(path, len(columns.lines))
     si, units = _in_si(path, columns.values)
@@ -172,7 +172,7 @@ def read_marker_csv(path: Path | str) -> MarkerTable:
         other, a marker twice at one time.
     """
     path = Path(path)
-    columns = read_columns(read_source(path, MARKER_COLUMNS), MARKER_COLUMNS[:2], _MAY_BE_EMPTY)
+    columns = read_table(path, MARKER_COLUMNS, _MAY_BE_EMPTY)
     marker = _marker_numbers(columns)
     _check_pairs(columns)
     _check_order(columns, marker)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.identification.errors import FittingError
+from benchmark.identification.reduction import group_bounds
 from benchmark.response.force_curve import Array, ForceCurve
 
 LEAST_ROWS = 20
@@ -77,18 +78,20 @@ def _first_bad(values: Array) -> int:
 
 
 def reduced(trial: TrialData, rows: int) -> TrialData:
-    """Return the trial with at most `rows` rows (>= 40), each the mean of equally many neighbouring rows.
+    """Return the trial with about `rows` rows (>= 40) or fewer, each the mean of equally many neighbouring rows.
 
-    The last rows that do not fill a group are averaged too. A short enough trial is returned as it is.
+    The last rows that do not fill a group are averaged too. A short enough trial is returned as it is; of one with more
+    cycles than so many rows can follow some stand for all (see `reduction`).
     """
     if trial.rows <= rows:
         return trial
-    group = -(-trial.rows // rows)
-    starts = np.arange(0, trial.rows, group)
-    sizes = np.diff(np.append(starts, trial.rows))
+    starts, ends = group_bounds(trial.depth, rows)
+    whole = bool((starts[1:] == ends[:-1]).all()) and ends[-1] == trial.rows
 
     def means(values: Array) -> Array:
-        return np.asarray(np.add.reduceat(values, starts) / sizes)
+        if whole:
+            return np.asarray(np.add.reduceat(values, starts) / (ends - starts))
+        return np.array([values[start:end].mean() for start, end in zip(starts, ends, strict=True)])
 
     return replace(trial, time=means(trial.time), depth=means(trial.depth), force=means(trial.force))
 

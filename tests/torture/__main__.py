@@ -1,0 +1,76 @@
+"""`make test-torture`: kills, malformed files and bad surroundings in bounded time, a table of each."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
+
+from tests.torture import inputs, kills, places
+from tests.torture.scene import complete_scene, make_scene
+
+PARTS = ("kills", "inputs", "places")
+
+
+def main() -> int:
+    """Run the parts that were asked for; return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m tests.torture", description=__doc__)
+    parser.add_argument("--minutes", type=float, default=20.0, help="for each part")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--moments", type=int, default=200, help="kills over all verbs")
+    parser.add_argument("--each", type=int, default=50, help="files of each kind")
+    parser.add_argument("--only", nargs="*", choices=PARTS, default=PARTS)
+    asked = parser.parse_args()
+    _warm()
+    folder = Path(tempfile.mkdtemp(prefix="torture-"))
+    try:
+        scene = make_scene(folder / "scene")
+        complete_scene(scene)
+        failures = [_part(name, scene, asked) for name in asked.only]
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    return 1 if any(failures) else 0
+
+
+def _part(name: str, scene: Path, asked: argparse.Namespace) -> int:
+    """One part, its table and its failures on standard output; how many there were."""
+    until = time.monotonic() + 60.0 * asked.minutes
+    if name == "kills":
+        tallies = kills.torture(scene, until, asked.seed, asked.moments)
+        table, failed = kills.rows(tallies), {verb: each.failures for verb, each in tallies.items()}
+    elif name == "inputs":
+        counts = inputs.torture(scene / "fuzzed", until, asked.seed, asked.each)
+        table, failed = inputs.rows(counts), {kind: each.failures for kind, each in counts.items()}
+        shutil.rmtree(scene / "fuzzed", ignore_errors=True)
+    else:
+        found = places.torture(scene, until)
+        table, failed = places.rows(found), {place: each.failures for place, each in found.items()}
+    widths = [max(len(row[k]) for row in table) for k in range(len(table[0]))]
+    print(f"\n{name}, seed {asked.seed}")
+    for row in table:
+        print("| " + " | ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) + " |")
+    for what, texts in failed.items():
+        for text in texts:
+            print(f"FAILED {what}: {text}")
+    sys.stdout.flush()
+    return sum(map(len, failed.values()))
+
+
+def _warm() -> None:
+    """Import what the commands import, so that each fork of this process begins to work at once."""
+    import benchmark.cli.app
+    import benchmark.discovery.discovery_request
+    import benchmark.runs.fit_run
+    import benchmark.runs.requests
+    import benchmark.sweeps.sweep_run
+    import benchmark.verification.cases  # noqa: F401
+
+
+if __name__ == "__main__":
+    sys.exit(main())
