@@ -6,12 +6,13 @@ RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
 BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-gate bench-sweep bench-discovery bench-effects
-.PHONY: help run test test-slow $(BENCHES) lint types imports check docs lock clean
+.PHONY: help run test test-slow test-torture $(BENCHES) lint types imports check docs lock clean
 
 help:
 	@echo "make run              phantom trials, the 5 N skin press, and a hidden effect found: three reports"
 	@echo "make test             the tests (under 10 minutes on 2 cores)"
 	@echo "make test-slow        the long checks"
+	@echo "make test-torture     kills, malformed files and bad surroundings, each with a table (an hour)"
 	@echo "make check            lint, types and import rules"
 	@echo "make docs             the documentation as a site in build/site"
 	@echo "make bench-wave       microseconds a frame of the wave beside its rivals, each with its error"
@@ -46,6 +47,9 @@ test: $(DEV_STAMP)
 
 test-slow: $(DEV_STAMP)
 	$(PY) -m pytest -n 2 -m slow
+
+test-torture: $(DEV_STAMP)
+	$(PY) -m tests.torture
 
 lint: $(DEV_STAMP)
 	$(VENV)/bin/ruff check .

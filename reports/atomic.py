@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 import os
-import secrets
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -105,8 +105,31 @@ def plain(value: Any, where: str = "value") -> Any:
 
 
 def _sibling(target: Path) -> Path:
-    """Return a free hidden name in the folder of `target`."""
-    return target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+    """Return a free hidden name in the folder of `target`, and clear away what dead processes left of writing it."""
+    remove_dead(target, "part")
+    return target.with_name(f".{target.name}.{os.getpid():08x}.part")
+
+
+def remove_dead(target: Path, ending: str) -> None:
+    """Remove what processes that are gone left of writing `target`: `.NAME.NUMBER.ENDING`, their numbers in hex."""
+    if os.name != "posix":
+        return
+    part = re.compile(re.escape(f".{target.name}.") + rf"([0-9a-f]{{8}})\.{ending}")
+    for path in target.parent.iterdir():
+        match = part.fullmatch(path.name)
+        if match and path.is_file() and not path.is_symlink() and not _lives(int(match[1], 16)):
+            path.unlink(missing_ok=True)
+
+
+def _lives(process: int) -> bool:
+    """Whether a process of this number is there, this one apart, which has nothing else to write."""
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except PermissionError:
+        return True
+    return process != os.getpid()
 
 
 def sync_folder(folder: Path) -> None:

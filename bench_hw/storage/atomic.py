@@ -6,7 +6,7 @@ The trial file being recorded is no such file (it must survive a kill in the mid
 from __future__ import annotations
 
 import os
-import secrets
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -41,7 +41,8 @@ def replacing(path: Path, read_back: ReadBack | None = None) -> Iterator[Path]:
         The folder cannot be made or written.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.tmp")
+    remove_dead(path, "tmp")
+    temporary = path.with_name(f".{path.name}.{os.getpid():08x}.tmp")
     try:
         yield temporary
         _sync(temporary)
@@ -91,6 +92,28 @@ def check_replaceable(path: Path, sign: bytes, kind: str) -> None:
         with path.open("rb") as stream:
             if sign not in stream.read(_BEGINNING):
                 raise InputError(f"{path}: the file exists and is not {kind}; nothing else is replaced, give another")
+
+
+def remove_dead(target: Path, ending: str) -> None:
+    """Remove what processes that are gone left of writing `target`: `.NAME.NUMBER.ENDING`, their numbers in hex."""
+    if os.name != "posix":
+        return
+    part = re.compile(re.escape(f".{target.name}.") + rf"([0-9a-f]{{8}})\.{ending}")
+    for path in target.parent.iterdir():
+        match = part.fullmatch(path.name)
+        if match and path.is_file() and not path.is_symlink() and not _lives(int(match[1], 16)):
+            path.unlink(missing_ok=True)
+
+
+def _lives(process: int) -> bool:
+    """Whether a process of this number is there, this one apart, which has nothing else to write."""
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except PermissionError:
+        return True
+    return process != os.getpid()
 
 
 def _sync(path: Path) -> None:

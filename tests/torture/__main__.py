@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib
 import os
 import shutil
 import sys
@@ -13,8 +14,21 @@ from pathlib import Path
 os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
 
 from tests.torture import inputs, kills, places
+from tests.torture.commands import COMMANDS
 from tests.torture.scene import complete_scene, make_scene
 
+MODULES = {
+    "fit": ("benchmark.runs.fit_run",),
+    "run": ("benchmark.runs.requests",),
+    "report": ("benchmark.runs.finished.carrying_out",),
+    "verify": ("benchmark.verification.cases", "benchmark.verification.verification_page"),
+    "sweep": ("benchmark.sweeps.sweep_run",),
+    "discover": ("benchmark.discovery.discovery_request",),
+    "capture": ("bench_hw.capture.session",),
+    "track": ("bench_hw.vision.tracking.film",),
+}
+PLAIN = {"tissues new", "import", "track", "verify", "fit", "sweep", "run", "discover", "capture"}
+"""Verbs that read nothing which a command of ours makes."""
 PARTS = ("kills", "inputs", "places")
 
 
@@ -26,12 +40,14 @@ def main() -> int:
     parser.add_argument("--moments", type=int, default=200, help="kills over all verbs")
     parser.add_argument("--each", type=int, default=50, help="files of each kind")
     parser.add_argument("--only", nargs="*", choices=PARTS, default=PARTS)
+    parser.add_argument("--verbs", nargs="*", default=[each.verb for each in COMMANDS], help="of the kills")
     asked = parser.parse_args()
-    _warm()
+    _warm(asked.verbs if asked.only == ["kills"] else [each.verb for each in COMMANDS])
     folder = Path(tempfile.mkdtemp(prefix="torture-"))
     try:
         scene = make_scene(folder / "scene")
-        complete_scene(scene)
+        if asked.only != ["kills"] or not set(asked.verbs) <= PLAIN:
+            complete_scene(scene)
         failures = [_part(name, scene, asked) for name in asked.only]
     finally:
         shutil.rmtree(folder, ignore_errors=True)
@@ -42,7 +58,7 @@ def _part(name: str, scene: Path, asked: argparse.Namespace) -> int:
     """One part, its table and its failures on standard output; how many there were."""
     until = time.monotonic() + 60.0 * asked.minutes
     if name == "kills":
-        tallies = kills.torture(scene, until, asked.seed, asked.moments)
+        tallies = kills.torture(scene, until, asked.seed, asked.moments, asked.verbs)
         table, failed = kills.rows(tallies), {verb: each.failures for verb, each in tallies.items()}
     elif name == "inputs":
         counts = inputs.torture(scene / "fuzzed", until, asked.seed, asked.each)
@@ -62,14 +78,11 @@ def _part(name: str, scene: Path, asked: argparse.Namespace) -> int:
     return sum(map(len, failed.values()))
 
 
-def _warm() -> None:
+def _warm(verbs: list[str]) -> None:
     """Import what the commands import, so that each fork of this process begins to work at once."""
-    import benchmark.cli.app
-    import benchmark.discovery.discovery_request
-    import benchmark.runs.fit_run
-    import benchmark.runs.requests
-    import benchmark.sweeps.sweep_run
-    import benchmark.verification.cases  # noqa: F401
+    for verb in verbs:
+        for module in ("benchmark.cli.app", "bench_hw.cli", *MODULES.get(verb, ())):
+            importlib.import_module(module)
 
 
 if __name__ == "__main__":

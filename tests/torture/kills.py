@@ -29,13 +29,13 @@ class Tally:
     failures: list[str] = field(default_factory=list)
 
 
-def torture(scene: Path, until: float, seed: int, most: int) -> dict[str, Tally]:
+def torture(scene: Path, until: float, seed: int, most: int, verbs: list[str]) -> dict[str, Tally]:
     """Kill commands in turn until the time or the number of moments is over; what was seen by verb."""
     draw, tallies = random.Random(seed), defaultdict(Tally)
     usual: dict[str, tuple[float, dict[str, Any]]] = {}
     done = turn = 0
     while done < most and time.monotonic() < until:
-        for number, command in enumerate(COMMANDS):
+        for number, command in enumerate(each for each in COMMANDS if each.verb in verbs):
             if done >= most or time.monotonic() > until:
                 break
             if command.verb not in usual:

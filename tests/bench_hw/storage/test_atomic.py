@@ -1,5 +1,9 @@
 """Files are written whole or not at all."""
 
+import os
+import subprocess
+import sys
+
 import pytest
 
 from bench_hw.errors import InputError
@@ -32,3 +36,13 @@ def test_only_a_file_of_the_same_kind_is_replaced(tmp_path):
         check_replaceable(path, b"time_s,marker,", "a table of markers")
     with pytest.raises(InputError, match="is a folder"):
         check_replaceable(tmp_path, b"", "anything")
+
+
+def test_what_a_dead_process_left_of_writing_goes_with_the_next(tmp_path):
+    with subprocess.Popen([sys.executable, "-c", ""]) as dead:
+        pass
+    theirs = [".a.toml.zzzzzzzz.tmp", ".b.toml.0000ffff.tmp", ".a.toml.00000001.tmp"]
+    for name in (*theirs, f".a.toml.{dead.pid:08x}.tmp", f".a.toml.{os.getpid():08x}.tmp"):
+        (tmp_path / name).write_text("half")
+    write_text(tmp_path / "a.toml", "whole")
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([*theirs, "a.toml"])
