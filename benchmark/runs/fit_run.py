@@ -158,7 +158,8 @@ def fit_to_folder(request: FitRequest, out: Path | None, listener: Listener) -> 
     OSError
         Where the file system refuses; `out` is then as it was.
     """
-    inputs = (request.session, request.model, request.effects, request.specimen, *request.settings.values())
+    sessions = (request.session, *request.wish.sessions)
+    inputs = (*sessions, request.model, request.effects, request.specimen, *request.settings.values())
     with claimed(out, "fit"):
         destination(out, "", inputs)
         record = carry_out_fit(request, listener)
