@@ -5,7 +5,7 @@ PY     := $(VENV)/bin/python
 RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
-BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-gate bench-sweep bench-discovery bench-effects
+BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-gate bench-sweep bench-discovery bench-effects bench-derivatives
 .PHONY: help run test test-slow test-torture $(BENCHES) lint types imports check docs lock clean
 
 help:
@@ -21,6 +21,7 @@ help:
 	@echo "make bench-liver      a synthetic liver from its STL file to a pressed VTU"
 	@echo "make bench-vision     frames a second of the tracker, and its memory on a long video"
 	@echo "make bench-effects    wave and finite elements with each body effect, side by side"
+	@echo "make bench-derivatives  what derivatives of a press cost, and CalculiX as their judge"
 	@echo "make bench-sweep      a sweep by one and by two local workers"
 	@echo "make bench-gate       the regression gate on trial: false alarms and power (hours at full length)"
 	@echo "make bench-discovery  the discovery on 150 sessions with hidden effects (hours)"
@@ -91,6 +92,9 @@ bench-gate: $(DEV_STAMP)
 
 bench-effects: $(RUN_STAMP)
 	$(PY) -m tests.performance.effects
+
+bench-derivatives: $(RUN_STAMP)
+	$(PY) -m tests.performance.derivatives
 
 bench-sweep: $(RUN_STAMP)
 	$(PY) -m tests.performance.sweep

@@ -35,6 +35,9 @@ SMALL = 3e-5
 """Step by which the solver's equations are differentiated, in natural changes: its square, and round-off over it, are
 below 1e-6 of a first derivative up to a Poisson ratio of 0.499."""
 
+PHYSICS = "physics."
+"""Begin of the keys of what a session states of physical effects."""
+
 Setup: TypeAlias = tuple[Tissue, Tool, Support]
 
 
@@ -113,7 +116,8 @@ def differentiated_ramp(
     keys : sequence of str
         Parameters: `LAYER.youngs_modulus`, `LAYER.poisson_ratio`, `LAYER.thickness`, `LAYER.stiffness`,
         `LAYER.hyperelastic.NAME`, `LAYER.fibre.NAME`, `thickness` (all layers), `tool.radius`, `tool.edge_radius`,
-        `support.hole_radius`.
+        `support.hole_radius`, and `physics.NAME` as the session states it (`physics.pretension`,
+        `physics.friction_coefficient`...; by the finite elements' own derivatives only).
     model
         "fem", or "wave" (differences of explicit solutions; it has no failure).
     steps : int
@@ -198,9 +202,23 @@ def _change(session: Session, setup: Setup, key: str) -> ScenarioChange:
     """The scenario with a parameter a little smaller and larger."""
     from benchmark.models.fem_derivatives import ScenarioChange
 
+    if key.startswith(PHYSICS):
+        told = _elastic(session, setup)
+        less, more = (_with_physics(told, key, sign * SMALL) for sign in (-1.0, 1.0))
+        return ScenarioChange(less, more, SMALL, SMALL)
     step = SMALL * natural_change(setup[0], key)
     less, more = (_elastic(session, changed_setup(*setup, key, sign * step)) for sign in (-1.0, 1.0))
     return ScenarioChange(less, more, step, step)
+
+
+def _with_physics(scenario: Scenario, key: str, share: float) -> Scenario:
+    """The scenario with what the session states of a physical effect times 1 + share."""
+    name = key.removeprefix(PHYSICS)
+    value = getattr(scenario.physics, name, None)
+    if not isinstance(value, float) or value == 0.0:
+        raise InputError(f"{key}: this session states no such number above zero to change")
+    physics = scenario.physics.model_copy(update={name: value * (1.0 + share)})
+    return scenario.model_copy(update={"physics": physics})
 
 
 def _by_differences(ramp_of: Callable[[Setup], Ramp], setup: Setup, keys: Sequence[str]) -> DifferentiatedRamp:

@@ -1,6 +1,6 @@
 """The elastic table of a set-up: force and lower face on a fine grid of depths, and how set-up parameters change them.
 
-A derivative may come from differences of ramps or be computed directly; the table only keeps its orders. Keys are those
+Derivatives are the finite elements' own or come from differences; the table only keeps their orders. Keys are those
 of `--set` (`tool.radius`, `dermis.youngs_modulus`, `support.hole_radius`...). Nothing here runs a model.
 """
 

@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
-from fem.arrays import FloatArray, IntArray
+from fem.arrays import BoolArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True)
@@ -71,6 +71,16 @@ class EquationItem(ABC):
     def fitted(self, y: FloatArray) -> Self:
         """The item with limits exactly those of a state with unknowns y (n,); `corrected` leaves small misfits."""
         del y
+        return self
+
+    def active(self, y: FloatArray) -> BoolArray | None:
+        """Which of its points act at unknowns y (n,); None where it has no such choice."""
+        del y
+        return None
+
+    def holding(self, active: BoolArray | None) -> Self:
+        """The item with these points acting, whatever the state; by itself again with None."""
+        del active
         return self
 
     def lightened(self, share: float) -> Self | None:

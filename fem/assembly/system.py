@@ -160,6 +160,13 @@ class System:
         """The equations whose limits are exactly those of a state with unknowns y (n,)."""
         return replace(self, items=tuple(item.fitted(y) for item in self.items)) if self.items else self
 
+    def holding(self, other: System, y: FloatArray) -> System:
+        """The equations with the points acting that act in those of another system at unknowns y (n,)."""
+        if not self.items:
+            return self
+        held = (mine.holding(theirs.active(y)) for mine, theirs in zip(self.items, other.items, strict=True))
+        return replace(self, items=tuple(held))
+
     def lightened(self, share: float) -> System | None:
         """The equations to begin with where a share of the press is left; None if they are these."""
         return self._with([item.lightened(share) for item in self.items])

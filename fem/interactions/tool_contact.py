@@ -76,6 +76,8 @@ class ToolContact(EquationItem):
         Whether the punch has pressed and has not come off since.
     peak
         Largest press so far in N.
+    held
+        Nodes (m,) that touch, whatever the state; None where multiplier and gap decide.
     """
 
     punch: Punch
@@ -84,6 +86,7 @@ class ToolContact(EquationItem):
     friction: Friction
     pressed: bool = False
     peak: float = 0.0
+    held: BoolArray | None = None
 
     def touch(self, y: FloatArray) -> Touch | None:
         """Contact at unknowns y (n,); None where a node is deep inside the punch."""
@@ -94,7 +97,8 @@ class ToolContact(EquationItem):
         gap = self.punch.gap(place)
         if gap is None:
             return None
-        active = (in_touch(u[c + 1], gap.distance) | self._adheres) * penalty
+        touches = in_touch(u[c + 1], gap.distance) if self.held is None else self.held
+        active = (touches | self._adheres) * penalty
         push, rate = active * u[c + 1], with_punch(gap.normal)
         left = -active * gap.distance - penalty * u[c + 1]
         force = np.concatenate((-push * rate, left[None]))
@@ -209,6 +213,18 @@ class ToolContact(EquationItem):
             return self
         limit = self.punch.friction * np.maximum(touch.push, 0.0)
         return replace(self, friction=replace(self.friction, limit=limit))
+
+    def active(self, y: FloatArray) -> BoolArray | None:
+        """Which nodes (m,) touch at unknowns y (n,)."""
+        c, u = len(self.place), np.append(y, 0.0)[self.own]
+        place = self.place + u[:c]
+        place[-1] -= u[c]
+        gap = self.punch.gap(place)
+        return None if gap is None else in_touch(u[c + 1], gap.distance)
+
+    def holding(self, active: BoolArray | None) -> ToolContact:
+        """The contact with these nodes in touch, whatever the state."""
+        return replace(self, held=active)
 
     def lightened(self, share: float) -> ToolContact | None:
         """The contact with a share of the friction limits; None without friction."""

@@ -28,7 +28,9 @@ from fem.sensitivity.changed_equations import ChangedEquations, changed_equation
 from fem.sensitivity.problem_change import DifferentiatedSolution, ProblemChange, SecondDerivative, SolutionDerivative
 
 MOST_CORRECTIONS = 80
-SETTLED = 1e-8  # last correction over the derivative
+SETTLED = 1e-6  # last correction over the derivative; of round-off are 1e-9 to 1e-6
+LEAST = 1e-30  # of a derivative
+ROUND_OFF = 1e-4  # a correction below it that does not shrink is round-off
 
 
 @dataclass(frozen=True)
@@ -76,6 +78,8 @@ class Following:
         remembers = system.remembers
         if remembers:
             self._each(lambda side: side.system.advanced(time - self.time))
+        if system.items:
+            self._each(lambda side: side.system.holding(system, state.y))
         derivative = self._refined(state) if remembers else self._first(state)
         if self.second and not remembers:
             left = evaluation.residual - state.force * self.equilibrium.unit_load
@@ -99,14 +103,16 @@ class Following:
 
     def _refined(self, state: State) -> StateDerivative:
         """The derivative with a memory, corrected until it stays."""
-        count = len(self.sides)
+        count, last = len(self.sides), np.inf
         y, force = np.zeros((len(state.y), count)), np.zeros(count)
         for _ in range(MOST_CORRECTIONS):
             left = [self._left(pair, state, y[:, n], float(force[n])) for n, pair in enumerate(self.sides)]
             more = _correction(self.equilibrium, self.control, np.stack(left, axis=1))
             y, force = y + more.y, force + more.force
-            if (np.abs(more.y).max(axis=0) <= SETTLED * np.abs(y).max(axis=0)).all():
+            size = float((np.abs(more.y).max(axis=0) / np.maximum(np.abs(y).max(axis=0), LEAST)).max())
+            if size <= SETTLED or (size <= ROUND_OFF and size > 0.5 * last):
                 return StateDerivative(y, force)
+            last = size
         raise NotDifferentiableError(f"the derivative of friction does not settle in {MOST_CORRECTIONS} rounds")
 
     def _curved(self, state: State, first: StateDerivative, left: FloatArray) -> StateDerivative:

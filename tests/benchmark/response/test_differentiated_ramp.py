@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+
 import pytest
 
 from benchmark.errors import InputError
@@ -31,7 +34,12 @@ def test_the_force_goes_with_the_stiffness_and_the_face_does_not(sheet) -> None:
     assert ramp.by[key].sunk.shape == ramp.face.sunk.shape == (7, ramp.face.radius.size)
 
 
-def test_a_key_that_the_set_up_lacks_is_refused(sheet) -> None:
+def test_a_stated_pretension_stiffens_and_what_is_not_there_is_refused(sheet) -> None:
     trial = sheet.trials[0]
-    with pytest.raises(InputError, match=r"nowhere\.thickness"):
-        differentiated_ramp(sheet, sheet.specimen, trial.tool, trial.support, 1e-3, ["nowhere.thickness"], steps=3)
+    tight = replace(sheet, settings={**sheet.settings, "physics.pretension": "5 kPa"})
+    setup = (tight.specimen, trial.tool, trial.support, 1e-3)
+    ramp = differentiated_ramp(tight, *setup, ["physics.pretension"], steps=3)
+    assert (ramp.by["physics.pretension"].force[1:] > 0.0).all()
+    for key in ("nowhere.thickness", "physics.friction_coefficient"):
+        with pytest.raises(InputError, match=re.escape(key)):
+            differentiated_ramp(tight, *setup, [key], steps=3)

@@ -9,6 +9,7 @@ import pytest
 
 import fem
 from fem.analysis.newton import NewtonSettings
+from fem.interactions import active_set
 from fem.sensitivity.changed_equations import changed_equations
 from fem.sensitivity.held_mesh import moved_mesh
 
@@ -123,6 +124,24 @@ def test_a_uniform_pressure_by_force() -> None:
 def test_small_strain() -> None:
     problem = replace(tied(), kinematics="linear")
     assert_right(problem, PRESS, ("fat.mu", "fat.poisson_ratio", "dermis.thickness", "tool.radius", "pretension"))
+
+
+def test_friction_is_followed_from_step_to_step(monkeypatch) -> None:
+    """Where nodes stick, and the limits that follow the pressure, change with the parameter, too."""
+    monkeypatch.setattr(active_set, "SETTLED", 1e-9)
+    rubbing = fem.Tool(3e-3, "rigid_frictional", edge_radius=0.5e-3, friction_coefficient=0.3)
+    model = replace(fem.prepare(replace(touching(), tool=rubbing)), newton=NewtonSettings(tolerance=1e-11))
+    keys = ("tool.friction_coefficient", "dermis.thickness")
+    found = derivatives(model, PRESS, keys)
+    for key in keys:
+        runs = []
+        for sign in (-1.0, 1.0):
+            equations = changed_equations(model, changed(model.problem, key, sign * STEP), 0.0)
+            mesh = moved_mesh(model.mesh, model.problem, changed(model.problem, key, sign * STEP))
+            equilibrium = replace(model.equilibrium, system=equations.system)
+            runs.append(replace(model, mesh=mesh, equilibrium=equilibrium).run(PRESS))
+        difference = (runs[1].force - runs[0].force) / (2.0 * STEP)
+        assert found.by[key].force == pytest.approx(difference, abs=1e-5 * np.abs(difference).max()), key
 
 
 def test_second_derivatives_are_those_of_differences() -> None:
