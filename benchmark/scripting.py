@@ -99,7 +99,8 @@ def fit(
     *others: StrPath,
     free: Sequence[str] | None = None,
     exact: Sequence[str] | None = None,
-    law: str | None = None,
+    law: str | Sequence[str] | None = None,
+    posterior: bool = False,
     forward: Literal["fem", "wave"] | None = None,
     fit_file: StrPath | None = None,
     specimen: str | None = None,
@@ -120,7 +121,9 @@ def fit(
     exact
         Told values to take without uncertainty, or ("all",).
     law
-        Law of all layers: neo_hookean, mooney_rivlin, yeoh, gent or ogden.
+        Law of all layers: neo_hookean, mooney_rivlin, yeoh, gent or ogden; of several, held-out conditions choose.
+    posterior
+        Whether to draw from the posterior, with emcee.
     forward
         The model that is fitted.
     fit_file
@@ -132,7 +135,9 @@ def fit(
         Trials that cannot be used; a finite-element curve that cannot be computed deep enough.
     """
     keys = [None if each is None else tuple(each) for each in (free, exact)]
-    wish = ParameterWish(keys[0], keys[1], law, forward, tuple(map(Path, others)), _path(fit_file))
+    laws = (law,) if isinstance(law, str) else None if law is None else tuple(law)
+    files = tuple(map(Path, others)), _path(fit_file)
+    wish = ParameterWish(keys[0], keys[1], laws, forward, *files, posterior=posterior, seed=seed)
     request = FitRequest(Path(session), specimen, set or {}, _path(model), _path(effects), seed, wish)
     return FitResult(carry_out_fit(request, listener or Unheard()))
 

@@ -18,9 +18,13 @@ Effects = Annotated[Path | None, typer.Option("--effects", help="Effects of your
 Free = Annotated[
     str | None, typer.Option("--free", help="Parameters to fit, KEY,KEY: dermis.youngs_modulus,fat.thickness...")
 ]
-Law = Annotated[str | None, typer.Option("--law", help="Law of all layers: yeoh, gent, ogden...")]
+Law = Annotated[
+    str | None,
+    typer.Option("--law", help="Law of all layers: yeoh, gent... Several, or auto: held-out conditions choose."),
+]
 Forward = Annotated[str | None, typer.Option("--forward", help="Model that is fitted: fem (default) or wave.")]
 Exact = Annotated[str | None, typer.Option("--exact", help="Told values to take as exact, KEY,KEY, or all.")]
+Posterior = Annotated[bool, typer.Option("--posterior", help="Draw from the posterior (with emcee).")]
 FitFile = Annotated[Path | None, typer.Option("--fit-file", help="A TOML file with a [fit] table.")]
 
 
@@ -39,6 +43,7 @@ def fit(
     forward: Forward = None,
     exact: Exact = None,
     fit_file: FitFile = None,
+    posterior: Posterior = False,
     out: Out = None,
     settings: Set = None,
     seed: Seed = 0,
@@ -56,7 +61,8 @@ def fit(
     from benchmark.runs.parameters_run import ParameterWish
 
     console = Console(quiet=quiet)
-    wish = ParameterWish(_keys(free), _keys(exact), law, forward, tuple(sessions[1:]), fit_file)
+    files = tuple(sessions[1:]), fit_file
+    wish = ParameterWish(_keys(free), _keys(exact), _laws(law), forward, *files, posterior=posterior, seed=seed)
     request = FitRequest(sessions[0], specimen, parse_settings(settings), model, effects, seed, wish)
     outcome = fit_to_folder(request, out, console)
     for warning in outcome.warnings:
@@ -71,3 +77,12 @@ def fit(
 def _keys(text: str | None) -> tuple[str, ...] | None:
     """Keys of a list with commas."""
     return None if text is None else tuple(key.strip() for key in text.split(",") if key.strip())
+
+
+def _laws(text: str | None) -> tuple[str, ...] | None:
+    """Laws of a list with commas; all of them for `auto`."""
+    if text != "auto":
+        return _keys(text)
+    from benchmark.identification.parameters.law_shapes import LAW_SHAPES
+
+    return tuple(LAW_SHAPES)

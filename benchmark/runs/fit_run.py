@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError
-from benchmark.files import Tissue
+from benchmark.experiments.parameters_answer import ParametersAnswer
 from benchmark.identification import FittedParameter, SheetFit, parameter_columns
 from benchmark.identification.parameters.identified import Identified
 from benchmark.identification.parameters.identified_tissue import identified_tissue
@@ -18,7 +18,7 @@ from benchmark.runs.fitted_session import FittedSession, fit_trials
 from benchmark.runs.options import Listener
 from benchmark.runs.output.destination import claimed, destination
 from benchmark.runs.output.document import describe_environment
-from benchmark.runs.parameters_run import ParameterWish, common_factor_warnings, fit_parameters
+from benchmark.runs.parameters_run import ParameterWish, answer_of, common_factor_warnings
 from benchmark.runs.report import fit_page
 from benchmark.runs.report.parameters_page import parameters_page
 from benchmark.runs.report.values import fit_headline, sheet_headline
@@ -52,14 +52,14 @@ class FitRecord:
     repair
         Effects that were switched on.
     seed
-    identified
+    parameters
         The fit of parameters; None where none were free.
     """
 
     found: FittedSession
     repair: RepairedModel | None
     seed: int
-    identified: Identified | None = None
+    parameters: ParametersAnswer | None = None
 
     @property
     def sheet(self) -> SheetFit | None:
@@ -69,16 +69,16 @@ class FitRecord:
     @property
     def headline(self) -> str:
         """The fit in one sentence."""
-        if self.identified is not None:
-            return self.identified.headline
+        if self.parameters is not None:
+            return self.parameters.headline
         return fit_headline(self.found.fit) if self.sheet is None else sheet_headline(self.sheet)
 
     def document(self) -> dict[str, Any]:
         """The content of `fit.json`."""
         session = self.found.session
         common = self.found.fit.to_dict()
-        if self.identified is not None:
-            common = {**common, "common_factor": common["parameters"], **self.identified.to_dict()}
+        if self.parameters is not None:
+            common = {**common, "common_factor": common["parameters"], **self.parameters.to_dict()}
         return {
             **common,
             **({} if self.sheet is None else {"sheet": self.sheet.to_dict()}),
@@ -91,27 +91,36 @@ class FitRecord:
     def page(self) -> Page:
         """The page of the fit."""
         found, environment = self.found, describe_environment(seed=self.seed)
-        if self.identified is not None:
-            return parameters_page(found.session, self.identified, self.warnings, environment)
+        if self.parameters is not None:
+            return parameters_page(found.session, self.parameters, self.warnings, environment)
         return fit_page(found.session, found.fit, self.warnings, environment, self.sheet)
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the reader must know: of the parameters first, where some were free."""
-        return self.found.warnings if self.identified is None else (*self.identified.warnings, *self.found.warnings)
+        return self.found.warnings if self.parameters is None else (*self.parameters.warnings, *self.found.warnings)
+
+    @property
+    def identified(self) -> Identified | None:
+        """The fit of parameters alone."""
+        return None if self.parameters is None else self.parameters.identified
 
     @property
     def rows(self) -> tuple[FittedParameter, ...]:
         """Rows of `fitted_parameters.csv`."""
         return self.found.fit.parameters if self.identified is None else self.identified.rows
 
-    def tissues(self) -> list[tuple[str, Tissue]]:
-        """The tissue file of each specimen, by its name."""
-        if self.identified is None:
+    def texts(self) -> list[tuple[str, str]]:
+        """The tissue file of each specimen and the protocols of what to measure next, by their names."""
+        if self.parameters is None:
             return []
-        count = len(self.identified.specimens)
-        names = ["identified.toml", *(f"identified_{number}.toml" for number in range(2, count + 1))]
-        return [(name, identified_tissue(self.identified, number)) for number, name in enumerate(names)]
+        answer = self.parameters.identified
+        names = ["identified.toml", *(f"identified_{number}.toml" for number in range(2, len(answer.specimens) + 1))]
+        out = [(name, identified_tissue(answer, number).to_toml()) for number, name in enumerate(names)]
+        design = self.parameters.design
+        if design is not None:
+            out += [("next_experiment.toml", design.best_d.toml()), ("next_experiment_a.toml", design.best_a.toml())]
+        return out
 
 
 @dataclass(frozen=True)
@@ -138,14 +147,15 @@ def carry_out_fit(request: FitRequest, listener: Listener) -> FitRecord:
     found = fit_trials(request.session, request.specimen, request.settings, listener, repair=repair)
     table = request.wish.table(found.session.fit)
     if not table.free:
-        if request.wish.sessions or table.law is not None:
-            raise InputError("several sessions, or a law, need parameters that are free: give --free KEY,KEY")
+        if request.wish.sessions or table.law is not None or request.wish.posterior:
+            raise InputError("several sessions, a law or a posterior need free parameters: give --free KEY,KEY")
         said = common_factor_warnings(found, listener) if repair is None else ()
         return FitRecord(replace(found, warnings=(*said, *found.warnings)), repair, request.seed)
     if repair is not None:
         raise InputError("--free and --model do not go together: the effects of a model file act on a common factor")
     others = [fit_trials(path, request.specimen, request.settings, listener) for path in request.wish.sessions]
-    return FitRecord(found, repair, request.seed, fit_parameters((found, *others), table, listener))
+    answer = answer_of((found, *others), request.wish, table, listener)
+    return FitRecord(found, repair, request.seed, answer)
 
 
 def fit_to_folder(request: FitRequest, out: Path | None, listener: Listener) -> FitOutcome:
@@ -174,8 +184,8 @@ def write_fit(record: FitRecord, folder: Path) -> FitOutcome:
         write_json(new / "fit.json", document)
         write_csv(new / "fitted_parameters.csv", parameter_columns(record.rows))
         write_page(new / "report.html", page)
-        for name, tissue in record.tissues():
-            write_text(new / name, tissue.to_toml())
+        for name, text in record.texts():
+            write_text(new / name, text)
 
     write_whole(folder, fill)
     return FitOutcome(folder, document, page.verdict.headline, record.warnings)

@@ -7,14 +7,18 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from benchmark.errors import InputError, SolverError
+from benchmark.experiments.optimal_design import designed
+from benchmark.experiments.parameters_answer import ParametersAnswer
 from benchmark.files.schema import validated
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.files.sources import Source, read_toml
 from benchmark.identification.parameters.free_parameters import COMMON, MODULUS
 from benchmark.identification.parameters.identifiability import directions
 from benchmark.identification.parameters.identified import Identified, identify
+from benchmark.identification.parameters.law_selection import scores, simplest
 from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit, begun, fit_layers
 from benchmark.identification.parameters.other_answers import other_answers
+from benchmark.identification.parameters.posterior import posterior
 from benchmark.identification.parameters.session_problem import Assembled, FittedBase, assembled
 from benchmark.response.least_squares import least_squares
 from benchmark.runs.fitted_session import FittedSession
@@ -34,19 +38,27 @@ class ParameterWish:
     Attributes
     ----------
     free, exact : tuple of str or None
-    law, forward : str or None
+    laws : tuple of str or None
+        One, or several of which the held-out conditions choose.
+    forward : str or None
     sessions : tuple of Path
         Further sessions that are fitted together with the first.
     file : Path or None
         A TOML file with a `[fit]` table in the place of the session's.
+    posterior : bool
+        Whether to draw from the posterior.
+    seed : int
+        Of the draws.
     """
 
     free: tuple[str, ...] | None = None
     exact: tuple[str, ...] | None = None
-    law: str | None = None
+    laws: tuple[str, ...] | None = None
     forward: str | None = None
     sessions: tuple[Path, ...] = field(default_factory=tuple)
     file: Path | None = None
+    posterior: bool = False
+    seed: int = 0
 
     def table(self, own: FitTable) -> FitTable:
         """The `[fit]` table with what was said put in; raises InputError."""
@@ -54,8 +66,26 @@ class ParameterWish:
         if self.file is not None:
             read, source = read_toml(self.file, "fit")
             table = dict(read.get("fit", read))
-        said = {"free": self.free, "exact": self.exact, "law": self.law, "forward": self.forward}
+        law = None if self.laws is None else self.laws[0]
+        said = {"free": self.free, "exact": self.exact, "law": law, "forward": self.forward}
         return validated(FitTable, table | {key: value for key, value in said.items() if value is not None}, source)
+
+
+def answer_of(
+    founds: Sequence[FittedSession], wish: ParameterWish, table: FitTable, listener: Listener
+) -> ParametersAnswer:
+    """Fit parameters, with each law where there are several; then the design and the posterior; raises as a fit."""
+    laws = tuple(wish.laws or ())
+    answers = {law: fit_parameters(founds, table.model_copy(update={"law": law}), listener) for law in laws}
+    compared = scores(answers) if len(laws) > 1 else ()
+    if len(laws) > 1 and not compared:
+        raise InputError("laws are chosen by held-out conditions, and these trials have but one: give one --law")
+    identified = answers[simplest(compared)] if compared else next(iter(answers.values()), None)
+    if identified is None:
+        identified = fit_parameters(founds, table, listener)
+    listener.say("what to measure next")
+    drawn = posterior(identified.found, wish.seed) if wish.posterior else None
+    return ParametersAnswer(identified, compared, designed(identified), drawn)
 
 
 def fit_parameters(founds: Sequence[FittedSession], table: FitTable, listener: Listener) -> Identified:

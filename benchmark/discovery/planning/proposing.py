@@ -8,7 +8,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from benchmark.discovery.discovery_result import PHASES
-from benchmark.discovery.planning.menu import (
+from benchmark.discovery.planning.rivals import Rival, expected, rivals, separation
+from benchmark.discovery.report.discovery_record import NextExperiment
+from benchmark.discovery.trials.study import ConditionData
+from benchmark.discovery.workflow import Findings
+from benchmark.errors import InputError
+from benchmark.experiments.menu import (
     Experiment,
     Usual,
     menu,
@@ -19,11 +24,6 @@ from benchmark.discovery.planning.menu import (
     ruler_image,
     same_again,
 )
-from benchmark.discovery.planning.rivals import Rival, expected, rivals, separation
-from benchmark.discovery.report.discovery_record import NextExperiment
-from benchmark.discovery.trials.study import ConditionData
-from benchmark.discovery.workflow import Findings
-from benchmark.errors import InputError
 
 ROWS = 400
 """Rows of a trial on which rivals are compared: about what a trial's autocorrelated samples are worth at most."""

@@ -25,6 +25,8 @@ class HeldOut:
     trials : int
     rms_percent : float
         Root mean square of measured minus predicted, in % of the peak.
+    trial_rms_percent : tuple of float
+        The same of each trial.
     covered : float
         Share of the trials whose force at the peak lies in the 95 % band of one more trial.
     """
@@ -33,10 +35,11 @@ class HeldOut:
     trials: int
     rms_percent: float
     covered: float
+    trial_rms_percent: tuple[float, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """Entry of `fit.json`."""
-        return vars(self).copy()
+        return {**vars(self), "trial_rms_percent": list(self.trial_rms_percent)}
 
 
 def held_out(found: LayerFit, groups: Sequence[str]) -> tuple[HeldOut, ...]:
@@ -70,7 +73,9 @@ def _predicted(found: LayerFit, out: Array, name: str) -> HeldOut:
         variance += (held.noise[k] / max(float(pressing[peak]), 1e-12)) ** 2
         error = (trial.data.force[peak] - force[peak]) / max(float(pressing[peak]), 1e-12)
         inside += int(abs(error) <= found.quantile * np.sqrt(variance))
-    return HeldOut(name, len(held.trials), 100.0 * float(np.sqrt(np.mean(squares))), inside / len(held.trials))
+    roots = tuple(100.0 * float(np.sqrt(each)) for each in squares)
+    whole = 100.0 * float(np.sqrt(np.mean(squares)))
+    return HeldOut(name, len(held.trials), whole, inside / len(held.trials), roots)
 
 
 def subset(model: LayerModel, kept: NDArray[np.int64]) -> LayerModel:

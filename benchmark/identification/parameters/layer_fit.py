@@ -26,10 +26,11 @@ from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import Search, TrialsFit, least_squares
 from benchmark.response.noise import fit_memory, scales, whitener
 
-MODEL_TRUST = 0.003
+MODEL_TRUST = 0.005
 """Standard deviation of the model's own error in a press, in size and in slope over depth, as shares of the force.
 
-What two finite-element codes and meshes differ by on the same press (docs/verification.md, docs/fem-peers.md).
+What finite-element codes and meshes that people use differ by on the same press: 0.4 to 0.8 % in size and 0.1 to 0.2 %
+in shape between meshes of another code, three layers under sharp tools; our own meshes differ by 0.1 to 0.2 %.
 """
 FIRST_NOISE, FIRST_MEMORY = 0.01, 0.6
 USUAL_SCATTER = 0.015

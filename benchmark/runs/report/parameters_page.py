@@ -7,20 +7,24 @@ from typing import Any
 
 import numpy as np
 
+from benchmark.experiments.parameters_answer import ParametersAnswer
 from benchmark.files import Session
 from benchmark.identification.parameters.held_out import prediction_bands
 from benchmark.identification.parameters.identifiability import Direction, correlation_words
 from benchmark.identification.parameters.identified import NOT_DETERMINED, Identified
+from benchmark.identification.parameters.posterior import Posterior
+from benchmark.identification.parameters.profile_likelihood import KNOWN
+from benchmark.models import Array
 from benchmark.runs.report.values import MM, sentence
 from reports import Block, Bullets, Column, Download, Fact, Notice, Page, Paragraph, Section, Table, Verdict
 from reports.figures.parameter_fit import BandedTrial, ProfileCurve, corner, fitted_bands, profile_curves
 
 
 def parameters_page(
-    session: Session, answer: Identified, warnings: Sequence[str], environment: Mapping[str, Any]
+    session: Session, whole: ParametersAnswer, warnings: Sequence[str], environment: Mapping[str, Any]
 ) -> Page:
     """Return the page of a fit of parameters."""
-    notices = []
+    answer, notices = whole.identified, []
     if any(press.session.synthetic for press in answer.found.problem.presses):
         notices.append(Notice("synthetic", "These trials were computed, not measured."))
     if warnings:
@@ -29,7 +33,7 @@ def parameters_page(
     return Page(
         title=f"{session.name}: parameters",
         subtitle=f"{trials} trials of {', '.join(answer.specimens)}",
-        verdict=Verdict("finding", sentence(answer.headline)),
+        verdict=Verdict("finding", sentence(whole.headline)),
         facts=(
             Fact("Made", str(environment["made"])),
             Fact("Session", session.fingerprint[:16]),
@@ -37,9 +41,10 @@ def parameters_page(
             Fact("Law", answer.found.problem.law or "the specimen's own"),
         ),
         notices=notices,
-        sections=(_values(answer), _told_apart(answer), _fit(answer), _held_out(answer)),
+        sections=(_values(answer), _told_apart(answer, whole.posterior), _fit(answer), _held_out(whole), _next(whole)),
         downloads=(
             Download("identified.toml", "the specimen as identified, for run and sweep"),
+            Download("next_experiment.toml", "the D-optimal next experiment as a protocol"),
             Download("fitted_parameters.csv", "parameters with intervals"),
             Download("fit.json", "the fit for programs", media_type="application/json"),
         ),
@@ -77,7 +82,7 @@ def _told(answer: Identified) -> list[Any]:
     return [row for row in answer.rows if row.name not in answer.names]
 
 
-def _told_apart(answer: Identified) -> Section:
+def _told_apart(answer: Identified, drawn: Posterior | None) -> Section:
     found = answer.found
     curves = [
         ProfileCurve(
@@ -106,8 +111,28 @@ def _told_apart(answer: Identified) -> Section:
         parameters = [found.problem.parameters[k] for k in free]
         names = [f"{one.key} ({one.unit})" if one.unit else one.key for one in parameters]
         at = np.log([one.scale * found.value(k) for k, one in zip(free, parameters, strict=True)])
-        blocks.append(corner(names, at, found.fit.covariance[np.ix_(free, free)]))
+        samples = None if drawn is None else _scaled_draws(answer, drawn, free)
+        blocks.append(corner(names, at, found.fit.covariance[np.ix_(free, free)], samples))
+    if drawn is not None:
+        blocks.append(_draws(answer, drawn))
     return Section("What the trials tell apart", blocks)
+
+
+def _scaled_draws(answer: Identified, drawn: Posterior, free: Sequence[int]) -> Array:
+    """(s, f) logarithms of drawn values in the parameters' units, of those that are shown."""
+    parameters, places = answer.found.problem.parameters, [answer.found.problem.free.index(k) for k in free]
+    columns = [
+        np.log([parameters[k].scale * parameters[k].value(float(x)) for x in drawn.draws[::10, place]])
+        for k, place in zip(free, places, strict=True)
+    ]
+    return np.column_stack(columns)
+
+
+def _draws(answer: Identified, drawn: Posterior) -> Table:
+    columns = ("parameter", Column("95 % low"), Column("95 % high"), Column("R-hat", "", 4), Column("effective draws"))
+    told = drawn.to_dict(answer.names, answer.found)["parameters"]
+    rows = [(name, *one["ci95"], one["r_hat"], one["effective_samples"]) for name, one in told.items()]
+    return Table("Posterior by an ensemble of walkers", columns, rows)
 
 
 def _with_information(one: Direction) -> str:
@@ -130,7 +155,8 @@ def _fit(answer: Identified) -> Section:
     return Section("Fitted against measured", [Paragraph(text), fitted_bands(trials, synthetic)])
 
 
-def _held_out(answer: Identified) -> Section:
+def _held_out(whole: ParametersAnswer) -> Section:
+    answer = whole.identified
     if not answer.held_out:
         return Section("Held out", [Paragraph("One condition only: nothing can be held out.")])
     columns = (
@@ -141,4 +167,32 @@ def _held_out(answer: Identified) -> Section:
     )
     rows = [(one.condition, one.trials, one.rms_percent, 100.0 * one.covered) for one in answer.held_out]
     text = "Each condition predicted by a fit to the others; its trials keep their own touch and zero."
-    return Section("Held out", [Paragraph(text), Table("Predictions of what was held out", columns, rows)])
+    blocks: list[Block] = [Paragraph(text), Table("Predictions of what was held out", columns, rows)]
+    if whole.laws:
+        blocks.append(Paragraph("Laws by what they predict of held-out conditions:"))
+        blocks.append(Bullets([one.text for one in whole.laws]))
+    return Section("Held out", blocks)
+
+
+def _next(whole: ParametersAnswer) -> Section:
+    """What to measure next, the menu with what each experiment would tell."""
+    design, names = whole.design, whole.identified.names
+    if design is None:
+        return Section("What to measure next", [Paragraph("No experiment of the menu could be worked out.")])
+    words = [
+        f"D-optimal per minute (next_experiment.toml): {design.best_d.experiment.words}",
+        f"A-optimal per minute (next_experiment_a.toml): {design.best_a.experiment.words}",
+    ]
+    columns: tuple[Column | str, ...] = (
+        "experiment",
+        Column("minutes", "", 3),
+        "determines",
+        *(Column(f"{name} after", "% s.e.", 3) for name in names),
+    )
+    first = ("now", 0.0, f"{int((1.96 * design.errors_now <= KNOWN).sum())} of {len(names)}")
+    rows: list[tuple[object, ...]] = [(*first, *(100.0 * design.errors_now))]
+    rows += [
+        (one.experiment.name, one.minutes, f"{one.determines} of {len(names)}", *(100.0 * one.errors))
+        for one in design.proposals
+    ]
+    return Section("What to measure next", [Bullets(words), Table("The menu, five trials each", columns, rows)])

@@ -89,8 +89,8 @@ def test_what_is_said_takes_the_place_of_the_sessions_table() -> None:
     ("wish", "named"),
     [
         (ParameterWish(free=("bone.youngs_modulus",)), "bone.youngs_modulus"),
-        (ParameterWish(law="rubber"), "law"),
-        (ParameterWish(free=(), law="yeoh"), "--free"),
+        (ParameterWish(laws=("rubber",)), "law"),
+        (ParameterWish(free=(), laws=("yeoh",)), "--free"),
     ],
 )
 def test_what_cannot_be_fitted_is_refused_by_its_name(session, tmp_path, wish, named) -> None:

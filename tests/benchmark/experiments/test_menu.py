@@ -6,7 +6,7 @@ from typer.testing import CliRunner
 
 from bench_hw.cli import app
 from bench_hw.motion.protocol_file import load_protocol
-from benchmark.discovery.planning.menu import (
+from benchmark.experiments.menu import (
     Usual,
     menu,
     minutes,

@@ -11,7 +11,7 @@ import numpy as np
 from bench_hw.configuration import validated
 from bench_hw.motion.plan import MotionPlan, plan
 from bench_hw.motion.protocol_file import Protocol
-from benchmark.discovery.discovery_result import Array
+from benchmark.response.force_curve import Array
 
 AIR = -2e-3
 APPROACH_SPEED = 1e-3

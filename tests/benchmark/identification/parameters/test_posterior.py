@@ -1,0 +1,33 @@
+import numpy as np
+import pytest
+
+from benchmark.identification.parameters.posterior import _Density, posterior, split_r_hat
+
+
+def test_r_hat_tells_chains_that_mixed_from_chains_that_did_not() -> None:
+    chains = np.random.default_rng(1).normal(size=(400, 8, 2))
+    apart = chains + np.array([0.0, 3.0]) * np.arange(8)[:, None]
+    assert split_r_hat(chains) == pytest.approx([1.0, 1.0], abs=0.01)
+    assert split_r_hat(apart)[1] > 2.0
+
+
+def test_the_density_falls_from_the_fit_as_its_covariance_says(toy_fit) -> None:
+    found = toy_fit()
+    density = _Density(found)
+    spread = np.sqrt(np.diag(found.fit.covariance))
+    values, vectors = np.linalg.eigh(found.fit.covariance / np.outer(spread, spread))
+    step = spread * vectors[:, -1] * np.sqrt(values[-1])
+    fall = [density(found.vector) - density(found.vector + sign * step) for sign in (-1.0, 1.0)]
+    assert np.mean(fall) == pytest.approx(0.5, rel=0.1)
+    assert density(found.vector + 100.0) == -np.inf
+
+
+@pytest.mark.slow
+def test_posterior_and_profile_agree(toy_fit) -> None:
+    pytest.importorskip("emcee", reason="emcee is optional: pip install tissuebench[posterior]")
+    found = toy_fit()
+    drawn = posterior(found, 1)
+    assert drawn.converged
+    assert drawn.effective.min() > 400
+    spread = np.sqrt(np.diag(found.fit.covariance))[list(found.problem.free)]
+    assert (drawn.high - drawn.low) / (2.0 * 1.96 * spread) == pytest.approx(1.0, abs=0.15)
