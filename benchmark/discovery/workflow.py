@@ -60,8 +60,8 @@ from benchmark.physics import Effect, catalogue
 from benchmark.response.elastic_table import TableOf
 
 DEFAULT = Settings()
-MOST_CONFIDENCE = {"outside_catalogue": 0.0, "partly_explained": 0.5}
-"""Of an effect that is not named, and of one beside which something is missing, which it may stand for."""
+MOST_CONFIDENCE = {"outside_catalogue": 0.0, "partly_explained": 0.5, "instrument_first": 0.5}
+"""Of an effect that is not named, and of one beside which something is missing or in question that it may stand for."""
 VERSION = 4
 """Of the method: fits kept by another are done anew."""
 

@@ -198,12 +198,11 @@ def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> Fit:
 
 
 def _told(base: Fit, current: Fit, work: Pool) -> Fit:
-    """Drop further effects whose strength the data do not tell beside the others."""
+    """Go back a step while the data do not tell the strength of every effect beside the others."""
     while len(current.model.effects) > 1:
-        kept = [effect for effect in current.model.effects if determined(current, effect)]
-        if len(kept) == len(current.model.effects):
+        if all(determined(current, effect) for effect in current.model.effects):
             return current
-        current = rebuilt(base, kept or current.model.effects[:1], work, "backward")
+        current = rebuilt(base, current.model.effects[:-1], work, "backward")
     return current
 
 

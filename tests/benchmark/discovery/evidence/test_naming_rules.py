@@ -167,6 +167,15 @@ def test_a_further_effect_of_unknown_strength_is_dropped():
     assert selection._told(fitted(), alone, Work()) is alone
 
 
+def test_the_last_effect_goes_where_it_makes_an_earlier_one_unknown(monkeypatch):
+    first, second, third = effect("first"), effect("second"), effect("third")
+    monkeypatch.setattr(
+        selection, "determined", lambda fit, each, names=(): each is not second or third not in fit.model.effects
+    )
+    three, two, one = fitted(first, second, third), fitted(first, second), fitted(first)
+    assert selection._told(fitted(), three, Work(one, two)) is two
+
+
 def test_an_effect_that_another_makes_needless_is_dropped(known_densities):
     a, b = effect("a"), effect("b")
     both = fitted(a, b, density=10.0, objective=50.0)
