@@ -127,7 +127,7 @@ like another radius: up to 10 %.
 """
 OVER_SETUP = 5.0
 """Held-out log density, over all trials, by which effects on the set-up as told must do better than a set-up that is
-off, and by which that may do better beside them. First choice.
+off, and by which that may do better beside them (or by the share `TIE` of their gain). First choice.
 """
 FAR_SETUP, FAR_MODULUS = 0.25, 0.6
 """Relative change of a set-up parameter, and logarithm of a layer's modulus, up to which the second order serves.

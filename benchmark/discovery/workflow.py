@@ -151,7 +151,7 @@ def _answered(
     selection, before = _searched(trusted, known, settings, work)
     if trusted is not moving:
         silent_on_it = before.p < settings.level and not selection.steps
-        if silent_on_it or not stands(selection.chosen, on_some(moving, compared(moving)), work):
+        if silent_on_it or not stands(selection.chosen, selection.base, on_some(moving, compared(moving)), work):
             return moving, *_searched(moving, known, settings, work)
     return trusted, selection, before
 

@@ -32,8 +32,12 @@ def on_told(moving: Fit, told: Mapping[str, float]) -> Fit:
     return fit(EffectModel(fixed, ()), moving.vector[kept], moving.nuisance, most=8)
 
 
-def stands(chosen: Fit, moving: Fit, work: Pool) -> bool:
-    """Whether the effects of a fit on the set-up as told hold against the base that moves; so does no effect at all."""
+def stands(chosen: Fit, told: Fit, moving: Fit, work: Pool) -> bool:
+    """Whether the effects of a fit on the set-up as told hold against the base that moves; so does no effect at all.
+
+    Where effects gain much, their form is what leaves most: a base that moves follows some of it, so that a small share
+    of what they gain does not count.
+    """
     effects = chosen.model.effects
     if not effects:
         return True
@@ -44,4 +48,5 @@ def stands(chosen: Fit, moving: Fit, work: Pool) -> bool:
         others = rebuilt(moving, effects[:left] + effects[left + 1 :], work, "set-up")
         if found - float(held_out(others).sum()) < criteria.OVER_SETUP:
             return False
-    return float(held_out(rebuilt(moving, effects, work, "set-up")).sum()) - found < criteria.OVER_SETUP
+    slack = max(criteria.OVER_SETUP, criteria.TIE * (found - float(held_out(told).sum())))
+    return float(held_out(rebuilt(moving, effects, work, "set-up")).sum()) - found < slack

@@ -1,0 +1,51 @@
+"""An answer on the set-up as told against a set-up that is off by what people are usually wrong by."""
+
+import numpy as np
+import pytest
+
+from benchmark.discovery.base.calibration import calibrate
+from benchmark.discovery.base.candidate_fit import fit_candidate
+from benchmark.discovery.base.setup_priors import setup_entries, setup_priors, told_priors
+from benchmark.discovery.evidence.pool import Pool
+from benchmark.discovery.evidence.told_setup import on_told, stands
+from benchmark.discovery.trials.preparing import prepare
+from benchmark.files import load_session
+from benchmark.physics import catalogue
+
+ALONE = Pool(None, None, "")
+RELAXATION = next(effect for effect in catalogue() if effect.slug == "viscoelastic_relaxation")
+
+
+def fading(time, _depth, elastic):
+    """A quarter of the force fades with one second."""
+    kept, out = 0.0, np.empty_like(elastic)
+    for k, force in enumerate(elastic):
+        step = time[k] - time[k - 1] if k else 0.0
+        kept += (force - kept) * (1.0 - np.exp(-step))
+        out[k] = force - 0.25 * kept
+    return out
+
+
+@pytest.fixture(scope="module")
+def relaxing(tmp_path_factory, quick_session):
+    """A session that relaxes, its set-up told as it is."""
+    session = load_session(quick_session.write_session(tmp_path_factory.mktemp("told") / "s", force=fading, trials=3))
+    return session, calibrate(session, prepare(session, 60)).base
+
+
+def test_a_set_up_as_told_moves_in_the_tool_alone_and_in_what_is_stated(relaxing):
+    session, moving = relaxing
+    told = on_told(moving, told_priors(session))
+    assert set(moving.model.problem.setup) == {"tool.radius", "layer.thickness"}
+    assert set(told.model.problem.setup) == {"tool.radius"}
+    assert on_told(moving, setup_priors(session)) is moving
+    assert stands(told, told, moving, ALONE)
+
+
+def test_an_effect_stands_and_what_people_are_wrong_by_does_not(relaxing):
+    session, moving = relaxing
+    told = on_told(moving, told_priors(session))
+    thickness = next(entry for entry in setup_entries(moving.model.problem.tables) if "thickness" in entry.slug)
+    found = fit_candidate(told, RELAXATION)
+    assert stands(found, told, moving, ALONE)
+    assert not stands(fit_candidate(told, thickness), told, moving, ALONE)
