@@ -29,7 +29,9 @@ if TYPE_CHECKING:
 STEPS = 24
 """Load steps of a ramp."""
 DIFFERENCE = 0.06
-"""Step of a central difference, in natural changes: large, for each ramp has a mesh of its own."""
+"""Step of a central difference of the finite elements, in natural changes: large, for each ramp has its own mesh."""
+WAVE_DIFFERENCE = 0.01
+"""The same of the wave, whose answers are smooth: the square of the step times the third derivative is left."""
 
 SMALL = 3e-5
 """Step by which the solver's equations are differentiated, in natural changes: its square, and round-off over it, are
@@ -134,11 +136,12 @@ def differentiated_ramp(
     if model == "wave":
         from benchmark.response.wave_table import wave_ramp
 
-        return _by_differences(lambda other: wave_ramp(*other, np.linspace(0.0, depth, steps + 1)), setup, keys)
+        levels = np.linspace(0.0, depth, steps + 1)
+        return _by_differences(lambda other: wave_ramp(*other, levels), setup, keys, WAVE_DIFFERENCE)
     try:
         return _direct(session, setup, depth, keys, steps, second=second)
     except NotDifferentiableError:
-        return _by_differences(lambda other: elastic_ramp(session, *other, depth, steps), setup, keys)
+        return _by_differences(lambda other: elastic_ramp(session, *other, depth, steps), setup, keys, DIFFERENCE)
 
 
 def elastic_ramp(session: Session, tissue: Tissue, tool: Tool, support: Support, depth: float, steps: int) -> Ramp:
@@ -221,10 +224,12 @@ def _with_physics(scenario: Scenario, key: str, share: float) -> Scenario:
     return scenario.model_copy(update={"physics": physics})
 
 
-def _by_differences(ramp_of: Callable[[Setup], Ramp], setup: Setup, keys: Sequence[str]) -> DifferentiatedRamp:
+def _by_differences(
+    ramp_of: Callable[[Setup], Ramp], setup: Setup, keys: Sequence[str], share: float
+) -> DifferentiatedRamp:
     """Derivatives by central differences of two more ramps a parameter, to the depth that all of them reach."""
     told = ramp_of(setup)
-    steps = {key: DIFFERENCE * natural_change(setup[0], key) for key in keys}
+    steps = {key: share * natural_change(setup[0], key) for key in keys}
     pairs = {
         key: tuple(ramp_of(changed_setup(*setup, key, sign * step)) for sign in (-1.0, 1.0))
         for key, step in steps.items()
