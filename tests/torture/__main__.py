@@ -40,13 +40,15 @@ def main() -> int:
     parser.add_argument("--moments", type=int, default=200, help="kills over all verbs")
     parser.add_argument("--each", type=int, default=50, help="files of each kind")
     parser.add_argument("--only", nargs="*", choices=PARTS, default=PARTS)
-    parser.add_argument("--verbs", nargs="*", default=[each.verb for each in COMMANDS], help="of the kills")
+    parser.add_argument(
+        "--verbs", nargs="*", default=[each.verb for each in COMMANDS], help="of the kills and the surroundings"
+    )
     asked = parser.parse_args()
-    _warm(asked.verbs if asked.only == ["kills"] else [each.verb for each in COMMANDS])
+    _warm([each.verb for each in COMMANDS] if "inputs" in asked.only else asked.verbs)
     folder = Path(tempfile.mkdtemp(prefix="torture-"))
     try:
         scene = make_scene(folder / "scene")
-        if asked.only != ["kills"] or not set(asked.verbs) <= PLAIN:
+        if "inputs" in asked.only or not set(asked.verbs) <= PLAIN:
             complete_scene(scene)
         failures = [_part(name, scene, asked) for name in asked.only]
     finally:
@@ -65,7 +67,7 @@ def _part(name: str, scene: Path, asked: argparse.Namespace) -> int:
         table, failed = inputs.rows(counts), {kind: each.failures for kind, each in counts.items()}
         shutil.rmtree(scene / "fuzzed", ignore_errors=True)
     else:
-        found = places.torture(scene, until)
+        found = places.torture(scene, until, asked.verbs)
         table, failed = places.rows(found), {place: each.failures for place, each in found.items()}
     widths = [max(len(row[k]) for row in table) for k in range(len(table[0]))]
     print(f"\n{name}, seed {asked.seed}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import hashlib
 import json
 import math
@@ -128,6 +129,7 @@ VOLATILE = re.compile(
     re.I,
 )
 """Keys whose values are of the clock or the machine."""
+CLOCKED = ("seconds", "setup_s", "wall_s", "cpu_s")
 SKIPPED = ("environment.json", "manifest.json", "timing.csv", "report.html", "capture.json", "journal.jsonl")
 """Files that hold little else, or pages that show it; they must be there."""
 
@@ -148,6 +150,9 @@ def _of_file(path: Path) -> Any:
         return "there"
     if path.suffix == ".json":
         return _steady(json.loads(path.read_text(encoding="utf-8")))
+    if path.suffix == ".csv":
+        rows = list(csv.reader(path.read_text(encoding="utf-8").splitlines()))
+        return [[cell for name, cell in zip(rows[0], row, strict=True) if name not in CLOCKED] for row in rows]
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 

@@ -57,10 +57,10 @@ class Environment:
             self.failures.append(f"{what}: no single paragraph: {err.strip()[-200:]}")
 
 
-def torture(scene: Path, until: float) -> dict[str, Environment]:
+def torture(scene: Path, until: float, verbs: list[str]) -> dict[str, Environment]:
     """Try the cheap commands in every surrounding, until the time is over."""
     found: dict[str, Environment] = {}
-    commands = [each for each in COMMANDS if each.verb in CHEAP]
+    commands = [each for each in COMMANDS if each.verb in CHEAP and each.verb in verbs]
     usual = {each.verb: _usual(scene, each) for each in commands}
     for at in range(10):
         found[f"disk full from write {at} on"] = _faulty(scene, commands, FULL.format(at=at, error=28), usual, until)
@@ -68,7 +68,7 @@ def torture(scene: Path, until: float) -> dict[str, Environment]:
     for most in (0, 1000, 100_000):
         found[f"no file above {most} bytes"] = _faulty(scene, commands, SIZE.format(most=most), usual, until)
     found["1.5 GB of address space"] = _faulty(scene, commands, MEMORY.format(most=1_500_000_000), usual, until)
-    found["two at once"] = _together(scene, next(each for each in commands if each.verb == "fit"), until)
+    found["two at once"] = _together(scene, next(each for each in COMMANDS if each.verb == "fit"), until)
     for name, trial in _outside(scene).items():
         if time.monotonic() < until:
             found[name] = trial()
