@@ -117,6 +117,7 @@ SETUP_PRIOR = {
     "support.hole_radius": 0.01,
     "thickness": 0.035,
     "youngs_modulus": 0.35,
+    "stiffness": 0.35,
     "poisson_ratio": 0.03,
 }
 """Relative standard deviations of set-up parameters whose uncertainty nobody states (of a modulus: of its logarithm).

@@ -18,6 +18,7 @@ MEANINGS = {
     "support.hole_radius": "relative change of the hole's radius",
     "thickness": "relative change of the layer's thickness",
     "youngs_modulus": "natural logarithm of the factor on the layer's modulus beside the common one",
+    "stiffness": "natural logarithm of the factor on all the layer's stresses beside the common one",
     "poisson_ratio": "relative change of the layer's Poisson's ratio",
 }
 """What the parameter of an entry is, by its key or the last part of it."""

@@ -14,7 +14,8 @@ from benchmark.physics.setup_entry import setup_entry
 from benchmark.response.elastic_table import ElasticTable
 from benchmark.response.setup_change import CHOICES, RADIUS, choices
 
-MODULUS = ".youngs_modulus"
+MODULUS, STIFFNESS = ".youngs_modulus", ".stiffness"
+"""Ends of the keys of a layer's modulus, and of all its stresses where its law has constants of its own."""
 
 
 def setup_priors(session: Session) -> dict[str, float]:
@@ -22,16 +23,21 @@ def setup_priors(session: Session) -> dict[str, float]:
 
     The tool's radius, the hole's, and each layer's thickness and modulus: as files state them, else what people know of
     them (`criteria.SETUP_PRIOR`). One layer's modulus is the common factor on all; a law with constants of its own does
-    not follow it.
+    not follow it, but is as uncertain in all its stresses.
     """
     told = stated(session)
-    return {key: told.get(key, _usual(key)) for key in _able(session.specimen, session.support)}
+    return {key: told.get(_stated_as(key), _usual(key)) for key in _able(session.specimen, session.support)}
+
+
+def _stated_as(key: str) -> str:
+    """The key under which a person states a parameter's uncertainty."""
+    return key.removesuffix(STIFFNESS) + MODULUS if key.endswith(STIFFNESS) else key
 
 
 def told_priors(session: Session) -> dict[str, float]:
     """Those of a set-up that is trusted: what is stated, and the tool's radius, since an edge acts like another one."""
     told = stated(session)
-    return {key: size for key, size in setup_priors(session).items() if key in told or key == RADIUS}
+    return {key: size for key, size in setup_priors(session).items() if _stated_as(key) in told or key == RADIUS}
 
 
 def _usual(key: str) -> float:
@@ -70,13 +76,14 @@ def _able(tissue: Tissue, support: Support) -> Iterator[str]:
     for layer in tissue.layers:
         if not isinf(layer.thickness):
             yield f"{layer.name}.thickness"
-        if len(tissue.layers) > 1 and layer.hyperelastic.shear_modulus is None:
-            yield f"{layer.name}{MODULUS}"
+        if len(tissue.layers) > 1:
+            yield f"{layer.name}{MODULUS if layer.hyperelastic.shear_modulus is None else STIFFNESS}"
 
 
 def unused(session: Session, tables: Sequence[ElasticTable]) -> tuple[str, ...]:
     """A warning of stated uncertainties that the base does not take up."""
-    known = set.intersection(*(set(table.by) for table in tables)) | set(_common(session.specimen))
+    known = {_stated_as(key) for key in set.intersection(*(set(table.by) for table in tables))}
+    known |= set(_common(session.specimen))
     keys = [key for key in stated(session) if key not in known]
     return (f"stated uncertainties that the base does not take up: {', '.join(keys)}",) if keys else ()
 
@@ -97,13 +104,13 @@ def farthest(name: str) -> float:
         return criteria.FAR_EXPONENT if name == "exponent" else np.inf
     if name in CHOICES:
         return 1.0
-    return criteria.FAR_MODULUS if name.endswith(MODULUS) else criteria.FAR_SETUP
+    return criteria.FAR_MODULUS if name.endswith((MODULUS, STIFFNESS)) else criteria.FAR_SETUP
 
 
 def shares(values: Mapping[str, float]) -> dict[str, float]:
     """Relative changes of set-up parameters from the base's vector, which has moduli by their logarithm."""
     return {
-        key: float(np.expm1(value)) if key.endswith(MODULUS) else value
+        key: float(np.expm1(value)) if key.endswith((MODULUS, STIFFNESS)) else value
         for key, value in values.items()
         if is_setup(key)
     }

@@ -113,6 +113,7 @@ def test_a_law_with_constants_of_its_own_has_no_modulus_to_change(tmp_path, quic
     keys = setup_priors(session_in(tmp_path, quick_session, layers=own))
     assert "dermis.youngs_modulus" in keys
     assert "fat.youngs_modulus" not in keys
+    assert keys["fat.stiffness"] == pytest.approx(0.2)  # as its modulus is stated
 
 
 def test_moduli_are_logarithms_and_forms_are_no_set_up():
