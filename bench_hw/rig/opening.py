@@ -17,6 +17,7 @@ from bench_hw.rig.rig_file import LoadedRig
 if TYPE_CHECKING:
     from bench_hw.simulated.specimen import Specimen
     from bench_hw.simulated.twins import Twins
+    from bench_hw.simulated.virtual_specimen import VirtualSpecimen
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +44,7 @@ def open_bench(loaded: LoadedRig, clock: Clock, *, specimen: Specimen | None = N
     clock : Clock
         The bench's clock; simulated only if every device is.
     specimen : Specimen, optional
-        What lies under a simulated tool; by default a simple sheet.
+        What lies under a simulated tool; by default the one that the rig names, or a simple sheet.
     seed : int, optional
         Of the simulated devices' chance and noise; by default the rig's.
 
@@ -54,7 +55,7 @@ def open_bench(loaded: LoadedRig, clock: Clock, *, specimen: Specimen | None = N
     """
     rig = loaded.rig
     _check_calibration(loaded)
-    twins = _twins(rig, clock, specimen, seed) if rig.simulated else None
+    twins = _twins(rig, clock, specimen or specimen_of(loaded), seed) if rig.simulated else None
     context = Opening(loaded, clock, twins)
     camera = None if rig.camera is None else open_camera(rig.camera, context)
     return Bench(rig, open_force(rig.force, context), open_actuator(rig.actuator, context), camera, twins)
@@ -183,6 +184,20 @@ def _check_calibration(loaded: LoadedRig) -> None:
         raise DeviceError(f"{where}: {error}") from error
     if size is not None and list(size) != list(camera.size):
         raise DeviceError(f"{where}: made for pictures of {size} pixels; the rig asks for {list(camera.size)}")
+
+
+def specimen_of(loaded: LoadedRig) -> VirtualSpecimen | None:
+    """The virtual specimen that a simulated rig names; None without.
+
+    Raises
+    ------
+    InputError
+        Its file cannot be used.
+    """
+    from bench_hw.simulated.virtual_specimen import read_specimen
+
+    name = loaded.rig.simulation.specimen
+    return None if name is None else read_specimen(loaded.resolve(name))
 
 
 def _twins(rig: rig_file.Rig, clock: Clock, specimen: Specimen | None, seed: int | None) -> Twins:

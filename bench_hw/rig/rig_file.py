@@ -171,11 +171,12 @@ class ScheduledFault(StrictModel):
 
 
 class Simulation(StrictModel):
-    """What is common to the simulated devices."""
+    """What is common to the simulated devices; `specimen` is a file of `bench_hw.simulated.virtual_specimen`."""
 
     seed: Annotated[int, Field(ge=0, strict=True)] = 0
     contact: Annotated[Length, Field(ge=0.0)] = 5e-3
     faults: tuple[ScheduledFault, ...] = ()
+    specimen: Text | None = None
 
 
 ForceConfig = Annotated[NetFTConfig | DaqConfig | SimulatedForceConfig, Field(discriminator="kind")]

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from benchmark.cli.options import Debug, Json, Out, Quiet, Seed, Set, parse_settings
+
+if TYPE_CHECKING:
+    from benchmark.discovery.report.discovery_record import NextExperiment
 
 Paths = Annotated[
     list[Path],
@@ -22,6 +26,12 @@ Effects = Annotated[
 ]
 Specimen = Annotated[str | None, typer.Option("--specimen", help="Tissue of the trials: a name or a TOML file.")]
 
+Bench = Annotated[
+    str | None,
+    typer.Option("--bench", help="Close the loop on this bench: a rig file, or the shipped rig simulated."),
+]
+Budget = Annotated[int, typer.Option("--budget", min=1, max=20, help="Most experiments of the loop.")]
+
 
 def register(app: typer.Typer) -> None:
     """Add the verb to the command line."""
@@ -33,6 +43,8 @@ def discover(
     model: Model = "wave",
     effects: Effects = None,
     specimen: Specimen = None,
+    bench: Bench = None,
+    budget: Budget = 3,
     out: Out = None,
     settings: Set = None,
     seed: Seed = 0,
@@ -44,13 +56,26 @@ def discover(
 
     Writes discovery.json, model.toml (for run --model), tables, report.html, and next_experiment.toml where rivals
     remain. With a result folder of run in the place of a session, the wave model is repaired against its FEM.
-    Exit code 0 whatever is found.
+    With --bench the experiment that best separates the rivals is done there, its trials added to a copy of the session
+    and decided again, until one name stands or the budget ends. Exit code 0 whatever is found.
     """
     from benchmark.cli.console import Console
     from benchmark.cli.show import show_discovery
     from benchmark.discovery.discovery_request import DiscoverRequest, carry_out
 
     console = Console(quiet=quiet)
-    request = DiscoverRequest(paths, model, effects, specimen, parse_settings(settings), out, seed)
+    request = DiscoverRequest(
+        paths, model, effects, specimen, parse_settings(settings), out, seed, bench, budget, _asked
+    )
     outcome = carry_out(request, console)
     return show_discovery(outcome, console, as_json=json)
+
+
+def _asked(proposal: NextExperiment, setup: Mapping[str, Any]) -> bool:
+    """Show what must be done by hand first; whether it was done. Nothing moves without a person's word."""
+    import sys
+
+    if not sys.stdin.isatty():
+        return False
+    print(f"{proposal.words} ({', '.join(f'{key} = {value}' for key, value in setup.items())})", file=sys.stderr)
+    return typer.confirm("Done, and the bench is free to move?", err=True)

@@ -55,6 +55,12 @@ class Settings:
     seed: int = 0
 
 
+DECISIVE = 12.5
+"""Log density by which the trials of a proposed experiment together must speak against a rival: 5 standard deviations.
+
+First choice, before any loop was run.
+"""
+
 # ---- trials: what can be used, and what belongs together -----------------------------------------------------------
 
 LEAST_TRIALS = 3

@@ -13,14 +13,16 @@ from benchmark.discovery.base.setup_priors import table_keys
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence.pool import forget
 from benchmark.discovery.from_run import at_small_strain, is_run, read_run, repair_run
-from benchmark.discovery.planning.proposing import propose
+from benchmark.discovery.planning.bench_loop import Asked, BenchWork, Loop, load_bench, session_copy, unattended
+from benchmark.discovery.planning.proposing import Allowed, propose
 from benchmark.discovery.report.discovery_files import DiscoveryOutcome, write_discovery
-from benchmark.discovery.report.discovery_record import DiscoveryRecord
+from benchmark.discovery.report.discovery_record import DiscoveryRecord, NextExperiment
 from benchmark.discovery.workflow import Findings, findings
 from benchmark.errors import InputError
 from benchmark.files import Session, load_session
+from benchmark.files.shipped import session_folder
 from benchmark.physics import SLUGS, Effect, catalogue, load_effects
-from benchmark.response.fem_table import fem_table
+from benchmark.response.fem_table import fem_or_wave_table, fem_table
 from benchmark.runs.options import Listener
 from benchmark.runs.output.destination import claimed, destination, file_name
 from benchmark.sessions import HIDDEN_EFFECT, SHIPPED
@@ -37,6 +39,9 @@ class DiscoverRequest:
     settings: Mapping[str, str] = field(default_factory=dict)
     out: Path | None = None
     seed: int = 0
+    bench: str | None = None
+    budget: int = 3
+    asked: Asked = unattended
 
 
 def carry_out(request: DiscoverRequest, listener: Listener) -> DiscoveryOutcome:
@@ -116,11 +121,17 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
     InputError
         The session cannot be used.
     """
-    loaded = load_session(request.paths[0], request.settings, request.specimen)
-    session, said = _with_films(loaded, listener)
+    session, said = _loaded(request, request.paths[0], listener)
     own = tuple(effect for effect in effects if effect.slug not in SLUGS)
     store = store_folder(request.out, session, request.model)
-    found = _found(session, request, own, listener, store)
+    if request.bench is None:
+        found, rounds, grown = _found(session, request, own, listener, store), (), None
+        proposal = propose(found, fem_or_wave_table(session, ()), session.specimen)
+    else:
+        loop = _looped(request, own, listener, store)
+        found, rounds, grown, proposal = loop.run(), tuple(loop.rounds), loop.bench.folder, None
+        session, said = _loaded(request, grown, listener)
+        proposal = loop.propose(found, loop.bench.allowed({each.choice for each in rounds}))
     warnings = tuple(dict.fromkeys((*session.warnings, *said, *found.discovery.warnings)))
     return DiscoveryRecord(
         name=session.name,
@@ -132,10 +143,34 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
         found=replace(found.discovery, warnings=warnings),
         cards={effect.slug: (effect.richer or effect).description for effect in (*effects, *found.entries)},
         seed=request.seed,
-        proposal=propose(found),
+        proposal=proposal,
         large_press="corrected",
         store=store,
+        rounds=rounds,
+        grown=grown,
     )
+
+
+def _loaded(request: DiscoverRequest, path: Path, listener: Listener) -> tuple[Session, tuple[str, ...]]:
+    """A session with the markers of its films, and what tracking them said."""
+    return _with_films(load_session(path, request.settings, request.specimen), listener)
+
+
+def _looped(request: DiscoverRequest, own: tuple[Effect, ...], listener: Listener, store: Path) -> Loop:
+    """The closed loop on a copy of the session beside the fits that are kept."""
+    rig = load_bench(str(request.bench))
+    folder = session_copy(session_folder(request.paths[0]), store / "session")
+    bench = BenchWork(rig, folder, request.asked, request.seed)
+
+    def decide(path: Path, without: frozenset[str]) -> Findings:
+        session, _ = _loaded(request, path, listener)
+        return _found(session, request, own, listener, store, without)
+
+    def proposed(found: Findings, allowed: Allowed) -> NextExperiment | None:
+        session, _ = _loaded(request, folder, listener)
+        return propose(found, fem_or_wave_table(session, ()), session.specimen, allowed)
+
+    return Loop(bench, request.budget, decide, proposed)
 
 
 def _with_films(session: Session, listener: Listener) -> tuple[Session, tuple[str, ...]]:
@@ -154,7 +189,12 @@ def store_folder(out: Path | None, session: Session, model: str) -> Path:
 
 
 def _found(
-    session: Session, request: DiscoverRequest, own: tuple[Effect, ...], listener: Listener, store: Path
+    session: Session,
+    request: DiscoverRequest,
+    own: tuple[Effect, ...],
+    listener: Listener,
+    store: Path,
+    without: frozenset[str] = frozenset(),
 ) -> Findings:
     table_of = fem_table(session, table_keys(session)) if request.model == "fem" else None
     settings = Settings(seed=request.seed)
@@ -164,4 +204,12 @@ def _found(
             remark = f"best so far {best.replace('_', ' ')}" if best else ""
             advance(STAGES.get(stage, stage), done, max(total, 1), remark)
 
-        return findings(session, settings=settings, effects=own, listener=on_stage, store=store, table_of=table_of)
+        return findings(
+            session,
+            settings=settings,
+            effects=own,
+            listener=on_stage,
+            store=store,
+            table_of=table_of,
+            without=without,
+        )

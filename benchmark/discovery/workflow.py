@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -108,6 +109,7 @@ def findings(
     listener: Listener = silent,
     store: Path | None = None,
     table_of: TableOf | None = None,
+    without: AbstractSet[str] = frozenset(),
 ) -> Findings:
     """Find what the model of a session lacks, and keep the fits.
 
@@ -123,6 +125,8 @@ def findings(
         Folder for fits as they come, from which an interrupted discovery goes on.
     table_of
         The elastic base of a set-up; by default the finite elements', or the wave's where they do not cover it.
+    without
+        Slugs of effects that other measurements have ruled out.
 
     Raises
     ------
@@ -133,8 +137,9 @@ def findings(
     listener("prepare", 0, 1, "")
     calibrated = calibrate(session, prepare(session, settings.rows), table_of)
     entries = setup_entries(calibrated.problem.tables)
-    known = (*entries, *catalogue(), *effects)
-    key = fingerprint(VERSION, code_version(), session.fingerprint, settings, [own_code(each) for each in effects])
+    known = tuple(each for each in (*entries, *catalogue(), *effects) if each.slug not in without)
+    own = [own_code(each) for each in effects]
+    key = fingerprint(VERSION, code_version(), session.fingerprint, settings, own, *sorted(without))
     listener("detect", 0, 1, "")
     with pool(settings.workers, store, key, effects, listener) as work:
         base, selection, before = _answered(calibrated.base, told_priors(session), known, settings, work)

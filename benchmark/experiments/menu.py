@@ -52,6 +52,8 @@ class Experiment:
         What a person does first; empty for nothing.
     setup_minutes : float
         How long that takes.
+    tool_radius : float or None
+        Of another tool than the session's, m.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Experiment:
     segments: tuple[Mapping[str, Any], ...]
     setup: Mapping[str, Any] = field(default_factory=dict)
     setup_minutes: float = 0.0
+    tool_radius: float | None = None
 
     def table(self) -> dict[str, Any]:
         """The protocol file as a table."""
@@ -96,6 +99,36 @@ def menu(usual: Usual) -> tuple[Experiment, ...]:
     if deep > 1.05 * depth:
         entries.insert(1, Experiment("deeper", f"Press to {1e3 * deep:.3g} mm.", _press(deep, speed, hold)))
     return tuple(entries)
+
+
+SECOND_TOOL = 1.6
+"""Radius of the second tool over the first one's, or the first one's over it: what drains takes 2.6 times as long."""
+
+
+def second_tools(usual: Usual, radius: float) -> tuple[Experiment, ...]:
+    """The session's own press with a wider and with a narrower tool; `radius` is that of the first, m."""
+    words = "Change the tool to one of {:g} mm radius and press as before."
+    others = {"wider tool": _round(radius * SECOND_TOOL), "narrower tool": _round(radius / SECOND_TOOL)}
+    return tuple(
+        Experiment(
+            name,
+            words.format(1e3 * other),
+            _press(usual.depth, usual.speed, usual.hold),
+            {"tool_radius": _mm(other)},
+            TOOL_MINUTES,
+            other,
+        )
+        for name, other in others.items()
+    )
+
+
+TOOL_MINUTES = 5.0
+
+
+def _round(radius: float) -> float:
+    """A radius in whole half millimetres, as tools come; below 2 mm in tenths."""
+    step = 5e-4 if radius >= 2e-3 else 1e-4
+    return step * max(round(radius / step), 1)
 
 
 def rigid_block(force: float) -> Experiment:

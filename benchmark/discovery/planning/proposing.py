@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from benchmark.discovery.discovery_result import PHASES
-from benchmark.discovery.planning.rivals import Rival, expected, rivals, separation
+from benchmark.discovery.planning.rivals import Rival, expected, rivals, separation, under
 from benchmark.discovery.report.discovery_record import NextExperiment
 from benchmark.discovery.trials.study import ConditionData
 from benchmark.discovery.workflow import Findings
-from benchmark.errors import InputError
+from benchmark.errors import InputError, TissuebenchError
 from benchmark.experiments.menu import (
     Experiment,
     Usual,
@@ -23,7 +26,10 @@ from benchmark.experiments.menu import (
     rigid_block,
     ruler_image,
     same_again,
+    second_tools,
 )
+from benchmark.files import Tissue
+from benchmark.response.elastic_table import TableOf
 
 ROWS = 400
 """Rows of a trial on which rivals are compared: about what a trial's autocorrelated samples are worth at most."""
@@ -35,10 +41,45 @@ GIVES = {"machine_compliance": "compliance"}
 SCALES = {"marker_scale_error": "error"}
 
 
-def propose(found: Findings) -> NextExperiment | None:
+@dataclass(frozen=True)
+class Allowed:
+    """What may be proposed.
+
+    Attributes
+    ----------
+    most_force : float
+        Largest press that the rig allows, N.
+    done : set of str
+        Entries of the menu that were done already.
+    radii : tuple of float or None
+        Radii of the tools that are there, m; None: any.
+    """
+
+    most_force: float = math.inf
+    done: AbstractSet[str] = frozenset()
+    radii: tuple[float, ...] | None = None
+
+
+ANYTHING = Allowed()
+SPARE = 0.8
+"""Of the rig's force limit, beyond which no press is proposed."""
+
+
+def propose(
+    found: Findings, table_of: TableOf | None = None, specimen: Tissue | None = None, allowed: Allowed = ANYTHING
+) -> NextExperiment | None:
     """Return the experiment that separates the answer from its nearest look-alike; None where there is none.
 
     Entries that a model cannot follow are left out of the menu.
+
+    Parameters
+    ----------
+    found
+        A discovery with its fits.
+    table_of, specimen
+        The elastic answer of a specimen under a tool; without them no second tool is proposed.
+    allowed
+        What may be proposed.
     """
     standing = rivals(found)
     if len(standing) < 2:
@@ -46,10 +87,11 @@ def propose(found: Findings) -> NextExperiment | None:
     first, second = standing[:2]
     study = found.calibrated.base.model.problem.study
     condition = max(study.conditions, key=lambda each: each.size)
-    trials = condition.size
-    weighed = _weighed(first, second, condition, trials)
-    now = weighed.pop("same again", (None, 0.0, 1.0))[1]
-    weighed = {name: each for name, each in weighed.items() if each[1] > now}
+    weighed = _weighed(first, second, condition, allowed)
+    if table_of is not None and specimen is not None:
+        weighed |= _tools(first, second, condition, (table_of, specimen), allowed)
+    now = weighed.pop(SAME, (None, 0.0, 1.0))[1]
+    weighed = {name: each for name, each in weighed.items() if each[1] > now and name not in allowed.done}
     if not weighed:
         return None
     best, size, cost = max(weighed.values(), key=lambda each: each[1] ** 2 / each[2])
@@ -65,29 +107,60 @@ def propose(found: Findings) -> NextExperiment | None:
     )
 
 
-def _weighed(
-    first: Rival, second: Rival, condition: ConditionData, trials: int
-) -> dict[str, tuple[Experiment, float, float]]:
-    """Name to experiment, separation in standard deviations over all trials, and minutes."""
+Weighed: TypeAlias = dict[str, tuple[Experiment, float, float]]
+"""Name to experiment, separation in standard deviations over all trials, and minutes."""
+SAME = "same again"
+
+
+def _weighed(first: Rival, second: Rival, condition: ConditionData, allowed: Allowed) -> Weighed:
+    """The entries that can be done with the tool in place, and calibrations."""
     usual = usual_press(condition)
-    out = {}
+    out: Weighed = {}
     for experiment in (same_again(usual), *menu(usual)):
-        size = _simulated(first, second, condition.name, experiment, trials)
+        size = _simulated(first, second, condition, experiment, allowed.most_force)
         if size is not None:
-            out[experiment.name] = (experiment, size, minutes(experiment, trials))
-    for experiment, size in _calibrations(first, second, condition):
+            out[experiment.name] = (experiment, size, minutes(experiment, condition.size))
+    for experiment, size in _calibrations(first, second, condition, allowed.most_force):
         out[experiment.name] = (experiment, size, minutes(experiment, 1))
     return out
 
 
-def _simulated(first: Rival, second: Rival, condition: str, experiment: Experiment, trials: int) -> float | None:
-    """Separation over all trials; None where a model does not follow the motion."""
+def _tools(
+    first: Rival, second: Rival, condition: ConditionData, base: tuple[TableOf, Tissue], allowed: Allowed
+) -> Weighed:
+    """Other tools, each with the elastic answer of the specimen under it."""
+    table_of, specimen = base
+    out: Weighed = {}
+    for experiment in second_tools(usual_press(condition), condition.tool.radius):
+        radius = experiment.tool_radius or condition.tool.radius
+        if experiment.name in allowed.done or not (allowed.radii is None or _near(radius, allowed.radii)):
+            continue
+        tool = condition.tool.model_copy(update={"radius": radius})
+        try:
+            table = table_of(specimen, tool, condition.support, condition.around.peak_depth)
+        except TissuebenchError:
+            continue
+        pair = [under(rival, condition.name, tool, table) for rival in (first, second)]
+        size = _simulated(pair[0], pair[1], condition, experiment, allowed.most_force)
+        if size is not None:
+            out[experiment.name] = (experiment, size, minutes(experiment, condition.size))
+    return out
+
+
+def _near(radius: float, radii: Sequence[float]) -> bool:
+    return any(abs(each - radius) < 0.01 * radius for each in radii)
+
+
+def _simulated(
+    first: Rival, second: Rival, condition: ConditionData, experiment: Experiment, most_force: float
+) -> float | None:
+    """Separation over all trials; None where a model does not follow the motion, or the force is too large."""
     time, depth = motion(experiment, ROWS)
     try:
-        a = expected(first, condition, time, depth)
+        a = expected(first, condition.name, time, depth)
         size = separation(
             a.signals,
-            lambda vector: expected(second, condition, time, depth, vector).signals,
+            lambda vector: expected(second, condition.name, time, depth, vector).signals,
             second.vector,
             second.covariance,
             a.noise,
@@ -95,12 +168,16 @@ def _simulated(first: Rival, second: Rival, condition: str, experiment: Experime
         )
     except (InputError, ValueError, ArithmeticError):
         return None
-    return math.sqrt(trials * size) if math.isfinite(size) else None
+    if float(a.signals[:, 0].max()) > SPARE * most_force or not math.isfinite(size):
+        return None
+    return math.sqrt(condition.size * size)
 
 
-def _calibrations(first: Rival, second: Rival, condition: ConditionData) -> Sequence[tuple[Experiment, float]]:
+def _calibrations(
+    first: Rival, second: Rival, condition: ConditionData, most_force: float = math.inf
+) -> Sequence[tuple[Experiment, float]]:
     """Measurements of the instrument alone, where only one of the rivals says that there is something to see."""
-    force = float(condition.around.peak_force)
+    force = min(float(condition.around.peak_force), SPARE * most_force)
     found: list[tuple[Experiment, float]] = []
     give = abs(_only(first, second, GIVES)) * force / DEPTH_READ
     if give > 0.0:

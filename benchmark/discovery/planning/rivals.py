@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -12,7 +13,11 @@ from benchmark.discovery.base.trials_problem import OWN
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.trials.rows import acceleration
 from benchmark.discovery.workflow import Findings
+from benchmark.files import Tool
 from benchmark.physics import Motion
+from benchmark.response.elastic_table import ElasticTable
+
+Item = TypeVar("Item")
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +49,23 @@ def rivals(found: Findings) -> tuple[Rival, ...]:
     for others in found.selection.rivals.values():
         chosen += others
     return tuple(Rival(tuple(e.slug for e in fit.model.effects), fit) for fit in chosen)
+
+
+def under(rival: Rival, condition: str, tool: Tool, table: ElasticTable) -> Rival:
+    """The rival on the specimen of a condition under another tool, whose elastic answer is `table`."""
+    model = rival.fit.model
+    problem = model.problem
+    place = [one.name for one in problem.study.conditions].index(condition)
+    was = problem.study.conditions[place]
+    force = float(np.interp(was.around.peak_depth, table.depth, table.force))
+    moved = replace(was, tool=tool, around=replace(was.around, tool_radius=tool.radius, peak_force=force))
+    study = replace(problem.study, conditions=_put(problem.study.conditions, place, moved))
+    changed = replace(problem, study=study, tables=_put(problem.tables, place, table))
+    return Rival(rival.slugs, replace(rival.fit, model=replace(model, problem=changed)))
+
+
+def _put(items: tuple[Item, ...], place: int, item: Item) -> tuple[Item, ...]:
+    return (*items[:place], item, *items[place + 1 :])
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import shutil
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -70,6 +71,8 @@ def discovery_document(record: DiscoveryRecord) -> dict[str, Any]:
         document["layers"] = {layer.layer: _layer(layer) for layer in record.layers}
     if record.proposal is not None:
         document["next_experiment"] = _proposal(record.proposal)
+    if record.grown is not None:
+        document["rounds"] = [asdict(each) for each in record.rounds]
     return document
 
 
@@ -264,7 +267,7 @@ class DiscoveryOutcome:
 
 
 def write_discovery(record: DiscoveryRecord, folder: Path) -> DiscoveryOutcome:
-    """Write discovery.json, model.toml, next_experiment.toml, tables and report into `folder`.
+    """Write discovery.json, model.toml, next_experiment.toml, tables, report and a grown session into `folder`.
 
     Raises
     ------
@@ -283,6 +286,8 @@ def write_discovery(record: DiscoveryRecord, folder: Path) -> DiscoveryOutcome:
         write_text(new / "model.toml", model_toml(record.repaired()))
         if record.proposal is not None:
             write_text(new / "next_experiment.toml", record.proposal.toml)
+        if record.grown is not None:
+            shutil.copytree(record.grown, new / "session")
         write_page(new / "report.html", page)
 
     write_whole(folder, fill)

@@ -13,7 +13,12 @@ from benchmark.discovery.report.disagreement_sections import (
     where_section,
 )
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
-from benchmark.discovery.report.effect_sections import candidates_section, effects_section, next_section
+from benchmark.discovery.report.effect_sections import (
+    candidates_section,
+    effects_section,
+    loop_section,
+    next_section,
+)
 from benchmark.discovery.report.own_sections import own_section
 from benchmark.discovery.report.story import story
 from benchmark.discovery.report.words import channel_name, sized
@@ -46,6 +51,7 @@ def discovery_page(record: DiscoveryRecord, environment: Mapping[str, Any], tabl
     sections: list[Section] = [comparison_section(record), where_section(record), candidates_section(record)]
     sections += [effects_section(record)] if record.found.effects else []
     sections += [gap_section(record)] if record.found.gap or record.layers else []
+    sections += [loop_section(record)] if record.grown is not None else []
     sections += [remains_section(record), next_section(record)]
     sections += [own_section(record)] if record.found.own else []
     sections.append(Section("How this was found", [Facts(_facts(record, environment))]))

@@ -79,6 +79,43 @@ class NextExperiment:
     toml: str
 
 
+@dataclass(frozen=True)
+class Round:
+    """One round of the closed loop: the rivals, the experiment that was done, and what came of it.
+
+    Attributes
+    ----------
+    rivals : (str, str)
+    choice, words : str
+        Entry of the menu, and what was done.
+    separation_now, expected, found : float
+        Standard deviations between the rivals by the trials before, as expected of the experiment, and as it turned out
+        (None where a rival was not fitted again).
+    minutes : float
+        At the bench.
+    ruled_out : tuple of str
+        Slugs that the experiment ruled out.
+    verdict : str
+        Of the discovery after it.
+    answer : tuple of str
+        Slugs of its effects.
+    remaining : int
+        Rivals that are left, the answer among them.
+    """
+
+    rivals: tuple[str, str]
+    choice: str
+    words: str
+    separation_now: float
+    expected: float
+    found: float | None
+    minutes: float
+    ruled_out: tuple[str, ...]
+    verdict: str
+    answer: tuple[str, ...]
+    remaining: int
+
+
 @dataclass(frozen=True, eq=False)
 class DiscoveryRecord:
     """Everything a `discover` found, before it becomes files and a page.
@@ -109,6 +146,10 @@ class DiscoveryRecord:
         Elastic law of the wave under repair.
     store : Path or None
         Where fits are kept until the result is written.
+    rounds : tuple of Round
+        Of the closed loop; empty without a bench.
+    grown : Path or None
+        The copy of the session to which the loop added trials.
     """
 
     name: str
@@ -125,6 +166,8 @@ class DiscoveryRecord:
     labels: Mapping[str, str] = field(default_factory=dict)
     large_press: str = "linear"
     store: Path | None = None
+    rounds: tuple[Round, ...] = ()
+    grown: Path | None = None
 
     @property
     def named(self) -> bool:

@@ -6,7 +6,7 @@ import math
 
 from benchmark.discovery.criteria import ENOUGH_TRIALS, Settings
 from benchmark.discovery.discovery_result import Candidate, Estimate, NamedEffect
-from benchmark.discovery.report.discovery_record import DiscoveryRecord, NextExperiment
+from benchmark.discovery.report.discovery_record import DiscoveryRecord, NextExperiment, Round
 from benchmark.discovery.report.words import effect_name
 from benchmark.files.units import shown
 from reports import Block, Bullets, Column, Download, Fact, Facts, Listing, Paragraph, Section, Subsection, Table
@@ -214,3 +214,44 @@ def _menu(proposal: NextExperiment) -> Table:
     ]
     download = Download("next_experiment.toml", "the protocol", media_type="application/toml")
     return Table("What was weighed", columns, rows, download, False)
+
+
+def loop_section(record: DiscoveryRecord) -> Section:
+    """Return what was done on the bench, round by round."""
+    title = "Measured on the bench"
+    if not record.rounds:
+        return Section(title, [Paragraph("No experiment was done: one answer stood, or none could be proposed.")])
+    told = [
+        f"{each.words} {effect_name(each.rivals[0])} against {effect_name(each.rivals[1])}: "
+        f"{_parted(each.found)} apart, {each.expected:.0f} expected. {_outcome(each)}"
+        for each in record.rounds
+    ]
+    columns = (
+        "round", "experiment", "rivals", Column("before", "sd", 3), Column("expected", "sd", 3),
+        Column("found", "sd", 3), Column("bench time", "min", 3), "ruled out",
+    )  # fmt: skip
+    rows = [
+        (
+            number,
+            each.choice,
+            " / ".join(map(effect_name, each.rivals)),
+            each.separation_now,
+            each.expected,
+            each.found,
+            each.minutes,
+            ", ".join(map(effect_name, each.ruled_out)),
+        )
+        for number, each in enumerate(record.rounds, 1)
+    ]
+    caption = "Rounds: separation of the rivals in standard deviations before, expected of the experiment, and found"
+    return Section(title, [Bullets(told), Table(caption, columns, rows, folded=False)])
+
+
+def _parted(found: float | None) -> str:
+    return "not compared" if found is None else f"{found:.0f} standard deviations"
+
+
+def _outcome(each: Round) -> str:
+    answer = " and ".join(map(effect_name, each.answer)) or "no effect"
+    out = f"{', '.join(map(effect_name, each.ruled_out))} ruled out; " if each.ruled_out else ""
+    return f"{out}{answer} {'stands alone' if each.remaining < 2 else f'and {each.remaining - 1} rivals stand'}."

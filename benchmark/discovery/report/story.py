@@ -146,6 +146,9 @@ def _floor(gap: ChannelGap) -> str:
 
 def _next(record: DiscoveryRecord) -> StoryStep:
     proposal = record.proposal
+    if proposal is None and record.rounds:
+        done = "; ".join(each.choice for each in record.rounds)
+        return StoryStep("What was measured", f"{len(record.rounds)} more experiments: {done}", "See the rounds below.")
     if proposal is None:
         return StoryStep("What to measure next", record.labels.get("next", ADVICE[record.found.verdict]))
     first, second = map(effect_name, proposal.rivals)
