@@ -5,6 +5,7 @@ A session's fits are kept beside the result until it is complete, so that an int
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -85,6 +86,8 @@ def answer(request: DiscoverRequest, listener: Listener) -> DiscoveryRecord:
 def put_down(record: DiscoveryRecord, out: Path | None) -> DiscoveryOutcome:
     """Write the result folder of an answer, by default results/NAME-DATE-TIME, and forget the fits kept for it."""
     outcome = write_discovery(record, destination(out, f"{record.name}-discovery"))
+    if record.grown is not None:
+        shutil.rmtree(record.grown, ignore_errors=True)
     if record.store is not None:
         forget(record.store)
     return outcome
