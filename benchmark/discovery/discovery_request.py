@@ -127,12 +127,15 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
     session, said = _loaded(request, request.paths[0], listener)
     own = tuple(effect for effect in effects if effect.slug not in SLUGS)
     store = store_folder(request.out, session, request.model)
+    rounds: tuple[Round, ...] = ()
+    grown: Path | None = None
     if request.bench is None:
-        found, rounds, grown = _found(session, request, own, listener, store), (), None
+        found = _found(session, request, own, listener, store)
         proposal = propose(found, fem_or_wave_table(session, ()), session.specimen)
     else:
         loop = _looped(request, own, listener, store)
-        found, rounds, grown, proposal = loop.run(), tuple(loop.rounds), loop.bench.folder, None
+        found, grown = loop.run(), loop.bench.folder
+        rounds = tuple(loop.rounds)
         session, said = _loaded(request, grown, listener)
         proposal = loop.propose(found, loop.bench.allowed({each.choice for each in rounds}))
     warnings = tuple(dict.fromkeys((*session.warnings, *said, *found.discovery.warnings)))

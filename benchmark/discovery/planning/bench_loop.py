@@ -193,6 +193,7 @@ class Loop:
     def _round(self, found: Findings, proposal: NextExperiment) -> Findings:
         standing = rivals(found)[:2]
         number = len(self.rounds) + 1
+        separation: float | None
         if proposal.choice == BLOCK:
             files = self.bench.record(proposal, 1, number)
             separation, lost = judged_by_block(standing, files[0])
