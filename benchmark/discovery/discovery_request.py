@@ -17,7 +17,7 @@ from benchmark.discovery.from_run import at_small_strain, is_run, read_run, repa
 from benchmark.discovery.planning.bench_loop import Asked, BenchWork, Loop, load_bench, session_copy, unattended
 from benchmark.discovery.planning.proposing import Allowed, propose
 from benchmark.discovery.report.discovery_files import DiscoveryOutcome, write_discovery
-from benchmark.discovery.report.discovery_record import DiscoveryRecord, NextExperiment
+from benchmark.discovery.report.discovery_record import DiscoveryRecord, NextExperiment, Round
 from benchmark.discovery.workflow import Findings, findings
 from benchmark.errors import InputError
 from benchmark.files import Session, load_session
