@@ -71,8 +71,6 @@ def discovery_document(record: DiscoveryRecord) -> dict[str, Any]:
         document["layers"] = {layer.layer: _layer(layer) for layer in record.layers}
     if record.proposal is not None:
         document["next_experiment"] = _proposal(record.proposal)
-    if record.grown is not None:
-        document["rounds"] = [asdict(each) for each in record.rounds]
     return document
 
 
@@ -274,7 +272,8 @@ def write_discovery(record: DiscoveryRecord, folder: Path) -> DiscoveryOutcome:
     OSError
         Where the file system refuses; `folder` is then as it was.
     """
-    document, environment = discovery_document(record), describe_environment(seed=record.seed)
+    rounds = {} if record.grown is None else {"rounds": [asdict(each) for each in record.rounds]}
+    document, environment = {**discovery_document(record), **rounds}, describe_environment(seed=record.seed)
     tables = discovery_tables(document)
     page = discovery_page(record, environment, list(tables))
 
