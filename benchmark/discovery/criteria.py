@@ -162,6 +162,10 @@ within this share of the peak. First choice."""
 RISEN, LEAST_TOUCH = 5.0, 0.01
 """A tool touches no deeper than where the force is so many times the noise over that at rest, or this share of the peak
 depth where that is more. First choice."""
+EARLY_TOUCH = 0.05
+"""Of the peak depth, by which a tool may have touched before the depth from which it is counted, since a controller
+sees the touch by a force. The phantom session's touches scatter by 0.1 mm and were cut off without it.
+"""
 LARGE_SHARE, MOST_LARGE = 0.05, 4
 """Of peak force or depth, from which a trial's own zero or depth at touch is warned of, and how many are shown. First
 choice."""

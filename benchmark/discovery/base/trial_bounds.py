@@ -41,16 +41,17 @@ def zero_range(problem: TrialsProblem, trial: TrialRef, noise: float) -> tuple[f
 
 
 def touch_range(problem: TrialsProblem, trial: TrialRef, noise: float) -> tuple[float, float]:
-    """Between which depths, m, a tool touches: not beyond the row in which the force has risen, nor so far before zero.
+    """Between which depths, m, a tool touches: not beyond the row in which the force has risen over its noise.
 
-    Rows that rise are those of the first press whose force is over that at rest by several times its noise.
+    Where depth is counted from a touch that a force told, the tool had touched before: by the same depth and a share of
+    the press.
     """
     resting, force, depth = _resting(problem, trial), trial.signals[:, 0], trial.motion.depth
     rest = float(np.median(force[resting])) if resting.any() else float(force[:2].min())
     risen = np.flatnonzero((force > rest + criteria.RISEN * noise) & (depth > 0.0))
     least = criteria.LEAST_TOUCH * float(depth.max())
     reach = max(float(depth[risen[0]]) if risen.size else float(depth.max()), least)
-    return -reach, reach
+    return -reach - criteria.EARLY_TOUCH * float(depth.max()), reach
 
 
 def _resting(problem: TrialsProblem, trial: TrialRef) -> Array:

@@ -114,9 +114,11 @@ def undetermined(fitted: Fit) -> tuple[str, ...]:
     return tuple(effect.slug for effect in fitted.model.effects if not determined(fitted, effect))
 
 
-def added_terms(effect: Effect, richer: Effect) -> tuple[str, ...]:
-    """The strengths that a richer form of an effect has beyond it."""
-    return tuple(p.name for p in richer.description.parameters if p.name not in effect.names and not p.logarithmic)
+def every_term_told(fitted: Fit) -> bool:
+    """Whether the data tell the strength of each term of the last effect: with more terms than one, any may be idle."""
+    effect = fitted.model.effects[-1]
+    terms = [p.name for p in effect.description.parameters if not p.logarithmic]
+    return all(determined(fitted, effect, (term,)) for term in terms)
 
 
 def by_condition(fitted: Fit) -> tuple[tuple[str, ConditionEstimate], ...]:

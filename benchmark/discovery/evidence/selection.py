@@ -22,7 +22,7 @@ from benchmark.discovery.evidence.gains import (
     held_out,
     held_out_conditions,
 )
-from benchmark.discovery.evidence.parameter_evidence import added_terms, determined, told_parameters
+from benchmark.discovery.evidence.parameter_evidence import determined, every_term_told, told_parameters
 from benchmark.discovery.evidence.pool import Pool
 from benchmark.discovery.evidence.shortlist import Screened, screen
 from benchmark.discovery.evidence.showing import missing
@@ -160,8 +160,7 @@ def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
     near = [s for s in scored[:3] if s.gain.mean > criteria.RICHER_SHARE * top and s.gain.z >= criteria.RICHER_Z]
     pairs = [(s, effect) for s in near if (effect := s.fit.model.effects[-1].richer) is not None]
     richer = work.fits("second terms", [(current, effect) for _, effect in pairs])
-    added = {effect.slug: added_terms(s.fit.model.effects[-1], effect) for s, effect in pairs}
-    told = [fit for fit in richer if determined(fit, fit.model.effects[-1], added[fit.model.effects[-1].slug])]
+    told = [fit for fit in richer if every_term_told(fit)]
     better = {s.slug: s for s in score(current, told)}
     chosen = []
     for s in scored:
