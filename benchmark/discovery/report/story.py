@@ -28,14 +28,20 @@ def story(record: DiscoveryRecord) -> Story | None:
 
 
 def telling(record: DiscoveryRecord) -> Trace | None:
-    """The trial that shows most: of those that stand for their group, the one whose misfit is the largest share."""
-    return max(representative(record.found.traces), key=_misfit, default=None)
+    """The trial that shows most: of those that stand for their group, the one whose misfit stands out most.
+
+    Over the scatter of replicates where all tell it, else over the channel's largest value: a channel in which nothing
+    but noise happens would be all misfit.
+    """
+    shown = representative(record.found.traces)
+    over_noise = all(rms(trace.noise) > 0.0 for trace in shown)
+    return max(shown, key=lambda trace: _misfit(trace, over_noise), default=None)
 
 
-def _misfit(trace: Trace) -> float:
-    """Of the model before, over the channel's largest value."""
-    largest = float(np.nanmax(np.abs(trace.measured), initial=0.0))
-    return rms(trace.measured - trace.before) / largest if largest > 0.0 else 0.0
+def _misfit(trace: Trace, over_noise: bool) -> float:
+    """Of the model before, over replicates' scatter or over the channel's largest value."""
+    size = rms(trace.noise) if over_noise else float(np.nanmax(np.abs(trace.measured), initial=0.0))
+    return rms(trace.measured - trace.before) / size if size > 0.0 else 0.0
 
 
 def rms(residual: np.ndarray) -> float:
@@ -50,7 +56,7 @@ def _where(record: DiscoveryRecord) -> StoryStep:
         text = "Nowhere beyond chance" if found.verdict == "no_discrepancy" else "Not tested"
         return StoryStep("Where", text, "" if found.p is None else f"{probability(found.p)} over all places.")
     place = max(found.where, key=lambda each: abs(each.percent_of_signal))
-    sign = "more" if place.size > 0 else "less"
+    sign = "more" if place.missed > 0 else "less"
     answer = f"{channel_name(place.channel)}, {phase_name(place.phase)}: {_signed(place)}, {sign} than simulated"
     more = len(found.where) - 1
     others = f"; {more} more place{'s' * (more != 1)} below" if more else ""
@@ -59,8 +65,8 @@ def _where(record: DiscoveryRecord) -> StoryStep:
 
 def _signed(place: Place) -> str:
     """Measured minus simulated, with its share of the signal: +0.61 N (16 %)."""
-    sign = "+" if place.size > 0 else "−"
-    return f"{sign}{sized(place.channel, abs(place.size))} ({format_number(abs(place.percent_of_signal), 2)} %)"
+    sign = "+" if place.missed > 0 else "−"
+    return f"{sign}{sized(place.channel, abs(place.missed))} ({format_number(abs(place.percent_of_signal), 2)} %)"
 
 
 def _range(place: Place) -> str:

@@ -38,7 +38,7 @@ def test_one_screen_tells_where_which_what_and_how_much(record) -> None:
     ]  # fmt: skip
     assert re.search(r"press force, \w+.*[+−]\d", steps["Where"])
     assert "viscoelastic relaxation, or" in steps["Which effect"]
-    assert re.search(r"Misfit 0\.024 → 0\.0007\d* mm", steps["What it does to the model"])
+    assert re.search(r"Misfit 0\.025 → 0\.0007\d* mm", steps["What it does to the model"])
     assert "% of it is closed" in steps["How the gap shrinks"]
     text = _text(record)
     assert text.index("How the gap shrinks") < text.index("Contents")

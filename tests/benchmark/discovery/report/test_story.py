@@ -1,0 +1,22 @@
+"""The first screen: its picture is of what happens, and its sign is the measurement's."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from benchmark.discovery.report.story import story, telling
+
+
+def test_a_channel_in_which_only_noise_happens_is_not_the_picture(record) -> None:
+    chosen = telling(record)
+    quiet = replace(chosen, channel="marker_x", condition="quiet", measured=1e-3 * np.ones(chosen.time.size))
+    quiet = replace(quiet, before=0.0 * chosen.time, after=0.0 * chosen.time, noise=np.full(chosen.time.size, 1e-3))
+    other = replace(record, found=replace(record.found, traces=(*record.found.traces, quiet)))
+    assert telling(other) == chosen
+
+
+def test_more_or_less_is_what_was_measured_not_what_the_effects_add(record) -> None:
+    place = replace(record.found.where[0], size=0.5, residual=-0.2, percent_of_signal=-9.0)
+    told = story(replace(record, found=replace(record.found, where=(place,))))
+    assert told.steps[0].answer.endswith("(9.0 %), less than simulated")
+    assert "−0.20 N" in told.steps[0].answer
