@@ -52,6 +52,7 @@ class SupportKeys(StrictModel):
 
     kind: Literal["bonded", "hole", "half_space"] | None = None
     hole_radius: Length | None = None
+    clamp: Literal["plate", "rim"] | None = None
 
 
 class DriveKeys(StrictModel):

@@ -49,7 +49,10 @@ def locked(folder: Path, doing: str) -> Iterator[None]:
     """
     path = lock_path(folder)
     made = [each for each in path.parents if not each.exists()]
-    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OSError(f"{folder} cannot be written: {error.strerror}") from error
     handle = _taken(path, folder)
     try:
         _say(handle, f"{doing}, process {os.getpid()} on {socket.gethostname()} since {datetime.now():%H:%M:%S}")

@@ -27,8 +27,8 @@ from bench_hw.motion.protocol_file import load_protocol
 from bench_hw.rig.opening import specimen_of
 from bench_hw.rig.rig_file import LoadedRig, load_rig
 from bench_hw.trial_file import read_trial_mcap
+from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit
-from benchmark.discovery.criteria import DECISIVE
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.evidence.gains import held_out, held_out_conditions
 from benchmark.discovery.planning.proposing import DEPTH_READ, GIVES, Allowed
@@ -285,7 +285,7 @@ def judged_by_prediction(
     separation = math.sqrt(2.0 * abs(total))
     winner, loser = (first, standing[1]) if total > 0.0 else (second, standing[0])
     short = float(np.sum(_of(winner, condition, held_out(winner)) - _predicted(winner, condition)))
-    sure = bool((lead > 0.0).all() or (lead < 0.0).all()) and abs(total) >= max(DECISIVE, short)
+    sure = bool((lead > 0.0).all() or (lead < 0.0).all()) and abs(total) >= max(criteria.DECISIVE, short)
     other = standing[0] if loser is standing[1] else standing[1]
     return separation, frozenset(set(loser.slugs) - set(other.slugs)) if sure else frozenset()
 

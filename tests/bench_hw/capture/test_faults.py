@@ -162,7 +162,7 @@ def test_a_session_file_that_cannot_be_written_leaves_the_trial_and_no_tool_in_t
     assert inspect_trial(session / "trial_001.mcap").to_dict()["complete"]
 
 
-def refuse_session_file(path, text):
+def refuse_session_file(path, text, check=None):
     if path.name == "session.toml":
         raise OSError(28, "No space left on device")
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -41,7 +41,7 @@ def test_what_is_no_trial_is_exit_two_and_one_paragraph(run, tmp_path):
     for path, reason in (
         (garbage, "nothing in this file is a trial"),
         (tmp_path / "none.mcap", "No such file"),
-        (tmp_path, "Is a directory"),
+        (tmp_path, "it is a folder; allowed is a regular file"),
     ):
         ran = run("inspect", path, "--json")
         assert (ran.exit_code, ran.stdout) == (2, "")
