@@ -13,7 +13,7 @@ from benchmark.runs.report.scenario_section import method_section, scenario_sect
 from benchmark.runs.report.statistics_section import Columns, growth_section, statistics_section, validation_section
 from benchmark.runs.report.timing_section import timing_section
 from benchmark.runs.report.trials_section import TrialsPart, fit_section, measured_section, session_notices
-from benchmark.runs.report.values import pair_names, peak_errors, sentence, setup_words, speedup_words
+from benchmark.runs.report.values import pair_names, peak_errors, sentence, setup_words, speedup_words, times_words
 from benchmark.runs.small_strain import NOTE
 from reports import Block, Download, Fact, KeyFigure, Notice, Page, Section, Verdict
 
@@ -181,8 +181,8 @@ def _key_figures(record: RunRecord) -> tuple[KeyFigure, ...]:
         figures.append(KeyFigure(label, f"{error:+.3g}", "%", f"{layer} at peak load, the worst layer"))
     if record.pair.speedup is not None:
         ratio = record.pair.speedup
-        note = f"of the load history alone; {ratio.with_setup:.3g} × with set-up"
-        figures.append(KeyFigure("speed-up", f"{ratio.median:.3g}", "×", note))
+        note = f"of the load history alone; {times_words(ratio.with_setup)} × with set-up"
+        figures.append(KeyFigure("speed-up", times_words(ratio.median), "×", note))
     return tuple(figures)
 
 

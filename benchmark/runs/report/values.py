@@ -10,6 +10,7 @@ from benchmark.runs.record import RunRecord
 from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.side_by_side import Speedup
 from reports.figures.style import Pair
+from reports.formatting import format_number
 
 MM = 1e3
 
@@ -60,13 +61,18 @@ def peak_errors(record: RunRecord) -> dict[str, float]:
 
 def speedup_words(ratio: Speedup) -> str:
     """A speed-up with what its interval is."""
-    low, high = ratio.ci95
-    return f"{ratio.median:.3g} ({ratio.spread} {low:.3g} to {high:.3g}, {ratio.repeats} interleaved pairs)"
+    low, high = map(times_words, ratio.ci95)
+    return f"{times_words(ratio.median)} ({ratio.spread} {low} to {high}, {ratio.repeats} interleaved pairs)"
+
+
+def times_words(ratio: float) -> str:
+    """A ratio of times to three digits, without an exponent."""
+    return format_number(ratio, 3, trim=True)
 
 
 def setup_words(ratio: Speedup, wave: str) -> str:
     """What is left of it with the set-up, and from how many load histories on it pays."""
-    first = f"with the set-up before it, one load history is {ratio.with_setup:.3g} times as fast"
+    first = f"with the set-up before it, one load history is {times_words(ratio.with_setup)} times as fast"
     if ratio.pays_from is None:
         return f"{first}; the {wave} is never ahead"
     return f"{first}; the {wave} is ahead from load history {ratio.pays_from} of one set-up on"

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from benchmark.runs.report.timing_section import timing_section
-from benchmark.side_by_side import ModelRun, Seconds
+from benchmark.runs.report.values import speedup_words
+from benchmark.side_by_side import ModelRun, Seconds, Speedup
 from reports import Table
 
 RESULT = SimpleNamespace(time=np.arange(100.0), unknowns=7)
@@ -32,3 +33,9 @@ def test_a_users_model_has_no_frame() -> None:
     rows = table_of(ModelRun("wave", RESULT, None, (Seconds(0.2, 0.01, 0.01),), own="mine"))
     assert rows["mine"]["wall per frame"] is None
     assert rows["mine"]["wall per load step"] == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(("ratio", "words"), [(1702.3, "1702"), (258.14, "258"), (4.203, "4.2")])
+def test_a_speed_up_is_told_in_one_form_without_an_exponent(ratio: float, words: str) -> None:
+    found = Speedup(ratio, (ratio, ratio), 2.0, 1, 3)
+    assert speedup_words(found) == f"{words} (range {words} to {words}, 3 interleaved pairs)"
