@@ -237,7 +237,11 @@ markers those that act on markers alone have none."""
 AT_BOUND = 0.98
 """Of a range: a strength beyond it stands at its bound. First choice."""
 TIE = 0.03
-"""Candidates whose gain lacks no more than this share of the best one's are equals. Pig tissue (0.02 before)."""
+"""Candidates whose gain lacks no more than this share of the best one's are equals. Pig tissue (0.02 before).
+
+Within it, what a base must bend beside effects of the tissue, or a set-up that moves gains beside them, is what their
+forms miss.
+"""
 CLOSE = 0.1
 """A rival whose gain lacks less than this share of the best one's is a look-alike: its true form may be another.
 

@@ -48,7 +48,7 @@ from benchmark.discovery.detection.disagreement import (
 )
 from benchmark.discovery.detection.places import places
 from benchmark.discovery.discovery_result import Discovery
-from benchmark.discovery.evidence.gains import conditions
+from benchmark.discovery.evidence.gains import conditions, tissue_gain
 from benchmark.discovery.evidence.parameter_evidence import constant, undetermined, unsteady
 from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fingerprint, own_code, pool, silent
 from benchmark.discovery.evidence.selection import Selection, first_gain, select, usable
@@ -270,5 +270,5 @@ def _facts(answer: _Answer, known: Sequence[Effect], settings: Settings) -> Fact
         conditions=len(answer.base.model.problem.study.conditions),
         undetermined=undetermined(answer.chosen),
         unsteady=unsteady(answer.chosen),
-        p_strained=strained(answer.chosen),
+        p_strained=strained(answer.chosen, criteria.TIE * tissue_gain(selection.chosen, selection.own)),
     )

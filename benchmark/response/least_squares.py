@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.response.force_curve import Array
+from benchmark.response.normal_equations import TrialEquations, bounded_step, joint_step, stepped, trial_equations
 from benchmark.response.trials_model import RecordModel, TrialColumns, TrialsEvaluation, TrialsModel
 
 MOST_DAMPING = 1e5
@@ -93,6 +94,8 @@ class TrialsFit(Generic[Model]):
         Of the priors on the vector.
     columns : TrialColumns
         At the solution.
+    converged : bool
+        Whether it ended before its steps did.
     """
 
     model: Model
@@ -103,6 +106,7 @@ class TrialsFit(Generic[Model]):
     precision: Array
     prior_mean: Array
     columns: TrialColumns
+    converged: bool = True
 
     @property
     def covariance(self) -> Array:
@@ -114,8 +118,9 @@ class TrialsFit(Generic[Model]):
         """(p,) of the fit without some trials (mask (R,)), to first order, within the bounds."""
         matrix = self.blocks.matrix[~trials].sum(axis=0) + np.diag(self.precision)
         slope = self.blocks.slope[~trials].sum(axis=0) - self.precision * (self.vector - self.prior_mean)
-        step = bounded_step(matrix, slope, self.vector, 1e-9, self.model.bounds)
-        return np.clip(self.vector + step, *self.model.bounds)
+        low, high = self.model.bounds
+        step = bounded_step(matrix, slope, (low - self.vector, high - self.vector), 1e-9)
+        return stepped(self.vector, step, (low, high))
 
     def log_density(self, vector: Array) -> Array:
         """(R,) log density of each trial at another vector, to second order, its nuisances marginalised."""
@@ -136,7 +141,13 @@ def scaled_inverse(matrix: Array) -> Array:
 
 
 def least_squares(
-    model: Model, start: Array, nuisance: Array, *, warm: TrialColumns | None = None, search: Search = USUAL
+    model: Model,
+    start: Array,
+    nuisance: Array,
+    *,
+    warm: TrialColumns | None = None,
+    search: Search = USUAL,
+    around: Array | None = None,
 ) -> TrialsFit[Model]:
     """Fit a model from a start.
 
@@ -152,11 +163,14 @@ def least_squares(
         Derivatives near the start, some of which serve for the first steps.
     search
         How it goes on and when it has converged.
+    around
+        (p,) vector round which the priors lie, if it is not the start: of a fit that goes on.
     """
-    mean, precision = model.prior(start)
-    at = model.evaluated(np.clip(start, *model.bounds), nuisance)
+    mean, precision = model.prior(start if around is None else around)
+    limits = model.trial_bounds
+    at = model.evaluated(np.clip(start, *model.bounds), nuisance if limits is None else np.clip(nuisance, *limits))
     value = _objective(model, at, mean, precision)
-    damping, columns = search.damping, None
+    damping, columns, converged = search.damping, None, False
     for turn in range(search.most):
         if columns is None:
             columns = model.columns(at, warm if turn < LENT else None)
@@ -165,17 +179,19 @@ def least_squares(
         if tried_value < value:
             gain, at, value = value - tried_value, tried, tried_value
             damping, columns = damping * 0.2, None
-            if gain < max(search.gain, search.share * value):
+            converged = gain < max(search.gain, search.share * value)
+            if converged:
                 break
         else:
             if warm is not None and turn < LENT:
                 warm, columns = None, None
             damping = max(damping, 1e-4) * 12.0
-            if damping > MOST_DAMPING:
+            converged = damping > MOST_DAMPING
+            if converged:
                 break
     columns = model.columns(at)
     blocks = _blocks(model, columns, at)
-    return TrialsFit(model, at.vector, at.nuisance, value, blocks, precision, mean, columns)
+    return TrialsFit(model, at.vector, at.nuisance, value, blocks, precision, mean, columns, converged)
 
 
 def _objective(model: TrialsModel, at: TrialsEvaluation, mean: Array, precision: Array) -> float:
@@ -190,109 +206,52 @@ def _moved(
 ) -> tuple[Array, Array]:
     """Vector and nuisances one damped step further, within their bounds."""
     mean, precision = prior
-    matrix, slope = np.diag(precision).astype(float), -precision * (at.vector - mean)
-    parts = []
-    for index, residual in enumerate(at.residuals):
-        one = _eliminated(
-            columns, index, residual, at.nuisance[index], model.trial_precision, _held(model, columns, at, index)
-        )
-        matrix += one.matrix
-        slope += one.slope
-        parts.append(one)
-    step = bounded_step(matrix, slope, at.vector, damping, model.bounds)
-    moves = np.array([one.solved[:, -1] - one.solved[:, :-1] @ step for one in parts])
+    trials = [_equations(model, columns, at, index) for index in range(len(at.residuals))]
+    held = [_held(model, one.pull, at.nuisance[index], index) for index, one in enumerate(trials)]
+    limits = model.trial_bounds
+    own_edges = None if limits is None else (limits[0] - at.nuisance, limits[1] - at.nuisance)
+    edges = (model.bounds[0] - at.vector, model.bounds[1] - at.vector)
+    step, moves = joint_step(trials, (precision, -precision * (at.vector - mean)), damping, edges, own_edges, held)
+    own = at.nuisance + moves if limits is None else stepped(at.nuisance, moves, limits)
+    return stepped(at.vector, step, model.bounds), own
+
+
+def _equations(model: TrialsModel, columns: TrialColumns, at: TrialsEvaluation, index: int) -> TrialEquations:
+    """A trial's normal equations."""
+    weight = model.trial_precision
+    return trial_equations(
+        columns.vector[index], columns.nuisance[index], at.residuals[index], at.nuisance[index], weight
+    )
+
+
+def _held(model: TrialsModel, pull: Array, own: Array, index: int) -> NDArray[np.bool_]:
+    """Which nuisances (q,) of a trial stand at a bound that they are pulled beyond."""
     limits = model.trial_bounds
     if limits is None:
-        return np.clip(at.vector + step, *model.bounds), at.nuisance + moves
-    for index, one in enumerate(parts):
-        pull, own = one.pull - one.side @ step, at.nuisance[index]
-        moves[index] = bounded_step(one.inner, pull, own, 0.0, (limits[0][index], limits[1][index]))
-    return np.clip(at.vector + step, *model.bounds), np.clip(at.nuisance + moves, *limits)
-
-
-@dataclass(frozen=True, eq=False)
-class _Eliminated:
-    """A trial's normal equations: its nuisances' own (`inner`, `side`, `pull`), and what is left of the vector's."""
-
-    inner: Array
-    side: Array
-    pull: Array
-    solved: Array
-    matrix: Array
-    slope: Array
-
-
-def _eliminated(
-    columns: TrialColumns, index: int, residual: Array, own: Array, weight: Array, held: NDArray[np.bool_]
-) -> _Eliminated:
-    """Eliminate the nuisances of a trial that stand at `own` (q,); those that are `held` stay there."""
-    j, n = columns.vector[index], columns.nuisance[index]
-    inner = n.T @ n + np.diag(weight)
-    side, pull = n.T @ j, n.T @ residual - weight * own
-    if held.any():
-        solved = np.zeros((own.size, j.shape[1] + 1))
-        solved[~held] = _solve(inner[np.ix_(~held, ~held)], np.column_stack([side, pull])[~held])
-    else:
-        solved = _solve(inner, np.column_stack([side, pull]))
-    matrix = j.T @ j - side.T @ solved[:, :-1]
-    return _Eliminated(inner, side, pull, solved, matrix, j.T @ residual - side.T @ solved[:, -1])
-
-
-def _held(model: TrialsModel, columns: TrialColumns, at: TrialsEvaluation, index: int) -> NDArray[np.bool_]:
-    """Which nuisances of a trial stand at a bound that they would pass (q,)."""
-    limits, own = model.trial_bounds, at.nuisance[index]
-    if limits is None:
         return np.zeros(own.size, dtype=bool)
-    pull = columns.nuisance[index].T @ at.residuals[index] - model.trial_precision * own
-    low, high = limits[0][index], limits[1][index]
-    return np.asarray(((own <= low) & (pull <= 0.0)) | ((own >= high) & (pull >= 0.0)))
-
-
-def bounded_step(matrix: Array, slope: Array, vector: Array, damping: float, bounds: tuple[Array, Array]) -> Array:
-    """Damped step within the bounds: what would leave them stops at their edge, and the others make up for it."""
-    low, high = bounds[0] - vector, bounds[1] - vector
-    damped = matrix + np.diag(damping * np.maximum(np.diag(matrix), 1e-12))
-    free = np.ones(vector.size, dtype=bool)
-    step = np.zeros(vector.size)
-    for _ in range(vector.size):
-        if not free.any():
-            return step
-        pull = slope[free] - matrix[np.ix_(free, ~free)] @ step[~free]
-        step[free] = _solve(damped[np.ix_(free, free)], pull)
-        out = free & ((step < low) | (step > high))
-        if not out.any():
-            return step
-        step[out] = np.clip(step, low, high)[out]
-        free &= ~out
-    return step
-
-
-def _solve(matrix: Array, right: Array) -> Array:
-    """The solution; the shortest one where the matrix is singular, so that what the data do not feel stays put."""
-    try:
-        return np.asarray(np.linalg.solve(matrix, right))
-    except np.linalg.LinAlgError:
-        return np.asarray(np.linalg.lstsq(matrix, right)[0])
+    return np.asarray(((own <= limits[0][index]) & (pull <= 0.0)) | ((own >= limits[1][index]) & (pull >= 0.0)))
 
 
 def _blocks(model: TrialsModel, columns: TrialColumns, at: TrialsEvaluation) -> Blocks:
+    """What each trial says, as if its nuisances began at zero; those at a bound stay there."""
     matrices, slopes, misfits, sizes = [], [], [], []
     weight = model.trial_precision
     for index, residual in enumerate(at.residuals):
-        held = _held(model, columns, at, index)
-        free = residual + columns.nuisance[index] @ np.where(held, 0.0, at.nuisance[index])
-        one = _eliminated(columns, index, free, np.zeros(held.size), weight, held)
+        own, trial = at.nuisance[index], _equations(model, columns, at, index)
+        held = _held(model, trial.pull, own, index)
+        one = trial.eliminated(np.zeros(held.size), held)
         matrices.append(one.matrix)
         slopes.append(one.slope)
-        misfits.append(float(free @ free - one.pull @ one.solved[:, -1]))
-        sizes.append(float(np.linalg.slogdet(one.inner)[1] - np.log(weight[weight > 0.0]).sum()))
+        misfits.append(float(residual @ residual + own @ (weight * own) - trial.pull @ one.solved[:, -1]))
+        sizes.append(float(np.linalg.slogdet(trial.inner)[1] - np.log(weight[weight > 0.0]).sum()))
     return Blocks(np.array(matrices), np.array(slopes), np.array(misfits), np.array(sizes))
 
 
 def settled(model: TrialsModel, vector: Array, nuisance: Array, search: Search = SETTLED) -> Array:
     """(R, q) nuisances of the trials at a vector that stays: each trial by itself, damped until it has converged."""
     weight, damping = model.trial_precision, np.full(len(nuisance), search.damping)
-    at = model.evaluated(vector, nuisance)
+    low, high = model.trial_bounds or (np.full_like(nuisance, -np.inf), np.full_like(nuisance, np.inf))
+    at = model.evaluated(vector, np.clip(nuisance, low, high))
     value = _trial_objectives(at, weight)
     going = np.ones(len(nuisance), dtype=bool)
     for _ in range(search.most):
@@ -300,9 +259,9 @@ def settled(model: TrialsModel, vector: Array, nuisance: Array, search: Search =
         for index in np.flatnonzero(going):
             n = columns[index]
             inner, pull = n.T @ n + np.diag(weight), n.T @ at.residuals[index] - weight * tried[index]
-            tried[index] += _solve(inner + damping[index] * np.diag(np.diag(inner)), pull)
-        if model.trial_bounds is not None:
-            tried = np.clip(tried, *model.trial_bounds)
+            bounds = (low[index], high[index])
+            edges = (bounds[0] - tried[index], bounds[1] - tried[index])
+            tried[index] = stepped(tried[index], bounded_step(inner, pull, edges, damping[index]), bounds)
         other = model.evaluated(vector, tried)
         new = _trial_objectives(other, weight)
         better = going & (new < value)

@@ -13,7 +13,10 @@ from benchmark.discovery.base.trials_problem import TrialsProblem
 from benchmark.physics import Effect
 from benchmark.physics.effect import Values
 from benchmark.response.force_curve import Array
+from benchmark.response.least_squares import Search, least_squares
 
+GOING_ON = Search(most=40)
+"""Of the best start's fit, where its first steps did not end it."""
 SCALES = (1e-5, 10.0)
 """A screened start's amplitude is scaled within this range."""
 
@@ -28,7 +31,7 @@ def fit_candidate(base: Fit, effect: Effect, most: int = 10) -> Fit:
     effect
         To add.
     most
-        Steps of the refinement.
+        Steps from each start; the best one goes on until it has converged.
     """
     model = EffectModel(base.model.problem, (*base.model.effects, effect))
     fits = []
@@ -41,7 +44,14 @@ def fit_candidate(base: Fit, effect: Effect, most: int = 10) -> Fit:
         ]
         warm = base.columns if state is base.nuisance else None
         fits += [fit(model, start, state, warm, most) for start in close]
-    return min(fits, key=lambda each: each.objective)
+    return gone_on(min(fits, key=lambda each: each.objective))
+
+
+def gone_on(found: Fit) -> Fit:
+    """The fit to convergence, round the same priors: what an unfinished one leaves would be laid to something else."""
+    if found.converged:
+        return found
+    return least_squares(found.model, found.vector, found.nuisance, search=GOING_ON, around=found.prior_mean)
 
 
 def _unshifted(base: Fit) -> tuple[Array, ...]:

@@ -54,13 +54,16 @@ def combined(*values: float) -> float:
     return float(min(1.0, *(value / share for value, share in zip(values, criteria.LEVEL_SHARES, strict=False))))
 
 
-def strained(fitted: Fit) -> float:
+def strained(fitted: Fit, form: float = 0.0) -> float:
     """Family-wise p that the base's shape lies as far off as the data bend it, by the normal priors of its nuisances.
 
-    What a base can follow by bending leaves no residual, so that no cell shows it.
+    What a base can follow by bending leaves no residual, so that no cell shows it. Up to a cost of `form` in log
+    density it bends to what the forms of effects miss, and says nothing of the set-up.
     """
     free = [k for k, name in enumerate(fitted.model.problem.shapes) if name != "modulus"]
     z = np.abs(fitted.vector[free]) * np.sqrt(fitted.precision[free])
+    if 0.5 * float(z @ z) < form:
+        return 1.0
     return float(min(1.0, len(free) * 2.0 * norm.sf(z.max())))
 
 

@@ -109,6 +109,35 @@ def test_nuisances_keep_their_bounds_as_scipy_has_it() -> None:
     assert fitted.nuisance[2, 1] == 0.05
 
 
+def test_a_start_beyond_the_bounds_is_brought_within() -> None:
+    """There it fits better than anything allowed, so that no step from it would be taken."""
+    low, high = np.full((4, 2), -0.05), np.full((4, 2), 0.05)
+    free, model = straight(), straight(trial_bounds=(low, high))
+    start = least_squares(free, np.zeros(2), np.zeros((4, 2)), search=TIGHT)
+    fitted = least_squares(model, start.vector, start.nuisance, search=TIGHT)
+    other = least_squares(model, np.zeros(2), np.zeros((4, 2)), search=TIGHT)
+    assert fitted.objective > start.objective
+    assert fitted.vector == pytest.approx(other.vector, rel=1e-6)
+    assert ((fitted.nuisance >= low) & (fitted.nuisance <= high)).all()
+
+
+def test_nuisances_settle_within_their_bounds_and_the_others_make_up_for_it() -> None:
+    low, high = np.full((4, 2), -0.1), np.full((4, 2), 0.1)
+    model = straight(trial_bounds=(low, high))
+    fitted = least_squares(model, np.zeros(2), np.zeros((4, 2)), search=TIGHT)
+    assert settled(model, fitted.vector, np.full((4, 2), 0.3), EXACT) == pytest.approx(fitted.nuisance, abs=1e-6)
+
+
+def test_a_fit_that_goes_on_keeps_its_priors_and_says_when_it_has_ended() -> None:
+    model = straight(precision=0.5)
+    whole = least_squares(model, np.zeros(2), np.zeros((4, 2)), search=TIGHT)
+    part = least_squares(model, np.zeros(2), np.zeros((4, 2)), search=Search(most=1, damping=1.0))
+    again = least_squares(model, part.vector, part.nuisance, search=TIGHT, around=part.prior_mean)
+    assert whole.converged
+    assert not part.converged
+    assert again.objective == pytest.approx(whole.objective, rel=1e-12)
+
+
 def rosenbrock(vector):
     return -np.array([10.0 * (vector[1] - vector[0] ** 2), 1.0 - vector[0]])
 

@@ -1,12 +1,14 @@
 """Gains over trials: what one trial can do to them, and when they are evidence without z."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.detection.disagreement import combined, strained
-from benchmark.discovery.evidence.gains import broad, gain, strain
+from benchmark.discovery.evidence.gains import broad, gain, strain, tissue_gain
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
 
@@ -35,6 +37,13 @@ def test_all_but_the_best_trial_are_evidence_unless_others_lose():
     assert broad(gains(20, 30, 10, 50, 40, -30, 0, 0)) == 0.0
 
 
+def test_only_effects_of_the_tissue_have_forms_that_miss_something():
+    effects = [BY_SLUG[slug] for slug in ("pretension", "perspective", "dry_friction")]
+    own = {"pretension": gains(3, 4), "perspective": gains(500, 500), "dry_friction": gains(20, 10)}
+    fitted = SimpleNamespace(model=SimpleNamespace(effects=effects))
+    assert tissue_gain(fitted, own) == 37.0
+
+
 def test_a_base_that_bends_far_is_strained_and_pays_for_it(session_of):
     session = session_of(force=lambda time, depth, elastic: elastic * (1 + (depth / 3e-3) ** 2), noise=0.003, trials=4)
     bent = calibrate(session, prepare(session, 90)).base
@@ -42,6 +51,8 @@ def test_a_base_that_bends_far_is_strained_and_pays_for_it(session_of):
     plain = calibrate(session, prepare(session, 90)).base
     assert strained(bent) < 1e-3 < strained(plain)
     assert strain(bent) > strain(plain) + 8.0
+    assert strained(bent, 0.9 * strain(bent)) == strained(bent)
+    assert strained(bent, 1.1 * strain(bent)) == 1.0
     repaired = fit_candidate(bent, BY_SLUG["strain_stiffening"])
     assert strain(repaired) < 0.5 * strain(bent)
 
