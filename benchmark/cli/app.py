@@ -1,4 +1,4 @@
-"""The `benchmark` command: one verb a file, exit codes in one place.
+"""The `benchmark` command: one verb a file (those about what lies on disk in `folders`), exit codes in one place.
 
 Nothing heavy is imported here or at the top of a verb's file, so that `--help` answers at once.
 """
@@ -16,17 +16,14 @@ import typer
 from benchmark.cli import (
     blind,
     check,
-    clean,
     discover,
     fit,
-    reference,
-    report,
     reproduce,
     run,
-    shipped,
     sweep,
     verify,
 )
+from benchmark.cli.folders import clean, reference, report, shipped
 
 EXIT_USAGE = 2
 EXIT_INTERRUPTED = 130

@@ -2,9 +2,9 @@
 
 import pytest
 import typer
+
 from bench_hw.cli._app import app as bench_hw
 from benchmark.cli.app import app as benchmark
-
 from tests.documentation.commands import Command, documented
 
 COMMANDS = [command for command in documented() if "..." not in command.arguments]
