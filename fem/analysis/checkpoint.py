@@ -20,7 +20,7 @@ from fem.load import Load
 from fem.mesh.solid import AnyMesh
 from fem.problem.problem import Problem
 
-FORMAT = "fem checkpoint 3"
+FORMAT = "fem checkpoint 4"
 
 
 @dataclass(frozen=True)
@@ -39,6 +39,8 @@ class Progress:
         Time (k,) in s of each state.
     states
         The states in the order in which they were found, the one before the first step included.
+    settled
+        What the corrections had chosen (k, c) in each state; see :attr:`fem.assembly.item.EquationItem.settled`.
     seconds
         CPU time in s that all of them took, in however many processes.
     """
@@ -50,6 +52,7 @@ class Progress:
     values: FloatArray
     times: FloatArray
     states: tuple[State, ...]
+    settled: FloatArray
     seconds: float
 
 

@@ -135,7 +135,7 @@ def _resume(record: Record, stepper: Stepper, checkpoint: Keeper) -> int:
         return 0
     for n, time, reached, strain in zip(found.steps, found.time, found.reactions, found.strains, strict=True):
         record.add(float(time), found.states[n], float(reached), float(strain))
-    stepper.resume(found.values, found.times, found.states)
+    stepper.resume(found.values, found.times, found.states, found.settled)
     record.resumed = Resumed(len(found.steps), found.seconds)
     return len(found.steps)
 
@@ -151,5 +151,6 @@ def _progress(record: Record, stepper: Stepper, seconds: float) -> Progress:
         values=known.values,
         times=stepper.times,
         states=known.states,
+        settled=stepper.settled,
         seconds=earlier + seconds,
     )

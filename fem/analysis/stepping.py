@@ -136,7 +136,7 @@ class Stepper:
         self._state = State(*problem.system.rest(), 0.0) if start is None else start
         self._value = 0.0 if control == "force" else problem.depth(self._state.y)
         self._time = time
-        self._times = [time]
+        self._times, self._settled = [time], [problem.system.settled]
         self._known = KnownStates(self._value, self._state)
         self._recent = RecentStates(self._value, self._time, self._state) if problem.system.remembers else None
 
@@ -150,11 +150,17 @@ class Stepper:
         """Their times (k,) in s."""
         return np.array(self._times)
 
-    def resume(self, values: FloatArray, times: FloatArray, states: Sequence[State]) -> None:
+    @property
+    def settled(self) -> FloatArray:
+        """What the corrections had chosen (k, c) in each; see :attr:`fem.assembly.item.EquationItem.settled`."""
+        return np.stack(self._settled)
+
+    def resume(self, values: FloatArray, times: FloatArray, states: Sequence[State], settled: FloatArray) -> None:
         """Go on from known states, each with its load value (k,) in N or m and its time (k,) in s, the start first."""
-        for value, time, state in zip(values[1:].tolist(), times[1:].tolist(), states[1:], strict=True):
-            system = self._problem.system.advanced(time - self._time)
-            self._accept(state, value, time, system.corrected(state.y, state.force) or system)
+        rows = zip(values.tolist(), times.tolist(), states, settled, strict=True)
+        for value, time, state, chosen in list(rows)[1:]:
+            system = self._problem.system.advanced(time - self._time).as_settled(chosen)
+            self._accept(state, value, time, system)
 
     @property
     def problem(self) -> Equilibrium:
@@ -235,6 +241,7 @@ class Stepper:
         self._problem = replace(self._problem, system=system.accepted(state.y))
         self._state, self._value, self._time = state, value, time
         self._times.append(time)
+        self._settled.append(system.settled)
         self._known.add(value, state)
         if self._recent is not None:
             self._recent.add(value, time, state)

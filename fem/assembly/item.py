@@ -10,6 +10,8 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
+import numpy as np
+
 from fem.arrays import BoolArray, FloatArray, IntArray
 
 
@@ -71,6 +73,16 @@ class EquationItem(ABC):
     def fitted(self, y: FloatArray) -> Self:
         """The item with limits exactly those of a state with unknowns y (n,); `corrected` leaves small misfits."""
         del y
+        return self
+
+    @property
+    def settled(self) -> FloatArray:
+        """What `corrected` has chosen (k,), which the state alone tells to a tolerance only; as many in all states."""
+        return np.zeros(0)
+
+    def as_settled(self, chosen: FloatArray) -> Self:
+        """The item with what `corrected` had chosen (k,) in an earlier run."""
+        del chosen
         return self
 
     def active(self, y: FloatArray) -> BoolArray | None:

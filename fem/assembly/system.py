@@ -160,6 +160,18 @@ class System:
         """The equations whose limits are exactly those of a state with unknowns y (n,)."""
         return replace(self, items=tuple(item.fitted(y) for item in self.items)) if self.items else self
 
+    @property
+    def settled(self) -> FloatArray:
+        """What `corrected` has chosen (k,), item by item; as many in all states."""
+        return np.concatenate([np.zeros(0), *(item.settled for item in self.items)])
+
+    def as_settled(self, chosen: FloatArray) -> System:
+        """The equations with what `corrected` had chosen (k,) in an earlier run."""
+        if not self.items:
+            return self
+        parts = np.split(chosen, np.cumsum([len(item.settled) for item in self.items])[:-1])
+        return replace(self, items=tuple(item.as_settled(part) for item, part in zip(self.items, parts, strict=True)))
+
     def holding(self, other: System, y: FloatArray) -> System:
         """The equations with the points acting that act in those of another system at unknowns y (n,)."""
         if not self.items:

@@ -214,6 +214,15 @@ class ToolContact(EquationItem):
         limit = self.punch.friction * np.maximum(touch.push, 0.0)
         return replace(self, friction=replace(self.friction, limit=limit))
 
+    @property
+    def settled(self) -> FloatArray:
+        """Whether the punch has pressed, and the friction limits in N: (1 + m,)."""
+        return np.append(float(self.pressed), self.friction.limit)
+
+    def as_settled(self, chosen: FloatArray) -> ToolContact:
+        """The contact with these."""
+        return replace(self, pressed=bool(chosen[0]), friction=replace(self.friction, limit=chosen[1:]))
+
     def active(self, y: FloatArray) -> BoolArray | None:
         """Which nodes (m,) touch at unknowns y (n,)."""
         c, u = len(self.place), np.append(y, 0.0)[self.own]

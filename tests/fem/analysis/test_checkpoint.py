@@ -42,7 +42,7 @@ def stop_at(step):
 def assert_equal(resumed, whole):
     for name in ARRAYS:
         one, other = getattr(resumed, name), getattr(whole, name)
-        np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12 * np.abs(other).max(), err_msg=name)
+        np.testing.assert_array_equal(one, other, err_msg=name)
 
 
 @pytest.mark.parametrize("step", [1, 3, 5])
@@ -134,9 +134,9 @@ def test_a_linear_run_needs_none(tmp_path):
     assert not (tmp_path / "run.npz").exists()
 
 
-@pytest.mark.parametrize(("contact", "tolerance"), [("rigid_bonded", 1e-12), ("rigid_frictional", 1e-4)])
-def test_a_body_with_a_memory_goes_on(tmp_path, contact, tolerance):
-    """Relaxation and friction remember; a resumed friction limit fits to the limit's own tolerance."""
+@pytest.mark.parametrize("contact", ["rigid_bonded", "rigid_frictional"])
+def test_a_body_with_a_memory_goes_on(tmp_path, contact):
+    """Relaxation and friction remember; so do the friction limits, which a state tells to a tolerance only."""
     plain = skin()
     layers = tuple(replace(layer, relaxation=(fem.PronyTerm(0.4, 2.0),)) for layer in plain.layers)
     touches = contact == "rigid_frictional"
@@ -146,5 +146,4 @@ def test_a_body_with_a_memory_goes_on(tmp_path, contact, tolerance):
     assert whole.complete
     with pytest.raises(StoppedError):
         fem.prepare(problem).run(LOAD, stop_at(4), path)
-    resumed = fem.prepare(problem).run(LOAD, None, path)
-    np.testing.assert_allclose(resumed.depth, whole.depth, rtol=tolerance)
+    assert_equal(fem.prepare(problem).run(LOAD, None, path), whole)
