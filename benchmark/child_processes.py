@@ -1,4 +1,4 @@
-"""Processes that this program starts: one thread a library, no script of the user, an end with their parent."""
+"""Processes of this program: one thread a library, no script of the user, an end with their parent and by no other."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from typing import NoReturn
 
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 
@@ -43,6 +45,21 @@ def _unnamed_script() -> Iterator[None]:
         yield
     finally:
         vars(main).update(kept)
+
+
+def forbid_ending(file: str) -> None:
+    """From now on `os._exit` in the user's `file` raises SystemExit, so that the command line can say who ended it.
+
+    Otherwise the process would end at once with the exit code that they chose, without a result and without a word.
+    """
+    really = os._exit
+
+    def refused(status: int) -> NoReturn:
+        if Path(sys._getframe(1).f_code.co_filename).absolute() == Path(file).absolute():
+            raise SystemExit(status)
+        really(status)
+
+    os._exit = refused
 
 
 def end_with_parent() -> None:

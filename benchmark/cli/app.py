@@ -68,6 +68,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = app(args=arguments or ["--help"], prog_name="python -m benchmark", standalone_mode=False)
     except KeyboardInterrupt:
         code = EXIT_INTERRUPTED
+    except SystemExit as end:  # nothing of ours ends so; an effects file of the user's may
+        return _fail(_who_ended(end), EXIT_USAGE)
     except Exception as error:
         return _report(error, debug="--debug" in arguments)
     if code == EXIT_INTERRUPTED:  # by the command-line library or from before it
@@ -93,6 +95,17 @@ def _report(error: Exception, *, debug: bool) -> int:
         return _fail(str(error), EXIT_USAGE)
     text = f"a fault of the program, {type(error).__name__}: {error}; --debug shows where"
     return _fail(text, EXIT_BUG)
+
+
+def _who_ended(end: SystemExit) -> str:
+    """Where the program was told to end, in a sentence."""
+    frame = traceback.extract_tb(end.__traceback__)[-1]
+    if frame.name == "refused":  # it stands for os._exit, which is called a frame before
+        frame = traceback.extract_tb(end.__traceback__)[-2]
+    return (
+        f"{frame.filename}, line {frame.lineno}: the program was told to end there (exit code {end.code}) and has no "
+        "result; a file of effects or a model must return instead"
+    )
 
 
 def _fail(text: str, code: int) -> int:

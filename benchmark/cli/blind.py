@@ -77,7 +77,7 @@ def blind(
     settings |= {"most": most} if most else {}
     folder = fresh("blind") if out is None else out
     load_discoverer(discoverer)
-    with claimed(folder, "blind"), console.progress(f"blind trials, suite {suite} (synthetic)") as advance:
+    with claimed(out, "blind"), console.progress(f"blind trials, suite {suite} (synthetic)") as advance:
         journal = open_folder(folder, settings)
 
         def on_case(done: int, total: int, last: Judged | None) -> None:

@@ -125,8 +125,21 @@ def answer_session(request: DiscoverRequest, effects: tuple[Effect, ...], listen
         The session cannot be used.
     """
     session, said = _loaded(request, request.paths[0], listener)
-    own = tuple(effect for effect in effects if effect.slug not in SLUGS)
     store = store_folder(request.out, session, request.model)
+    with claimed(store if request.out is None else None, "discover"):  # two of one session would share the kept fits
+        return _answered(request, effects, listener, store, (session, said))
+
+
+def _answered(
+    request: DiscoverRequest,
+    effects: tuple[Effect, ...],
+    listener: Listener,
+    store: Path,
+    loaded: tuple[Session, tuple[str, ...]],
+) -> DiscoveryRecord:
+    """The answer for a session as it was loaded, fits being kept in `store`."""
+    session, said = loaded
+    own = tuple(effect for effect in effects if effect.slug not in SLUGS)
     rounds: tuple[Round, ...] = ()
     grown: Path | None = None
     if request.bench is None:

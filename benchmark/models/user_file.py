@@ -18,6 +18,7 @@ from types import ModuleType
 from typing import Any
 
 from bench_hw.storage.regular_file import read_regular
+from benchmark.child_processes import forbid_ending
 from benchmark.errors import InputError
 from benchmark.models.model_result import UncoveredError
 
@@ -100,6 +101,7 @@ class UserCode:
         self._module = ModuleType(f"user_model_{Path(file.path).stem}")
         self._module.__file__ = file.path
         sys.modules[self._module.__name__] = self._module
+        forbid_ending(file.path)
         with self._guarded(1):
             exec(compile(file.text, file.path, "exec"), self._module.__dict__)
 

@@ -8,6 +8,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
+from benchmark.child_processes import forbid_ending
 from benchmark.errors import InputError
 from benchmark.physics.effect import Effect
 
@@ -73,6 +74,7 @@ def load_effects(path: str | Path) -> tuple[Effect, ...]:
         raise InputError(f"{file}: this is no Python file; its name must end in .py.")
     module = importlib.util.module_from_spec(specification)
     sys.modules[name] = module
+    forbid_ending(str(file))
     try:
         specification.loader.exec_module(module)
     except (Exception, SystemExit) as error:

@@ -24,11 +24,13 @@ MODULES = {
     "verify": ("benchmark.verification.cases", "benchmark.verification.verification_page"),
     "sweep": ("benchmark.sweeps.sweep_run",),
     "discover": ("benchmark.discovery.discovery_request",),
+    "check": ("benchmark.gate.checking",),
+    "blind": ("benchmark.blind.running", "benchmark.blind.blind_folder"),
+    "reproduce": ("benchmark.reproduce.reproduction",),
     "capture": ("bench_hw.capture.session",),
     "track": ("bench_hw.vision.tracking.film",),
 }
-PLAIN = {"tissues new", "import", "track", "verify", "fit", "sweep", "run", "discover", "capture"}
-"""Verbs that read nothing which a command of ours makes."""
+"""By the first word of a command."""
 PARTS = ("kills", "inputs", "places")
 
 
@@ -48,8 +50,7 @@ def main() -> int:
     folder = Path(tempfile.mkdtemp(prefix="torture-"))
     try:
         scene = make_scene(folder / "scene")
-        if "inputs" in asked.only or not set(asked.verbs) <= PLAIN:
-            complete_scene(scene)
+        complete_scene(scene, [each.verb for each in COMMANDS] if "inputs" in asked.only else asked.verbs)
         failures = [_part(name, scene, asked) for name in asked.only]
     finally:
         shutil.rmtree(folder, ignore_errors=True)
@@ -83,7 +84,7 @@ def _part(name: str, scene: Path, asked: argparse.Namespace) -> int:
 def _warm(verbs: list[str]) -> None:
     """Import what the commands import, so that each fork of this process begins to work at once."""
     for verb in verbs:
-        for module in ("benchmark.cli.app", "bench_hw.cli", *MODULES.get(verb, ())):
+        for module in ("benchmark.cli.app", "bench_hw.cli", *MODULES.get(verb.split()[0].strip(","), ())):
             importlib.import_module(module)
 
 

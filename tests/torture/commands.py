@@ -11,13 +11,18 @@ import re
 import signal
 import sys
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from reports.manifest import MANIFEST
+
 COARSE = ("fem.mesh=coarse", "fem.kinematics=linear", "wave.large_press=linear", "load.observations=4")
+LONG = ("fem.mesh=coarse", "tool.contact=rigid_frictional", "tool.edge_radius=1 mm", "physics.friction_coefficient=0.3",
+        "load.peak=2 N", "load.observations=16")  # fmt: skip
+"""A press with friction in finite strain, long enough that steps of it are kept."""
 VARIED = ("--vary", "tool.radius=4 mm,5 mm", "--workers", "1")
-SETTINGS = tuple(word for setting in COARSE for word in ("--set", setting))
 
 MAPS = tuple(
     word
@@ -26,30 +31,65 @@ MAPS = tuple(
 )
 
 
+def _set(settings: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(word for setting in settings for word in ("--set", setting))
+
+
 @dataclass(frozen=True)
 class Command:
-    """A command line by the name of its verb, `module` what it belongs to, and the path that it writes."""
+    """A command line under a name, `module` what it belongs to, and the paths that it writes, the result first.
+
+    One that is `careful` never writes over what is there; the `share` of the moments is 1 for a cheap one.
+    """
 
     verb: str
     module: str
     words: tuple[str, ...]
     out: str = "p"
-    exact: bool = True
+    more: tuple[str, ...] = ()
+    careful: bool = False
+    share: float = 1.0
 
+    @property
+    def outs(self) -> tuple[str, ...]:
+        """All that it writes."""
+        return (self.out, *self.more)
+
+
+OUT = ("--out", "p")
+CHECK = ("check", "--gate", "gate.toml")
+BENCH = ("--bench", "simulated", "--budget", "1")
+CAPTURE = ("capture", "paper_press", "--rig", "simulated", "--fast", "--quiet")
 
 COMMANDS = (
-    Command("tissues new", "benchmark", ("tissues", "new", "p"), "p.toml"),
+    Command("tissues new", "benchmark", ("tissues", "new", "p"), "p.toml", careful=True),
+    Command("reference new", "benchmark", ("reference", "new", "skin-5N", "--out", "p.csv"), "p.csv", careful=True),
+    Command("clean", "benchmark", ("clean", "."), "p"),
     Command("import", "bench_hw", ("import", "foreign.csv", *MAPS, "--out", "p.csv"), "p.csv"),
-    Command("export", "bench_hw", ("export", "trial.mcap", "--out", "p")),
+    Command("export", "bench_hw", ("export", "trial.mcap", *OUT)),
     Command("recover", "bench_hw", ("recover", "cut.mcap", "--out", "p.mcap"), "p.mcap"),
     Command("track", "bench_hw", ("track", "pictures", "--camera", "camera.toml", "--out", "p.csv"), "p.csv"),
-    Command("verify", "benchmark", ("verify", "hertz", "--out", "p")),
-    Command("report", "benchmark", ("report", "finished", "--out", "p")),
-    Command("fit", "benchmark", ("fit", "session", "--out", "p")),
-    Command("capture", "bench_hw", ("capture", "paper_press", "--rig", "simulated", "--fast", "--quiet", "--out", "p")),
-    Command("sweep", "benchmark", ("sweep", "skin-5N", *SETTINGS, *VARIED, "--out", "p")),
-    Command("run", "benchmark", ("run", "skin-5N", *SETTINGS, "--out", "p")),
-    Command("discover", "benchmark", ("discover", "session", "--out", "p")),
+    Command("calibrate", "bench_hw", ("calibrate", "boards/*.png", "--corners", "9x6", "--square-mm", "8", "--out",
+                                      "p.toml"), "p.toml"),
+    Command("verify", "benchmark", ("verify", "hertz", *OUT)),
+    Command("report", "benchmark", ("report", "finished", *OUT), share=0.7),
+    Command("report, two", "benchmark", ("report", "finished", "other", *OUT), share=0.5),
+    Command("fit", "benchmark", ("fit", "session", *OUT)),
+    Command("capture", "bench_hw", (*CAPTURE, *OUT), careful=True, share=0.7),
+    Command("sweep", "benchmark", ("sweep", "skin-5N", *_set(COARSE), *VARIED, *OUT), share=0.7),
+    Command("discover", "benchmark", ("discover", "session", *OUT), share=0.7),
+    Command("run", "benchmark", ("run", "skin-5N", *_set(COARSE), *OUT), share=0.5),
+    Command("run, steps kept", "benchmark", ("run", "skin-5N", *_set(LONG), *OUT), share=0.4),
+    Command("run --trials", "benchmark", ("run", "--trials", "session", *OUT), share=0.25),
+    Command("fit --free", "benchmark", ("fit", "sheet", "--free", "pad.youngs_modulus", *OUT), share=0.2),
+    Command("discover --bench", "benchmark", ("discover", "sheet", *BENCH, *OUT), share=0.25),
+    Command("check", "benchmark", (*CHECK, "--baseline", "base.json", "--history", "p.jsonl", "--junit", "p.xml",
+                                   "--markdown", "p.md", *OUT), "p", ("p.xml", "p.md", "p.jsonl"), share=0.25),
+    Command("check --accept", "benchmark", (*CHECK, "--baseline", "p.json", "--accept"), "p.json",
+            ("p.history.jsonl",), share=0.25),
+    Command("blind", "benchmark", ("blind", "--cases", "null", "--most", "1", "--workers", "1", *OUT),
+            share=0.25),
+    Command("reproduce", "benchmark", ("reproduce", *OUT), share=0.25),
 )  # fmt: skip
 
 
@@ -60,6 +100,12 @@ class Ended:
     code: int
     err: str
     seconds: float
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether what went wrong was said in one paragraph at most."""
+        errors = [line for line in self.err.splitlines() if line.startswith(("error:", "unexpected error:"))]
+        return "Traceback" not in self.err and len(errors) <= 1
 
 
 def run(command: Command, folder: Path, *, kill: tuple[float, int] | None = None, before: str = "") -> Ended:
@@ -73,6 +119,8 @@ def run(command: Command, folder: Path, *, kill: tuple[float, int] | None = None
     child = os.fork()
     if child == 0:
         _child(command, folder, err, before)
+    with suppress(OSError):  # the child does the same: whoever comes first
+        os.setpgid(child, child)
     code = _wait(child, started, kill)
     return Ended(code, err.read_text(encoding="utf-8", errors="replace"), time.monotonic() - started)
 
@@ -83,7 +131,8 @@ def _wait(child: int, started: float, kill: tuple[float, int] | None) -> int:
         if found:
             return os.waitstatus_to_exitcode(status)
         if kill is not None and time.monotonic() - started >= kill[0]:
-            os.killpg(child, kill[1]) if kill[1] == signal.SIGINT else os.kill(child, kill[1])
+            with suppress(ProcessLookupError):
+                os.killpg(child, kill[1]) if kill[1] == signal.SIGINT else os.kill(child, kill[1])
             kill = None
         time.sleep(0.002)
     os.kill(child, signal.SIGKILL)
@@ -120,39 +169,52 @@ def _main(command: Command) -> int:
         return main(list(command.words))
     from bench_hw.cli import main as bench
 
+    sys.argv = ["torture", *(word for each in command.words for word in _expanded(each))]
     bench()
     return 0
 
 
+def _expanded(word: str) -> list[str]:
+    return sorted(str(path) for path in Path().glob(word)) if "*" in word else [word]
+
+
 VOLATILE = re.compile(
-    r"second|wall|cpu|setup|time|speedup|memory|made|date|started|duration|out$|file$|machine|processor|resumed|path",
+    r"second|wall|cpu|^setup(_s)?$|_time$|^time$|timing|speedup|memory|^made|date|started|duration|^out$|machine|processor"
+    r"|resumed|^path$",
     re.I,
 )
-"""Keys whose values are of the clock or the machine."""
-CLOCKED = ("seconds", "setup_s", "wall_s", "cpu_s")
-SKIPPED = ("environment.json", "manifest.json", "timing.csv", "report.html", "capture.json", "journal.jsonl")
-"""Files that hold little else, or pages that show it; they must be there."""
+"""Keys and columns whose values are of the clock or the machine."""
+SKIPPED = ("environment.json", "manifest.json", "timing.csv", "report.html", "capture.json", "journal.jsonl",
+           "check.json", "p.xml", "p.md", "p.jsonl", "p.history.jsonl")  # fmt: skip
+"""Files that hold little else, or pages that show it; they must be there. So must recordings, whose rows follow the
+clock of simulated devices."""
 
 
 def digest(path: Path) -> dict[str, Any]:
-    """What must be the same of a result, by file: numbers of JSON, and bytes of the rest, times apart."""
+    """What must be the same of a result, by file: numbers of JSON and tables, and bytes of the rest, times apart."""
     if path.is_file():
         return {path.name: _of_file(path)}
     return {
         file.relative_to(path).as_posix(): _of_file(file)
         for file in sorted(path.rglob("*"))
-        if file.is_file() and not file.name.endswith((".parquet", ".mcap"))
+        if file.is_file() and file.name != MANIFEST
     }
 
 
 def _of_file(path: Path) -> Any:
-    if path.name in SKIPPED:
+    if path.name in SKIPPED or (path.suffix == ".mcap" and path.parent.name == "p"):
         return "there"
+    if path.suffix == ".parquet":
+        import pandas as pd
+
+        table = pd.read_parquet(path)
+        return {name: table[name].astype(str).to_list() for name in table if not VOLATILE.search(name)}
     if path.suffix == ".json":
         return _steady(json.loads(path.read_text(encoding="utf-8")))
     if path.suffix == ".csv":
         rows = list(csv.reader(path.read_text(encoding="utf-8").splitlines()))
-        return [[cell for name, cell in zip(rows[0], row, strict=True) if name not in CLOCKED] for row in rows]
+        steady = [k for k, name in enumerate(rows[0]) if not VOLATILE.search(name) or name == "time_s"]
+        return [[row[k] for k in steady] for row in rows]
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 import time
@@ -12,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tests.torture.commands import COMMANDS, Command, differences, digest, run
+from tests.torture.kills import clear
 from tests.torture.scene import contents, make_scene
 
 FULL = """
@@ -76,7 +76,7 @@ def torture(scene: Path, until: float, verbs: list[str]) -> dict[str, Environmen
 
 
 def _usual(scene: Path, command: Command) -> dict[str, object]:
-    _clear(scene, command)
+    clear(scene, command)
     run(command, scene)
     return digest(scene / command.out)
 
@@ -87,7 +87,7 @@ def _faulty(scene: Path, commands: list[Command], fault: str, usual: dict, until
     for command in commands:
         if time.monotonic() > until:
             break
-        _clear(scene, command)
+        clear(scene, command)
         before = contents(scene)
         ended = run(command, scene, before=fault)
         found.note(ended.code, (0, 2, 4, 5), ended.err, command.verb)
@@ -95,7 +95,7 @@ def _faulty(scene: Path, commands: list[Command], fault: str, usual: dict, until
         if whole and differences(usual[command.verb], digest(scene / command.out))[1] and command.verb != "sweep":
             found.failures.append(f"{command.verb}: it left a result that is not whole")
         if command.verb != "sweep":
-            _clear(scene, command)
+            clear(scene, command)
             left = contents(scene)
             odd = sorted(name for name in {*before, *left} if before.get(name) != left.get(name))
             if odd:
@@ -109,7 +109,7 @@ def _together(scene: Path, command: Command, until: float) -> Environment:
     for pause in (0.0, 0.1, 0.5):
         if time.monotonic() > until:
             break
-        _clear(scene, command)
+        clear(scene, command)
         second = Path(f"{scene}-2")
         second.unlink(missing_ok=True)
         second.symlink_to(scene)
@@ -192,11 +192,6 @@ def _process(folder: Path, words: list[str], changes: dict[str, str]) -> subproc
     environment = {**os.environ, **changes}
     command = [sys.executable, "-m", *words]
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, timeout=600, check=False)
-
-
-def _clear(scene: Path, command: Command) -> None:
-    place = scene / command.out
-    shutil.rmtree(place, ignore_errors=True) if place.is_dir() else place.unlink(missing_ok=True)
 
 
 def rows(found: dict[str, Environment]) -> list[tuple[str, ...]]:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shutil
+from collections.abc import Collection
 from pathlib import Path
 
 import cv2
 import numpy as np
 
+from bench_hw.storage.folder_lock import SIGN
 from tests.torture.commands import COMMANDS, Command, run
 
 CAMERA = """schema = 1
@@ -25,6 +28,53 @@ p1 = 0.0
 p2 = 0.0
 [plane]
 mm_per_px = 0.1
+"""
+PAD = """schema = 1
+name = "pad"
+citation = "synthetic, for the torture test"
+[[layers]]
+name = "pad"
+thickness = "10 mm"
+density = "1000 kg/m^3"
+youngs_modulus = "20 kPa"
+poisson_ratio = 0.49
+"""
+SHEET = """schema = 1
+name = "pressed_pad"
+specimen = "pad.toml"
+synthetic = true
+trials = [
+  { file = "press_1.csv", condition = "press" },
+  { file = "press_2.csv", condition = "press" },
+  { file = "press_3.csv", condition = "press" },
+]
+[tool]
+radius = "5 mm"
+contact = "rigid_bonded"
+[support]
+kind = "bonded"
+"""
+GATE = """schema = 1
+name = "small"
+[timing]
+rounds = [2, 3]
+blocks = 4
+margin = "90 %"
+[[tolerances]]
+quantity = "*"
+rtol = "0.1 %"
+atol = "0 mm"
+[[cases]]
+name = "linear.wave"
+model = "wave"
+scenario = "skin-5N"
+set = { "wave.large_press" = "linear", "load.observations" = "2" }
+[[timed]]
+name = "wave.frame"
+workload = "wave_frame"
+scenario = "skin-5N"
+references = ["elements"]
+calls = 1
 """
 FOREIGN = {"notes.txt": "mine", ".git/HEAD": "ref: refs/heads/main\n", ".p.unfinished.bak": "mine", "data.part": "mine"}
 
@@ -46,24 +96,70 @@ def make_scene(folder: Path) -> Path:
     (folder / "session").mkdir()
     for number, peak in enumerate((1.9, 2.0, 2.1), start=1):
         (folder / "session" / f"press_{number}.csv").write_text(trial_text(peak=peak))
+    shutil.copytree(folder / "session", folder / "sheet")
+    (folder / "sheet" / "pad.toml").write_text(PAD)
+    (folder / "sheet" / "session.toml").write_text(SHEET)
+    (folder / "gate.toml").write_text(GATE)
     (folder / "foreign.csv").write_text(trial_text())
     (folder / "camera.toml").write_text(CAMERA)
     _pictures(folder / "pictures")
     return folder
 
 
-def complete_scene(folder: Path) -> None:
-    """Add what commands of ours make: a recording, one that was cut, a finished run."""
-    run(_command("capture", "made"), folder)
-    recording = (folder / "made" / "trial_001.mcap").read_bytes()
-    (folder / "trial.mcap").write_bytes(recording)
-    (folder / "cut.mcap").write_bytes(recording[: int(0.8 * len(recording))])
-    run(_command("run", "finished"), folder)
+def complete_scene(folder: Path, verbs: Collection[str]) -> None:
+    """Add what commands of ours make and `verbs` read: a recording, one that was cut, finished runs, a baseline."""
+    if {"export", "recover"} & set(verbs):
+        run(_command("capture", "made"), folder)
+        recording = (folder / "made" / "trial_001.mcap").read_bytes()
+        (folder / "trial.mcap").write_bytes(recording)
+        (folder / "cut.mcap").write_bytes(recording[: int(0.8 * len(recording))])
+    if {"report", "report, two"} & set(verbs):
+        run(_command("run", "finished"), folder)
+        shutil.copytree(folder / "finished", folder / "other")
+    if "check" in verbs:
+        run(_command("check --accept", "base.json"), folder)
+    if "calibrate" in verbs:
+        _boards(folder / "boards")
+
+
+def make_litter(folder: Path) -> None:
+    """What a kill leaves, for `clean` to remove: a lock, kept steps, a folder and a file that were being written."""
+    (folder / ".q.lock").write_text(f"{SIGN}run, process 1 on nowhere\n")
+    (folder / ".q.unfinished").mkdir(exist_ok=True)
+    (folder / ".q.unfinished" / "fem_steps.kept").write_bytes(b"steps")
+    (folder / ".q.0123abcd.part").mkdir(exist_ok=True)
+    (folder / ".q.csv.0123abcd.part").write_text("half")
+    os.utime(folder / ".q.csv.0123abcd.part", (0, 0))
 
 
 def _command(verb: str, out: str) -> Command:
     found = next(each for each in COMMANDS if each.verb == verb)
-    return Command(verb, found.module, (*found.words[:-1], out), out)
+    return Command(verb, found.module, tuple(out if word == found.out else word for word in found.words), out)
+
+
+def _boards(folder: Path) -> None:
+    """Views of a chessboard through a camera without distortion, softened as a lens does."""
+    folder.mkdir()
+    draw, square = np.random.default_rng(3), 40
+    flat = np.full((9 * square, 12 * square), 225, np.uint8)
+    for row in range(7):
+        for column in range(10):
+            if (row + column) % 2 == 0:
+                flat[(row + 1) * square : (row + 2) * square, (column + 1) * square : (column + 2) * square] = 30
+    corners = np.array([[x, y, 0.0] for x in (-48.0, 48.0) for y in (-36.0, 36.0)])  # mm
+    pixels = np.array([[x, y] for x in (0.0, 12.0 * square) for y in (0.0, 9.0 * square)], np.float32)
+    lens = np.array([[620.0, 0.0, 326.0], [0.0, 618.0, 233.0], [0.0, 0.0, 1.0]])
+    for view in range(24):
+        turn = np.array([*draw.uniform(-0.5, 0.5, 2), draw.uniform(-0.3, 0.3)])
+        place = np.array([*draw.uniform(-18.0, 18.0, 2), draw.uniform(130.0, 180.0)])
+        seen = cv2.projectPoints(corners, turn, place, lens, np.zeros(5))[0].reshape(-1, 2).astype(np.float32)
+        onto = cv2.getPerspectiveTransform(pixels, seen)
+        large = cv2.warpPerspective(
+            flat, np.diag([2.0, 2.0, 1.0]) @ onto, (1280, 960), borderValue=225, flags=cv2.INTER_LINEAR
+        )
+        picture = cv2.GaussianBlur(cv2.resize(large, (640, 480), interpolation=cv2.INTER_AREA), (0, 0), 0.7)
+        noisy = picture + draw.normal(0.0, 2.0, picture.shape)
+        cv2.imwrite(str(folder / f"view_{view:02d}.png"), np.clip(noisy, 0, 255).astype(np.uint8))
 
 
 def _pictures(folder: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import re
 import shutil
@@ -11,7 +12,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from datetime import datetime
 from pathlib import Path
 
-from bench_hw.storage.folder_lock import FolderInUseError, locked
+from bench_hw.storage.folder_lock import FolderInUseError, is_free, locked
 from benchmark.errors import InputError
 from benchmark.files.sources import is_file
 from reports import check_place
@@ -56,7 +57,7 @@ def destination(out: Path | None, name: str, inputs: Iterable[Path | str | None]
     out
         What the user asked for.
     name
-        Of the result.
+        Of the result; "" where only the place is checked so far.
     inputs
         What is read: paths, and texts that name a file or something that ships.
     needed
@@ -70,7 +71,7 @@ def destination(out: Path | None, name: str, inputs: Iterable[Path | str | None]
     """
     if out is None:
         _check_writable(RESULTS, "--out is not given, and results", needed)
-        return fresh(name)
+        return fresh(name) if name else RESULTS
     check_ready(out, inputs, needed)
     try:
         check_place(out, f"--out {out}")
@@ -99,14 +100,36 @@ def check_file(path: Path | None, option: str) -> None:
 
 
 def fresh(name: str) -> Path:
-    """Return `results/NAME-DATE-TIME`, which does not exist yet."""
-    return _fresh(RESULTS, f"{file_name(name)}-{datetime.now():%Y%m%d-%H%M%S}")
+    """Return `results/NAME-DATE-TIME`, which does not exist yet and is this process's until it ends.
+
+    Two that begin in the same second would otherwise take the same name, and the later one replace the other's result.
+
+    Raises
+    ------
+    InputError
+        It cannot be claimed.
+    """
+    for left in RESULTS.glob(".*-????????-??????*.lock") if RESULTS.is_dir() else ():
+        if is_free(left):  # of a process that was killed; nobody takes its name a second time
+            left.unlink(missing_ok=True)
+    moment = f"{file_name(name)}-{datetime.now():%Y%m%d-%H%M%S}"
+    for path in (RESULTS / moment, *(RESULTS / f"{moment}-{number}" for number in range(2, 1000))):
+        if not path.exists() and _is_claimed(path):
+            return path
+    raise InputError(f"{RESULTS / moment} and a thousand names like it are taken; give --out")
 
 
-def _fresh(parent: Path, name: str) -> Path:
-    """Return a path in `parent` that does not exist yet."""
-    candidates = [parent / name, *(parent / f"{name}-{number}" for number in range(2, 1000))]
-    return next(path for path in candidates if not path.exists())
+def _is_claimed(path: Path) -> bool:
+    """Take a name until the end of this process; False where another process has it."""
+    stack = ExitStack()
+    try:
+        stack.enter_context(locked(path, "a result"))
+    except FolderInUseError:
+        return False
+    except OSError as error:
+        raise InputError(f"--out is not given, and {path} cannot be written: {error.strerror or error}") from error
+    atexit.register(stack.close)
+    return True
 
 
 def file_name(name: str) -> str:

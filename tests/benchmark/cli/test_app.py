@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from benchmark.child_processes import forbid_ending
 from benchmark.cli import app
 
 HEAVY = ("numpy", "scipy", "pandas", "pint", "pydantic", "skfem", "matplotlib", "pyvista", "statsmodels")
@@ -42,6 +43,22 @@ def test_a_fault_of_the_program_is_no_user_error(benchmark_cli, monkeypatch: pyt
     called = benchmark_cli("tissues")
     assert called.code == app.EXIT_BUG
     assert "ZeroDivisionError" in called.err
+
+
+@pytest.mark.parametrize("word", ["os._exit(0)", "sys.exit(0)"])
+def test_a_file_of_the_users_cannot_end_the_program_as_if_all_were_well(
+    benchmark_cli, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, word: str
+) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text(f"import os, sys\n\n\ndef observe():\n    {word}\n")
+    monkeypatch.setattr("os._exit", os._exit)  # put back afterwards
+    forbid_ending(str(file))
+    theirs: dict[str, object] = {}
+    exec(compile(file.read_text(), str(file), "exec"), theirs)
+    monkeypatch.setattr(app, "app", lambda **_: theirs["observe"]())
+    called = benchmark_cli("discover")
+    assert called.code == 2
+    assert "mine.py, line 5: the program was told to end there (exit code 0)" in " ".join(called.err.split())
 
 
 def test_an_interruption_has_its_own_code(benchmark_cli, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -60,6 +60,7 @@ def test_an_own_effect_is_loaded_from_its_file(tmp_path):
         ("x = 1\n", "no Effect"),
         ("import no_such_module_at_all\n", "does not run"),
         (OWN.replace("square_offset", "backlash"), "is taken"),
+        ("import os\nos._exit(0)\n", "does not run"),
     ],
 )
 def test_an_unusable_file_is_refused(tmp_path, text, message):

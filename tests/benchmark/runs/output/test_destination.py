@@ -1,3 +1,5 @@
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -76,3 +78,27 @@ def test_anything_else_is_refused(tmp_path: Path) -> None:
         destination(tmp_path, "x")
     with pytest.raises(InputError, match="is a file"):
         destination(tmp_path / "thesis.tex", "x")
+
+
+def test_two_that_begin_in_the_same_second_get_names_of_their_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    module = "benchmark.runs.output.destination"
+    code = f"from {module} import destination; print(destination(None, 'x'), flush=True); input()"
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    both = [subprocess.Popen([sys.executable, "-c", code], **pipes) for _ in range(2)]
+    names = [each.stdout.readline().strip() for each in both]
+    assert names[0] != names[1]
+    both[0].kill()
+    both[0].communicate()
+    assert both[1].communicate("\n")[0] == ""
+    assert [each.name for each in (tmp_path / "results").iterdir()] in ([], [f".{Path(names[0]).name}.lock"])
+    assert destination(None, "x").parent == Path("results")  # it removes what the killed one left
+    assert not (tmp_path / "results" / f".{Path(names[0]).name}.lock").exists()
+
+
+def test_a_name_is_not_needed_to_look_at_the_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert destination(None, "") == Path("results")
+    assert not (tmp_path / "results").exists()
