@@ -24,6 +24,7 @@ from benchmark.cli import (
     verify,
 )
 from benchmark.cli.folders import clean, reference, report, shipped
+from benchmark.cli.hands_on import press
 
 EXIT_USAGE = 2
 EXIT_INTERRUPTED = 130
@@ -36,7 +37,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for verb in (run, fit, discover, blind, check, sweep, report, reproduce, verify, shipped, reference, clean):
+for verb in (run, fit, discover, blind, check, sweep, report, reproduce, verify, shipped, reference, clean, press):
     verb.register(app)
 
 

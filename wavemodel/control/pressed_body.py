@@ -111,6 +111,11 @@ class RadialPatch:
             np.empty(layers * vertices),
         )
 
+    @property
+    def fields(self) -> FloatArray:
+        """(B, L, R) at `radii_of(reach)`, m per weight."""
+        return self._fields.reshape(-1, self._layers, RADII)
+
     def add(self, weights: FloatArray, dx: FloatArray, dy: FloatArray, out: FloatArray) -> None:
         """Add the fields times the weights (B,) to `out` (L, p, q); see `Body.add`.
 

@@ -1,0 +1,1 @@
+"""Verbs of what a person does by hand: pressing a tissue, and assessing how it was done."""

@@ -1,0 +1,1 @@
+"""Pressing by hand: the page on which a person presses a tissue, and what it is made from."""

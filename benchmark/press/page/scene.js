@@ -1,0 +1,263 @@
+"use strict";
+// Draws blocks of layers, tools and lines by WebGL 2, with nothing else. Lengths in mm, z upwards, y away from the viewer.
+const Scene = (() => {
+  const FLOATS = 7, TURN = 2 * Math.PI, SIDES = 48, BANDS = 8;
+
+  const VERTEX = `#version 300 es
+    in vec3 position; in vec3 normal; in float value;
+    uniform mat4 view; out vec3 place; out vec3 facing; out float shown;
+    void main() { place = position; facing = normal; shown = value; gl_Position = view * vec4(position, 1.0); }`;
+
+  // mode 0: deflection as a share of the deepest; 1: signed difference, -1 to 1; 2: plain colour.
+  const FRAGMENT = `#version 300 es
+    precision highp float;
+    in vec3 place; in vec3 facing; in float shown;
+    uniform vec3 base, eye, low, high; uniform float mode, lines, alpha; out vec4 colour;
+    vec3 deep(float t) {
+      vec3 a = vec3(0.93, 0.42, 0.36), b = vec3(0.62, 0.17, 0.48), c = vec3(0.20, 0.07, 0.42);
+      return t < 0.38 ? mix(base, a, smoothstep(0.0, 1.0, t / 0.38)) : t < 0.7 ? mix(a, b, (t - 0.38) / 0.32) : mix(b, c, min((t - 0.7) / 0.3, 1.0));
+    }
+    void main() {
+      vec3 n = normalize(gl_FrontFacing ? facing : -facing), light = normalize(vec3(-0.35, -0.55, 0.9)), to = normalize(eye - place);
+      vec3 paint = base;
+      if (mode < 0.5) paint = deep(clamp(shown, 0.0, 1.0));
+      else if (mode < 1.5) paint = shown < 0.0 ? mix(vec3(0.93, 0.92, 0.90), low, pow(min(-shown, 1.0), 0.75)) : mix(vec3(0.93, 0.92, 0.90), high, pow(min(shown, 1.0), 0.75));
+      if (mode < 1.5 && lines > 0.0) {
+        float step = shown * lines, edge = abs(fract(step - 0.5) - 0.5) / max(fwidth(step), 1e-6);
+        float near = smoothstep(0.03, 0.12, abs(shown));
+        paint = mix(paint, paint * 0.62, (1.0 - smoothstep(0.4, 1.5, edge)) * near);
+      }
+      float diffuse = max(dot(n, light), 0.0), sky = 0.5 + 0.5 * n.z;
+      float gleam = pow(max(dot(n, normalize(light + to)), 0.0), 40.0) * 0.22;
+      colour = vec4(paint * (0.46 + 0.2 * sky + 0.44 * diffuse) + gleam * (mode < 2.5 ? 1.0 : 0.0), 1.0) * vec4(vec3(1.0), alpha);
+      colour.rgb *= alpha;
+    }`;
+
+  const subtract = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+  const unit = (a) => { const size = Math.hypot(...a); return a.map((part) => part / size); };
+
+  // Looks at a target from an azimuth and an elevation (rad); `aspect` is width over height.
+  class Camera {
+    constructor() { this.azimuth = -0.42; this.elevation = 0.5; this.zoom = 1; this.target = [0, 0, 0]; this.size = 50; this.field = 0.42; }
+
+    place(aspect) {
+      const { azimuth, elevation, target } = this;
+      const across = 0.5 * this.size * 1.18, tan = Math.tan(this.field / 2);
+      const far = Math.max(across / (tan * aspect), (across * 0.6) / tan) / this.zoom + 0.35 * this.size;
+      const back = [Math.sin(azimuth) * Math.cos(elevation), -Math.cos(azimuth) * Math.cos(elevation), Math.sin(elevation)];
+      const eye = target.map((part, axis) => part + far * back[axis]);
+      const right = unit(cross([0, 0, 1], back)), up = cross(back, right);
+      return { eye, back, right, up, tan, aspect, far };
+    }
+
+    matrix(aspect) {
+      const { eye, back, right, up, tan, far } = this.place(aspect), near = far * 0.1, end = far * 4;
+      const x = 1 / (tan * aspect), y = 1 / tan, depth = (end + near) / (near - end), shift = (2 * end * near) / (near - end);
+      const rows = [right.map((v) => v * x), up.map((v) => v * y), back.map((v) => v * depth), back.map((v) => -v)];
+      const last = [-dot(right, eye) * x, -dot(up, eye) * y, -dot(back, eye) * depth + shift, dot(back, eye)];
+      return { eye, matrix: new Float32Array([0, 1, 2].flatMap((axis) => rows.map((row) => row[axis])).concat(last)) };
+    }
+
+    // Where a point is in the picture, -1 to 1 each way.
+    project(point, aspect) {
+      const { eye, back, right, up, tan } = this.place(aspect), way = subtract(point, eye), ahead = -dot(back, way);
+      return [dot(right, way) / (tan * aspect * ahead), dot(up, way) / (tan * ahead)];
+    }
+
+    // Where the ray through a point of the picture, -1 to 1 each way, meets the plane z; null behind it.
+    hit(across, along, aspect, z) {
+      const { eye, back, right, up, tan } = this.place(aspect);
+      const way = [0, 1, 2].map((axis) => right[axis] * across * tan * aspect + up[axis] * along * tan - back[axis]);
+      const share = (z - eye[2]) / way[2];
+      return share > 0 ? [eye[0] + share * way[0], eye[1] + share * way[1]] : null;
+    }
+  }
+
+  class Mesh {
+    constructor(gl, vertices, indices) {
+      this.gl = gl; this.data = new Float32Array(vertices * FLOATS); this.count = indices.length;
+      this.array = gl.createVertexArray(); this.buffer = gl.createBuffer();
+      gl.bindVertexArray(this.array);
+      gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
+      gl.bufferData(gl.ARRAY_BUFFER, this.data.byteLength, gl.DYNAMIC_DRAW);
+      for (const [place, size, from] of [[0, 3, 0], [1, 3, 3], [2, 1, 6]]) {
+        gl.enableVertexAttribArray(place);
+        gl.vertexAttribPointer(place, size, gl.FLOAT, false, FLOATS * 4, from * 4);
+      }
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, new Uint32Array(indices), gl.STATIC_DRAW);
+    }
+
+    upload() {
+      this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.buffer);
+      this.gl.bufferSubData(this.gl.ARRAY_BUFFER, 0, this.data);
+    }
+
+    draw() {
+      this.gl.bindVertexArray(this.array);
+      this.gl.drawElements(this.gl.TRIANGLES, this.count, this.gl.UNSIGNED_INT, 0);
+    }
+  }
+
+  // One layer: its top face on P x Q vertices and a wall round it down to the face below.
+  class Slab {
+    constructor(gl, P, Q) {
+      this.P = P; this.Q = Q;
+      const indices = [], at = (i, j) => i * Q + j;
+      for (let i = 0; i + 1 < P; i++) for (let j = 0; j + 1 < Q; j++) {
+        indices.push(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i, j + 1));
+      }
+      this.walls = [];
+      let next = P * Q;
+      for (const [count, vertex, normal] of [
+        [P, (k) => at(k, 0), [0, -1, 0]], [P, (k) => at(k, Q - 1), [0, 1, 0]],
+        [Q, (k) => at(0, k), [-1, 0, 0]], [Q, (k) => at(P - 1, k), [1, 0, 0]],
+      ]) {
+        this.walls.push({ first: next, count, vertex, normal });
+        for (let k = 0; k + 1 < count; k++) for (let band = 0; band < BANDS; band++) {
+          const a = next + (BANDS + 1) * k + band, b = a + BANDS + 1;
+          indices.push(a, a + 1, b, a + 1, b + 1, b);
+        }
+        next += (BANDS + 1) * count;
+      }
+      this.mesh = new Mesh(gl, next, indices);
+    }
+
+    // Deflections (m) and values of this face and of the one below, from offsets in shared arrays; heights in mm.
+    fill(xs, ys, faces, values, own, below, top, bottom) {
+      const { P, Q } = this, data = this.mesh.data;
+      for (let i = 0; i < P; i++) {
+        const left = Math.max(i - 1, 0), right = Math.min(i + 1, P - 1), dx = xs[right] - xs[left];
+        for (let j = 0; j < Q; j++) {
+          const near = Math.max(j - 1, 0), far = Math.min(j + 1, Q - 1), dy = ys[far] - ys[near];
+          const here = own + i * Q + j;
+          const nx = (faces[own + right * Q + j] - faces[own + left * Q + j]) / dx;
+          const ny = dy > 0 ? (faces[own + i * Q + far] - faces[own + i * Q + near]) / dy : 0;
+          const size = Math.sqrt(nx * nx + ny * ny + 1);
+          let to = (i * Q + j) * FLOATS;
+          data[to++] = xs[i] * 1e3; data[to++] = ys[j] * 1e3; data[to++] = top - faces[here] * 1e3;
+          data[to++] = nx / size; data[to++] = ny / size; data[to++] = 1 / size; data[to] = values[here];
+        }
+      }
+      for (const { first, count, vertex, normal } of this.walls) {
+        for (let k = 0; k < count; k++) {
+          const from = vertex(k), under = below === null ? -1 : below + from, start = top - faces[own + from] * 1e3;
+          const end = bottom - (under < 0 ? 0 : faces[under] * 1e3), shown = values[own + from], last = under < 0 ? 0 : values[under];
+          for (let band = 0; band <= BANDS; band++) {
+            const share = band / BANDS;
+            let to = (first + (BANDS + 1) * k + band) * FLOATS;
+            data[to++] = data[from * FLOATS]; data[to++] = data[from * FLOATS + 1]; data[to++] = start + share * (end - start);
+            data[to++] = normal[0]; data[to++] = normal[1]; data[to++] = normal[2]; data[to] = shown + share * (last - shown);
+          }
+        }
+      }
+      this.mesh.upload();
+    }
+  }
+
+  // A cylinder that stands on its lower face.
+  class Cylinder {
+    constructor(gl) {
+      const indices = [];
+      for (let k = 0; k < SIDES; k++) {
+        const a = 2 * k, b = 2 * ((k + 1) % SIDES);
+        indices.push(a, b, b + 1, a, b + 1, a + 1);
+      }
+      const lid = 2 * SIDES;
+      for (let k = 0; k < SIDES; k++) indices.push(lid, lid + 1 + k, lid + 1 + ((k + 1) % SIDES));
+      this.mesh = new Mesh(gl, 3 * SIDES + 1, indices);
+    }
+
+    fill(x, y, z, radius, height) {
+      const data = this.mesh.data;
+      const put = (vertex, values) => data.set(values, vertex * FLOATS);
+      for (let k = 0; k < SIDES; k++) {
+        const c = Math.cos((TURN * k) / SIDES), s = Math.sin((TURN * k) / SIDES);
+        put(2 * k, [x + radius * c, y + radius * s, z, c, s, 0, 0]);
+        put(2 * k + 1, [x + radius * c, y + radius * s, z + height, c, s, 0, 0]);
+        put(2 * SIDES + 1 + k, [x + radius * c, y + radius * s, z + height, 0, 0, 1, 0]);
+      }
+      put(2 * SIDES, [x, y, z + height, 0, 0, 1, 0]);
+      this.mesh.upload();
+    }
+  }
+
+  // A flat dashed band along x in the plane of a cut.
+  class Ribbon {
+    constructor(gl, most) {
+      const indices = [];
+      for (let k = 0; k < most; k++) indices.push(4 * k, 4 * k + 1, 4 * k + 2, 4 * k, 4 * k + 2, 4 * k + 3);
+      this.mesh = new Mesh(gl, 4 * most, indices); this.most = most;
+    }
+
+    fill(xs, y, heights, half, dash) {
+      const data = this.mesh.data.fill(0);
+      for (let k = 0, at = 0; k + 1 < xs.length && at < this.most; k++) {
+        if (dash && k % 3 === 2) continue;
+        const corners = [[xs[k], heights[k] - half], [xs[k + 1], heights[k + 1] - half], [xs[k + 1], heights[k + 1] + half], [xs[k], heights[k] + half]];
+        corners.forEach(([x, z], corner) => data.set([x, y, z, 0, -0.4, 0.9, 0], (4 * at + corner) * FLOATS));
+        at++;
+      }
+      this.mesh.upload();
+    }
+  }
+
+  class Renderer {
+    constructor(canvas) {
+      const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: true });
+      if (!gl) throw new Error("WebGL 2 is not available");
+      this.gl = gl; this.canvas = canvas;
+      const program = (this.program = gl.createProgram());
+      for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
+        const shader = gl.createShader(kind);
+        gl.shaderSource(shader, text);
+        gl.compileShader(shader);
+        if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+        gl.attachShader(program, shader);
+      }
+      ["position", "normal", "value"].forEach((name, place) => gl.bindAttribLocation(program, place, name));
+      gl.linkProgram(program);
+      if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
+      this.at = Object.fromEntries(["view", "base", "eye", "low", "high", "mode", "lines", "alpha"].map((name) => [name, gl.getUniformLocation(program, name)]));
+      gl.useProgram(program);
+      gl.enable(gl.DEPTH_TEST);
+      gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    }
+
+    resize() {
+      const scale = Math.min(window.devicePixelRatio || 1, 2), { clientWidth, clientHeight } = this.canvas;
+      const width = Math.max(1, Math.round(clientWidth * scale)), height = Math.max(1, Math.round(clientHeight * scale));
+      if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
+    }
+
+    clear() {
+      this.gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+      this.gl.clearColor(0, 0, 0, 0);
+      this.gl.clear(this.gl.COLOR_BUFFER_BIT | this.gl.DEPTH_BUFFER_BIT);
+    }
+
+    // Draws into the part of the canvas between two shares of its width.
+    begin(camera, from, to, low, high) {
+      const { gl, at } = this, width = this.canvas.width, left = Math.round(from * width), wide = Math.round(to * width) - left;
+      gl.viewport(left, 0, wide, this.canvas.height);
+      const { eye, matrix } = camera.matrix(wide / this.canvas.height);
+      gl.uniformMatrix4fv(at.view, false, matrix);
+      gl.uniform3fv(at.eye, eye); gl.uniform3fv(at.low, low); gl.uniform3fv(at.high, high);
+    }
+
+    draw(mesh, base, { mode = 2, lines = 0, alpha = 1 } = {}) {
+      const { gl, at } = this;
+      gl.uniform3fv(at.base, base);
+      gl.uniform1f(at.mode, mode); gl.uniform1f(at.lines, lines); gl.uniform1f(at.alpha, alpha);
+      if (alpha < 1) { gl.enable(gl.BLEND); gl.depthMask(false); }
+      mesh.draw();
+      if (alpha < 1) { gl.disable(gl.BLEND); gl.depthMask(true); }
+    }
+  }
+
+  const rgb = (text) => [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16) / 255);
+
+  return { Camera, Slab, Cylinder, Ribbon, Renderer, rgb };
+})();

@@ -1,0 +1,192 @@
+"""The page in headless Chromium: pressed by a pointer, read back, compared with the model in Python."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+from benchmark.press.press_page import render_press_page
+from wavemodel.control.pressed_body import radii_of
+
+CHROMIUM = shutil.which("chromium")
+FLAGS = [
+    "--no-sandbox",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+]
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs the program chromium to open the page in")
+STEP = """(seconds) => { for (let t = 0; t < seconds; t += 0.02) press.advance(0.02); return press.computed(); }"""
+
+
+@pytest.fixture(scope="module")
+def browser():
+    playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright to drive Chromium")
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def address(page_document, tmp_path_factory):
+    file = tmp_path_factory.mktemp("press") / "press.html"
+    file.write_text(render_press_page(page_document), encoding="utf-8")
+    return file.as_uri()
+
+
+@pytest.fixture(scope="module")
+def opened(browser, address):
+    page = browser.new_context(viewport={"width": 900, "height": 700}).new_page()
+    page.seen, page.said = [], []
+    page.on("request", lambda request: page.seen.append(request.url))
+    page.on("console", lambda message: page.said.append(message.text) if message.type == "error" else None)
+    page.on("pageerror", lambda error: page.said.append(str(error)))
+    page.goto(address)
+    for _ in range(100):
+        if page.evaluate("Boolean(window.press) && press.state.frames.length > 0"):
+            break
+        page.wait_for_timeout(100)
+    page.evaluate("press.state.manual = true")  # frames by hand from here on: a busy machine draws few
+    yield page
+    page.context.close()
+
+
+@pytest.fixture
+def page(opened):
+    opened.mouse.up()
+    opened.evaluate("document.getElementById('home').click(); press.state.demo = false")
+    return opened
+
+
+def faces(page):
+    return np.array(page.evaluate("Array.from(press.state.bench.shown.frame(1e-3))")).reshape(3, 50, 50)
+
+
+def expected(specimen, x, y, depth):
+    at = 1e-3 * np.arange(50)
+    distance = np.hypot(at[:, None] - x, at - y)
+    return np.array([np.interp(distance, radii_of(specimen.wave.reach), row) for row in specimen.wave.profile(depth)])
+
+
+def hold(page, across=0.5, along=0.45):
+    box = page.locator("#view").bounding_box()
+    page.mouse.move(box["x"] + across * box["width"], box["y"] + along * box["height"])
+    page.mouse.down()
+    return box
+
+
+def tool(page, k=0):
+    return page.evaluate(f"({{...press.state.bench.shown.tools[{k}]}})")
+
+
+def test_it_opens_from_disk_without_a_word_or_a_request(page, address):
+    assert page.said == []
+    assert page.seen == [address]
+
+
+def test_a_drag_presses_the_mesh_by_the_model_s_value(page, specimen):
+    box = hold(page)
+    page.evaluate(STEP, 2.0)
+    first = tool(page)
+    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.4 * box["height"], steps=4)
+    page.evaluate(STEP, 0.1)
+    second = tool(page)
+    assert first["phase"] == second["phase"] == "pressed"
+    assert np.hypot(first["x"] - second["x"], first["y"] - second["y"]) > 2e-3
+    assert second["depth"] == pytest.approx(0.7 * specimen.wave.deepest)
+    found = faces(page)
+    np.testing.assert_allclose(
+        found, expected(specimen, second["x"], second["y"], second["depth"]), atol=1e-6 * second["depth"]
+    )
+    assert page.evaluate("press.state.bench.shown.force[0]") == pytest.approx(
+        np.interp(second["depth"], specimen.wave.depth, specimen.wave.force), rel=1e-6
+    )
+
+
+def test_what_is_let_go_returns(page):
+    hold(page)
+    page.evaluate(STEP, 1.0)
+    page.mouse.up()
+    page.evaluate(STEP, 1.0)
+    assert tool(page)["phase"] == "idle"
+    assert not faces(page).any()
+
+
+def test_the_finite_elements_stand_beside_it(page, specimen):
+    hold(page)
+    now = page.evaluate(STEP, 2.0)
+    page.evaluate("press.tick(performance.now())")
+    depth = tool(page)["depth"]
+    direct = np.abs(specimen.wave.profile(depth) - specimen.fem.table.profile(depth)).max() / depth
+    assert now["compared"]
+    assert now["share"] == pytest.approx(direct, rel=0.15)
+    assert float(page.locator("#fem-force").text_content()) == pytest.approx(
+        np.interp(depth, specimen.fem.table.depth, specimen.fem.table.force), abs=0.006
+    )
+
+
+def test_a_second_tool_takes_the_finite_elements_away(page):
+    page.evaluate("document.getElementById('stay').checked = true")
+    hold(page, 0.42, 0.42)
+    page.mouse.up()
+    hold(page, 0.66, 0.36)
+    now = page.evaluate(STEP, 1.0)
+    page.evaluate("press.tick(performance.now()); document.getElementById('stay').checked = false")
+    assert page.evaluate("press.state.bench.busy") == 2
+    assert not now["compared"]
+    assert "one tool" in page.locator("#note").text_content()
+
+
+def test_memory_lets_the_force_fade_while_the_tool_holds(page):
+    page.evaluate("document.getElementById('fade').value = 40; press.restart()")
+    hold(page)
+    page.evaluate(STEP, 1.0)
+    early = page.evaluate("press.state.bench.shown.force[0]")
+    page.evaluate(STEP, 3.0)
+    late = page.evaluate("press.state.bench.shown.force[0]")
+    page.evaluate("document.getElementById('fade').value = 0; press.restart()")
+    assert 0.5 * early < late < 0.95 * early
+
+
+def test_the_keyboard_presses_and_lets_go(page):
+    page.locator("#view").focus()
+    page.keyboard.press("ArrowRight")
+    page.evaluate(STEP, 1.0)
+    at = tool(page)
+    assert at["phase"] == "pressed"
+    assert at["x"] == pytest.approx(25.5e-3)
+    page.keyboard.press("Escape")
+    page.evaluate(STEP, 1.0)
+    assert tool(page)["phase"] == "idle"
+
+
+def test_a_replay_presses_as_before(page):
+    hold(page)
+    page.evaluate(STEP, 1.0)
+    before = tool(page)
+    page.mouse.up()
+    count = page.evaluate("press.state.bench.record.length")
+    page.locator("#replay").click()
+    page.evaluate(f"for (let k = 0; k < {count}; k++) press.advance(0.02)")
+    after = tool(page)
+    assert (after["x"], after["y"], after["depth"]) == (before["x"], before["y"], before["depth"])
+
+
+def test_the_published_animation_stands_beside(page):
+    page.evaluate("document.getElementById('beside').click()")
+    page.locator("#play").click()
+    page.evaluate(STEP, 0.9)
+    deep = page.evaluate("Math.max(...press.state.bench.tissues.published.frame(1e-3))")
+    page.evaluate("press.tick(performance.now()); document.getElementById('beside').click()")
+    assert deep == pytest.approx(39.2e-3, rel=0.01)
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_it_never_scrolls_sideways(page, width):
+    page.set_viewport_size({"width": width, "height": 800})
+    assert page.evaluate("document.documentElement.scrollWidth") == width

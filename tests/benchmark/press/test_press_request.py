@@ -1,0 +1,117 @@
+"""What a word or a file after `press` means."""
+
+import json
+import re
+from contextlib import nullcontext
+
+import numpy as np
+import pytest
+
+from benchmark.cli.app import main
+from benchmark.errors import InputError
+from benchmark.press.press_page import render_press_page
+from benchmark.press.press_request import PressRequest, specimens
+from benchmark.runs.options import Listener
+
+COARSE = {"fem.mesh": "coarse", "wave.large_press": "linear"}
+STIFFENING = """schema = 1
+[base]
+tissue = "{tissue}"
+model = "wave"
+large_press = "linear"
+[[effects]]
+name = "strain_stiffening"
+[effects.parameters]
+b_1 = "0.7"
+b_2 = "6.3"
+[[effects]]
+name = "viscoelastic_relaxation"
+[effects.parameters]
+g_1 = "0.3"
+tau_1 = "0.5 s"
+[[effects]]
+name = "dry_friction"
+[effects.parameters]
+coefficient = "0.2"
+"""
+
+
+class Silent(Listener):
+    def say(self, text):
+        pass
+
+    def progress(self, title):
+        return nullcontext(lambda *_: None)
+
+
+def tissues(**request):
+    return [one.scenario.tissue.name for one in specimens(PressRequest(settings=COARSE, **request), Silent())]
+
+
+def test_a_tissue_is_pressed_as_in_the_default_scenario():
+    [one] = specimens(PressRequest("skin_traction", settings={**COARSE, "load.peak": "1 N"}), Silent())
+    assert one.scenario.tissue.name == "skin_traction"
+    assert one.scenario.tool.radius == pytest.approx(5e-3)
+    assert np.interp(one.wave.deepest / 1.3, one.wave.depth, one.wave.force) == pytest.approx(1.0, rel=1e-4)
+
+
+def test_an_unknown_word_is_refused_with_what_ships():
+    with pytest.raises(InputError, match="skin_forearm"):
+        tissues(what="skim")
+
+
+def test_a_folder_that_is_no_result_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"no scenario\.toml"):
+        tissues(what=str(tmp_path))
+
+
+def test_a_model_file_stands_beside_the_model_as_it_was(tmp_path):
+    text = re.sub(r"coefficient.*", _friction(), STIFFENING).format(tissue="skin_forearm")
+    (tmp_path / "model.toml").write_text(text)
+    [one] = specimens(PressRequest(str(tmp_path), settings={**COARSE, "load.peak": "1 N"}), Silent())
+    assert one.effects == ("strain_stiffening", "viscoelastic_relaxation")
+    assert any("dry_friction" in remark for remark in one.remarks)
+    assert one.after_memory.series.strength == pytest.approx((0.3,))
+    share = one.wave.depth[-1] / one.scenario.tissue.thickness
+    expected = one.wave.force[-1] * (1.0 + 0.7 * share + 6.3 * share**2)
+    assert one.after.force[-1] == pytest.approx(expected, rel=1e-6)
+
+
+def _friction():
+    from benchmark.physics import catalogue
+
+    [effect] = [one for one in catalogue() if one.slug == "dry_friction"]
+    return "\n".join(f'{one.name} = "{one.start[0]:g} {one.unit}"' for one in effect.description.parameters)
+
+
+def test_the_command_writes_one_file(tmp_path, capsys, monkeypatch):
+    target = tmp_path / "press.html"
+    code = main(
+        [
+            "press",
+            "skin-5N",
+            "--save",
+            str(target),
+            "--set",
+            "fem.mesh=coarse",
+            "--set",
+            "wave.large_press=linear",
+            "--set",
+            "load.peak=1 N",
+            "--json",
+        ]
+    )
+    said = json.loads(capsys.readouterr().out)
+    assert code == 0
+    assert said["bytes"] == target.stat().st_size < 2e6
+    assert [one["tissue"] for one in said["presses"]] == ["skin_forearm"]
+
+
+def test_nothing_in_the_page_ends_its_data_early(page_document):
+    hostile = {
+        **page_document,
+        "specimens": [{**page_document["specimens"][0], "tissue": "</script><script>alert(1)</script>"}],
+    }
+    page = render_press_page(hostile)
+    assert "<script>alert" not in page
+    assert "connect-src" not in page
