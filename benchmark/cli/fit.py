@@ -25,6 +25,12 @@ Law = Annotated[
 Forward = Annotated[str | None, typer.Option("--forward", help="Model that is fitted: fem (default) or wave.")]
 Exact = Annotated[str | None, typer.Option("--exact", help="Told values to take as exact, KEY,KEY, or all.")]
 Posterior = Annotated[bool, typer.Option("--posterior", help="Draw from the posterior (with emcee).")]
+Export = Annotated[
+    str | None,
+    typer.Option(
+        "--export", help="Write what was identified for another code, too: inp (CalculiX, Abaqus), feb (FEBio)."
+    ),
+]
 FitFile = Annotated[Path | None, typer.Option("--fit-file", help="A TOML file with a [fit] table.")]
 
 
@@ -44,6 +50,7 @@ def fit(
     exact: Exact = None,
     fit_file: FitFile = None,
     posterior: Posterior = False,
+    export: Export = None,
     out: Out = None,
     settings: Set = None,
     seed: Seed = 0,
@@ -63,7 +70,9 @@ def fit(
     console = Console(quiet=quiet)
     files = tuple(sessions[1:]), fit_file
     wish = ParameterWish(_keys(free), _keys(exact), _laws(law), forward, *files, posterior=posterior, seed=seed)
-    request = FitRequest(sessions[0], specimen, parse_settings(settings), model, effects, seed, wish)
+    request = FitRequest(
+        sessions[0], specimen, parse_settings(settings), model, effects, seed, wish, _keys(export) or ()
+    )
     outcome = fit_to_folder(request, out, console)
     for warning in outcome.warnings:
         console.say(f"  warning: {warning}")

@@ -22,12 +22,16 @@ Tissue = Annotated[
 Wave = Annotated[Path | None, typer.Option("--wave", help="Your own fast model in the wave's place: a Python file.")]
 Reference = Annotated[
     Path | None,
-    typer.Option("--reference", help="Your own FEA in the FEM's place: a CSV file like max_deformation.csv."),
+    typer.Option("--reference", help="Your own FEA in the FEM's place: a CSV file, or a .dat, .frd or FEBio log."),
 ]
 Model = Annotated[Path | None, typer.Option("--model", help="Switch on the effects of a model file of discover.")]
 Effects = Annotated[Path | None, typer.Option("--effects", help="Effects of your own that the model file names.")]
 Repeats = Annotated[int, typer.Option("--repeats", min=3, help="Timed repeats of each model.")]
 
+Export = Annotated[
+    str | None,
+    typer.Option("--export", help="Write the scenario for another code, too: inp (CalculiX, Abaqus), feb (FEBio)."),
+]
 Refine = Annotated[
     bool,
     typer.Option("--refine", help="Coarser and finer runs too: numerical uncertainty, growth of time."),
@@ -53,6 +57,7 @@ def run(
     fields: Fields = "peak",
     repeats: Repeats = 3,
     refine: Refine = False,
+    export: Export = None,
     seed: Seed = 0,
     json: Json = False,
     quiet: Quiet = False,
@@ -73,7 +78,8 @@ def run(
     request = RunRequest(
         scenario, trials, specimen, parse_settings(settings), out, wave, reference, tuple(tissue or ()), model, effects
     )
-    options = RunOptions(every_field=fields == "all", repeats=repeats, refine=refine, seed=seed)
+    files = () if export is None else tuple(export.split(","))
+    options = RunOptions(every_field=fields == "all", repeats=repeats, refine=refine, seed=seed, export=files)
     outcomes = carry_out(request, options, console)
     if scenario is not None or trials is not None:
         return show_runs(outcomes, console, as_json=json)

@@ -12,6 +12,7 @@ from bench_hw.storage.regular_file import TABLE, read_regular
 from benchmark.errors import InputError
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel
+from benchmark.models.fea_results import READERS
 from benchmark.models.model_result import ModelResult, profile_radii
 from benchmark.models.prepare import scenario_drive
 from benchmark.models.reference_table import check_layers, history, parted, profile, read_rows, template
@@ -39,7 +40,8 @@ def read_reference(path: Path, scenario: Scenario) -> Reference:
         A CSV file with the columns `layer, fem_mm` (deflection of the layer's top face on the tool axis, press
         positive) and either `step, time_s, force_N` (one row for each step, from 1, and layer), or `time_s`, or the
         load (`force_N`, `depth_mm`) alone, over which the FEA's own steps are interpolated. Rows with a `radius_mm`
-        above 0 are the profile at peak load. More columns are allowed.
+        above 0 are the profile at peak load. More columns are allowed. Or what a solver printed, by its ending: `.dat`
+        and `.frd` of CalculiX, `.log` and `.txt` of FEBio (see `benchmark.models.fea_results`).
     scenario : Scenario
         What it is the FEA of: its layers, and the times and loads of its steps.
 
@@ -49,7 +51,8 @@ def read_reference(path: Path, scenario: Scenario) -> Reference:
         File, line and column: a column or a cell that is missing or no number, layers, steps or loads that differ from
         the scenario's.
     """
-    axis, off = parted(read_rows(path))
+    reader = READERS.get(path.suffix.lower())
+    axis, off = parted(read_rows(path) if reader is None else reader(path, scenario))
     drive, names = scenario_drive(scenario), scenario.tissue.layer_names
     check_layers(axis, names)
     found = history(axis, drive, names)

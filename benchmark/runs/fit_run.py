@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError
+from benchmark.exchange.identified_presses import check_exports, exports
 from benchmark.experiments.parameters_answer import ParametersAnswer
 from benchmark.identification import FittedParameter, SheetFit, parameter_columns
 from benchmark.identification.parameters.identified import Identified
@@ -29,7 +30,8 @@ from reports import Page, write_csv, write_json, write_page, write_text, write_w
 class FitRequest:
     """What is fitted: a session, the tissue of its trials, settings by KEY, a model file whose effects are in the fit.
 
-    `effects` is the user's own file that the model file may name; `wish` says which parameters are free.
+    `effects` is the user's own file that the model file may name; `wish` says which parameters are free; `export` are
+    endings of input files for other codes.
     """
 
     session: Path
@@ -39,6 +41,7 @@ class FitRequest:
     effects: Path | None = None
     seed: int = 0
     wish: ParameterWish = field(default_factory=ParameterWish)
+    export: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -54,12 +57,15 @@ class FitRecord:
     seed
     parameters
         The fit of parameters; None where none were free.
+    exported
+        Input files for other codes: names and texts.
     """
 
     found: FittedSession
     repair: RepairedModel | None
     seed: int
     parameters: ParametersAnswer | None = None
+    exported: tuple[tuple[str, str], ...] = ()
 
     @property
     def sheet(self) -> SheetFit | None:
@@ -120,7 +126,7 @@ class FitRecord:
         design = self.parameters.design
         if design is not None:
             out += [("next_experiment.toml", design.best_d.toml()), ("next_experiment_a.toml", design.best_a.toml())]
-        return out
+        return [*out, *self.exported]
 
 
 @dataclass(frozen=True)
@@ -146,6 +152,7 @@ def carry_out_fit(request: FitRequest, listener: Listener) -> FitRecord:
     repair = None if request.model is None else load_repair(request.model, request.effects)
     found = fit_trials(request.session, request.specimen, request.settings, listener, repair=repair)
     table = request.wish.table(found.session.fit)
+    check_exports(found.session, request.export, free=bool(table.free))
     if not table.free:
         if request.wish.sessions or table.law is not None or request.wish.posterior:
             raise InputError("several sessions, a law or a posterior need free parameters: give --free KEY,KEY")
@@ -155,7 +162,9 @@ def carry_out_fit(request: FitRequest, listener: Listener) -> FitRecord:
         raise InputError("--free and --model do not go together: the effects of a model file act on a common factor")
     others = [fit_trials(path, request.specimen, request.settings, listener) for path in request.wish.sessions]
     answer = answer_of((found, *others), request.wish, table, listener)
-    return FitRecord(found, repair, request.seed, answer)
+    exported, said = exports(answer.identified, request.export)
+    found = replace(found, warnings=(*found.warnings, *said))
+    return FitRecord(found, repair, request.seed, answer, exported)
 
 
 def fit_to_folder(request: FitRequest, out: Path | None, listener: Listener) -> FitOutcome:

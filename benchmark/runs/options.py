@@ -23,6 +23,8 @@ class RunOptions:
         Run both models on coarser and finer levels as well.
     seed
         Of every random draw.
+    export
+        Input files for other codes to write beside the result, by their endings ("inp", "feb").
     keep
         Folder in which a long run keeps its steps until its result is written; None keeps nothing.
     """
@@ -32,6 +34,7 @@ class RunOptions:
     refine: bool = False
     seed: int = 0
     keep: Path | None = None
+    export: tuple[str, ...] = ()
 
 
 Advance = Callable[[str, int, int, str], None]

@@ -46,6 +46,8 @@ class RunRecord:
         Their slugs.
     levels
         Coarser and finer runs; empty where none were asked for.
+    exported
+        Input files for other codes: endings and texts.
     """
 
     name: str
@@ -60,6 +62,7 @@ class RunRecord:
     repair: RepairedModel | None = None
     effects: tuple[str, ...] = ()
     levels: tuple[Level, ...] = ()
+    exported: tuple[tuple[str, str], ...] = ()
 
     @property
     def layers(self) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from benchmark.comparison import ComparisonError
+from benchmark.exchange import export_text
 from benchmark.files import Scenario
 from benchmark.models import NOTHING, Own, StepProgress, scenario_drive
 from benchmark.runs.options import Listener, RunOptions
@@ -49,6 +50,7 @@ def run_scenario(
     InputError, SolverError
         See `run_side_by_side`.
     """
+    exported = tuple((ending, export_text(scenario, ending)) for ending in options.export)
     drive = scenario_drive(scenario)
     pair = _side_by_side(scenario, options, listener, own)
     if own.wave is None and own.repair is None:
@@ -75,6 +77,7 @@ def run_scenario(
         repair=own.repair,
         effects=() if own.repair is None else own.repair.slugs,
         levels=levels,
+        exported=exported,
     )
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from benchmark.model_file import model_toml
 from benchmark.runs.fields import write_fields, write_last
+from benchmark.runs.output.destination import file_name
 from benchmark.runs.output.document import describe_environment, results_document
 from benchmark.runs.output.pressed import draw, pressed_picture, write_drawn
 from benchmark.runs.record import RunRecord
@@ -70,6 +71,8 @@ def write_run(record: RunRecord, folder: Path) -> RunOutcome:
         write_json(new / "results.json", document)
         write_json(new / "environment.json", environment)
         write_text(new / "scenario.toml", record.scenario.to_toml())
+        for ending, text in record.exported:
+            write_text(new / f"{file_name(record.scenario.name)}.{ending}", text)
         if record.repair is not None:
             write_text(new / "model.toml", model_toml(record.repair))
         fem = record.pair.fem.result
