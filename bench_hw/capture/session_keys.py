@@ -87,6 +87,7 @@ class TrialKeys(StrictModel):
     file: Name
     condition: Name
     markers: Name | None = None
+    sheet: Name | None = None
 
 
 class SessionKeys(StrictModel):
@@ -103,6 +104,7 @@ class SessionKeys(StrictModel):
     synthetic: Annotated[bool, Field(strict=True)] = False
     conditions: dict[str, ConditionKeys] | None = None
     fit: dict[str, Any] | None = None
+    import_table: Annotated[dict[str, Any] | None, Field(alias="import")] = None
 
 
 def check_session(tables: dict[str, Any], source: str) -> None:

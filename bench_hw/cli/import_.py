@@ -1,7 +1,8 @@
-"""`import`: CSV files of any rig as trial or marker tables."""
+"""`import`: files of any rig or testing machine as trial or marker tables."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,12 +12,16 @@ from bench_hw.cli._report import Debug, Json, Quiet, print_json, reporting
 from bench_hw.errors import InputError
 
 if TYPE_CHECKING:
-    from bench_hw.tables.importing import ForeignFormat, Imported, ImportPlan
+    from bench_hw.instrument_files.importing import ForeignFormat, Imported, ImportPlan
 
 SCHEMA = 1
 _DELIMITERS = {"tab": "\t", "comma": ",", "semicolon": ";"}
 
-_HELP = """Turn CSV files of any rig into trial tables that the whole product reads.
+_HELP = """Turn files of any rig or testing machine into trial tables that the whole product reads.
+
+Without --map the file is read as its instrument wrote it: text of any layout, Excel workbooks, testXpert, TDMS,
+atomic-force curves, MATLAB, Parquet. --preview shows what was recognised and writes nothing. `python -m benchmark
+run --trials FILE` reads the same files without this step.
 
 Each --map takes one column: TARGET is its name here and ends in the unit it gets, SOURCE its header there (or
 #3 for the third column), UNIT the unit it is in there (any that pint knows: um, inch, gf, lbf, ms...; the part
@@ -36,16 +41,17 @@ Everything is checked as when a trial is read: a cell that is no finite number, 
 fewer than 20 rows are refused with file, row and column (exit 2), and nothing is written then.
 """
 
-Files = Annotated[list[Path], typer.Argument(help="CSV files of one layout.")]
-Out = Annotated[Path, typer.Option(help="A folder (FILE becomes OUT/FILE.csv), or NAME.csv for one FILE.")]
+Files = Annotated[list[Path], typer.Argument(help="Files of one layout.")]
+Out = Annotated[Path | None, typer.Option(help="A folder (FILE becomes OUT/FILE.csv), or NAME.csv for one FILE.")]
+Preview = Annotated[bool, typer.Option("--preview", help="Show what is recognised; write nothing.")]
 Maps = Annotated[list[str] | None, typer.Option("--map", help="TARGET=SOURCE:UNIT; may be repeated.")]
 Negate = Annotated[list[str] | None, typer.Option(help="A target whose sign is turned; may be repeated.")]
 Zero = Annotated[list[str] | None, typer.Option(help="A target counted from its first row; may be repeated.")]
 Rate = Annotated[str, typer.Option(help='Rows per second, "100 Hz", for files without times.')]
 DropEmpty = Annotated[bool, typer.Option("--drop-empty", help="Leave out rows with an empty cell.")]
 Delimiter = Annotated[str, typer.Option(help="comma, semicolon, tab or a character; else found out.")]
-Decimal = Annotated[str, typer.Option(help="The decimal sign, . or ,")]
-Encoding = Annotated[str, typer.Option(help="Of the text: utf-8, latin-1, utf-16...")]
+Decimal = Annotated[str, typer.Option(help="The decimal sign, . or , ; else found out.")]
+Encoding = Annotated[str, typer.Option(help="Of the text: utf-8, latin-1, utf-16, gbk...; else found out.")]
 SkipLines = Annotated[int, typer.Option(min=0, help="Lines above the header (blank ones count).")]
 SkipRows = Annotated[int, typer.Option(min=0, help="Lines between header and first row, for instance units.")]
 NoHeader = Annotated[bool, typer.Option("--no-header", help="There is no header: sources are #1, #2...")]
@@ -60,27 +66,28 @@ def register(app: typer.Typer) -> None:
 
 def import_(
     files: Files,
-    out: Out,
+    out: Out = None,
     column_map: Maps = None,
     negate: Negate = None,
     zero: Zero = None,
     rate: Rate = "",
     drop_empty: DropEmpty = False,
     delimiter: Delimiter = "",
-    decimal: Decimal = ".",
-    encoding: Encoding = "utf-8",
+    decimal: Decimal = "",
+    encoding: Encoding = "",
     skip_lines: SkipLines = 0,
     skip_rows: SkipRows = 0,
     no_header: NoHeader = False,
     comment: Comment = "",
     overwrite: Overwrite = False,
+    show: Preview = False,
     as_json: Json = False,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
-    """Turn CSV files of any rig into trial tables; the help text is `_HELP`."""
+    """Turn files of any rig into trial tables; the help text is `_HELP`."""
     with reporting(debug):
-        from bench_hw.tables.importing import ForeignFormat, ImportPlan
+        from bench_hw.instrument_files.importing import ForeignFormat, ImportPlan
         from bench_hw.tables.units import parse_map, parse_rate
 
         sign = _DELIMITERS.get(delimiter, delimiter)
@@ -92,36 +99,65 @@ def import_(
             rate=parse_rate(rate) if rate else None,
             drop_empty=drop_empty,
         )
-        imported = _import_all(files, _targets(files, out, overwrite), layout, plan)
+        if show:
+            print("\n".join(_previews(files, layout, plan)))
+            return
+        if out is None:
+            raise InputError("--out is missing; allowed: a folder, or NAME.csv for one file; or --preview")
+        imported = _import_all(files, out, overwrite, layout, plan)
         if as_json:
             print_json({"schema": SCHEMA, "files": [_entry(*pair) for pair in imported]})
         elif not quiet:
             print("\n".join(_line(*pair) for pair in imported))
 
 
+def _previews(files: list[Path], layout: ForeignFormat, plan: ImportPlan) -> list[str]:
+    """What is recognised in each file, or taken from it as told."""
+    from bench_hw.instrument_files import Told, is_plain_trial, preview, read_instrument_file
+    from bench_hw.instrument_files.importing import import_table
+
+    told = Told(rate=plan.rate, decimal=layout.decimal, delimiter=layout.delimiter, encoding=layout.encoding)
+    lines = []
+    for file in files:
+        if plan.maps or is_plain_trial(file):
+            table = import_table(file, layout, plan)
+            lines.append(f"{file}: {table.rows} rows; {', '.join(f'{to} from {of}' for to, of in table.taken.items())}")
+        else:
+            lines += preview(read_instrument_file(file, replace(told, drop_empty=plan.drop_empty)))
+    return lines
+
+
 def _import_all(
-    files: list[Path], targets: list[Path], layout: ForeignFormat, plan: ImportPlan
+    files: list[Path], out: Path, overwrite: bool, layout: ForeignFormat, plan: ImportPlan
 ) -> list[tuple[Imported, Path]]:
     """Read and check all files before the first table is written."""
-    from bench_hw.tables.importing import import_table, write_imported
+    from bench_hw.instrument_files.importing import import_tables, write_imported
 
-    tables = [import_table(file, layout, plan) for file in files]
+    _targets(files, [file.stem for file in files], out, overwrite)
+    tables = [table for file in files for table in import_tables(file, layout, plan)]
+    stems = [f"{table.source.stem}_{table.name}" if table.name else table.source.stem for table in tables]
+    targets = _targets([table.source for table in tables], [_plain_name(stem) for stem in stems], out, overwrite)
     return [(table, write_imported(table, target)) for table, target in zip(tables, targets, strict=True)]
 
 
+def _plain_name(stem: str) -> str:
+    """A name of a sheet as one of a file."""
+    return "".join(letter if letter.isalnum() or letter in "-_.() " else "_" for letter in stem).strip()
+
+
 def _decimal(sign: str) -> str:
-    if sign not in (".", ","):
+    if sign not in ("", ".", ","):
         raise InputError(f"--decimal {sign!r}; allowed: . or ,")
     return sign
 
 
-def _targets(files: list[Path], out: Path, overwrite: bool) -> list[Path]:
+def _targets(files: list[Path], stems: list[str], out: Path, overwrite: bool) -> list[Path]:
     if out.suffix.lower() == ".csv":
         if len(files) > 1:
             raise InputError(f"--out {out}: one table for {len(files)} files; allowed: a folder")
         targets = [out]
     else:
-        targets = [out / f"{file.stem}.csv" for file in files]
+        targets = [out / f"{stem}.csv" for stem in stems]
     if len(set(targets)) < len(targets):
         raise InputError(f"--out {out}: two of the files have the same name; allowed: one table for each")
     for file, target in zip(files, targets, strict=True):

@@ -172,7 +172,10 @@ def _answered(
 
 def _loaded(request: DiscoverRequest, path: Path, listener: Listener) -> tuple[Session, tuple[str, ...]]:
     """A session with the markers of its films, and what tracking them said."""
-    return _with_films(load_session(path, request.settings, request.specimen), listener)
+    session = load_session(path, request.settings, request.specimen)
+    for line in session.shown:
+        listener.say(line)
+    return _with_films(session, listener)
 
 
 def _looped(request: DiscoverRequest, own: tuple[Effect, ...], listener: Listener, store: Path) -> Loop:

@@ -101,6 +101,8 @@ def fit_trials(
         The finite-element curve could not be computed deep enough.
     """
     session = load_session(path, settings, specimen)
+    for line in session.shown:
+        listener.say(line)
     base = base_curves(session, _depths(session), listener)
     listener.say(f"{session.name}: fitting {len(session.trials)} trials")
     try:

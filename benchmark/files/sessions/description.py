@@ -8,6 +8,9 @@ from typing import Annotated, Any, Final, Literal, Self
 
 from pydantic import Field, StrictBool, model_validator
 
+from bench_hw.configuration import parse_quantity
+from bench_hw.instrument_files.told import Told
+from bench_hw.tables.units import parse_rate
 from benchmark.errors import InputError
 from benchmark.files.quantities import Bounds, Length, Margin, Number
 from benchmark.files.schema import FileModel, Name, Schema, nearest, validated
@@ -31,11 +34,69 @@ class TrialEntry(FileModel):
         What the trial shares with others: a speed, a depth, a day.
     markers : str or None
         CSV file of the marker tracks, inside the session's folder.
+    sheet : str or None
+        The sheet, group or test of an instrument's file; None: each that holds a record is a trial.
     """
 
     file: Name
     condition: Name
     markers: Name | None = None
+    sheet: Name | None = None
+
+
+class ImportTable(FileModel):
+    """What files of other instruments leave open: where columns stand and in which units, and how text is written.
+
+    Attributes
+    ----------
+    time, depth, force, gap, stress, strain : str or None
+        "COLUMN", "COLUMN:UNIT" or "#3:UNIT", with - before it where pressing is negative, + where it is positive.
+    rate : str or None
+        Rows per second, "100 Hz".
+    decimal, delimiter, encoding : str or None
+        Of text.
+    drop_empty : bool
+        Leave out rows in which a cell that is needed is no number.
+    touch : str
+        auto: depth from the first touch where a record begins in air; none: as the file has it.
+    height, area : float or None
+        Of a specimen between plates, m and m2.
+    """
+
+    time: Name | None = None
+    depth: Name | None = None
+    force: Name | None = None
+    gap: Name | None = None
+    stress: Name | None = None
+    strain: Name | None = None
+    rate: Name | None = None
+    decimal: Literal[".", ","] | None = None
+    delimiter: str | None = None
+    encoding: Name | None = None
+    drop_empty: bool = False
+    touch: Literal["auto", "none"] = "auto"
+    height: Length | None = None
+    area: Name | None = None
+
+    def told(self, sheet: str | None = None) -> Told:
+        """As the reader takes it; raises InputError."""
+        roles = ("time", "depth", "force", "gap", "stress", "strain")
+        columns = {role: str(text) for role in roles if (text := getattr(self, role)) is not None}
+        try:
+            return Told(
+                columns,
+                None if self.rate is None else parse_rate(self.rate),
+                self.decimal or "",
+                self.delimiter or "",
+                self.encoding or "",
+                () if sheet is None else (sheet,),
+                self.drop_empty,
+                self.touch,
+                self.height,
+                None if self.area is None else parse_quantity(self.area, "m^2"),
+            )
+        except ValueError as error:
+            raise InputError(f"[import]: {error}") from None
 
 
 class Drive(FileModel):
@@ -96,6 +157,7 @@ class SessionFile(FileModel):
     camera: Camera | None = None
     synthetic: StrictBool = False
     fit: FitTable = FitTable()
+    import_: Annotated[ImportTable, Field(alias="import")] = ImportTable()
     conditions: Mapping[str, ConditionKeys] = Field(default_factory=dict)
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from bench_hw.instrument_files import ENDINGS
 from benchmark.errors import InputError
 from benchmark.files.loading import read_file
 from benchmark.files.schema import SCHEMA
@@ -15,7 +16,9 @@ from benchmark.files.shipped import session_folder, shipped_sessions
 from benchmark.files.sources import Source, is_file
 
 SESSION_FILE = "session.toml"
-TRIAL_SUFFIXES = (".csv", ".mcap")
+TRIAL_SUFFIXES = (".mcap", *ENDINGS)
+"""Of the bench's own recordings, and of the files of other instruments."""
+_ENDINGS = ", ".join(TRIAL_SUFFIXES)
 MARKERS = "_markers.csv"
 """In a folder without a session file, NAME_markers.csv holds the marker tracks of the trial NAME."""
 
@@ -43,7 +46,7 @@ def session_table(path: Path) -> tuple[dict[str, Any], Source]:
         if path.name == SESSION_FILE:
             return read_file(path, "session")
         if path.suffix.lower() not in TRIAL_SUFFIXES:
-            raise InputError(f"{path}: this is no trial; allowed: a session's folder, its session.toml, .csv, .mcap.")
+            raise InputError(f"{path}: this is no trial; allowed: a session's folder, its session.toml, {_ENDINGS}.")
         if _of_trial(path):
             raise InputError(f"{path}: by its name this holds marker tracks; allowed: the trial, or its folder.")
         entry = {"file": path.name, "condition": path.stem}
@@ -128,7 +131,7 @@ def _entries(folder: Path, name: str) -> list[dict[str, str]]:
             named = ({key: f"{sub.name}/{file}" for key, file in files.items()} for files in _trial_files(sub))
             found += [{**files, "condition": sub.name} for files in named]
     if not found:
-        raise InputError(f"{folder}: there is neither a {SESSION_FILE} nor a trial (.csv, .mcap) in this folder.")
+        raise InputError(f"{folder}: there is neither a {SESSION_FILE} nor a trial ({_ENDINGS}) in this folder.")
     return found
 
 

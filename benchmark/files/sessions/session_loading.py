@@ -24,13 +24,19 @@ from benchmark.files.overrides import layer_path, put_in, unknown_key
 from benchmark.files.schema import FileModel, known_keys, validated
 from benchmark.files.sessions.depth_counts import even_depths
 from benchmark.files.sessions.description import Camera, SessionFile, assumptions, base_setup, setups
+from benchmark.files.sessions.recordings import (
+    Recording,
+    read_recordings,
+    recorded_names,
+    told_heights,
+    with_headers,
+)
 from benchmark.files.sessions.session_folder import fingerprint, inside, session_table
 from benchmark.files.sessions.trials import (
     Session,
     Trial,
     is_synthetic,
     read_markers,
-    read_table,
     trial_names,
     trial_paths,
 )
@@ -76,10 +82,13 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
     paths = {key: route for key in inner if (route := _session_path(key, table))}
     changed, source = put_in(table, source, paths, inner)
     file = validated(SessionFile, changed, source)
-    trials, warnings = _trials(file, source)
+    paths_of, marker_paths = trial_paths(file.trials, source)
+    read = read_recordings(file, paths_of, listed=bool(source.text))
+    file, told = with_headers(file, read.trials)
+    trials, warnings = _trials(file, source, read.trials, paths_of, marker_paths)
     chosen = overrides.get("specimen", specimen)
     of_tissue = {key: value for key, value in inner.items() if key not in paths}
-    tissue, assumed, tissue_file = _specimen(file, source, chosen, trials, of_tissue)
+    tissue, assumed, tissue_file = _specimen(file, source, chosen, read.trials, of_tissue)
     base = base_setup(file, source)
     files = [*_files(trials), *_other_files(file, source, tissue_file)]
     session = Session(
@@ -93,7 +102,8 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
         camera=file.camera,
         synthetic=file.synthetic or any(is_synthetic(trial.path) for trial in trials),
         trials=tuple(trials),
-        warnings=(*warnings, *([assumed] if assumed else [])),
+        warnings=(*told, *read.warnings, *warnings, *([assumed] if assumed else [])),
+        shown=read.shown,
         settings=settings,
         fingerprint=fingerprint(source.folder, files),
         fit=file.fit,
@@ -127,37 +137,37 @@ def _conditions(table: dict[str, Any]) -> list[str]:
     return list(dict.fromkeys(str(entry.get("condition")) for entry in entries))
 
 
-def _trials(file: SessionFile, source: Source) -> tuple[list[Trial], list[str]]:
-    """All trials read, and what was assumed about them."""
-    conditions = dict.fromkeys(entry.condition for entry in file.trials)
-    setup = setups(file, conditions, source)
-    paths, marker_paths = trial_paths(file.trials, source)
-    warnings = assumptions(file, setup) + _doubled(paths)
+def _trials(
+    file: SessionFile,
+    source: Source,
+    read: Sequence[Recording],
+    files: Sequence[Path],
+    marker_paths: Sequence[Path | None],
+) -> tuple[list[Trial], list[str]]:
+    """All trials with what they were made with, and what was assumed about them."""
+    setup = setups(file, dict.fromkeys(each.entry.condition for each in read), source)
+    by_entry = {id(entry): markers for entry, markers in zip(file.trials, marker_paths, strict=True)}
+    paths = [Path(each.table.source) for each in read]
+    warnings = assumptions(file, setup) + _doubled(read)
     if file.camera is None and any(marker_paths):
         warnings.append("marker files are listed but [camera] does not give their layout: they are left out")
-        marker_paths = [None] * len(paths)
-    names = trial_names(paths, source.folder)
-    tables, counts = even_depths([read_table(path) for path in paths])
-    trials = [
-        Trial(
-            name=name,
-            condition=entry.condition,
-            path=path,
-            tool=setup[entry.condition].tool,
-            support=setup[entry.condition].support,
-            table=table,
-            markers=None if markers is None else read_markers(markers),
-            markers_path=markers,
-        )
-        for name, entry, path, markers, table in zip(names, file.trials, paths, marker_paths, tables, strict=True)
-    ]
+        by_entry = {}
+    named = dict(zip(map(id, file.trials), trial_names(files, source.folder), strict=True))
+    names = recorded_names(read, [named[id(each.entry)] for each in read])
+    tables, counts = even_depths([each.table for each in read])
+    trials = []
+    for name, each, path, table in zip(names, read, paths, tables, strict=True):
+        condition = setup[each.entry.condition]
+        markers = by_entry.get(id(each.entry))
+        found = None if markers is None else read_markers(markers)
+        trials.append(Trial(name, each.entry.condition, path, condition.tool, condition.support, table, found, markers))
     return trials, [*warnings, *counts]
 
 
-def _doubled(paths: Sequence[Path]) -> list[str]:
+def _doubled(read: Sequence[Recording]) -> list[str]:
     """A warning where one file is listed as several trials, which are then no replicates."""
-    times = Counter(path.resolve() for path in paths)
-    doubled = [path.name for path, count in times.items() if count > 1]
+    times = Counter((Path(each.table.source).resolve(), each.name) for each in read)
+    doubled = [path.name for (path, _), count in times.items() if count > 1]
     return [f"listed as more than one trial: {', '.join(doubled)}; these are no replicates"] if doubled else []
 
 
@@ -165,7 +175,7 @@ def _specimen(
     file: SessionFile,
     source: Source,
     chosen: str | Path | None,
-    trials: Sequence[Trial],
+    trials: Sequence[Recording],
     overrides: Overrides,
 ) -> tuple[Tissue, str | None, Path | None]:
     """The specimen, the warning where it is assumed, and its file where that is part of the session."""
@@ -178,7 +188,7 @@ def _specimen(
             path = own = inside(source.folder, file.specimen, source.place(("specimen",), "specimen"))
         table, where = read_file(path, "tissue")
     else:
-        tissue, assumed = assumed_specimen([trial.table for trial in trials])
+        tissue, assumed = assumed_specimen([trial.table for trial in trials], told_heights(trials))
         table, where = tissue.to_table(), Source("assumed specimen")
     for key in overrides:
         _check_key(key, table)
@@ -215,13 +225,15 @@ ASSUMED_POISSON_RATIO: Final = 0.49
 ASSUMED_DENSITY: Final = 1000.0
 
 
-def assumed_specimen(tables: Sequence[TrialTable]) -> tuple[Tissue, str]:
+def assumed_specimen(tables: Sequence[TrialTable], told: Sequence[float] = ()) -> tuple[Tissue, str]:
     """One layer of soft tissue as thick as the gap between tool and base at zero depth.
 
     Parameters
     ----------
     tables : sequence of TrialTable
         The session's trials; those with a `gap` column give the thickness, its median over trials.
+    told : sequence of float
+        Heights (m) that headers of the files tell of; they count before the gaps.
 
     Returns
     -------
@@ -229,7 +241,8 @@ def assumed_specimen(tables: Sequence[TrialTable]) -> tuple[Tissue, str]:
         The layer, and the warning that says what was assumed. The modulus is a start value for the fit (soft
         tissue lies at 1 to 100 kPa); the Poisson ratio is that of a nearly incompressible tissue.
     """
-    gaps = [gap for gap in map(_gap_at_zero_depth, tables) if gap is not None and 1e-7 <= gap <= 1e5]
+    measured = (gap for gap in map(_gap_at_zero_depth, tables) if gap is not None)
+    gaps = [gap for gap in (told or measured) if 1e-7 <= gap <= 1e5]
     thickness = float(np.median(gaps)) if gaps else ASSUMED_THICKNESS
     layer = Layer(
         name="specimen",
@@ -239,7 +252,7 @@ def assumed_specimen(tables: Sequence[TrialTable]) -> tuple[Tissue, str]:
         poisson_ratio=ASSUMED_POISSON_RATIO,
     )
     how = (
-        f"median gap_mm at zero depth, trials: {len(gaps)}, {1e3 * min(gaps):.3g} to {1e3 * max(gaps):.3g} mm"
+        f"{_from_where(told)}, trials: {len(gaps)}, {1e3 * min(gaps):.3g} to {1e3 * max(gaps):.3g} mm"
         if gaps
         else "no trial has a usable gap_mm"
     )
@@ -249,6 +262,10 @@ def assumed_specimen(tables: Sequence[TrialTable]) -> tuple[Tissue, str]:
         f"Young's modulus {ASSUMED_YOUNGS_MODULUS / 1e3:g} kPa before any fit"
     )
     return Tissue(name="assumed specimen", citation="assumed, see warnings", layers=(layer,)), warning
+
+
+def _from_where(told: Sequence[float]) -> str:
+    return "median height in the files' headers" if told else "median gap_mm at zero depth"
 
 
 def _gap_at_zero_depth(table: TrialTable) -> float | None:

@@ -138,6 +138,8 @@ class Session:
         SHA-256 over all files of the session, in hex.
     fit : FitTable
         What its `[fit]` table says of a fit of parameters.
+    shown : tuple of str
+        How files of other instruments were read, for the first lines of a run.
     """
 
     name: str
@@ -154,6 +156,7 @@ class Session:
     settings: Mapping[str, str]
     fingerprint: str
     fit: FitTable = field(default_factory=FitTable)
+    shown: tuple[str, ...] = ()
 
     @property
     def conditions(self) -> tuple[str, ...]:

@@ -62,9 +62,9 @@ def test_one_file_is_a_session_of_one_trial(tmp_path, write_trial):
     assert entries(write_trial(tmp_path / "one.csv")) == [("one.csv", "one")]
 
 
-@pytest.mark.parametrize("name", ["none", "", "notes.txt", "empty", "x" * 300, "a\0b"])
+@pytest.mark.parametrize("name", ["none", "", "notes.md", "empty", "x" * 300, "a\0b"])
 def test_what_is_no_session_is_refused(tmp_path, name):
-    (tmp_path / "notes.txt").write_text("text")
+    (tmp_path / "notes.md").write_text("text")
     (tmp_path / "empty").mkdir()
     with pytest.raises(InputError):
         session_table(tmp_path / name)

@@ -264,3 +264,36 @@ def test_everything_assumed_is_said():
     assert "1000 kg/m^3" in warning
     assert "20 kPa before any fit" in warning
     assert "assumed" in tissue.citation
+
+
+def test_an_instruments_file_is_a_session(tmp_path):
+    """Two tests side by side in one file are two trials; the header's probe is the tool; nothing is asked."""
+    from tests.instruments.samples import exponent_text
+
+    session = load_session(exponent_text(tmp_path))
+    assert [trial.name for trial in session.trials] == ["exponent 1", "exponent 2"]
+    assert {trial.tool.radius for trial in session.trials} == {5e-3}
+    assert any("Probe: P/10 10mm DIA CYLINDER" in text for text in session.warnings)
+    assert any("Force from" in line or "force from Force [g]" in line for line in session.shown)
+    assert not any("radius is not given" in text for text in session.warnings)
+
+
+def test_notes_beside_trials_are_left_aside_and_said(tmp_path):
+    from tests.instruments.samples import cellscale
+
+    cellscale(tmp_path)
+    (tmp_path / "notes.txt").write_text("gel from Tuesday\n")
+    session = load_session(tmp_path)
+    assert [trial.name for trial in session.trials] == ["cellscale"]
+    assert any("notes.txt holds no rows of numbers" in text for text in session.warnings)
+    assert session.specimen.layers[0].thickness == pytest.approx(12e-3, rel=0.01)
+
+
+def test_columns_are_named_by_options_of_the_session(tmp_path, write_trial):
+    lines = (f"{n / 50:.2f},{n / 500:.4f},{-max(n - 20, 0) / 300:.5f}" for n in range(100))
+    (tmp_path / "odd.csv").write_text("\n".join(["a,b,c", *lines]))
+    with pytest.raises(InputError, match=r'no column is the force.*--set import.force="COLUMN:N"'):
+        load_session(tmp_path)
+    told = {"import.time": "a:s", "import.depth": "b:mm", "import.force": "-c:N"}
+    (trial,) = load_session(tmp_path, told).trials
+    assert trial.table.force.max() == pytest.approx(79 / 300, abs=1e-5)

@@ -5,9 +5,7 @@ Which column is which, and in which unit, says `ColumnMap` (`units`).
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench_hw.errors import InputError, TableError
-from bench_hw.storage.regular_file import TABLE, read_regular
+from bench_hw.instrument_files import PressRecord, Told, is_plain_trial, read_instrument_file
+from bench_hw.instrument_files.text_sheet import Cell, number_text, text_sheet
 from bench_hw.tables.columns import check_increasing, check_row_count, numbers_of
 from bench_hw.tables.measurement import MARKER_COLUMNS, TRIAL_COLUMNS
 from bench_hw.tables.output import write_columns
-from bench_hw.tables.units import ColumnMap, FloatArray
+from bench_hw.tables.units import ColumnMap, FloatArray, from_si, join_unit
 
-_DELIMITERS = (",", ";", "\t", "|")
 SCHEMA = 1
 _TIME = "time_s"
 
@@ -32,12 +30,8 @@ class ForeignFormat:
 
     Parameters
     ----------
-    delimiter : str
-        Between cells; "" finds out which of comma, semicolon, tab and bar the header holds most.
-    decimal : str
-        `.` or `,`.
-    encoding : str
-        Of the text; a byte-order mark is taken off.
+    delimiter, decimal, encoding : str
+        Between cells, in numbers, of the text; "" finds each out from the file.
     skip_lines : int
         Lines above the header.
     header : bool
@@ -49,8 +43,8 @@ class ForeignFormat:
     """
 
     delimiter: str = ""
-    decimal: str = "."
-    encoding: str = "utf-8"
+    decimal: str = ""
+    encoding: str = ""
     skip_lines: int = 0
     header: bool = True
     skip_rows: int = 0
@@ -87,47 +81,24 @@ def read_foreign(path: Path, layout: ForeignFormat) -> ForeignRows:
     TableError
         The file is missing, unreadable, empty, in another encoding, or cannot be split.
     """
-    lines = list(_numbered_lines(path, layout))
-    first = lines[0][1] if lines else ""
-    if not first:
+    sheet = text_sheet(path, Told(decimal=layout.decimal, delimiter=layout.delimiter, encoding=layout.encoding))
+    kept = [
+        (line, [str(cell) for cell in row])
+        for line, row in zip(sheet.lines, sheet.rows, strict=True)
+        if line > layout.skip_lines and any(row) and not _commented(row, layout.comment)
+    ]
+    if not kept:
         raise TableError(path, "the file is empty", "a header and rows of numbers")
-    delimiter = layout.delimiter or max(_DELIMITERS, key=first.count)
     names: Sequence[str] = ()
     if layout.header:
-        names = _cells(path, *lines[0], delimiter)
-        lines = lines[1:]
-    lines = lines[layout.skip_rows :]
-    rows = [_cells(path, number, line, delimiter) for number, line in lines]
-    if layout.decimal == ",":
-        rows = [[cell.replace(",", ".") for cell in row] for row in rows]
-    return ForeignRows(path, tuple(names), tuple(rows), tuple(number for number, _ in lines))
+        names, kept = kept[0][1], kept[1:]
+    kept = kept[layout.skip_rows :]
+    rows = tuple([number_text(cell, sheet.decimal) for cell in row] for _, row in kept)
+    return ForeignRows(path, tuple(names), rows, tuple(line for line, _ in kept))
 
 
-def _numbered_lines(path: Path, layout: ForeignFormat) -> Iterator[tuple[int, str]]:
-    for number, line in enumerate(_text(path, layout.encoding).splitlines(), start=1):
-        commented = layout.comment and line.startswith(layout.comment)
-        if number > layout.skip_lines and line.strip() and not commented:
-            yield number, line
-
-
-def _text(path: Path, encoding: str) -> str:
-    try:
-        return read_regular(path, TABLE).decode(encoding).removeprefix("\ufeff")
-    except OSError as error:
-        problem = f"the file cannot be read ({error.strerror})"
-        raise TableError(path, problem, "the path of a readable CSV file") from error
-    except (LookupError, UnicodeDecodeError) as error:
-        problem = f"the file is no {encoding} text ({error})"
-        raise TableError(path, problem, "another encoding, for instance latin-1 or utf-16") from error
-
-
-def _cells(path: Path, number: int, line: str, delimiter: str) -> list[str]:
-    try:
-        cells = next(csv.reader(io.StringIO(line, newline=""), delimiter=delimiter, strict=True))
-    except csv.Error as error:
-        problem = f"the row cannot be split ({error})"
-        raise TableError(path, problem, f"cells separated by {delimiter!r}", row=number) from error
-    return [cell.strip() for cell in cells]
+def _commented(row: Sequence[Cell], comment: str) -> bool:
+    return bool(comment) and str(row[0]).startswith(comment)
 
 
 @dataclass(frozen=True)
@@ -169,12 +140,15 @@ class Imported:
         Where each column came from.
     dropped : int
         Rows left out because a cell was empty.
+    name : str
+        Of the sheet or test in its file; "" where that holds but one.
     """
 
     source: Path
     columns: Mapping[str, FloatArray]
     taken: Mapping[str, str]
     dropped: int
+    name: str = ""
 
     @property
     def rows(self) -> int:
@@ -208,6 +182,45 @@ def import_table(path: Path | str, layout: ForeignFormat, plan: ImportPlan) -> I
     _check_rows(rows.path, columns[_TIME], lines, is_marker)
     taken = {item.target: item.source for item in maps}
     return Imported(rows.path, columns, taken, len(rows.rows) - len(kept))
+
+
+def import_tables(path: Path | str, layout: ForeignFormat, plan: ImportPlan) -> list[Imported]:
+    """Read all trials of a foreign file: as `plan` maps its columns, or, where it maps none, as they are recognised.
+
+    Raises
+    ------
+    TableError, InputError
+        As `import_table` and `read_instrument_file`.
+    """
+    path = Path(path)
+    told_rows = layout.skip_lines or layout.skip_rows or not layout.header or layout.comment
+    if plan.maps or told_rows or is_plain_trial(path):
+        return [import_table(path, layout, plan)]
+    _check_names(plan, dict.fromkeys((*TRIAL_COLUMNS, "gap_mm"), np.zeros(0)))
+    told = Told(
+        rate=plan.rate,
+        decimal=layout.decimal,
+        delimiter=layout.delimiter,
+        encoding=layout.encoding,
+        drop_empty=plan.drop_empty,
+    )
+    read = read_instrument_file(path, told)
+    several = len(read.records) > 1
+    return [_imported(path, each, plan, each.name if several else "") for each in read.records]
+
+
+def _imported(path: Path, record: PressRecord, plan: ImportPlan, name: str) -> Imported:
+    table = record.table
+    columns = {_TIME: table.time, "depth_mm": from_si(table.depth, "mm"), "force_N": table.force}
+    for extra, values in table.extra.items():
+        unit = table.extra_units.get(extra, "")
+        columns[join_unit(extra, unit)] = from_si(values, unit)
+    taken = {join_unit(role, _UNITS_OF.get(role, "")): shown for role, shown in record.columns.items()}
+    columns = {target: _adjusted(values, target, plan) for target, values in columns.items()}
+    return Imported(path, columns, taken, 0, name)
+
+
+_UNITS_OF = {"time": "s", "depth": "mm", "force": "N", "gap": "mm"}
 
 
 def write_imported(table: Imported, out: Path | str) -> Path:

@@ -1,0 +1,421 @@
+"""A block of columns to the record of a press: which column is what, which way is pressing, where the tool touches.
+
+Everything that is decided here is said in `notes`; what two columns or two signs could be is asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from bench_hw.errors import TableError
+from bench_hw.instrument_files.blocks import Block
+from bench_hw.instrument_files.told import AUTOMATIC, ColumnSource, Told, asking, asking_key, parse_source
+from bench_hw.instrument_files.vocabulary import (
+    COMPRESSION,
+    DIMENSIONS,
+    TENSION,
+    role_of,
+    unit_scale,
+)
+from bench_hw.tables.columns import check_increasing, check_row_count
+from bench_hw.tables.measurement import TrialTable
+from bench_hw.tables.units import FloatArray
+
+TRAVEL: Final = ("depth", "displacement", "gap", "position")
+"""Quantities that say how far the tool went, the plainest first."""
+SURE: Final = 6.0
+"""Of its noise, above which a force is one."""
+SMALL_TRAVEL: Final = 0.1
+"""Of the whole travel, below which the place of the peak force does not tell which way is pressing."""
+ALIKE: Final = 0.6
+"""Share of the larger of two opposite forces from which on either could be the press."""
+OWN_ZERO: Final = 0.05
+"""Of the travel: an instrument's own zero that near to the first touch is kept."""
+IN_AIR: Final = 0.02
+"""Of the travel that must be in air before the touch for the touch to be looked for."""
+TOUCH_FORCE: Final = 5e-4
+"""Of the peak, which the force must exceed to be a touch, besides four times its noise."""
+
+
+@dataclass(frozen=True, eq=False)
+class PressRecord:
+    """One trial as read.
+
+    Parameters
+    ----------
+    name : str
+        Of the sheet, group or test; "" where the file holds but one.
+    table : TrialTable
+        SI, press positive.
+    columns : Mapping[str, str]
+        Where each quantity stood, with its unit.
+    notes : tuple of str
+        What was found out or changed, a sentence each.
+    kind : str
+        press | compression | tension: of a tool on a specimen, or of a block between plates.
+    """
+
+    name: str
+    table: TrialTable
+    columns: Mapping[str, str]
+    notes: tuple[str, ...]
+    kind: str = "press"
+
+
+@dataclass(frozen=True)
+class Taken:
+    """A column that is used: its number, the quantity it holds, its SI scale, its sign (0: found out), how it reads."""
+
+    column: int
+    role: str
+    scale: float
+    sign: int
+    shown: str
+
+
+def takes(block: Block, told: Told) -> dict[str, Taken]:
+    """Which columns of a block are time, travel and force (or strain and stress); what is not there is left out.
+
+    Raises
+    ------
+    TableError
+        A column that was named is missing, two could be meant, or a unit is missing.
+    """
+    found = {role: _told(block, role, parse_source(role, text)) for role, text in told.columns.items()}
+    kinds = {"depth": TRAVEL}
+    for role in ("time", "force", "depth", "gap"):
+        if role not in found and not (role == "time" and told.rate):
+            for kind in kinds.get(role, (role,)):
+                if (taken := _by_word(block, role, kind)) is not None:
+                    found[role] = taken
+                    break
+    if "force" not in found or "depth" not in found:
+        found |= {
+            role: taken for role in ("stress", "strain") if role not in found and (taken := _by_word(block, role, role))
+        }
+    return found
+
+
+def _told(block: Block, role: str, source: ColumnSource) -> Taken:
+    matching = [k for k, name in enumerate(block.names) if source.name in (name, block.headers[k])]
+    number = source.name.removeprefix("#")
+    if source.name.startswith("#") and number.isdecimal() and 0 < int(number) <= len(block.names):
+        matching = [int(number) - 1]
+    if len(matching) != 1:
+        problem = f"import.{role}: " + (
+            "no column is called so" if not matching else f"{len(matching)} columns are called so"
+        )
+        raise TableError(block.path, problem, f"one of {block.header}, by its name or its place #N", column=source.name)
+    unit = source.unit or block.units[matching[0]]
+    return _taken(block, role, role, matching[0], unit, source.sign)
+
+
+def _by_word(block: Block, role: str, kind: str) -> Taken | None:
+    """The column whose name plainly means a quantity; of some that do as plainly, those that say the same are one."""
+    candidates = []
+    for k, name in enumerate(block.names):
+        meaning = role_of(name)
+        dimension = _dimension(block.units[k])
+        if meaning is not None and meaning[0] == kind and (not block.units[k] or dimension in (DIMENSIONS[kind], None)):
+            candidates.append((meaning[1], k))
+    if not candidates:
+        return None
+    best = [k for rank, k in sorted(candidates) if rank == min(candidates)[0]]
+    first = best[0]
+    for other in best[1:]:
+        if not _same(block, first, other):
+            names = " and ".join(repr(_shown(block, k)) for k in (first, other))
+            example = f"#{first + 1}:{block.units[first] or _EXAMPLES[role]}"
+            problem = f"two columns could be the {role}: {names}"
+            raise TableError(block.path, problem, f"name one, {asking(role, example)}", row=_header_line(block))
+    return _taken(block, role, kind, first, block.units[first], 0)
+
+
+def _dimension(unit: str) -> str | None:
+    from bench_hw.instrument_files.vocabulary import UNITS, unit_of
+
+    known = unit_of(unit)
+    return None if known is None else UNITS[known][1]
+
+
+def _same(block: Block, first: int, other: int) -> bool:
+    """Whether two columns are the same measurement in two units: their numbers are proportional."""
+    rows = np.flatnonzero(~block.lacking(first) & ~block.lacking(other))
+    if len(rows) < 3:
+        return False
+    a, b = block.numbers(first, rows), block.numbers(other, rows)
+    spread = float(np.abs(a).max() * np.abs(b).max())
+    ratio = float(a @ b) / max(float(a @ a), 1e-300)
+    return bool(spread > 0.0 and np.allclose(b, ratio * a, rtol=0.0, atol=2e-3 * float(np.abs(b).max())))
+
+
+_EXAMPLES: Final = {"time": "s", "force": "N", "depth": "mm", "gap": "mm", "stress": "kPa", "strain": "%"}
+
+
+def _header_line(block: Block) -> int:
+    return max(int(block.lines[0]) - 1, 1)
+
+
+def _shown(block: Block, column: int) -> str:
+    unit = block.units[column]
+    return f"{block.names[column]} [{unit}]" if unit else block.names[column]
+
+
+def _taken(block: Block, role: str, kind: str, column: int, unit: str, sign: int) -> Taken:
+    example = f"{block.names[column] or f'#{column + 1}'}:{_EXAMPLES[role]}"
+    if not unit:
+        problem = f"the unit of the {kind} stands neither in its column's name nor in a line below it"
+        raise TableError(
+            block.path, problem, f"say it, {asking(role, example)}", row=_header_line(block), column=block.names[column]
+        )
+    scale = unit_scale(unit, DIMENSIONS[kind])
+    if scale is None:
+        problem = f"{unit!r} is no unit of the {kind}"
+        raise TableError(
+            block.path,
+            problem,
+            f"a unit of {kind}, {asking(role, example)}",
+            row=_header_line(block),
+            column=block.names[column],
+        )
+    named = block.names[column] or f"column #{column + 1}"
+    return Taken(column, kind, scale, sign, f"{named} [{unit}]")
+
+
+def is_record(block: Block, told: Told) -> bool:
+    """Whether a block can be a trial: by the words of its columns, or by what was told."""
+    words = {meaning[0] for name in block.names if (meaning := role_of(name)) is not None}
+    forced, moved = words & {"force", "stress"}, words & {*TRAVEL, "strain"}
+    return bool((forced or "force" in told.columns) and (moved or "depth" in told.columns))
+
+
+def record_of(block: Block, told: Told) -> PressRecord:
+    """Read a block as a trial.
+
+    Raises
+    ------
+    TableError
+        A column, a unit or a sign is missing or can be two things, a cell is no number, time does not increase, or
+        there are fewer than 20 rows.
+    """
+    found = takes(block, told)
+    notes: list[str] = []
+    if "force" not in found or "depth" not in found:
+        found = _of_stress(block, found, told)
+    if "time" not in found and not told.rate:
+        allowed = f"a column of times, {asking('time', 'COLUMN:s')}; or rows per second, {asking_key('rate', '100 Hz')}"
+        raise TableError(block.path, f"no column is the time (it has {block.header})", allowed, row=_header_line(block))
+    rows = _rows(block, found, told, notes)
+    check_row_count(block.path, len(rows))
+    lines = block.lines[rows]
+    values = {role: block.numbers(taken.column, rows) * taken.scale for role, taken in found.items()}
+    time = np.arange(len(rows)) / told.rate if told.rate else _times(block.path, values["time"], lines, notes)
+    kind = _kind(block, found)
+    depth, force = _si_press(found, values, told)
+    table = _pressing(block, found, time, depth, force, values, told, notes)
+    shown = {role: taken.shown for role, taken in found.items()}
+    return PressRecord(block.name, table, shown, tuple(notes), kind)
+
+
+def _kind(block: Block, found: Mapping[str, Taken]) -> str:
+    """What the words of the file call the test, where it has stress and strain."""
+    if "stress" not in found:
+        return "press"
+    return "tension" if TENSION.search(block.spoken) and not COMPRESSION.search(block.spoken) else "compression"
+
+
+def _of_stress(block: Block, found: dict[str, Taken], told: Told) -> dict[str, Taken]:
+    """Columns of stress and strain in the place of force and depth, where height and area are known."""
+    if "stress" in found and "strain" in found:
+        missing = [key for key, value in (("height", told.height), ("area", told.area)) if value is None]
+        if not missing:
+            return {role: taken for role, taken in found.items() if role not in ("force", "depth")}
+        examples = {"height": "10 mm", "area": "314 mm^2"}
+        allowed = " and ".join(asking_key(key, examples[key]) for key in missing)
+        problem = f"stress and strain need the specimen's {' and '.join(missing)}, which no header line tells"
+        raise TableError(block.path, problem, allowed, row=_header_line(block))
+    role = "force" if "force" not in found else "depth"
+    example = "COLUMN:N" if role == "force" else "COLUMN:mm"
+    problem = f"no column is the {'force' if role == 'force' else 'depth (or displacement, gap, position)'}"
+    allowed = f"name it, {asking(role, example)}; the file has {block.header}"
+    raise TableError(block.path, problem, allowed, row=_header_line(block))
+
+
+def _rows(block: Block, found: Mapping[str, Taken], told: Told, notes: list[str]) -> np.ndarray:
+    """The rows to read: all but empty ones at the end, and those that lack a number where that was allowed."""
+    lacking = np.zeros(block.rows, dtype=bool)
+    for taken in found.values():
+        lacking |= block.lacking(taken.column)
+    last = block.rows - int(np.argmax(~lacking[::-1])) if not lacking.all() else 0
+    ended = [k for k in range(last, block.rows) if _empty(block, found, k)]
+    within = np.flatnonzero(lacking[: block.rows - len(ended)])
+    kept = np.arange(block.rows - len(ended))
+    if not len(within):
+        return kept
+    if told.drop_empty:
+        notes.append(f"{len(within)} rows without a number in a column that is needed are left out, as told")
+        return np.setdiff1d(kept, within)
+    row = int(within[0])
+    taken = next(each for each in found.values() if block.lacking(each.column)[row])
+    cell = block.columns[taken.column][row]
+    problem = "the cell is empty" if cell == "" else "the cell is no finite number"
+    allowed = f"a number; or leave such rows out, {asking_key('drop_empty', 'true')}"
+    raise TableError(
+        block.path, problem, allowed, row=int(block.lines[row]), column=block.names[taken.column], value=str(cell)
+    )
+
+
+def _empty(block: Block, found: Mapping[str, Taken], row: int) -> bool:
+    """Whether a row holds nothing in the columns that are needed."""
+    cells = [block.columns[taken.column][row] for taken in found.values()]
+    return all(cell == "" or (not isinstance(cell, str) and not np.isfinite(cell)) for cell in cells)
+
+
+def _times(path: Path, time: FloatArray, lines: np.ndarray, notes: list[str]) -> FloatArray:
+    """Times that increase: those that repeat since they were written with few decimals are spread evenly."""
+    steps = np.diff(time)
+    repeated = int((steps == 0.0).sum())
+    if not repeated or (steps < 0.0).any() or repeated > 0.95 * len(steps):
+        check_increasing(path, "time", time, lines)
+        return time
+    first = np.flatnonzero(np.concatenate([[True], steps > 0.0]))
+    if np.diff(first).max(initial=1) > 0.01 * len(time) + 20:
+        check_increasing(path, "time", time, lines)
+    notes.append(f"{repeated} times repeat the one before (written to {np.diff(time[first]).min():g} s): spread")
+    knots = np.append(time[first], time[first][-1] + float(np.median(np.diff(time[first]))))
+    return np.asarray(np.interp(np.arange(len(time)), np.append(first, len(time)), knots))
+
+
+def _si_press(
+    found: Mapping[str, Taken], values: Mapping[str, FloatArray], told: Told
+) -> tuple[FloatArray, FloatArray]:
+    """Travel (n,) m and force (n,) N with the file's signs; of stress and strain those of the specimen's faces."""
+    if "stress" in found:
+        assert told.height is not None
+        assert told.area is not None
+        return values["strain"] * told.height, values["stress"] * told.area
+    return values["depth"], values["force"]
+
+
+def _pressing(
+    block: Block,
+    found: Mapping[str, Taken],
+    time: FloatArray,
+    travel: FloatArray,
+    force: FloatArray,
+    values: Mapping[str, FloatArray],
+    told: Told,
+    notes: list[str],
+) -> TrialTable:
+    """The trial with press positive, its depth counted from the first touch where the record begins in air."""
+    moved, pushed = found.get("depth", found.get("strain")), found.get("force", found.get("stress"))
+    assert moved is not None
+    assert pushed is not None
+    way_f = pushed.sign or _force_sign(block, pushed, force)
+    way_d = moved.sign or _travel_sign(block, moved, travel, way_f * force)
+    if way_f < 0:
+        notes.append(f"the force falls as the tool presses: {pushed.shown} is turned")
+    if way_d < 0:
+        notes.append(f"{moved.role} falls as the tool presses: {moved.shown} is turned")
+    depth, force = way_d * travel, way_f * force
+    extra = {"gap": values["gap"]} if "gap" in values else {"gap": travel} if moved.role == "gap" else {}
+    units = dict.fromkeys(extra, "mm")
+    table = TrialTable(time, depth, force, extra, str(block.path), units)
+    return _from_touch(table, moved.role, told, notes)
+
+
+def _force_sign(block: Block, taken: Taken, force: FloatArray) -> int:
+    """+1 where pressing raises the force, -1 where it lowers it; both alike is asked for."""
+    base = float(np.median(force[: max(5, len(force) // 50)]))
+    up, down = float(force.max() - base), float(base - force.min())
+    larger, smaller = max(up, down), min(up, down)
+    noise = float(np.median(np.abs(np.diff(force)))) if len(force) > 1 else 0.0
+    if smaller > ALIKE * larger and smaller > SURE * noise:
+        name = block.names[taken.column]
+        problem = f"the force goes as far down ({down:g} N) as up ({up:g} N): which is pressing"
+        allowed = asking("force", f"-{name}") + f" where pressing is negative, +{name} where it is positive"
+        raise TableError(block.path, problem, allowed, column=name)
+    return 1 if up >= down else -1
+
+
+def _travel_sign(block: Block, taken: Taken, travel: FloatArray, force: FloatArray) -> int:
+    """+1 where the tool is deeper at a larger value; a peak of the force where it began is asked for."""
+    base = float(np.median(force[: max(5, len(force) // 50)]))
+    peak = int(np.argmax(force - base))
+    span = float(np.ptp(travel))
+    name = block.names[taken.column]
+    if span == 0.0:
+        allowed = f"the column that moves, {asking('depth', 'COLUMN:mm')}; the file has {block.header}"
+        raise TableError(block.path, f"the {taken.role} never changes", allowed, column=name)
+    moved = float(travel[peak] - travel[0])
+    if abs(moved) < SMALL_TRAVEL * span:
+        problem = f"at the largest force the {taken.role} is where it began: which way is pressing"
+        allowed = asking("depth", f"-{name}") + f" where pressing is negative, +{name} where it is positive"
+        raise TableError(block.path, problem, allowed, column=name)
+    return 1 if moved > 0.0 else -1
+
+
+def _from_touch(table: TrialTable, role: str, told: Told, notes: list[str]) -> TrialTable:
+    """Depth and force counted from the first touch, where the record begins in air and the zero is not there yet."""
+    if told.touch != AUTOMATIC:
+        return table
+    row, level = first_touch(table)
+    span = float(np.ptp(table.depth))
+    at = float(table.depth[row])
+    in_air = at - float(table.depth[: row + 1].min()) > IN_AIR * span
+    absolute = role in ("position", "gap")
+    if abs(at) > OWN_ZERO * span or absolute:
+        where = "the first touch" if in_air else "the first row, which touches already"
+        at = at if in_air else float(table.depth[0])
+        notes.append(f"depth is counted from {where}, at {1e3 * at:.4g} mm of the file")
+        table = replace(table, depth=table.depth - at)
+    peak = float(table.force.max())
+    if in_air and abs(level) > 0.02 * max(peak - level, 1e-12):
+        notes.append(f"the force reads {level:.4g} N in air: counted from there")
+        table = replace(table, force=table.force - level)
+    return table
+
+
+def first_touch(table: TrialTable) -> tuple[int, float]:
+    """The row before the force rises for good on the way to its first peak, and the force's level before it.
+
+    Of the rows up to a tenth of the peak the last within four times the noise of the level, or within `TOUCH_FORCE` of
+    the peak.
+    """
+    force = table.force
+    level = float(np.median(force[: max(5, len(force) // 50)]))
+    rise = float(force.max()) - level
+    above = np.flatnonzero(force - level > 0.1 * rise)
+    until = int(above[0]) if len(above) else len(force)
+    start = force[: max(5, until // 2)]
+    level = float(np.median(start))
+    noise = 1.4826 * float(np.median(np.abs(start - level)))
+    quiet = np.flatnonzero(force[: max(until, 1)] - level <= max(4.0 * noise, TOUCH_FORCE * rise))
+    return (int(quiet[-1]) if len(quiet) else 0), level
+
+
+def phases(table: TrialTable) -> tuple[int, float]:
+    """How many presses a record holds, by its depth, and the longest time (s) that it stands pressed in."""
+    depth = table.depth - float(table.depth.min())
+    deep, shallow = depth > 0.6 * float(depth.max()), depth < 0.4 * float(depth.max())
+    state, presses = False, 0
+    for is_deep, is_shallow in zip(deep.tolist(), shallow.tolist(), strict=True):
+        if is_deep and not state:
+            presses, state = presses + 1, True
+        elif is_shallow:
+            state = False
+    return presses, _dwell(table, depth)
+
+
+def _dwell(table: TrialTable, depth: FloatArray) -> float:
+    """The longest time within half a percent of the travel of one depth, pressed in by a fifth at least."""
+    still = np.abs(np.diff(depth)) <= 2e-3 * float(depth.max()) / max(1.0, len(depth) / 500.0)
+    still &= depth[1:] > 0.2 * float(depth.max())
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], still, [False]]).astype(int)))
+    spans: Sequence[tuple[int, int]] = list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+    return max((float(table.time[last] - table.time[first]) for first, last in spans), default=0.0)

@@ -1,0 +1,334 @@
+"""An instrument's file as trials: opened by its format, its records read, and told to a person before they are used."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from bench_hw.errors import TableError
+from bench_hw.instrument_files.blocks import Block, blocks_of
+from bench_hw.instrument_files.containers import OPENERS, ending_of, open_container
+from bench_hw.instrument_files.press_record import PressRecord, is_record, phases, record_of, takes
+from bench_hw.instrument_files.text_sheet import text_sheet
+from bench_hw.instrument_files.told import Told
+from bench_hw.instrument_files.vocabulary import (
+    FACT_DIMENSIONS,
+    FACTS,
+    SPHERE,
+    TA_PROBE,
+    HeaderFact,
+    plain,
+    unit_scale,
+)
+from bench_hw.tables.columns import MINIMUM_ROWS
+
+TEXT_ENDINGS: Final = (".csv", ".txt", ".tsv", ".tab", ".dat", ".asc")
+ENDINGS: Final = (*TEXT_ENDINGS, *OPENERS)
+"""Of the files that this reads."""
+FACT_LIMITS: Final = {"tool_radius": (1e-9, 1.0), "height": (1e-7, 1.0), "area": (1e-14, 1.0)}
+"""What a header may tell, m and m2: other values are no tool and no specimen (0 for `not entered`)."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a header tells of tool and specimen, with the words that say so.
+
+    Parameters
+    ----------
+    tool_radius : float or None
+        m.
+    spherical : bool
+        Whether the tool is a ball.
+    height : float or None
+        Of the specimen, m.
+    area : float or None
+        Of the specimen, m2.
+    sources : tuple of str
+        The header lines, one a value.
+    """
+
+    tool_radius: float | None = None
+    spherical: bool = False
+    height: float | None = None
+    area: float | None = None
+    sources: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class InstrumentFile:
+    """A file as it was read.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    what : str
+        Its format, for people.
+    records : tuple of PressRecord
+        The trials in it, in the file's order.
+    header : Reading
+        What it tells of tool and specimen.
+    notes : tuple of str
+        What was left aside.
+    """
+
+    path: Path
+    what: str
+    records: tuple[PressRecord, ...]
+    header: Reading
+    notes: tuple[str, ...]
+
+
+def read_instrument_file(path: Path | str, told: Told | None = None) -> InstrumentFile:
+    """Read the trials of a file as an instrument wrote it.
+
+    Parameters
+    ----------
+    path : path-like
+        Text (csv, txt, tsv, tab, dat, asc) of any layout, or one of the containers in `OPENERS`.
+    told : Told, optional
+        What the file does not say itself.
+
+    Raises
+    ------
+    TableError
+        It cannot be read, holds no trial, or leaves open what only a person can say; the message names the option.
+    """
+    path, told = Path(path), told or Told()
+    if ending_of(path) in OPENERS:
+        what, blocks = OPENERS[ending_of(path)][0], open_container(path)
+    else:
+        sheet = text_sheet(path, told)
+        what, blocks = f"text, {sheet.told}", blocks_of(path, sheet)
+    chosen = [block for block in blocks if not told.sheets or block.name in told.sheets]
+    _check_sheets(path, blocks, told)
+    records, header, aside = _records(path, chosen, told)
+    return InstrumentFile(path, what, tuple(records), header, tuple(aside))
+
+
+def _check_sheets(path: Path, blocks: Sequence[Block], told: Told) -> None:
+    names = list(dict.fromkeys(block.name for block in blocks))
+    for name in told.sheets:
+        if name not in names:
+            listed = ", ".join(map(repr, names)) or "none"
+            raise TableError(path, f"import.sheets: no sheet {name!r} with numbers", f"some of {listed}")
+
+
+def _records(path: Path, blocks: Sequence[Block], told: Told) -> tuple[list[PressRecord], Reading, list[str]]:
+    """The trials of all blocks, what the headers tell, and which blocks are none."""
+    parts = [part for block in blocks for part in _side_by_side(block)]
+    trials = [part for part in _joined(parts) if is_record(part, told) and part.rows >= MINIMUM_ROWS]
+    if not trials:
+        _refuse(path, parts, told)
+    results = [fact for part in parts if part.rows < MINIMUM_ROWS for fact in _table_facts(part)]
+    header = header_reading([*(fact for part in trials for fact in part.facts), *results])
+    known = Told(**{**vars(told), "height": told.height or header.height, "area": told.area or header.area})
+    records = [record_of(part, known) for part in trials]
+    taken = {part.name for part in trials}
+    aside = [
+        f"{part.name!r} holds no record of a press and is left aside"
+        for part in parts
+        if part.name not in taken and part.rows >= 2
+    ]
+    return records, header, list(dict.fromkeys(aside))
+
+
+def _table_facts(table: Block) -> Iterator[HeaderFact]:
+    """What the columns of a short table tell, a table of results or parameters, where all its rows agree."""
+    for column, (name, unit) in enumerate(zip(table.names, table.units, strict=True)):
+        if name and not table.lacking(column).any():
+            values = set(table.numbers(column).tolist())
+            if len(values) == 1:
+                yield HeaderFact(name, f"{values.pop():g}", unit)
+
+
+def _refuse(path: Path, parts: Sequence[Block], told: Told) -> None:
+    """Say of the longest table why it is no trial."""
+    if not parts:
+        raise TableError(path, "no rows of numbers were found", "at least 20 rows with time, force and depth")
+    best = max(parts, key=lambda part: (is_record(part, told), part.rows))
+    if best.rows < MINIMUM_ROWS:
+        problem = f"the longest table has {best.rows} rows of numbers"
+        raise TableError(path, problem, f"at least {MINIMUM_ROWS} rows", row=int(best.lines[-1]))
+    record_of(best, told)
+    raise TableError(path, "no table is a trial", f"columns of time, force and depth; it has {best.header}")
+
+
+def _side_by_side(block: Block) -> Iterator[Block]:
+    """The tests of a block that holds several side by side: its names begin again, each as long as it is filled."""
+    starts = [k for k, name in enumerate(block.names) if name and _key(block, k) == _key(block, 0)]
+    width = starts[1] if len(starts) > 1 else 0
+    names = [_key(block, k) for k in range(len(block.names))]
+    if width < 2 or any(names[k] != names[k % width] for k in range(len(names)) if names[k] != ("", "")):
+        yield block
+        return
+    for number, start in enumerate(starts, start=1):
+        yield _part(block, number, start, width)
+
+
+def _key(block: Block, column: int) -> tuple[str, str]:
+    return plain(block.names[column]), block.units[column]
+
+
+def _part(block: Block, number: int, start: int, width: int) -> Block:
+    from dataclasses import replace
+
+    import numpy as np
+
+    columns = range(start, min(start + width, len(block.names)))
+    filled = np.flatnonzero(~np.logical_or.reduce([block.lacking(k) for k in columns]))
+    rows = int(filled[-1]) + 1 if len(filled) else 0
+    return replace(
+        block,
+        name=f"{block.name} {number}".strip(),
+        names=tuple(block.names[k] for k in columns),
+        headers=tuple(block.headers[k] for k in columns),
+        units=tuple(block.units[k] for k in columns),
+        columns=tuple(block.columns[k][:rows] for k in columns),
+        lines=block.lines[:rows],
+    )
+
+
+def _joined(parts: Sequence[Block]) -> list[Block]:
+    """Blocks of one record that the instrument wrote in pieces: the same names again, and time that goes on."""
+    out: list[Block] = []
+    for part in parts:
+        if out and _goes_on(out[-1], part):
+            out[-1] = _append(out[-1], part)
+        else:
+            out.append(part)
+    names = [part.name for part in out]
+    return [
+        part
+        if names.count(part.name) == 1
+        else _renamed(part, f"{part.name} {names[: k + 1].count(part.name)}".strip())
+        for k, part in enumerate(out)
+    ]
+
+
+def _renamed(block: Block, name: str) -> Block:
+    from dataclasses import replace
+
+    return replace(block, name=name)
+
+
+def _goes_on(before: Block, after: Block) -> bool:
+    if before.names != after.names or before.units != after.units or not before.rows or not after.rows:
+        return False
+    time = next((k for k, name in enumerate(before.names) if (name and _is_time(name))), None)
+    if time is None or before.lacking(time)[-1] or after.lacking(time)[0]:
+        return False
+    import numpy as np
+
+    last = before.numbers(time, np.array([before.rows - 1]))[0]
+    return bool(after.numbers(time, np.array([0]))[0] > last)
+
+
+def _is_time(name: str) -> bool:
+    from bench_hw.instrument_files.vocabulary import role_of
+
+    meaning = role_of(name)
+    return meaning is not None and meaning[0] == "time"
+
+
+def _append(before: Block, after: Block) -> Block:
+    from dataclasses import replace
+
+    import numpy as np
+
+    columns = tuple(
+        np.concatenate([a, b]) if isinstance(a, np.ndarray) and isinstance(b, np.ndarray) else [*a, *b]
+        for a, b in zip(before.columns, after.columns, strict=True)
+    )
+    lines = np.concatenate([before.lines, after.lines])
+    return replace(before, columns=columns, lines=lines, facts=(*before.facts, *after.facts))
+
+
+def header_reading(facts: Sequence[HeaderFact]) -> Reading:
+    """What header lines tell of tool and specimen; lines that contradict each other tell nothing, and say so."""
+    values: dict[str, dict[float, str]] = {}
+    for fact in facts:
+        kind = next((name for name, pattern in FACTS.items() if pattern.fullmatch(plain(fact.key))), None)
+        value = None if kind is None else _value(fact, FACT_DIMENSIONS[kind])
+        if kind is not None and value is not None:
+            values.setdefault(kind, {})[value] = f"{fact.key}: {fact.value}{f' {fact.unit}' if fact.unit else ''}"
+    spherical = any(SPHERE.search(f"{fact.key} {fact.value}") for fact in facts)
+    for fact in facts:
+        if plain(fact.key) in ("probe", "ta probe", "product") and (found := TA_PROBE.search(fact.value)):
+            values.setdefault("tool_diameter", {})[1e-3 * float(found["size"].replace(",", "."))] = (
+                f"{fact.key}: {fact.value}"
+            )
+    single = {kind: next(iter(said.items())) for kind, said in values.items() if len(said) == 1}
+    unclear = tuple(f"{' and '.join(said.values())} contradict each other" for said in values.values() if len(said) > 1)
+    radius, why_r = single.get("tool_radius", (None, ""))
+    if radius is None and "tool_diameter" in single:
+        radius, why_r = single["tool_diameter"][0] / 2.0, single["tool_diameter"][1]
+    height, why_h = single.get("height", (None, ""))
+    area, why_a = single.get("area", (None, ""))
+    if area is None and "specimen_diameter" in single:
+        area, why_a = math.pi * (single["specimen_diameter"][0] / 2.0) ** 2, single["specimen_diameter"][1]
+    radius, height, area = _within("tool_radius", radius), _within("height", height), _within("area", area)
+    sources = [why for value, why in ((radius, why_r), (height, why_h), (area, why_a)) if value is not None]
+    tip = radius is not None and ("tip" in plain(why_r) or spherical)
+    return Reading(radius, tip, height, area, (*sources, *unclear))
+
+
+def _within(kind: str, value: float | None) -> float | None:
+    least, most = FACT_LIMITS[kind]
+    return value if value is not None and least <= value <= most else None
+
+
+def _value(fact: HeaderFact, dimension: str) -> float | None:
+    """The SI value of a header line, `20`, `20 mm`, `20,0 mm`; None where number or unit is missing."""
+    number, _, unit = fact.value.strip().replace(",", ".").partition(" ")
+    scale = unit_scale(fact.unit or unit.strip(), dimension) if (fact.unit or unit.strip()) else None
+    try:
+        return None if scale is None else round(float(number) * scale, 15)
+    except ValueError:
+        return None
+
+
+def preview(file: InstrumentFile) -> list[str]:
+    """What was read, a line each, for a person to look at before anything is computed."""
+    lines = [f"{file.path.name}: {file.what}"]
+    for record in file.records:
+        presses, dwell = phases(record.table)
+        table = record.table
+        name = f" {record.name!r}:" if record.name else ""
+        rate = (len(table.time) - 1) / max(float(table.time[-1] - table.time[0]), 1e-12)
+        held = f", held {dwell:.3g} s" if dwell > 0.2 else ""
+        counted = f"{presses} press{'es' if presses != 1 else ''}"
+        lines.append(
+            f" {name} {len(table.time)} rows at {rate:.4g} Hz, {counted}{held}, "
+            f"to {1e3 * float(table.depth.max()):.4g} mm and {float(table.force.max()):.4g} N"
+        )
+        lines.append("    " + ", ".join(f"{role} from {shown}" for role, shown in record.columns.items()))
+        lines += [f"    {note}" for note in record.notes]
+    lines += [f"  from its header: {source}" for source in file.header.sources]
+    return [*lines, *(f"  {note}" for note in file.notes)]
+
+
+def is_plain_trial(path: Path) -> bool:
+    """Whether a text file is the bench's own trial table by its first line: read strictly, without recognition."""
+    try:
+        with path.open("rb") as stream:
+            first = stream.readline(100_000)
+        names = {name.strip().strip('"') for name in first.decode("utf-8-sig").rstrip("\r\n").split(",")}
+    except (OSError, UnicodeDecodeError):
+        return False
+    return {"time_s", "depth_mm", "force_N"} <= names
+
+
+__all__ = [
+    "ENDINGS",
+    "InstrumentFile",
+    "Reading",
+    "header_reading",
+    "is_plain_trial",
+    "preview",
+    "read_instrument_file",
+    "takes",
+]

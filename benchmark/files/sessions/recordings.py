@@ -1,0 +1,176 @@
+"""What the files of a session's trials hold: the bench's own tables and recordings, and files of other instruments.
+
+A file of another instrument may hold several trials, and its header may tell of tool and specimen. How it is read is
+`bench_hw.instrument_files`; what a session makes of it is here.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from bench_hw.errors import BenchError
+from bench_hw.instrument_files import ENDINGS, NoNumbersError, Reading, is_plain_trial, preview, read_instrument_file
+from bench_hw.tables import TrialTable
+from benchmark.errors import InputError
+from benchmark.files.sessions.description import ConditionKeys, SessionFile, TrialEntry
+from benchmark.files.sessions.trials import read_table
+from benchmark.files.units import LENGTH, format_quantity
+
+NOTES = (".txt", ".dat", ".asc", ".tab", ".tsv")
+"""Endings of text that need not be a trial: without rows of numbers it is left aside where nobody listed it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """One trial of a file.
+
+    Attributes
+    ----------
+    entry : TrialEntry
+        What the session says of it.
+    name : str
+        In its file; "" where that holds but one.
+    table : TrialTable
+        SI, press positive.
+    header : Reading
+        What its file tells of tool and specimen.
+    notes : tuple of str
+        What was found out or changed in reading.
+    kind : str
+        press | compression | tension.
+    """
+
+    entry: TrialEntry
+    name: str
+    table: TrialTable
+    header: Reading = field(default_factory=Reading)
+    notes: tuple[str, ...] = ()
+    kind: str = "press"
+
+
+@dataclass(frozen=True, eq=False)
+class Recordings:
+    """All trials of a session as their files hold them, what was read for people to see, and what was left aside."""
+
+    trials: tuple[Recording, ...]
+    shown: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+
+def is_instruments(path: Path) -> bool:
+    """Whether a file is to be read as another instrument wrote it, not as the bench's own."""
+    return path.suffix.lower() in ENDINGS and not (path.suffix.lower() == ".csv" and is_plain_trial(path))
+
+
+def read_recordings(file: SessionFile, paths: Sequence[Path], *, listed: bool) -> Recordings:
+    """Read the trials of all files; raises InputError.
+
+    Parameters
+    ----------
+    file : SessionFile
+        The session's description.
+    paths : sequence of Path
+        Of its entries.
+    listed : bool
+        Whether somebody listed the files; what is no table is left aside where nobody did.
+    """
+    trials: list[Recording] = []
+    shown: list[str] = []
+    aside: list[str] = []
+    for entry, path in zip(file.trials, paths, strict=True):
+        if not is_instruments(path):
+            trials.append(Recording(entry, "", read_table(path)))
+            continue
+        try:
+            read = read_instrument_file(path, file.import_.told(entry.sheet))
+        except NoNumbersError as error:
+            if listed or path.suffix.lower() not in NOTES:
+                raise InputError(f"{error}.") from None
+            aside.append(f"{path.name} holds no rows of numbers and is left aside")
+            continue
+        except BenchError as error:
+            raise InputError(f"{error}.") from None
+        several = len(read.records) > 1
+        trials += [
+            Recording(entry, each.name if several else "", each.table, read.header, each.notes, each.kind)
+            for each in read.records
+        ]
+        shown += preview(read)
+    if not trials:
+        raise InputError(f"{paths[0].parent}: no file holds a trial; allowed: tables with time, depth and force.")
+    return Recordings(tuple(trials), tuple(shown), (*_warnings(trials), *aside))
+
+
+def _warnings(trials: Sequence[Recording]) -> list[str]:
+    """What was found out in reading, once for all trials of which it is true but for its numbers."""
+    told = Counter(_numberless(note) for trial in trials for note in trial.notes)
+    first = {_numberless(note): note for trial in reversed(trials) for note in reversed(trial.notes)}
+    return [
+        f"in {count} of {len(trials)} trials {first[text]}" if len(trials) > 1 else first[text]
+        for text, count in told.items()
+    ]
+
+
+def _numberless(note: str) -> str:
+    return "".join(letter for letter in note if not letter.isdigit())
+
+
+def with_headers(file: SessionFile, trials: Sequence[Recording]) -> tuple[SessionFile, list[str]]:
+    """The session with tool and support as headers of its files tell them, where nobody else does, and what they told.
+
+    Raises
+    ------
+    InputError
+        The headers of one condition contradict each other.
+    """
+    told = {name: _tool(name, trials) for name in dict.fromkeys(trial.entry.condition for trial in trials)}
+    told = {name: keys for name, keys in told.items() if keys and "radius" not in file.tool}
+    if not told:
+        return file, []
+    conditions = dict(file.conditions)
+    for name, keys in told.items():
+        own = conditions.get(name, ConditionKeys())
+        if "radius" not in own.tool:
+            conditions[name] = own.model_copy(update={"tool": {**keys, **own.tool}})
+    common = next(iter(told.values()))
+    alike = all(keys == common for keys in told.values()) and len(told) == len({t.entry.condition for t in trials})
+    update: dict[str, Any] = {"conditions": conditions}
+    if alike:
+        update = {"tool": {**common, **file.tool}}
+    said = sorted({source for trial in trials for source in trial.header.sources})
+    return file.model_copy(update=update), [f"tool and specimen as the files' headers tell: {'; '.join(said)}"]
+
+
+def _tool(condition: str, trials: Sequence[Recording]) -> dict[str, str]:
+    headers = {
+        (trial.header.tool_radius, trial.header.spherical) for trial in trials if trial.entry.condition == condition
+    }
+    known = {each for each in headers if each[0] is not None}
+    if not known:
+        return {}
+    if len(known) > 1:
+        radii = ", ".join(sorted(format_quantity(radius, LENGTH) for radius, _ in known if radius is not None))
+        raise InputError(
+            f"condition {condition}: the files' headers tell of different tools ({radii}); allowed: one a condition: "
+            f'put the files into sub-folders, or state tool.radius (--set tool.radius="5 mm").'
+        )
+    radius, ball = known.pop()
+    assert radius is not None
+    text = format_quantity(radius, LENGTH)
+    return {"radius": text, "edge_radius": text, "contact": "rigid_frictionless"} if ball else {"radius": text}
+
+
+def told_heights(trials: Sequence[Recording]) -> list[float]:
+    """Heights of specimens (m) that headers tell of."""
+    return [trial.header.height for trial in trials if trial.header.height is not None]
+
+
+def recorded_names(trials: Sequence[Recording], names: Sequence[str]) -> list[str]:
+    """A name for each trial: its file's, and its own in it where that holds several; numbered where two are alike."""
+    full = [f"{name} {trial.name}".strip() for name, trial in zip(names, trials, strict=True)]
+    times = Counter(full)
+    return [name if times[name] == 1 else f"{name} #{number}" for number, name in enumerate(full, start=1)]

@@ -1,0 +1,71 @@
+"""Each instrument's file is read as it is: the press that was written is found, and what was decided is told."""
+
+import importlib.util
+
+import numpy as np
+import pytest
+
+from bench_hw.instrument_files import Told, preview, read_instrument_file
+from tests.instruments.samples import SAMPLES, press
+
+
+@pytest.fixture(params=SAMPLES)
+def sample(request):
+    found = SAMPLES[request.param]
+    if found.library and importlib.util.find_spec(found.library) is None:
+        pytest.skip(f"{found.library} is not installed")
+    return found
+
+
+def test_the_press_that_was_written_is_found(sample, tmp_path):
+    read = read_instrument_file(sample.write(tmp_path))
+    assert len(read.records) == sample.trials
+    for record in read.records:
+        table = record.table
+        assert table.depth.max() == pytest.approx(sample.depth, rel=0.02)
+        assert table.force.max() == pytest.approx(sample.force, rel=0.01)
+        within = table.depth > 0.1 * sample.depth
+        rising = within & (np.arange(table.depth.size) < np.argmax(table.force))
+        law = sample.force * (table.depth[rising] / sample.depth) ** 1.5
+        np.testing.assert_allclose(table.force[rising], law, atol=0.04 * sample.force)
+        assert abs(float(np.median(table.force[table.depth < -0.1 * sample.depth]))) < 1e-3 * sample.force
+
+
+def test_headers_tell_of_tool_and_specimen(sample, tmp_path):
+    header = read_instrument_file(sample.write(tmp_path)).header
+    assert header.tool_radius == (None if sample.radius is None else pytest.approx(sample.radius))
+    assert header.height == (None if sample.height is None else pytest.approx(sample.height))
+
+
+def test_everything_that_was_decided_is_shown(sample, tmp_path):
+    read = read_instrument_file(sample.write(tmp_path))
+    text = "\n".join(preview(read))
+    for record in read.records:
+        assert {"force", "depth"} <= set(record.columns)
+        assert all(shown in text for shown in record.columns.values())
+        assert all(note in text for note in record.notes)
+    assert all(source in text for source in read.header.sources)
+
+
+def test_a_hold_and_cycles_are_recognised(tmp_path):
+    from bench_hw.instrument_files.press_record import phases
+
+    many = press(cycles=4, rate=25.0)
+    path = tmp_path / "cycles.csv"
+    lines = (f"{t:.3f},{d:.5f},{f:.5f}" for t, d, f in zip(many.time, many.depth, many.force, strict=True))
+    path.write_text("\n".join(["Time (s),Displacement (mm),Force (N)", *lines]))
+    (record,) = read_instrument_file(path).records
+    presses, dwell = phases(record.table)
+    assert (presses, dwell) == (4, pytest.approx(2.0, abs=0.1))
+
+
+def test_what_is_told_comes_before_what_is_found(tmp_path):
+    one = press()
+    path = tmp_path / "two.csv"
+    cells = zip(one.time, one.depth, one.depth * 25.4, -one.force, one.force * 2, strict=True)
+    lines = (",".join(f"{cell:.6f}" for cell in row) for row in cells)
+    path.write_text("\n".join(["t [s],Displacement 1 [mm],Other,Cell A [N],Cell B [N]", *lines]))
+    told = Told({"depth": "Other:thou", "force": "-Cell A"}, touch="none")
+    (record,) = read_instrument_file(path, told).records
+    np.testing.assert_allclose(record.table.depth, one.depth * 25.4 * 25.4e-6, atol=1e-9)
+    np.testing.assert_allclose(record.table.force, one.force, atol=1e-6)
