@@ -23,7 +23,7 @@ from benchmark.cli import (
     sweep,
     verify,
 )
-from benchmark.cli.folders import clean, reference, report, shipped
+from benchmark.cli.folders import clean, dossier, reference, report, shipped
 from benchmark.cli.hands_on import press
 
 EXIT_USAGE = 2
@@ -37,7 +37,22 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for verb in (run, fit, discover, blind, check, sweep, report, reproduce, verify, shipped, reference, clean, press):
+for verb in (
+    run,
+    fit,
+    discover,
+    blind,
+    check,
+    sweep,
+    report,
+    reproduce,
+    verify,
+    shipped,
+    reference,
+    dossier,
+    clean,
+    press,
+):
     verb.register(app)
 
 

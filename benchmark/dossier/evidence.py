@@ -1,0 +1,299 @@
+"""What finished results show: each result folder read for the questions that it answers.
+
+One reader a kind of result, known by its document. Nothing is computed anew; every figure is in a file of the folder.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import pandas as pd
+
+from bench_hw.storage.regular_file import DOCUMENT, read_regular
+from benchmark.errors import InputError
+from reports.manifest import foreign_files, read_manifest
+
+SYNTHETIC, CIRCULAR = "synthetic data", "circular: fitted to these trials"
+AGAINST = "speaks against"
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """One answer to one question.
+
+    Attributes
+    ----------
+    question
+        Its slug, see `benchmark.dossier.factors`.
+    says
+        One sentence with its figures.
+    source
+        The file that has them.
+    limits
+        Why it shows less than it seems to: synthetic, circular, or a result that speaks against the model.
+    """
+
+    question: str
+    says: str
+    source: str
+    limits: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class ResultFolder:
+    """A finished result: its folder, the name of its document and what is in it."""
+
+    folder: Path
+    name: str
+    document: Mapping[str, Any]
+
+    def table(self, name: str) -> pd.DataFrame | None:
+        """A table of the folder; None where it has none of this name.
+
+        Raises
+        ------
+        InputError
+            It cannot be read.
+        """
+        path = self.folder / name
+        if not path.is_file():
+            return None
+        try:
+            return pd.read_csv(path)
+        except (OSError, ValueError) as error:
+            raise InputError(f"{path} cannot be read ({error}); needed: the table as it was written") from None
+
+    def file(self, name: str) -> str:
+        """What the page calls a file of this folder."""
+        return f"{self.folder.name}/{name}"
+
+
+def read_result(folder: Path) -> ResultFolder:
+    """Read a result folder of `run`, `fit`, `discover`, `verify`, `check` or `sweep`.
+
+    Raises
+    ------
+    InputError
+        It is none of them, or its document cannot be used.
+    """
+    name = next((each for each in READERS if (folder / each).is_file()), None)
+    if name is None:
+        raise InputError(
+            f"{folder} is no result that a dossier can hold; needed: a folder with one of {', '.join(READERS)}"
+        )
+    try:
+        document = json.loads(read_regular(folder / name, DOCUMENT).decode("utf-8-sig"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise InputError(f"{folder / name} cannot be read ({error})") from None
+    if not isinstance(document, dict) or document.get("schema") != 1:
+        found = document.get("schema") if isinstance(document, dict) else None
+        raise InputError(f"{folder / name}: schema is {found!r}; allowed: 1")
+    return ResultFolder(folder, name, document)
+
+
+def evidence_of(result: ResultFolder) -> tuple[Evidence, ...]:
+    """All that one result shows.
+
+    Raises
+    ------
+    InputError
+        Its document lacks what results of this kind have.
+    """
+    try:
+        return (*_kept(result), *READERS[result.name](result))
+    except (KeyError, TypeError, AttributeError, IndexError, ValueError) as error:
+        raise InputError(
+            f"{result.folder / result.name} is not as this version writes it ({type(error).__name__}: {error}); "
+            "make the result again"
+        ) from None
+
+
+def _kept(result: ResultFolder) -> Iterator[Evidence]:
+    """Versions, and whether the files are those that were written."""
+    path = result.folder / "environment.json"
+    if path.is_file():
+        made = json.loads(path.read_text(encoding="utf-8"))
+        packages = made["packages"]
+        told = ", ".join(f"{name} {packages[name]}" for name in ("tissuebench", "scikit-fem", "scipy", "numpy"))
+        yield Evidence("versions", f"{result.folder.name}: {told}, Python {made['python']}.", result.file(path.name))
+    if read_manifest(result.folder) is not None and (changed := foreign_files(result.folder)):
+        says = f"{result.folder.name}: {len(changed)} files are not as they were written: {', '.join(changed[:3])}."
+        yield Evidence("versions", says, result.file("manifest.json"), (AGAINST,))
+
+
+def _of_verification(result: ResultFolder) -> Iterator[Evidence]:
+    cases = result.document["cases"]
+    passed = sum(bool(case["passed"]) for case in cases)
+    sources = len({case["source"] for case in cases})
+    says = f"{passed} of {len(cases)} values within what is allowed, against {sources} published or closed solutions."
+    yield Evidence("closed_forms", says, result.file(result.name), () if passed == len(cases) else (AGAINST,))
+
+
+def _of_check(result: ResultFolder) -> Iterator[Evidence]:
+    values, times = len(result.document["accuracy"]), len(result.document["timing"])
+    good = result.document["passed"]
+    says = f"{'Nothing' if good else 'Something'} got worse: {values} values and {times} times against a baseline."
+    yield Evidence("gate", says, result.file(result.name), () if good else (AGAINST,))
+
+
+def _of_sweep(result: ResultFolder) -> Iterator[Evidence]:
+    table = result.table("sensitivity.csv")
+    if table is None or table.empty:
+        return
+    first = table[table["result"] == table["result"].iloc[0]].sort_values("total_order", ascending=False)
+    parts = [f"{row.parameter} {row.total_order:.2f} +/- {row.total_order_ci95:.2f}" for row in first.itertuples()]
+    says = f"Total-order Sobol indices of {first['result'].iloc[0]}: {', '.join(parts[:4])}."
+    yield Evidence("sensitivity", says, result.file("sensitivity.csv"))
+
+
+def _of_fit(result: ResultFolder) -> Iterator[Evidence]:
+    found = result.document["parameters"]
+    limits = (SYNTHETIC,) if result.document["session"]["synthetic"] else ()
+    told = [f"{key} {_with_interval(entry)}" for key, entry in found.items() if entry["identifiable"]]
+    if told:
+        says = f"From {len(result.document['trials'])} trials: {'; '.join(told[:4])}."
+        yield Evidence("input_uncertainty", says, result.file(result.name), limits)
+    if lost := [key for key, entry in found.items() if not entry["identifiable"]]:
+        says = f"Not determined by these trials: {', '.join(lost)}."
+        yield Evidence("input_uncertainty", says, result.file(result.name), (*limits, AGAINST))
+
+
+def _with_interval(entry: Mapping[str, Any]) -> str:
+    unit = f" {entry['unit']}" if entry["unit"] else ""
+    interval = entry["ci95"]
+    return f"{entry['value']:.3g}{unit}" + (f" [{interval[0]:.3g}, {interval[1]:.3g}]" if interval else "")
+
+
+ANSWERED: Final = ("named", "conditional", "no_discrepancy")
+
+
+def _of_discovery(result: ResultFolder) -> Iterator[Evidence]:
+    found = result.document
+    limits = (SYNTHETIC,) if found["synthetic"] else ()
+    source = result.file(result.name)
+    against = () if found["verdict"] in ANSWERED else (AGAINST,)
+    yield Evidence("missing_effect", found["statement"], source, (*limits, *against))
+    gaps = [each for each in found["gap"].items() if each[1]["closed"] is not None]
+    if gaps and found["effects"]:
+        parts = [f"{channel} {100 * gap['closed']:.0f} %" for channel, gap in gaps]
+        says = f"With the effect, the gap on data it was not fitted to closes by {', '.join(parts)}."
+        yield Evidence("unseen", says, source, limits)
+    if found["conditions"]:
+        names, trials = found["conditions"], found["trials"]
+        says = (
+            f"{len(trials)} trials of {len(names)} conditions: {', '.join(names[:6])}; {', '.join(found['channels'])}."
+        )
+        yield Evidence("condition_range", says, source, limits)
+    if own := found.get("own"):
+        yield Evidence("condition_uncertainty", _own_values(own), source, limits)
+
+
+def _own_values(own: list[Mapping[str, Any]]) -> str:
+    """What was fitted to single trials, as its largest over them."""
+    kinds = (("zero_N", "zero of the force", "N"), ("late_ms", "clock", "ms"), ("touch_mm", "touch", "mm"))
+    parts = [
+        f"{word} up to {max(abs(trial[key]) for trial in own if trial.get(key) is not None):.3g} {unit}"
+        for key, word, unit in kinds
+        if any(trial.get(key) is not None for trial in own)
+    ]
+    return f"Fitted to each of {len(own)} trials: {', '.join(parts)}."
+
+
+def _of_run(result: ResultFolder) -> Iterator[Evidence]:
+    found, source = result.document, result.file(result.name)
+    yield from _solved(found, source)
+    yield from _inputs(result)
+    yield from _second_model(found, source)
+    yield from _refined(result)
+    trials = found.get("trials")
+    if trials is not None:
+        limits = (SYNTHETIC,) if trials["synthetic"] else ()
+        says = f"{trials['count']} trials of the session {trials['session']}, of one specimen."
+        yield Evidence("sample_quantity", says, source, limits)
+        says = f"Both models follow the measured depth of each of {trials['count']} trials."
+        yield Evidence("same_press", says, result.file("tables/measured.csv"), limits)
+        yield from _against_trials(result, limits)
+
+
+def _solved(found: Mapping[str, Any], source: str) -> Iterator[Evidence]:
+    if found["complete"]:
+        yield Evidence("convergence", f"{found['name']}: every load step reached equilibrium.", source)
+    for model in found["models"].values():
+        if model["failure"]:
+            yield Evidence("convergence", f"{model['name']}: {model['failure']}", source, (AGAINST,))
+
+
+def _inputs(result: ResultFolder) -> Iterator[Evidence]:
+    path = result.folder / "scenario.toml"
+    if not path.is_file():
+        return
+    tissue = tomllib.loads(path.read_text(encoding="utf-8")).get("tissue", {})
+    says = f"{result.folder.name}: the whole scenario with units, read back before it was kept."
+    yield Evidence("inputs_kept", says, result.file(path.name))
+    if isinstance(tissue, dict) and tissue.get("citation"):
+        yield Evidence("sources", f"{tissue['name']}: {tissue['citation']}", result.file(path.name))
+
+
+def _second_model(found: Mapping[str, Any], source: str) -> Iterator[Evidence]:
+    compared = {layer: entry for layer, entry in found["comparison"].items() if entry["percent_error_max"] is not None}
+    if not compared:
+        return
+    layer, worst = max(compared.items(), key=lambda each: each[1]["percent_error_max"])
+    margin = 100 * found["equivalence_margin"]
+    same = all(entry["equivalent"] for entry in compared.values())
+    says = (
+        f"{found['name']}: wave model against finite elements within {worst['percent_error_max']:.2g} % ({layer}); "
+        f"{'equivalent' if same else 'not equivalent'} within {margin:.2g} % in {'every' if same else 'some'} layer."
+    )
+    yield Evidence("second_model", says, source, () if same else (AGAINST,))
+
+
+def _refined(result: ResultFolder) -> Iterator[Evidence]:
+    table = result.table("tables/validation.csv")
+    if table is None:
+        return
+    for name, rows in table[table["measure"].str.endswith(": u_num")].groupby("simulation", sort=False):
+        row = rows.to_dict("records")[int(pd.to_numeric(rows["value"]).argmax())]
+        says = (
+            f"{name}: u_num up to {float(row['value']):.2g} {row['unit']} ({row['quantity']}, {row['measure'][:-7]})."
+        )
+        yield Evidence("refinement", says, result.file("tables/validation.csv"))
+
+
+def _against_trials(result: ResultFolder, limits: tuple[str, ...]) -> Iterator[Evidence]:
+    """Error and uncertainty of ASME V&V 20 for each model and protocol."""
+    table, source = result.table("tables/validation.csv"), result.file("tables/validation.csv")
+    if table is None:
+        return
+    measured = table[~table["protocol"].isin(("verification", "prediction, code to code"))]
+    for (quantity, protocol, model), rows in measured.groupby(["quantity", "protocol", "simulation"], sort=False):
+        told = dict(zip(rows["measure"], rows["value"], strict=True))
+        error, uncertainty = (float(told.get(key, math.nan)) for key in ("E", "u_val"))
+        unit, fitted = rows["unit"].iloc[0], "circular" in str(protocol)
+        own = (*limits, CIRCULAR) if fitted else limits
+        missing = str(told.get("not assessed", "none"))
+        says = f"{model}, {quantity}: E {error:.3g} {unit}, u_val {uncertainty:.3g} {unit}; not assessed: {missing}."
+        yield Evidence("rigour", says, source, own)
+        if math.isfinite(error) and math.isfinite(uncertainty):
+            within = abs(error) <= 2 * uncertainty
+            says = f"{model}, {quantity} ({protocol}): |E| is {abs(error) / uncertainty:.2g} u_val."
+            yield Evidence("agreement", says, source, own if within else (*own, AGAINST))
+        if not fitted:
+            says = f"{model}, {quantity} of each trial by the stiffness of the others: E {error:.3g} {unit}."
+            yield Evidence("unseen", says, source, limits)
+
+
+READERS: Final[Mapping[str, Callable[[ResultFolder], Iterator[Evidence]]]] = {
+    "discovery.json": _of_discovery,
+    "fit.json": _of_fit,
+    "verification.json": _of_verification,
+    "check.json": _of_check,
+    "sweep.json": _of_sweep,
+    "results.json": _of_run,
+}

@@ -1,0 +1,125 @@
+"""Each kind of result answers the questions that it can, and says why an answer is worth less than it seems."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from benchmark.dossier.evidence import AGAINST, CIRCULAR, SYNTHETIC, evidence_of, read_result
+from benchmark.errors import InputError
+from reports import write_json, write_text, write_whole
+
+
+def result(folder: Path, files: dict[str, object]) -> Path:
+    def fill(new: Path) -> None:
+        for name, content in files.items():
+            if isinstance(content, str):
+                write_text(new / name, content)
+            else:
+                write_json(new / name, content)
+
+    write_whole(folder, fill)
+    return folder
+
+
+def answers(folder: Path) -> dict[str, list[tuple[str, tuple[str, ...]]]]:
+    found: dict[str, list[tuple[str, tuple[str, ...]]]] = {}
+    for each in evidence_of(read_result(folder)):
+        found.setdefault(each.question, []).append((each.says, each.limits))
+    return found
+
+
+def test_a_failed_case_speaks_against_the_code(tmp_path) -> None:
+    cases = [{"source": "Hayes 1972", "passed": True}, {"source": "Cook 1974", "passed": False}]
+    folder = result(tmp_path / "v", {"verification.json": {"schema": 1, "cases": cases}})
+    ((says, limits),) = answers(folder)["closed_forms"]
+    assert says.startswith("1 of 2 values")
+    assert limits == (AGAINST,)
+
+
+VALIDATION = """quantity,protocol,simulation,measure,value,unit
+maximum of skin,verification,fem,mesh: u_num,0.004,mm
+maximum of skin,verification,fem,load steps: u_num,0.001,mm
+peak force,fitted to these trials (circular),fem,E,-0.001,N
+peak force,fitted to these trials (circular),fem,u_val,0.004,N
+peak force,fitted to these trials (circular),fem,not assessed,u_num,
+peak force,"prediction, stiffness of the other trials",fem,E,0.09,N
+peak force,"prediction, stiffness of the other trials",fem,u_val,0.01,N
+peak force,"prediction, stiffness of the other trials",fem,not assessed,none,
+"""
+
+
+def run_result(folder: Path, *, synthetic: bool = False) -> Path:
+    layer = {"percent_error_max": 0.2, "equivalent": True}
+    document = {
+        "schema": 1, "name": "skin", "complete": True, "equivalence_margin": 0.02,
+        "models": {"fem": {"name": "FEM", "failure": None}, "wave": {"name": "wave model", "failure": None}},
+        "comparison": {"dermis": layer, "fat": {**layer, "percent_error_max": 0.7}},
+        "trials": {"session": "day", "synthetic": synthetic, "count": 4},
+    }  # fmt: skip
+    return result(folder, {"results.json": document, "tables/validation.csv": VALIDATION})
+
+
+def test_a_run_tells_its_own_error_and_that_of_its_prediction(tmp_path) -> None:
+    found = answers(run_result(tmp_path / "r"))
+    assert found["refinement"] == [("fem: u_num up to 0.004 mm (maximum of skin, mesh).", ())]
+    assert [limits for _, limits in found["agreement"]] == [(CIRCULAR,), (AGAINST,)]
+    assert "9 u_val" in found["agreement"][1][0]
+    assert len(found["unseen"]) == 1
+    assert "0.7 % (fat)" in found["second_model"][0][0]
+
+
+def test_what_comes_of_synthetic_trials_is_marked(tmp_path) -> None:
+    found = answers(run_result(tmp_path / "r", synthetic=True))
+    for question in ("sample_quantity", "same_press", "rigour", "unseen"):
+        assert all(SYNTHETIC in limits for _, limits in found[question])
+
+
+def test_a_parameter_that_is_not_determined_is_told_as_such(tmp_path) -> None:
+    known = {"value": 61.2, "unit": "kPa", "ci95": [58.0, 64.0], "identifiable": True}
+    lost = {"value": 1.0, "unit": "kPa", "ci95": None, "identifiable": False}
+    document = {
+        "schema": 1, "session": {"synthetic": False}, "trials": [1, 2, 3],
+        "parameters": {"fat.youngs_modulus": known, "skin.youngs_modulus": lost},
+    }  # fmt: skip
+    told = answers(result(tmp_path / "f", {"fit.json": document}))["input_uncertainty"]
+    assert told[0] == ("From 3 trials: fat.youngs_modulus 61.2 kPa [58, 64].", ())
+    assert told[1] == ("Not determined by these trials: skin.youngs_modulus.", (AGAINST,))
+
+
+@pytest.mark.parametrize(
+    ("verdict", "limits"), [("named", ()), ("partly_explained", (AGAINST,)), ("cannot_tell", (AGAINST,))]
+)
+def test_a_discovery_that_leaves_something_open_speaks_against_the_model(tmp_path, verdict, limits) -> None:
+    gap = {"force_z": {"closed": 0.93}, "marker_x": {"closed": None}}
+    document = {
+        "schema": 1, "synthetic": False, "verdict": verdict, "statement": "The model lacks relaxation.", "gap": gap,
+        "effects": [{"name": "viscoelastic_relaxation"}], "conditions": ["slow", "fast"], "trials": ["a", "b", "c"],
+        "channels": ["force_z"], "own": [{"zero_N": -0.02, "late_ms": None, "touch_mm": 0.01}],
+    }  # fmt: skip
+    found = answers(result(tmp_path / "d", {"discovery.json": document}))
+    assert found["missing_effect"] == [("The model lacks relaxation.", limits)]
+    assert "force_z 93 %" in found["unseen"][0][0]
+    assert found["condition_uncertainty"][0][0].startswith("Fitted to each of 1 trials: zero of the force up to 0.02 N")
+
+
+def test_a_file_changed_since_is_told(tmp_path) -> None:
+    folder = result(tmp_path / "c", {"check.json": {"schema": 1, "passed": True, "accuracy": [1], "timing": []}})
+    (folder / "check.json").write_text(json.dumps({"schema": 1, "passed": True, "accuracy": [], "timing": []}))
+    ((says, limits),) = answers(folder)["versions"]
+    assert "check.json" in says
+    assert limits == (AGAINST,)
+
+
+def test_what_is_no_result_is_refused_by_name(tmp_path) -> None:
+    with pytest.raises(InputError, match=r"is no result .* verification\.json"):
+        read_result(tmp_path)
+    (tmp_path / "fit.json").write_text("[")
+    with pytest.raises(InputError, match=r"fit\.json cannot be read"):
+        read_result(tmp_path)
+    (tmp_path / "fit.json").write_text('{"schema": 7}')
+    with pytest.raises(InputError, match="schema is 7; allowed: 1"):
+        read_result(tmp_path)
+    (tmp_path / "fit.json").write_text('{"schema": 1}')
+    with pytest.raises(InputError, match="make the result again"):
+        evidence_of(read_result(tmp_path))
