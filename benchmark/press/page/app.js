@@ -9,7 +9,7 @@
   const canvas = get("view"), grid = Wave.grid(SIDE, SIDE, SPACING), P = grid.xs.length, Q = grid.ys.length;
   const rows = grid.ys.slice(), shade = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
   const value = (id) => Number(get(id).value), chosen = (name) => document.querySelector(`input[name="${name}"]:checked`).value;
-  const mm = (metres) => 1e3 * metres;
+  const mm = (metres) => 1e3 * metres, FLAT = new Float64Array(P * Q);
 
   let renderer;
   try { renderer = new Scene.Renderer(canvas); } catch (error) { get("note").textContent = `No drawing here: ${error.message}.`; }
@@ -64,6 +64,7 @@
     state.bench = new Hands.Bench(tissues, bodies.after && chosen("state") === "after" ? "after" : "wave");
     if (hands && !state.replay) state.bench.hands = hands.map((hand) => ({ ...hand, at: 0 }));
     state.traces = [];
+    state.asked = null;
     shownSettings();
   }
 
@@ -148,7 +149,7 @@
       if (now.compared) lines(l, top, now, low, high);
     });
     if (!hole) {
-      state.plate.fill(grid.xs, rows, new Float64Array(size), new Float64Array(size), 0, null, -depth - 0.02, -depth - PLATE);
+      state.plate.fill(grid.xs, rows, FLAT, FLAT, 0, null, -depth - 0.02, -depth - PLATE);
       renderer.draw(state.plate.mesh, Scene.rgb(shade("tool")));
     }
     tools(state.bench.shown, lift * (count - 1));
@@ -212,7 +213,7 @@
     scale(now);
     const two = bench.busy > 1 && state.bench.tissues.fem ? "Finite elements were run for one tool: none of theirs with two." : "";
     const shallow = bench.tissues.published && tool.depth > bench.tissues.published.body.deepest ? "Eq. (8) of the article has no answer deeper than 1 mm." : "";
-    get("note").textContent = state.replay ? "Replay" : bench.refused ? `The tool stays where it was: ${bench.refused}.` : shallow || two;
+    get("note").textContent = state.said ? state.said : state.replay ? "Replay" : bench.refused ? `The tool stays where it was: ${bench.refused}.` : shallow || two;
     if (state.frames.length % 3 === 0) { trace(); law(now); }
     const fast = state.cost, slow = state.specimen.fem;
     if (state.frames.length % 30 === 0 && fast > 0) {
@@ -262,8 +263,9 @@
 
   function trace() {
     const { traces, bench } = state, most = Math.max(0.05, ...traces.flatMap((one) => LINES.map(([name]) => one[name] ?? 0)));
-    const { line } = chart("trace", [bench.time - SECONDS, bench.time], ladder(most), "10 s");
+    const { line, dot } = chart("trace", [bench.time - SECONDS, bench.time], ladder(most), "10 s");
     for (const [name, colour] of LINES) if (bench.tissues[name]) line(traces.map((one) => [one.time, one[name]]), colour, name === "fem" ? 3.2 : 1.6);
+    for (const [at, force] of state.asked?.points ?? []) if (at > bench.time - SECONDS) dot(at, force, "fem");
   }
 
   function law(now) {
@@ -279,7 +281,10 @@
 
   function tick(time) {
     const dt = Math.min((time - state.last) / 1e3, 0.05);
-    if (state.last) state.frames.push(time - state.last);
+    if (state.last) {
+      state.frames.push(time - state.last);
+      renderer?.pace(time - state.last);
+    }
     if (state.frames.length > 1200) state.frames.splice(0, 600);
     state.last = time;
     if (dt > 0 && !state.paused) advance(state.slow ? dt / 5 : dt);
@@ -310,6 +315,7 @@
     canvas.setPointerCapture(event.pointerId);
     if (!inside(at) || event.button) { state.orbit = { id: event.pointerId, x: event.clientX, y: event.clientY }; return; }
     takeOver();
+    state.said = "";
     const near = state.bench.hands.findIndex((hand) => hand.on && hand.stay && Math.hypot(hand.x - at[0], hand.y - at[1]) < Math.max(2e-3, state.bodies.wave.toolRadius));
     const k = near >= 0 ? near : state.bench.free();
     if (k < 0) return;
@@ -423,6 +429,32 @@
       hand.at = depth;
     };
   });
+
+  // ---- the finite elements, asked for the last press as it was made (a served page only)
+  let line = null;
+  function ask() {
+    const { begin, rows, alone } = state.bench.history(state.active, 60), say = (text) => { state.said = text; };
+    if (rows.length < 2) return say("Press first: the finite elements follow the last press.");
+    if (!alone) return say("The finite elements follow one tool alone.");
+    const series = memory(state.specimen.memory), question = { press: data.specimens.indexOf(state.specimen), history: rows };
+    if (!state.specimen.memory.strength.length) Object.assign(question, { strength: series.strength, time_s: series.time_s });
+    const send = () => { say("The finite elements are at work…"); line.send(JSON.stringify(question)); };
+    if (!line || line.readyState > 1) {
+      line = new WebSocket(`ws://${location.host}${location.pathname}fem`);
+      line.addEventListener("open", send);
+      line.addEventListener("close", () => say("The server has ended: the page goes on without it."));
+    } else send();
+    line.onmessage = (event) => {
+      const answer = JSON.parse(event.data);
+      if (answer.error) return say(`The finite elements gave no answer: ${answer.error}`);
+      const trail = state.bench.record.filter((frame) => frame.rows.length), at = (time) => trail.findLast((frame) => frame.time <= time + 1e-9)?.rows[0][4] ?? 0;
+      const most = Math.max(...answer.force_N), apart = Math.max(...answer.time_s.map((time, k) => Math.abs(at(begin + time) - answer.force_N[k])));
+      state.asked = { points: answer.time_s.map((time, k) => [begin + time, answer.force_N[k]]), apart: apart / most, answer };
+      return say(`Finite elements, asked now for this press: ${(answer.wall_s + answer.setup_s).toFixed(2)} s for ${answer.time_s.length} instants; the wave's force is at most ${((100 * apart) / most).toFixed(1)} % of their peak apart.`);
+    };
+    return null;
+  }
+  get("ask")?.addEventListener("click", ask);
 
   // ---- begin
   data.specimens.forEach((one, k) => {

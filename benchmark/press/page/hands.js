@@ -69,6 +69,18 @@ const Hands = (() => {
       while (this.record.length && this.record[0].time < this.time - KEPT) this.record.shift();
     }
 
+    // The last press of a tool, from rest: at most so many rows of [seconds, depth in m].
+    history(k, most) {
+      let end = this.record.length;
+      const row = (frame) => frame.rows.find(([tool]) => tool === k);
+      while (end > 0 && !row(this.record[end - 1])) end--;
+      let start = end;
+      while (start > 0 && row(this.record[start - 1])) start--;
+      const begin = this.record[start] && this.record[start].time - this.record[start].dt, every = Math.max(1, Math.ceil((end - start) / (most - 1)));
+      const kept = this.record.slice(start, end).filter((_, at, all) => at % every === every - 1 || at === all.length - 1);
+      return { begin, rows: kept.map((frame) => [frame.time - begin, row(frame)[3]]), alone: kept.every((frame) => frame.rows.length === 1) };
+    }
+
     // The record as the lines of a CSV file.
     csv() {
       const lines = ["time_s,tool,x_mm,y_mm,depth_mm,force_N"];

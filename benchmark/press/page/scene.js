@@ -206,9 +206,9 @@ const Scene = (() => {
 
   class Renderer {
     constructor(canvas) {
-      const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: true });
+      const gl = canvas.getContext("webgl2", { antialias: !inSoftware(), alpha: true, premultipliedAlpha: true });
       if (!gl) throw new Error("WebGL 2 is not available");
-      this.gl = gl; this.canvas = canvas;
+      this.gl = gl; this.canvas = canvas; this.detail = 1; this.slow = 0;
       const program = (this.program = gl.createProgram());
       for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
         const shader = gl.createShader(kind);
@@ -227,9 +227,19 @@ const Scene = (() => {
     }
 
     resize() {
-      const scale = Math.min(window.devicePixelRatio || 1, 2), { clientWidth, clientHeight } = this.canvas;
+      const scale = Math.min(window.devicePixelRatio || 1, 2) * this.detail, { clientWidth, clientHeight } = this.canvas;
       const width = Math.max(1, Math.round(clientWidth * scale)), height = Math.max(1, Math.round(clientHeight * scale));
       if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
+    }
+
+    // Fewer pixels where frames (ms) come too slowly, more again where there is time.
+    pace(frame) {
+      this.slow += 0.1 * (frame - this.slow);
+      this.waited = (this.waited ?? 0) + 1;
+      if (this.waited < 20) return;
+      const wanted = this.slow > 19 ? this.detail * 0.8 : this.slow < 10 ? this.detail * 1.25 : this.detail;
+      const next = Math.min(Math.max(wanted, 0.45), 1);
+      if (next !== this.detail) { this.detail = next; this.waited = 0; }
     }
 
     clear() {
@@ -255,6 +265,14 @@ const Scene = (() => {
       mesh.draw();
       if (alpha < 1) { gl.disable(gl.BLEND); gl.depthMask(true); }
     }
+  }
+
+  // Whether pictures are made by the processor, where smooth edges cost too much.
+  function inSoftware() {
+    const gl = document.createElement("canvas").getContext("webgl2"), told = gl?.getExtension("WEBGL_debug_renderer_info");
+    const name = told ? String(gl.getParameter(told.UNMASKED_RENDERER_WEBGL)) : "";
+    gl?.getExtension("WEBGL_lose_context")?.loseContext();
+    return /swiftshader|llvmpipe|software/i.test(name);
   }
 
   const rgb = (text) => [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16) / 255);

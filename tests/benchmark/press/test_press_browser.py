@@ -1,11 +1,16 @@
 """The page in headless Chromium: pressed by a pointer, read back, compared with the model in Python."""
 
+import asyncio
 import shutil
+import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
+from benchmark.press.fem_on_demand import FemOnDemand
 from benchmark.press.press_page import render_press_page
+from benchmark.press.press_server import Served, make_server
 from wavemodel.control.pressed_body import radii_of
 
 CHROMIUM = shutil.which("chromium")
@@ -190,3 +195,49 @@ def test_the_published_animation_stands_beside(page):
 def test_it_never_scrolls_sideways(page, width):
     page.set_viewport_size({"width": width, "height": 800})
     assert page.evaluate("document.documentElement.scrollWidth") == width
+
+
+@pytest.fixture
+def server(specimen, page_document):
+    """The page served from a thread of its own; gives its address."""
+    started, loop = threading.Event(), asyncio.new_event_loop()
+    place = {}
+
+    async def start(served):
+        place["server"], place["port"] = make_server(served, 0)
+        started.set()
+
+    def run():
+        with ThreadPoolExecutor(1) as worker:
+            html = render_press_page(page_document, served=True).encode()
+            loop.run_until_complete(start(Served("token", html, FemOnDemand([specimen]).answer, worker)))
+            loop.run_forever()
+            place["server"].stop()
+            loop.run_until_complete(place["server"].close_all_connections())
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    assert started.wait(30)
+    yield f"http://127.0.0.1:{place['port']}/token/"
+    loop.call_soon_threadsafe(loop.stop)
+    thread.join(30)
+    loop.close()
+
+
+def test_a_served_page_asks_the_finite_elements_for_the_press_as_it_was(browser, server):
+    page = browser.new_context(viewport={"width": 900, "height": 700}).new_page()
+    said = []
+    page.on("console", lambda message: said.append(message.text) if message.type == "error" else None)
+    page.goto(server)
+    page.evaluate("press.state.manual = true; document.getElementById('home').click(); press.state.demo = false")
+    hold(page)
+    page.evaluate(STEP, 1.5)
+    page.locator("#ask").dispatch_event("click")
+    for _ in range(200):
+        if page.evaluate("Boolean(press.state.asked)"):
+            break
+        page.wait_for_timeout(50)
+    assert page.evaluate("press.state.asked.apart") < 0.03
+    assert "Finite elements, asked now" in page.evaluate("press.state.said")
+    assert said == []
+    page.context.close()
