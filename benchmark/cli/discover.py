@@ -31,6 +31,14 @@ Bench = Annotated[
     typer.Option("--bench", help="Close the loop on this bench: a rig file, or the shipped rig simulated."),
 ]
 Budget = Annotated[int, typer.Option("--budget", min=1, max=20, help="Most experiments of the loop.")]
+Refit = Annotated[
+    str | None,
+    typer.Option(
+        "--refit",
+        help="Put effects into the FEM and the wave model, refit them there, and predict unseen conditions and tools: "
+        "found (those accepted), or SLUG,SLUG of your choice.",
+    ),
+]
 
 
 def register(app: typer.Typer) -> None:
@@ -45,6 +53,7 @@ def discover(
     specimen: Specimen = None,
     bench: Bench = None,
     budget: Budget = 3,
+    refit: Refit = None,
     out: Out = None,
     settings: Set = None,
     seed: Seed = 0,
@@ -65,7 +74,7 @@ def discover(
 
     console = Console(quiet=quiet)
     request = DiscoverRequest(
-        paths, model, effects, specimen, parse_settings(settings), out, seed, bench, budget, _asked
+        paths, model, effects, specimen, parse_settings(settings), out, seed, bench, budget, _asked, refit
     )
     outcome = carry_out(request, console)
     return show_discovery(outcome, console, as_json=json)

@@ -58,6 +58,8 @@ def show_discovery(outcome: DiscoveryOutcome, console: Console, *, as_json: bool
             f"{outcome.document['name']}: {outcome.document['verdict']}: {outcome.headline}\n"
             f"  report: {outcome.folder / 'report.html'}"
         )
+        for line in outcome.lines:
+            print(f"  {line}")
     return 0
 
 

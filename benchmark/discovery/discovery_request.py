@@ -10,17 +10,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from benchmark.discovery.base.setup_priors import table_keys
+from benchmark.discovery.base.setup_priors import table_keys, told_priors
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence.pool import forget
+from benchmark.discovery.evidence.told_setup import on_told
 from benchmark.discovery.from_run import at_small_strain, is_run, read_run, repair_run
 from benchmark.discovery.planning.bench_loop import Asked, BenchWork, Loop, load_bench, session_copy, unattended
 from benchmark.discovery.planning.proposing import Allowed, propose
+from benchmark.discovery.refitting.refit import picked, refits
+from benchmark.discovery.refitting.refit_result import ModelRefit
 from benchmark.discovery.report.discovery_files import DiscoveryOutcome, write_discovery
-from benchmark.discovery.report.discovery_record import DiscoveryRecord, NextExperiment, Round
+from benchmark.discovery.report.discovery_record import NAMING, DiscoveryRecord, NextExperiment, Round
 from benchmark.discovery.workflow import Findings, findings
 from benchmark.errors import InputError
 from benchmark.files import Session, load_session
+from benchmark.files.schema import nearest
 from benchmark.files.shipped import session_folder
 from benchmark.physics import SLUGS, Effect, catalogue, load_effects
 from benchmark.response.fem_table import fem_or_wave_table, fem_table
@@ -43,6 +47,7 @@ class DiscoverRequest:
     bench: str | None = None
     budget: int = 3
     asked: Asked = unattended
+    refit: str | None = None
 
 
 def carry_out(request: DiscoverRequest, listener: Listener) -> DiscoveryOutcome:
@@ -107,6 +112,8 @@ def _of_runs(request: DiscoverRequest, effects: tuple[Effect, ...], listener: Li
     return repair_run(runs[0], runs[1] if len(runs) > 1 else None, effects, request.seed, listener)
 
 
+FOUND = "found"
+"""Of `--refit`: the effects that the discovery accepted."""
 STAGES = {
     "prepare": "read and align the trials",
     "detect": "is there a disagreement",
@@ -151,6 +158,7 @@ def _answered(
         rounds = tuple(loop.rounds)
         session, said = _loaded(request, grown, listener)
         proposal = loop.propose(found, loop.bench.allowed({each.choice for each in rounds}))
+    refitted = _refitted(session, request, found, effects, listener)
     warnings = tuple(dict.fromkeys((*session.warnings, *said, *found.discovery.warnings)))
     return DiscoveryRecord(
         name=session.name,
@@ -167,7 +175,34 @@ def _answered(
         store=store,
         rounds=rounds,
         grown=grown,
+        refits=refitted,
     )
+
+
+def _refitted(
+    session: Session, request: DiscoverRequest, found: Findings, effects: Sequence[Effect], listener: Listener
+) -> tuple[ModelRefit, ...]:
+    """The accepted effects, or those that a person picks, in the FEM and the wave model; nothing where not asked for.
+
+    Raises
+    ------
+    InputError
+        A slug that is no effect.
+    """
+    if request.refit is None or found.chosen is None:
+        return ()
+    if request.refit == FOUND:
+        named = bool(found.discovery.effects) and found.discovery.verdict in NAMING
+        listener.say(f"{session.name}: " + ("refitting in FEM and wave" if named else "no effect to refit was found"))
+        return refits(session, found.chosen) if named else ()
+    known = {effect.slug: effect for effect in (*effects, *found.entries)}
+    slugs = [slug.strip() for slug in request.refit.split(",") if slug.strip()]
+    for slug in slugs:
+        if slug not in known:
+            raise InputError(f"--refit {request.refit}: {slug!r} is no effect; {nearest(slug, sorted(known))}")
+    listener.say(f"{session.name}: refitting {', '.join(slugs)} in FEM and wave")
+    base = on_told(found.calibrated.base, told_priors(session))
+    return refits(session, picked(base, [known[slug] for slug in slugs]))
 
 
 def _loaded(request: DiscoverRequest, path: Path, listener: Listener) -> tuple[Session, tuple[str, ...]]:

@@ -81,12 +81,15 @@ class Findings:
         The chosen fit, its look-alikes and their fits.
     entries : tuple of Effect
         Of the session's set-up, which were candidates beside the catalogue.
+    chosen : Fit or None
+        The answer fitted to all trials.
     """
 
     discovery: Discovery
     calibrated: Calibrated
     selection: Selection
     entries: tuple[Effect, ...] = ()
+    chosen: Fit | None = None
 
 
 def discover(
@@ -145,7 +148,8 @@ def findings(
         base, selection, before = _answered(calibrated.base, told_priors(session), known, settings, work)
     listener("verify", 0, 1, "")
     answer = _verified(base, selection, before, settings)
-    return Findings(_discovery(session, calibrated, answer, known, settings, began), calibrated, selection, entries)
+    discovery = _discovery(session, calibrated, answer, known, settings, began)
+    return Findings(discovery, calibrated, selection, entries, answer.chosen)
 
 
 def _answered(

@@ -88,8 +88,8 @@ def _fem_table(
 
     curve = nearest_curve(tool, ramp_of)
     if told and told[0].depth[-1] >= depth:
-        table = _table(told[0], np.linspace(0.0, float(told[0].depth[-1]), POINTS))
-        return _with_choices(session, setup, table, [key for key in keys if key in CHOICES])
+        table = ramp_table(told[0], np.linspace(0.0, float(told[0].depth[-1]), POINTS))
+        return with_choices(session, setup, table, [key for key in keys if key in CHOICES])
     note = curve.remark(MARGIN * depth) or "the finite elements stop early for a slightly changed set-up"
     if curve.reach < depth:
         note = f"{note}; beyond {1e3 * curve.reach:.3g} mm the base goes on like the wave model"
@@ -105,7 +105,7 @@ def _has(setup: tuple[Tissue, Tool, Support], key: str) -> bool:
     return True
 
 
-def _with_choices(
+def with_choices(
     session: Session, setup: tuple[Tissue, Tool, Support], table: ElasticTable, keys: Sequence[str]
 ) -> ElasticTable:
     """The table with the way to each other choice, where the solver follows that as deep."""
@@ -152,7 +152,7 @@ def _wave(tissue: Tissue, tool: Tool, support: Support, depth: float, keys: Sequ
         )
 
 
-def _table(ramp: DifferentiatedRamp, grid: Array) -> ElasticTable:
+def ramp_table(ramp: DifferentiatedRamp, grid: Array) -> ElasticTable:
     """The table on a grid of depths that the ramp reached."""
     force = np.asarray(CubicSpline(ramp.depth, ramp.force)(grid))
     face = ramp.face

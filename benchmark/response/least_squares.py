@@ -54,6 +54,7 @@ EXACT = Search(most=200, gain=0.0, share=1e-13, damping=1.0)
 
 
 Model = TypeVar("Model", bound=TrialsModel)
+Fitted = TypeVar("Fitted", bound=TrialsModel, covariant=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +78,7 @@ class Blocks:
 
 
 @dataclass(frozen=True, eq=False)
-class TrialsFit(Generic[Model]):
+class TrialsFit(Generic[Fitted]):
     """A model fitted.
 
     Attributes
@@ -98,7 +99,7 @@ class TrialsFit(Generic[Model]):
         Whether it ended before its steps did.
     """
 
-    model: Model
+    model: Fitted
     vector: Array
     nuisance: Array
     objective: float

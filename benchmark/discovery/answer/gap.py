@@ -12,7 +12,7 @@ import numpy as np
 from benchmark.discovery import criteria
 from benchmark.discovery.base.calibration import pure_errors
 from benchmark.discovery.base.effect_model import EffectModel, Fit, White, settled
-from benchmark.discovery.base.trials_problem import followed, only, replicates
+from benchmark.discovery.base.trials_problem import TrialsProblem, followed, only, replicates
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.discovery_result import Array, ChannelGap, Trace
 from benchmark.discovery.evidence.gains import conditions
@@ -135,9 +135,14 @@ def _draw(groups: Array, generator: np.random.Generator) -> Array:
 
 
 def _squares(base: Fit, rows: list[Array]) -> Array:
-    """(R, C) mean squares of each trial, rows weighted by their samples."""
+    """(R, C) mean squares of each trial."""
+    return mean_squares(base.model.problem, rows)
+
+
+def mean_squares(problem: TrialsProblem, rows: list[Array]) -> Array:
+    """(R, C) mean squares of each trial's rows (n, C), weighted by their samples."""
     out = []
-    for trial, residual in zip(base.model.problem.trials, rows, strict=True):
+    for trial, residual in zip(problem.trials, rows, strict=True):
         weight = trial.count
         total = np.maximum(weight.sum(axis=0), 1e-12)
         out.append(np.sum(weight * residual**2, axis=0) / total)

@@ -23,6 +23,7 @@ from benchmark.discovery.discovery_result import (
 from benchmark.discovery.own_values import SetupEstimate, TrialValues
 from benchmark.discovery.report.discovery_page import discovery_page
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, LayerGap, NextExperiment, gap_in_units
+from benchmark.discovery.report.refit_section import refit_line
 from benchmark.files.units import shown
 from benchmark.model_file import model_toml
 from benchmark.runs.output.document import describe_environment
@@ -67,6 +68,8 @@ def discovery_document(record: DiscoveryRecord) -> dict[str, Any]:
         "seed": record.seed,
         "seconds": found.seconds,
     }
+    if record.refits:
+        document["refitted"] = {refit.model: refit.document() for refit in record.refits}
     if record.layers:
         document["layers"] = {layer.layer: _layer(layer) for layer in record.layers}
     if record.proposal is not None:
@@ -211,6 +214,8 @@ COLUMNS = {
     "gap.csv": ("channel", "unit", "rmse_before", "rmse_after", "noise_floor", "closed", "ci95_low", "ci95_high",
                 "held_out"),
     "parameters.csv": ("part", "name", "value", "unit", "ci95_low", "ci95_high"),
+    "refitted.csv": ("model", "held_out", "conditions", "channel", "unit", "rmse_before", "rmse_after", "noise_floor",
+                     "before_in_noise", "after_in_noise", "explained"),
     "trials.csv": ("trial", "gain", "zero_N", "late_ms", "touch_mm", "at_bound"),
     "layers.csv": ("layer", "rmse_before_mm", "rmse_after_mm", "closed", "percent_at_peak_before",
                    "percent_at_peak_after"),
@@ -230,6 +235,12 @@ def discovery_tables(document: Mapping[str, Any]) -> dict[str, Columns]:
         "gap.csv": [{"channel": channel, **gap} for channel, gap in document["gap"].items()],
         "parameters.csv": parameters,
     }
+    if "refitted" in document:
+        rows["refitted.csv"] = [
+            {"model": model, **row}
+            for model, refit in document["refitted"].items()
+            for row in refit.get("predictions", ())
+        ]
     if document["own"]:
         rows["trials.csv"] = document["own"]
     if "layers" in document:
@@ -256,12 +267,13 @@ def _columns(rows: Iterable[Mapping[str, Any]], names: Sequence[str]) -> Columns
 
 @dataclass(frozen=True)
 class DiscoveryOutcome:
-    """A finished discovery on disk: its folder, `discovery.json`'s content, its headline and its warnings."""
+    """A finished discovery on disk: its folder, `discovery.json`'s content, headline, warnings, and a line a refit."""
 
     folder: Path
     document: dict[str, Any]
     headline: str
     warnings: tuple[str, ...]
+    lines: tuple[str, ...] = ()
 
 
 def write_discovery(record: DiscoveryRecord, folder: Path) -> DiscoveryOutcome:
@@ -290,4 +302,5 @@ def write_discovery(record: DiscoveryRecord, folder: Path) -> DiscoveryOutcome:
         write_page(new / "report.html", page)
 
     write_whole(folder, fill)
-    return DiscoveryOutcome(folder, document, page.verdict.headline, record.found.warnings)
+    lines = tuple(refit_line(refit) for refit in record.refits)
+    return DiscoveryOutcome(folder, document, page.verdict.headline, record.found.warnings, lines)

@@ -20,6 +20,7 @@ from benchmark.discovery.report.effect_sections import (
     next_section,
 )
 from benchmark.discovery.report.own_sections import own_section
+from benchmark.discovery.report.refit_section import refit_section
 from benchmark.discovery.report.story import story
 from benchmark.discovery.report.words import channel_name, sized
 from reports import Download, Fact, Facts, Notice, Page, Section, Verdict
@@ -30,6 +31,7 @@ DESCRIPTIONS = {
     "contrasts.csv": "one question at a time",
     "candidates.csv": "every candidate and its evidence",
     "gap.csv": "the gap before and after",
+    "refitted.csv": "the effects in the FEM and the wave model, on unseen trials",
     "trials.csv": "what each trial has of its own",
     "parameters.csv": "base and effects with intervals",
     "layers.csv": "the gap of each layer",
@@ -51,6 +53,7 @@ def discovery_page(record: DiscoveryRecord, environment: Mapping[str, Any], tabl
     sections: list[Section] = [comparison_section(record), where_section(record), candidates_section(record)]
     sections += [effects_section(record)] if record.found.effects else []
     sections += [gap_section(record)] if record.found.gap or record.layers else []
+    sections += [refit_section(record)] if record.refits else []
     sections += [loop_section(record)] if record.grown is not None else []
     sections += [remains_section(record), next_section(record)]
     sections += [own_section(record)] if record.found.own else []

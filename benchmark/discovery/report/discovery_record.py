@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from benchmark.discovery.discovery_result import Array, ChannelGap, Discovery, Estimate, channel_unit
+from benchmark.discovery.refitting.refit_result import ModelRefit
 from benchmark.model_file import AddedEffect, RepairedModel, Value
 from benchmark.physics.description import EffectDescription
 from benchmark.physics.setup_entry import setup_key
@@ -150,6 +151,8 @@ class DiscoveryRecord:
         Of the closed loop; empty without a bench.
     grown : Path or None
         The copy of the session to which the loop added trials.
+    refits : tuple of ModelRefit
+        The effects in the FEM and the wave model, where that was asked for.
     """
 
     name: str
@@ -168,6 +171,7 @@ class DiscoveryRecord:
     store: Path | None = None
     rounds: tuple[Round, ...] = ()
     grown: Path | None = None
+    refits: tuple[ModelRefit, ...] = ()
 
     @property
     def named(self) -> bool:
