@@ -1,11 +1,13 @@
 """A session's fit with the effects of a model file: what they add to the elastic force is taken off before the fit.
 
 The elastic fit gives stiffness, onset and zero; with these the effects' share of each row follows, and is taken off
-the measured force; then the fit is done again. A few rounds settle it.
+the measured force; then the fit is done again. A few rounds settle it. The stiffness moves with the effects'
+parameters, whose intervals are part of its own.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -13,6 +15,7 @@ import numpy as np
 
 from benchmark.files import Session
 from benchmark.identification import FittingError, SessionFit, TrialData, fit_session
+from benchmark.identification.fitted_parameters import fitted_parameters
 from benchmark.model_file import RepairedModel
 from benchmark.models import Array, UncoveredError
 from benchmark.models.scenario_effects import open_radius, specimen_layers
@@ -55,20 +58,69 @@ def fit_with_effects(session: Session, trials: Sequence[TrialData], repair: Repa
     FittingError
         The trials cannot be fitted, or the effects do not cover them.
     """
-    effects = tuple(added for added in effects_of(repair) if not held_by_finite_strain(added[0], repair))
-    fit = fit_session(trials, session.specimen.layers)
-    reduced, added, settled = tuple(trials), {trial.key: np.zeros(trial.rows) for trial in trials}, False
+    made = _settled(session, trials, effects_of(repair), repair, fit_session(trials, session.specimen.layers))
+    moves = []
+    for slug, name, half in _uncertain(repair):
+        moved = [_moved(each, slug, name, half) for each in effects_of(repair)]
+        other = _settled(session, trials, moved, repair, made.fit)
+        moves.append(math.log(other.fit.stiffness_factor / made.fit.stiffness_factor))
+    return replace(made, fit=_widened(made.fit, session, moves))
+
+
+def _settled(
+    session: Session, trials: Sequence[TrialData], added: Sequence[Added], repair: RepairedModel, fit: SessionFit
+) -> FitWithEffects:
+    """Rounds of fitting what is left after the effects, from a fit without or near."""
+    effects = tuple(each for each in added if not held_by_finite_strain(each[0], repair))
+    reduced, shares, settled = tuple(trials), {trial.key: np.zeros(trial.rows) for trial in trials}, False
     for _ in range(ROUNDS):
         before = fit.stiffness_factor
-        added = {trial.key: _share(session, trial, fit, effects) for trial in trials if _fitted(trial, fit)}
+        shares = {trial.key: _share(session, trial, fit, effects) for trial in trials if _fitted(trial, fit)}
         reduced = tuple(
-            replace(trial, force=trial.force - added.get(trial.key, np.zeros(trial.rows))) for trial in trials
+            replace(trial, force=trial.force - shares.get(trial.key, np.zeros(trial.rows))) for trial in trials
         )
         fit = fit_session(reduced, session.specimen.layers)
         if abs(fit.stiffness_factor - before) <= SETTLED * before:
             settled = True
             break
-    return FitWithEffects(fit, reduced, added, settled)
+    return FitWithEffects(fit, reduced, shares, settled)
+
+
+def _uncertain(repair: RepairedModel) -> list[tuple[str, str, float]]:
+    """Effect, parameter and half width of its interval, where the model file has one."""
+    return [
+        (effect.slug, name, 0.5 * (value.ci95[1] - value.ci95[0]))
+        for effect in repair.effects
+        for name, value in effect.parameters.items()
+        if value.ci95 is not None and value.ci95[1] > value.ci95[0]
+    ]
+
+
+def _moved(added: Added, slug: str, name: str, half: float) -> Added:
+    """An effect with a parameter larger by so much, within what it allows; another effect as it is."""
+    effect, values = added
+    if effect.slug != slug:
+        return added
+    parameter = next(each for each in effect.description.parameters if each.name == name)
+    return effect, {**values, name: min(max(values[name] + half, parameter.low), parameter.high)}
+
+
+def _widened(fit: SessionFit, session: Session, moves: Sequence[float]) -> SessionFit:
+    """A fit whose stiffness is as uncertain as the effects' parameters make it beside the trials' scatter.
+
+    `moves` of its logarithm, one for the half width of each parameter's interval, add up as if parameters were
+    independent, since a model file has no correlations.
+    """
+    pooled = fit.stiffness
+    if not any(moves):
+        return fit
+    more = math.fsum(move**2 for move in moves)
+    low, high = (
+        pooled.value * math.exp(sign * math.sqrt(math.log(end / pooled.value) ** 2 + more))
+        for sign, end in ((-1.0, pooled.ci95_low), (1.0, pooled.ci95_high))
+    )
+    wide = replace(pooled, ci95_low=low, ci95_high=high, method=f"{pooled.method}; with the intervals of the effects")
+    return replace(fit, stiffness=wide, parameters=fitted_parameters(wide, fit.trials, session.specimen.layers))
 
 
 def _fitted(trial: TrialData, fit: SessionFit) -> bool:

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -27,15 +28,31 @@ def _trial(number: int) -> TrialData:
     return TrialData(f"t{number}", "a", time, depth, force + rng.normal(0.0, 5e-3, time.size), CURVE)
 
 
-def test_the_effect_no_longer_softens_the_fit() -> None:
-    trials = tuple(_trial(number) for number in range(4))
-    specimen = load_tissue("ecoflex_00_30")
+def _session(trials: tuple[TrialData, ...]) -> SimpleNamespace:
     rig = {"tool": SimpleNamespace(radius=5e-3, contact="rigid_bonded"), "support": SimpleNamespace(kind="bonded")}
     measured = [SimpleNamespace(name=t.name, condition=t.condition, **rig) for t in trials]
-    session = SimpleNamespace(specimen=specimen, trials=measured)
-    plain = fit_session(trials, specimen.layers)
+    return SimpleNamespace(specimen=load_tissue("ecoflex_00_30"), trials=measured)
+
+
+def test_the_effect_no_longer_softens_the_fit() -> None:
+    trials = tuple(_trial(number) for number in range(4))
+    session = _session(trials)
+    plain = fit_session(trials, session.specimen.layers)
     repaired = fit_with_effects(session, trials, MODEL)
     assert plain.stiffness_factor < 0.95 * TRUE
     assert repaired.settled
     assert repaired.fit.stiffness_factor == pytest.approx(TRUE, rel=0.03)
     assert repaired.added["a", "t0"].min() < -0.3
+
+
+def test_the_stiffness_is_no_surer_than_the_effect() -> None:
+    trials = tuple(_trial(number) for number in range(4))
+    values = {"g_1": Value(0.3, "", (0.2, 0.4)), "tau_1": Value(2.0, "s")}
+    unsure = replace(MODEL, effects=(replace(RELAXATION, parameters=values),))
+    sure, wide = (fit_with_effects(_session(trials), trials, each).fit for each in (MODEL, unsure))
+    stronger = replace(MODEL, effects=(replace(RELAXATION, parameters={**values, "g_1": Value(0.4, "")}),))
+    moved = fit_with_effects(_session(trials), trials, stronger).fit.stiffness_factor / sure.stiffness_factor
+    assert wide.stiffness_factor == sure.stiffness_factor
+    assert wide.stiffness.ci95_high / sure.stiffness_factor == pytest.approx(moved, rel=0.02)
+    assert wide.stiffness.ci95_low < wide.stiffness_factor**2 / moved * 1.02
+    assert wide.parameters[0].ci95_high == wide.stiffness.ci95_high
