@@ -68,13 +68,19 @@ def discovery_document(record: DiscoveryRecord) -> dict[str, Any]:
         "seed": record.seed,
         "seconds": found.seconds,
     }
+    return {**document, **_where_there_is(record)}
+
+
+def _where_there_is(record: DiscoveryRecord) -> dict[str, Any]:
+    """What not every discovery has."""
+    more: dict[str, Any] = {}
     if record.refits:
-        document["refitted"] = {refit.model: refit.document() for refit in record.refits}
+        more["refitted"] = {refit.model: refit.document() for refit in record.refits}
     if record.layers:
-        document["layers"] = {layer.layer: _layer(layer) for layer in record.layers}
+        more["layers"] = {layer.layer: _layer(layer) for layer in record.layers}
     if record.proposal is not None:
-        document["next_experiment"] = _proposal(record.proposal)
-    return document
+        more["next_experiment"] = _proposal(record.proposal)
+    return more
 
 
 def _effect(effect: NamedEffect) -> dict[str, Any]:
