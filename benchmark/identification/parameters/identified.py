@@ -24,7 +24,7 @@ from benchmark.identification.parameters.identifiability import (
     information,
 )
 from benchmark.identification.parameters.layer_fit import LayerFit
-from benchmark.identification.parameters.profile_likelihood import KNOWN, Profile, profile
+from benchmark.identification.parameters.profile_likelihood import KNOWN, Profile, verified_profiles
 
 NOT_DETERMINED = "not determined"
 
@@ -273,5 +273,5 @@ def identify(
         one.key if one.specimen is None or len(specimens) < 2 else f"{one.key} [{specimens[one.specimen]}]"
         for one in parameters
     )
-    profiles = tuple(profile(found, k, others) for k in found.problem.free)
+    found, others, profiles = verified_profiles(found, others)
     return Identified(found, names, profiles, tuple(before), held_out(found, groups), tuple(specimens), tuple(others))

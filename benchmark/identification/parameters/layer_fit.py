@@ -12,19 +12,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
+from numpy.typing import NDArray
 
 from benchmark.errors import SolverError
 from benchmark.identification.parameters.free_parameters import (
+    COMMON,
     RELAXATION,
     SHARE,
     Parameter,
     start_vector,
 )
-from benchmark.identification.parameters.layer_model import GAIN, Fading, FitTrial, LayerModel
+from benchmark.identification.parameters.layer_model import Fading, FitTrial, ForceTable, LayerModel
+from benchmark.identification.parameters.press_atlas import PressAtlas
 from benchmark.identification.parameters.press_surrogate import Forward, Press, PressSurrogate, StopsError, surrogate
+from benchmark.identification.parameters.trial_noise import renoised
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import Search, TrialsFit, least_squares
-from benchmark.response.noise import fit_memory, scales, whitener
+from benchmark.response.noise import whitener
 
 MODEL_TRUST = 0.005
 """Standard deviation of the model's own error in a press, in size and in slope over depth, as shares of the force.
@@ -35,7 +39,6 @@ in shape between meshes of another code, three layers under sharp tools; our own
 FIRST_NOISE, FIRST_MEMORY = 0.01, 0.6
 USUAL_SCATTER = 0.015
 """Standard deviation of trials' gains to begin with, and where there are too few trials to tell it."""
-LEAST_SCATTER = 1e-3
 WEAK = 2.0
 """Standard deviation of a free parameter's logarithm round its start (sevenfold): it stops what no data hold."""
 FARTHEST = 0.7
@@ -169,16 +172,15 @@ def begun(problem: FitProblem, touches: Array, zeros: Array) -> LayerFit:
     return LayerFit(problem, fit, FIRST_MEMORY, 0, np.inf)
 
 
-def restarted(found: LayerFit, vector: Array) -> LayerFit:
-    """A fit to be begun again at other coordinates, within their bounds; raises SolverError."""
-    problem = found.problem
-    low, high = np.array([one.limits for one in problem.parameters]).T
-    count = low.size
-    wanted = np.concatenate([np.clip(vector[:count], low, high), np.zeros(vector.size - count)])
-    pressed, reached = _pressed_anew(problem, wanted, found.vector)
-    model = _renewed(problem, found.model, pressed, reached)
-    fit = least_squares(model, reached, found.fit.nuisance, search=LOOKED_UP)
-    return LayerFit(problem, fit, found.memory, 0, np.inf)
+def knowing(found: LayerFit, tables: Sequence[ForceTable]) -> LayerFit:
+    """The fit on other tables, first order round its own presses."""
+    model = replace(found.model, surrogates=tuple(map(_round, found.model.surrogates, tables)))
+    return replace(found, fit=least_squares(model, found.vector, found.fit.nuisance, search=SEARCH))
+
+
+def _round(own: ForceTable, table: ForceTable) -> ForceTable:
+    """A table whose newest press is that of another one."""
+    return table.with_press(own.newest) if isinstance(own, PressAtlas) and isinstance(table, PressAtlas) else table
 
 
 def fit_layers(start: LayerFit, say: Say = lambda _: None, rounds: int = MOST_ROUNDS) -> LayerFit:
@@ -194,18 +196,18 @@ def fit_layers(start: LayerFit, say: Say = lambda _: None, rounds: int = MOST_RO
         At most; with none the trials are fitted on the surrogates of the start.
     """
     problem, model, nuisance = start.problem, start.model, start.fit.nuisance
-    vector, disagreement, done = start.vector, np.inf, 0
+    vector, apart, done = start.vector, np.inf, 0
     for done in range(1, rounds + 1):
         model, fit, memory = _fitted(problem, model, vector, nuisance)
         pressed, vector = _pressed_anew(problem, fit.vector, vector)
-        disagreement = _disagreement(model.surrogates, pressed, vector)
-        say(f"round {done}: model and surrogate differ by {100 * disagreement:.2g} % of the force")
+        apart = disagreement(model.surrogates, pressed, vector)
+        say(f"round {done}: model and surrogate differ by {100 * apart:.2g} % of the force")
         stopped = _at_edge(problem, model, fit.vector)
         model, nuisance = _renewed(problem, model, pressed, vector), fit.nuisance
-        if disagreement <= AGREES and not stopped:
+        if apart <= AGREES and not stopped:
             break
     model, fit, memory = _fitted(problem, model, vector, nuisance)
-    return LayerFit(problem, fit, memory, done, disagreement)
+    return LayerFit(problem, fit, memory, done, apart)
 
 
 def _followed(problem: FitProblem, start: Array) -> tuple[FitProblem, tuple[PressSurrogate, ...]]:
@@ -240,9 +242,17 @@ def _first_model(problem: FitProblem, surrogates: tuple[PressSurrogate, ...], st
     white = tuple(whitener(one.count, FIRST_MEMORY) for one in problem.trials)
     limits = _limits(problem, start)
     fading = _fading(problem)
+    atlases = tuple(PressAtlas((one,), _curved(problem, k)) for k, one in enumerate(surrogates))
     return LayerModel(
-        surrogates, problem.trials, fading, limits, mean, precision, USUAL_SCATTER, white, np.maximum(noise, 1e-9)
+        atlases, problem.trials, fading, limits, mean, precision, USUAL_SCATTER, white, np.maximum(noise, 1e-9)
     )
+
+
+def _curved(problem: FitProblem, number: int) -> NDArray[np.int64]:
+    """Coordinates in which a press' log force is no straight line."""
+    press = problem.presses[number]
+    chosen = (k for k, one in enumerate(problem.parameters) if press.has(one) and not one.fading and one.key != COMMON)
+    return np.array(list(chosen), dtype=np.int64)
 
 
 def press_all(problem: FitProblem, vector: Array) -> tuple[PressSurrogate, ...]:
@@ -301,30 +311,9 @@ def _fitted(
     fit = least_squares(model, vector, nuisance, search=SEARCH)
     memory = 0.0
     for _ in range(3):
-        model, memory = _with_noise(problem, fit)
+        model, memory = renoised(fit, problem.freedom)
         fit = least_squares(model, fit.vector, fit.nuisance, search=SEARCH)
     return model, fit, memory
-
-
-def _with_noise(problem: FitProblem, fit: TrialsFit[LayerModel]) -> tuple[LayerModel, float]:
-    """The model with noise and scatter of gains estimated from what a fit leaves."""
-    model = fit.model
-    predicted = model.predicted(fit.vector, fit.nuisance)
-    errors = [one.data.force - force for one, force in zip(problem.trials, predicted, strict=True)]
-    counts = [one.count for one in problem.trials]
-    memory = fit_memory(errors, counts)
-    white = tuple(whitener(count, memory) for count in counts)
-    noise = np.maximum(scales(errors, counts, memory), 1e-9)
-    scatter = model.gain_deviation if problem.freedom < 1 else _scatter(problem, fit)
-    return replace(model, white=white, noise=noise, gain_deviation=scatter), memory
-
-
-def _scatter(problem: FitProblem, fit: TrialsFit[LayerModel]) -> float:
-    """Standard deviation of the trials' gains: a step of expectation and maximisation, with the trials' freedom."""
-    weight = np.diag(fit.model.trial_precision)
-    left = [np.linalg.pinv(n.T @ n + weight)[GAIN, GAIN] for n in fit.columns.nuisance]
-    total = float(np.sum(fit.nuisance[:, GAIN] ** 2) + np.sum(left))
-    return max(float(np.sqrt(total / problem.freedom)), LEAST_SCATTER)
 
 
 def _pressed_anew(problem: FitProblem, vector: Array, before: Array) -> tuple[tuple[PressSurrogate, ...], Array]:
@@ -337,8 +326,8 @@ def _pressed_anew(problem: FitProblem, vector: Array, before: Array) -> tuple[tu
     return press_all(problem, before), before
 
 
-def _disagreement(old: Sequence[PressSurrogate], new: Sequence[PressSurrogate], vector: Array) -> float:
-    """Largest difference of the force that the old surrogates foretold and the new one, as a share."""
+def disagreement(old: Sequence[ForceTable], new: Sequence[PressSurrogate], vector: Array) -> float:
+    """Largest difference of the force that the old tables foretold and the new one, as a share."""
     deep = slice(old[0].depth.size // 8, None)
     count = new[0].at.size
     own = np.where(np.arange(count) < count - 2 * len(new), vector, 0.0)
@@ -358,4 +347,10 @@ def _at_edge(problem: FitProblem, model: LayerModel, vector: Array) -> bool:
 
 
 def _renewed(problem: FitProblem, model: LayerModel, pressed: tuple[PressSurrogate, ...], vector: Array) -> LayerModel:
-    return replace(model, surrogates=pressed, limits=_limits(problem, vector))
+    return replace(model, surrogates=joined(model.surrogates, pressed), limits=_limits(problem, vector))
+
+
+def joined(tables: Sequence[ForceTable], pressed: Sequence[PressSurrogate]) -> tuple[ForceTable, ...]:
+    """Tables with one more press each."""
+    pairs = zip(tables, pressed, strict=True)
+    return tuple(one.with_press(new) if isinstance(one, PressAtlas) else new for one, new in pairs)

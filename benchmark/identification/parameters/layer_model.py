@@ -8,13 +8,13 @@ constant. That is exact at once and at last, and between them as far as the forc
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
-from benchmark.identification.parameters.press_surrogate import PressSurrogate
 from benchmark.identification.sheet_model import Relaxation, relaxed
 from benchmark.identification.trial_data import TrialData, reduced, rows_of
 from benchmark.identification.trial_features import ContactRange
@@ -29,6 +29,32 @@ MM = 1e3
 TOUCH_STEP, COORDINATE_STEP = 1e-3, 1e-4
 """Steps of differences: mm, and of a time constant's logarithm."""
 MOST_ROWS = 250
+
+
+class ForceTable(Protocol):
+    """The elastic force of one press at any coordinates (p,), on a grid of depths (k,)."""
+
+    @property
+    def depth(self) -> Array:
+        """(k,) m, even, from 0."""
+        ...
+
+    @property
+    def layers(self) -> Mapping[str, Array]:
+        """Derivatives (k,) of the force's logarithm by each relaxing layer's stiffness."""
+        ...
+
+    def force_at(self, vector: Array) -> Array:
+        """(k,) N."""
+        ...
+
+    def by_at(self, vector: Array) -> Array:
+        """(p, k) derivatives of the force's logarithm by the coordinates."""
+        ...
+
+    def curve(self, grid: Array, depth: Array) -> Array:
+        """(n,) of a quantity on the grid at depths (n,), m."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,8 +108,8 @@ class LayerModel:
 
     Attributes
     ----------
-    surrogates : tuple of PressSurrogate
-        One a press; `by` has a row for each coordinate.
+    surrogates : tuple of ForceTable
+        One a press.
     trials : tuple of FitTrial
     fading : tuple of Fading
     limits : (p,) and (p,) array
@@ -98,7 +124,7 @@ class LayerModel:
         Standard deviation of a measured row, N.
     """
 
-    surrogates: tuple[PressSurrogate, ...]
+    surrogates: tuple[ForceTable, ...]
     trials: tuple[FitTrial, ...]
     fading: tuple[Fading, ...]
     limits: tuple[Array, Array]
@@ -140,7 +166,8 @@ class LayerModel:
     def columns(self, at: TrialsEvaluation, warm: TrialColumns | None = None) -> TrialColumns:  # noqa: ARG002
         """Derivatives of all trials."""
         grids = [one.force_at(at.vector) for one in self.surrogates]
-        vector = [self._vector_columns(k, at, grids) for k in range(len(self.trials))]
+        shares = [one.by_at(at.vector) for one in self.surrogates]
+        vector = [self._vector_columns(k, at, grids, shares) for k in range(len(self.trials))]
         return TrialColumns(vector, self.nuisance_columns(at))
 
     def nuisance_columns(self, at: TrialsEvaluation) -> list[Array]:
@@ -200,16 +227,18 @@ class LayerModel:
         table = self.surrogates[trial.press]
         return np.asarray(np.interp(depth, table.depth, table.layers[one.layer]))
 
-    def _vector_columns(self, k: int, at: TrialsEvaluation, grids: Sequence[Array]) -> Array:
+    def _vector_columns(self, k: int, at: TrialsEvaluation, grids: Sequence[Array], shares: Sequence[Array]) -> Array:
         """(n, p) white derivatives of one trial's force by the coordinates."""
         trial, own, vector = self.trials[k], at.nuisance[k], at.vector
-        table, grid = self.surrogates[trial.press], grids[trial.press]
+        table, grid, by = self.surrogates[trial.press], grids[trial.press], shares[trial.press]
         depth, gain = trial.data.depth - own[TOUCH] / MM, np.exp(own[GAIN])
         out = np.zeros((trial.data.rows, vector.size))
         pressing = at.signals[k] > own[ZERO]
-        for index in np.flatnonzero(table.by.any(axis=1)):
-            moved = self._faded(trial, vector, depth, table.curve(grid * table.by[index], depth))
-            out[:, index] = np.where(pressing, gain * moved, 0.0)
+        acting = np.flatnonzero(by.any(axis=1))
+        moved = table.curve(grid * by[acting], depth)
+        if self._fading_of(trial):
+            moved = np.array([self._faded(trial, vector, depth, one) for one in moved])
+        out[:, acting] = np.where(pressing, gain * moved, 0.0).T
         for one in self._fading_of(trial):
             for place in (one.share, one.time):
                 out[:, place] = self._by_difference(k, vector, own, grids, place)

@@ -1,7 +1,9 @@
 """Other answers: minima away from the one that was found which follow the trials as well.
 
 Force over depth under one tool may have the same shape for two specimens, so that sensitivities at either are sharp and
-yet neither is known. The fit is begun again on both sides of what was found, along the directions that are known least.
+yet neither is known. The model is pressed on both sides of what was found, along the directions that are known least;
+on the tables that know these presses the fit is begun again from each, and where it ends elsewhere the model is pressed
+there, too.
 """
 
 from __future__ import annotations
@@ -12,10 +14,20 @@ from dataclasses import replace
 import numpy as np
 
 from benchmark.errors import SolverError
+from benchmark.identification.parameters.free_parameters import Parameter
 from benchmark.identification.parameters.identifiability import directions
-from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit, fit_layers, restarted
+from benchmark.identification.parameters.layer_fit import (
+    AGREES,
+    SEARCH,
+    LayerFit,
+    disagreement,
+    joined,
+    knowing,
+    press_all,
+)
+from benchmark.identification.parameters.layer_model import LayerModel
 from benchmark.response.force_curve import Array
-from benchmark.response.least_squares import least_squares
+from benchmark.response.least_squares import TrialsFit, least_squares
 
 AWAY = 1.0
 """How far from an answer the fit is begun again: a factor of e along the direction."""
@@ -24,21 +36,27 @@ SURE = 0.04
 MOST_TRIED = 2
 SAME = 0.5
 """Answers that differ by less than so many standard errors in all free parameters are one."""
-ROUNDS = 3
+ROUNDS = 4
+LATELY = 4.0
+"""An answer is pursued while -2 log likelihood is so much above what cannot be told from the best."""
 
 
 def other_answers(found: LayerFit, say: Callable[[str], None]) -> tuple[LayerFit, tuple[LayerFit, ...]]:
     """The best answer, and those that the trials do not tell from it (95 %), with the same noise and scatter."""
+    starts: list[Array] = []
+    for step in _steps(found):
+        explored_fit, at = _explored(found, found.vector + step)
+        if at is not None:
+            found, starts = explored_fit, [*starts, at]
     answers = [found]
-    for direction in directions(found)[:MOST_TRIED]:
-        if direction.deviation < SURE:
-            continue
-        for sign in (-1.0, 1.0):
-            other = _begun_again(found, sign * AWAY * _whole(found, direction.parts), say)
-            if other is not None and not any(_same(other, one) for one in answers):
-                answers.append(other)
+    for at in starts:
+        other = _pursued(answers, at, say)
+        if other is not None:
+            answers = [knowing(one, other.model.surrogates) for one in answers]
+            answers.append(other)
     best = min(answers, key=lambda one: one.fit.objective)
-    return best, tuple(one for one in answers if one is not best and behind(one, best) <= best.quantile**2)
+    rest = [one for one in answers if one is not best and behind(one, best) <= best.quantile**2]
+    return best, tuple(one for one in rest if not _same(one, best))
 
 
 def behind(other: LayerFit, best: LayerFit) -> float:
@@ -46,15 +64,58 @@ def behind(other: LayerFit, best: LayerFit) -> float:
     return max(2.0 * (other.fit.objective - best.fit.objective), 0.0)
 
 
-def _begun_again(found: LayerFit, step: Array, say: Callable[[str], None]) -> LayerFit | None:
-    """Another fit from a step away, in the noise of the first; None where the model does not follow it."""
-    try:
-        other = fit_layers(restarted(found, found.vector + step), say, ROUNDS)
-    except SolverError:
-        return None
-    own = found.model
-    model = replace(other.model, white=own.white, noise=own.noise, gain_deviation=own.gain_deviation)
-    return replace(other, fit=least_squares(model, other.vector, other.fit.nuisance, search=SEARCH))
+def _steps(found: LayerFit) -> list[Array]:
+    """Steps (p,) to where the model is pressed."""
+    weak = [one for one in directions(found)[:MOST_TRIED] if one.deviation >= SURE]
+    return [sign * AWAY * _whole(found, one.parts) for one in weak for sign in (-1.0, 1.0)]
+
+
+def _explored(found: LayerFit, vector: Array) -> tuple[LayerFit, Array | None]:
+    """The fit with a press at coordinates (p,), or half way there, and where that was; None where the model stops."""
+    low, high = limits(found.problem.parameters, vector.size)
+    for share in (1.0, 0.5):
+        at = np.clip(found.vector + share * (vector - found.vector), low, high)
+        at[len(found.problem.parameters) :] = 0.0
+        try:
+            pressed = press_all(found.problem, at)
+        except SolverError:
+            continue
+        return knowing(found, joined(found.model.surrogates, pressed)), at
+    return found, None
+
+
+def limits(parameters: tuple[Parameter, ...], size: int) -> tuple[Array, Array]:
+    """Bounds (p,) of all coordinates, those of the model's own error last."""
+    ends = [one.limits for one in parameters]
+    low, high = np.array([*ends, *[(-0.1, 0.1)] * (size - len(ends))]).T
+    return low, high
+
+
+def _pursued(answers: list[LayerFit], at: Array, say: Callable[[str], None]) -> LayerFit | None:
+    """Another answer that begins at coordinates (p,), pressed anew where it ends; None where there is none."""
+    best = min(answers, key=lambda one: one.fit.objective)
+    model = best.model.within(*limits(best.problem.parameters, at.size))
+    nuisance = best.fit.nuisance
+    for turn in range(1, ROUNDS + 1):
+        fit = least_squares(model, at, nuisance, search=SEARCH)
+        other = replace(best, fit=fit, rounds=turn, disagreement=np.inf)
+        if any(_same(other, one) for one in answers) or behind(other, best) > best.quantile**2 + LATELY:
+            return None
+        try:
+            pressed = press_all(best.problem, fit.vector)
+        except SolverError:
+            return None
+        apart = disagreement(model.surrogates, pressed, fit.vector)
+        say(f"another answer, round {turn}: model and surrogate differ by {100 * apart:.2g} % of the force")
+        model, at, nuisance = replace(model, surrogates=joined(model.surrogates, pressed)), fit.vector, fit.nuisance
+        if apart <= AGREES:
+            return _ended(other, model, apart)
+    return _ended(other, model, apart)
+
+
+def _ended(other: LayerFit, model: LayerModel, apart: float) -> LayerFit:
+    fit: TrialsFit[LayerModel] = least_squares(model, other.vector, other.fit.nuisance, search=SEARCH)
+    return replace(other, fit=fit, disagreement=apart)
 
 
 def _whole(found: LayerFit, parts: Array) -> Array:

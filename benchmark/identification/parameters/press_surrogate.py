@@ -72,11 +72,17 @@ class PressSurrogate:
         """(k,) N at the depths of the grid, at other coordinates (p,)."""
         return np.asarray(self.force * np.exp((vector - self.at) @ self.by))
 
+    def by_at(self, vector: Array) -> Array:  # noqa: ARG002 - the same everywhere, as an atlas' is not
+        """(p, k) derivatives of the force's logarithm by the coordinates."""
+        return self.by
+
     def curve(self, grid: Array, depth: Array) -> Array:
-        """(n,) of a quantity on the grid (k,) at depths (n,), m; zero above the surface, straight on at the end."""
-        beyond = np.maximum(depth - self.depth[-1], 0.0)
-        slope = (grid[-1] - grid[-2]) / (self.depth[1] - self.depth[0])
-        return np.asarray(np.where(depth > 0.0, np.interp(depth, self.depth, grid) + slope * beyond, 0.0))
+        """(..., n) of quantities on the grid (..., k) at depths (n,), m; zero above the surface, straight on below."""
+        at = np.maximum(depth, 0.0) / (self.depth[1] - self.depth[0])
+        left = np.minimum(at.astype(np.int64), self.depth.size - 2)
+        share = at - left
+        between = grid[..., left] * (1.0 - share) + grid[..., left + 1] * share
+        return np.asarray(np.where(depth > 0.0, between, 0.0))
 
 
 @dataclass(frozen=True, eq=False)
