@@ -9,7 +9,7 @@ membrane of the paper. SI units, deflections downwards. Names are loaded when fi
 ...     WaveLayer("dermis", thickness=1.5e-3, density=1116.0, youngs_modulus=1e5, poisson_ratio=0.48),
 ...     WaveLayer("fat", thickness=10e-3, density=971.0, youngs_modulus=2e4, poisson_ratio=0.48),
 ... ]
->>> wave = LayeredWave(skin, DiscTool(radius=5e-3), relaxation=Prony((0.3,), (0.5,)), large_press="corrected")
+>>> wave = LayeredWave(skin, DiscTool(radius=5e-3), relaxation=Prony((0.3,), (0.5,)))
 >>> time = np.linspace(0.1, 2.0, 20)  # s
 >>> solution = wave.run("force", time, 0.5 * np.minimum(time, 1.0))  # N: a ramp to 0.5 N, held
 >>> [f"{1e3 * depth:.2f} mm" for depth in solution.depth[[9, 19]]]
@@ -72,3 +72,7 @@ __getattr__ = loader(
         "specimen": "DiscTool WaveLayer",
     },
 )
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

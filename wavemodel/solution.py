@@ -24,7 +24,7 @@ class FaceMotion(Protocol):
 Faces_co = TypeVar("Faces_co", bound=FaceMotion, covariant=True)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class WaveSolution(Generic[Faces_co]):
     """History of a press (n steps, L layers; deflections downwards, SI).
 
@@ -57,6 +57,11 @@ class WaveSolution(Generic[Faces_co]):
     warnings: tuple[str, ...]
     faces: Faces_co = field(repr=False)
     energy: FloatArray | None = None
+
+    def __repr__(self) -> str:
+        force, depth = float(np.abs(self.force).max()), 1e3 * float(np.abs(self.depth).max())
+        told = "".join(f"\n  warning: {warning}" for warning in self.warnings)
+        return f"<WaveSolution {self.time.size} steps to {force:.4g} N, {depth:.4g} mm, {self.integrator}>{told}"
 
     def warned(self, warning: str) -> "WaveSolution[Faces_co]":
         """The same with one more warning, the first."""

@@ -49,7 +49,7 @@ def punch(ratio: float) -> tuple[Quantity, ...]:
         HAYES_YOUNGS_MODULUS,
         HAYES_POISSON_RATIO,
     )
-    wave = LayeredWave([layer], DiscTool(HAYES_RADIUS, "rigid_frictionless"))
+    wave = LayeredWave([layer], DiscTool(HAYES_RADIUS, "rigid_frictionless"), large_press="linear")
     force = float(wave.run("depth", np.ones(1), np.array([HAYES_INDENTATION])).force[0])
     return (Quantity("", HAYES_KAPPA[ratio], hayes_kappa(force), "", STATIC_PERCENT, wave.unknowns),)
 
@@ -96,4 +96,5 @@ def _skin(damping: Damping, integrator: str, domain: str = "rectangle") -> Layer
         discretisation=WaveDiscretisation(domain=domain),
         integrator=integrator,
         damping=damping,
+        large_press="linear",
     )

@@ -27,3 +27,7 @@ def test_importing_it_loads_neither_numpy_nor_scipy():
     code = "import sys, wavemodel, wavemodel.physics; print({'numpy', 'scipy'} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"
+
+
+def test_tab_completion_shows_what_there_is():
+    assert set(wavemodel.__all__) <= set(dir(wavemodel))

@@ -27,7 +27,7 @@ POINTS = np.array([[0.0, 0.0], [2e-3, 0.0], [0.0, -5e-3], [6e-3, 4.5e-3]])
 
 def pressed(layers, window=None, **options):
     modes = WaveDiscretisation(window=window)
-    wave = LayeredWave(layers, DiscTool(5e-3), **{"discretisation": modes, **options})
+    wave = LayeredWave(layers, DiscTool(5e-3), **{"discretisation": modes, "large_press": "linear", **options})
     return wave.run("force", np.array([10.0, 20.0]), np.array([0.05, 0.1]))
 
 
@@ -114,6 +114,7 @@ def test_with_inertia_a_slow_press_moves_as_one_without(skin, base, face):
             WaveDiscretisation(window=60e-3, modes=24),
             integrator=integrator,
             damping=Damping(mass_rate=50.0),
+            large_press="linear",
         )
         found.append(marker_motion(wave.run("force", time, force), POINTS, face=face))
     np.testing.assert_allclose(found[0], found[1], atol=3e-3 * np.abs(found[1]).max())
@@ -123,12 +124,20 @@ def test_with_inertia_a_slow_press_moves_as_one_without(skin, base, face):
 def test_with_inertia_each_step_is_that_of_the_run_so_far(skin):
     """The oscillators of a fast press: another than the static motion, and the same after any later load."""
     wave = LayeredWave(
-        skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=60e-3, modes=24), integrator="exact"
+        skin(),
+        DiscTool(5e-3),
+        discretisation=WaveDiscretisation(window=60e-3, modes=24),
+        integrator="exact",
+        large_press="linear",
     )
     time, force = np.array([1e-3, 2e-3, 3e-3]), np.array([0.1, 0.1, 0.02])
     run = wave.run("force", time, force)
     at_rest = LayeredWave(
-        skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=60e-3, modes=24), integrator="quasi_static"
+        skin(),
+        DiscTool(5e-3),
+        discretisation=WaveDiscretisation(window=60e-3, modes=24),
+        integrator="quasi_static",
+        large_press="linear",
     )
     static = marker_motion(at_rest.run("force", time, force), POINTS, 1, 1)
     moved = marker_motion(run, POINTS, 1, 1)
@@ -181,7 +190,7 @@ def test_what_it_does_not_cover_it_says(skin, wave, face, word):
 
 
 def test_the_surface_under_a_rigid_tool_is_not_covered(skin):
-    wave = LayeredWave(skin(), DiscTool(5e-3, "rigid_bonded"))
+    wave = LayeredWave(skin(), DiscTool(5e-3, "rigid_bonded"), large_press="linear")
     with pytest.raises(NotCoveredError, match="rigid tool"):
         marker_motion(wave.run("force", np.ones(1), np.ones(1)), POINTS, face=0)
 
@@ -194,3 +203,10 @@ def test_the_surface_under_a_rigid_tool_is_not_covered(skin):
 def test_unusable_requests_are_refused(skin, points, step, face, word):
     with pytest.raises(WaveError, match=word):
         marker_motion(pressed(skin()), points, step, face)
+
+
+def test_a_solution_shows_itself_with_its_warnings(skin):
+    quiet, warned = pressed(skin()), pressed(skin()).warned("too deep")
+    assert repr(quiet).startswith("<WaveSolution 2 steps to 0.1 N, ")
+    assert "warning" not in repr(quiet)
+    assert repr(warned).endswith("\n  warning: too deep")

@@ -15,7 +15,7 @@ from wavemodel.physics.quasi_static_press import Physics
 from wavemodel.physics.time_dependent import ViscousDamping
 from wavemodel.specimen import DiscTool
 
-LARGE_PRESS = ("linear", "corrected", "deep")
+LARGE_PRESS = ("auto", "linear", "corrected", "deep")
 RESOLUTION, MOST_MODES = 16.0, 256
 """Largest wavenumber times the tool's radius, and the most modes."""
 BORDER = 0.75
@@ -87,10 +87,20 @@ def finite_strain_of(word: str, press: Press, tool: DiscTool, integrator: str) -
     """
     if word not in LARGE_PRESS:
         raise WaveError(f"large_press = {word!r} is not allowed: one of {', '.join(LARGE_PRESS)}")
-    if word == "linear":
+    if word == "linear" or (word == "auto" and integrator == "exact"):
         return None
+    if word == "auto":
+        return _where_covered(press, tool)
     _without_inertia("the large-press correction", integrator)
     return correction(press, tool, deep=word == "deep")
+
+
+def _where_covered(press: Press, tool: DiscTool) -> FiniteStrainLaw | None:
+    """The correction, or None where it does not cover the press; a run beyond small strain then warns."""
+    try:
+        return correction(press, tool)
+    except WaveError:
+        return None
 
 
 def _without_inertia(what: str, integrator: str) -> None:

@@ -66,6 +66,7 @@ class LayeredWave:
         `InPlaneStress` with one for each layer. Where x and y differ, the sharp part of the field close to the tool
         (see `WaveDiscretisation.static_correction`) takes their mean.
     large_press
+        "auto": "corrected" where that covers tool, base and integrator, else "linear", which warns beyond small strain.
         "linear", or "corrected": the elastic answer is that of a neo-Hookean stack with these moduli under finite
         strain, worked out once in the wave's own modes (see `wavemodel.layered.finite_strain`) to 0.4 of the stack; no
         inertia. "deep": the same to 0.75 of the stack, and from where that ends along the law's tangent, which a
@@ -105,7 +106,7 @@ class LayeredWave:
         damping: Damping | None = None,
         relaxation: Prony | Sequence[Prony | None] | None = None,
         pretension: float | Sequence[float] | InPlaneStress | None = None,
-        large_press: str = "linear",
+        large_press: str = "auto",
         physics: Physics | None = None,
         slip: ShearLimit | None = None,
     ) -> None:

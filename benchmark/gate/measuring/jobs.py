@@ -193,6 +193,7 @@ def wave_frame(job: Job) -> Work:
     choices: dict[str, Any] = {"window": options.window, "modes": options.modes}
     if hasattr(wavemodel, "WaveDiscretisation"):  # earlier revisions take them one by one
         choices = {"discretisation": wavemodel.WaveDiscretisation(**choices)}
+    choices["large_press"] = "linear"  # what earlier revisions are without being told
     wave = wavemodel.LayeredWave(layers, wavemodel.DiscTool(tool.radius, tool.contact), **choices)
     positions = np.linspace(-REACH * tool.radius, REACH * tool.radius, VERTICES)
     surface, drive = wave.surface(positions, positions), scenario_drive(scenario)

@@ -91,7 +91,7 @@ def _on_base(layers: tuple[WaveLayer, ...], tool_radius: float, contact: str) ->
     tool, depth = DiscTool(tool_radius, contact), np.array([SHALLOW])
 
     def force(stress: float | None) -> float:
-        return float(LayeredWave(layers, tool, support="bonded", pretension=stress).law(depth)[0])
+        return float(LayeredWave(layers, tool, support="bonded", pretension=stress, large_press="linear").law(depth)[0])
 
     bare = force(None)
     return tuple((force(stress) - bare) / (stress * SHALLOW) for stress in PROBES)

@@ -179,7 +179,9 @@ def test_a_base_under_tension_is_as_stiff_as_its_layers_are_in_the_wave():
     layers = (WaveLayer("skin", 1e-3, 1000.0, 5e5, 0.48), WaveLayer("fat", 9e-3, 1000.0, 3e4, 0.48))
     around = replace(AROUND, layers=layers, contact="uniform_pressure")
     tool, depth = DiscTool(5e-3, "uniform_pressure"), np.array([2e-3])
-    bare, tense = (LayeredWave(layers, tool, support="bonded", pretension=s).law(depth) for s in (None, 5e3))
+    bare, tense = (
+        LayeredWave(layers, tool, support="bonded", pretension=s, large_press="linear").law(depth) for s in (None, 5e3)
+    )
     assert added_stiffness(5e3, around) * 2e-3 == pytest.approx(float((tense - bare)[0]), rel=5e-3)
 
 

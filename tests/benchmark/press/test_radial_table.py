@@ -75,6 +75,7 @@ def test_layers_that_relax_each_in_its_own_way_have_the_stack_s_series():
         DiscTool(3e-3),
         discretisation=WaveDiscretisation(window=40e-3, modes=24),
         relaxation=(None, Prony((0.4,), (0.3,)), Prony((0.5,), (2.0,))),
+        large_press="linear",
     )
     series = relaxation_of(wave.body)
     time = np.concatenate([[1e-6], np.geomspace(1e-3, 20.0, 40)])

@@ -71,7 +71,10 @@ def _wave(
 ) -> Callable[[float], np.ndarray]:
     """A frame: one step of the relaxation, the amplitudes, the synthesis of three layers."""
     wave = LayeredWave(
-        wave_layers(), DiscTool(RADIUS), discretisation=WaveDiscretisation(window=window, modes=modes, domain=domain)
+        wave_layers(),
+        DiscTool(RADIUS),
+        discretisation=WaveDiscretisation(window=window, modes=modes, domain=domain),
+        large_press="linear",
     )
     surface, relaxation = wave.surface(x, x), ContactRelaxation(1, SERIES, 0.0)
 
@@ -86,7 +89,12 @@ def _interactive(count: int) -> Callable[[float], np.ndarray]:
     """A frame of a tissue as wide as the vertices, tool in the middle, depth in, force out."""
     x = vertices(count)
     side = float(x[-1] - x[0])
-    wave = LayeredWave(wave_layers(), DiscTool(RADIUS), discretisation=WaveDiscretisation(window=WINDOW, modes=32))
+    wave = LayeredWave(
+        wave_layers(),
+        DiscTool(RADIUS),
+        discretisation=WaveDiscretisation(window=WINDOW, modes=32),
+        large_press="linear",
+    )
     grid = Grid(side, side, side / (count - 1))
     tissue = InteractiveTissue(layered_body(wave, grid), grid, series=SERIES)
 

@@ -16,7 +16,9 @@ def grid() -> Grid:
 
 @pytest.fixture(scope="session")
 def wave(skin) -> LayeredWave:
-    return LayeredWave(skin(), DiscTool(3e-3), discretisation=WaveDiscretisation(window=40e-3, modes=24))
+    return LayeredWave(
+        skin(), DiscTool(3e-3), discretisation=WaveDiscretisation(window=40e-3, modes=24), large_press="linear"
+    )
 
 
 @pytest.fixture

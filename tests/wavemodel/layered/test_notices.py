@@ -5,7 +5,7 @@ from wavemodel import DiscTool, LayeredWave, WaveDiscretisation
 
 
 def warnings_of(layers, force=1e-3, duration=5.0, **options):
-    wave = LayeredWave(layers, DiscTool(5e-3), **options)
+    wave = LayeredWave(layers, DiscTool(5e-3), **{"large_press": "linear", **options})
     return wave.run("force", np.array([0.5, 1.0]) * duration, np.array([0.5, 1.0]) * force).warnings
 
 

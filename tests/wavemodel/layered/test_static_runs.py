@@ -56,7 +56,7 @@ def test_layers_that_relax_each_in_its_own_way_keep_the_depth(skin):
 
 def test_options_have_the_force_of_the_quasi_static_press(skin):
     physics = Physics(softening=StressSoftening(0.3), permanent_set=PermanentSet(0.05))
-    wave = LayeredWave(skin(), DiscTool(5e-3), physics=physics)
+    wave = LayeredWave(skin(), DiscTool(5e-3), physics=physics, large_press="linear")
     solution = wave.run("depth", TIME, CYCLE)
     np.testing.assert_array_equal(solution.force, QuasiStaticPress(wave.law, physics).force(TIME, CYCLE))
     assert solution.integrator == "quasi_static"
@@ -75,7 +75,7 @@ def test_force_and_depth_control_agree_with_options_and_a_large_press(skin):
 
 
 def test_options_that_are_off_change_nothing(skin):
-    plain, other = (LayeredWave(skin(), DiscTool(5e-3), physics=p) for p in (None, Physics()))
+    plain, other = (LayeredWave(skin(), DiscTool(5e-3), physics=p, large_press="linear") for p in (None, Physics()))
     for control, value in (("depth", CYCLE), ("force", 500.0 * CYCLE)):
         one, two = plain.run(control, TIME, value), other.run(control, TIME, value)
         np.testing.assert_allclose(two.force, one.force, rtol=1e-9, atol=1e-12)
@@ -84,9 +84,16 @@ def test_options_that_are_off_change_nothing(skin):
 
 def test_damping_and_relaxation_of_the_wave_take_part(skin):
     wave = LayeredWave(
-        skin(), DiscTool(5e-3), physics=Physics(), relaxation=Prony((0.3,), (0.5,)), damping=Damping(0.0, 0.1)
+        skin(),
+        DiscTool(5e-3),
+        physics=Physics(),
+        relaxation=Prony((0.3,), (0.5,)),
+        damping=Damping(0.0, 0.1),
+        large_press="linear",
     )
-    linear = LayeredWave(skin(), DiscTool(5e-3), relaxation=Prony((0.3,), (0.5,)), damping=Damping(0.0, 0.1))
+    linear = LayeredWave(
+        skin(), DiscTool(5e-3), relaxation=Prony((0.3,), (0.5,)), damping=Damping(0.0, 0.1), large_press="linear"
+    )
     up = np.linspace(1e-4, 2e-3, 30)
     np.testing.assert_allclose(wave.run("depth", TIME, up).force, linear.run("depth", TIME, up).force, rtol=1e-9)
 

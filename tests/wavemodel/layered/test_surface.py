@@ -7,7 +7,10 @@ from wavemodel import DiscTool, LayeredWave, WaveDiscretisation, WaveError
 @pytest.fixture
 def wave(skin):
     return LayeredWave(
-        skin(), DiscTool(5e-3, "rigid_frictionless"), discretisation=WaveDiscretisation(window=50e-3, modes=24)
+        skin(),
+        DiscTool(5e-3, "rigid_frictionless"),
+        discretisation=WaveDiscretisation(window=50e-3, modes=24),
+        large_press="linear",
     )
 
 
@@ -39,7 +42,10 @@ def test_a_static_state_is_what_a_slow_run_comes_to(wave):
 
 def test_without_correction_the_modes_alone(skin):
     wave = LayeredWave(
-        skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=50e-3, modes=24, static_correction=False)
+        skin(),
+        DiscTool(5e-3),
+        discretisation=WaveDiscretisation(window=50e-3, modes=24, static_correction=False),
+        large_press="linear",
     )
     solution = wave.run("force", np.array([10.0]), np.array([0.1]))
     x = np.array([0.0, 7e-3])

@@ -61,7 +61,10 @@ def test_far_from_the_border_it_is_the_square_window(skin, contact, place):
     answers = []
     for domain in ("rectangle", "disc"):
         wave = LayeredWave(
-            skin(), DiscTool(5e-3, contact), discretisation=WaveDiscretisation(window=90e-3, domain=domain, place=place)
+            skin(),
+            DiscTool(5e-3, contact),
+            discretisation=WaveDiscretisation(window=90e-3, domain=domain, place=place),
+            large_press="linear",
         )
         solution = wave.run("force", ONE, FORCE)
         frame = wave.surface(X, X[1:]).frame(solution.faces.snapshot(0))
@@ -76,7 +79,7 @@ def test_far_from_the_border_it_is_the_square_window(skin, contact, place):
 
 def test_all_automatic_it_has_fewer_modes_and_the_accuracy_of_the_contract(skin, oracle, uniform_load):
     wave, square = (
-        LayeredWave(skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(domain=domain))
+        LayeredWave(skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(domain=domain), large_press="linear")
         for domain in ("disc", "rectangle")
     )
     radii = np.concatenate([np.linspace(0.0, 20e-3, 17), [0.35 * wave.window, 0.5 * wave.window]])
@@ -103,7 +106,12 @@ def test_the_finite_elements_of_a_disc_of_that_radius(skin):
     )
     radii = np.linspace(0.0, 0.5 * border, 16)
     exact = fem.prepare(problem).run(fem.Load("force", ONE, FORCE)).profile(0, radii)
-    wave = LayeredWave(skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=2.0 * border, domain="disc"))
+    wave = LayeredWave(
+        skin(),
+        DiscTool(5e-3),
+        discretisation=WaveDiscretisation(window=2.0 * border, domain="disc"),
+        large_press="linear",
+    )
     found = wave.run("force", ONE, FORCE).profile(0, radii)
     np.testing.assert_allclose(found / exact[:, :1], exact / exact[:, :1], atol=4e-3)
 
@@ -112,7 +120,7 @@ def test_a_free_disc_is_kirchhoff_s_plate_on_its_modes():
     """w = sum of 2 J_1(k a) / (k a) J_0(k r) / (D k^4 pi R^2 J_1(k R)^2) over the roots of J_0(k R)."""
     layer, tool, border = WaveLayer("sheet", 1e-3, 1000.0, 1e5, 0.3), 20e-3, 100e-3
     modes = WaveDiscretisation(window=2.0 * border, modes=30, domain="disc", static_correction=False)
-    wave = LayeredWave([layer], DiscTool(tool), "free", modes, integrator="quasi_static")
+    wave = LayeredWave([layer], DiscTool(tool), "free", modes, integrator="quasi_static", large_press="linear")
     bending = 1e5 * 1e-9 / 12.0 / (1.0 - 0.3**2)
     k = jn_zeros(0, 200) / border
     share = 2.0 * j1(k * tool) / (k * tool) / (bending * k**4 * np.pi * (border * j1(k * border)) ** 2)
@@ -155,7 +163,10 @@ def test_layers_that_fade_each_in_its_own_way_and_a_large_press(skin):
 
 def test_a_tool_under_the_hand_reaches_to_the_nearest_border(skin):
     wave = LayeredWave(
-        skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=60e-3, domain="disc", place=(3e-3, 4e-3))
+        skin(),
+        DiscTool(5e-3),
+        discretisation=WaveDiscretisation(window=60e-3, domain="disc", place=(3e-3, 4e-3)),
+        large_press="linear",
     )
     assert layered_body(wave, Grid(40e-3, 40e-3, 1e-3)).reach == pytest.approx(25e-3)
 
@@ -173,14 +184,25 @@ def test_a_tool_under_the_hand_reaches_to_the_nearest_border(skin):
 def test_refuses_what_does_not_fit(skin, options, word):
     with pytest.raises(WaveError, match=word):
         LayeredWave(
-            skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(**({"domain": "disc", "window": 60e-3} | options))
+            skin(),
+            DiscTool(5e-3),
+            discretisation=WaveDiscretisation(**({"domain": "disc", "window": 60e-3} | options)),
+            large_press="linear",
         )
 
 
 def test_says_what_it_does_not_cover_and_what_is_outside(skin):
     with pytest.raises(NotCoveredError, match="differs along x and y"):
-        LayeredWave(skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(domain="disc"), pretension=(1e4, 2e4))
-    wave = LayeredWave(skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=60e-3, domain="disc"))
+        LayeredWave(
+            skin(),
+            DiscTool(5e-3),
+            discretisation=WaveDiscretisation(domain="disc"),
+            pretension=(1e4, 2e4),
+            large_press="linear",
+        )
+    wave = LayeredWave(
+        skin(), DiscTool(5e-3), discretisation=WaveDiscretisation(window=60e-3, domain="disc"), large_press="linear"
+    )
     solution = wave.run("force", ONE, FORCE)
     with pytest.raises(WaveError, match=r"35.3553 mm from the middle"):
         wave.surface(np.array([25e-3]), np.array([25e-3]))
