@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
 import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import NoReturn
 
@@ -45,6 +47,22 @@ def _unnamed_script() -> Iterator[None]:
         yield
     finally:
         vars(main).update(kept)
+
+
+def start_child(process: BaseProcess) -> None:
+    """Start a process with one thread a library, deaf to Ctrl-C from its first moment: that is the parent's business.
+
+    A terminal sends it to all processes; one that is still importing would put a traceback between our words.
+    """
+    with single_threaded_children():
+        if not hasattr(signal, "pthread_sigmask"):
+            process.start()
+            return
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # children begin with what is blocked here
+        try:
+            process.start()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def forbid_ending(file: str) -> None:

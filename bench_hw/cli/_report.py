@@ -34,7 +34,7 @@ def reporting(debug: bool = False) -> Iterator[None]:
     """
     try:
         yield
-    except (BenchError, OSError) as error:
+    except (BenchError, OSError, MemoryError) as error:
         if debug:
             traceback.print_exc()
         say_error(error)
@@ -43,7 +43,8 @@ def reporting(debug: bool = False) -> Iterator[None]:
 
 def say_error(error: BaseException) -> None:
     """Print an error, and what was noted on it, as one paragraph on standard error."""
-    parts = [str(error) or type(error).__name__, *getattr(error, "__notes__", [])]
+    plain = "there is too little memory for this" if isinstance(error, MemoryError) else type(error).__name__
+    parts = [str(error) or plain, *getattr(error, "__notes__", [])]
     print("error: " + " ".join("; ".join(parts).split()), file=sys.stderr)
 
 

@@ -27,6 +27,7 @@ from benchmark.cli.folders import clean, dossier, reference, report, shipped
 from benchmark.cli.hands_on import press
 
 EXIT_USAGE = 2
+TOO_LITTLE = "there is too little memory for this: end other programs, or ask for less (a coarser mesh, fewer workers)"
 EXIT_INTERRUPTED = 130
 EXIT_BUG = 70
 
@@ -109,6 +110,8 @@ def _report(error: Exception, *, debug: bool) -> int:
         return _fail(str(error), error.exit_code)
     if isinstance(error, OSError):
         return _fail(str(error), EXIT_USAGE)
+    if isinstance(error, MemoryError):
+        return _fail(f"{TOO_LITTLE}; {error}" if str(error) else TOO_LITTLE, EXIT_USAGE)
     text = f"a fault of the program, {type(error).__name__}: {error}; --debug shows where"
     return _fail(text, EXIT_BUG)
 

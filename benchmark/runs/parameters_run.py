@@ -65,7 +65,9 @@ class ParameterWish:
         table, source = own.model_dump(), Source("[fit]")
         if self.file is not None:
             read, source = read_toml(self.file, "fit")
-            table = dict(read.get("fit", read))
+            table = read.get("fit", read)
+            if not isinstance(table, dict):
+                raise InputError(f"{self.file}: fit = {table!r}; allowed is a table [fit]")
         law = None if self.laws is None else self.laws[0]
         said = {"free": self.free, "exact": self.exact, "law": law, "forward": self.forward}
         return validated(FitTable, table | {key: value for key, value in said.items() if value is not None}, source)

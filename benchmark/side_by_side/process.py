@@ -6,7 +6,7 @@ import multiprocessing
 from pathlib import Path
 from types import TracebackType
 
-from benchmark.child_processes import single_threaded_children
+from benchmark.child_processes import start_child
 from benchmark.errors import InputError, SolverError
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel
@@ -35,8 +35,7 @@ class ModelProcess:
         self.connection, far_end = context.Pipe()
         arguments = (far_end, ModelJob(model, scenario, every_field, own, keep), core)
         self._process = context.Process(target=serve, args=arguments, daemon=True, name=f"tissuebench-{model}")
-        with single_threaded_children():
-            self._process.start()
+        start_child(self._process)
         far_end.close()
 
     def command(self, *, keep_result: bool) -> None:

@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from multiprocessing.connection import Connection, wait
 
-from benchmark.child_processes import end_with_parent, single_threaded_children
+from benchmark.child_processes import end_with_parent, start_child
 from benchmark.sweeps.point import PointResult, Task, evaluate, failed
 
 LIVES = 2
@@ -69,8 +69,7 @@ class _Worker:
         context = multiprocessing.get_context("spawn")
         self.connection, far_end = context.Pipe()
         self._process = context.Process(target=_serve, args=(far_end,), daemon=True, name="tissuebench-sweep")
-        with single_threaded_children():
-            self._process.start()
+        start_child(self._process)
         far_end.close()
         self.give(task)
 

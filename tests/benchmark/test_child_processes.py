@@ -1,13 +1,15 @@
 """Processes end when who started them is killed, and have one thread."""
 
+import multiprocessing
 import os
+import signal
 import subprocess
 import sys
 
 import psutil
 import pytest
 
-from benchmark.child_processes import THREAD_VARIABLES, single_threaded_children
+from benchmark.child_processes import THREAD_VARIABLES, single_threaded_children, start_child
 
 PARENT = """
 import multiprocessing, sys, time
@@ -44,3 +46,20 @@ def test_children_get_one_thread_and_the_parent_keeps_its_own(monkeypatch: pytes
         assert {os.environ[name] for name in THREAD_VARIABLES} == {"1"}
     assert os.environ["OMP_NUM_THREADS"] == "7"
     assert "MKL_NUM_THREADS" not in os.environ
+
+
+def _blocked(answers: "multiprocessing.SimpleQueue[bool]") -> None:
+    os.kill(os.getpid(), signal.SIGINT)
+    answers.put(signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ()))
+
+
+def test_a_child_is_deaf_to_an_interruption_and_its_parent_is_not() -> None:
+    context = multiprocessing.get_context("spawn")
+    answers = context.SimpleQueue()
+    child = context.Process(target=_blocked, args=(answers,))
+    start_child(child)
+    child.join(60)
+    assert child.exitcode == 0
+    assert answers.get()
+    with pytest.raises(KeyboardInterrupt):
+        os.kill(os.getpid(), signal.SIGINT)

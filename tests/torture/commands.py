@@ -18,6 +18,8 @@ from typing import Any
 
 from reports.manifest import MANIFEST
 
+CONTRACT = (0, 1, 2, 3, 4, 5)
+"""Exit codes."""
 COARSE = ("fem.mesh=coarse", "fem.kinematics=linear", "wave.large_press=linear", "load.observations=4")
 LONG = ("fem.mesh=coarse", "tool.contact=rigid_frictional", "tool.edge_radius=1 mm", "physics.friction_coefficient=0.3",
         "load.peak=2 N", "load.observations=16")  # fmt: skip
@@ -104,8 +106,13 @@ class Ended:
     @property
     def is_plain(self) -> bool:
         """Whether what went wrong was said in one paragraph at most."""
-        errors = [line for line in self.err.splitlines() if line.startswith(("error:", "unexpected error:"))]
-        return "Traceback" not in self.err and len(errors) <= 1
+        return is_plain(self.err)
+
+
+def is_plain(text: str) -> bool:
+    """Whether a text has one paragraph of error at most, and none of Python's own."""
+    errors = [line for line in text.splitlines() if line.startswith(("error:", "unexpected error:"))]
+    return "Traceback" not in text and len(errors) <= 1
 
 
 def run(command: Command, folder: Path, *, kill: tuple[float, int] | None = None, before: str = "") -> Ended:
@@ -180,12 +187,12 @@ def _expanded(word: str) -> list[str]:
 
 VOLATILE = re.compile(
     r"second|wall|cpu|^setup(_s)?$|_time$|^time$|timing|speedup|memory|^made|date|started|duration|^out$|machine|processor"
-    r"|resumed|^path$",
+    r"|resumed|^path$|_us$",
     re.I,
 )
 """Keys and columns whose values are of the clock or the machine."""
 SKIPPED = ("environment.json", "manifest.json", "timing.csv", "report.html", "capture.json", "journal.jsonl",
-           "check.json", "p.xml", "p.md", "p.jsonl", "p.history.jsonl")  # fmt: skip
+           "check.json", "rounds.csv", "p.xml", "p.md", "p.jsonl", "p.history.jsonl")  # fmt: skip
 """Files that hold little else, or pages that show it; they must be there. So must recordings, whose rows follow the
 clock of simulated devices."""
 
@@ -215,6 +222,8 @@ def _of_file(path: Path) -> Any:
         rows = list(csv.reader(path.read_text(encoding="utf-8").splitlines()))
         steady = [k for k, name in enumerate(rows[0]) if not VOLATILE.search(name) or name == "time_s"]
         return [[row[k] for k in steady] for row in rows]
+    if path.suffix == ".md":
+        return [line for line in path.read_text(encoding="utf-8").splitlines() if "seconds" not in line]
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
@@ -222,8 +231,13 @@ def _steady(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: _steady(each) for key, each in value.items() if not VOLATILE.search(key)}
     if isinstance(value, list):
-        return [_steady(each) for each in value]
+        return [_steady(each) for each in value if not _is_of_time(each)]
     return value
+
+
+def _is_of_time(row: Any) -> bool:
+    """Whether a row of a table tells of seconds, as one of blind trials does."""
+    return isinstance(row, dict) and "seconds" in str(row.get("measure", ""))
 
 
 def differences(first: dict[str, Any], second: dict[str, Any]) -> tuple[list[str], list[str]]:

@@ -7,10 +7,13 @@ code 70 for; more than 30 s is a hang.
 from __future__ import annotations
 
 import json
+import signal
+import sys
 import time
 import warnings
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -19,8 +22,6 @@ import tomli_w
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
 from hypothesis import strategies as st
-
-from tests.torture.scene import CAMERA, trial_text
 
 HANG = 30.0
 LONGEST = 2000
@@ -46,13 +47,18 @@ CELLS = st.sampled_from(
 BYTES = st.sampled_from([b"\x00", b"\xff\xfe", b"\xef\xbb\xbf", b"\r", b"\n\n", b"\x1a", b",", b'"', b"[", b"]]"])
 
 
-def changed_table(table: dict[str, Any]) -> st.SearchStrategy[bytes]:
+def changed_json(document: dict[str, Any]) -> st.SearchStrategy[bytes]:
+    """A JSON file changed as `changed_table` does."""
+    return changed_table(document, json.dumps)
+
+
+def changed_table(table: dict[str, Any], dump: Callable[[Any], str] = tomli_w.dumps) -> st.SearchStrategy[bytes]:
     """A TOML file with up to three of its values, at any depth, replaced, removed or renamed."""
 
     @st.composite
     def change(draw: Callable[..., Any]) -> bytes:
         copy = json.loads(json.dumps(table))
-        for _ in range(draw(st.integers(1, 3))):
+        for _ in range(draw(st.integers(0, 3))):
             node = copy
             while True:
                 keys = list(node) if isinstance(node, dict) else list(range(len(node)))
@@ -70,7 +76,7 @@ def changed_table(table: dict[str, Any]) -> st.SearchStrategy[bytes]:
                     node[key] = draw(NASTY)
                 break
         try:
-            return tomli_w.dumps(copy).encode("utf-8", "replace")
+            return dump(copy).encode("utf-8", "replace")
         except (TypeError, ValueError):
             return b"\xff"
 
@@ -83,7 +89,7 @@ def changed_bytes(data: bytes) -> st.SearchStrategy[bytes]:
     @st.composite
     def change(draw: Callable[..., Any]) -> bytes:
         found = bytearray(data)
-        for _ in range(draw(st.integers(1, 4))):
+        for _ in range(draw(st.integers(0, 4))):
             at = draw(st.integers(0, max(len(found) - 1, 0)))
             what = draw(st.sampled_from(["cut", "insert", "flip", "remove", "repeat"]))
             if what == "cut":
@@ -107,7 +113,7 @@ def changed_rows(text: str) -> st.SearchStrategy[bytes]:
     @st.composite
     def change(draw: Callable[..., Any]) -> bytes:
         lines = text.splitlines()
-        for _ in range(draw(st.integers(1, 4))):
+        for _ in range(draw(st.integers(0, 4))):
             row = draw(st.integers(0, len(lines) - 1))
             cells = lines[row].split(",")
             what = draw(st.sampled_from(["cell", "cell", "cell", "drop", "swap", "double", "blank"]))
@@ -126,6 +132,14 @@ def changed_rows(text: str) -> st.SearchStrategy[bytes]:
         return "\n".join(lines).encode("utf-8", "replace")
 
     return change()
+
+
+class RefusedError(Exception):
+    """A command line refused a file with an exit code of the contract, in one paragraph."""
+
+
+class HangError(BaseException):
+    """Something takes too long."""
 
 
 @dataclass
@@ -155,11 +169,15 @@ class Kind:
 
 def torture(folder: Path, until: float, seed: int, each: int) -> dict[str, Count]:
     """Give `each` changed files of every kind to what reads them, until the time is over."""
+    from tests.torture.kinds import kinds
+
     counts: dict[str, Count] = {}
     for kind in kinds(folder):
         if time.monotonic() < until:
             counts[kind.name] = Count()
             _try(kind, folder, counts[kind.name], until, seed, each)
+            for text in counts[kind.name].failures:
+                print(f"{kind.name}: {text}", file=sys.stderr, flush=True)
     return counts
 
 
@@ -178,125 +196,60 @@ def _try(kind: Kind, folder: Path, count: Count, until: float, seed: int, each: 
             path = folder / kind.place
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(data)
-            _judge(kind, path, count)
+            _judge(kind, path, folder, count)
 
     one()
 
 
-def _judge(kind: Kind, path: Path, count: Count) -> None:
+def _judge(kind: Kind, path: Path, folder: Path, count: Count) -> None:
     from bench_hw.errors import BenchError
     from benchmark.errors import TissuebenchError
     from fem import FemError
 
-    started = time.monotonic()
+    started, before = time.monotonic(), _names(folder)
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), _bounded():
             warnings.simplefilter("error", RuntimeWarning)
             kind.read(path)
         count.taken += 1
-    except (BenchError, TissuebenchError, FemError) as error:
+    except (BenchError, TissuebenchError, FemError, RefusedError) as error:
         count.refused += 1
         if len(str(error)) > LONGEST or not str(error).strip():
-            count.failures.append(f"no paragraph: {len(str(error))} characters")
+            count.failures.append(f"no paragraph: {len(str(error))} characters for {_start(path)}")
+    except HangError:
+        count.failures.append(f"it took more than {HANG:.0f} s for {_start(path)}")
     except Exception as error:
-        count.failures.append(f"{type(error).__name__}: {str(error)[:150]} for {path.read_bytes()[:2000]!r}")
-    seconds = time.monotonic() - started
-    count.slowest = max(count.slowest, seconds)
-    if seconds > HANG:
-        count.failures.append(f"it took {seconds:.0f} s")
+        count.failures.append(f"{type(error).__name__}: {str(error)[:400]} for {_start(path)}")
+    left = _names(folder) - before
+    if left:
+        count.failures.append(f"left {', '.join(sorted(left)[:3])} for {_start(path)}")
+        for name in left:
+            (folder / name).unlink(missing_ok=True)
+    count.slowest = max(count.slowest, time.monotonic() - started)
 
 
-def kinds(folder: Path) -> list[Kind]:
-    """Every kind of file that a person or another program may bring."""
-    from bench_hw.configuration import read_toml
-    from bench_hw.motion.protocol_file import load_protocol, shipped
-    from bench_hw.rig.rig_file import load_rig, shipped_rigs
-    from bench_hw.trial_file import read_trial_mcap
-    from bench_hw.trial_file.inspection import inspect_trial
-    from bench_hw.vision.camera.camera_file import read_camera
-    from benchmark.files import load_scenario, load_session, load_tissue
-    from benchmark.gate.baseline import read_baseline
-    from benchmark.gate.plan import load_plan
-    from benchmark.models import read_reference
-    from benchmark.response.model_with_effects import load_repair
-    from benchmark.runs.finished.saved_run import read_run
-    from fem import read_surface
-
-    scenario = load_scenario("skin-5N")
-    press = trial_text(40)
-    rig = read_toml(shipped_rigs()["simulated"])[0]
-    protocol = read_toml(shipped()["paper_press"])[0]
-    markers = "time_s,marker,x_mm,y_mm\n" + "".join(f"{0.1 * t:.1f},{m},{m}.5,0\n" for t in range(10) for m in range(3))
-    session = {
-        "schema": 1, "name": "s", "trials": [{"file": "a.csv", "condition": "c", "markers": "a_markers.csv"}],
-        "tool": {"radius": "5 mm", "contact": "rigid_bonded"}, "support": {"kind": "hole", "hole_radius": "30 mm"},
-        "camera": {"marker_rows": 1, "marker_columns": 3, "marker_spacing": "5 mm", "distance": "70 mm"},
-    }  # fmt: skip
-    (folder / "s").mkdir(parents=True, exist_ok=True)
-    (folder / "s" / "a.csv").write_text(press)
-    (folder / "s" / "a_markers.csv").write_text(markers)
-    finished, recording = folder.parent / "finished", folder.parent / "trial.mcap"
-    surface = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
-    facets = "".join(
-        f"facet normal 0 0 0\nouter loop\nvertex {a}\nvertex {b}\nvertex {c}\nendloop\nendfacet\n"
-        for a, b, c in (("0 0 0", "0 1 0", "1 0 0"), ("0 0 0", "1 0 0", "0 0 1"), ("1 0 0", "0 1 0", "0 0 1"))
-    )
-    relaxation = {"name": "viscoelastic_relaxation", "parameters": {"g_1": {"value": "0.3", "ci95": ["0.2", "0.4"]}}}
-    model = {"schema": 1, "base": {"tissue": "skin_forearm", "model": "wave"}, "effects": [relaxation]}
-    gate = read_toml(Path(load_plan.__code__.co_filename).with_name("default.toml"))[0]
-    table = (finished / "tables" / "max_deformation.csv").read_text() if finished.exists() else press
-    result = (finished / "results.json").read_bytes() if finished.exists() else b"{}"
-    return [
-        Kind("tissue", "t.toml", changed_table(scenario.tissue.to_table()), load_tissue),
-        Kind("scenario", "sc.toml", changed_table(scenario.to_table()), load_scenario),
-        Kind("scenario bytes", "sc.toml", changed_bytes(scenario.to_toml().encode()), load_scenario),
-        Kind("trial csv", "c/t.csv", changed_rows(press), lambda path: load_session(path.parent)),
-        Kind("trial csv bytes", "c/t.csv", changed_bytes(press.encode()), lambda path: load_session(path.parent)),
-        Kind("session.toml", "s/session.toml", changed_table(session), lambda path: load_session(path.parent)),
-        Kind("markers csv", "m/t_markers.csv", changed_rows(markers), _markers),
-        Kind("load csv", "load.csv", changed_rows("time_s,force_N\n0,0\n1,1\n2,2\n3,0\n"), _load),
-        Kind("reference csv", "r.csv", changed_rows(table), lambda path: read_reference(path, scenario)),
-        Kind(
-            "results.json", "run/results.json", changed_bytes(result), lambda path: _run_with(finished, path, read_run)
-        ),
-        Kind("model.toml", "model.toml", changed_table(model), lambda path: load_repair(path, None)),
-        Kind("gate.toml", "gate.toml", changed_table(gate), load_plan),
-        Kind("baseline.json", "b.json", changed_bytes(b'{"schema": 1, "gate": "x", "accuracy": {}}'), read_baseline),
-        Kind("rig.toml", "rig.toml", changed_table(rig), load_rig),
-        Kind("protocol.toml", "pr.toml", changed_table(protocol), load_protocol),
-        Kind("camera.toml", "cam.toml", changed_bytes(CAMERA.encode()), read_camera),
-        Kind("trial mcap", "t.mcap", changed_bytes(recording.read_bytes()), read_trial_mcap),
-        Kind("trial mcap, inspect", "t.mcap", changed_bytes(recording.read_bytes()), inspect_trial),
-        Kind("surface obj", "s.obj", changed_bytes(surface.encode()), lambda path: read_surface(path, "mm")),
-        Kind("surface stl", "s.stl", changed_bytes(f"solid a\n{facets}endsolid a\n".encode()), _stl),
-    ]
+def _start(path: Path) -> str:
+    return repr(path.read_bytes()[:1500])
 
 
-def _stl(path: Path) -> object:
-    from fem import read_surface
-
-    return read_surface(path, "mm")
+def _names(folder: Path) -> set[str]:
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if not path.is_dir()}
 
 
-def _markers(path: Path) -> object:
-    from bench_hw.tables import read_marker_csv
+@contextmanager
+def _bounded() -> Iterator[None]:
+    """End what takes longer than a person waits."""
 
-    return read_marker_csv(path)
+    def ring(*_: object) -> None:
+        raise HangError
 
-
-def _load(path: Path) -> object:
-    from benchmark.files import load_scenario
-
-    return load_scenario("skin-5N", {"load": f'{{ shape = "table", file = "{path}" }}'})
-
-
-def _run_with(finished: Path, path: Path) -> Path:
-    import shutil
-
-    for name in ("scenario.toml", "environment.json"):
-        shutil.copy(finished / name, path.parent / name)
-    shutil.copytree(finished / "tables", path.parent / "tables", dirs_exist_ok=True)
-    return path.parent
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, HANG)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def rows(counts: dict[str, Count]) -> list[tuple[str, ...]]:

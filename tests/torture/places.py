@@ -3,143 +3,155 @@
 from __future__ import annotations
 
 import os
+import shutil
+import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
 from pathlib import Path
 
-from tests.torture.commands import COMMANDS, Command, differences, digest, run
-from tests.torture.kills import clear
+from tests.torture.commands import COMMANDS, CONTRACT, Command, differences, run
+from tests.torture.disks import LONG, Environment, full_disks, usual_result
+from tests.torture.kills import clear, result
 from tests.torture.scene import contents, make_scene
 
-FULL = """
-import builtins, errno, io, os
-left = [{at}]
-def full(*_):
-    left[0] -= 1
-    if left[0] < 0:
-        raise OSError({error}, os.strerror({error}))
-real_sync, real_open = os.fsync, os.open
-def fsync(handle):
-    full()
-    return real_sync(handle)
-os.fsync = fsync
-def opened(path, flags, *rest, **more):
-    if flags & (os.O_WRONLY | os.O_RDWR) and "stderr" not in str(path):
-        full()
-    return real_open(path, flags, *rest, **more)
-os.open = opened
+LIMIT = "import resource; resource.setrlimit(resource.{which}, ({most}, {most}))"
+BACKWARDS = """
+import time
+began, really = time.time(), time.time
+time.time = lambda: 2 * began - really() - 86400.0
 """
-"""A disk that is full (or a process that may open no more files) from one write to the next."""
-MEMORY = "import resource; resource.setrlimit(resource.RLIMIT_AS, ({most}, {most}))"
-SIZE = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, ({most}, {most}))"
-CHEAP = ("fit", "verify", "report", "tissues new", "export", "import", "recover", "track", "sweep")
-
-
-@dataclass
-class Environment:
-    """What was tried in one surrounding: how often, how it ended by exit code, and failures in words."""
-
-    tries: int = 0
-    codes: dict[int, int] = field(default_factory=dict)
-    failures: list[str] = field(default_factory=list)
-
-    def note(self, code: int, allowed: tuple[int, ...], err: str, what: str) -> None:
-        """Count an ending; a code that is not allowed, a traceback or several paragraphs are failures."""
-        self.tries += 1
-        self.codes[code] = self.codes.get(code, 0) + 1
-        errors = [line for line in err.splitlines() if line.startswith(("error:", "unexpected error:"))]
-        if code not in allowed:
-            self.failures.append(f"{what}: exit {code}: {err.strip()[-200:]}")
-        elif "Traceback" in err or len(errors) > 1:
-            self.failures.append(f"{what}: no single paragraph: {err.strip()[-200:]}")
+NOBODY = "import os; os.setgroups([]); os.setgid(65534); os.setuid(65534)"
+CLOSED = "import os; os.close(1)"
+BROKEN = "import os, signal; reader, writer = os.pipe(); os.close(reader); os.dup2(writer, 1)"
+SEVERAL = ("tissues new", "import", "track", "verify", "fit", "report", "sweep")
+"""Verbs that are put into the surroundings other than full disks."""
 
 
 def torture(scene: Path, until: float, verbs: list[str]) -> dict[str, Environment]:
-    """Try the cheap commands in every surrounding, until the time is over."""
+    """Try the commands in every surrounding, until the time is over."""
     found: dict[str, Environment] = {}
-    commands = [each for each in COMMANDS if each.verb in CHEAP and each.verb in verbs]
-    usual = {each.verb: _usual(scene, each) for each in commands}
-    for at in range(10):
-        found[f"disk full from write {at} on"] = _faulty(scene, commands, FULL.format(at=at, error=28), usual, until)
-    found["no more files can be opened"] = _faulty(scene, commands, FULL.format(at=3, error=24), usual, until)
-    for most in (0, 1000, 100_000):
-        found[f"no file above {most} bytes"] = _faulty(scene, commands, SIZE.format(most=most), usual, until)
-    found["1.5 GB of address space"] = _faulty(scene, commands, MEMORY.format(most=1_500_000_000), usual, until)
-    found["two at once"] = _together(scene, next(each for each in COMMANDS if each.verb == "fit"), until)
-    for name, trial in _outside(scene).items():
+    commands = [each for each in COMMANDS if each.verb in verbs and each.verb not in LONG]
+    for command in commands:
         if time.monotonic() < until:
+            found[f"full disk: {command.verb}"] = full_disks(scene, command, until)
+    several = [each for each in commands if each.verb in SEVERAL]
+    trials: dict[str, Callable[[], Environment]] = {
+        name: lambda fault=fault: _faulty(scene, several, fault)  # type: ignore[misc]
+        for name, fault in _faults().items()
+    }
+    for name, trial in {**trials, **_together(scene), **_outside(scene)}.items():
+        if time.monotonic() < until:
+            print(name, file=sys.stderr, flush=True)
             found[name] = trial()
     return {name: each for name, each in found.items() if each.tries}
 
 
-def _usual(scene: Path, command: Command) -> dict[str, object]:
-    clear(scene, command)
-    run(command, scene)
-    return digest(scene / command.out)
+def _faults() -> dict[str, str]:
+    """What is put into a child by name of the surrounding."""
+    sizes = {
+        f"no file above {most} bytes": LIMIT.format(which="RLIMIT_FSIZE", most=most)
+        for most in (1000, 30_000, 1_000_000)
+    }
+    faults = {
+        **sizes,
+        "24 open files": LIMIT.format(which="RLIMIT_NOFILE", most=24),
+        "1.5 GB of address space": LIMIT.format(which="RLIMIT_AS", most=1_500_000_000),
+        "a clock that goes back": BACKWARDS,
+        "standard output closed": CLOSED,
+        "standard output a broken pipe": BROKEN,
+    }
+    return {**faults, "a folder of somebody else's": NOBODY} if os.getuid() == 0 else faults
 
 
-def _faulty(scene: Path, commands: list[Command], fault: str, usual: dict, until: float) -> Environment:  # type: ignore[type-arg]
-    """Each command with a fault put in: it ends well or is refused, leaves nothing, and works again without."""
+def _faulty(scene: Path, commands: list[Command], fault: str) -> Environment:
+    """Each command with a fault put in: it ends well or is refused, and leaves nothing that is not whole."""
     found = Environment()
     for command in commands:
-        if time.monotonic() > until:
-            break
+        usual = usual_result(scene, command)
         clear(scene, command)
         before = contents(scene)
         ended = run(command, scene, before=fault)
-        found.note(ended.code, (0, 2, 4, 5), ended.err, command.verb)
-        whole = (scene / command.out).exists()
-        if whole and differences(usual[command.verb], digest(scene / command.out))[1] and command.verb != "sweep":
-            found.failures.append(f"{command.verb}: it left a result that is not whole")
-        if command.verb != "sweep":
-            clear(scene, command)
-            left = contents(scene)
-            odd = sorted(name for name in {*before, *left} if before.get(name) != left.get(name))
-            if odd:
-                found.failures.append(f"{command.verb}: changed or left: {', '.join(odd)}")
-    return found
-
-
-def _together(scene: Path, command: Command, until: float) -> Environment:
-    """The same command twice at the same time: one is refused by name, the other ends well."""
-    found = Environment()
-    for pause in (0.0, 0.1, 0.5):
-        if time.monotonic() > until:
-            break
+        found.note(ended.code, CONTRACT, ended.err, command.verb)
+        there = result(scene, command)
+        if there and differences(usual, there)[1] and command.verb != "sweep":
+            found.fail(f"{command.verb}: it left a result that is not whole: {ended.err.strip()[-200:]}")
+        if not there and ended.code in (0, 1):
+            found.fail(f"{command.verb}: it ended with {ended.code} without a result")
         clear(scene, command)
-        second = Path(f"{scene}-2")
-        second.unlink(missing_ok=True)
-        second.symlink_to(scene)
-        with ThreadPoolExecutor(1) as pool:
-            first = pool.submit(run, command, scene)
-            time.sleep(pause)
-            ended = [run(command, second), first.result()]
-        second.unlink()
-        for each in ended:
-            found.note(each.code, (0, 2), each.err, f"after {pause} s")
-        if sorted(each.code for each in ended) != [0, 2] or not any("in use" in each.err for each in ended):
-            found.failures.append(f"after {pause} s they ended with {[each.code for each in ended]}")
+        left = contents(scene)
+        odd = sorted(name for name in {*before, *left} if before.get(name) != left.get(name))
+        if odd:
+            found.fail(f"{command.verb}: changed or left: {', '.join(odd)}: {ended.err.strip()[-200:]}")
+            for name in odd:
+                (scene / name).unlink(missing_ok=True)
     return found
 
 
-def _outside(scene: Path):  # type: ignore[no-untyped-def]
+def _together(scene: Path) -> dict[str, Callable[[], Environment]]:
+    """Two at the same time."""
+    fit = next(each for each in COMMANDS if each.verb == "fit")
+    return {
+        f"two into one folder, {pause} s apart": lambda pause=pause: _two(scene, fit, pause)  # type: ignore[misc]
+        for pause in (0.0, 0.5)
+    } | {"two in one second, default folders": lambda: _two_by_default(scene)}
+
+
+def _two(scene: Path, command: Command, pause: float) -> Environment:
+    """The same command twice: one is refused by name, the other ends well."""
+    found = Environment()
+    clear(scene, command)
+    second = Path(f"{scene}-2")
+    second.unlink(missing_ok=True)
+    second.symlink_to(scene)
+    with ThreadPoolExecutor(1) as pool:
+        first = pool.submit(run, command, scene)
+        time.sleep(pause)
+        ended = [run(command, second), first.result()]
+    second.unlink()
+    for each in ended:
+        found.note(each.code, (0, 2), each.err, command.verb)
+    if sorted(each.code for each in ended) != [0, 2] or not any("in use" in each.err for each in ended):
+        found.fail(f"they ended with {[each.code for each in ended]}")
+    clear(scene, command)
+    return found
+
+
+def _two_by_default(scene: Path) -> Environment:
+    """Two without --out: each has a folder of its own."""
+    found = Environment()
+    command = [sys.executable, "-m", "benchmark", "fit", "session", "--quiet"]
+    both = [subprocess.Popen(command, cwd=scene, stderr=subprocess.PIPE, text=True) for _ in range(2)]
+    for each in both:
+        err = each.communicate(timeout=600)[1]
+        found.note(each.returncode, (0,), err, "fit")
+    names = sorted(path.name for path in (scene / "results").iterdir())
+    if len(names) != 2:
+        found.fail(f"two fits left {', '.join(names)} in results")
+    shutil.rmtree(scene / "results")
+    return found
+
+
+def _outside(scene: Path) -> dict[str, Callable[[], Environment]]:
     """Surroundings that take a process of their own, by name."""
     ascii_locale = {"PYTHONUTF8": "0", "LC_ALL": "C", "PYTHONCOERCECLOCALE": "0"}
     root = scene.parent
+    shadows = ("fem.py", "numpy.py", "random.py", "typing.py", "reports/__init__.py", "wavemodel/__init__.py")
     return {
-        "ASCII locale, umlauts everywhere": lambda: _fit_in(root / "Mü ller" / "Größe", {**ascii_locale}),
+        "ASCII locale, umlauts everywhere": lambda: _fit_in(root / "Mü ller" / "Größe", ascii_locale),
         "Latin-1 bytes in a name": lambda: _fit_in(root / os.fsdecode(b"caf\xe9"), {}),
         "blanks, quotes and brackets": lambda: _fit_in(root / "a 'b\" [c] $(d) ;e", {}),
         "a name of 200 letters": lambda: _fit_in(root / ("n" * 200), {}),
         "a line end in a name": lambda: _fit_in(root / "a\nb", {}),
         "a leading dash": lambda: _fit_in(root / "-rf", {}),
         "a folder by a link": lambda: _by_link(root),
-        "shadowing names": lambda: _fit_in(root / "shadow", {}, ("fem.py", "numpy.py", "reports/__init__.py")),
+        "shadowing names": lambda: _fit_in(root / "shadow", {}, shadows),
+        "benchmark.py in the way": lambda: _benchmark_py(root / "own"),
         "no home, no terminal": lambda: _fit_in(root / "bare", {"HOME": "/nonexistent", "TERM": "", "COLUMNS": "1"}),
         "no temporary folder": lambda: _fit_in(root / "notmp", {"TMPDIR": "/nonexistent"}),
+        "the folder is removed meanwhile": lambda: _removed(root / "gone"),
         "an output that cannot be written": lambda: _refused(root / "ro", "/proc/here"),
         "an output on a device": lambda: _refused(root / "dev", "/dev/null/x"),
         "an output that is a file": lambda: _refused(root / "file", "foreign.csv"),
@@ -154,12 +166,44 @@ def _fit_in(folder: Path, changes: dict[str, str], shadow: tuple[str, ...] = ())
         (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text('raise SystemExit("theirs was imported")\n')
     found = Environment()
+    before = contents(folder)
     for words in (["benchmark", "fit", "session", "--out", folder.name], ["bench_hw", "track", "pictures", "--camera",
                   "camera.toml", "--out", f"{folder.name}.csv"]):  # fmt: skip
         if folder.name.startswith("-"):
             words[-1] = f"./{words[-1]}"
         ended = _process(folder, words, changes)
         found.note(ended.returncode, (0,), ended.stderr.decode("utf-8", "replace"), " ".join(words[:2]))
+    left = contents(folder, (folder.name, f"{folder.name}.csv"))
+    if left != before:
+        found.fail(f"changed or left: {sorted(set(left) ^ set(before))}")
+    return found
+
+
+def _benchmark_py(folder: Path) -> Environment:
+    """Python itself runs a `benchmark.py` for `python -m benchmark`; the installed command and `python -P` do not."""
+    make_scene(folder)
+    (folder / "benchmark.py").write_text('raise SystemExit("theirs was run")\n')
+    found, script = Environment(), str(Path(sys.executable).with_name("tissuebench"))
+    for command in ([script, "fit"], [sys.executable, "-P", "-m", "benchmark", "fit"]):
+        ended = subprocess.run([*command, "session", "--out", "p"], cwd=folder, capture_output=True, check=False)
+        found.note(ended.returncode, (0,), ended.stderr.decode(), Path(command[0]).name)
+    return found
+
+
+def _removed(folder: Path) -> Environment:
+    """Somebody removes the current folder while a fit is at work in it."""
+    make_scene(folder)
+    found = Environment()
+    command = [sys.executable, "-m", "benchmark", "fit", "session", "--out", "p"]
+    process = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    time.sleep(1.0)
+    shutil.rmtree(folder)
+    try:
+        err = process.communicate(timeout=300)[1]
+    except subprocess.TimeoutExpired:
+        process.send_signal(signal.SIGKILL)
+        err = process.communicate()[1]
+    found.note(process.returncode, (0, 2), err, "fit")
     return found
 
 
@@ -176,7 +220,7 @@ def _refused(folder: Path, out: str) -> Environment:
     if out == "nowhere":
         (folder / out).symlink_to("not there")
     before, found = contents(folder), Environment()
-    for verb in (["fit", "session"], ["run", "skin-5N"], ["discover", "session"], ["verify"]):
+    for verb in (["fit", "session"], ["run", "skin-5N"], ["discover", "session"], ["verify"], ["blind"], ["reproduce"]):
         ended = _process(folder, ["benchmark", *verb, "--out", out], {})
         allowed = (0, 2) if out == "nowhere" else (2,)
         found.note(ended.returncode, allowed, ended.stderr.decode("utf-8", "replace"), f"{verb[0]} --out {out}")
@@ -184,7 +228,7 @@ def _refused(folder: Path, out: str) -> Environment:
             break
     left = contents(folder, ("not there",))
     if out != "nowhere" and left != before:
-        found.failures.append("something in the folder changed")
+        found.fail("something in the folder changed")
     return found
 
 

@@ -61,6 +61,16 @@ def test_a_file_of_the_users_cannot_end_the_program_as_if_all_were_well(
     assert "mine.py, line 5: the program was told to end there (exit code 0)" in " ".join(called.err.split())
 
 
+def test_too_little_memory_is_no_fault_of_the_program(benchmark_cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    def exhausted(**_: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(app, "app", exhausted)
+    called = benchmark_cli("tissues")
+    assert called.code == 2
+    assert "too little memory" in called.err
+
+
 def test_an_interruption_has_its_own_code(benchmark_cli, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(**_: object) -> None:
         raise KeyboardInterrupt

@@ -1,0 +1,141 @@
+"""Small disks: each command on one that is full after a tenth, two tenths... of what it writes."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from tests.torture.commands import CONTRACT, Command, differences, is_plain, run
+from tests.torture.kills import clear, result
+from tests.torture.scene import contents
+
+POINTS = 10
+PAGE = 4096
+ROOM = "import shutil; plenty = shutil._ntuple_diskusage(1 << 40, 0, 1 << 40); shutil.disk_usage = lambda _: plenty\n"
+"""The disk tells that it has room, so that it is full in the midst of writing instead of before computing."""
+HERE = "import os, tempfile; tempfile.tempdir = os.environ['HOME'] = os.path.abspath({place!r})\n"
+FULL = """
+import errno, os
+left = [{at}]
+real_sync, real_open = os.fsync, os.open
+def full():
+    left[0] -= 1
+    if left[0] < 0:
+        raise OSError(28, os.strerror(28))
+def fsync(handle):
+    full()
+    return real_sync(handle)
+def opened(path, flags, *rest, **more):
+    if flags & (os.O_WRONLY | os.O_RDWR) and "stderr" not in str(path):
+        full()
+    return real_open(path, flags, *rest, **more)
+os.fsync, os.open = fsync, opened
+"""
+"""In the place of a small disk, where none can be mounted or the result has no ten pages: full from one synchronised
+write to the next."""
+LONG = ("run --trials", "fit --free", "discover --bench", "check", "check --accept", "blind", "reproduce",
+        "run, steps kept")  # fmt: skip
+"""Verbs that are left out of the full disks: each takes half a minute and more."""
+
+
+@dataclass
+class Environment:
+    """What was tried in one surrounding: how often, how it ended by exit code, and failures in words."""
+
+    tries: int = 0
+    codes: dict[int, int] = field(default_factory=dict)
+    failures: list[str] = field(default_factory=list)
+
+    def note(self, code: int, allowed: tuple[int, ...], err: str, what: str) -> None:
+        """Count an ending; a code that is not allowed, a traceback or several paragraphs are failures."""
+        self.tries += 1
+        self.codes[code] = self.codes.get(code, 0) + 1
+        if code not in allowed:
+            self.fail(f"{what}: exit {code}: {err.strip()[-300:]}")
+        elif not is_plain(err):
+            self.fail(f"{what}: no single paragraph: {err.strip()[-300:]}")
+
+    def fail(self, text: str) -> None:
+        """Keep a failure and say it."""
+        self.failures.append(text)
+        print(f"  {text}", file=sys.stderr, flush=True)
+
+
+def usual_result(scene: Path, command: Command) -> dict[str, Any]:
+    clear(scene, command)
+    run(command, scene)
+    return result(scene, command)
+
+
+def full_disks(scene: Path, command: Command, until: float) -> Environment:
+    """A command on a disk that is full after a tenth, two tenths... of what it writes."""
+    found, small, kept = Environment(), scene / "small", scene / "kept"
+    moved = {out: f"small/{out}" for out in command.outs}
+    words = tuple(moved.get(word, "small/p" if word == "p" else word) for word in command.words)
+    inside = replace(command, words=words, out=moved[command.out], more=tuple(moved[out] for out in command.more))
+    small.mkdir()
+    usual = usual_result(scene, inside)
+    need = sum(_pages(scene / out) for out in inside.outs)
+    shutil.rmtree(small)
+    for point in range(POINTS):
+        if time.monotonic() > until or command.verb == "clean":
+            break
+        small.mkdir()
+        kept.mkdir()
+        before = contents(scene, ("small", "kept"))
+        size = max(1, point * need // POINTS) * PAGE
+        mounted = need >= POINTS and _mount(small, size)
+        fault = ROOM + HERE.format(place=str(kept)) + ("" if mounted else FULL.format(at=point))
+        ended = run(inside, scene, before=fault)
+        _judge_full(found, inside, scene, usual, ended.code, ended.err, f"{command.verb}, point {point}")
+        if mounted:
+            subprocess.run(["umount", str(small)], check=True)
+        if contents(scene, ("small", "kept")) != before:
+            found.fail(f"{command.verb}, point {point}: something beside it changed")
+        for place in (small, kept):
+            shutil.rmtree(place)
+    return found
+
+
+def _judge_full(
+    found: Environment,
+    command: Command,
+    scene: Path,
+    usual: dict[str, Any],
+    code: int,
+    err: str,
+    what: str,
+) -> None:
+    """It ended well and whole, or was refused and left nothing, or only what goes on from there or is kept and said."""
+    found.note(code, CONTRACT, err, what)
+    written = contents(scene / "small", ("lost+found",))
+    if code in (0, 1) and differences(usual, result(scene, command))[1]:
+        found.fail(f"{what}: it ended well with another result")
+    elif code not in (0, 1) and command.verb == "sweep":
+        return  # finished points stay, and the same command goes on
+    elif code not in (0, 1):
+        left = [name for name in written if not name.endswith((".lock", ".part"))]
+        recording = command.verb == "capture"  # what was recorded stays
+        if left and not recording:
+            found.fail(f"{what}: it left {', '.join(left)}: {err.strip()[-200:]}")
+        if contents(scene / "kept") and "kept" not in err:
+            found.fail(f"{what}: it kept a result without a word")
+
+
+def _pages(path: Path) -> int:
+    files = [path] if path.is_file() else [each for each in path.rglob("*") if each.is_file()]
+    return sum(-(-file.stat().st_size // PAGE) + 1 for file in files) if path.exists() else 1
+
+
+def _mount(place: Path, size: int) -> bool:
+    """Mount a disk of so many bytes, where that is allowed."""
+    command = ["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(place)]
+    if os.getuid() != 0 or shutil.which("mount") is None:
+        return False
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
