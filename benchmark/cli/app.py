@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 import textwrap
 import traceback
+import warnings
 from collections.abc import Sequence
 from typing import Annotated
 
@@ -82,6 +83,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     try:
+        if "--debug" not in arguments:  # what NumPy says of an overflow tried on the way is for who mends the program
+            warnings.filterwarnings("ignore", category=RuntimeWarning)
         code = app(args=arguments or ["--help"], prog_name="python -m benchmark", standalone_mode=False)
     except KeyboardInterrupt:
         code = EXIT_INTERRUPTED

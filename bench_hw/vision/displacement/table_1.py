@@ -86,8 +86,10 @@ def published_variables(
     Raises
     ------
     InputError
-        No radius is known.
+        No radius is known, or in no frame did anything move.
     """
+    if not len(moved):
+        raise InputError("in no frame of the film did the markers move; the article's variables need one that did")
     fits = fit_parabolas(np.arange(len(moved), dtype=np.float64), moved * 1e3)
     o, p = (
         (float(np.nanmean(fits.a[:, axis])), float(np.nanmean(fits.b[:, axis])), float(np.nanmean(fits.c[:, axis])))

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import warnings
 from importlib.metadata import version
 from pathlib import Path
 
@@ -89,3 +90,12 @@ def test_without_a_verb_the_help_is_shown_as_it_is(benchmark_cli) -> None:
 def test_the_version_is_told(benchmark_cli) -> None:
     called = benchmark_cli("--version")
     assert (called.code, called.out) == (0, f"tissuebench {version('tissuebench')}\n")
+
+
+def test_what_numpy_says_on_the_way_is_not_shown(benchmark_cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    def overflowing(**_: object) -> int:
+        warnings.warn("overflow encountered in exp", RuntimeWarning, stacklevel=1)
+        return 0
+
+    monkeypatch.setattr(app, "app", overflowing)
+    assert benchmark_cli("tissues").err == ""

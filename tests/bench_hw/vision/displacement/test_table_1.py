@@ -106,3 +106,8 @@ def test_what_is_no_press_is_refused():
         sound_variables(GRID, -sheet(2e-3, 50e-3, 50e-3, 4e-3), 0.01, 2e-3, 9.25, 4e-3)
     with pytest.raises(InputError, match="no frame has a circle"):
         published_variables(np.zeros((5, 9, 2)), np.full(5, np.nan), np.zeros(5))
+
+
+def test_a_film_in_which_nothing_moves_is_refused() -> None:
+    with pytest.raises(InputError, match="in no frame of the film did the markers move"):
+        published_variables(np.zeros((0, 9, 2)), np.zeros(0), np.zeros(0))
