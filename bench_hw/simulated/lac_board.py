@@ -31,6 +31,8 @@ _STRING = 0x03
 _LANGUAGE = 0x0409
 _SERIAL_INDEX = 3
 _TIMEOUT, _NO_DEVICE = -7, -4
+KEPT = 1000
+"""Packets that a board remembers for who looks at it."""
 
 
 class LacBoard:
@@ -51,7 +53,7 @@ class LacBoard:
         bench.motion.resolution = bench.motion.stroke / COUNTS
         self.settings: dict[Code, int] = {}
         self.eeprom_writes = 0
-        self.received: list[bytes] = []
+        self.received: deque[bytes] = deque(maxlen=KEPT)
         self._restore()
 
     @property
