@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import sys
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 
+from bench_hw.storage.regular_file import read_regular
 from benchmark.child_processes import forbid_ending
 from benchmark.errors import InputError
 from benchmark.physics.effect import Effect
@@ -69,14 +70,14 @@ def load_effects(path: str | Path) -> tuple[Effect, ...]:
     if not file.is_file():
         raise InputError(f"{file}: there is no such effects file; give a Python file with an Effect at its top level.")
     name = f"own_effects_{file.stem}"
-    specification = importlib.util.spec_from_file_location(name, file)
-    if specification is None or specification.loader is None:
+    if file.suffix != ".py":
         raise InputError(f"{file}: this is no Python file; its name must end in .py.")
-    module = importlib.util.module_from_spec(specification)
+    module = ModuleType(name)
+    module.__file__ = str(file)
     sys.modules[name] = module
     forbid_ending(str(file))
-    try:
-        specification.loader.exec_module(module)
+    try:  # no loader of Python's, which would leave compiled code beside the file
+        exec(compile(read_regular(file), str(file), "exec"), vars(module))
     except (Exception, SystemExit) as error:
         raise InputError(f"{file}: this effects file does not run ({type(error).__name__}: {error}).") from error
     found = [value for value in vars(module).values() if isinstance(value, Effect)]

@@ -8,7 +8,7 @@ from contextlib import suppress
 
 import numpy as np
 
-from bench_hw.errors import BenchError
+from bench_hw.errors import BenchError, InputError
 from bench_hw.vision.displacement import maximum_radius, moving_average, published_variables, sound_variables
 from benchmark.files import Session, Trial
 from benchmark.identification import FittedParameter
@@ -100,6 +100,8 @@ def _sound(session: Session, trial: Trial, motion: Motion, placed: Placed) -> Va
     depths = _depth(trial, motion)
     largest = maximum_radius(motion.time, motion.radius_nine)
     depth = float(depths[largest.frame])
+    if depth <= 0.0:
+        raise InputError("the radius is largest where the tool does not touch: nothing moved in this film")
     force = float(np.interp(largest.time, trial.table.time, trial.table.force))
     layers = session.specimen.layers
     hole, tool = trial.support.hole_radius or 3.0 * trial.tool.radius, trial.tool.radius

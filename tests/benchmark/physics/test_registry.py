@@ -52,6 +52,9 @@ def test_an_own_effect_is_loaded_from_its_file(tmp_path):
     motion = Motion(depth, depth, depth)
     made = own.observe({"c": 3.0}, Readings(np.ones(2)), motion, None)
     assert made.force == pytest.approx([1.0, 13.0])
+    assert list(tmp_path.iterdir()) == [file]
+    file.write_text(OWN.replace("square_offset", "square_origin"))  # as long, and perhaps in the same second
+    assert load_effects(file)[0].slug == "square_origin"
 
 
 @pytest.mark.parametrize(
