@@ -5,7 +5,7 @@ PY     := $(VENV)/bin/python
 RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
-BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-gate bench-sweep bench-discovery bench-effects bench-derivatives
+BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-gate bench-sweep bench-discovery bench-effects bench-derivatives bench-haptic bench-press
 .PHONY: help run test test-slow test-torture $(BENCHES) lint types imports check docs lock clean
 
 help:
@@ -22,6 +22,8 @@ help:
 	@echo "make bench-vision     frames a second of the tracker, and its memory on a long video"
 	@echo "make bench-effects    wave and finite elements with each body effect, side by side"
 	@echo "make bench-derivatives  what derivatives of a press cost, and CalculiX as their judge"
+	@echo "make bench-haptic       latency of a million steps of the haptic loop"
+	@echo "make bench-press        frames a second of the page to press, in Chromium without a graphics card"
 	@echo "make bench-sweep      a sweep by one and by two local workers"
 	@echo "make bench-gate       the regression gate on trial: false alarms and power (hours at full length)"
 	@echo "make bench-discovery  the discovery on 150 sessions with hidden effects (hours)"
@@ -95,6 +97,13 @@ bench-effects: $(RUN_STAMP)
 
 bench-derivatives: $(RUN_STAMP)
 	$(PY) -m tests.performance.derivatives
+
+bench-haptic: $(RUN_STAMP)
+	$(PY) -m tests.performance.haptic
+
+bench-press: $(DEV_STAMP)
+	$(PY) -m benchmark press skin-5N --save build/press.html
+	$(PY) -m tests.performance.press_page build/press.html
 
 bench-sweep: $(RUN_STAMP)
 	$(PY) -m tests.performance.sweep

@@ -191,6 +191,18 @@ class InteractiveTissue:
         WaveError
             If the duration is not positive.
         """
+        self.advance(dt)
+        self._draw()
+        return self._out
+
+    def advance(self, dt: float) -> None:
+        """Go on by a frame of dt (s) with the forces alone, for a loop that draws less often than it feels.
+
+        Raises
+        ------
+        WaveError
+            If the duration is not positive.
+        """
         require_positive("dt", dt, "s")
         for index, tool in enumerate(self._contacts):
             if tool.phase == "returning":
@@ -199,8 +211,16 @@ class InteractiveTissue:
         for index, tool in enumerate(self._contacts):
             pressed = tool.phase == "pressed"
             self.force[index] = self.body.reaction(self._relaxation.held(index, tool.elastic, dt)) if pressed else 0.0
-        self._draw()
-        return self._out
+
+    def presses(self, contact: int) -> bool:
+        """Whether a tool is on the tissue.
+
+        Raises
+        ------
+        WaveError
+            For a tool that does not exist.
+        """
+        return self._tool(contact).phase == "pressed"
 
     def _tool(self, contact: int) -> _Contact:
         if not 0 <= contact < len(self._contacts):

@@ -15,7 +15,7 @@
   try { renderer = new Scene.Renderer(canvas); } catch (error) { get("note").textContent = `No drawing here: ${error.message}.`; }
   const gl = renderer?.gl, camera = new Scene.Camera();
   const state = {
-    bench: null, specimen: null, bodies: null, slabs: [], plate: null, sheet: null, ribbons: [], tools: [], faces: null, fem: null, values: null,
+    renderer, bench: null, specimen: null, bodies: null, slabs: [], plate: null, sheet: null, ribbons: [], tools: [], faces: null, fem: null, values: null,
     paused: false, slow: false, replay: null, demo: true, last: 0, active: 0, cost: 0, errorScale: 0.0025, traces: [], frames: [], orbit: null, pointers: new Map(), script: null,
   };
 
