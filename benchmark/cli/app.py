@@ -19,13 +19,13 @@ from benchmark.cli import (
     check,
     discover,
     fit,
+    hands_on,
     reproduce,
     run,
     sweep,
     verify,
 )
 from benchmark.cli.folders import clean, dossier, reference, report, shipped
-from benchmark.cli.hands_on import press
 
 EXIT_USAGE = 2
 TOO_LITTLE = "there is too little memory for this: end other programs, or ask for less (a coarser mesh, fewer workers)"
@@ -53,7 +53,7 @@ for verb in (
     reference,
     dossier,
     clean,
-    press,
+    hands_on,
 ):
     verb.register(app)
 

@@ -14,6 +14,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from benchmark.comparison.samples import (
+    Array,
     ComparisonError,
     Moments,
     Result,
@@ -26,6 +27,8 @@ from benchmark.comparison.samples import (
 )
 
 NO_VARIANCE = "both samples are constant: t is not defined"
+LARGE_EFFECT = 0.8
+"""Standard deviations that are called large (J. Cohen 1988, Statistical Power Analysis, section 2.2)."""
 ALL_EQUAL = "the differences do not vary: t is not defined"
 
 
@@ -104,11 +107,40 @@ def welch_t_test(fem: ArrayLike, wave: ArrayLike, hypothesized_difference: float
     return _two_sample(fem, wave, hypothesized_difference, pooled=False)
 
 
+def group_t_test(first: ArrayLike, second: ArrayLike) -> TwoSampleT:
+    """Welch's test of two independent groups, (n,) and (m,): its `fem` is the first group, its `wave` the second.
+
+    Raises
+    ------
+    ComparisonError
+        Infinite values, fewer than two in a group.
+    """
+    return _tested(single_sample(first), single_sample(second), 0.0, pooled=False)
+
+
+def group_power(sizes: tuple[int, int], effect: float = LARGE_EFFECT) -> float:
+    """Power at 5 % of a t-test between groups of such sizes against a difference of so many standard deviations."""
+    from statsmodels.stats.power import TTestIndPower
+
+    return float(TTestIndPower().power(effect, sizes[0], 0.05, ratio=sizes[1] / sizes[0]))
+
+
+def detectable_effect(sizes: tuple[int, int], power: float = 0.8) -> float:
+    """Difference in standard deviations that a t-test between groups of such sizes finds with such a power."""
+    from statsmodels.stats.power import TTestIndPower
+
+    found = TTestIndPower().solve_power(None, sizes[0], 0.05, power=power, ratio=sizes[1] / sizes[0])
+    return float(np.ravel(found)[0])
+
+
 def _two_sample(fem: ArrayLike, wave: ArrayLike, hypothesis: float, pooled: bool) -> TwoSampleT:
-    first, second = paired_samples(fem, wave)
+    return _tested(*paired_samples(fem, wave), hypothesis, pooled)
+
+
+def _tested(first: Array, second: Array, hypothesis: float, pooled: bool) -> TwoSampleT:
     difference = float(np.mean(second) - np.mean(first))
     if is_constant(first) and is_constant(second):
-        df, t, p, note = 2.0 * len(first) - 2.0, np.nan, np.nan, NO_VARIANCE
+        df, t, p, note = len(first) + len(second) - 2.0, np.nan, np.nan, NO_VARIANCE
         low = high = difference
     else:
         test = scipy.stats.ttest_ind(first - hypothesis, second, equal_var=pooled)

@@ -1,7 +1,6 @@
 """Interactive control: tools that press a tissue's vertices where the user puts them, and the force they feel."""
 
-from wavemodel.control.haptic_device import HapticDevice, RecordedDevice, SimulatedDevice
-from wavemodel.control.haptic_loop import EnergyBound, HapticLoop
+from wavemodel.control.haptic_loop import EnergyBound, HapticDevice, HapticLoop, RecordedDevice, SimulatedDevice
 from wavemodel.control.interactive_tissue import Grid, InteractiveTissue
 from wavemodel.control.pressed_body import Body
 from wavemodel.control.published_body import PublishedBody

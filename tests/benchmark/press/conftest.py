@@ -5,7 +5,7 @@ from functools import cache
 import pytest
 
 from benchmark.files import load_scenario
-from benchmark.press.press_request import document
+from benchmark.press.press_page import document
 from benchmark.press.pressed_specimen import pressed_specimen
 from wavemodel import DiscTool, LayeredWave, Prony, WaveDiscretisation, WaveLayer
 

@@ -8,9 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from benchmark.press.fem_on_demand import FemOnDemand
 from benchmark.press.press_page import render_press_page
-from benchmark.press.press_server import Served, make_server
+from benchmark.press.press_server import FemOnDemand, Served, make_server
 from wavemodel.control.pressed_body import radii_of
 
 CHROMIUM = shutil.which("chromium")

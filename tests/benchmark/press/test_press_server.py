@@ -14,8 +14,7 @@ import pytest
 from tornado.httpclient import AsyncHTTPClient, HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
-from benchmark.press.fem_on_demand import FemOnDemand
-from benchmark.press.press_server import LONGEST_MESSAGE, Served, make_server
+from benchmark.press.press_server import LONGEST_MESSAGE, FemOnDemand, Served, make_server
 
 TOKEN = "a-token-of-this-test"
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmark.press.press_request import document
+from benchmark.press.press_page import document
 from benchmark.press.radial_table import table_of_body
 from wavemodel import Prony, PublishedWave
 from wavemodel.control import Grid, InteractiveTissue, PublishedBody, layered_body

@@ -1,4 +1,4 @@
-"""`benchmark press`: a tissue to press in the browser, the finite elements' answer beside the wave's."""
+"""`benchmark press` and `benchmark assess`: a tissue to press in the browser, and how it was pressed."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from benchmark.cli.options import Debug, Json, Quiet, Set, parse_settings
+from benchmark.cli.options import Debug, Json, Out, Quiet, Set, parse_settings
 
 if TYPE_CHECKING:
     from benchmark.press.pressed_specimen import PressedSpecimen
@@ -31,10 +31,15 @@ Tool = Annotated[
 ]
 Model = Annotated[Path | None, typer.Option("--model", help="Before and after the effects of a model file.")]
 
+Records = Annotated[
+    list[Path], typer.Argument(help="Records of press (CSV), or folders of them: two folders are compared as groups.")
+]
+
 
 def register(app: typer.Typer) -> None:
-    """Add the verb to the command line."""
+    """Add both verbs to the command line."""
     app.command("press", help=press.__doc__)(press)
+    app.command("assess", help=assess.__doc__)(assess)
 
 
 def press(
@@ -56,7 +61,7 @@ def press(
     where the finite elements can be asked for a press as it was made, until Ctrl-C.
     """
     from benchmark.cli.console import Console
-    from benchmark.press.press_request import PressRequest, specimens
+    from benchmark.press.press_page import PressRequest, specimens
     from benchmark.runs.output.destination import check_file
 
     console = Console(quiet=quiet)
@@ -72,8 +77,7 @@ def press(
 
 def _write(found: Sequence[PressedSpecimen], save: Path, *, as_json: bool) -> None:
     from benchmark.cli.show import print_json
-    from benchmark.press.press_page import render_press_page
-    from benchmark.press.press_request import document
+    from benchmark.press.press_page import document, render_press_page
     from reports import write_text
 
     page = render_press_page(document(found))
@@ -89,10 +93,8 @@ def _serve(found: Sequence[PressedSpecimen], port: int, *, open_page: bool, as_j
     import json
     import webbrowser
 
-    from benchmark.press.fem_on_demand import FemOnDemand
-    from benchmark.press.press_page import render_press_page
-    from benchmark.press.press_request import document
-    from benchmark.press.press_server import serve
+    from benchmark.press.press_page import document, render_press_page
+    from benchmark.press.press_server import FemOnDemand, serve
 
     def say(address: str) -> None:
         print(json.dumps({"schema": 1, "address": address}) if as_json else f"{address}  (Ctrl-C ends it)", flush=True)
@@ -100,3 +102,27 @@ def _serve(found: Sequence[PressedSpecimen], port: int, *, open_page: bool, as_j
             webbrowser.open(address)
 
     serve(render_press_page(document(found), served=True), FemOnDemand(found).answer, port, say)
+
+
+def assess(
+    records: Records,
+    out: Out = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> int:
+    """Measure recorded attempts: time, path, smoothness, accuracy, tremor.
+
+    Two folders are compared as groups, such as expert and novice, measure by measure, with power.
+    """
+    from benchmark.assessment.skill_comparison import assess as assessed
+    from benchmark.assessment.skill_comparison import summary, write_assessment
+    from benchmark.cli.show import print_json
+
+    found = assessed(records)
+    folder = write_assessment(found, out)
+    if json:
+        print_json({**summary(found), "folder": str(folder)})
+    else:
+        print(f"{found.headline}\n  report: {folder / 'report.html'}")
+    return 0

@@ -9,8 +9,7 @@ import pytest
 
 from benchmark.cli.app import main
 from benchmark.errors import InputError
-from benchmark.press.press_page import render_press_page
-from benchmark.press.press_request import PressRequest, specimens
+from benchmark.press.press_page import PressRequest, render_press_page, specimens
 from benchmark.runs.options import Listener
 
 COARSE = {"fem.mesh": "coarse", "wave.large_press": "linear"}

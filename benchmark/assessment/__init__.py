@@ -1,0 +1,1 @@
+"""How a person pressed: recorded attempts, measures of motion with their sources, and groups compared."""

@@ -1,0 +1,283 @@
+"""A recorded attempt: each tool's motion and force and the targets shown, from one CSV file, and its measures.
+
+Columns `time_s, tool, x_mm, y_mm, depth_mm, force_N`, a row for each tool and instant; of a task also `target`,
+`target_x_mm, target_y_mm, target_depth_mm` and, where a force was asked for, `target_force_N`.
+
+Each measure of motion names its source: arrays in, one number out, SI units. Mean jerk is not among them: it does not
+part levels of skill (F. Aghazadeh, B. Zheng, M. Tavakoli and H. Rouhani 2023, Sensors 23:3146), which the log
+dimensionless jerk and the 95 % motion frequency do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy.signal import butter, sosfiltfilt
+
+from benchmark.errors import InputError
+
+Array = NDArray[np.float64]
+NEEDED = ("time_s", "tool", "x_mm", "y_mm", "depth_mm", "force_N")
+TARGET = ("target", "target_x_mm", "target_y_mm", "target_depth_mm")
+FEWEST_ROWS = 20
+RATE = 100.0
+"""Hz to which an attempt is brought, linear between its rows."""
+SMOOTHED = 10.0
+"""Hz below which speed is taken for jerk and arc length (fourth-order Butterworth, both ways): hands stay below it."""
+SHAKING = (4.0, 20.0)
+"""Hz, round the band of tremor: what is left of an attempt before tremor is read off (the same filter)."""
+NEAR = 3e-3
+"""m from a target within which a press counts as one of it."""
+CUTOFF, THRESHOLD, PADDING = 10.0, 0.05, 4
+"""Of the spectral arc length, as its authors have them: Hz, share of the largest amplitude, doublings of padding."""
+TREMOR_BAND = (8.0, 12.0)
+"""Hz: physiological tremor of the hand (R. J. Elble and W. C. Koller 1990, Tremor)."""
+
+
+def path_length(position: Array) -> float:
+    """Sum of the distances between positions (n, 3), m.
+
+    S. Cotin, N. Stylopoulos, M. Ottensmeyer et al. 2002, MICCAI, LNCS 2488:35.
+    """
+    return float(np.linalg.norm(np.diff(position, axis=0), axis=1).sum())
+
+
+def economy_of_motion(position: Array, waypoints: Array) -> float:
+    """Straight way from the first position (n, 3) through waypoints (k, 3), over the path length; at most 1.
+
+    A. G. Gallagher and R. M. Satava 2002, Surg Endosc 16:1746 ("economy of movement"). NaN where nothing moved.
+    """
+    taken = path_length(position)
+    return path_length(np.vstack([position[:1], waypoints])) / taken if taken > 0.0 else float("nan")
+
+
+def speed_of(position: Array, rate: float) -> Array:
+    """(n - 1,) speed between positions (n, 3) taken at an even rate (Hz), m/s."""
+    return np.asarray(np.linalg.norm(np.diff(position, axis=0), axis=1) * rate)
+
+
+def log_dimensionless_jerk(speed: Array, rate: float) -> float:
+    """-ln(T^3 / v_max^2 integral of (d2v/dt2)^2 dt) of a speed profile (n,), m/s; nearer to nought is smoother.
+
+    S. Balasubramanian, A. Melendez-Calderon, A. Roby-Brami and E. Burdet 2015, J NeuroEng Rehabil 12:112, eq. (5), with
+    the differences of their own program. NaN where nothing moved.
+    """
+    peak, duration = float(np.max(np.abs(speed))), speed.size / rate
+    jerk = np.diff(speed, 2) * rate**2
+    whole = duration**3 * float(jerk @ jerk) / rate
+    return float(-np.log(whole / peak**2)) if peak > 0.0 and whole > 0.0 else float("nan")
+
+
+def spectral_arc_length(speed: Array, rate: float) -> float:
+    """Less the length of the normalised amplitude spectrum of a speed profile (n,); nearer to nought is smoother.
+
+    S. Balasubramanian et al. 2015 (see `log_dimensionless_jerk`), eqs. (1) and (2): up to the last frequency within
+    10 Hz whose amplitude is 5 % of the largest or more. NaN where nothing moved.
+    """
+    size = 2 ** (int(np.ceil(np.log2(speed.size))) + PADDING)
+    frequency, amplitude = np.arange(size) * rate / size, np.abs(np.fft.fft(speed, size))
+    if not amplitude.max() > 0.0:
+        return float("nan")
+    inside = frequency <= CUTOFF
+    frequency, amplitude = frequency[inside], amplitude[inside] / amplitude.max()
+    strong = np.flatnonzero(amplitude >= THRESHOLD)
+    kept = slice(strong[0], strong[-1] + 1)
+    across, along = np.diff(frequency[kept]), np.diff(amplitude[kept])
+    return float(-np.hypot(across / across.sum(), along).sum()) if across.size else float("nan")
+
+
+def motion_frequency(position: Array, rate: float, share: float = 0.95) -> float:
+    """Frequency below which a share of the power of the velocity lies, Hz; lower is smoother.
+
+    Aghazadeh et al. 2023 (see above), who propose it for being less hurt by noise than jerk. Here it is the
+    spectral edge of the periodogram of the three velocities of positions (n, 3), their means left out, summed. NaN
+    where nothing moved.
+    """
+    velocity = np.diff(position, axis=0) * rate
+    power = (np.abs(np.fft.rfft(velocity - velocity.mean(axis=0), axis=0)) ** 2).sum(axis=1)
+    whole = np.cumsum(power)
+    if not whole[-1] > 0.0:
+        return float("nan")
+    return float(np.searchsorted(whole, share * whole[-1]) * rate / velocity.shape[0])
+
+
+def tremor(position: Array, rate: float, band: tuple[float, float] = TREMOR_BAND) -> float:
+    """Root mean square of the motion within a band of frequencies (Hz) of positions (n, 3), m.
+
+    Physiological tremor has its peak there (R. J. Elble and W. C. Koller 1990, Tremor). A record that does not end
+    where it began leaks into every band: take slow motion out of it first.
+    """
+    count = position.shape[0]
+    amplitude = np.abs(np.fft.rfft(position - position.mean(axis=0), axis=0)) ** 2
+    frequency = np.fft.rfftfreq(count, 1.0 / rate)
+    inside = (frequency >= band[0]) & (frequency <= band[1])
+    twice = np.where((frequency > 0.0) & (frequency < 0.5 * rate), 2.0, 1.0)
+    return float(np.sqrt((twice[inside, None] * amplitude[inside]).sum()) / count)
+
+
+def bimanual_correlation(first: Array, second: Array) -> float:
+    """Pearson's correlation of the speeds (n,) of two tools: how far both hands work at once.
+
+    E. F. Hofstad, C. Våpenstad, M. K. Chmarra et al. 2013, Surg Endosc 27:854 ("bimanual dexterity"). NaN where one
+    rests.
+    """
+    one, other = first - first.mean(), second - second.mean()
+    scale = float(np.sqrt((one @ one) * (other @ other)))
+    return float(one @ other) / scale if scale > 0.0 else float("nan")
+
+
+def root_mean_square(errors: Array) -> float:
+    """Of errors (k,): accuracy of depth or of force at the targets; NaN without any."""
+    return float(np.sqrt(np.mean(errors**2))) if errors.size else float("nan")
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """One attempt.
+
+    Attributes
+    ----------
+    name, group
+        Its file, and the folder that it came from where groups are compared.
+    time
+        (n,) s, even.
+    position
+        By tool: (n, 3) x, y and depth in m.
+    force
+        By tool: (n,) N.
+    target
+        (k, 3) x, y and depth of the targets in order, m; of none (0, 3).
+    target_force
+        (k,) N; NaN where none was asked for.
+    """
+
+    name: str
+    group: str
+    time: Array
+    position: Mapping[int, Array]
+    force: Mapping[int, Array]
+    target: Array = field(default_factory=lambda: np.empty((0, 3)))
+    target_force: Array = field(default_factory=lambda: np.empty(0))
+
+    def measures(self) -> dict[str, float]:
+        """Every measure by its column's name; those of several tools are their mean, path lengths their sum."""
+        each = [self._of_tool(tool) for tool in self.position]
+        means = {name: float(np.mean([one[name] for one in each])) for name in each[0]}
+        means["path_length_mm"] *= len(each)
+        depth, force = self._accuracy()
+        return {
+            "time_s": float(self.time[-1] - self.time[0]),
+            **means,
+            "depth_error_mm": 1e3 * root_mean_square(depth),
+            "force_error_N": root_mean_square(force),
+            "bimanual_correlation": self._together(),
+        }
+
+    def _of_tool(self, tool: int) -> dict[str, float]:
+        position = self.position[tool]
+        speed = _smooth(speed_of(position, RATE))
+        alone = len(self.position) == 1 and self.target.size
+        return {
+            "path_length_mm": 1e3 * path_length(position),
+            "economy_of_motion": economy_of_motion(position, self.target) if alone else float("nan"),
+            "log_dimensionless_jerk": log_dimensionless_jerk(speed, RATE),
+            "spectral_arc_length": spectral_arc_length(speed, RATE),
+            "motion_frequency_hz": motion_frequency(position, RATE),
+            "tremor_um": 1e6 * tremor(_shaking(position), RATE),
+        }
+
+    def _accuracy(self) -> tuple[Array, Array]:
+        """Deepest press within `NEAR` of each target less its depth (m), and largest force less its force (N)."""
+        depth, force = [], []
+        for target, wanted in zip(self.target, self.target_force, strict=True):
+            best: tuple[float, float] | None = None
+            for tool, position in self.position.items():
+                near = np.linalg.norm(position[:, :2] - target[:2], axis=1) <= NEAR
+                if near.any():
+                    reached = float(position[near, 2].max()), float(self.force[tool][near].max())
+                    best = reached if best is None else max(best, reached)
+            if best is not None:
+                depth.append(best[0] - float(target[2]))
+                force.append(best[1] - float(wanted))
+        forces = np.array(force)
+        return np.array(depth), forces[np.isfinite(forces)]
+
+    def _together(self) -> float:
+        """Correlation of two tools' speeds; NaN with another number of tools."""
+        if len(self.position) != 2:
+            return float("nan")
+        first, second = (_smooth(speed_of(position, RATE)) for position in self.position.values())
+        return bimanual_correlation(first, second)
+
+
+def _smooth(speed: Array) -> Array:
+    return np.asarray(sosfiltfilt(butter(4, SMOOTHED, fs=RATE, output="sos"), speed))
+
+
+def _shaking(position: Array) -> Array:
+    sections = butter(4, SHAKING, btype="bandpass", fs=RATE, output="sos")
+    return np.asarray(sosfiltfilt(sections, position, axis=0))
+
+
+def read_attempt(path: Path, group: str = "") -> Attempt:
+    """Read a record.
+
+    Raises
+    ------
+    InputError
+        File, column or row, and what is allowed.
+    """
+    table = _table(path)
+    start, end = float(table["time_s"].min()), float(table["time_s"].max())
+    time = start + np.arange(int((end - start) * RATE + 1e-9) + 1) / RATE
+    position, force = {}, {}
+    for tool, rows in table.groupby("tool", sort=True):
+        _check_tool(path, int(str(tool)), rows)
+        at = rows["time_s"].to_numpy()
+        columns = [np.interp(time, at, 1e-3 * rows[name].to_numpy()) for name in ("x_mm", "y_mm", "depth_mm")]
+        position[int(str(tool))] = np.column_stack(columns)
+        force[int(str(tool))] = np.interp(time, at, rows["force_N"].to_numpy())
+    target, wanted = _targets(table)
+    return Attempt(path.stem, group, time, position, force, target, wanted)
+
+
+def _table(path: Path) -> pd.DataFrame:
+    """The file's rows, its needed columns finite numbers."""
+    try:
+        table = pd.read_csv(path)
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path} cannot be read as a record: {error}") from None
+    missing = [name for name in NEEDED if name not in table]
+    if missing:
+        raise InputError(f"{path}: the column {missing[0]} is missing; a record has {', '.join(NEEDED)}")
+    for name in NEEDED:
+        values = pd.to_numeric(table[name], errors="coerce")
+        wrong = np.flatnonzero(~np.isfinite(values.to_numpy(dtype=np.float64)))
+        if wrong.size:
+            raise InputError(f"{path}: {name} in row {wrong[0] + 2} is no finite number")
+        table[name] = values
+    return table
+
+
+def _check_tool(path: Path, tool: int, rows: pd.DataFrame) -> None:
+    if len(rows) < FEWEST_ROWS:
+        raise InputError(f"{path}: tool {tool} has {len(rows)} rows; at least {FEWEST_ROWS} are needed")
+    back = np.flatnonzero(np.diff(rows["time_s"].to_numpy()) <= 0.0)
+    if back.size:
+        raise InputError(f"{path}: time_s of tool {tool} does not rise at its row {back[0] + 2}")
+
+
+def _targets(table: pd.DataFrame) -> tuple[Array, Array]:
+    """(k, 3) targets in the order in which they were shown, m, and (k,) their forces."""
+    if any(name not in table for name in TARGET):
+        return np.empty((0, 3)), np.empty(0)
+    shown = table.dropna(subset=list(TARGET)).drop_duplicates("target")
+    place = 1e-3 * shown[list(TARGET[1:])].to_numpy(dtype=np.float64)
+    if "target_force_N" not in shown:
+        return place, np.full(len(shown), np.nan)
+    return place, shown["target_force_N"].to_numpy(dtype=np.float64)

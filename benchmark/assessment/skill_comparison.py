@@ -1,0 +1,206 @@
+"""Attempts in a table, and two groups of them compared: expert against novice, measure by measure, with power."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from statsmodels.stats.multitest import multipletests
+
+from benchmark.assessment.attempt_measures import Attempt, read_attempt
+from benchmark.comparison.t_tests import LARGE_EFFECT, TwoSampleT, detectable_effect, group_power, group_t_test
+from benchmark.errors import InputError
+from benchmark.runs.output.destination import destination
+from reports import Column, Download, Page, Section, Table, Verdict, write_csv, write_json, write_page, write_whole
+
+LEVEL = 0.05
+FEWEST = 2
+"""Attempts of a group that a test needs."""
+
+
+@dataclass(frozen=True)
+class MeasureTest:
+    """One measure between two groups.
+
+    Attributes
+    ----------
+    measure
+        Its column.
+    test
+        Welch's test; `fem` is the first group, `wave` the second.
+    adjusted
+        p after Holm's adjustment for all measures tested.
+    power
+        Of this test against a large effect, 0.8 standard deviations.
+    detectable
+        Standard deviations that it finds four times in five.
+    """
+
+    measure: str
+    test: TwoSampleT
+    adjusted: float
+    power: float
+    detectable: float
+
+    @property
+    def differs(self) -> bool:
+        """Whether the groups differ at 5 % after adjustment."""
+        return self.adjusted < LEVEL
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """All attempts with their measures, and, of two groups, the tests."""
+
+    attempts: tuple[Attempt, ...]
+    measures: tuple[dict[str, float], ...]
+    groups: tuple[str, ...]
+    tests: tuple[MeasureTest, ...] = ()
+
+    def columns(self) -> dict[str, list[Any]]:
+        """`attempts.csv`: a row an attempt."""
+        out: dict[str, list[Any]] = {
+            "attempt": [one.name for one in self.attempts],
+            "group": [one.group for one in self.attempts],
+        }
+        return out | {name: [row[name] for row in self.measures] for name in self.measures[0]}
+
+    def tests_columns(self) -> dict[str, list[Any]]:
+        """`skill.csv`: a row a measure."""
+        names = ["first group", "second group"] if len(self.groups) != 2 else list(self.groups)
+        return {
+            "measure": [one.measure for one in self.tests],
+            f"{names[0]}_mean": [one.test.fem.mean for one in self.tests],
+            f"{names[1]}_mean": [one.test.wave.mean for one in self.tests],
+            "difference": [one.test.difference for one in self.tests],
+            "ci95_low": [one.test.ci95_low for one in self.tests],
+            "ci95_high": [one.test.ci95_high for one in self.tests],
+            "t": [one.test.t for one in self.tests],
+            "p": [one.test.p_value for one in self.tests],
+            "p_holm": [one.adjusted for one in self.tests],
+            "power_large_effect": [one.power for one in self.tests],
+            "detectable_effect_sd": [one.detectable for one in self.tests],
+        }
+
+    @property
+    def headline(self) -> str:
+        """What was found, in one sentence."""
+        count = f"{len(self.attempts)} attempt{'s' * (len(self.attempts) != 1)}"
+        if not self.tests:
+            return f"{count} measured; groups are compared where two folders with two attempts each are given."
+        found = [one.measure for one in self.tests if one.differs]
+        if not found:
+            return f"{count}: no measure tells {' from '.join(self.groups)}, which does not show that they are alike."
+        return f"{count}: {', '.join(found)} tell{'s' * (len(found) == 1)} {' from '.join(self.groups)}."
+
+
+def assess(records: Sequence[Path]) -> Assessment:
+    """Measure records and compare them where they come in two groups.
+
+    Parameters
+    ----------
+    records
+        CSV files, or folders of them: a folder is a group, named like it.
+
+    Raises
+    ------
+    InputError
+        A record that cannot be read, or none.
+    """
+    attempts = tuple(attempt for path in records for attempt in _attempts(path))
+    measures = tuple(attempt.measures() for attempt in attempts)
+    groups = tuple(dict.fromkeys(attempt.group for attempt in attempts if attempt.group))
+    return Assessment(attempts, measures, groups, _tests(attempts, measures, groups))
+
+
+def _attempts(path: Path) -> list[Attempt]:
+    if not path.is_dir():
+        return [read_attempt(path)]
+    files = sorted(path.glob("*.csv"))
+    if not files:
+        raise InputError(f"{path} has no record in it; give CSV files, or folders of them")
+    return [read_attempt(file, path.resolve().name) for file in files]
+
+
+def _tests(
+    attempts: Sequence[Attempt], measures: Sequence[dict[str, float]], groups: tuple[str, ...]
+) -> tuple[MeasureTest, ...]:
+    """A test for each measure that both groups have often enough."""
+    if len(groups) != 2:
+        return ()
+    found: list[tuple[str, TwoSampleT, tuple[int, int]]] = []
+    for name in measures[0]:
+        values = [
+            np.array([row[name] for one, row in zip(attempts, measures, strict=True) if one.group == group])
+            for group in groups
+        ]
+        first, second = (each[np.isfinite(each)] for each in values)
+        if min(first.size, second.size) >= FEWEST:
+            test = group_t_test(first, second)
+            if np.isfinite(test.p_value):
+                found.append((name, test, (first.size, second.size)))
+    if not found:
+        return ()
+    adjusted = multipletests([test.p_value for _, test, _ in found], method="holm")[1]
+    return tuple(
+        MeasureTest(name, test, float(p), group_power(sizes), detectable_effect(sizes))
+        for (name, test, sizes), p in zip(found, adjusted, strict=True)
+    )
+
+
+def write_assessment(found: Assessment, out: Path | None) -> Path:
+    """Write `attempts.csv`, `skill.csv`, `assessment.json` and a page; the folder.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be one; see `destination`.
+    """
+    folder = destination(out, "assessment")
+
+    def fill(new: Path) -> None:
+        write_csv(new / "attempts.csv", found.columns())
+        if found.tests:
+            write_csv(new / "skill.csv", found.tests_columns())
+        write_json(new / "assessment.json", summary(found))
+        write_page(new / "report.html", _page(found))
+
+    write_whole(folder, fill)
+    return folder
+
+
+def summary(found: Assessment) -> dict[str, Any]:
+    """What programs read."""
+    rows = zip(found.attempts, found.measures, strict=True)
+    table = found.tests_columns()
+    return {
+        "schema": 1,
+        "headline": found.headline,
+        "groups": list(found.groups),
+        "attempts": [{"attempt": one.name, "group": one.group, **row} for one, row in rows],
+        "tests": [dict(zip(table, row, strict=True)) for row in zip(*table.values(), strict=True)],
+    }
+
+
+def _page(found: Assessment) -> Page:
+    told = any(one.differs for one in found.tests)
+    status = "unknown" if not found.tests else "finding" if told else "incomplete"
+    points = [
+        f"Welch's t-test for each measure, p adjusted by Holm for {len(found.tests)} tests; a measure that does not "
+        f"differ is no evidence of equal skill.",
+        f"Against a large effect ({LARGE_EFFECT:g} standard deviations) these groups give a power of "
+        f"{min((one.power for one in found.tests), default=0.0):.2f} at least.",
+    ]
+    sections = [Section("Attempts", (_table("What each attempt measured", found.columns(), "attempts.csv"),))]
+    if found.tests:
+        title = " against ".join(found.groups)
+        sections.insert(0, Section("Groups", (_table(title, found.tests_columns(), "skill.csv"),)))
+    return Page("How it was pressed", Verdict(status, found.headline, points if found.tests else ()), sections)
+
+
+def _table(caption: str, columns: dict[str, list[Any]], file: str) -> Table:
+    heads = [Column(name.replace("_", " "), digits=3) for name in columns]
+    return Table(caption, heads, list(zip(*columns.values(), strict=True)), Download(file))
