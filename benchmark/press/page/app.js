@@ -40,6 +40,7 @@
       state.plate ??= new Scene.Slab(gl, P, Q);
       state.sheet ??= new Scene.Slab(gl, P, Q);
       state.ribbons = one.layers.map(() => [new Scene.Ribbon(gl, P), new Scene.Ribbon(gl, P)]);
+      state.rings ??= Array.from({ length: 6 }, () => new Scene.Cylinder(gl));
       if (!state.tools.length) state.tools = Array.from({ length: Hands.MOST }, () => new Scene.Cylinder(gl));
     }
     restart();
@@ -62,6 +63,8 @@
     }
     const hands = state.bench?.hands;
     state.bench = new Hands.Bench(tissues, bodies.after && chosen("state") === "after" ? "after" : "wave");
+    const kind = get("task").value;
+    state.bench.task = kind && !state.replay ? new Hands.Task(kind, SIDE, bodies.wave.deepest) : null;
     if (hands && !state.replay) state.bench.hands = hands.map((hand) => ({ ...hand, at: 0 }));
     state.traces = [];
     state.asked = null;
@@ -152,6 +155,7 @@
       state.plate.fill(grid.xs, rows, FLAT, FLAT, 0, null, -depth - 0.02, -depth - PLATE);
       renderer.draw(state.plate.mesh, Scene.rgb(shade("tool")));
     }
+    targets(lift * (count - 1));
     tools(state.bench.shown, lift * (count - 1));
     get("layers").hidden = Boolean(beside);
     names(now.cut, lift, beside ? 0.5 : 1);
@@ -184,6 +188,23 @@
     renderer.draw(slow.mesh, low, { mode: 3 });
   }
 
+  // The targets of a task: those wanted now, and the next few.
+  function targets(raised) {
+    const { task } = state.bench;
+    if (!task || task.done) return;
+    task.targets.slice(task.at, task.at + state.rings.length).forEach(({ x, y }, k) => {
+      const wanted = k < task.together;
+      state.rings[k].fill(mm(x), mm(y), raised + 0.02, wanted ? 2.5 : 1.2, 0.12);
+      renderer.draw(state.rings[k].mesh, Scene.rgb(shade(wanted ? "good" : "muted")), { alpha: wanted ? 0.75 : 0.35 });
+    });
+  }
+
+  function asked(task) {
+    if (task.done) return `Done in ${(task.end - task.start).toFixed(1)} s. Save the record and run: tissuebench assess press-record.csv`;
+    const [{ depth }] = task.current, what = task.together > 1 ? "both green targets" : "the green target";
+    return `Press ${what} to ${mm(depth).toFixed(2)} mm (${task.at + 1} of ${task.targets.length}); wheel, D and U change the depth.`;
+  }
+
   function tools(tissue, raised) {
     tissue.tools.forEach((tool, k) => {
       if (tool.phase !== "pressed") return;
@@ -213,7 +234,7 @@
     scale(now);
     const two = bench.busy > 1 && state.bench.tissues.fem ? "Finite elements were run for one tool: none of theirs with two." : "";
     const shallow = bench.tissues.published && tool.depth > bench.tissues.published.body.deepest ? "Eq. (8) of the article has no answer deeper than 1 mm." : "";
-    get("note").textContent = state.said ? state.said : state.replay ? "Replay" : bench.refused ? `The tool stays where it was: ${bench.refused}.` : shallow || two;
+    get("note").textContent = state.said ? state.said : state.replay ? "Replay" : bench.refused ? `The tool stays where it was: ${bench.refused}.` : shallow || (bench.task ? asked(bench.task) : two);
     if (state.frames.length % 3 === 0) { trace(); law(now); }
     const fast = state.cost, slow = state.specimen.fem;
     if (state.frames.length % 30 === 0 && fast > 0) {
@@ -325,6 +346,7 @@
   });
   canvas.addEventListener("pointermove", (event) => {
     const k = state.pointers.get(event.pointerId), at = place(event);
+    state.bench.hover = inside(at) && event.pointerType !== "touch" ? at : null;
     if (k !== undefined && at) {
       const limit = (part) => Math.min(Math.max(part, 0), SIDE);
       state.bench.put(k, limit(at[0]), limit(at[1]), event.pointerType === "pen" ? goal(weight(event)) : state.bench.hands[k].goal);
@@ -413,6 +435,12 @@
   get("cut").addEventListener("input", () => { get("follow").checked = false; shownSettings(); });
   for (const id of ["follow", "peel"]) get(id).addEventListener("input", shownSettings);
   for (const id of ["target", "speed"]) get(id).addEventListener("input", aim);
+  get("task").addEventListener("change", () => {
+    takeOver();
+    state.bench.hands.forEach((hand) => { hand.on = false; });
+    if (get("task").value) { get("follow").checked = false; get("cut").value = 0; }
+    restart();
+  });
   for (const id of ["fade", "tau", "beside", "corrected"]) get(id).addEventListener("change", restart);
   for (const radio of document.querySelectorAll('input[name="drive"]')) radio.addEventListener("change", () => { restart(); aim(); });
   for (const radio of document.querySelectorAll('input[name="state"]')) radio.addEventListener("change", () => { state.bench.lead = chosen("state") === "after" ? "after" : "wave"; });

@@ -2,14 +2,14 @@
 // Hands on several tissues at once (the wave, the wave with an effect, finite elements, the published membrane): where
 // each tool is wanted, how fast it gets there, and the record of it. No drawing, no events.
 const Hands = (() => {
-  const MOST = 4, KEPT = 60, LET_GO = 12;
+  const MOST = 4, KEPT = 600, LET_GO = 12;
 
   class Bench {
     // `tissues` by name; `lead` is the name of the one whose answer is shown.
     constructor(tissues, lead) {
       this.tissues = tissues; this.lead = lead; this.time = 0;
       this.hands = Array.from({ length: MOST }, () => ({ on: false, x: 0, y: 0, goal: 0, at: 0, stay: false }));
-      this.record = []; this.refused = "";
+      this.record = []; this.refused = ""; this.task = null; this.hover = null;
     }
 
     get shown() { return this.tissues[this.lead]; }
@@ -65,6 +65,11 @@ const Hands = (() => {
       const { force, tools } = this.shown;
       frame.time = this.time;
       frame.rows = tools.map((tool, k) => (tool.phase === "pressed" ? [k, tool.x, tool.y, tool.depth, force[k]] : null)).filter(Boolean);
+      frame.air = this.hover && !frame.rows.length ? [0, ...this.hover, 0, 0] : null;
+      if (this.task) {
+        frame.targets = this.task.current;
+        this.task.look(tools, this.time);
+      }
       this.record.push(frame);
       while (this.record.length && this.record[0].time < this.time - KEPT) this.record.shift();
     }
@@ -81,18 +86,52 @@ const Hands = (() => {
       return { begin, rows: kept.map((frame) => [frame.time - begin, row(frame)[3]]), alone: kept.every((frame) => frame.rows.length === 1) };
     }
 
-    // The record as the lines of a CSV file.
+    // The record as the lines of a CSV file; of a task with the target that was shown.
     csv() {
-      const lines = ["time_s,tool,x_mm,y_mm,depth_mm,force_N"];
-      for (const { time, rows } of this.record) {
-        for (const [k, x, y, depth, force] of rows) {
-          lines.push([time.toFixed(5), k, (1e3 * x).toFixed(4), (1e3 * y).toFixed(4), (1e3 * depth).toFixed(5), force.toFixed(6)].join(","));
+      const lines = ["time_s,tool,x_mm,y_mm,depth_mm,force_N,target,target_x_mm,target_y_mm,target_depth_mm"];
+      for (const { time, rows, air, targets } of this.record) {
+        for (const [k, x, y, depth, force] of air ? [air] : rows) {
+          const target = targets?.[Math.min(k, targets.length - 1)];
+          const aim = target ? [target.number, ...[target.x, target.y, target.depth].map((part) => (1e3 * part).toFixed(3))] : ["", "", "", ""];
+          lines.push([time.toFixed(5), k, (1e3 * x).toFixed(4), (1e3 * y).toFixed(4), (1e3 * depth).toFixed(5), force.toFixed(6), ...aim].join(","));
         }
       }
       return lines.join("\n") + "\n";
     }
   }
 
-  return { Bench, MOST };
+  // Targets one after the other: `together` of them at once, each held to its depth for a while.
+  class Task {
+    constructor(kind, side, deepest) {
+      const turn = (k, count, radius) => [0.5 * side + radius * Math.cos((2 * Math.PI * k) / count), 0.5 * side + radius * Math.sin((2 * Math.PI * k) / count)];
+      const target = ([x, y], share) => ({ x, y, depth: share * deepest });
+      const make = {
+        touch: () => [0, 3, 6, 1, 4, 7].map((k, n) => target(turn(k, 8, 0.3 * side), [0.3, 0.5, 0.4, 0.6, 0.35, 0.55][n])),
+        trace: () => Array.from({ length: 25 }, (_, k) => target(turn(k, 24, 0.24 * side), 0.4)),
+        hands: () => [0, 1, 2].flatMap((k) => [target(turn(k, 6, 0.3 * side), 0.4), target(turn(k + 3, 6, 0.3 * side), 0.4)]),
+      };
+      this.targets = make[kind]().map((one, number) => ({ ...one, number }));
+      this.together = kind === "hands" ? 2 : 1; this.dwell = kind === "trace" ? 0 : 0.3; this.within = kind === "trace" ? 0.3 : 0.1;
+      this.at = 0; this.since = null; this.start = null; this.end = null;
+    }
+
+    get current() { return this.targets.slice(this.at, this.at + this.together); }
+    get done() { return this.at >= this.targets.length; }
+
+    look(tools, time) {
+      if (this.done) return;
+      this.start ??= time;
+      const met = ({ x, y, depth }) => tools.some((tool) => tool.phase === "pressed" && Math.hypot(tool.x - x, tool.y - y) < 2.5e-3
+        && Math.abs(tool.depth - depth) <= this.within * depth);
+      if (!this.current.every(met)) { this.since = null; return; }
+      this.since ??= time;
+      if (time - this.since < this.dwell) return;
+      this.at += this.together;
+      this.since = null;
+      if (this.done) this.end = time;
+    }
+  }
+
+  return { Bench, Task, MOST };
 })();
 if (typeof module !== "undefined") module.exports = Hands;

@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from benchmark.assessment.attempt_measures import read_attempt
 from benchmark.press.press_page import render_press_page
 from benchmark.press.press_server import FemOnDemand, Served, make_server
 from wavemodel.control.pressed_body import radii_of
@@ -25,6 +26,13 @@ FLAGS = [
 ]
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs the program chromium to open the page in")
 STEP = """(seconds) => { for (let t = 0; t < seconds; t += 0.02) press.advance(0.02); return press.computed(); }"""
+
+
+CHOOSE = """(kind) => {
+  const task = document.getElementById("task");
+  task.value = kind;
+  task.dispatchEvent(new Event("change"));
+}"""
 
 
 @pytest.fixture(scope="module")
@@ -179,6 +187,32 @@ def test_a_replay_presses_as_before(page):
     page.evaluate(f"for (let k = 0; k < {count}; k++) press.advance(0.02)")
     after = tool(page)
     assert (after["x"], after["y"], after["depth"]) == (before["x"], before["y"], before["depth"])
+
+
+FOLLOW = """() => {
+  const { bench } = press.state, { task } = bench;
+  for (let turn = 0; turn < 60 && !task.done; turn++) {
+    task.current.forEach((target, k) => { bench.put(k, target.x, target.y, target.depth); });
+    for (let n = 0; n < 60; n++) press.advance(0.02);
+    if (task.dwell) { bench.hands.forEach((_, k) => bench.lift(k)); press.advance(0.02); }
+  }
+  return [task.done, bench.csv()];
+}"""
+
+
+@pytest.mark.parametrize(("kind", "targets"), [("touch", 6), ("trace", 25), ("hands", 6)])
+def test_a_task_done_is_a_record_to_assess(page, tmp_path, kind, targets):
+    page.evaluate(CHOOSE, kind)
+    done, text = page.evaluate(FOLLOW)
+    page.evaluate(CHOOSE, "")
+    (tmp_path / "record.csv").write_text(text)
+    attempt = read_attempt(tmp_path / "record.csv")
+    found = attempt.measures()
+    assert done
+    assert set(attempt.position) == ({0, 1} if kind == "hands" else {0})
+    assert len(attempt.target) == targets
+    assert found["depth_error_mm"] < 0.01
+    assert found["path_length_mm"] > 30.0
 
 
 def test_the_published_animation_stands_beside(page):
