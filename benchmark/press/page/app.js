@@ -138,7 +138,7 @@
     renderer.clear();
     const low = Scene.rgb(shade("fem")), high = Scene.rgb(shade("wave")), beside = state.bench.tissues.published;
     const layers = state.specimen.layers, hole = state.specimen.support === "hole", total = mm(layers.reduce((sum, layer) => sum + layer.thickness_m, 0));
-    Object.assign(camera, { target: [mm(CENTRE) + (beside ? 0 : 3.5), mm(CENTRE) * 1.15, beside ? -14 : 0.05 * total], size: mm(SIDE) });
+    Object.assign(camera, { target: [mm(CENTRE) + (beside || canvas.clientWidth < 480 ? 0 : 3.5), mm(CENTRE) * 1.15, beside ? -14 : 0.05 * total], size: mm(SIDE) });
     renderer.begin(camera, 0, beside ? 0.5 : 1, low, high);
     const lift = (GAP * value("peel")) / 100, size = P * Q, count = layers.length;
     let depth = 0;
@@ -233,8 +233,9 @@
     get("error").textContent = now.compared && now.depth > 1e-5 ? (100 * now.share).toFixed(2) : "–";
     scale(now);
     const two = bench.busy > 1 && state.bench.tissues.fem ? "Finite elements were run for one tool: none of theirs with two." : "";
+    const assumed = bench.lead === "after" && now.compared ? "The finite elements are those of the model as it was assumed: the error shows the effect." : "";
     const shallow = bench.tissues.published && tool.depth > bench.tissues.published.body.deepest ? "Eq. (8) of the article has no answer deeper than 1 mm." : "";
-    get("note").textContent = state.said ? state.said : state.replay ? "Replay" : bench.refused ? `The tool stays where it was: ${bench.refused}.` : shallow || (bench.task ? asked(bench.task) : two);
+    get("note").textContent = state.said ? state.said : state.replay ? "Replay" : bench.refused ? `The tool stays where it was: ${bench.refused}.` : shallow || (bench.task ? asked(bench.task) : two || assumed);
     if (state.frames.length % 3 === 0) { trace(); law(now); }
     const fast = state.cost, slow = state.specimen.fem;
     if (state.frames.length % 30 === 0 && fast > 0) {
