@@ -231,6 +231,10 @@ SECOND_RATE = 1.5
 then shows, specimens' heights and a rig's control do not."""
 DETERMINED = 0.95
 """Level at which the strengths of an effect must differ from none for it to be named. First choice."""
+MOST_OF_FORCE = 0.5
+"""Share of the largest force that is left without an effect, below which the effect is told whatever its interval: with
+a modulus that nobody knows its strength may be any large number, but not none. First choice.
+"""
 TOLD = 0.1
 """Share of a parameter's variance that the data take from its prior, from which they tell of it. First choice; without
 markers those that act on markers alone have none."""

@@ -54,7 +54,7 @@ from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fing
 from benchmark.discovery.evidence.selection import Selection, first_gain, select, usable
 from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, remark, screen
 from benchmark.discovery.evidence.showing import not_shown
-from benchmark.discovery.evidence.told_setup import on_told, stands
+from benchmark.discovery.evidence.told_setup import on_told, stands, taken_up
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import Session
 from benchmark.physics import Effect, catalogue
@@ -145,7 +145,8 @@ def findings(
     key = fingerprint(VERSION, code_version(), session.fingerprint, settings, own, *sorted(without))
     listener("detect", 0, 1, "")
     with pool(settings.workers, store, key, effects, listener) as work:
-        base, selection, before = _answered(calibrated.base, told_priors(session), known, settings, work)
+        base, selection, before, remarks = _answered(calibrated.base, told_priors(session), known, settings, work)
+    calibrated = replace(calibrated, warnings=(*calibrated.warnings, *remarks))
     listener("verify", 0, 1, "")
     answer = _verified(base, selection, before, settings)
     discovery = _discovery(session, calibrated, answer, known, settings, began)
@@ -154,15 +155,16 @@ def findings(
 
 def _answered(
     moving: Fit, told: Mapping[str, float], known: Sequence[Effect], settings: Settings, work: Pool
-) -> tuple[Fit, Selection, Detection]:
-    """The base that is taken and what was found on it: the set-up as told where that stands, else one that moves."""
+) -> tuple[Fit, Selection, Detection, tuple[str, ...]]:
+    """The base that is taken, what was found on it, and remarks: the set-up as told where that stands, else another."""
     trusted = on_told(moving, told)
     selection, before = _searched(trusted, known, settings, work)
     if trusted is not moving:
         silent_on_it = before.p < settings.level and not selection.steps
         if silent_on_it or not stands(selection.chosen, selection.base, on_some(moving, compared(moving)), work):
-            return moving, *_searched(moving, known, settings, work)
-    return trusted, selection, before
+            found, seen = _searched(moving, known, settings, work)
+            return moving, found, seen, taken_up(selection, found)
+    return trusted, selection, before, ()
 
 
 def _searched(base: Fit, known: Sequence[Effect], settings: Settings, work: Pool) -> tuple[Selection, Detection]:

@@ -10,6 +10,8 @@ DECAYED = 45.0
 """Beyond this exponent what was there before is gone (e^-45 is 3e-20)."""
 LARGEST = 600.0
 """Exponents that a block may sum up to without overflow."""
+BLOCK = 60
+"""Steps that cost as much one after the other as a block does at once; shorter blocks are not worth it."""
 
 
 def decaying_sum(exponent: NumberArray, gain: NumberArray, start: complex = 0.0) -> NumberArray:
@@ -31,12 +33,23 @@ def decaying_sum(exponent: NumberArray, gain: NumberArray, start: complex = 0.0)
     exponent = np.where(exponent.real > DECAYED, DECAYED, exponent)
     block = np.floor(np.cumsum(exponent.real) / LARGEST)
     edges = [0, *(np.flatnonzero(np.diff(block)) + 1), gain.size]
+    if len(edges) > 2 and gain.size < BLOCK * (len(edges) - 1):
+        return _one_by_one(np.exp(-exponent), gain, start)
     for first, last in pairwise(edges):
         sum_up = np.cumsum(exponent[first:last])
         growth = np.exp(sum_up)
         out[first:last] = (np.cumsum(gain[first:last] * growth) + start) / growth
         start = out[last - 1] if last > first else start
     return out
+
+
+def _one_by_one(keep: NumberArray, gain: NumberArray, start: complex) -> NumberArray:
+    """y_n = keep_n y_(n-1) + gain_n, (n,), in Python's numbers, which are faster than arrays of one."""
+    out, last = [], start
+    for kept, more in zip(keep.tolist(), gain.tolist(), strict=True):
+        last = kept * last + more
+        out.append(last)
+    return np.array(out, dtype=gain.dtype)
 
 
 def bounded_sum(change: FloatArray, limit: FloatArray, start: float = 0.0) -> FloatArray:

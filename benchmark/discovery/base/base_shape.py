@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmark.physics import LowerFaceMotion
 from benchmark.response.elastic_table import ElasticTable, SeparableField
@@ -104,20 +105,34 @@ class ShapedTable:
         read = radius / (1.0 + self.shape.width)
         safe = np.maximum(radius, 1e-12)
         along = np.column_stack([x / root / safe, y * root / safe])
-        out = self._field(self.outward, spread.depth, read)
+        over_depth = self._over_depth(spread.depth)
+        out = self._over_radius(self.outward, read, over_depth)
         moved = (1.0 + self.shape.marker_size) * spread.passed[:, None] * out
         if spread.dent is not None:
             moved = moved + spread.dent[0][:, None] / np.maximum(radius, spread.dent[1])
-        return rest + moved[..., None] * along, self._field(self.sink, spread.depth, read)
+        return rest + moved[..., None] * along, self._over_radius(self.sink, read, over_depth)
 
-    def _field(self, field: SeparableField, depth: Array, radius: Array) -> Array:
-        """(n, m) m at depths (n,), mirrored above the surface, and radii (m,), m."""
-        known, amplitudes = self.table.depth, field.amplitudes
-        size = np.abs(depth)
+    def _over_depth(self, depth: Array) -> tuple[NDArray[np.int64], Array, Array]:
+        """Where depths (n,), mirrored above the surface, lie in the table: a row, its weight, the next one's."""
+        known, size = self.table.depth, np.abs(depth)
         growth = np.maximum(size / self.deep, 1e-4) ** self.shape.marker_exponent * np.sign(depth)
         at = np.clip(size / known[1], 0.0, known.size - 1.000001)
         low = at.astype(np.int64)
         share = at - low
-        over_depth = (amplitudes[:, low] * (1.0 - share) + amplitudes[:, low + 1] * share) * growth
-        over_radius = np.array([np.interp(radius, self.table.radius, row, right=0.0) for row in field.shapes])
-        return np.asarray(over_depth.T @ over_radius)
+        return low, (1.0 - share) * growth, share * growth
+
+    def _over_radius(
+        self, field: SeparableField, radius: Array, over_depth: tuple[NDArray[np.int64], Array, Array]
+    ) -> Array:
+        """(n, m) m of a field at depths (n,) and radii (m,), m; the field at those radii is kept for the next trial."""
+        key = (id(field), radius.tobytes())
+        if key not in self._kept:
+            shapes = np.array([np.interp(radius, self.table.radius, row, right=0.0) for row in field.shapes])
+            self._kept[key] = field.amplitudes.T @ shapes
+        known, (low, before, after) = self._kept[key], over_depth
+        return np.asarray(known[low] * before[:, None] + known[low + 1] * after[:, None])
+
+    @cached_property
+    def _kept(self) -> dict[tuple[int, bytes], Array]:
+        """Fields (k, m) over the table's depths at radii that were asked for."""
+        return {}

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.base_shape import Shape, ShapedTable
@@ -21,7 +22,6 @@ from benchmark.physics.setup_entry import setup_key
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import Search, TrialsFit, least_squares
 from benchmark.response.least_squares import settled as settled_nuisances
-from benchmark.response.noise import Whitener
 from benchmark.response.pipeline import TrialPipeline
 from benchmark.response.trials_model import TrialColumns, TrialsEvaluation
 
@@ -38,17 +38,23 @@ class White:
     problem: TrialsProblem
 
     @cached_property
-    def _whiteners(self) -> list[list[Whitener]]:
-        return [self.problem.whiteners(index) for index in range(len(self.problem.trials))]
+    def _whiteners(self) -> list[tuple[Array, NDArray[np.int64], Array]]:
+        """(n, C) of each trial: what share of a row before is taken off, which row, and the weight of the rest."""
+        out = []
+        for index, trial in enumerate(self.problem.trials):
+            use = self.problem.whiteners(index)
+            weight = 1.0 / np.column_stack([one.scale for one in use])
+            if self.problem.mask is not None:
+                weight = weight * self.problem.mask[trial.condition]
+            out.append(
+                (np.column_stack([one.back for one in use]), np.column_stack([one.before for one in use]), weight)
+            )
+        return out
 
     def flat(self, index: int, rows: Array) -> Array:
         """Rows (n, C) of a trial whitened, masked and flattened to (N,)."""
-        use = self._whiteners[index]
-        white = np.column_stack([use[signal](rows[:, signal]) for signal in range(rows.shape[1])])
-        mask = self.problem.mask
-        if mask is not None:
-            white = white * mask[self.problem.trials[index].condition]
-        return np.asarray(white.ravel())
+        back, before, weight = self._whiteners[index]
+        return np.asarray(((rows - back * np.take_along_axis(rows, before, axis=0)) * weight).ravel())
 
     def residuals(self, signals: list[Array]) -> list[Array]:
         """White residuals, measured minus simulated."""

@@ -110,8 +110,25 @@ def told_parameters(fitted: Fit, effect: Effect) -> int:
 
 
 def undetermined(fitted: Fit) -> tuple[str, ...]:
-    """Effects of a fit whose strength the data do not tell."""
-    return tuple(effect.slug for effect in fitted.model.effects if not determined(fitted, effect))
+    """Effects of a fit whose strength the data do not tell.
+
+    One that makes most of the force is told, however large it may be: its strength times the base's modulus is known.
+    """
+    effects = fitted.model.effects
+    return tuple(each.slug for each in effects if not determined(fitted, each) and not makes_most(fitted, each))
+
+
+def makes_most(fitted: Fit, effect: Effect) -> bool:
+    """Whether without an effect less than half of the largest force is left, in the middle one of the trials."""
+    none = fitted.vector.copy()
+    for each in strengths(fitted, effect):
+        none[each.place] = max(each.parameter.low, 0.0)
+    if any(each.parameter.logarithmic for each in strengths(fitted, effect)):
+        return False
+    rest = fitted.model.signals(none, fitted.nuisance)
+    whole = fitted.model.signals(fitted.vector, fitted.nuisance)
+    shares = [np.max(a[:, 0]) / max(float(np.max(b[:, 0])), 1e-300) for a, b in zip(rest, whole, strict=True)]
+    return bool(np.median(shares) < criteria.MOST_OF_FORCE)
 
 
 def every_term_told(fitted: Fit) -> bool:

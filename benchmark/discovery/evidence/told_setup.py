@@ -16,7 +16,10 @@ from benchmark.discovery.base.effect_model import EffectModel, Fit, fit
 from benchmark.discovery.base.setup_priors import is_setup
 from benchmark.discovery.evidence.gains import held_out
 from benchmark.discovery.evidence.pool import Pool
-from benchmark.discovery.evidence.selection import rebuilt
+from benchmark.discovery.evidence.selection import Selection, rebuilt
+
+SHOWN_MOVE = 0.5
+"""Of a set-up parameter's standard deviation, from which it is told to have moved. First choice."""
 
 
 def on_told(moving: Fit, told: Mapping[str, float]) -> Fit:
@@ -50,3 +53,22 @@ def stands(chosen: Fit, told: Fit, moving: Fit, work: Pool) -> bool:
             return False
     slack = max(criteria.OVER_SETUP, criteria.TIE * (found - float(held_out(told).sum())))
     return float(held_out(rebuilt(moving, effects, work, "set-up")).sum()) - found < slack
+
+
+def taken_up(told: Selection, moving: Selection) -> tuple[str, ...]:
+    """A remark where effects that the set-up as told would need are gone on one that moves: neither is shown."""
+    effects = told.chosen.model.effects
+    if not effects or moving.chosen.model.effects:
+        return ()
+    base, names = moving.base, " and ".join(effect.slug.replace("_", " ") for effect in effects)
+    problem = base.model.problem
+    moved = [
+        name
+        for (name, size), value in zip(problem.shape_priors.items(), base.vector, strict=False)
+        if name in problem.setup and abs(value) > SHOWN_MOVE * size
+    ]
+    return (
+        f"a set-up exactly as told would need {names}; one that is off by what people are usually wrong by "
+        f"({', '.join(moved) or 'everything a little'}) explains the trials as well, and these data do not tell which: "
+        'state how well the set-up is known, as in "4 mm +/- 1 %", or calibrate',
+    )

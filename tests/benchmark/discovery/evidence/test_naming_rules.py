@@ -13,7 +13,9 @@ from benchmark.discovery.evidence.parameter_evidence import (
     by_condition,
     constant,
     determined,
+    makes_most,
     told_parameters,
+    undetermined,
     unsteady,
 )
 from benchmark.discovery.evidence.selection import Scored
@@ -288,6 +290,21 @@ LIMIT = EffectParameter("limit", "N", (1.0,), 1e-3, 1e3, True, "limit")
 def test_a_strength_is_told_where_it_is_off_its_bounds_and_off_nothing(values, variance, parameters, expected):
     one = SimpleNamespace(slug="one", amplitude=parameters[0].name, amplitudes=tuple(p.name for p in parameters[1:]))
     assert determined(Told(values, variance, *parameters), one) is expected
+
+
+GROWTH = EffectParameter("growth", "", (1.0,), 0.0, 30.0, False, "growth of the force with depth")
+
+
+@pytest.mark.parametrize(("growth", "most"), [(29.9, True), (1.1, True), (0.9, False), (0.0, False)])
+def test_what_makes_most_of_the_force_is_told_though_its_strength_may_be_any(growth, most):
+    one = SimpleNamespace(slug="one", amplitude="growth", amplitudes=())
+    made = Told((growth,), (200.0,), GROWTH)
+    made.nuisance, made.model.effects = None, (one,)
+    depth = np.linspace(0.0, 1.0, 5)
+    made.model.signals = lambda vector, _: [(depth * (1.0 + vector[0] * depth))[:, None]] * 3
+    assert not determined(made, one)
+    assert makes_most(made, one) is most
+    assert undetermined(made) == (() if most else ("one",))
 
 
 def test_a_parameter_that_only_its_prior_holds_does_not_count():

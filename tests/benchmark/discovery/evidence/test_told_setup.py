@@ -1,5 +1,7 @@
 """An answer on the set-up as told against a set-up that is off by what people are usually wrong by."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.base.setup_priors import setup_entries, setup_priors, told_priors
 from benchmark.discovery.evidence.pool import Pool
-from benchmark.discovery.evidence.told_setup import on_told, stands
+from benchmark.discovery.evidence.told_setup import on_told, stands, taken_up
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import load_session
 from benchmark.physics import catalogue
@@ -49,3 +51,21 @@ def test_an_effect_stands_and_what_people_are_wrong_by_does_not(relaxing):
     found = fit_candidate(told, RELAXATION)
     assert stands(found, told, moving, ALONE)
     assert not stands(fit_candidate(told, thickness), told, moving, ALONE)
+
+
+def chosen(fit, *slugs):
+    effects = tuple(effect for effect in catalogue() if effect.slug in slugs)
+    return SimpleNamespace(chosen=SimpleNamespace(model=SimpleNamespace(effects=effects)), base=fit)
+
+
+def test_what_a_set_up_that_moves_takes_up_is_told_of():
+    problem = SimpleNamespace(
+        setup={"tool.radius": 0.05, "layer.thickness": 0.04},
+        shape_priors={"modulus": 3.0, "tool.radius": 0.05, "layer.thickness": 0.04},
+    )
+    base = SimpleNamespace(model=SimpleNamespace(problem=problem), vector=np.array([9.0, 0.01, -0.03]))
+    (remark,) = taken_up(chosen(base, "machine_compliance"), chosen(base))
+    assert "would need machine compliance" in remark
+    assert "(layer.thickness)" in remark
+    assert taken_up(chosen(base), chosen(base)) == ()
+    assert taken_up(chosen(base, "adhesion"), chosen(base, "adhesion")) == ()
