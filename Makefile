@@ -5,7 +5,7 @@ PY     := $(VENV)/bin/python
 RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
-BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-gate bench-sweep bench-discovery bench-effects bench-derivatives bench-haptic bench-press
+BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-gate bench-sweep bench-discovery bench-effects bench-derivatives bench-haptic bench-press bench-fit
 .PHONY: help run test test-slow test-torture $(BENCHES) lint types imports check docs lock clean
 
 help:
@@ -24,6 +24,7 @@ help:
 	@echo "make bench-derivatives  what derivatives of a press cost, and CalculiX as their judge"
 	@echo "make bench-haptic       latency of a million steps of the haptic loop"
 	@echo "make bench-press        frames a second of the page to press, in Chromium without a graphics card"
+	@echo "make bench-fit        what a fit of five parameters costs beside lmfit and an optimisation as FEBio does it"
 	@echo "make bench-sweep      a sweep by one and by two local workers"
 	@echo "make bench-gate       the regression gate on trial: false alarms and power (hours at full length)"
 	@echo "make bench-discovery  the discovery on 150 sessions with hidden effects (hours)"
@@ -104,6 +105,9 @@ bench-haptic: $(RUN_STAMP)
 bench-press: $(DEV_STAMP)
 	$(PY) -m benchmark press skin-5N --save build/press.html
 	$(PY) -m tests.performance.press_page build/press.html
+
+bench-fit: $(RUN_STAMP)
+	$(PY) -m tests.performance.identification
 
 bench-sweep: $(RUN_STAMP)
 	$(PY) -m tests.performance.sweep

@@ -181,12 +181,17 @@ _ALIKE = 0.02
 def scenario_notes(scenario: Scenario) -> tuple[str, ...]:
     """Say what of a scenario has no effect, or not the one that its file suggests; one sentence each."""
     found = [_law_apart(layer) for layer in scenario.tissue.layers]
+    found += [_undetermined(key, scenario.tissue.name) for key in scenario.tissue.not_determined or ()]
     found += [_stepped_over(scenario.load), _unused_hold(scenario.load), _unused_position(scenario)]
     if scenario.support.hole_radius is not None and scenario.support.kind != "hole":
         found.append(f"support.hole_radius has no effect: the support is {scenario.support.kind}")
     if scenario.physics.friction_coefficient is not None and scenario.tool.contact != "rigid_frictional":
         found.append(f"physics.friction_coefficient has no effect: the contact is {scenario.tool.contact}")
     return tuple(note for note in found if note)
+
+
+def _undetermined(key: str, tissue: str) -> str:
+    return f"{key} is quoted but not determined: the trials behind {tissue} do not tell it, and any result rests on it"
 
 
 def _law_apart(layer: Layer) -> str | None:

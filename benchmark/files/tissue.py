@@ -190,6 +190,21 @@ class Layer(FileModel):
         return self
 
 
+class Correlation(FileModel):
+    """How the errors of two values go together.
+
+    Attributes
+    ----------
+    between : tuple of str
+        Keys of the two, `LAYER.NAME`.
+    value : float
+        Of the errors of their logarithms.
+    """
+
+    between: Annotated[tuple[str, str], Field(min_length=2, max_length=2)]
+    value: Annotated[float, Number("-1 to 1", Bounds(-1.0, 1.0))]
+
+
 class Tissue(FileModel):
     """A layered tissue.
 
@@ -203,12 +218,18 @@ class Tissue(FileModel):
         From the surface down.
     max_force : float or None
         The largest press, N, that the sources cover.
+    correlations : tuple of Correlation or None
+        Of values with a stated uncertainty, where their errors go together.
+    not_determined : tuple of str or None
+        Keys `LAYER.NAME` of values that the trials behind the file do not determine.
     """
 
     schema_: Annotated[Schema, Field(alias="schema")] = 1
     name: Name
     citation: str = ""
     max_force: Force | None = None
+    correlations: tuple[Correlation, ...] | None = None
+    not_determined: tuple[str, ...] | None = None
     layers: Annotated[tuple[Layer, ...], Field(min_length=1, max_length=100)]
 
     @property
@@ -243,6 +264,15 @@ class Tissue(FileModel):
         changed = Layer(**{**dict(told), **changes}).keeping_uncertainties(stated)
         layers = tuple(changed if layer.name == name else layer for layer in self.layers)
         return self.model_copy(update={"layers": layers})
+
+    @model_validator(mode="after")
+    def _keys_are_of_layers(self) -> Self:
+        pairs = [key for each in self.correlations or () for key in each.between]
+        for name, keys in (("correlations", pairs), ("not_determined", self.not_determined or ())):
+            stray = [key for key in keys if not any(key.startswith(f"{layer}.") for layer in self.layer_names)]
+            if stray:
+                raise problem(f"{stray[0]!r} is of no layer; allowed: LAYER.NAME", key=name)
+        return self
 
     @model_validator(mode="after")
     def _layers_fit(self) -> Self:

@@ -40,12 +40,15 @@ class PressDerivative:
         Of the lower face at fixed radii, m.
     second : PressDerivative or None
         The second derivatives, where asked for.
+    top : (n, L) array or None
+        Of each layer's top face on the axis, m; of first derivatives.
     """
 
     force: Array
     outward: Array | None = None
     sunk: Array | None = None
     second: PressDerivative | None = None
+    top: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +116,7 @@ def differentiated_press(
         solution.depth,
         solution.force,
         None if row is None else _face(solution, row),
-        {key: _derivative(solution, each, row) for key, each in found[id(model)].by.items()},
+        {key: _derivative(solution, each, row, model) for key, each in found[id(model)].by.items()},
         run_failure(solution, load),
     )
 
@@ -148,14 +151,17 @@ def _face(solution: fem.Solution, row: IntArray) -> LowerFace:
     return LowerFace(solution.depth, solution.mesh.specimen_distance[row], moved[:, :, 0], -moved[:, :, -1])
 
 
-def _derivative(solution: fem.Solution, by: fem.SolutionDerivative, row: IntArray | None) -> PressDerivative:
+def _derivative(
+    solution: fem.Solution, by: fem.SolutionDerivative, row: IntArray | None, model: Model
+) -> PressDerivative:
     """At fixed radii: what moving nodes bring is taken off, du/dr dr/dp of the first derivative.
 
     The second derivative of the face is left out there: near a clamped rim, where the face is steep, it says nothing.
     """
+    top = -by.displacement[:, [int(face[0]) for face in model.mesh.interfaces], -1]
     if row is None:
         second = None if by.second is None else PressDerivative(by.second.force)
-        return PressDerivative(by.force, second=second)
+        return PressDerivative(by.force, second=second, top=top)
     radius = solution.mesh.specimen_distance[row]
     moved, velocity = solution.displacement[:, row], by.velocity[row, 0][None, :, None]
     still = by.displacement[:, row] - slopes(radius, moved) * velocity
@@ -166,7 +172,7 @@ def _derivative(solution: fem.Solution, by: fem.SolutionDerivative, row: IntArra
     else:
         bend = by.second.displacement[:, row]
         second = PressDerivative(by.second.force, bend[:, :, 0], -bend[:, :, -1])
-    return PressDerivative(by.force, still[:, :, 0], -still[:, :, -1], second)
+    return PressDerivative(by.force, still[:, :, 0], -still[:, :, -1], second, top)
 
 
 def slopes(radius: Array, values: Array) -> Array:

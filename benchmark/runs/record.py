@@ -16,6 +16,7 @@ from benchmark.runs.fields import LAST
 from benchmark.runs.refinement import Level
 from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.side_by_side import SideBySide
+from benchmark.side_by_side.parameter_bands import DifferenceBeside, ParameterBands, beside
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,8 @@ class RunRecord:
         Coarser and finer runs; empty where none were asked for.
     exported
         Input files for other codes: endings and texts.
+    bands
+        What stated uncertainties leave of both models; None where none are stated.
     """
 
     name: str
@@ -63,6 +66,7 @@ class RunRecord:
     effects: tuple[str, ...] = ()
     levels: tuple[Level, ...] = ()
     exported: tuple[tuple[str, str], ...] = ()
+    bands: ParameterBands | None = None
 
     @property
     def layers(self) -> tuple[str, ...]:
@@ -78,6 +82,14 @@ class RunRecord:
     def complete(self) -> bool:
         """False where a solver stopped before the end of its load history."""
         return all(result.complete for result in self.results)
+
+    @property
+    def beside(self) -> tuple[DifferenceBeside, ...]:
+        """The models' difference at peak load beside what uncertain parameters leave, layer by layer."""
+        if self.bands is None:
+            return ()
+        fem, wave = (self.deflections(run.result) for run in (self.pair.fem, self.pair.wave))
+        return tuple(beside(self.bands, self.layers, fem, wave, int(np.abs(self.load).argmax())))
 
     def deflections(self, result: ModelResult | None) -> Array:
         """(n, L) m of one model over all steps; NaN where there is no value."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from benchmark.comparison import ComparisonError
+from benchmark.errors import TissuebenchError
 from benchmark.exchange import export_text
 from benchmark.files import Scenario
 from benchmark.models import NOTHING, Own, StepProgress, scenario_drive
@@ -14,6 +15,7 @@ from benchmark.runs.refinement import refine
 from benchmark.runs.small_strain import beside_small_strain
 from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.side_by_side import NAMES, SideBySide, run_side_by_side
+from benchmark.side_by_side.parameter_bands import ParameterBands, parameter_bands
 
 
 def run_scenario(
@@ -55,10 +57,11 @@ def run_scenario(
     pair = _side_by_side(scenario, options, listener, own)
     if own.wave is None and own.repair is None:
         pair = beside_small_strain(scenario, pair, drive)
+    bands, unknown = _bands(scenario, own, listener)
     levels = refine(scenario, pair, listener) if options.refine else ()
     layers = len(scenario.tissue.layers)
     fem, wave = (deflections(run.result, drive.time.size, layers) for run in (pair.fem, pair.wave))
-    said = list(warnings)
+    said = [*warnings, *unknown]
     try:
         comparisons = compare_layers(scenario, drive.value, fem, wave)
     except ComparisonError as error:
@@ -78,7 +81,19 @@ def run_scenario(
         effects=() if own.repair is None else own.repair.slugs,
         levels=levels,
         exported=exported,
+        bands=bands,
     )
+
+
+def _bands(scenario: Scenario, own: Own, listener: Listener) -> tuple[ParameterBands | None, tuple[str, ...]]:
+    """What stated uncertainties leave of our own two models, or why that is not known."""
+    if own != NOTHING or not scenario.uncertainties:
+        return None, ()
+    listener.say(f"{scenario.name}: what the uncertainty of {len(scenario.uncertainties)} values leaves of both models")
+    try:
+        return parameter_bands(scenario, scenario_drive(scenario)), ()
+    except TissuebenchError as error:
+        return None, (f"what uncertain parameters leave of the results was not worked out: {error}",)
 
 
 def _side_by_side(scenario: Scenario, options: RunOptions, listener: Listener, own: Own) -> SideBySide:

@@ -15,6 +15,7 @@ from benchmark.runs.trials.film_tables import circles, marker_fits
 from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.runs.validation import refinement_columns, validation_columns
 from benchmark.side_by_side import SideBySide
+from benchmark.side_by_side.parameter_bands import ParameterBands
 
 Columns = dict[str, Any]
 MM = 1e3
@@ -34,12 +35,30 @@ def run_tables(record: RunRecord) -> dict[str, Columns]:
         tables["fitted_parameters.csv"] = parameter_columns(record.measured.fit.parameters)
         tables["measured.csv"] = measured(record.measured)
         tables |= film_tables(record.measured)
+    if record.bands is not None:
+        tables["parameter_bands.csv"] = band_columns(record, record.bands)
     checked = validation_columns(record, record.levels)
     if checked is not None:
         tables["validation.csv"] = checked
     if record.levels:
         tables["refinement.csv"] = refinement_columns(record.levels)
     return tables
+
+
+def band_columns(record: RunRecord, bands: ParameterBands) -> Columns:
+    """Deflections with the 95 % bands that uncertain parameters leave, one row a step and layer, mm."""
+    shape = (record.time.size, len(record.layers))
+    out: Columns = {
+        "step": np.repeat(np.arange(1, shape[0] + 1), shape[1]),
+        "time_s": np.repeat(record.time, shape[1]),
+        "layer": list(record.layers) * shape[0],
+    }
+    models = (("fem", record.pair.fem.result, bands.fem), ("wave", record.pair.wave.result, bands.wave))
+    for name, result, deviation in models:
+        middle, factor = 1e3 * record.deflections(result), bands.factor(deviation)
+        columns = {name: middle, f"{name}_low": middle / factor, f"{name}_high": middle * factor}
+        out |= {f"{key}_mm": values.ravel() for key, values in columns.items()}
+    return out
 
 
 def film_tables(comparison: MeasuredComparison) -> dict[str, Columns]:

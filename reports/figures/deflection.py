@@ -83,6 +83,64 @@ def max_deformation(
     return Figure(panels, caption, "Maximum deformation")
 
 
+def deformation_bands(
+    layer_names: Sequence[str],
+    force_n: Any,
+    fem_mm: Any,
+    fem_factor: Any,
+    wave_mm: Any = None,
+    wave_factor: Any = None,
+    pair: Pair = DEFAULT,
+) -> Figure:
+    """Draw each layer's deflection over the force with the bands that uncertain parameters leave, a panel a layer.
+
+    Parameters
+    ----------
+    layer_names
+        Names from the surface down, L of them.
+    force_n
+        Shape (n,), N.
+    fem_mm, wave_mm
+        Deflection in mm, shape (n, L), NaN where a model has no value.
+    fem_factor, wave_factor
+        Upper end of the band over the value, shape (n, L); the lower end is the value over it.
+    pair
+        What the two models are called.
+    """
+    x = column("force_n", force_n)
+    shape = (len(x), len(layer_names))
+    models = [(pair.fem, matrix("fem_mm", fem_mm, shape), matrix("fem_factor", fem_factor, shape))]
+    if wave_mm is not None and wave_factor is not None:
+        models.append((pair.wave, matrix("wave_mm", wave_mm, shape), matrix("wave_factor", wave_factor, shape)))
+    panels = []
+    for place, name in enumerate(layer_names):
+        own = [(style, values[:, place], factor[:, place]) for style, values, factor in models]
+        panel = _BandPanel(name, place, x, own)
+        panels.append(Panel(draw(panel.paint, SMALL, 300), f"{name}: both models with their bands.", name))
+    caption = "Deflection over force with 95 % bands of uncertain parameters; both models move together within them."
+    return Figure(panels, caption, "What the parameters leave")
+
+
+@dataclass(frozen=True)
+class _BandPanel:
+    """One panel: a layer's name, forces (n,) N, and each model's style, deflections mm and factors, (n,) each."""
+
+    name: str
+    place: int
+    x: Floats
+    models: Sequence[tuple[Any, Floats, Floats]]
+
+    def paint(self, drawing: Drawing) -> None:
+        """Draw bands below lines."""
+        axes = drawing.subplots()
+        for style, values, factor in self.models:
+            axes.fill_between(self.x, values / factor, values * factor, color=style.colour, alpha=0.2, linewidth=0)
+            model_line(axes, self.x, values, style, False)
+        axes.set(xlabel="force (N)", ylabel="deflection (mm)")
+        heading(axes, self.name, self.place, room=24)
+        legend_above(axes)
+
+
 @dataclass(frozen=True)
 class _LayerPanel:
     """One panel: a layer's name, its abscissa and both models' deflections, shape (n,) each."""

@@ -40,6 +40,8 @@ class FitTable(FileModel):
         fem | wave.
     per_specimen : tuple of str
         Free keys that each session has for itself; the others are shared.
+    specimen_pattern : str or None
+        Regular expression on a trial's name whose first group is its specimen: trials of one specimen go together.
     exact : tuple of str
         Told values that are taken without any uncertainty; ("all",) for all.
     fixed : mapping
@@ -54,6 +56,7 @@ class FitTable(FileModel):
     law: Law | None = None
     forward: Literal["fem", "wave"] = "fem"
     per_specimen: tuple[Name, ...] = ()
+    specimen_pattern: Name | None = None
     exact: tuple[Name, ...] = ()
     fixed: Mapping[str, str | float] = Field(default_factory=dict)
     bounds: Mapping[str, tuple[str | float, str | float]] = Field(default_factory=dict)

@@ -99,7 +99,7 @@ class Parameter:
     @property
     def fading(self) -> bool:
         """Whether it belongs to the relaxation, and not to the elastic answer."""
-        return self.key.endswith((SHARE, TIME))
+        return self.key.endswith((SHARE.lstrip("."), TIME.lstrip(".")))
 
     def coordinate(self, value: float) -> float:
         """The coordinate of a value."""

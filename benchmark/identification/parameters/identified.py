@@ -163,7 +163,7 @@ class Identified:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a reader must know before a figure is quoted."""
-        said = [*self.remarks]
+        said = [*self.remarks, *([] if self.found.spread is None else [self.found.spread.text])]
         said += [f"{one.key} is {NOT_DETERMINED}: {one.reason}" for one in self.undetermined]
         said += [f"another answer follows the trials as well: {self._values(one)}" for one in self.others]
         if not self.found.settled:
@@ -216,6 +216,7 @@ class Identified:
             "residual_percent_of_peak": 100.0 * float(np.median(rms)),
             "trial_scatter_percent": 100.0 * found.model.gain_deviation,
             "noise_memory": found.memory,
+            **({} if found.spread is None else {"spread": found.spread.to_dict()}),
             "rounds": found.rounds,
             "settled": found.settled,
             "other_answers": [self._values(one) for one in self.others],

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
+import numpy as np
+
 from benchmark.files import Layer, Tissue
-from benchmark.files.tissue import PronyTerm
-from benchmark.identification.parameters.free_parameters import SHARE, Parameter, with_values
+from benchmark.files.tissue import Correlation, PronyTerm
+from benchmark.identification.parameters.free_parameters import POISSON, SHARE, Parameter, with_values
 from benchmark.identification.parameters.identified import NOT_DETERMINED, Identified
 
 MOST = 0.99
@@ -32,9 +36,32 @@ def identified_tissue(answer: Identified, specimen: int = 0) -> Tissue:
         )
         for layer in tissue.layers
     )
-    return tissue.model_copy(
-        update={"name": f"{told.name}, identified"[:200], "layers": layers, "citation": provenance(answer)}
-    )
+    own = {one.key: k for k, one in free.items() if one.key.rpartition(".")[2] in STATED}
+    unknown = tuple(one.key.split(" [")[0] for one in answer.estimates if not one.identifiable)
+    unknown = tuple(key for key in unknown if key.partition(".")[0] in tissue.layer_names)
+    changes = {
+        "name": f"{told.name}, identified"[:200],
+        "layers": layers,
+        "citation": provenance(answer),
+        "correlations": _correlations(answer, own) or None,
+        "not_determined": tuple(dict.fromkeys(unknown)) or None,
+    }
+    return tissue.model_copy(update=changes)
+
+
+def _correlations(answer: Identified, own: dict[str, int]) -> tuple[Correlation, ...]:
+    """Of each pair of values that stand with an uncertainty, keys and their numbers in the fit."""
+    covariance, found = answer.found.fit.covariance, []
+    for (first, i), (second, j) in combinations(own.items(), 2):
+        size = float(np.sqrt(max(covariance[i, i] * covariance[j, j], 1e-300)))
+        value = float(np.clip(covariance[i, j] / size, -1.0, 1.0)) * _way(first) * _way(second)
+        found.append(Correlation(between=(first, second), value=round(value, 4)))
+    return tuple(found)
+
+
+def _way(key: str) -> float:
+    """Whether a value rises or falls with its coordinate."""
+    return -1.0 if key.endswith(POISSON) else 1.0
 
 
 def _with_relaxation(layer: Layer, fading: dict[str, float]) -> Layer:

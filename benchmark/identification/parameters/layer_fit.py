@@ -22,10 +22,10 @@ from benchmark.identification.parameters.free_parameters import (
     Parameter,
     start_vector,
 )
-from benchmark.identification.parameters.layer_model import Fading, FitTrial, ForceTable, LayerModel
+from benchmark.identification.parameters.layer_model import GAIN, Fading, FitTrial, ForceTable, LayerModel
+from benchmark.identification.parameters.mixed_effects import SpreadParts, renoised, spread_parts
 from benchmark.identification.parameters.press_atlas import PressAtlas
 from benchmark.identification.parameters.press_surrogate import Forward, Press, PressSurrogate, StopsError, surrogate
-from benchmark.identification.parameters.trial_noise import renoised
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import Search, TrialsFit, least_squares
 from benchmark.response.noise import whitener
@@ -70,6 +70,8 @@ class FitProblem:
     forward : "fem" or "wave"
     trust : float
         Standard deviation of the model's own error, a share of the force.
+    specimens : tuple of str
+        The specimen of each trial, where several were tried repeatedly; empty where that is not told.
     """
 
     presses: tuple[Press, ...]
@@ -78,6 +80,7 @@ class FitProblem:
     law: str | None = None
     forward: Forward = "fem"
     trust: float = MODEL_TRUST
+    specimens: tuple[str, ...] = ()
 
     @property
     def free(self) -> tuple[int, ...]:
@@ -139,9 +142,17 @@ class LayerFit:
 
     @property
     def quantile(self) -> float:
-        """Standard errors on either side of a 95 % interval: Student's t with the trials' freedom."""
-        freedom = self.problem.freedom
+        """Standard errors on either side of a 95 % interval: Student's t with the freedom of trials or specimens."""
+        spread, freedom = self.spread, self.problem.freedom
+        if spread is not None:
+            return spread.inflation * float(scipy.stats.t.ppf(0.975, spread.specimens - 1))
         return float(scipy.stats.t.ppf(0.975, freedom)) if freedom > 0 else 1.96
+
+    @property
+    def spread(self) -> SpreadParts | None:
+        """Scatter between specimens and between their trials; None where specimens are not told apart."""
+        named = self.problem.specimens
+        return spread_parts(self.fit.nuisance[:, GAIN], named) if named else None
 
     @property
     def predicted(self) -> list[Array]:

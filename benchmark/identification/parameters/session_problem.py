@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -85,10 +86,27 @@ def assembled(bases: Sequence[FittedBase], wish: FitTable) -> Assembled:
     free = _free(bases, presses, wish)
     told = _told(presses, wish, {one.key for one in free})
     problem = FitProblem(presses, trials, (*free, *told), wish.law, wish.forward)
-    problem = replace(problem, parameters=_started(problem, bases))
+    problem = replace(problem, parameters=_started(problem, bases), specimens=_specimens(trials, wish))
     own = [bases[specimen].fit.trial(*key) for specimen, key in keys]
     touches, zeros = np.array([one.onset for one in own]), np.array([one.zero for one in own])
     return Assembled(problem, touches, zeros, warnings)
+
+
+def _specimens(trials: Sequence[FitTrial], wish: FitTable) -> tuple[str, ...]:
+    """The specimen of each trial by the pattern that is told; empty without one."""
+    if wish.specimen_pattern is None:
+        return ()
+    try:
+        pattern = re.compile(wish.specimen_pattern)
+    except re.error as error:
+        raise InputError(f"[fit] specimen_pattern: no regular expression: {error}") from None
+    if pattern.groups < 1:
+        raise InputError("[fit] specimen_pattern: needed is a group in brackets, which is the specimen")
+    found = {one.data.name: pattern.search(one.data.name) for one in trials}
+    stray = [name for name, match in found.items() if match is None or match[1] is None]
+    if stray:
+        raise InputError(f"[fit] specimen_pattern: the trial {stray[0]} does not match {wish.specimen_pattern!r}")
+    return tuple(f"{one.press}: {match[1]}" for one in trials if (match := found[one.data.name]) is not None)
 
 
 def _presses(

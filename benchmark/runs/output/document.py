@@ -45,6 +45,10 @@ def results_document(record: RunRecord) -> dict[str, Any]:
             "repeats": ratio.repeats if ratio else 0,
         },
     }
+    if record.bands is not None:
+        document["parameter_bands"] = {
+            one.layer: {**vars(one), "matters": one.matters, "text": one.text} for one in record.beside
+        }
     if record.effects:
         document["effects"] = list(record.effects)
     if record.measured is not None:

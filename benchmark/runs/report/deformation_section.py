@@ -9,10 +9,13 @@ from benchmark.models import Array
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.values import MM, fem_mm, pair_names, peak_errors, profile_mm, wave_mm
 from benchmark.runs.tables import percent_errors
+from benchmark.side_by_side.parameter_bands import ParameterBands
 from reports import Block, Column, Download, Figure, Notice, Section, Table
-from reports.figures.deflection import max_deformation, profile
+from reports.figures.deflection import deformation_bands, max_deformation, profile
 from reports.figures.load_curves import force_depth
 from reports.figures.pressed_layers import pressed_layers
+
+BANDS = "parameter_bands.csv"
 
 
 def deformation_section(record: RunRecord, picture: Block | None = None) -> Section:
@@ -150,4 +153,56 @@ def pressed_block(record: RunRecord) -> Block | None:
         wave,
         MM * scenario.tool.radius,
         pair_names(record),
+    )
+
+
+def bands_section(record: RunRecord, bands: ParameterBands) -> Section:
+    """Return the section of a run whose scenario states uncertainties."""
+    blocks: list[Block] = [_bands_table(record)]
+    fem, wave = fem_mm(record), wave_mm(record)
+    if np.isfinite(fem).any():
+        factors = None if wave is None else bands.factor(bands.wave)
+        blocks.append(
+            deformation_bands(
+                record.layers, record.force(), fem, bands.factor(bands.fem), wave, factors, pair_names(record)
+            )
+        )
+    pairs = zip(bands.keys, bands.shares, strict=True)
+    told = ", ".join(f"{key} {100 * share:.3g} %" for key, share in pairs)
+    correlated = " and their correlations" if record.scenario.tissue.correlations else ", taken as independent"
+    blocks.append(
+        Notice(
+            "finding",
+            f"Standard uncertainties ({told}){correlated}, propagated to first order: finite elements by {bands.by}, "
+            "wave by central differences. Both models move together: their difference is surer than either.",
+        )
+    )
+    return Section("What the parameters leave", blocks)
+
+
+def _bands_table(record: RunRecord) -> Table:
+    columns = (
+        "layer",
+        Column("wave against FEM", "%", 3),
+        Column("FEM up to", "%", 3),
+        Column("wave up to", "%", 3),
+        Column("difference moves by", "%", 3),
+        "beside the parameters the difference",
+    )
+    rows = [
+        (
+            one.layer,
+            one.difference,
+            one.fem,
+            one.wave,
+            one.of_difference,
+            "matters" if one.matters else "does not matter",
+        )
+        for one in record.beside
+    ]
+    return Table(
+        "Difference of the models at peak load beside the 95 % bands that uncertain parameters leave",
+        columns,
+        rows,
+        download=Download(f"tables/{BANDS}", "bands at every step"),
     )

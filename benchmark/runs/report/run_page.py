@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from benchmark.runs.record import RunRecord
-from benchmark.runs.report.deformation_section import deformation_section
+from benchmark.runs.report.deformation_section import bands_section, deformation_section
 from benchmark.runs.report.film_section import film_section
 from benchmark.runs.report.scenario_section import method_section, scenario_section
 from benchmark.runs.report.statistics_section import Columns, growth_section, statistics_section, validation_section
@@ -55,6 +55,7 @@ def _agreement(record: RunRecord, fit: str | None) -> Verdict:
     result = record.pair.wave.result
     points.extend([result.notes[NOTE]] if result is not None and NOTE in result.notes else [])
     points.extend([] if fit is None else [fit])
+    points.extend(one.text for one in record.beside)
     worst = max(errors.values(), key=abs, default=float("nan"))
     if len(shown) == len(record.comparisons):
         headline = f"{wave} and {fem} are equivalent within {margin} in every layer's maximum deformation"
@@ -80,6 +81,7 @@ DESCRIPTIONS = {
     "profile.csv": "deflection over the radius at peak load",
     "statistics.csv": "all tests of every layer",
     "normal_fits.csv": "normal fits with goodness",
+    "parameter_bands.csv": "both models with the bands that uncertain parameters leave",
     "timing.csv": "every timed repeat",
     "fitted_parameters.csv": "fitted and fixed parameters with intervals",
     "measured.csv": "every trial beside both models",
@@ -123,7 +125,9 @@ def run_page(
         sections += [] if trials.markers is None else [film_section(trials.markers)]
     sections += [scenario_section(record)]
     if record.results:
-        sections += [deformation_section(record, picture), statistics_section(record)]
+        sections += [deformation_section(record, picture)]
+        sections += [] if record.bands is None else [bands_section(record, record.bands)]
+        sections += [statistics_section(record)]
     if record.scenario.wave.model == "published":
         sections.append(_published())
     if VALIDATION in columns:

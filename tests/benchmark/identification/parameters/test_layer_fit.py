@@ -1,10 +1,16 @@
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from benchmark.errors import InputError
+from benchmark.files.sessions.fit_table import FitTable
+from benchmark.identification.parameters.free_parameters import value_of
 from benchmark.identification.parameters.layer_fit import USUAL_SCATTER
 from benchmark.identification.parameters.profile_likelihood import profile
+from benchmark.identification.parameters.session_problem import _specimens
 from benchmark.identification.sheet_model import Relaxation, relaxed
-from tests.benchmark.identification.parameters.conftest import MODULI, TRUTH
+from tests.benchmark.identification.parameters.conftest import MODULI, TISSUE, TOOLS, TRUTH
 
 
 def errors(found):
@@ -63,3 +69,25 @@ def test_intervals_hold_the_truth_as_often_as_they_say(toy_fit) -> None:
         inside += [[one.low <= value <= one.high for one, value in zip(own, truth, strict=True)]]
     share = np.mean(inside, axis=0)
     assert (share >= 0.87).all()
+
+
+def test_relaxation_of_all_layers_is_one_share_and_time(toy_fit) -> None:
+    def fade(time, force, powers):
+        part = 0.3 * force
+        return force - part + relaxed(time, part, Relaxation(1.0, 3.0))
+
+    told = {key: value_of(key, (TISSUE, TOOLS[0], None)) for key in MODULI}
+    found = toy_fit(keys=("stiffness_factor", "relaxation"), noise=0.002, fade=fade, truth=told)
+    values = {found.problem.parameters[k].key: found.value(k) for k in found.problem.free}
+    assert values["relaxation.g"] == pytest.approx(0.3, rel=0.05)
+    assert values["relaxation.tau"] == pytest.approx(3.0, rel=0.05)
+
+
+def test_specimens_that_trials_are_of_are_told_by_a_pattern() -> None:
+    names = ("a1", "a2", "b1", "b2_bis")
+    trials = [SimpleNamespace(press=0, data=SimpleNamespace(name=name)) for name in names]
+    wish = FitTable(free=("stiffness_factor",), specimen_pattern=r"^([a-z])\d")
+    assert _specimens(trials, wish) == ("0: a", "0: a", "0: b", "0: b")
+    for pattern, said in (("(", "no regular expression"), ("a", "a group"), ("(a)", "does not match")):
+        with pytest.raises(InputError, match=said):
+            _specimens(trials, wish.model_copy(update={"specimen_pattern": pattern}))

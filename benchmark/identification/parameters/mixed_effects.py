@@ -1,0 +1,147 @@
+"""Noise and scatter of trials from what a fit leaves, the scatter parted between specimens and their trials.
+
+A one-way random-effects model of the logarithms of the trials' gains by restricted maximum likelihood, for groups of
+any size (Searle, Casella and McCulloch, Variance Components, 1992, 3.8). Trials of one specimen are no independent
+witnesses of what specimens have in common: `inflation` is by how much its standard error grows for that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import scipy
+
+from benchmark.identification.parameters.layer_model import GAIN, LayerModel
+from benchmark.response.force_curve import Array
+from benchmark.response.least_squares import TrialsFit
+from benchmark.response.noise import fit_memory, scales, whitener
+
+RATIOS = np.concatenate([[0.0], np.geomspace(1e-3, 1e4, 281)])
+"""Variance between over variance within that are tried."""
+CHI_SQUARED = 3.841
+LEAST_SCATTER = 1e-3
+
+
+@dataclass(frozen=True)
+class SpreadParts:
+    """Standard deviations of logarithms, each with its 95 % interval.
+
+    Attributes
+    ----------
+    between, within : float
+    between_ci95, within_ci95 : tuple of float
+        `between` by profile likelihood; an open upper end is infinite.
+    specimens, trials : int
+    inflation : float
+        Standard error of the common mean over that of independent trials; at least 1.
+    """
+
+    between: float
+    between_ci95: tuple[float, float]
+    within: float
+    within_ci95: tuple[float, float]
+    specimens: int
+    trials: int
+    inflation: float
+
+    @property
+    def text(self) -> str:
+        """In words."""
+        low, high = (100.0 * each for each in self.between_ci95)
+        return (
+            f"specimens scatter by {100 * self.between:.2g} % (95 % {low:.2g} to {high:.2g}), trials of one specimen "
+            f"by {100 * self.within:.2g} % ({100 * self.within_ci95[0]:.2g} to {100 * self.within_ci95[1]:.2g}): "
+            f"{self.trials} trials of {self.specimens} specimens"
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Entry of `fit.json`, in per cent."""
+        ends = [100.0 * each if np.isfinite(each) else None for each in self.between_ci95]
+        return {
+            "between_specimens_percent": 100.0 * self.between,
+            "between_ci95": ends,
+            "within_specimens_percent": 100.0 * self.within,
+            "within_ci95": [100.0 * each for each in self.within_ci95],
+            "specimens": self.specimens,
+            "trials": self.trials,
+            "text": self.text,
+        }
+
+
+def spread_parts(gains: Array, specimens: Sequence[str]) -> SpreadParts | None:
+    """Part the scatter of gains (R,); None with one specimen, or where none was tried twice.
+
+    Parameters
+    ----------
+    gains : (R,) array
+        Logarithms.
+    specimens : sequence of str
+        The specimen of each trial.
+    """
+    names = list(dict.fromkeys(specimens))
+    groups = [gains[[each == name for each in specimens]] for name in names]
+    counts = np.array([one.size for one in groups], dtype=float)
+    if len(groups) < 2 or counts.max() < 2:
+        return None
+    means = np.array([one.mean() for one in groups])
+    inside = float(sum(np.sum((one - one.mean()) ** 2) for one in groups))
+    curve = np.array([_criterion(ratio, counts, means, inside) for ratio in RATIOS])
+    best = int(np.argmin(curve[:, 0]))
+    between, within = curve[:, 1] * np.sqrt(RATIOS), curve[:, 1]
+    likely = np.flatnonzero(curve[:, 0] <= curve[best, 0] + CHI_SQUARED)
+    high = np.inf if likely[-1] == RATIOS.size - 1 else float(between[likely[-1]])
+    freedom = counts.sum() - counts.size
+    ends = [np.sqrt(inside / scipy.stats.chi2.ppf(share, freedom)) for share in (0.975, 0.025)]
+    variance = 1.0 / np.sum(counts / (within[best] ** 2 + counts * between[best] ** 2))
+    independent = (within[best] ** 2 + between[best] ** 2) / counts.sum()
+    return SpreadParts(
+        float(between[best]),
+        (float(between[likely[0]]), high),
+        float(within[best]),
+        (float(ends[0]), float(ends[1])),
+        len(groups),
+        int(counts.sum()),
+        max(1.0, float(np.sqrt(variance / independent))),
+    )
+
+
+def _criterion(ratio: float, counts: Array, means: Array, inside: float) -> tuple[float, float]:
+    """-2 log restricted likelihood at a ratio of variances, and the standard deviation within that belongs to it."""
+    weight = counts / (1.0 + counts * ratio)
+    mean = float(np.sum(weight * means) / np.sum(weight))
+    total = inside + float(np.sum(weight * (means - mean) ** 2))
+    freedom = float(counts.sum() - 1.0)
+    variance = max(total / freedom, 1e-300)
+    value = freedom * np.log(variance) + float(np.sum(np.log1p(counts * ratio))) + float(np.log(np.sum(weight)))
+    return value, float(np.sqrt(variance))
+
+
+def renoised(fit: TrialsFit[LayerModel], freedom: int) -> tuple[LayerModel, float]:
+    """The model with noise (AR(1)) and scatter of gains estimated from what a fit leaves, and the noise's memory.
+
+    Parameters
+    ----------
+    fit : TrialsFit of LayerModel
+    freedom : int
+        Trials beyond those that settle the level of each press; with none the scatter stays as it was.
+    """
+    model = fit.model
+    predicted = model.predicted(fit.vector, fit.nuisance)
+    errors = [one.data.force - force for one, force in zip(model.trials, predicted, strict=True)]
+    counts = [one.count for one in model.trials]
+    memory = fit_memory(errors, counts)
+    white = tuple(whitener(count, memory) for count in counts)
+    noise = np.maximum(scales(errors, counts, memory), 1e-9)
+    scatter = model.gain_deviation if freedom < 1 else _scatter(fit, freedom)
+    return replace(model, white=white, noise=noise, gain_deviation=scatter), memory
+
+
+def _scatter(fit: TrialsFit[LayerModel], freedom: int) -> float:
+    """Standard deviation of the trials' gains: a step of expectation and maximisation, with the trials' freedom."""
+    weight = np.diag(fit.model.trial_precision)
+    left = [np.linalg.pinv(n.T @ n + weight)[GAIN, GAIN] for n in fit.columns.nuisance]
+    total = float(np.sum(fit.nuisance[:, GAIN] ** 2) + np.sum(left))
+    return max(float(np.sqrt(total / freedom)), LEAST_SCATTER)
