@@ -37,8 +37,8 @@ def cycles(count, rng, deepest):
     """Press, hold, release, wait in the air: random depths, speeds and waits; depths and where each cycle ends."""
     pieces, ends = [], []
     for _ in range(count):
-        depth, waits = rng.uniform(0.02, 1.0) * deepest, rng.integers(2, 12, 2)
-        way_in, way_out = (2 + int((depth + 1e-4) / (DT * rng.uniform(0.01, 0.14))) for _ in range(2))
+        depth, waits = rng.uniform(0.02, 1.0) * deepest, rng.integers(2, 8, 2)
+        way_in, way_out = (2 + int((depth + 1e-4) / (DT * rng.uniform(0.02, 0.14))) for _ in range(2))
         pieces += [
             np.linspace(-1e-4, depth, way_in + 1),
             np.full(waits[0], depth),
@@ -59,13 +59,13 @@ def gained(forces, depth, ends):
     ("count", "series"), [(200, Prony()), (1000, Prony((0.3, 0.2), (0.03, 0.5)))], ids=["elastic", "with memory"]
 )
 def test_random_presses_give_the_hand_no_energy(body, grid, count, series):
-    depth, ends = cycles(count, np.random.default_rng(16), 3e-3)
+    depth, ends = cycles(count, np.random.default_rng(16), 1.6e-3)
     loop = loop_on(body, grid, depth, EnergyBound, series=series)
     forces, [bound] = loop.run(depth.size)[:, 0], loop.bounds
     gain = gained(forces, depth, ends)
     assert bound.overspeed == 0
     assert gain.max() <= 1e-15
-    assert forces.max() > 0.9 * body.elastic(2.5e-3) * series.long_term
+    assert forces.max() > 0.9 * body.elastic(1.3e-3) * series.long_term
 
 
 def test_without_the_bound_an_elastic_tissue_gives_energy_away(body, grid):
