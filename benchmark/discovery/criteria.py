@@ -111,12 +111,17 @@ SHAPE_PRIOR = {
     "width": 0.03,
     "marker_exponent": 0.003,
     "marker_size": 0.002,
+    "tilt_x": 0.02,
+    "tilt_y": 0.02,
+    "lens": 0.005,
 }
 """Standard deviations of the base's nuisances (modulus: no bound in practice).
 
 Bend, turn, and the exponent and size of the marker field follow fits to blind nulls 84 to 99 (`docs/blind.md`): they
 are what one finite-element mesh and law differ by from another, less than real set-ups do. Whether they are needed
-beside stated uncertainties of the set-up has not been measured.
+beside stated uncertainties of the set-up has not been measured. Tilt (slopes of the lower face against the camera's
+plane: a degree) and lens (a calibration's residual at the outermost marker) are first choices, of what people set up by
+eye and of reprojection errors of half a pixel.
 """
 SETUP_PRIOR = {
     "tool.radius": 0.058,

@@ -32,6 +32,10 @@ class Shape:
         Relative width of the marker field, change of its exponent over depth, relative size.
     grid_scale : float
         Relative size of the printed marker grid.
+    tilt_x, tilt_y : float
+        Slopes of the lower face against the camera's plane: what sinks by w moves by slope times w in the picture.
+    lens : float
+        What the camera's radial distortion leaves, relative at the outermost marker (k1 times its radius squared).
     """
 
     modulus: float = 0.0
@@ -43,6 +47,9 @@ class Shape:
     marker_exponent: float = 0.0
     marker_size: float = 0.0
     grid_scale: float = 0.0
+    tilt_x: float = 0.0
+    tilt_y: float = 0.0
+    lens: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +117,22 @@ class ShapedTable:
         moved = (1.0 + self.shape.marker_size) * spread.passed[:, None] * out
         if spread.dent is not None:
             moved = moved + spread.dent[0][:, None] / np.maximum(radius, spread.dent[1])
-        return rest + moved[..., None] * along, self._over_radius(self.sink, read, over_depth)
+        sunk = self._over_radius(self.sink, read, over_depth)
+        return self._in_picture(rest, moved[..., None] * along, sunk), sunk
+
+    def _in_picture(self, rest: Array, moved: Array, sunk: Array) -> Array:
+        """Positions (n, m, 2) of markers that moved (n, m, 2) and sank (n, m), by a camera that is not quite told.
+
+        Markers are followed from where they rest in the picture, which holds what the camera does to the grid.
+        """
+        shape = self.shape
+        if shape.tilt_x or shape.tilt_y:
+            moved = moved + sunk[..., None] * np.array([shape.tilt_x, shape.tilt_y])
+        if shape.lens:
+            there, reach = rest + moved, float(np.max(np.sum(rest**2, axis=-1)))
+            bent = there * np.sum(there**2, axis=-1, keepdims=True) - rest * np.sum(rest**2, axis=-1, keepdims=True)
+            moved = moved + shape.lens * bent / max(reach, 1e-12)
+        return np.asarray(rest + moved)
 
     def _over_depth(self, depth: Array) -> tuple[NDArray[np.int64], Array, Array]:
         """Where depths (n,), mirrored above the surface, lie in the table: a row, its weight, the next one's."""

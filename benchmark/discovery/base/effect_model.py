@@ -173,8 +173,9 @@ class EffectModel:
         pipeline, table = self.pipelines[trial.condition], tables[trial.condition]
         readings = pipeline.readings(table, values, trial.motion, float(np.exp(gain)), shift, height)
         signals = self.as_signals(readings, zero, nuisance[len(OWN) :])
-        if table.shape.grid_scale and self.problem.study.layout is not None:
-            signals[:, 1:] += table.shape.grid_scale * self.problem.study.layout.scale_pattern
+        layout = self.problem.study.layout
+        if layout is not None and signals.shape[1] > 1:
+            signals[:, 1:] += layout.seen_scale(table.shape.grid_scale, table.shape.lens) * layout.scale_pattern
         signals[:, 1:] = trial.at_frames(signals[:, 1:])
         return signals
 

@@ -17,7 +17,7 @@ from benchmark.response.force_curve import Array
 from benchmark.response.noise import Whitener, whitener
 
 GRID_SCALE = "grid_scale"
-MARKER_SHAPES = ("width", "marker_exponent", "marker_size")
+MARKER_SHAPES = ("width", "marker_exponent", "marker_size", "tilt_x", "tilt_y", "lens")
 FOLLOWED = ("modulus", "exponent", "width")
 OWN = ("gain", "zero", "shift", "height")
 """What each trial has of its own whatever is measured; the zeros of its markers follow."""

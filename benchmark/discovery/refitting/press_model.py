@@ -29,8 +29,8 @@ from benchmark.response.pipeline import FIRST_STEP, ForceAlone, TrialPipeline, p
 from benchmark.response.ramp import Setup
 from benchmark.response.setup_change import CHOICES
 
-FREE = ("modulus", "grid_scale")
-"""Nuisances of the discovery's base that a set-up has; its bends are none. So have all keys of the set-up."""
+FREE = ("modulus", "grid_scale", "tilt_x", "tilt_y", "lens")
+"""Nuisances of the base that a set-up or a camera has; its bends are none. Keys of the set-up are free, too."""
 MEMORY = "viscoelastic_relaxation"
 PRESS_ROWS = 80
 """About as many steps has a press with a memory."""

@@ -49,6 +49,17 @@ class Layout:
         """(signals,) m by which a grid of twice the size differs."""
         return np.asarray(np.tensordot(self.rest, self.weights, axes=([0, 1], [1, 2])))
 
+    def seen_scale(self, printed: float, lens: float) -> float:
+        """Relative scale of the grid in the picture: as it is printed, and as radial distortion widens it.
+
+        Markers are followed from where they rest, so that of a distortion `lens` (relative at the outermost marker) the
+        scale alone is left at rest; a grid that is trusted shows none.
+        """
+        square = np.sum(self.rest**2, axis=1)
+        if self.scale_error == 0.0 or not square.any():
+            return printed
+        return printed + lens * float(np.sum(square**2) / (square.max() * np.sum(square)))
+
     def signals(self, positions: Array) -> Array:
         """(..., signals) combinations of positions (..., m, 2), m, less their resting places."""
         return np.asarray(np.tensordot(positions - self.rest, self.weights, axes=([-2, -1], [1, 2])))
