@@ -5,7 +5,7 @@ PY     := $(VENV)/bin/python
 RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
-BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-gate bench-sweep bench-discovery bench-effects bench-derivatives bench-haptic bench-press bench-fit
+BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-tracking bench-gate bench-sweep bench-discovery bench-effects bench-derivatives bench-haptic bench-press bench-fit
 .PHONY: help run test test-slow test-torture $(BENCHES) lint types imports check docs lock clean
 
 help:
@@ -20,6 +20,7 @@ help:
 	@echo "make bench-peers      the same problems through FElupe and CalculiX, where they are installed"
 	@echo "make bench-liver      a synthetic liver from its STL file to a pressed VTU"
 	@echo "make bench-vision     frames a second of the tracker, and its memory on a long video"
+	@echo "make bench-tracking   what the tracker keeps of stretch, ellipses, blur, glare and shadow, beside the article's method"
 	@echo "make bench-effects    wave and finite elements with each body effect, side by side"
 	@echo "make bench-derivatives  what derivatives of a press cost, and CalculiX as their judge"
 	@echo "make bench-haptic       latency of a million steps of the haptic loop"
@@ -86,6 +87,9 @@ bench-liver: $(RUN_STAMP)
 
 bench-vision: $(RUN_STAMP)
 	$(PY) -m tests.performance.vision
+
+bench-tracking: $(RUN_STAMP)
+	$(PY) -m tests.performance.tracking
 
 # GATE_RUNS=3 for a short one.
 GATE_RUNS ?= 20

@@ -54,16 +54,16 @@ def open_container(path: Path) -> list[Block]:
         raise TableError(path, f"the file cannot be read ({error.strerror})", "a readable file") from error
     try:
         return opener(path)
-    except TableError:
+    except (TableError, KeyboardInterrupt, SystemExit):
         raise
-    except Exception as error:  # the libraries raise anything for a damaged file
+    except BaseException as error:  # the libraries raise anything for a damaged file, one of them no Exception
         allowed = f"a whole {what}; or an export of it as text (csv, txt)"
         raise TableError(
             path, f"this is no whole {what} ({type(error).__name__}: {_first_line(error)})", allowed
         ) from error
 
 
-def _first_line(error: Exception) -> str:
+def _first_line(error: BaseException) -> str:
     return next(iter(str(error).splitlines()), "")[:120]
 
 

@@ -84,7 +84,7 @@ def parse_source(role: str, text: str) -> ColumnSource:
         There is no name.
     """
     found = _SOURCE.fullmatch(text.strip())
-    if found is None or not found["name"].strip():
+    if found is None or not found["name"].strip("+- "):
         raise InputError(f'import.{role} = {text!r}; allowed: "COLUMN" or "COLUMN:UNIT", with - before it to turn it')
     sign = {"": 0, "+": 1, "-": -1}[found["sign"]]
     return ColumnSource(found["name"].strip(), (found["unit"] or "").strip(), sign)

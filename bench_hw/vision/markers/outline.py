@@ -25,6 +25,8 @@ _WIDER = 3
 _FEWEST_RAYS = 10
 _ROUNDS = 8
 _NEW_GROWTH, _NEW_ROUNDNESS = 0.15, 0.2
+_FOUND_ROUNDNESS = 0.12
+"""Of the mean radius: how far the outline of a marker that is found again may be from an ellipse."""
 
 
 def area_centroids(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -187,6 +189,25 @@ def _fit(change: FloatArray, weight: FloatArray, basis: FloatArray) -> FloatArra
     normal[few], right[few] = np.eye(basis.shape[1]), 0.0
     normal += 1e-6 * np.eye(basis.shape[1])
     return np.asarray(np.linalg.solve(normal, right[:, :, None])[:, :, 0])
+
+
+def accept_found(edges: Edges, outlines: Outlines, basis: FloatArray) -> Outlines:
+    """Take the outlines of markers that were looked for as they are, where they are wholly visible and near an ellipse.
+
+    While a marker was lost the sheet may have stretched it into another shape than five numbers tell.
+
+    Parameters
+    ----------
+    edges, outlines : Edges, Outlines
+        Of k markers, judged by `compare`.
+    basis : ndarray, shape (rays, 5)
+        From `outline_basis`.
+    """
+    numbers = np.linalg.lstsq(basis, edges.radius.T, rcond=None)[0]
+    uneven = np.abs(edges.radius - (basis @ numbers).T).max(axis=1)
+    whole = edges.there.all(axis=1) & (uneven < _FOUND_ROUNDNESS * edges.radius.mean(axis=1))
+    sound = outlines.sound | whole[:, None]
+    return Outlines(np.where(sound, edges.radius, outlines.radius), sound)
 
 
 def accept_new_outlines(edges: Edges, outlines: Outlines, before: FloatArray, basis: FloatArray) -> Outlines:

@@ -6,7 +6,7 @@ centroid of the area is the centre of any marker shape, where an ellipse or circ
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -18,6 +18,7 @@ from bench_hw.vision.markers.edges import Edges, find_edges, ray_fan, sample
 from bench_hw.vision.markers.grid import DetectedGrid, FloatArray, IntArray, Picture, Sighting
 from bench_hw.vision.markers.outline import (
     Outlines,
+    accept_found,
     accept_new_outlines,
     area_centroids,
     compare,
@@ -41,9 +42,15 @@ _LAST_STEP = 3e-4
 """Where a Newton step from the linear guess stops: less than 1e-4 pixel is left of it."""
 _OTHER_LIGHT, _SURE = 0.02, 4.0
 """A change of the tilt of light beyond this share of the contrast, and so many standard deviations, is real."""
-_SLACK, _MORE_SLACK, _MOST_SLACK = 0.03, 0.003, 0.1
-"""How much an outline may change from one picture to the next, for each picture it is not seen, and at most."""
+_SLACK, _MORE_SLACK, _MOST_SLACK = 0.06, 0.02, 0.3
+"""How much an outline may change from one picture to the next, for each picture it is not seen, and at most: a sheet
+stretches by 5 % between two pictures of a webcam in a press of a third of a second."""
 _FIRST_SLACK = 0.3
+_FARTHEST = 2.4
+"""Radii of the grid's markers, beyond which no edge is looked for: an ellipse of 1.6 that has grown by 1.5."""
+_FAN_MARGIN, _FAN_SHARE, _NEW_FAN = 5.0, 1.5, 0.06
+"""The rays reach so many pixels beyond the farthest edge, which lies at that share of the fan's radius at most; they
+are laid out anew where that radius is off by more than the last."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -111,6 +118,7 @@ class MarkerEdges:
         count = len(grid.centres)
         self._camera = camera
         self._fan = ray_fan(grid.radius, grid.spacing)
+        self._grid_radius, self._spacing = grid.radius, grid.spacing
         self._basis = outline_basis(self._fan)
         self._outline = np.full((count, len(self._basis)), grid.radius)
         self._tilt = np.zeros((count, 2))
@@ -128,7 +136,7 @@ class MarkerEdges:
         """First radius of each marker, pixels, shape (m,)."""
         return self._radius
 
-    def look(self, grey: Picture, starts: FloatArray, which: IntArray) -> Sighting:
+    def look(self, grey: Picture, starts: FloatArray, which: IntArray, *, searched: bool = False) -> Sighting:
         """Measure some markers in a picture.
 
         Parameters
@@ -139,18 +147,29 @@ class MarkerEdges:
             Where to look, pixels; right to about half a marker radius.
         which : ndarray of int, shape (k,)
             The numbers of the markers.
+        searched : bool
+            Whether they were lost and looked for: then their outlines may have changed more.
 
         Returns
         -------
         Sighting
             Of the k markers.
         """
+        if searched:
+            self._slack[which] = np.maximum(self._slack[which], _FIRST_SLACK)
+        self._fit_the_fan()
         look = self._look(grey, starts, which, self._tilt[which])
+        if searched:
+            found = accept_found(look.edges, look.outlines, self._basis)
+            pixels = look.middles + np.nan_to_num(fan_centroids(found.radius, self._fan.directions))
+            look = replace(look, outlines=found, pixels=pixels)
         points, radius = self._undistorted(look, which)
         confidence = self._confidence(look, which)
         confidence[~np.isfinite(points).all(axis=1)] = 0.0
         seen = confidence > 0.0
-        self._learn(look, which, seen & (look.outlines.share > _WHOLE_SHARE))
+        whole = seen & (look.outlines.share > _WHOLE_SHARE)
+        self._follow(look, which, seen & ~whole)
+        self._learn(look, which, whole)
         return Sighting(points, look.pixels, radius, confidence).kept(seen)
 
     def _look(
@@ -210,6 +229,31 @@ class MarkerEdges:
         good = (share >= LEAST_SHARE) & (contrast >= LEAST_CONTRAST)
         good &= (growth > RADIUS_RANGE[0]) & (growth < RADIUS_RANGE[1])
         return np.where(good, share * np.minimum(contrast, 1.0), 0.0)
+
+    def _fit_the_fan(self) -> None:
+        """Lay the rays out anew where markers have grown out of them, or shrunk."""
+        reach = min(float(self._outline.max()), _FARTHEST * self._grid_radius)
+        wanted = max(float(np.median(self._outline)), (reach + _FAN_MARGIN) / _FAN_SHARE)
+        if abs(wanted / self._fan.marker_radius - 1.0) <= _NEW_FAN:
+            return
+        old = self._fan
+        self._fan = ray_fan(wanted, self._spacing * float(np.median(self._outline)) / self._grid_radius)
+        self._basis = outline_basis(self._fan)
+        if self._fan.directions.shape != old.directions.shape:
+            angles = [np.arange(fan.directions.shape[1]) / fan.directions.shape[1] for fan in (self._fan, old)]
+            rows = [np.interp(angles[0], angles[1], row, period=1.0) for row in self._outline]
+            self._outline = np.array(rows)
+
+    def _follow(self, look: Look, which: IntArray, part: NDArray[np.bool_]) -> None:
+        """Take the growth and stretch of markers that are seen in part; their covered edges teach nothing."""
+        chosen = which[part]
+        if not len(chosen):
+            return
+        shift = (look.pixels - look.middles)[part]
+        change = look.outlines.radius[part] - shift @ self._fan.directions - self._outline[chosen]
+        numbers = np.linalg.lstsq(self._basis, change.T, rcond=None)[0]
+        self._outline[chosen] += (self._basis @ numbers).T
+        self._slack[chosen] = _SLACK
 
     def _learn(self, look: Look, which: IntArray, whole: NDArray[np.bool_]) -> None:
         """Take the outlines and the light of markers that are seen wholly as what is usual from now on."""

@@ -20,7 +20,8 @@ from bench_hw.vision.markers.grid import FloatArray, IntArray, Sighting
 
 GATE = 0.49
 """Farthest a marker may be from where it was last seen, in spacings."""
-_WITNESSES = 4
+_WITNESSES, _CARRIERS = 4, 8
+"""Nearest markers whose usual way counts, and whose affine map does."""
 _FORBIDDEN = 1e9
 _AGREE = 0.2
 _LEAST_SHARE = 0.6
@@ -174,7 +175,7 @@ class Absences:
         back = [marker for marker in self._when_it_went if seen[marker]]
         if not back:
             return sighting
-        witnesses = np.array([m for m in np.flatnonzero(seen).tolist() if m not in self._when_it_went], dtype=np.int64)
+        witnesses = self._witnesses(sighting)
         wrong = [marker for marker in back if not self._agrees(marker, sighting.pixels, witnesses)]
         chosen = np.ones(len(seen), dtype=bool)
         chosen[wrong] = False
@@ -188,11 +189,36 @@ class Absences:
             elif marker not in self._when_it_went:
                 self._when_it_went[marker] = last.copy()
 
+    def carried(self, sighting: Sighting, last: FloatArray) -> FloatArray:
+        """Where each marker that is away would be now (m, 2), carried by the sheet as its neighbours show it.
+
+        Of the others it is where they were seen last.
+        """
+        places = last.copy()
+        witnesses = self._witnesses(sighting)
+        for marker in self._when_it_went:
+            if len(witnesses) >= _WITNESSES:
+                places[marker] = self._expected(marker, sighting.pixels, witnesses)
+        return places
+
+    def _witnesses(self, sighting: Sighting) -> IntArray:
+        seen = np.flatnonzero(sighting.seen).tolist()
+        return np.array([marker for marker in seen if marker not in self._when_it_went], dtype=np.int64)
+
     def _agrees(self, marker: int, places: FloatArray, witnesses: IntArray) -> bool:
-        """Whether its way is that of the nearest markers that were never away; true if there are none."""
+        """Whether it is where the nearest markers that were never away carried it; true if there are none."""
         if not len(witnesses):
             return True
+        return bool(np.hypot(*(places[marker] - self._expected(marker, places, witnesses))) < self._limit)
+
+    def _expected(self, marker: int, places: FloatArray, witnesses: IntArray) -> FloatArray:
+        """Its place when it went, moved by the affine map of the nearest witnesses; of few, by their usual way."""
         before = self._when_it_went[marker]
-        way = places - before
-        near = witnesses[np.argsort(np.hypot(*(before[witnesses] - before[marker]).T))[:_WITNESSES]]
-        return bool(np.hypot(*(way[marker] - np.median(way[near], axis=0))) < self._limit)
+        order = np.argsort(np.hypot(*(before[witnesses] - before[marker]).T))
+        near = witnesses[order[:_CARRIERS]]
+        usual = np.median((places - before)[near[:_WITNESSES]], axis=0)
+        arms = before[near] - before[marker]
+        if len(near) < _CARRIERS or np.linalg.svd(arms - arms.mean(axis=0), compute_uv=False)[1] < 0.5 * self._limit:
+            return np.asarray(before[marker] + usual)
+        columns = np.column_stack([np.ones(len(near)), arms])
+        return np.asarray(before[marker] + np.linalg.lstsq(columns, (places - before)[near], rcond=None)[0][0])

@@ -50,6 +50,7 @@ class SubpixelTracker:
     def __init__(self, grey: Picture, grid: DetectedGrid, camera: Camera) -> None:
         self._edges = MarkerEdges(grey, grid, camera)
         self._last = grid.centres.copy()
+        self._way = np.zeros_like(self._last)
         self._everyone = np.arange(len(grid.centres))
         self._spacing, self._contrast = grid.spacing, contrast_of(grey)
         self._absences = Absences(GATE * grid.spacing)
@@ -70,12 +71,15 @@ class SubpixelTracker:
         JumpError
             The whole grid jumped by half its spacing or more.
         """
-        sighting = self._plausible(self._edges.look(grey, self._last, self._everyone))
+        sighting = self._plausible(self._edges.look(grey, self._last + self._way, self._everyone))
         if not sighting.seen.all():
             sighting = self._searched(grey, sighting)
         sighting = self._absences.checked(sighting)
         self._absences.note(sighting, self._last)
-        self._last[sighting.seen] = sighting.pixels[sighting.seen]
+        seen = sighting.seen
+        self._way = np.where(seen[:, None], sighting.pixels - self._last, 0.0)
+        self._last[seen] = sighting.pixels[seen]
+        self._last = self._absences.carried(sighting, self._last)
         return sighting
 
     def _plausible(self, sighting: Sighting) -> Sighting:
@@ -98,7 +102,7 @@ class SubpixelTracker:
         found, spot = missing[spot >= 0], spot[spot >= 0]
         if not len(found):
             return sighting
-        return self._plausible(sighting.merged(self._edges.look(grey, free[spot], found), found))
+        return self._plausible(sighting.merged(self._edges.look(grey, free[spot], found, searched=True), found))
 
     def _taken(self, spots: FloatArray, sighting: Sighting) -> NDArray[np.bool_]:
         """Which spots are markers that were seen already."""
