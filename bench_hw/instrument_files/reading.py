@@ -103,24 +103,25 @@ def read_instrument_file(path: Path | str, told: Told | None = None) -> Instrume
     else:
         sheet = text_sheet(path, told)
         what, blocks = f"text, {sheet.told}", blocks_of(path, sheet)
-    chosen = [block for block in blocks if not told.sheets or block.name in told.sheets]
-    _check_sheets(path, blocks, told)
-    records, header, aside = _records(path, chosen, told)
+    records, header, aside = _records(path, blocks, told)
     return InstrumentFile(path, what, tuple(records), header, tuple(aside))
 
 
-def _check_sheets(path: Path, blocks: Sequence[Block], told: Told) -> None:
-    names = list(dict.fromkeys(block.name for block in blocks))
+def _chosen(path: Path, parts: Sequence[Block], told: Told) -> list[Block]:
+    """The parts to read: all, or those that were named."""
+    names = list(dict.fromkeys(part.name for part in parts))
     for name in told.sheets:
         if name not in names:
             listed = ", ".join(map(repr, names)) or "none"
             raise TableError(path, f"import.sheets: no sheet {name!r} with numbers", f"some of {listed}")
+    return [part for part in parts if not told.sheets or part.name in told.sheets]
 
 
 def _records(path: Path, blocks: Sequence[Block], told: Told) -> tuple[list[PressRecord], Reading, list[str]]:
     """The trials of all blocks, what the headers tell, and which blocks are none."""
     parts = [part for block in blocks for part in _side_by_side(block)]
-    trials = [part for part in _joined(parts) if is_record(part, told) and part.rows >= MINIMUM_ROWS]
+    parts = _chosen(path, _joined(parts), told)
+    trials = [part for part in parts if is_record(part, told) and part.rows >= MINIMUM_ROWS]
     if not trials:
         _refuse(path, parts, told)
     results = [fact for part in parts if part.rows < MINIMUM_ROWS for fact in _table_facts(part)]

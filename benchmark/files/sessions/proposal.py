@@ -1,0 +1,150 @@
+"""A proposal for a session's file, from what its trial files hold: `benchmark session new FOLDER`.
+
+Conditions come from how the tool moved (how fast, how deep, how long held), tool and specimen from headers, the
+thickness from the gap at the first touch where the base is known. What only a person can say is marked SAY.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from bench_hw.instrument_files.press_record import phases
+from bench_hw.tables import TrialTable
+from benchmark.errors import InputError
+from benchmark.files.schema import validated
+from benchmark.files.sessions.description import SessionFile
+from benchmark.files.sessions.recordings import Recording, read_recordings, told_heights, with_headers
+from benchmark.files.sessions.session_folder import SESSION_FILE, inside, session_table
+from benchmark.files.sessions.session_loading import assumed_specimen
+
+ALIKE = 0.1
+"""Of their mean, within which speeds, depths and holds are of one protocol; labs set them to round numbers."""
+SPECIMEN_FILE = "specimen.toml"
+
+
+@dataclass(frozen=True)
+class Motion:
+    """How a trial moved: speed of the first way in (m/s), greatest depth (m), longest hold (s), presses."""
+
+    speed: float
+    depth: float
+    hold: float
+    presses: int
+
+    @property
+    def name(self) -> str:
+        """Of the condition, in words that a path may hold."""
+        held = f"_held_{self.hold:.2g}s" if self.hold > 0.2 else ""
+        many = f"_{self.presses}_presses" if self.presses > 1 else ""
+        return f"{1e3 * self.speed:.2g}mm_s_to_{1e3 * self.depth:.2g}mm{held}{many}"
+
+    def alike(self, other: Motion) -> bool:
+        """Whether two trials are of one protocol."""
+        pairs = ((self.speed, other.speed), (self.depth, other.depth), (self.hold, other.hold))
+        near = all(abs(a - b) <= ALIKE * max(abs(a), abs(b)) + (0.1 if a is self.hold else 0.0) for a, b in pairs)
+        return near and self.presses == other.presses
+
+
+def motion_of(table: TrialTable) -> Motion:
+    """How a trial moved; its speed is that of the middle of the first way in."""
+    presses, hold = phases(table)
+    deepest = float(table.depth.max())
+    first = int(np.argmax(table.depth >= 0.8 * deepest))
+    start = int(np.flatnonzero(table.depth[: first + 1] <= 0.2 * deepest)[-1]) if first else 0
+    duration = float(table.time[first] - table.time[start])
+    speed = float(table.depth[first] - table.depth[start]) / duration if duration > 0.0 else 0.0
+    return Motion(speed, deepest, hold, presses)
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """The two files to write, by their names, and what a person must say."""
+
+    texts: dict[str, str]
+    to_say: tuple[str, ...]
+
+
+def propose(folder: Path) -> Proposal:
+    """Look at the trials of a folder and propose its session.toml and the specimen it names.
+
+    Raises
+    ------
+    InputError
+        There is a session.toml or a specimen.toml already, or a trial cannot be read.
+    """
+    for name in (SESSION_FILE, SPECIMEN_FILE):
+        if (folder / name).exists():
+            raise InputError(f"{folder / name} is there already and is left as it is; take it away for a new proposal.")
+    table, source = session_table(folder)
+    file = validated(SessionFile, table, source)
+    paths = [inside(source.folder, entry.file, entry.file) for entry in file.trials]
+    read = read_recordings(file, paths, listed=False)
+    resolved, _ = with_headers(file, read.trials)
+    told = {name: keys.tool for name, keys in resolved.conditions.items()} or {"": resolved.tool}
+    specimen, why = assumed_specimen([trial.table for trial in read.trials], told_heights(read.trials))
+    named = _conditions(read.trials, kept=len({entry.condition for entry in file.trials}) > 1)
+    tools = {tuple(sorted(tool.items())) for tool in told.values() if tool}
+    to_say = _to_say(tools, why)
+    head = [
+        "# Proposed from the files of this folder. What only a person can say is marked SAY.",
+        "schema = 1",
+        f"name = {_text(file.name)}",
+        f"specimen = {_text(SPECIMEN_FILE)}",
+        "",
+        "[tool]",
+        *_tool_lines(tools),
+        'contact = "rigid_bonded"  # SAY: rigid_bonded where the surface sticks, rigid_frictionless where it slides',
+        "",
+        "[support]",
+        'kind = "bonded"  # SAY: bonded to a base, or hole with hole_radius, or half_space',
+    ]
+    trials = [line for trial, condition in zip(read.trials, named, strict=True) for line in _entry(trial, condition)]
+    body = f"# SAY: layers, thickness and modulus; until then: {why}\n{specimen.to_toml()}"
+    return Proposal({SPECIMEN_FILE: body, SESSION_FILE: "\n".join([*head, *trials]) + "\n"}, to_say)
+
+
+def _conditions(trials: Sequence[Recording], *, kept: bool) -> list[str]:
+    """The condition of each trial: its sub-folder's where there are several, else by how it moved."""
+    if kept:
+        return [trial.entry.condition for trial in trials]
+    groups: list[Motion] = []
+    names = []
+    for trial in trials:
+        motion = motion_of(trial.table)
+        same = next((each for each in groups if each.alike(motion)), None)
+        if same is None:
+            groups.append(motion)
+        names.append((same or motion).name)
+    return names
+
+
+def _tool_lines(tools: set[tuple[tuple[str, str], ...]]) -> list[str]:
+    if len(tools) == 1:
+        return [
+            f"{key} = {_text(value)}  # from the files' headers" for key, value in next(iter(tools)) if key != "contact"
+        ]
+    said = "headers tell of several tools: one a condition, [conditions.NAME.tool]" if tools else "no file tells it"
+    return [f'radius = "5 mm"  # SAY: {said}']
+
+
+def _to_say(tools: set[tuple[tuple[str, str], ...]], why: str) -> tuple[str, ...]:
+    known = "median" in why
+    asked = [] if len(tools) == 1 else ["tool.radius"]
+    return (*asked, "tool.contact", "support.kind", *([] if known else ["the specimen's thickness"]))
+
+
+def _entry(trial: Recording, condition: str) -> list[str]:
+    sheet = [f"sheet = {_text(trial.name)}"] if trial.name else []
+    markers = [f"markers = {_text(trial.entry.markers)}"] if trial.entry.markers else []
+    return ["", "[[trials]]", f"file = {_text(trial.entry.file)}", f"condition = {_text(condition)}", *sheet, *markers]
+
+
+def _text(value: str) -> str:
+    """A TOML string."""
+    import tomli_w
+
+    return tomli_w.dumps({"x": value}).partition("= ")[2].strip()

@@ -1,0 +1,69 @@
+"""What `session new` proposes: conditions by motion, tool and thickness from the files, and what a person must say."""
+
+import pytest
+
+from benchmark.errors import InputError
+from benchmark.files import load_session
+from benchmark.files.sessions.proposal import motion_of, propose
+from tests.instruments import samples
+
+
+def write(path, press):
+    lines = samples.rows(press.time, 12.0 - press.depth, press.force, digits=(3, 5, 6))
+    path.write_text("\n".join(["Time (s),Gap (mm),Force (N)", *lines]) + "\n")
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Two protocols by their depth and hold, two trials each."""
+    for number in (1, 2):
+        write(tmp_path / f"shallow_{number}.csv", samples.press(peak=1.0, hold=0.0, seed=number))
+        write(tmp_path / f"deep_{number}.csv", samples.press(peak=2.0, hold=2.0, seed=number))
+    return tmp_path
+
+
+def test_conditions_are_found_from_how_the_tool_moved(folder):
+    proposal = propose(folder)
+    for name, text in proposal.texts.items():
+        (folder / name).write_text(text)
+    session = load_session(folder)
+    assert len(session.conditions) == 2
+    shared = {
+        trial.condition: {other.name[:4] for other in session.trials if other.condition == trial.condition}
+        for trial in session.trials
+    }
+    assert sorted(map(sorted, shared.values())) == [["deep"], ["shal"]]
+    assert session.specimen.layers[0].thickness == pytest.approx(12e-3, rel=0.01)
+
+
+def test_speed_depth_and_hold_are_measured(folder):
+    session = load_session(folder / "deep_1.csv")
+    motion = motion_of(session.trials[0].table)
+    assert motion.speed == pytest.approx(1e-3, rel=0.03)
+    assert motion.depth == pytest.approx(2e-3, rel=0.02)
+    assert motion.hold == pytest.approx(2.0, abs=0.1)
+
+
+def test_what_a_person_must_say_is_marked(folder):
+    proposal = propose(folder)
+    assert proposal.to_say == ("tool.radius", "tool.contact", "support.kind")
+    assert proposal.texts["session.toml"].count("SAY:") == 3
+
+
+def test_tests_of_one_file_are_named_one_by_one(tmp_path):
+    samples.exponent_text(tmp_path)
+    proposal = propose(tmp_path)
+    assert "tool.radius" not in proposal.to_say
+    for name, text in proposal.texts.items():
+        (tmp_path / name).write_text(text)
+    session = load_session(tmp_path)
+    assert [trial.name for trial in session.trials] == ["exponent.txt #1", "exponent.txt #2"] or len(
+        session.trials
+    ) == 2
+    assert {trial.tool.radius for trial in session.trials} == {5e-3}
+
+
+def test_nothing_is_replaced(folder):
+    (folder / "session.toml").write_text("schema = 1\n")
+    with pytest.raises(InputError, match="left as it is"):
+        propose(folder)
