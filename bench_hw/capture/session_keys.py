@@ -72,6 +72,7 @@ class CameraKeys(StrictModel):
     centre_marker: Annotated[int, Field(ge=0, le=1_000_000, strict=True)] | None = None
     print_scatter: Length | None = None
     scale_uncertainty: Any = None
+    clock: Literal["shared", "press"] | None = None
 
 
 class ConditionKeys(StrictModel):

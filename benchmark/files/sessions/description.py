@@ -125,6 +125,8 @@ class Camera(FileModel):
         tells it.
     scale_uncertainty : float or None
         Relative standard uncertainty of the grid's scale beyond the print scatter's; None for none.
+    clock : str
+        shared: marker times are on the trial's clock; press: the film started at another time, found from the press.
     """
 
     marker_rows: GridSize
@@ -135,6 +137,7 @@ class Camera(FileModel):
     centre_marker: MarkerNumber | None = None
     print_scatter: Length | None = None
     scale_uncertainty: Margin | None = None
+    clock: Literal["shared", "press"] = "shared"
 
 
 class ConditionKeys(FileModel):

@@ -22,6 +22,7 @@ from benchmark.files.loading import (
 )
 from benchmark.files.overrides import layer_path, put_in, unknown_key
 from benchmark.files.schema import FileModel, known_keys, validated
+from benchmark.files.sessions.clocks import on_trials_clock
 from benchmark.files.sessions.depth_counts import even_depths
 from benchmark.files.sessions.description import Camera, SessionFile, assumptions, base_setup, setups
 from benchmark.files.sessions.recordings import (
@@ -160,6 +161,9 @@ def _trials(
         condition = setup[each.entry.condition]
         markers = by_entry.get(id(each.entry))
         found = None if markers is None else read_markers(markers)
+        if found is not None and file.camera is not None and file.camera.clock == "press":
+            found, said = on_trials_clock(name, table, found)
+            warnings.append(said)
         trials.append(Trial(name, each.entry.condition, path, condition.tool, condition.support, table, found, markers))
     return trials, [*warnings, *counts]
 

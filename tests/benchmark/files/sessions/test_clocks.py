@@ -1,0 +1,54 @@
+"""A film that started at another time is put on the trial's clock by the press itself. All synthetic."""
+
+import numpy as np
+import pytest
+
+from bench_hw.tables import MarkerTable, TrialTable
+from benchmark.errors import InputError
+from benchmark.files.sessions.clocks import film_shift, on_trials_clock
+from tests.instruments.samples import press
+
+
+def trial_and_film(shift, seed, cycles=1, noise=5e-6):
+    """A trial, and a film at 30 Hz of nine markers that move out as 0.15 d + 0.02 d^2 (mm), behind by `shift`."""
+    one, random = press(rate=100.0, cycles=cycles), np.random.default_rng(seed)
+    table = TrialTable(one.time, 1e-3 * one.depth, one.force)
+    frames = np.arange(one.time[0] + 0.1, one.time[-1] - 0.1, 1 / 30)
+    depth = np.clip(np.interp(frames, one.time, one.depth), 0.0, None)
+    grid = np.array([(x, y) for y in (-8.0, 0.0, 8.0) for x in (-8.0, 0.0, 8.0)])
+    places = grid[None] * (1.0 + (0.15 * depth + 0.02 * depth**2)[:, None, None] / 10.0)
+    places = 1e-3 * places + random.normal(0.0, noise, places.shape)
+    marker = np.tile(np.arange(9), len(frames))
+    times = np.repeat(frames - shift, 9)
+    return table, MarkerTable(times, marker, places[..., 0].ravel(), places[..., 1].ravel())
+
+
+@pytest.mark.parametrize("shift", [-3.217, 0.0, 12.4])
+def test_the_shift_is_found_within_its_uncertainty(shift):
+    found = [film_shift("a", *trial_and_film(shift, seed)) for seed in range(8)]
+    errors = np.array([each.shift - shift for each in found])
+    assert np.abs(errors).max() < 0.02
+    assert np.sqrt((errors**2).mean()) < 3.0 * np.mean([each.deviation for each in found]) + 2e-3
+    assert all(each.deviation < 0.02 for each in found)
+
+
+def test_the_markers_come_on_the_trials_clock_and_it_is_said():
+    table, markers = trial_and_film(2.5, 1)
+    moved, said = on_trials_clock("a", table, markers)
+    np.testing.assert_allclose(moved.time - markers.time, 2.5, atol=0.02)
+    assert "shifted by 2.5" in said
+    assert "standard deviation" in said
+
+
+def test_markers_that_do_not_follow_the_press_are_refused():
+    table, markers = trial_and_film(0.0, 1, noise=5e-3)
+    with pytest.raises(InputError, match="do not follow the press"):
+        film_shift("a", table, markers)
+
+
+def test_a_film_of_one_press_of_many_is_asked_for():
+    table, markers = trial_and_film(0.0, 1, cycles=4)
+    one = markers.time < 0.25 * markers.time.max()
+    part = MarkerTable(markers.time[one], markers.marker[one], markers.x[one], markers.y[one])
+    with pytest.raises(InputError, match=r"shifted by .* and by"):
+        film_shift("a", table, part)
