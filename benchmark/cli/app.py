@@ -25,7 +25,7 @@ from benchmark.cli import (
     sweep,
     verify,
 )
-from benchmark.cli.folders import clean, dossier, reference, report, session, shipped
+from benchmark.cli.folders import clean, dossier, reference, report, shipped
 
 EXIT_USAGE = 2
 TOO_LITTLE = "there is too little memory for this: end other programs, or ask for less (a coarser mesh, fewer workers)"
@@ -50,7 +50,6 @@ for verb in (
     reproduce,
     verify,
     shipped,
-    session,
     reference,
     dossier,
     clean,

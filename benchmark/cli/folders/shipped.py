@@ -1,8 +1,9 @@
-"""`benchmark tissues` and `benchmark scenarios`: what ships, with sources, and a file to start from."""
+"""`benchmark tissues`, `scenarios` and `session`: what ships, with sources, and files to start from."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from pathlib import Path
+from typing import Annotated, Literal
 
 import typer
 
@@ -12,12 +13,15 @@ Name = Annotated[str | None, typer.Argument(help="A shipped tissue or a TOML fil
 NewName = Annotated[str | None, typer.Argument(help="With new: the name of the tissue file to write.")]
 ScenarioName = Annotated[str | None, typer.Argument(help="A shipped scenario or a TOML file, to see it resolved.")]
 NEW = "new"
+What = Annotated[Literal["new"], typer.Argument(help="new: propose a session.toml.")]
+Folder = Annotated[Path, typer.Argument(help="A folder of trials: CSV, or any instrument's files.")]
 
 
 def register(app: typer.Typer) -> None:
-    """Add both verbs to the command line."""
+    """Add the verbs to the command line."""
     app.command("tissues", help=tissues.__doc__)(tissues)
     app.command("scenarios", help=scenarios.__doc__)(scenarios)
+    app.command("session", help=session.__doc__)(session)
 
 
 def tissues(name: Name = None, new_name: NewName = None, json: Json = False, debug: Debug = False) -> int:
@@ -95,4 +99,27 @@ def scenarios(name: ScenarioName = None, settings: Set = None, json: Json = Fals
     else:
         for row in rows:
             print(f"{row['name']}: {row['tissue']}, {row['contact']}, {row['support']}")
+    return 0
+
+
+def session(what: What, folder: Folder, json: Json = False, debug: Debug = False) -> int:
+    """Look at a folder's files and write the session.toml and specimen.toml they suggest.
+
+    Conditions come from speeds, depths and holds, tool and thickness from headers and the first touch. What a person
+    must say is marked SAY in the files. Files that are there are never replaced.
+    """
+    from benchmark.cli.show import print_json
+    from benchmark.files.sessions.proposal import propose
+    from reports.atomic import write_text
+
+    found = propose(folder)
+    written = [folder / name for name in found.texts]
+    for path, text in zip(written, found.texts.values(), strict=True):
+        write_text(path, text)
+    if json:
+        print_json({"schema": 1, "files": [str(path) for path in written], "to_say": list(found.to_say)})
+    else:
+        print("\n".join(map(str, written)))
+        print(f"  look at it, and say: {', '.join(found.to_say)} (marked SAY)")
+        print(f"  then: python -m benchmark run --trials {folder}")
     return 0
