@@ -17,6 +17,7 @@ from benchmark.discovery.base.setup_priors import is_setup
 from benchmark.discovery.evidence.gains import held_out
 from benchmark.discovery.evidence.pool import Pool
 from benchmark.discovery.evidence.selection import Selection, rebuilt
+from benchmark.physics.setup_entry import setup_key
 
 SHOWN_MOVE = 0.5
 """Of a set-up parameter's standard deviation, from which it is told to have moved. First choice."""
@@ -57,10 +58,10 @@ def stands(chosen: Fit, told: Fit, moving: Fit, work: Pool) -> bool:
 
 def taken_up(told: Selection, moving: Selection) -> tuple[str, ...]:
     """A remark where effects that the set-up as told would need are gone on one that moves: neither is shown."""
-    effects = told.chosen.model.effects
+    effects = [effect.slug for effect in told.chosen.model.effects if setup_key(effect.slug) is None]
     if not effects or moving.chosen.model.effects:
         return ()
-    base, names = moving.base, " and ".join(effect.slug.replace("_", " ") for effect in effects)
+    base, names = moving.base, " and ".join(slug.replace("_", " ") for slug in effects)
     problem = base.model.problem
     moved = [
         name

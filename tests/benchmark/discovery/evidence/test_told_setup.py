@@ -68,4 +68,8 @@ def test_what_a_set_up_that_moves_takes_up_is_told_of():
     assert "would need machine compliance" in remark
     assert "(layer.thickness)" in remark
     assert taken_up(chosen(base), chosen(base)) == ()
+    entry = SimpleNamespace(slug="setup.tool.radius")
+    assert (
+        taken_up(SimpleNamespace(chosen=SimpleNamespace(model=SimpleNamespace(effects=(entry,)))), chosen(base)) == ()
+    )
     assert taken_up(chosen(base, "adhesion"), chosen(base, "adhesion")) == ()
