@@ -68,7 +68,7 @@ COMMANDS = (
     Command("reference new", "benchmark", ("reference", "new", "skin-5N", "--out", "p.csv"), "p.csv", careful=True),
     Command("clean", "benchmark", ("clean", "."), "p"),
     Command("import", "bench_hw", ("import", "foreign.csv", *MAPS, "--out", "p.csv"), "p.csv"),
-    Command("export", "bench_hw", ("export", "trial.mcap", *OUT)),
+    Command("export", "bench_hw", ("export", "trial.mcap", *OUT), careful=True),
     Command("recover", "bench_hw", ("recover", "cut.mcap", "--out", "p.mcap"), "p.mcap"),
     Command("track", "bench_hw", ("track", "pictures", "--camera", "camera.toml", "--out", "p.csv"), "p.csv"),
     Command("calibrate", "bench_hw", ("calibrate", "boards/*.png", "--corners", "9x6", "--square-mm", "8", "--out",
