@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench_hw.errors import TrialFileError
-from bench_hw.storage.atomic import replacing, write_bytes, write_text
+from bench_hw.storage.atomic import replacing, write_bytes
 from bench_hw.tables.output import csv_text, exact_cells, rounded_cells
 from bench_hw.trial_file.encoding import CAMERA, decode_frame
 from bench_hw.trial_file.reading import TrialContents, read_contents, trial_rows
@@ -116,10 +117,12 @@ def export_trial(path: Path | str, out: Path | str, options: ExportOptions | Non
         )
     try:
         frames = _write_frames(contents, out) if options.frames else 0
-        for name, columns in tables.items():
-            write_text(files[name], csv_text(text_cells(columns)))
-        for name, file in parquet.items():
-            _write_parquet(file, tables[name])
+        with ExitStack() as together:  # all are written before the first is put in place
+            for name, columns in tables.items():
+                part = together.enter_context(replacing(files[name]))
+                part.write_bytes(csv_text(text_cells(columns)).encode("utf-8"))
+            for name, file in parquet.items():
+                _write_parquet(together.enter_context(replacing(file)), tables[name])
     except OSError as error:
         raise TrialFileError(out, f"the folder cannot be written ({error})") from error
     return Export(
@@ -151,9 +154,7 @@ def _write_parquet(file: Path, columns: ExportColumns) -> None:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    table = pa.table({name: pa.array(column, from_pandas=True) for name, column in columns.items()})
-    with replacing(file) as temporary:
-        pq.write_table(table, temporary)
+    pq.write_table(pa.table({name: pa.array(column, from_pandas=True) for name, column in columns.items()}), file)
 
 
 def trial_tables(

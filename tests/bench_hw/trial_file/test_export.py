@@ -8,6 +8,7 @@ import pytest
 
 from bench_hw.errors import TrialFileError
 from bench_hw.tables import read_trial_csv
+from bench_hw.tables.output import csv_text
 from bench_hw.trial_file import DepthRecord, ForceRecord, FrameRecord, read_trial_mcap
 from bench_hw.trial_file.export import ExportOptions, export_trial
 
@@ -139,3 +140,22 @@ def test_a_folder_that_cannot_be_made_is_refused(three_seconds, tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(TrialFileError, match="the folder cannot be written"):
         export_trial(three_seconds, tmp_path / "file")
+
+
+def test_an_interrupted_export_leaves_no_table_that_the_next_one_would_refuse(
+    make_records, record, tmp_path, monkeypatch
+):
+    trial, out, calls = record(make_records(1.0)), tmp_path / "out", []
+
+    def interrupted(columns):
+        calls.append(columns)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return csv_text(columns)
+
+    monkeypatch.setattr("bench_hw.trial_file.export.csv_text", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        export_trial(trial, out)
+    assert not list(out.iterdir())
+    export_trial(trial, out)
+    assert (out / "force.csv").is_file()
