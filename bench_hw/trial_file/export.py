@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from contextlib import ExitStack
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -116,13 +116,14 @@ def export_trial(path: Path | str, out: Path | str, options: ExportOptions | Non
             out / "frames", "the pictures exist; give another folder, or `--overwrite` to replace them"
         )
     try:
-        frames = _write_frames(contents, out) if options.frames else 0
-        with ExitStack() as together:  # all are written before the first is put in place
-            for name, columns in tables.items():
-                part = together.enter_context(replacing(files[name]))
-                part.write_bytes(csv_text(text_cells(columns)).encode("utf-8"))
-            for name, file in parquet.items():
-                _write_parquet(together.enter_context(replacing(file)), tables[name])
+        with _made(out):
+            frames = _write_frames(contents, out) if options.frames else 0
+            with ExitStack() as together:  # all are written before the first is put in place
+                for name, columns in tables.items():
+                    part = together.enter_context(replacing(files[name]))
+                    part.write_bytes(csv_text(text_cells(columns)).encode("utf-8"))
+                for name, file in parquet.items():
+                    _write_parquet(together.enter_context(replacing(file)), tables[name])
     except OSError as error:
         raise TrialFileError(out, f"the folder cannot be written ({error})") from error
     return Export(
@@ -132,6 +133,19 @@ def export_trial(path: Path | str, out: Path | str, options: ExportOptions | Non
         complete=contents.scan.complete,
         warnings=tuple(warnings),
     )
+
+
+@contextmanager
+def _made(folder: Path) -> Iterator[None]:
+    """Take a folder away again that was not there before, if nothing came to be in it."""
+    there = folder.exists()
+    try:
+        yield
+    except BaseException:
+        if not there:
+            with suppress(OSError):
+                folder.rmdir()
+        raise
 
 
 def _check_free(files: list[Path], options: ExportOptions) -> None:
