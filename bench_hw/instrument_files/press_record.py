@@ -216,6 +216,8 @@ def record_of(block: Block, told: Told) -> PressRecord:
     values = {role: block.numbers(taken.column, rows) * taken.scale for role, taken in found.items()}
     time = np.arange(len(rows)) / told.rate if told.rate else _times(block.path, values["time"], lines, notes)
     kind = _kind(block, found)
+    if kind != "press":
+        notes.append(f"this is {kind} of a block between plates, not a press of a tool: depth and force are its faces'")
     depth, force = _si_press(found, values, told)
     table = _pressing(block, found, time, depth, force, values, told, notes)
     shown = {role: taken.shown for role, taken in found.items()}

@@ -59,6 +59,18 @@ def test_a_hold_and_cycles_are_recognised(tmp_path):
     assert (presses, dwell) == (4, pytest.approx(2.0, abs=0.1))
 
 
+def test_stress_and_strain_are_labelled_as_of_a_block(tmp_path):
+    one = press()
+    lines = (f"{t:.3f},{-d:.5f},{-f:.6f}" for t, d, f in zip(one.time, one.depth + 0.5, one.force, strict=True))
+    path = tmp_path / "block.csv"
+    path.write_text("\n".join(["Time (s),Compressive strain (%),Compressive stress (kPa)", *lines]))
+    (record,) = read_instrument_file(path, Told(height=0.01, area=1e-4)).records
+    assert record.kind == "compression"
+    assert any("compression of a block" in note for note in record.notes)
+    assert record.table.force.max() == pytest.approx(1e3 * one.force.max() * 1e-4, rel=0.01)
+    assert np.ptp(record.table.depth) == pytest.approx(np.ptp(one.depth) * 1e-2 * 0.01, rel=1e-3)
+
+
 def test_what_is_told_comes_before_what_is_found(tmp_path):
     one = press()
     path = tmp_path / "two.csv"
