@@ -16,8 +16,8 @@ import numpy as np
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.base.effect_model import EffectModel, Fit
 from benchmark.discovery.base.setup_priors import is_setup, table_keys
-from benchmark.discovery.base.trials_problem import NoiseModel
-from benchmark.discovery.discovery_result import Estimate
+from benchmark.discovery.base.trials_problem import NoiseModel, TrialsProblem
+from benchmark.discovery.discovery_result import Array, Estimate
 from benchmark.discovery.evidence.parameter_evidence import effect_estimates, half_widths
 from benchmark.discovery.evidence.shortlist import compared, on_some
 from benchmark.discovery.refitting.native_terms import TERMS, NativeTerm, moved
@@ -73,7 +73,7 @@ def refit(session: Session, chosen: Fit, name: ModelName) -> ModelRefit:
     problem = replace(chosen.model.problem, noise=fitted.model.problem.noise)
     elastic = replace(work.specimen, terms=()) if isinstance(work.specimen, FemSpecimen) else work.specimen
     without = EffectsInModel(elastic)
-    bare, bare_stand, _ = without.fit(problem, Stand({}, stand.shape, {}), fitted.nuisance)
+    bare, bare_stand = _converged(without, problem, (stand, fitted.nuisance), (Stand({}, {}, {}), chosen.nuisance))
     plain, repaired = Refitted(without, bare, bare_stand), Refitted(work, fitted, stand)
     parts = list(splits(chosen))
     rows = unseen_rows(parts, plain, repaired)
@@ -87,6 +87,13 @@ def refit(session: Session, chosen: Fit, name: ModelName) -> ModelRefit:
         apart,
         tuple(traces(chosen, parts, rows)),
     )
+
+
+def _converged(work: EffectsInModel, problem: TrialsProblem, *starts: tuple[Stand, Array]) -> tuple[PressFit, Stand]:
+    """The best of fits from several starts, so that no fit that got stuck stands for the model without effects."""
+    found = [work.fit(problem, Stand({}, start.shape, {}), nuisance) for start, nuisance in starts]
+    best, stand, _ = min(found, key=lambda each: each[0].objective)
+    return best, stand
 
 
 def _carried(session: Session, effects: Sequence[Effect], name: ModelName) -> Iterator[CarriedEffect]:
