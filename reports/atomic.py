@@ -11,6 +11,7 @@ import math
 import os
 import re
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -133,14 +134,15 @@ def _lives(process: int) -> bool:
 
 
 def sync_folder(folder: Path) -> None:
-    """Make a rename durable where the system lets a folder be synchronised."""
+    """Make a rename durable where the system lets a folder be synchronised; the file is in place without it."""
     if os.name != "posix":
         return
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
+    with suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
 
 
 def _text_key(key: Any, where: str) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from bench_hw.errors import TrialFileError
+from bench_hw.storage.atomic import replacing
 from bench_hw.trial_file.mcap_output import ChunkedWriter, NewFile, sync_folder
 from bench_hw.trial_file.metadata import RECOVERY, TRIAL, sealed
 from bench_hw.trial_file.scan import Scan, read_messages, scan_trial
@@ -77,16 +78,13 @@ def recover_trial(path: Path | str, out: Path | str) -> RecoveryOutcome:
     reason = _reason(scan)
     if not kept:
         raise TrialFileError(path, f"nothing can be kept ({reason or 'the trial has no records'})")
-    part = part_of(out)
+    part_of(out)
     try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        _copy(scan, part, reason)
-        part.rename(out)
+        with replacing(out) as temporary:  # no `.part`, which would be a recording that was cut off
+            _copy(scan, temporary, reason)
         sync_folder(out.parent)
     except OSError as error:
         raise TrialFileError(out, f"the recovered trial cannot be written ({error})") from error
-    finally:
-        part.unlink(missing_ok=True)
     return RecoveryOutcome(out, scan.whole, reason, kept, scan.lost_bytes)
 
 

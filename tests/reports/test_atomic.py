@@ -1,5 +1,6 @@
 import json
 import os
+import stat
 from pathlib import Path
 
 import numpy as np
@@ -84,3 +85,15 @@ def test_json_names_the_place_it_cannot_write(tmp_path, value, message):
 
 def test_plain_turns_a_numpy_float_into_a_float():
     assert type(plain(np.float64(0.5))) is float
+
+
+def test_a_folder_that_cannot_be_synchronised_has_the_file_all_the_same(tmp_path, monkeypatch):
+    real = os.fsync
+
+    def refuse_folders(handle):
+        if stat.S_ISDIR(os.fstat(handle).st_mode):
+            raise OSError(28, "No space left on device")
+        real(handle)
+
+    monkeypatch.setattr(os, "fsync", refuse_folders)
+    assert write_bytes(tmp_path / "a", b"whole").read_bytes() == b"whole"

@@ -1,6 +1,8 @@
 """Recovery: what is refused, and that a refusal leaves nothing behind. What is kept is in `test_damage`."""
 
 import os
+import subprocess
+import sys
 
 import pytest
 
@@ -58,3 +60,13 @@ def test_the_result_says_it_in_json(three_seconds, tmp_path):
         "kept": {"force": 3000, "depth": 301, "camera": 90, "events": 1},
         "lost_bytes": 0,
     }
+
+
+def test_what_a_killed_recovery_left_is_removed_by_the_next(three_seconds, tmp_path):
+    """A recording that was cut off stays `.part`; a recovery is a copy, and its litter has another name."""
+    dead = subprocess.Popen([sys.executable, "-c", ""])
+    dead.wait()
+    left = tmp_path / f".new.mcap.{dead.pid:08x}.tmp"
+    left.write_bytes(b"half")
+    recover_trial(three_seconds, tmp_path / "new.mcap")
+    assert sorted(path.name for path in tmp_path.iterdir() if "new" in path.name) == ["new.mcap"]
