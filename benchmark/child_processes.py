@@ -65,19 +65,24 @@ def start_child(process: BaseProcess) -> None:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
+_really_exit = os._exit
+_theirs: set[Path] = set()
+"""Files of the user's that were loaded into this process."""
+
+
 def forbid_ending(file: str) -> None:
     """From now on `os._exit` in the user's `file` raises SystemExit, so that the command line can say who ended it.
 
     Otherwise the process would end at once with the exit code that they chose, without a result and without a word.
     """
-    really = os._exit
+    _theirs.add(Path(file).absolute())
+    os._exit = _exit_unless_theirs
 
-    def refused(status: int) -> NoReturn:
-        if Path(sys._getframe(1).f_code.co_filename).absolute() == Path(file).absolute():
-            raise SystemExit(status)
-        really(status)
 
-    os._exit = refused
+def _exit_unless_theirs(status: int) -> NoReturn:
+    if Path(sys._getframe(1).f_code.co_filename).absolute() in _theirs:
+        raise SystemExit(status)
+    _really_exit(status)
 
 
 def end_with_parent() -> None:

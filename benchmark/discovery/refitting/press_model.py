@@ -34,7 +34,7 @@ FREE = ("modulus", "grid_scale", "tilt_x", "tilt_y", "lens")
 MEMORY = "viscoelastic_relaxation"
 PRESS_ROWS = 80
 """About as many steps has a press with a memory."""
-DEEP = 0.1
+COMPARED_FROM = 0.1
 """Of the deepest press, from which a force and its expansion are compared."""
 ROUNDS, CLOSE = 6, 2e-3
 """Most rounds of a refit, and how far the model's force and its expansion may differ where it ends, relative."""
@@ -188,7 +188,7 @@ class EffectsInModel:
         for number in numbers:
             expanded = problem.tables[number]
             press = self.specimen.pressed(*setup_of(problem, number), stand.numbers, changes)
-            deep = expanded.depth > DEEP * expanded.depth[-1]
+            deep = expanded.depth > COMPARED_FROM * expanded.depth[-1]
             there = np.interp(expanded.depth[deep], press.depth, press.force)
             worst = max(worst, float(np.abs(expanded.force_with(numeric)[deep] / there - 1.0).max()))
         return worst

@@ -123,7 +123,7 @@ def _is_claimed(path: Path) -> bool:
     """Take a name until the end of this process; False where another process has it."""
     stack = ExitStack()
     try:
-        stack.enter_context(locked(path, "a result"))
+        stack.enter_context(locked(path.absolute(), "a result"))
     except FolderInUseError:
         return False
     except OSError as error:

@@ -103,7 +103,7 @@ def test_the_guarded_commands_need_their_word(actuator, board):
     assert not {0x30, 0xFF} & {data[0] for data in board.received}
     actuator.disable_manual(write_eeprom=True)
     actuator.reset(lose_settings=True)
-    assert [data.hex(" ") for data in board.received[-2:]] == ["30 00 00", "ff 00 00"]
+    assert [data.hex(" ") for data in list(board.received)[-2:]] == ["30 00 00", "ff 00 00"]
     assert board.eeprom_writes == 1
 
 

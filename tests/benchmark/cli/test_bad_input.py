@@ -46,7 +46,7 @@ def table(*changes: tuple[int, str], header: str = HEADER, rows: int = 40) -> st
 
 
 BAD_TRIALS = {
-    "missing column": (table(header="time_s,depth_mm,load_N\n"), ["force_N"]),
+    "missing column": (table(header="time_s,depth_mm,height_mm\n"), ["force"]),
     "text in a number": (table((7, "0.7,deep,0.1")), ["depth_mm", "deep", "9"]),
     "NaN": (table((7, "0.7,0.1,nan")), ["force_N", "nan", "9"]),
     "time runs backwards": (table((7, "0.1,0.1,0.1")), ["time_s", "9"]),
