@@ -28,7 +28,12 @@ def test_every_script_is_tried():
     assert {path.stem for path in SCRIPTS.glob("*.py")} == set(SAYS)
 
 
-@pytest.mark.parametrize("name", sorted(SAYS))
+SLOW = {"run", "discover", "fit"}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in SLOW else name for name in sorted(SAYS)]
+)
 def test_a_script_does_what_it_says(name, tmp_path):
     environment = {**os.environ, "PYTHONWARNINGS": "ignore"}
     done = subprocess.run(

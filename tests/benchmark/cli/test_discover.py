@@ -47,6 +47,7 @@ def test_a_run_ends_in_stiffening_and_the_model_file_repairs_it(benchmark_cli, f
     assert "strain stiffening" in (tmp_path / "after/report.html").read_text()
 
 
+@pytest.mark.slow
 def test_the_held_out_loads_tell_stiffening_from_a_floor(benchmark_cli, tmp_path: Path) -> None:
     """At the shipped press both bend the fitted half alike: BIC there is within 1 of each other."""
     press, out = tmp_path / "press", tmp_path / "d"

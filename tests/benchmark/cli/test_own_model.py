@@ -75,6 +75,7 @@ def test_a_users_fea_stands_in_the_fems_place(benchmark_cli, tmp_path: Path) -> 
     assert not (second / "fields").exists()
 
 
+@pytest.mark.slow
 def test_own_model_against_own_fea_needs_none_of_ours(benchmark_cli, tmp_path: Path) -> None:
     first = tmp_path / "a"
     assert benchmark_cli("run", "skin-5N", *SMALL, "--wave", EXAMPLE, "--out", first).code == 0

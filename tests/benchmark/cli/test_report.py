@@ -63,6 +63,7 @@ def test_side_by_side_names_other_models(benchmark_cli, runs, tmp_path: Path) ->
     assert "FEA of max_deformation.csv and wave model, made" in page
 
 
+@pytest.mark.slow
 def test_a_stopped_run_keeps_its_failure(benchmark_cli, tmp_path: Path) -> None:
     soft = [f"{layer}.youngs_modulus=10 kPa" for layer in ("epidermis", "dermis", "subcutaneous_fat")]
     settings = [text for each in soft for text in ("--set", each)]

@@ -54,6 +54,7 @@ def check_tables(out: Path, document: dict) -> None:
     assert document["speedup"]["ci95"][0] <= document["speedup"]["median"] <= document["speedup"]["ci95"][1]
 
 
+@pytest.mark.slow
 def test_the_resolved_scenario_runs_again_to_the_same_result(benchmark_cli, tmp_path: Path) -> None:
     first, second = tmp_path / "a", tmp_path / "b"
     assert benchmark_cli("run", "skin-5N", *COARSE, "--out", first, "--quiet").code == 0

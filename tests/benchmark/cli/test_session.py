@@ -16,6 +16,7 @@ PHANTOM = SHIPPED / "phantom"
 COARSE = ("--set", "fem.mesh=coarse")
 
 
+@pytest.mark.slow
 def test_the_phantom_fit_finds_the_hidden_stiffness(benchmark_cli, tmp_path: Path) -> None:
     called = benchmark_cli("fit", PHANTOM, "--out", tmp_path / "fit", "--json", "--quiet")
     assert called.code == 0

@@ -62,6 +62,7 @@ def test_a_change_that_is_far_slower_is_found(repository, tmp_path: Path) -> Non
     assert "against,1,springs.history," in table
 
 
+@pytest.mark.slow
 def test_an_accepted_baseline_goes_before_the_revision_for_values(repository, tmp_path: Path) -> None:
     repository.change("my_model.py", "[1e-3", "[1.01e-3")
     accept(CheckRequest(gate=repository.path), SilentListener())

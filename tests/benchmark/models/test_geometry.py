@@ -88,6 +88,7 @@ def test_position_and_tilt_reach_the_block() -> None:
     assert slope == pytest.approx(np.sin(np.radians(2.0)), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_tool_with_a_rounded_edge_touches_the_block() -> None:
     touching = {**LINEAR, "fem.kinematics": "finite", "tool.contact": "rigid_frictionless", "tool.edge_radius": "1 mm"}
     axial = run({**touching, "fem.mesh": "default"})

@@ -92,6 +92,7 @@ def test_a_thin_first_layer_has_no_larger_edge() -> None:
 THICK = {"epidermis": "5 mm", "dermis": "5 mm", "subcutaneous_fat": "10 mm"}
 
 
+@pytest.mark.slow
 def test_a_thick_soft_tissue_is_pressed_deeper_than_the_usual_mesh_can() -> None:
     settings = {"load.control": "depth", "load.peak": "7 mm", "load.shape": "ramp", "load.observations": "10"}
     for layer, thickness in THICK.items():

@@ -19,6 +19,7 @@ def test_a_large_press_is_the_corrected_wave(skin, grid):
         tool.touch(0, 40e-3, 30e-3, 1.01 * wave.law.large.deepest)
 
 
+@pytest.mark.slow
 def test_a_sheet_follows_the_plate(silicone, grid):
     wave = PlateWave(silicone(), DiscTool(5e-3, "rigid_bonded"), settings=PlateSettings(reach=6e-3), hole_radius=30e-3)
     tool = InteractiveTissue(sheet_body(wave, grid, 6e-3), grid)

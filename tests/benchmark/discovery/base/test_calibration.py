@@ -19,6 +19,7 @@ def _noise(session):
     return found, float(np.median(found.problem.noise.scale[:, 0]))
 
 
+@pytest.mark.slow
 def test_the_depth_at_touch_is_each_trials_own(session_of, quick_session):
     found, noise = _noise(session_of(trials=6, touch=TOUCH))
     _, still = _noise(session_of(trials=6))

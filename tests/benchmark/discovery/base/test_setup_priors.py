@@ -63,6 +63,7 @@ def test_what_is_stated_takes_the_place_of_what_people_know(tmp_path, quick_sess
     assert priors["fat.youngs_modulus"] == criteria.SETUP_PRIOR["youngs_modulus"]
 
 
+@pytest.mark.slow
 def test_a_sheet_over_a_hole_could_be_held_and_touched_otherwise(tmp_path, quick_session):
     assert table_keys(session_in(tmp_path / "bonded", quick_session)) == ("tool.radius", "layer.thickness")
     assert table_keys(session_in(tmp_path / "hole", quick_session, hole=True))[-2:] == (

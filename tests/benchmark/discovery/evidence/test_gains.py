@@ -44,6 +44,7 @@ def test_only_effects_of_the_tissue_have_forms_that_miss_something():
     assert tissue_gain(fitted, own) == 37.0
 
 
+@pytest.mark.slow
 def test_a_base_that_bends_far_is_strained_and_pays_for_it(session_of):
     session = session_of(force=lambda time, depth, elastic: elastic * (1 + (depth / 3e-3) ** 2), noise=0.003, trials=4)
     bent = calibrate(session, prepare(session, 90)).base

@@ -101,6 +101,7 @@ class Backwards:
             yield future
 
 
+@pytest.mark.slow
 def test_neither_the_order_of_the_processes_nor_a_kill_among_them_matters(base, tmp_path, monkeypatch):
     whole = bits(select(base, EFFECTS, SETTINGS, Pool(None, None, "key")))
     for most in (2, 3, -1):

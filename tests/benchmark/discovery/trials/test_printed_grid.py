@@ -102,6 +102,7 @@ def test_print_scatter_raises_no_alarm(sheet):
     assert float(re.search(r"by ([\d.]+) mm", said)[1]) == pytest.approx(0.06, rel=0.4)
 
 
+@pytest.mark.slow
 def test_a_scale_error_beyond_the_print_is_named(sheet, tmp_path):
     answer = discover(changed(sheet, tmp_path / "s", lambda n, x, y: (1.02 * x, 1.02 * y)), settings=QUICK)
     assert answer.effects[0].slug == "marker_scale_error"

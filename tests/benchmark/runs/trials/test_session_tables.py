@@ -74,6 +74,7 @@ def test_a_flat_tool_that_slides_is_followed_by_the_nearest_tools(pad) -> None:
     assert len(tools) > 1
 
 
+@pytest.mark.slow
 def test_the_discovery_has_a_base_where_neither_model_covers_the_tool(pad) -> None:
     session = pad()
     setup = (session.trials[0].tool, session.trials[0].support)
@@ -98,6 +99,7 @@ def test_a_sphere_is_followed_and_differentiated(pad) -> None:
     assert 0.3 < rise < 1.2  # 0.5 by Hertz, more on a thin layer
 
 
+@pytest.mark.slow
 def test_a_run_takes_the_tool_that_carries_the_trials_force(pad) -> None:
     fitted = fit_trials(pad().folder, None, {"fem.mesh": "coarse"}, Quiet())
     told, warnings = session_scenario(fitted, fitted.session.specimen, as_told=True)
