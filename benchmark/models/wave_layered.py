@@ -13,6 +13,8 @@ from benchmark.models.scenario_effects import wave_physics, wave_slip
 from benchmark.models.wave_parts import PreparedWave, Solution, law_warnings, wave_layers, wave_relaxation, wave_tool
 from wavemodel import LayeredWave, NotCoveredError, WaveDiscretisation, WaveError
 
+MM = 1e3
+
 
 def layered_wave(scenario: Scenario) -> PreparedWave:
     """Set up the layered wave.
@@ -38,7 +40,7 @@ def layered_wave(scenario: Scenario) -> PreparedWave:
     try:
         return _falling_back(scenario, _to_peak(scenario))
     except WaveError as error:
-        linear = _prepared(scenario, "linear")
+        linear = _small_strain(scenario)
         return replace(linear, warnings=(*linear.warnings, _fell_back(error)))
 
 
@@ -98,10 +100,27 @@ def _falling_back(scenario: Scenario, corrected: PreparedWave) -> PreparedWave:
         try:
             return _prepared(scenario, "deep").follow(drive)
         except WaveError as error:
-            solution = _prepared(scenario, "linear").follow(drive)
+            solution = _small_strain(scenario).follow(drive)
             return solution.warned(_fell_back(error))
 
     return replace(corrected, follow=follow)
+
+
+def _small_strain(scenario: Scenario) -> PreparedWave:
+    """What is fallen back to: the linear wave, which knows no bottom, as far as it stays in the stack."""
+    linear, stack = _prepared(scenario, "linear"), scenario.tissue.thickness
+
+    def follow(drive: Drive) -> Solution:
+        solution = linear.follow(drive)
+        deepest = float(solution.depth.max(initial=0.0))
+        if deepest >= stack:
+            raise WaveError(
+                f"in small strain this load presses {MM * deepest:.3g} mm into a stack of {MM * stack:.3g} mm on a rigid "
+                "base, and the layers' finite strain is not followed as far"
+            )
+        return solution
+
+    return replace(linear, follow=follow)
 
 
 def _fell_back(error: WaveError) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -93,13 +92,23 @@ def _span(values: Sequence[float | None]) -> str:
 
 
 def _notices(rows: Sequence[PointResult], found: Sensitivity | None) -> tuple[Notice, ...]:
-    """Warnings of the points, each kind once with how many points have it."""
-    kinds = Counter(re.sub(r"[0-9]+(\.[0-9]+)?", "…", row.warnings) for row in rows if row.warnings)
-    said = [f"{count} points: {kind}" for kind, count in kinds.most_common(MOST_WARNINGS)]
+    """Warnings of the points, each kind once: of how many points, and as the first of them has it."""
+    kinds: dict[str, list[PointResult]] = {}
+    for row in rows:
+        if row.warnings:
+            kinds.setdefault(re.sub(r"[0-9.]+(e[-+]?[0-9]+)?", "", row.warnings), []).append(row)
+    most = sorted(kinds.values(), key=len, reverse=True)[:MOST_WARNINGS]
+    said = [f"{_whose(alike)}: {alike[0].warnings}" for alike in most]
     said += list(found.warnings) if found is not None else []
     return (
         (Notice("warning", "Read these before you quote a figure; the table has them in full.", said),) if said else ()
     )
+
+
+def _whose(alike: Sequence[PointResult]) -> str:
+    """Which points have a warning of one kind, the first by its number."""
+    first, others = f"point {alike[0].point}", len(alike) - 1
+    return f"{first}, and {others} more with figures of their own" if others else first
 
 
 def _design(plan: SweepPlan) -> str:

@@ -22,6 +22,9 @@ from benchmark.sweeps.sweep_folder import SweepFolder, open_folder
 from benchmark.sweeps.sweep_page import sweep_page
 from reports import extended_folder, write_csv, write_json, write_page
 
+MOST_SAID = 3
+"""Failed points that are named on the terminal."""
+
 
 @dataclass(frozen=True)
 class SweepRequest:
@@ -66,7 +69,19 @@ def run_sweep(request: SweepRequest, listener: Listener) -> SweepOutcome:
     with open_folder(path, plan) as folder:
         _finish(folder, plan, request, listener)
         rows = [folder.finished[point] for point in sorted(folder.finished)]
+        say_failures(rows, plan, listener.say)
         return _write(path, plan, rows, request)
+
+
+def say_failures(rows: Sequence[PointResult], plan: SweepPlan, say: Callable[[str], None]) -> None:
+    """Name the first points that failed, with their values and why."""
+    failures = [row for row in rows if row.status == FAILED]
+    for row in failures[:MOST_SAID]:
+        varied = zip(plan.parameters, plan.points[row.point - 1], strict=True)
+        values = ", ".join(f"{parameter.key} {value}" for parameter, value in varied)
+        say(f"point {row.point} ({values}) failed: {row.reason}")
+    if len(failures) > MOST_SAID:
+        say(f"{len(failures) - MOST_SAID} more points failed; their reasons are in the report")
 
 
 def _folder(request: SweepRequest, plan: SweepPlan) -> Path:

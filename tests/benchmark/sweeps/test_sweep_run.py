@@ -1,7 +1,9 @@
 import pytest
 
+from benchmark.runs.output.document import describe_environment
 from benchmark.sweeps.point import PointResult, failed
-from benchmark.sweeps.sweep_run import SweepProgress
+from benchmark.sweeps.sweep_page import sweep_page
+from benchmark.sweeps.sweep_run import SweepProgress, say_failures
 
 
 def test_the_estimate_rests_on_what_this_command_did() -> None:
@@ -21,3 +23,19 @@ def test_failures_are_counted_and_the_end_has_no_estimate() -> None:
         now[0] += seconds
         progress.add(failed(point, "no luck"))
     assert said == ["10 s left, 1 failed", "83 min left, 2 failed", "3 failed"]
+
+
+def test_points_that_failed_are_named_with_their_values_and_the_reason(plan_of) -> None:
+    plan, said = plan_of("tool.radius=1 mm,2 mm,3 mm,4 mm,5 mm"), []
+    rows = [failed(point, "the solver stopped") for point in (1, 2, 3, 4)] + [PointResult(5, "ok")]
+    say_failures(rows, plan, said.append)
+    assert said[0] == "point 1 (tool.radius 1 mm) failed: the solver stopped"
+    assert len(said) == 4
+    assert said[3] == "1 more points failed; their reasons are in the report"
+
+
+def test_a_warning_of_many_points_keeps_its_figures(plan_of) -> None:
+    plan = plan_of("tool.radius=1 mm,2 mm,3 mm")
+    rows = [PointResult(point, "ok", warnings=f"the press is {point}.5 mm deep") for point in (1, 2)]
+    page = sweep_page(plan, [*rows, PointResult(3, "ok")], None, describe_environment(seed=0))
+    assert page.notices[0].items == ["point 1, and 1 more with figures of their own: the press is 1.5 mm deep"]
