@@ -13,14 +13,13 @@ from benchmark.errors import InputError, SolverError, TissuebenchError
 from benchmark.gate.accuracy import tolerance_of
 from benchmark.gate.baseline import (
     Baseline,
-    HistoryEntry,
     StoredTiming,
     StoredValue,
-    append,
     read_baseline,
     staged_baseline,
     write_baseline,
 )
+from benchmark.gate.history.history_file import HistoryEntry, append
 from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
 from benchmark.gate.processes import measure
 from benchmark.gate.versions import Origin, gated_values, origin_of, this_version

@@ -1,13 +1,10 @@
-"""The files that last: the baseline that a check is compared with, and the history, one JSON object a line."""
+"""The baseline that a check is compared with, a JSON file."""
 
 from __future__ import annotations
 
-import errno
 import json
-import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,7 +15,6 @@ from benchmark.errors import InputError, NotComparableError
 from reports import write_json
 
 SCHEMA = 1
-HISTORY_SCHEMA = 1
 DEFAULT = Path("tissuebench-baseline.json")
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -159,89 +155,3 @@ def _table(path: Path) -> dict[str, Any]:
     if not isinstance(table, dict):
         raise InputError(f"{path}: this baseline is no JSON object; {how_to(path)}")
     return table
-
-
-@dataclass(frozen=True)
-class HistoryEntry:
-    """One check.
-
-    Attributes
-    ----------
-    made
-        Date and time, UTC.
-    revision
-        Of the product; None outside a repository.
-    machine
-        Name of the processor.
-    against
-        The other revision that was measured beside; None for a stored baseline.
-    passed
-        The verdict; None where a baseline was accepted.
-    accuracy
-        Values by quantity, None where there was none.
-    timing
-        By quantity `ratio` (time in units of the references), `ci95` and `allowed`, the last two None where a baseline
-        was accepted.
-    """
-
-    made: str
-    revision: str | None
-    machine: str
-    against: str | None
-    passed: bool | None
-    accuracy: Mapping[str, float | None]
-    timing: Mapping[str, Mapping[str, Any]]
-
-
-def history_path(baseline: Path) -> Path:
-    """The history that belongs to a baseline, beside it."""
-    return baseline.with_name(f"{baseline.stem}.history.jsonl")
-
-
-def append(path: Path, entry: HistoryEntry) -> None:
-    """Append a check, whole or not at all; raises OSError where the file system refuses."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    line = json.dumps({"schema": HISTORY_SCHEMA, **asdict(entry)}, ensure_ascii=False, allow_nan=False)
-    whole = f"{'' if _ends_with_newline(path) else chr(10)}{line}\n".encode()
-    handle = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o644)
-    size = os.fstat(handle).st_size
-    try:
-        if os.write(handle, whole) < len(whole):
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
-        os.fsync(handle)
-    except OSError:
-        os.ftruncate(handle, size)
-        raise
-    finally:
-        os.close(handle)
-
-
-def read_history(path: Path) -> tuple[list[HistoryEntry], int]:
-    """Return the checks of a history, oldest first, and how many lines cannot be read; none where there is no file."""
-    if not path.is_file():
-        return [], 0
-    lines = [line for line in path.read_bytes().splitlines() if line.strip()]
-    entries = [entry for line in lines if (entry := _entry(line)) is not None]
-    return entries, len(lines) - len(entries)
-
-
-def _entry(line: bytes) -> HistoryEntry | None:
-    """A line's check; None for one that was cut, or is of another schema."""
-    try:
-        table = json.loads(line)
-        if table.pop("schema") != HISTORY_SCHEMA:
-            return None
-        entry = HistoryEntry(**table)
-        usable = all(each["ratio"] > 0.0 for each in entry.timing.values())
-    except (ValueError, TypeError, KeyError, AttributeError):
-        return None
-    return entry if usable else None
-
-
-def _ends_with_newline(path: Path) -> bool:
-    """Whether a file is new, empty, or ends with a whole line."""
-    if not path.is_file() or not path.stat().st_size:
-        return True
-    with path.open("rb") as stream:
-        stream.seek(-1, os.SEEK_END)
-        return stream.read(1) == b"\n"

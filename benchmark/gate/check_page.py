@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from benchmark.gate.baseline import HistoryEntry
+from benchmark.gate.history.history_file import HistoryEntry
+from benchmark.gate.history.trend import Trend, trend_figure, trends
 from benchmark.gate.statistics import false_alarm, power
 from benchmark.gate.timing import TimingRow
-from benchmark.gate.trend import Trend, trend_figure, trends
 from benchmark.gate.verdict import CheckVerdict
 from benchmark.gate.versions import Origin
 from reports import Bullets, Column, Download, Fact, Notice, Page, Paragraph, Section, Table, Verdict

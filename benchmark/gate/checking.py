@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.gate.accuracy import compare_values
-from benchmark.gate.baseline import HistoryEntry, append, read_history
 from benchmark.gate.check_basis import CheckBasis, stored_baseline
 from benchmark.gate.check_page import check_page
 from benchmark.gate.ci_files import junit_text, markdown_text
+from benchmark.gate.history.history_file import HistoryEntry, append, read_history
 from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
 from benchmark.gate.processes import Measured, Party, measure
 from benchmark.gate.timing import Judge, TimingRow

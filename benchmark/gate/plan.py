@@ -14,8 +14,9 @@ from benchmark.files import load_scenario
 from benchmark.files.loading import read_file
 from benchmark.files.schema import validated
 from benchmark.files.shipped import find
-from benchmark.gate.baseline import DEFAULT, history_path
+from benchmark.gate.baseline import DEFAULT
 from benchmark.gate.gate_file import GatedWork, GateFile, Timed, gate_path
+from benchmark.gate.history.history_file import history_path
 from benchmark.sessions import SHIPPED
 
 

@@ -115,8 +115,8 @@ def _small_strain(scenario: Scenario) -> PreparedWave:
         deepest = float(solution.depth.max(initial=0.0))
         if deepest >= stack:
             raise WaveError(
-                f"in small strain this load presses {MM * deepest:.3g} mm into a stack of {MM * stack:.3g} mm on a rigid "
-                "base, and the layers' finite strain is not followed as far"
+                f"in small strain this load presses {MM * deepest:.3g} mm into a stack of {MM * stack:.3g} mm on a "
+                "rigid base, and the layers' finite strain is not followed as far"
             )
         return solution
 

@@ -1,7 +1,6 @@
-"""Baselines and histories on disk: whole, refused with the way out, only ever appended to."""
+"""Baselines on disk: whole, refused with the way out."""
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,12 +8,8 @@ import pytest
 from benchmark.errors import InputError, NotComparableError
 from benchmark.gate.baseline import (
     Baseline,
-    HistoryEntry,
     Machine,
-    append,
-    history_path,
     read_baseline,
-    read_history,
     write_baseline,
 )
 
@@ -84,56 +79,3 @@ def test_ratios_carry_over_to_the_same_processor_and_python() -> None:
     assert not here.same_as(here.model_copy(update={"processor": "B"}))
     assert here.differences(here) == []
     assert here.differences(here.model_copy(update={"packages": {"numpy": "2.5"}})) == ["numpy 2.4.6 (here 2.5)"]
-
-
-ENTRY = HistoryEntry(
-    made="2026-01-02T03:04:05+00:00",
-    revision="abc",
-    machine="any",
-    against=None,
-    passed=True,
-    accuracy={"skin_mm": 5.0, "gone_mm": None},
-    timing={"frame": {"ratio": 2.0, "ci95": [1.9, 2.1], "allowed": 2.24}},
-)
-
-
-def test_entries_come_back_in_order(tmp_path: Path) -> None:
-    path = tmp_path / "new" / "h.jsonl"
-    assert read_history(path) == ([], 0)
-    second = replace(ENTRY, passed=False)
-    append(path, ENTRY)
-    before = path.read_bytes()
-    append(path, second)
-    assert path.read_bytes().startswith(before)
-    assert read_history(path) == ([ENTRY, second], 0)
-
-
-def test_a_line_that_was_cut_is_left_and_passed_over(tmp_path: Path) -> None:
-    path = tmp_path / "h.jsonl"
-    append(path, ENTRY)
-    with path.open("ab") as stream:
-        stream.write(b'{"schema": 1, "made": "2026')
-    append(path, ENTRY)
-    assert read_history(path) == ([ENTRY, ENTRY], 1)
-    assert b'{"schema": 1, "made": "2026\n' in path.read_bytes()
-
-
-@pytest.mark.parametrize(
-    "line",
-    [
-        "[]",
-        "nonsense",
-        '{"schema": 2}',
-        json.dumps({"schema": 1, "made": "x"}),
-        json.dumps({"schema": 1, **vars(ENTRY), "timing": {"frame": {"ratio": 0.0}}}),
-    ],
-)
-def test_lines_of_something_else_are_counted(tmp_path: Path, line: str) -> None:
-    path = tmp_path / "h.jsonl"
-    path.write_text(f"{line}\n")
-    append(path, ENTRY)
-    assert read_history(path) == ([ENTRY], 1)
-
-
-def test_it_stands_beside_the_baseline() -> None:
-    assert history_path(Path("ci/b.json")) == Path("ci/b.history.jsonl")

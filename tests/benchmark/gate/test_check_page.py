@@ -3,8 +3,8 @@
 import re
 from dataclasses import replace
 
-from benchmark.gate.baseline import HistoryEntry
 from benchmark.gate.check_page import check_page
+from benchmark.gate.history.history_file import HistoryEntry
 from benchmark.gate.versions import Origin
 from reports import render_page
 

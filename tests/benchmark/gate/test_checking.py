@@ -10,8 +10,9 @@ import pytest
 
 from benchmark.errors import InputError, NotComparableError, SolverError
 from benchmark.gate.accepting import accept
-from benchmark.gate.baseline import read_baseline, read_history
+from benchmark.gate.baseline import read_baseline
 from benchmark.gate.checking import check, remarks
+from benchmark.gate.history.history_file import read_history
 from benchmark.gate.measuring.costs import CostClock
 from benchmark.gate.measuring.service import Service
 from benchmark.gate.plan import CheckRequest, GatePlan

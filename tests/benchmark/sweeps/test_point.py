@@ -66,7 +66,9 @@ def test_a_point_that_no_model_covers_is_failed(scenario: Scenario, monkeypatch)
 
 def test_a_solver_that_stops_early_fails_the_point_and_keeps_the_other_model() -> None:
     soft = {f"{layer}.youngs_modulus": "5 kPa" for layer in ("epidermis", "dermis", "subcutaneous_fat")}
-    row = evaluate(Task(1, load_scenario("skin-5N", {**SMALL, **soft, "load.peak": "20 N", "wave.large_press": "linear"})))
+    row = evaluate(
+        Task(1, load_scenario("skin-5N", {**SMALL, **soft, "load.peak": "20 N", "wave.large_press": "linear"}))
+    )
     assert row.status == FAILED
     assert "FEM stopped early at step" in (row.reason or "")
     assert "wave_depth_mm" in row.values

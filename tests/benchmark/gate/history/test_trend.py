@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from benchmark.gate.baseline import HistoryEntry
-from benchmark.gate.trend import MOST_CHECKS, trend_figure, trends
+from benchmark.gate.history.history_file import HistoryEntry
+from benchmark.gate.history.trend import MOST_CHECKS, trend_figure, trends
 
 
 def entry(ratio: float, *, machine: str = "A", against: str | None = None, accepted: bool = False) -> HistoryEntry:
