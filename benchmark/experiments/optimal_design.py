@@ -19,11 +19,13 @@ import numpy as np
 from benchmark.errors import InputError, SolverError
 from benchmark.experiments.menu import Experiment, Usual, menu, minutes, motion, protocol_toml, same_again
 from benchmark.files import Tool
+from benchmark.identification.parameters.fit_problem import FitProblem
+from benchmark.identification.parameters.identifiability import LARGEST_ERROR
 from benchmark.identification.parameters.identified import Identified
-from benchmark.identification.parameters.layer_fit import LOOKED_UP, FitProblem, press_all
+from benchmark.identification.parameters.layer_fit import LOOKED_UP
 from benchmark.identification.parameters.layer_model import MM, Fading, FitTrial, LayerModel
-from benchmark.identification.parameters.press_surrogate import Press, PressSurrogate, StopsError
-from benchmark.identification.parameters.profile_likelihood import KNOWN
+from benchmark.identification.parameters.pressed_set_ups import press_all
+from benchmark.identification.parameters.presses.press_surrogate import Press, PressSurrogate, StopsError
 from benchmark.identification.trial_data import TrialData
 from benchmark.identification.trial_features import ContactRange
 from benchmark.response.force_curve import Array
@@ -67,7 +69,7 @@ class Proposal:
     @property
     def determines(self) -> int:
         """How many free parameters would then be determined."""
-        return int((1.96 * self.errors <= KNOWN).sum())
+        return int((self.errors <= LARGEST_ERROR).sum())
 
     def to_dict(self, names: Sequence[str]) -> dict[str, Any]:
         """Entry of `fit.json`."""

@@ -25,12 +25,12 @@ from scipy.optimize import least_squares
 
 from benchmark.files import load_session
 from benchmark.files.sessions.fit_table import FitTable
-from benchmark.identification.parameters import press_surrogate
 from benchmark.identification.parameters.free_parameters import with_values
 from benchmark.identification.parameters.identifiability import directions
 from benchmark.identification.parameters.identified import identify
 from benchmark.identification.parameters.layer_fit import begun, fit_layers
 from benchmark.identification.parameters.other_answers import other_answers
+from benchmark.identification.parameters.presses import press_surrogate
 from benchmark.identification.parameters.session_problem import FittedBase, assembled
 from benchmark.models import Drive, prepare
 from benchmark.response.differentiated_ramp import differentiated_ramp

@@ -2,6 +2,11 @@
 
 The sensitivity is white and free of priors on what is free; touch, zero and gain of the trials, and what was told of
 the set-up with an uncertainty, are eliminated.
+
+A parameter is determined where its interval ends within a factor of two, and where at no point of the confidence
+region the trials alone leave it a standard error beyond what such an interval has. The second is asked because a
+likelihood may be steep at the estimate and flat beside it, where the true value may be: what the interval says there
+rests on curvature alone.
 """
 
 from __future__ import annotations
@@ -14,8 +19,14 @@ from typing import Any
 import numpy as np
 
 from benchmark.identification.parameters.layer_fit import LayerFit
-from benchmark.identification.parameters.profile_likelihood import KNOWN
+from benchmark.identification.parameters.layer_model import LayerModel
 from benchmark.response.force_curve import Array
+from benchmark.response.least_squares import TrialsFit
+
+KNOWN = math.log(2.0)
+"""A parameter is determined where its interval ends within a factor of two, either way. Wider is said to be unknown."""
+LARGEST_ERROR = KNOWN / 1.96
+"""Standard error of a logarithm, by the trials alone, up to which a parameter can be determined: 35 %."""
 
 SHOWN = 0.2
 """Parts of a direction smaller than this share of the largest are left out of its words."""
@@ -80,20 +91,28 @@ def _joined(names: Sequence[str]) -> str:
     return f"{', '.join(names[:-1])} and {names[-1]}"
 
 
-def information(found: LayerFit) -> Array:
-    """(f, f) information of the trials on the free parameters, without priors on these."""
-    free = np.array(found.problem.free, dtype=int)
-    total = found.fit.blocks.matrix.sum(axis=0) + np.diag(found.fit.precision)
-    total[free, free] -= found.fit.precision[free]
+def information(fit: TrialsFit[LayerModel], numbers: Sequence[int]) -> Array:
+    """(f, f) information of the trials on the free parameters, by their numbers, without priors on these."""
+    free = np.array(numbers, dtype=int)
+    total = fit.blocks.matrix.sum(axis=0) + np.diag(fit.precision)
+    total[free, free] -= fit.precision[free]
     rest = np.setdiff1d(np.arange(total.shape[0]), free)
     across = total[np.ix_(rest, free)]
     inner = total[np.ix_(rest, rest)]
     return np.asarray(total[np.ix_(free, free)] - across.T @ np.linalg.solve(inner, across))
 
 
+def errors_alone(fit: TrialsFit[LayerModel], numbers: Sequence[int]) -> Array:
+    """(f,) standard errors of the free coordinates by the trials alone, without priors on what is free."""
+    matrix = information(fit, numbers)
+    sizes, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
+    floor = max(float(sizes[-1]), 1e-300) * LEAST
+    return np.asarray(np.sqrt((vectors**2 / np.maximum(sizes, floor)).sum(axis=1)))
+
+
 def directions(found: LayerFit) -> tuple[Direction, ...]:
     """Singular directions of what the trials tell, the least known first."""
-    matrix = information(found)
+    matrix = information(found.fit, found.problem.free)
     keys = tuple(found.problem.parameters[k].key for k in found.problem.free)
     sizes, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
     best = max(float(sizes[-1]), LEAST)

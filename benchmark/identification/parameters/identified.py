@@ -1,7 +1,6 @@
 """The answer of a fit of parameters: values with intervals, what is not determined, and why.
 
-A parameter whose interval does not end within a factor of two is not determined, whatever the fit's best value is; it
-is said so wherever it is quoted.
+What is not determined (`identifiability`) is said so wherever it is quoted, whatever the fit's best value is.
 """
 
 from __future__ import annotations
@@ -18,13 +17,15 @@ from benchmark.identification.fitted_parameters import FittedParameter
 from benchmark.identification.parameters.free_parameters import Parameter
 from benchmark.identification.parameters.held_out import HeldOut, held_out
 from benchmark.identification.parameters.identifiability import (
+    KNOWN,
+    LARGEST_ERROR,
     Direction,
     correlation_words,
     directions,
-    information,
+    errors_alone,
 )
 from benchmark.identification.parameters.layer_fit import LayerFit
-from benchmark.identification.parameters.profile_likelihood import KNOWN, Profile, verified_profiles
+from benchmark.identification.parameters.profile_likelihood import Profile, largest_errors, verified_profiles
 
 NOT_DETERMINED = "not determined"
 
@@ -124,25 +125,31 @@ class Identified:
     @cached_property
     def estimates(self) -> tuple[Estimate, ...]:
         """Values and intervals."""
-        alone = _alone(self.found)
-        return tuple(self._estimate(place, alone[place]) for place in range(len(self.names)))
+        largest = largest_errors(self.profiles, self.found.quantile)
+        return tuple(self._estimate(place, float(largest[place])) for place in range(len(self.names)))
 
-    def _estimate(self, place: int, deviation: float) -> Estimate:
+    def _estimate(self, place: int, largest: float) -> Estimate:
         index, own = self.found.problem.free[place], self.profiles[place]
         parameter, at = self.found.problem.parameters[index], float(self.found.vector[index])
-        by_data = 1.96 * deviation <= KNOWN
         ends = own.determined(at)
-        values = sorted(parameter.scale * parameter.value(each) for each in (own.low, own.high)) if ends else ()
+        identifiable = ends and largest <= LARGEST_ERROR
+        quoted = ends and (identifiable or parameter.prior is not None)
+        values = sorted(parameter.scale * parameter.value(each) for each in (own.low, own.high)) if quoted else ()
         low, high = values if values else (None, None)
         prior = None if parameter.prior is None else f"{_prior(parameter)}; {parameter.prior.source}"
-        identifiable = ends and by_data
-        reason = "" if identifiable else self._reason(place, deviation)
+        reason = "" if identifiable else self._reason(place, largest)
         value = parameter.scale * self.found.value(index)
         return Estimate(self.names[place], value, low, high, parameter.unit, identifiable, prior, reason)
 
-    def _reason(self, place: int, deviation: float) -> str:
-        if self.others and 1.96 * deviation <= KNOWN:
+    def _reason(self, place: int, largest: float) -> str:
+        deviation = float(errors_alone(self.found.fit, self.found.problem.free)[place])
+        if self.others and largest <= LARGEST_ERROR:
             return "two or more answers away from each other follow the trials equally well"
+        if deviation <= LARGEST_ERROR < largest:
+            return (
+                f"the trials tell it to {100 * deviation:.2g} % at this value (standard error without priors), but to "
+                f"{_no_better(largest)} at others that follow them as well; allowed {100 * LARGEST_ERROR:.0f} %"
+            )
         weak = [one for one in self.directions if not one.known and abs(one.parts[place]) > 0.3]
         what = weak[0].text if weak else "its interval does not end within a factor of two"
         size = "nothing of it" if deviation > 10.0 else f"it to {100 * deviation:.0f} % alone"
@@ -211,6 +218,7 @@ class Identified:
             "forward": found.problem.forward,
             "directions": [one.to_dict() for one in self.directions],
             "directions_before": [one.to_dict() for one in self.before],
+            "determined_limits": {"factor": math.exp(KNOWN), "standard_error": LARGEST_ERROR},
             "correlations": list(correlation_words(found)),
             "told": [row.to_dict() for row in self.rows if row.name not in self.names],
             "residual_percent_of_peak": 100.0 * float(np.median(rms)),
@@ -232,12 +240,8 @@ def _curve(identified: Identified, place: int) -> Mapping[str, list[float]]:
     return {"value": values, "rise": own.rise.tolist()}
 
 
-def _alone(found: LayerFit) -> list[float]:
-    """Standard error of each free coordinate by the trials alone, without priors on what is free."""
-    matrix = information(found)
-    sizes, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
-    floor = max(float(sizes[-1]), 1e-300) * 1e-12
-    return [float(np.sqrt(np.sum(row**2 / np.maximum(sizes, floor)))) for row in vectors]
+def _no_better(error: float) -> str:
+    return f"{100 * error:.0f} %" if error < 1.0 else "no better than threefold"
 
 
 def _prior(parameter: Parameter) -> str:

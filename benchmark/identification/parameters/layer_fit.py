@@ -12,91 +12,34 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
-from benchmark.errors import SolverError
-from benchmark.identification.parameters.free_parameters import (
-    COMMON,
-    RELAXATION,
-    SHARE,
-    Parameter,
-    start_vector,
+from benchmark.identification.parameters.fit_problem import (
+    FitProblem,
+    curved_coordinates,
+    fading_of,
+    priors,
+    round_limits,
 )
-from benchmark.identification.parameters.layer_model import GAIN, Fading, FitTrial, ForceTable, LayerModel
+from benchmark.identification.parameters.free_parameters import start_vector
+from benchmark.identification.parameters.layer_model import GAIN, ForceTable, LayerModel
 from benchmark.identification.parameters.mixed_effects import SpreadParts, renoised, spread_parts
-from benchmark.identification.parameters.press_atlas import PressAtlas
-from benchmark.identification.parameters.press_surrogate import Forward, Press, PressSurrogate, StopsError, surrogate
+from benchmark.identification.parameters.pressed_set_ups import disagreement, followed, joined, pressed_anew
+from benchmark.identification.parameters.presses.press_atlas import PressAtlas
+from benchmark.identification.parameters.presses.press_surrogate import PressSurrogate
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import Search, TrialsFit, least_squares
 from benchmark.response.noise import whitener
 
-MODEL_TRUST = 0.005
-"""Standard deviation of the model's own error in a press, in size and in slope over depth, as shares of the force.
-
-What finite-element codes and meshes that people use differ by on the same press: 0.4 to 0.8 % in size and 0.1 to 0.2 %
-in shape between meshes of another code, three layers under sharp tools; our own meshes differ by 0.1 to 0.2 %.
-"""
 FIRST_NOISE, FIRST_MEMORY = 0.01, 0.6
 USUAL_SCATTER = 0.015
 """Standard deviation of trials' gains to begin with, and where there are too few trials to tell it."""
-WEAK = 2.0
-"""Standard deviation of a free parameter's logarithm round its start (sevenfold): it stops what no data hold."""
-FARTHEST = 0.7
-"""How far a coordinate may go in a round: twofold."""
 AGREES = 5e-4
 """Largest difference of surrogate and model, as a share of the force, with which a round is the last."""
 MOST_ROUNDS = 6
-RETRIES = 4
-LEAST_REACH, SAFE_REACH = 0.5, 0.95
-"""A press that the model follows to half its depth at least is fitted to this share of what it follows."""
 SEARCH = Search(most=25, gain=1e-3, share=1e-7)
 LOOKED_UP = Search(most=0)
 
 Say = Callable[[str], None]
-
-
-@dataclass(frozen=True, eq=False)
-class FitProblem:
-    """What is fitted.
-
-    Attributes
-    ----------
-    presses : tuple of Press
-    trials : tuple of FitTrial
-    parameters : tuple of Parameter
-        Free ones, and told ones with their uncertainty as prior.
-    law : str or None
-        Law that all layers get; None keeps the specimen's own.
-    forward : "fem" or "wave"
-    trust : float
-        Standard deviation of the model's own error, a share of the force.
-    specimens : tuple of str
-        The specimen of each trial, where several were tried repeatedly; empty where that is not told.
-    """
-
-    presses: tuple[Press, ...]
-    trials: tuple[FitTrial, ...]
-    parameters: tuple[Parameter, ...]
-    law: str | None = None
-    forward: Forward = "fem"
-    trust: float = MODEL_TRUST
-    specimens: tuple[str, ...] = ()
-
-    @property
-    def free(self) -> tuple[int, ...]:
-        """Numbers of the free parameters."""
-        return tuple(k for k, one in enumerate(self.parameters) if not one.told)
-
-    @property
-    def size(self) -> int:
-        """Coordinates of the fit: parameters, and the model's own error in each press."""
-        return len(self.parameters) + 2 * len(self.presses)
-
-    @property
-    def freedom(self) -> int:
-        """Trials beyond those that settle the level of each press: what tells their scatter."""
-        used = {trial.press for trial in self.trials}
-        return len(self.trials) - min(len(used), len(self.free))
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,7 +118,7 @@ def begun(problem: FitProblem, touches: Array, zeros: Array) -> LayerFit:
         The model does not follow the presses.
     """
     start = np.concatenate([start_vector(problem.parameters), np.zeros(2 * len(problem.presses))])
-    problem, surrogates = _followed(problem, start)
+    problem, surrogates = followed(problem, start)
     model = _first_model(problem, surrogates, start)
     nuisance = np.column_stack([1e3 * touches, zeros, np.zeros(len(problem.trials))])
     nuisance[:, 0] = np.clip(nuisance[:, 0], model.trial_bounds[0][:, 0], model.trial_bounds[1][:, 0])
@@ -210,7 +153,7 @@ def fit_layers(start: LayerFit, say: Say = lambda _: None, rounds: int = MOST_RO
     vector, apart, done = start.vector, np.inf, 0
     for done in range(1, rounds + 1):
         model, fit, memory = _fitted(problem, model, vector, nuisance)
-        pressed, vector = _pressed_anew(problem, fit.vector, vector)
+        pressed, vector = pressed_anew(problem, fit.vector, vector)
         apart = disagreement(model.surrogates, pressed, vector)
         say(f"round {done}: model and surrogate differ by {100 * apart:.2g} % of the force")
         stopped = _at_edge(problem, model, fit.vector)
@@ -221,98 +164,17 @@ def fit_layers(start: LayerFit, say: Say = lambda _: None, rounds: int = MOST_RO
     return LayerFit(problem, fit, memory, done, apart)
 
 
-def _followed(problem: FitProblem, start: Array) -> tuple[FitProblem, tuple[PressSurrogate, ...]]:
-    """The presses where a fit begins, as deep as the model follows them, with the trials' rows so deep."""
-    surrogates = []
-    for number in range(len(problem.presses)):
-        for _ in range(RETRIES):
-            try:
-                surrogates.append(_surrogate(problem, number, start))
-                break
-            except StopsError as stop:
-                if stop.reach < LEAST_REACH * problem.presses[number].depth:
-                    raise
-                problem = _shallower(problem, number, SAFE_REACH * stop.reach)
-        else:
-            surrogates.append(_surrogate(problem, number, start))
-    return problem, tuple(surrogates)
-
-
-def _shallower(problem: FitProblem, number: int, depth: float) -> FitProblem:
-    """The problem with one press less deep."""
-    press = replace(problem.presses[number], depth=depth)
-    presses = (*problem.presses[:number], press, *problem.presses[number + 1 :])
-    trials = tuple(one.up_to(depth) if one.press == number else one for one in problem.trials)
-    return replace(problem, presses=presses, trials=trials)
-
-
 def _first_model(problem: FitProblem, surrogates: tuple[PressSurrogate, ...], start: Array) -> LayerModel:
     """The model where the fit begins, with noise that nobody has estimated yet."""
-    mean, precision = _priors(problem)
+    mean, precision = priors(problem)
     noise = np.array([FIRST_NOISE * np.ptp(one.data.force) for one in problem.trials])
     white = tuple(whitener(one.count, FIRST_MEMORY) for one in problem.trials)
-    limits = _limits(problem, start)
-    fading = _fading(problem)
-    atlases = tuple(PressAtlas((one,), _curved(problem, k)) for k, one in enumerate(surrogates))
+    limits = round_limits(problem, start)
+    fading = fading_of(problem)
+    atlases = tuple(PressAtlas((one,), curved_coordinates(problem, k)) for k, one in enumerate(surrogates))
     return LayerModel(
         atlases, problem.trials, fading, limits, mean, precision, USUAL_SCATTER, white, np.maximum(noise, 1e-9)
     )
-
-
-def _curved(problem: FitProblem, number: int) -> NDArray[np.int64]:
-    """Coordinates in which a press' log force is no straight line."""
-    press = problem.presses[number]
-    chosen = (k for k, one in enumerate(problem.parameters) if press.has(one) and not one.fading and one.key != COMMON)
-    return np.array(list(chosen), dtype=np.int64)
-
-
-def press_all(problem: FitProblem, vector: Array) -> tuple[PressSurrogate, ...]:
-    """All presses at coordinates (p,), with the model's own error; raises SolverError or InputError."""
-    return tuple(_surrogate(problem, number, vector) for number in range(len(problem.presses)))
-
-
-def _surrogate(problem: FitProblem, number: int, vector: Array) -> PressSurrogate:
-    press, count = problem.presses[number], len(problem.parameters)
-    relaxing = [name for name in _relaxing(problem) if name in press.setup[0].layer_names]
-    found = surrogate(press, problem.parameters, vector[:count], problem.law, relaxing, problem.forward)
-    own = np.zeros((2 * len(problem.presses), found.depth.size))
-    own[2 * number] = 1.0
-    own[2 * number + 1] = np.linspace(-1.0, 1.0, found.depth.size)
-    at = np.concatenate([found.at, np.zeros(own.shape[0])])
-    return replace(found, by=np.vstack([found.by, own]), at=at)
-
-
-def _relaxing(problem: FitProblem) -> tuple[str, ...]:
-    """Layers that fade by parameters of their own."""
-    ends = (one.key.removesuffix(SHARE) for one in problem.parameters if one.key.endswith(SHARE))
-    return tuple(dict.fromkeys(ends))
-
-
-def _fading(problem: FitProblem) -> tuple[Fading, ...]:
-    """Where each press finds shares and times of what fades in it."""
-    out = []
-    for number, press in enumerate(problem.presses):
-        for k, one in enumerate(problem.parameters):
-            if one.key.endswith((SHARE, f"{RELAXATION}.g")) and press.has(one):
-                layer = one.key.removesuffix(SHARE) if one.key.endswith(SHARE) else ""
-                out.append(Fading(number, layer, k, k + 1))
-    return tuple(out)
-
-
-def _priors(problem: FitProblem) -> tuple[Array, Array]:
-    """Mean and precision (p,) of the coordinates' priors."""
-    mean, precision = np.zeros(problem.size), np.full(problem.size, problem.trust**-2)
-    for k, one in enumerate(problem.parameters):
-        value, deviation = (one.start, WEAK) if one.prior is None else (one.prior.value, one.prior.deviation)
-        mean[k], precision[k] = one.coordinate(value), deviation**-2
-    return mean, precision
-
-
-def _limits(problem: FitProblem, vector: Array) -> tuple[Array, Array]:
-    """Bounds of the next round round a point."""
-    ends = [one.limits for one in problem.parameters] + [(-0.1, 0.1)] * (2 * len(problem.presses))
-    low, high = np.array(ends).T
-    return np.maximum(low, vector - FARTHEST), np.minimum(high, vector + FARTHEST)
 
 
 def _fitted(
@@ -327,27 +189,6 @@ def _fitted(
     return model, fit, memory
 
 
-def _pressed_anew(problem: FitProblem, vector: Array, before: Array) -> tuple[tuple[PressSurrogate, ...], Array]:
-    """All presses at new coordinates, or nearer to the old ones where the model does not follow them."""
-    for _ in range(RETRIES):
-        try:
-            return press_all(problem, vector), vector
-        except SolverError:
-            vector = 0.5 * (vector + before)
-    return press_all(problem, before), before
-
-
-def disagreement(old: Sequence[ForceTable], new: Sequence[PressSurrogate], vector: Array) -> float:
-    """Largest difference of the force that the old tables foretold and the new one, as a share."""
-    deep = slice(old[0].depth.size // 8, None)
-    count = new[0].at.size
-    own = np.where(np.arange(count) < count - 2 * len(new), vector, 0.0)
-    return max(
-        float(np.abs(np.log(one.force_at(own)[deep] / two.force[deep])).max())
-        for one, two in zip(old, new, strict=True)
-    )
-
-
 def _at_edge(problem: FitProblem, model: LayerModel, vector: Array) -> bool:
     """Whether a coordinate was held by the round's own limits, and not by its bounds."""
     low, high = np.array([one.limits for one in problem.parameters]).T
@@ -358,10 +199,4 @@ def _at_edge(problem: FitProblem, model: LayerModel, vector: Array) -> bool:
 
 
 def _renewed(problem: FitProblem, model: LayerModel, pressed: tuple[PressSurrogate, ...], vector: Array) -> LayerModel:
-    return replace(model, surrogates=joined(model.surrogates, pressed), limits=_limits(problem, vector))
-
-
-def joined(tables: Sequence[ForceTable], pressed: Sequence[PressSurrogate]) -> tuple[ForceTable, ...]:
-    """Tables with one more press each."""
-    pairs = zip(tables, pressed, strict=True)
-    return tuple(one.with_press(new) if isinstance(one, PressAtlas) else new for one, new in pairs)
+    return replace(model, surrogates=joined(model.surrogates, pressed), limits=round_limits(problem, vector))

@@ -16,16 +16,9 @@ import numpy as np
 from benchmark.errors import SolverError
 from benchmark.identification.parameters.free_parameters import Parameter
 from benchmark.identification.parameters.identifiability import directions
-from benchmark.identification.parameters.layer_fit import (
-    AGREES,
-    SEARCH,
-    LayerFit,
-    disagreement,
-    joined,
-    knowing,
-    press_all,
-)
+from benchmark.identification.parameters.layer_fit import AGREES, SEARCH, LayerFit, knowing
 from benchmark.identification.parameters.layer_model import LayerModel
+from benchmark.identification.parameters.pressed_set_ups import disagreement, joined, press_all
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import TrialsFit, least_squares
 

@@ -15,14 +15,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from benchmark.errors import SolverError
-from benchmark.identification.parameters.layer_fit import LayerFit, joined, knowing, press_all
-from benchmark.identification.parameters.press_atlas import PressAtlas
-from benchmark.identification.parameters.press_surrogate import PressSurrogate
+from benchmark.identification.parameters.identifiability import KNOWN, errors_alone
+from benchmark.identification.parameters.layer_fit import LayerFit, knowing
+from benchmark.identification.parameters.pressed_set_ups import joined, press_all
+from benchmark.identification.parameters.presses.press_atlas import PressAtlas
+from benchmark.identification.parameters.presses.press_surrogate import PressSurrogate
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import Search, least_squares
 
-KNOWN = math.log(2.0)
-"""A parameter is determined where its interval ends within a factor of two, either way. Wider is said to be unknown."""
 SHARES = (0.3, 0.6)
 """Of the way to each end of the interval, where the curve is drawn beside the ends themselves."""
 TURNS = 14
@@ -43,12 +43,15 @@ class Profile:
     ----------
     coordinate, rise : (m,) array
         The coordinate, and -2 log of the likelihood ratio there.
+    errors : (m, f) array
+        Standard errors of all free coordinates by the trials alone, where the refits ended.
     low, high : float
         Ends of the 95 % interval of the coordinate; infinite where it does not end within reach.
     """
 
     coordinate: Array
     rise: Array
+    errors: Array
     low: float
     high: float
 
@@ -96,6 +99,12 @@ def profile(found: LayerFit, index: int, others: Sequence[LayerFit] = ()) -> Pro
     return _drawn(_walks((found, *others), index))
 
 
+def largest_errors(profiles: Sequence[Profile], quantile: float) -> Array:
+    """(f,) largest standard error of each free coordinate by the trials alone, in all that 95 % of confidence holds."""
+    reached = (1.0 + CLOSE) ** 2 * quantile**2
+    return np.asarray(np.max([one.errors[one.rise <= reached].max(axis=0) for one in profiles], axis=0))
+
+
 def _walks(answers: Sequence[LayerFit], index: int, before: Sequence[_Walk] = ()) -> tuple[_Walk, ...]:
     """Walks to both ends of a coordinate's interval round each answer, as high as the best one's allows."""
     best, out = answers[0], []
@@ -111,15 +120,16 @@ def _walks(answers: Sequence[LayerFit], index: int, before: Sequence[_Walk] = ()
 
 def _drawn(walks: Sequence[_Walk]) -> Profile:
     """The curve of all walks together, with points between the estimates and the ends."""
-    points: list[tuple[float, float]] = []
+    points: list[tuple[float, float, Array]] = []
     for walk in walks:
         for sign in (-1.0, 1.0):
             for share in SHARES:
                 walk.rise(walk.start + sign * share * walk.reach(sign))
-        points += [(at, rise + walk.lost) for at, rise in walk.known.items()]
-    table = np.array(sorted(points))
+        points += [(at, rise + walk.lost, walk.errors[at]) for at, rise in walk.known.items()]
+    points.sort(key=lambda each: each[0])
+    coordinate, rise, errors = (np.array(column) for column in zip(*points, strict=True))
     low, high = min(walk.ends[-1.0] for walk in walks), max(walk.ends[1.0] for walk in walks)
-    return Profile(table[:, 0], table[:, 1], low, high)
+    return Profile(coordinate, rise, errors, low, high)
 
 
 class _Walk:
@@ -144,6 +154,7 @@ class _Walk:
         self._limits = float(low[index]), float(high[index])
         self.start = float(found.vector[index])
         self.known = {self.start: 0.0}
+        self.errors = {self.start: errors_alone(found.fit, found.problem.free)}
         self._states = {self.start: (found.vector, found.fit.nuisance)}
         self._last = {-1.0: self.start, 1.0: self.start}
         self.ends = {-1.0: -math.inf, 1.0: math.inf}
@@ -166,6 +177,7 @@ class _Walk:
         vector[self._index] = value
         fit = least_squares(self._model.fixed_at(self._index, value), vector, nuisance, search=REFIT)
         self.known[value] = max(2.0 * (fit.objective - self._misfit), 0.0)
+        self.errors[value] = errors_alone(fit, self._found.problem.free)
         self._states[value] = fit.vector, fit.nuisance
         return self.known[value]
 

@@ -13,6 +13,7 @@ from benchmark.errors import InputError
 from benchmark.files import Session, Tool
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.files.units import QuantityError, parse_quantity, relative_uncertainty, split_uncertainty
+from benchmark.identification.parameters.fit_problem import FitProblem
 from benchmark.identification.parameters.free_parameters import (
     COMMON,
     MODULUS,
@@ -27,9 +28,8 @@ from benchmark.identification.parameters.free_parameters import (
     with_values,
 )
 from benchmark.identification.parameters.law_shapes import law_shape
-from benchmark.identification.parameters.layer_fit import FitProblem
 from benchmark.identification.parameters.layer_model import FitTrial
-from benchmark.identification.parameters.press_surrogate import Press
+from benchmark.identification.parameters.presses.press_surrogate import Press
 from benchmark.identification.session_fit import SessionFit
 from benchmark.identification.trial_data import LEAST_ROWS, TrialData
 from benchmark.identification.trial_features import contact_range

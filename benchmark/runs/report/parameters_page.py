@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -10,10 +11,9 @@ import numpy as np
 from benchmark.experiments.parameters_answer import ParametersAnswer
 from benchmark.files import Session
 from benchmark.identification.parameters.held_out import prediction_bands
-from benchmark.identification.parameters.identifiability import Direction, correlation_words
+from benchmark.identification.parameters.identifiability import KNOWN, LARGEST_ERROR, Direction, correlation_words
 from benchmark.identification.parameters.identified import NOT_DETERMINED, Identified
 from benchmark.identification.parameters.posterior import Posterior
-from benchmark.identification.parameters.profile_likelihood import KNOWN
 from benchmark.models import Array
 from benchmark.runs.report.values import MM, sentence
 from reports import Block, Bullets, Column, Download, Fact, Notice, Page, Paragraph, Section, Table, Verdict
@@ -66,7 +66,12 @@ def _values(answer: Identified) -> Section:
         )
         for one in answer.estimates
     ]
-    blocks: list[Block] = [Table("Free parameters", columns, rows, folded=False)]
+    meant = (
+        f"Determined: the 95 % interval ends within a factor of {math.exp(KNOWN):.2g} of the value, and at no point of "
+        f"the confidence region the trials alone, without priors, leave a standard error above "
+        f"{100 * LARGEST_ERROR:.0f} %."
+    )
+    blocks: list[Block] = [Table("Free parameters", columns, rows, folded=False), Paragraph(meant)]
     told = [(row.name, row.value, row.unit, row.ci95_low, row.ci95_high, row.source) for row in _told(answer)]
     if told:
         said = ("value", Column("after the fit"), "unit", Column("95 % low"), Column("95 % high"), "told")
@@ -189,7 +194,7 @@ def _next(whole: ParametersAnswer) -> Section:
         "determines",
         *(Column(f"{name} after", "% s.e.", 3) for name in names),
     )
-    first = ("now", 0.0, f"{int((1.96 * design.errors_now <= KNOWN).sum())} of {len(names)}")
+    first = ("now", 0.0, f"{int((design.errors_now <= LARGEST_ERROR).sum())} of {len(names)}")
     rows: list[tuple[object, ...]] = [(*first, *(100.0 * design.errors_now))]
     rows += [
         (one.experiment.name, one.minutes, f"{one.determines} of {len(names)}", *(100.0 * one.errors))

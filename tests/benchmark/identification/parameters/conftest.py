@@ -7,12 +7,13 @@ import pytest
 
 from benchmark.files import Support, Tool, load_tissue
 from benchmark.identification import TrialData
-from benchmark.identification.parameters import press_surrogate
+from benchmark.identification.parameters.fit_problem import FitProblem
 from benchmark.identification.parameters.free_parameters import parameters_of, with_values
 from benchmark.identification.parameters.law_shapes import shear_modulus
-from benchmark.identification.parameters.layer_fit import FitProblem, begun, fit_layers
+from benchmark.identification.parameters.layer_fit import begun, fit_layers
 from benchmark.identification.parameters.layer_model import FitTrial
-from benchmark.identification.parameters.press_surrogate import Press
+from benchmark.identification.parameters.presses import press_surrogate
+from benchmark.identification.parameters.presses.press_surrogate import Press
 from benchmark.identification.trial_features import contact_range
 from benchmark.response import ForceCurve
 from benchmark.response.differentiated_ramp import DifferentiatedRamp, RampDerivative

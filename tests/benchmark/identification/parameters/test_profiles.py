@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmark.identification.parameters import press_surrogate
 from benchmark.identification.parameters.law_shapes import shear_modulus
 from benchmark.identification.parameters.layer_fit import begun, fit_layers
+from benchmark.identification.parameters.presses import press_surrogate
 from benchmark.identification.parameters.profile_likelihood import profile, verified_profiles
 from benchmark.response.differentiated_ramp import DifferentiatedRamp, RampDerivative
 from benchmark.response.least_squares import least_squares

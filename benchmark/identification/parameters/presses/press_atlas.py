@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmark.identification.parameters.press_surrogate import PressSurrogate
+from benchmark.identification.parameters.presses.press_surrogate import PressSurrogate
 from benchmark.response.force_curve import Array
 
 RANGE = 2.0

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from benchmark.identification.parameters.press_atlas import NEAR, PressAtlas
-from benchmark.identification.parameters.press_surrogate import PressSurrogate
+from benchmark.identification.parameters.presses.press_atlas import NEAR, PressAtlas
+from benchmark.identification.parameters.presses.press_surrogate import PressSurrogate
 
 DEPTH = np.linspace(0.0, 2e-3, 30)
 WEIGHTS = np.stack([0.2 + 0.3 * DEPTH / 2e-3, 0.5 - 0.2 * DEPTH / 2e-3, 0.3 - 0.1 * DEPTH / 2e-3])

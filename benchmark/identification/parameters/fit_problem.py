@@ -1,0 +1,108 @@
+"""What a fit of parameters is asked: presses, their trials, parameters with priors and bounds, and how far to trust."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmark.identification.parameters.free_parameters import COMMON, RELAXATION, SHARE, Parameter
+from benchmark.identification.parameters.layer_model import Fading, FitTrial
+from benchmark.identification.parameters.presses.press_surrogate import Forward, Press
+from benchmark.response.force_curve import Array
+
+MODEL_TRUST = 0.005
+"""Standard deviation of the model's own error in a press, in size and in slope over depth, as shares of the force.
+
+What finite-element codes and meshes that people use differ by on the same press: 0.4 to 0.8 % in size and 0.1 to 0.2 %
+in shape between meshes of another code, three layers under sharp tools; our own meshes differ by 0.1 to 0.2 %.
+"""
+WEAK = 2.0
+"""Standard deviation of a free parameter's logarithm round its start (sevenfold): it stops what no data hold."""
+FARTHEST = 0.7
+"""How far a coordinate may go in a round: twofold."""
+
+
+@dataclass(frozen=True, eq=False)
+class FitProblem:
+    """What is fitted.
+
+    Attributes
+    ----------
+    presses : tuple of Press
+    trials : tuple of FitTrial
+    parameters : tuple of Parameter
+        Free ones, and told ones with their uncertainty as prior.
+    law : str or None
+        Law that all layers get; None keeps the specimen's own.
+    forward : "fem" or "wave"
+    trust : float
+        Standard deviation of the model's own error, a share of the force.
+    specimens : tuple of str
+        The specimen of each trial, where several were tried repeatedly; empty where that is not told.
+    """
+
+    presses: tuple[Press, ...]
+    trials: tuple[FitTrial, ...]
+    parameters: tuple[Parameter, ...]
+    law: str | None = None
+    forward: Forward = "fem"
+    trust: float = MODEL_TRUST
+    specimens: tuple[str, ...] = ()
+
+    @property
+    def free(self) -> tuple[int, ...]:
+        """Numbers of the free parameters."""
+        return tuple(k for k, one in enumerate(self.parameters) if not one.told)
+
+    @property
+    def size(self) -> int:
+        """Coordinates of the fit: parameters, and the model's own error in each press."""
+        return len(self.parameters) + 2 * len(self.presses)
+
+    @property
+    def freedom(self) -> int:
+        """Trials beyond those that settle the level of each press: what tells their scatter."""
+        used = {trial.press for trial in self.trials}
+        return len(self.trials) - min(len(used), len(self.free))
+
+
+def relaxing_layers(problem: FitProblem) -> tuple[str, ...]:
+    """Layers that fade by parameters of their own."""
+    ends = (one.key.removesuffix(SHARE) for one in problem.parameters if one.key.endswith(SHARE))
+    return tuple(dict.fromkeys(ends))
+
+
+def fading_of(problem: FitProblem) -> tuple[Fading, ...]:
+    """Where each press finds shares and times of what fades in it."""
+    out = []
+    for number, press in enumerate(problem.presses):
+        for k, one in enumerate(problem.parameters):
+            if one.key.endswith((SHARE, f"{RELAXATION}.g")) and press.has(one):
+                layer = one.key.removesuffix(SHARE) if one.key.endswith(SHARE) else ""
+                out.append(Fading(number, layer, k, k + 1))
+    return tuple(out)
+
+
+def curved_coordinates(problem: FitProblem, number: int) -> NDArray[np.int64]:
+    """Coordinates in which a press' log force is no straight line."""
+    press = problem.presses[number]
+    chosen = (k for k, one in enumerate(problem.parameters) if press.has(one) and not one.fading and one.key != COMMON)
+    return np.array(list(chosen), dtype=np.int64)
+
+
+def priors(problem: FitProblem) -> tuple[Array, Array]:
+    """Mean and precision (p,) of the coordinates' priors."""
+    mean, precision = np.zeros(problem.size), np.full(problem.size, problem.trust**-2)
+    for k, one in enumerate(problem.parameters):
+        value, deviation = (one.start, WEAK) if one.prior is None else (one.prior.value, one.prior.deviation)
+        mean[k], precision[k] = one.coordinate(value), deviation**-2
+    return mean, precision
+
+
+def round_limits(problem: FitProblem, vector: Array) -> tuple[Array, Array]:
+    """Bounds of the next round round a point."""
+    ends = [one.limits for one in problem.parameters] + [(-0.1, 0.1)] * (2 * len(problem.presses))
+    low, high = np.array(ends).T
+    return np.maximum(low, vector - FARTHEST), np.minimum(high, vector + FARTHEST)
