@@ -23,7 +23,7 @@ from benchmark.identification.parameters.presses.press_surrogate import PressSur
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import Search, least_squares
 
-SHARES = (0.3, 0.6)
+SHARES = (0.25, 0.5, 0.75)
 """Of the way to each end of the interval, where the curve is drawn beside the ends themselves."""
 TURNS = 14
 REFIT = Search(most=12, gain=0.01, share=0.0)

@@ -1,0 +1,84 @@
+"""What counts as determined where the likelihood is steep at the estimate and flat beside it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmark.identification.parameters.identifiability import LARGEST_ERROR, directions, errors_alone
+from benchmark.identification.parameters.identified import NOT_DETERMINED, identify
+from benchmark.identification.parameters.law_shapes import shear_modulus
+from benchmark.identification.parameters.layer_fit import begun, fit_layers
+from benchmark.identification.parameters.presses import press_surrogate
+from benchmark.identification.parameters.profile_likelihood import Profile, largest_errors
+from benchmark.response.differentiated_ramp import DifferentiatedRamp, RampDerivative
+from tests.benchmark.identification.parameters.conftest import TISSUE
+
+DERMIS, TRIALS, SCATTER = "dermis", 6, 2e-2
+TOLD = shear_modulus(TISSUE.layer(DERMIS))
+
+
+def folded_ramp(session, tissue, tool, support, depth, keys, model="fem", steps=24):
+    """A force that is least where the dermis is as told, and rises faster to the soft side."""
+    levels = np.linspace(0.0, depth, steps + 1)
+    away = np.log(shear_modulus(tissue.layer(DERMIS)) / TOLD)
+    steep = 0.06 if away > 0.0 else 0.15
+    force = 1e4 * tool.radius * levels * np.exp(steep * away**2)
+    by = {f"{DERMIS}.stiffness": RampDerivative(2.0 * steep * away * force)}
+    return DifferentiatedRamp(levels, force, None, {key: by[key] for key in keys})
+
+
+@pytest.fixture
+def folded(toy, monkeypatch):
+    """A factory of fits to a dermis so many times as stiff as told, found on the stiff side of the fold."""
+    monkeypatch.setattr(press_surrogate, "differentiated_ramp", folded_ramp)
+
+    def fit(away):
+        problem = toy(keys=("dermis.youngs_modulus",), tools=(0,), trials=TRIALS)
+        generator = np.random.default_rng(5)
+        top = 1e4 * problem.presses[0].setup[1].radius * np.exp(0.06 * away**2)
+        gains = generator.normal(size=TRIALS)
+        gains = np.exp(SCATTER * (gains - gains.mean()) / gains.std())
+
+        def pressed(trial, gain):
+            force = gain * top * np.maximum(trial.data.depth, 0.0)
+            noisy = force + 1e-3 * force.max() * generator.normal(size=force.size)
+            return replace(trial, data=replace(trial.data, force=noisy))
+
+        trials = tuple(map(pressed, problem.trials, gains))
+        one = problem.parameters[0]
+        started = replace(one, start=one.start * np.exp(away))
+        problem = replace(problem, trials=trials, parameters=(started,), trust=1e-3)
+        return fit_layers(begun(problem, np.zeros(TRIALS), np.zeros(TRIALS)))
+
+    return fit
+
+
+def answer(found):
+    return identify(found, (), directions(found), ["a"] * TRIALS, ("folded",))
+
+
+def test_a_value_with_a_fold_in_its_region_is_not_determined_though_its_interval_ends(folded) -> None:
+    found = folded(0.25)
+    told = answer(found)
+    (own,), at = told.profiles, float(found.vector[0])
+    assert own.determined(at)
+    assert float(errors_alone(found.fit, found.problem.free)[0]) < LARGEST_ERROR
+    (estimate,) = told.estimates
+    assert not estimate.identifiable
+    assert estimate.low is None
+    assert estimate.text.endswith(NOT_DETERMINED)
+    assert "at others that follow them as well; allowed 35 %" in estimate.reason
+    assert told.to_dict()["determined_limits"] == pytest.approx({"factor": 2.0, "standard_error": 0.354}, abs=1e-3)
+
+
+def test_away_from_the_fold_the_same_trials_determine_it(folded) -> None:
+    (estimate,) = answer(folded(0.9)).estimates
+    assert estimate.identifiable
+    assert estimate.low * 1e3 < 3.0 * TOLD * np.exp(0.9) < estimate.high * 1e3
+
+
+def test_only_points_within_the_region_count() -> None:
+    errors = np.array([[9.0, 9.0], [0.1, 0.2], [0.3, 0.1], [9.0, 9.0]])
+    one = Profile(np.arange(4.0), np.array([9.0, 0.0, 3.0, 9.0]), errors, 0.5, 2.5)
+    assert largest_errors((one, one), 2.0) == pytest.approx([0.3, 0.2])
