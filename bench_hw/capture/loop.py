@@ -8,6 +8,7 @@ records to the trial file's queue.
 from __future__ import annotations
 
 import threading
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -25,6 +26,8 @@ RETRACT_TIME = 3.0
 """How long the tool's way back is tried for while the actuator is lost, s."""
 _RETRACT_PAUSE = 0.05
 _EARLY = 1e-6
+_PICTURES = 31
+"""Pictures whose rate is shown: the last second's of a webcam."""
 
 
 class Recorder:
@@ -131,6 +134,7 @@ class Loop:
         self._began = self._next_position = self._clock.now()
         self._target: float | None = None
         self._monitor = SafetyMonitor(context.limits, self._began, bench.actuator.uncertainty)
+        self._pictures: deque[float] = deque(maxlen=_PICTURES)
         self.now = Observation(self._began, 0.0, 0.0, zero, bench.actuator.uncertainty, context.limits.travel)
 
     def run(self, script: Iterator[Action]) -> None:
@@ -245,6 +249,7 @@ class Loop:
             frames = self._bench.camera.read()
         if self._recorder is not None:
             self._recorder.frames(frames)
+        self._pictures.extend(frame.time for frame in frames)
         return len(frames)
 
     def _obey(self, script: Iterator[Action]) -> bool:
@@ -273,6 +278,8 @@ class Loop:
         shown.elapsed = self.now.time - self._began
         shown.depth, shown.press = self.now.position - self._zero, self.now.press
         shown.lost = self._bench.force.health.lost
+        if (camera := self._bench.camera) is not None:
+            shown.camera, shown.dropped = _rate(self._pictures), camera.health.dropped
         self._context.progress.update(shown)
 
     @contextmanager
@@ -284,3 +291,8 @@ class Loop:
             raise
         except DeviceError as error:
             raise SafetyError(kind, str(error), self._clock.now()) from error
+
+
+def _rate(times: deque[float]) -> float:
+    """Pictures per second; 0 before the second."""
+    return (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 and times[-1] > times[0] else 0.0

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from bench_hw.configuration import validated
 from bench_hw.errors import InputError
-from bench_hw.motion.protocol_file import LoadedProtocol
+from bench_hw.motion.protocol_file import LoadedProtocol, Protocol
 from bench_hw.rig.rig_file import LoadedRig
+from bench_hw.trial_file.records import TrialHeader
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,9 +69,11 @@ def check_order(order: CaptureOrder) -> None:
     rig, protocol = order.rig.rig, order.protocol.protocol
     if order.trials < 1:
         raise InputError(f"--trials {order.trials}: allowed is 1 or more")
-    if order.fast and not rig.all_simulated:
+    if order.fast and not rig.without_hardware:
         real = ", ".join(sorted(rig.kinds - {"simulated"}))
         raise InputError(f"--fast: {order.rig.path} has real devices ({real}); allowed with simulated ones only")
+    if rig.replay is not None and order.trials > 1:
+        raise InputError(f"--trials {order.trials}: {order.rig.path} replays one trial; allowed is 1")
     if protocol.fastest > rig.actuator.max_speed * (1.0 + 1e-9):
         raise InputError(
             f"{order.protocol.path}: a speed of {protocol.fastest * 1e3:g} mm/s; allowed is up to the actuator's "
@@ -76,6 +81,35 @@ def check_order(order: CaptureOrder) -> None:
         )
     if rig.actuator.contact is not None:
         check_depths(order, rig.actuator.contact)
+
+
+def check_replay(order: CaptureOrder, recorded: TrialHeader) -> None:
+    """Refuse another motion, or another press axis, than the replayed trial was recorded with.
+
+    Raises
+    ------
+    InputError
+        They differ.
+    """
+    text, rig = recorded.protocol_text, order.rig.rig
+    if text and _protocol_of(text) != order.protocol.protocol:
+        raise InputError(
+            f"{order.protocol.path}: {recorded.name} was recorded with another protocol ({recorded.protocol!r}), and "
+            f"the replayed tool goes where it went then; allowed is that protocol ({order.rig.path}, replay.trial)"
+        )
+    if recorded.press_axis != rig.force.press_axis:
+        raise InputError(
+            f"{order.rig.path}: force.press_axis is {rig.force.press_axis}; allowed is that of the replayed trial, "
+            f"{recorded.press_axis}"
+        )
+
+
+def _protocol_of(text: str) -> Protocol | None:
+    """The protocol that a trial file holds; None where it is none that is understood today."""
+    try:
+        return validated(Protocol, tomllib.loads(text), "replay.trial")
+    except (InputError, tomllib.TOMLDecodeError):
+        return None
 
 
 def check_depths(order: CaptureOrder, zero: float) -> None:
@@ -86,6 +120,8 @@ def check_depths(order: CaptureOrder, zero: float) -> None:
     InputError
         A depth lies outside.
     """
+    if not order.protocol.protocol.moves:
+        return
     low, high = order.rig.rig.travel
     for depth in (*order.protocol.protocol.depths, order.protocol.protocol.rest_depth):
         if not low <= zero + depth <= high:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, TextIO
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
+    from rich.console import Console, RenderableType
 
 
 _PLAIN_PERIOD = 1.0
@@ -38,6 +38,10 @@ class CaptureState:
         m and N.
     lost : int
         Force records lost.
+    camera : float or None
+        Pictures per second over the last ones; None without a camera.
+    dropped : int
+        Pictures dropped.
     """
 
     trial: int = 0
@@ -48,12 +52,15 @@ class CaptureState:
     depth: float = 0.0
     press: float = 0.0
     lost: int = 0
+    camera: float | None = None
+    dropped: int = 0
 
     def line(self) -> str:
         """Say it in one line."""
+        film = "" if self.camera is None else f"camera {self.camera:.1f}/s dropped {self.dropped}  "
         return (
-            f"trial {self.trial}/{self.trials} {self.elapsed:6.1f}/{self.planned:.0f} s  "
-            f"depth {self.depth * 1e3:+.3f} mm  force {self.press:+.3f} N  lost {self.lost}  {self.doing}"
+            f"trial {self.trial}/{self.trials} {self.elapsed:.1f}/{self.planned:.0f} s  "
+            f"depth {self.depth * 1e3:+.3f} mm  force {self.press:+.3f} N  {film}lost {self.lost}  {self.doing}"
         )
 
 
@@ -117,14 +124,20 @@ class PlainLines:
 
 
 class TerminalLine:
-    """One line on a terminal redrawn eight times a second by rich's thread."""
+    """One line on a terminal redrawn eight times a second by rich's thread.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    console : rich.console.Console, optional
+        Where to; by default standard error.
+    """
+
+    def __init__(self, console: Console | None = None) -> None:
         from rich.console import Console
         from rich.live import Live
 
         self._snapshot = CaptureState()
-        self._console = Console(stderr=True)
+        self._console = console or Console(stderr=True)
         self._live = Live(console=self._console, get_renderable=self._draw, refresh_per_second=8, redirect_stdout=False)
 
     def update(self, snapshot: CaptureState) -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench_hw.capture.loop import LoopContext
-from bench_hw.capture.order import CaptureOrder, check_order
+from bench_hw.capture.order import CaptureOrder, check_order, check_replay
 from bench_hw.capture.progress import CaptureState, ProgressDisplay, stop_on_signals
 from bench_hw.capture.session_folder import CAMERA_FILE, SessionFolder, camera_place, camera_text
 from bench_hw.capture.trial import Fault, TrialOutcome, find_zero, go_home, record_trial
@@ -99,15 +99,18 @@ class _Session:
         self._counted: dict[str, dict[str, int]] = {}
 
     def run(self) -> SessionOutcome:
+        if self._bench.replay is not None:
+            check_replay(self._order, self._bench.replay.header)
         self._bench.start()
         with self._context.progress.showing():
             zero = find_zero(self._bench, self._order, self._context)
             try:
                 self._begin_files()
                 fault = self._record_all(zero)
-            finally:  # also when a file between two trials cannot be written: the tool never stays
-                with suppress(DeviceError):
-                    go_home(self._bench, self._context)
+            finally:  # also when a file between two trials cannot be written: a tool that moved never stays
+                if self._order.protocol.protocol.moves:
+                    with suppress(DeviceError):
+                        go_home(self._bench, self._context)
         return SessionOutcome(self._folder.path, tuple(self._done), fault)
 
     def _record_all(self, zero: float) -> Fault | None:
@@ -126,6 +129,7 @@ class _Session:
         name = self._folder.next_trial()
         header = self._header(name, zero)
         writer = open_trial(self._folder.path / f"{name}.mcap", header, background=not self._order.fast)
+        self._bench.begin_trial(header.clock_epoch)
         snapshot = CaptureState(number, self._order.trials, planned=plan(protocol).duration)
         outcome = record_trial(self._bench, protocol, writer, zero, self._context, snapshot)
         self._note(outcome, header)
@@ -186,7 +190,7 @@ class _Session:
             serials={device: info.serial for device, info in infos.items() if info.serial},
             calibrations=self._calibrations | {d: info.calibration for d, info in infos.items() if info.calibration},
             settings=settings,
-            synthetic=order.rig.rig.simulated,
+            synthetic=order.rig.rig.synthetic,
         )
 
     def _rest(self) -> bool:

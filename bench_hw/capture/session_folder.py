@@ -69,7 +69,7 @@ class SessionFolder:
         self._session = {"schema": SCHEMA, "name": self.path.resolve().name}
         if order.specimen:
             self._session["specimen"] = order.specimen
-        if order.rig.rig.simulated:
+        if order.rig.rig.synthetic:
             self._session["synthetic"] = True
         _merge(self._session, keys)
         _merge(self._session, _keys_of(order))
@@ -101,7 +101,7 @@ class SessionFolder:
             "schema": SCHEMA,
             "rig": order.rig.rig.name,
             "protocol": order.protocol.protocol.name,
-            "synthetic": order.rig.rig.simulated,
+            "synthetic": order.rig.rig.synthetic,
             "devices": {name: asdict(info) for name, info in devices.items()},
             "trials": self._log,
         }

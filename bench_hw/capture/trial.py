@@ -118,15 +118,18 @@ def _kind(error: BaseException) -> str:
 def find_zero(bench: Bench, order: CaptureOrder, context: LoopContext) -> float:
     """Find the position (m) of depth zero and bring the tool to where a trial begins.
 
-    The rig's `actuator.contact` if it says so; else where the protocol's own approach touches, tried once;
-    else fully retracted.
+    Where the replayed trial had it or the rig's `actuator.contact` says; else where the protocol's own approach
+    touches, tried once; else fully retracted. A protocol that only rests stays where the tool is, and without a
+    contact that place is depth zero.
 
     Raises
     ------
     BenchError
         Nothing is touched, a depth would be outside the travel, or anything unsafe; the tool was sent back.
     """
-    contact, protocol = order.rig.rig.actuator.contact, order.protocol.protocol
+    contact, protocol = bench.contact, order.protocol.protocol
+    if not protocol.moves:
+        return bench.actuator.position() if contact is None else contact
     if contact is None and protocol.approach is not None:
         bench.zero_force()
         context.progress.say("touching once to find depth zero (the rig file gives no actuator.contact)")

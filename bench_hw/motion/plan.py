@@ -141,6 +141,8 @@ def summary(plan: MotionPlan, trials: int = 1) -> list[str]:
             f"{step.depth_from * 1e3:+7.2f} to {step.depth_to * 1e3:+7.2f} mm  {speed * 1e3:6.2f} mm/s"
             + ("  (assumed)" if step.assumed else "")
         )
+    if all(step.depth_from == step.depth_to for step in plan.steps):
+        lines.append("  nothing moves: the tool stays where it is")
     if plan.assumed:
         lines.append(f"  assumed: contact at depth 0, {ASSUMED_STIFFNESS / 1e3:g} N/mm; the specimen decides")
     return lines

@@ -108,8 +108,18 @@ class Protocol(StrictModel):
         return max((getattr(segment, "speed", 0.0) for segment in self.segments), default=0.0)
 
     @property
+    def moves(self) -> bool:
+        """Whether anything in it moves; a protocol that only rests needs no depth zero."""
+        return any(not isinstance(segment, Wait) for segment in self.segments)
+
+    @property
     def rest_depth(self) -> float:
-        """Depth at which it leaves the tool between trials, m: that of its last retraction, else 2 mm in air."""
+        """Depth at which it leaves the tool between trials, m: that of its last retraction, else 2 mm in air.
+
+        A protocol that only rests leaves the tool where it is; without a place of its own this is 0.
+        """
+        if not self.moves:
+            return 0.0
         depths = [segment.depth for segment in self.segments if isinstance(segment, Retract)]
         return depths[-1] if depths else -CLEARANCE
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from bench_hw.rig.rig_file import Rig
+    from bench_hw.simulated.replayed_trial import Replay
     from bench_hw.simulated.twins import Twins
 
 
@@ -33,6 +34,8 @@ class Bench:
         The camera, if the rig has one.
     twins : Twins or None
         The simulated devices behind the drivers, if any.
+    replay : Replay or None
+        The recorded trial behind the drivers, if any.
     travel : tuple of 2 floats
         Lowest and highest position as the connected actuator has them, m.
     """
@@ -42,6 +45,7 @@ class Bench:
     actuator: Actuator
     camera: CameraDriver | None = None
     twins: Twins | None = None
+    replay: Replay | None = None
     travel: tuple[float, float] = (0.0, 0.0)
     _infos: dict[str, DeviceInfo] = field(default_factory=dict)
     _opened: ExitStack = field(default_factory=ExitStack)
@@ -86,6 +90,17 @@ class Bench:
         """
         if self.rig.force.bias:
             self.force.bias()
+
+    @property
+    def contact(self) -> float | None:
+        """Position at which the tool meets the specimen, m: as the rig says, or as it was in the replayed trial."""
+        said = self.rig.actuator.contact
+        return self.replay.zero if said is None and self.replay is not None else said
+
+    def begin_trial(self, now: float) -> None:
+        """Let a replayed trial begin again, with `now` (s of the clock) as the trial's time zero."""
+        if self.replay is not None:
+            self.replay.rewind(now)
 
     def catch_up(self) -> None:
         """Let simulated devices do what is due, however busy this machine is; real ones need no such help."""

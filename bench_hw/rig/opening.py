@@ -15,6 +15,7 @@ from bench_hw.rig.bench import Bench
 from bench_hw.rig.rig_file import LoadedRig
 
 if TYPE_CHECKING:
+    from bench_hw.simulated.replayed_trial import Replay
     from bench_hw.simulated.specimen import Specimen
     from bench_hw.simulated.twins import Twins
     from bench_hw.simulated.virtual_specimen import VirtualSpecimen
@@ -22,16 +23,22 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Opening:
-    """What drivers are made with: the rig and its place, the clock, and the twins if any device is simulated."""
+    """What drivers are made with: the rig and its place, the clock, and the twins or the record behind the devices."""
 
     loaded: LoadedRig
     clock: Clock
     twins: Twins | None = None
+    replay: Replay | None = None
 
     def switched_on(self) -> Twins:
         """Give the twins."""
         assert self.twins is not None  # the schema lets no simulated device stand without a simulated actuator
         return self.twins
+
+    def replayed(self) -> Replay:
+        """Give the recorded trial."""
+        assert self.replay is not None  # the schema lets no replayed device stand without a trial
+        return self.replay
 
 
 def open_bench(loaded: LoadedRig, clock: Clock, *, specimen: Specimen | None = None, seed: int | None = None) -> Bench:
@@ -56,9 +63,11 @@ def open_bench(loaded: LoadedRig, clock: Clock, *, specimen: Specimen | None = N
     rig = loaded.rig
     _check_calibration(loaded)
     twins = _twins(rig, clock, specimen or specimen_of(loaded), seed) if rig.simulated else None
-    context = Opening(loaded, clock, twins)
+    context = Opening(loaded, clock, twins, _replay(loaded, clock))
     camera = None if rig.camera is None else open_camera(rig.camera, context)
-    return Bench(rig, open_force(rig.force, context), open_actuator(rig.actuator, context), camera, twins)
+    return Bench(
+        rig, open_force(rig.force, context), open_actuator(rig.actuator, context), camera, twins, context.replay
+    )
 
 
 @singledispatch
@@ -170,6 +179,36 @@ def _(device: rig_file.SimulatedCameraConfig, context: Opening) -> protocols.Cam
     server = context.switched_on().camera
     assert server is not None
     return HttpCamera(server.url, rate=device.rate, clock=context.clock)
+
+
+@open_force.register
+def _(device: rig_file.ReplayForceConfig, context: Opening) -> protocols.ForceSensor:  # noqa: ARG001
+    from bench_hw.simulated.replayed_trial import ReplayedForce
+
+    return ReplayedForce(context.replayed())
+
+
+@open_actuator.register
+def _(device: rig_file.ReplayActuatorConfig, context: Opening) -> protocols.Actuator:
+    from bench_hw.devices.lac_usb import COUNTS
+    from bench_hw.simulated.replayed_trial import ReplayedActuator
+
+    uncertainty = (device.accuracy + 0.5) * device.stroke / COUNTS
+    return ReplayedActuator(context.replayed(), uncertainty, device.max_speed)
+
+
+@open_camera.register
+def _(device: rig_file.ReplayCameraConfig, context: Opening) -> protocols.CameraDriver:
+    from bench_hw.simulated.replayed_trial import ReplayedCamera
+
+    return ReplayedCamera(context.replayed(), device.rate)
+
+
+def _replay(loaded: LoadedRig, clock: Clock) -> Replay | None:
+    from bench_hw.simulated.replayed_trial import Replay
+
+    wanted = loaded.rig.replay
+    return None if wanted is None else Replay(loaded.resolve(wanted.trial), clock)
 
 
 def _check_calibration(loaded: LoadedRig) -> None:

@@ -76,6 +76,12 @@ class SimulatedForceConfig(_Force):
     drop: str = ""
 
 
+class ReplayForceConfig(_Force):
+    """The sensor of a recorded trial."""
+
+    kind: Literal["replay"]
+
+
 class _Actuator(StrictModel):
     """What every actuator has; `contact` is the position at which the tool meets the specimen."""
 
@@ -97,6 +103,12 @@ class SimulatedActuatorConfig(_Actuator):
     """A simulated LAC board."""
 
     kind: Literal["simulated"]
+
+
+class ReplayActuatorConfig(_Actuator):
+    """The actuator of a recorded trial; depth zero is the record's."""
+
+    kind: Literal["replay"]
 
 
 class _Camera(StrictModel):
@@ -145,6 +157,18 @@ class SimulatedCameraConfig(_Camera):
     loss: Share = 0.0
 
 
+class ReplayCameraConfig(_Camera):
+    """The camera of a recorded trial."""
+
+    kind: Literal["replay"]
+
+
+class Replay(StrictModel):
+    """The recorded trial (.mcap) that devices of the kind `replay` give again."""
+
+    trial: Text
+
+
 class Safety(StrictModel):
     """The limits; `travel` are positions of the actuator from fully retracted (default: the whole stroke)."""
 
@@ -179,11 +203,15 @@ class Simulation(StrictModel):
     specimen: Text | None = None
 
 
-ForceConfig = Annotated[NetFTConfig | DaqConfig | SimulatedForceConfig, Field(discriminator="kind")]
-ActuatorConfig = Annotated[LacConfig | SimulatedActuatorConfig, Field(discriminator="kind")]
+ForceConfig = Annotated[NetFTConfig | DaqConfig | SimulatedForceConfig | ReplayForceConfig, Field(discriminator="kind")]
+ActuatorConfig = Annotated[LacConfig | SimulatedActuatorConfig | ReplayActuatorConfig, Field(discriminator="kind")]
 CameraConfig = Annotated[
-    WebcamConfig | HttpCameraConfig | ImagesCameraConfig | SimulatedCameraConfig, Field(discriminator="kind")
+    WebcamConfig | HttpCameraConfig | ImagesCameraConfig | SimulatedCameraConfig | ReplayCameraConfig,
+    Field(discriminator="kind"),
 ]
+
+
+_NO_HARDWARE = frozenset({"simulated", "replay"})
 
 
 class Rig(StrictModel):
@@ -196,6 +224,7 @@ class Rig(StrictModel):
     camera: CameraConfig | None = None
     safety: Safety = Safety()
     simulation: Simulation = Simulation()
+    replay: Replay | None = None
 
     @property
     def travel(self) -> tuple[float, float]:
@@ -208,9 +237,19 @@ class Rig(StrictModel):
         return "simulated" in self.kinds
 
     @property
+    def synthetic(self) -> bool:
+        """Whether what it records is no new measurement: any device is simulated or replayed."""
+        return bool(self.kinds & _NO_HARDWARE)
+
+    @property
     def all_simulated(self) -> bool:
         """Whether every device is simulated."""
         return self.kinds == {"simulated"}
+
+    @property
+    def without_hardware(self) -> bool:
+        """Whether no device is real, so that time may be simulated, too."""
+        return self.kinds <= _NO_HARDWARE
 
     @property
     def kinds(self) -> set[str]:
@@ -235,6 +274,11 @@ class Rig(StrictModel):
                     f"{name}.kind is simulated but actuator.kind is {self.actuator.kind}: a simulated {name} "
                     "knows nothing of a real tool and could not protect the specimen"
                 )
+        if ("replay" in self.kinds) != (self.replay is not None) or {"replay"} < self.kinds:
+            raise ValueError(
+                'a replay is of every device together: allowed is kind = "replay" in [force], [actuator] and [camera] '
+                "(or no camera), and replay.trial, the recorded trial"
+            )
         return self
 
 

@@ -62,10 +62,22 @@ def survey_rig(loaded: LoadedRig) -> list[Finding]:
 def _of_rig(name: str, device: Any, loaded: LoadedRig) -> Finding:
     if device.kind == "simulated":
         return Finding(name, "simulated", True, "simulated on this machine")
+    if device.kind == "replay":
+        return _of_record(name, loaded)
     try:
         return Finding(name, device.kind, True, _LOOK[type(device)](device, loaded))
     except BenchError as error:
         return Finding(name, device.kind, False, "not usable", str(error))
+
+
+def _of_record(name: str, loaded: LoadedRig) -> Finding:
+    from bench_hw.rig.opening import open_bench
+
+    try:
+        with open_bench(loaded, MonotonicClock()) as bench:
+            return Finding(name, "replay", True, f"replay of {bench.infos()[name].settings['replayed']}")
+    except BenchError as error:
+        return Finding(name, "replay", False, "not usable", str(error))
 
 
 def _look_netft(device: rig_file.NetFTConfig, loaded: LoadedRig) -> str:

@@ -17,6 +17,12 @@ def test_a_snapshot_in_one_line():
     assert "3 of 5: move" in line
 
 
+def test_a_camera_is_shown_with_its_rate_and_its_dropped_frames():
+    shown = CaptureState(1, 1, camera=29.97, dropped=2).line()
+    assert "camera 30.0/s dropped 2" in shown
+    assert "camera" not in SHOWN.line()
+
+
 def test_plain_lines_come_once_a_second():
     stream = io.StringIO()
     progress = PlainLines(stream)

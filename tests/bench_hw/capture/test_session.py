@@ -15,6 +15,7 @@ from bench_hw.rig.rig_file import load_rig
 from bench_hw.simulated.specimen import Response
 from bench_hw.trial_file import read_trial_mcap
 from bench_hw.trial_file.inspection import inspect_trial
+from bench_hw.trial_file.reading import read_contents
 
 
 def channels(path):
@@ -118,6 +119,30 @@ def test_depth_zero_is_found_by_touching_where_the_rig_does_not_say(order, watch
     pressed = trial.depth[trial.force > 0.2]
     assert 0.0 < pressed.min() < 0.5e-3
     assert trial.depth.max() == pytest.approx(2e-3, abs=2e-4)
+
+
+REST = 'schema = 1\nname = "rest"\n[[segments]]\nkind = "rest"\nduration = "0.3 s"\n'
+
+
+@pytest.mark.parametrize(("contact", "depth"), [(None, 0.0), ("1 mm", -1e-3)])
+def test_a_protocol_that_only_rests_stays_where_the_tool_is(order, watcher, tmp_path, contact, depth):
+    path = tmp_path / "rest.toml"
+    path.write_text(REST)
+    actuator = {} if contact is None else {"contact": contact}
+    rig = {"actuator": {"kind": "simulated", "stroke": "50 mm", **actuator}}
+    resting = order(rig=rig, protocol=load_protocol(path))
+    if contact is None:
+        resting = replace(resting, rig=replace(resting.rig, rig=without_contact(resting.rig.rig)))
+    seen = watcher()
+    (file,) = capture(resting, seen).trials
+    found = read_contents(file).depth
+    assert not seen.said
+    assert np.isnan(found.target).all()  # it was never told to go anywhere
+    assert np.abs(found.depth - depth).max() == 0.0
+
+
+def without_contact(rig):
+    return rig.model_copy(update={"actuator": rig.actuator.model_copy(update={"contact": None})})
 
 
 def test_a_specimen_of_ones_own(record):
