@@ -14,7 +14,6 @@ from benchmark.gate.verdict import CheckVerdict
 from benchmark.gate.versions import Origin
 from reports import Bullets, Column, Download, Fact, Notice, Page, Paragraph, Section, Table, Verdict
 
-SLOWDOWN = 0.25
 LEAST = 1e-6
 HOW = (
     "A value passes where |now - baseline| is at most rtol |baseline| + atol. Time is measured in fresh processes with "
@@ -22,8 +21,8 @@ HOW = (
     "tenth of a second. A quantity is divided, block by block, by the references of its own texture, so that a machine "
     "that slows down slows both; blocks are condensed to one ratio a process (mean of the logarithms without the "
     "highest and the lowest tenth), and processes to a trimmed mean. Waiting for a core is not counted, sleeping is. "
-    "A quantity is called slower where it exceeds its baseline by more than the margin, after the most processes the "
-    "gate file allows; a check ends sooner only where everything is far below its margin."
+    "A quantity is called slower where it exceeds its baseline by more than the margin. Processes are added until "
+    "every quantity is two standard errors from its limit on one side, or the most that the gate file allows are done."
 )
 
 
@@ -133,7 +132,7 @@ def method_section(verdict: CheckVerdict) -> Section:
         Column("margin", "%", 3),
         Column("standard error", "%", 2),
         "chance of a false alarm",
-        f"chance to miss {100 * SLOWDOWN:g} %",
+        "chance to miss twice the margin",
     )
     table = Table(
         "Chances of error for a normal error of the size of the scatter between the processes of this check; a state "
@@ -148,7 +147,7 @@ def _chances(row: TimingRow) -> tuple[str, float, float, str, str]:
     limit, noise = math.log(row.allowed / row.baseline), row.noise
     chances = ("", "")
     if noise > 0.0:
-        missed = 1.0 - power(math.log1p(SLOWDOWN), limit, noise)
+        missed = 1.0 - power(math.log1p(row.wanted), limit, noise)
         chances = (_chance(false_alarm(limit, noise)), _chance(missed))
     return (row.quantity, 100.0 * math.expm1(limit), 100.0 * noise, *chances)
 

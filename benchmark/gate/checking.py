@@ -23,9 +23,6 @@ from benchmark.runs.options import Listener
 from benchmark.runs.output.destination import check_file, claimed, destination
 from reports import write_csv, write_json, write_page, write_text, write_whole
 
-NOTABLE = 0.25
-"""The slowdown that a check should catch; where the scatter does not allow it, the check says so."""
-
 
 @dataclass(frozen=True)
 class CheckOutcome:
@@ -129,11 +126,13 @@ def remarks(measured: Measured, timing: Sequence[TimingRow]) -> list[str]:
         found.append(
             "this system does not tell waiting from other programs' turns: times are CPU times, sleep is unseen"
         )
-    loud = [row for row in timing if row.caught > NOTABLE]
+    loud = [row for row in timing if row.caught > row.wanted]
     if loud:
-        names = ", ".join(f"{row.quantity} ({100 * row.caught:.0f} %)" for row in loud)
+        names = ", ".join(
+            f"{row.quantity} ({100 * row.caught:.0f} % instead of {100 * row.wanted:.0f} %)" for row in loud
+        )
         found.append(
-            f"too noisy to catch a slowdown of {100 * NOTABLE:g} % in 19 of 20 checks: {names}; "
+            f"too noisy to catch a slowdown of twice the margin in 19 of 20 checks: {names}; "
             "more rounds in the gate file, or a quieter machine, help"
         )
     return found

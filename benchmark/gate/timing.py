@@ -13,8 +13,11 @@ from benchmark.gate.statistics import Change, caught, change
 Ratios = Mapping[str, Sequence[float]]
 """Log ratios of the processes, by timed quantity."""
 
-CLEARANCE = 0.04
-"""Measuring ends before the most rounds only where every estimate is this far (logarithm) from its limit."""
+SURE = 2.0
+"""Measuring ends before the most rounds only where every estimate is this many standard errors from its limit."""
+USUAL_SCATTER, USUAL_ROUNDS = 0.03, 4
+"""Scatter between processes (logarithm) on a shared machine: a few processes that agree by chance count as so many more
+of this scatter."""
 DECISIVE = 6
 """Rounds before anything is called slower, as long as the gate file allows as many."""
 
@@ -55,6 +58,11 @@ class TimingRow:
     def slowdown(self) -> float:
         """How much slower than the baseline, a fraction; negative where it is faster."""
         return self.now / self.baseline - 1.0
+
+    @property
+    def wanted(self) -> float:
+        """The slowdown, a fraction, that should be caught: the limit is half of it, on the logarithm."""
+        return (self.allowed / self.baseline) ** 2 - 1.0
 
     @property
     def faster(self) -> bool:
@@ -100,7 +108,8 @@ class Judge:
 
     def limit(self, timed: Timed) -> float:
         """The largest logarithm of a slowdown that passes."""
-        margin = self.timing.margin if timed.margin is None else timed.margin
+        usual = self.timing.margin_against if self.paired else self.timing.margin
+        margin = usual if timed.margin is None else timed.margin
         if not self.same_machine:
             margin = max(margin, self.timing.other_machine_margin)
         return math.log1p(margin)
@@ -110,10 +119,14 @@ class Judge:
         return tuple(self._row(each, now[each.name], base[each.name]) for each in self.timed)
 
     def clear(self, now: Ratios, base: Ratios) -> bool:
-        """Whether every quantity is far from its limit, so that more rounds would change nothing."""
-        beyond = [self._change(now[each.name], base[each.name]).estimate - self.limit(each) for each in self.timed]
+        """Whether every quantity is surely on one side of its limit, so that more rounds would change nothing."""
         rounds = min(len(now[each.name]) for each in self.timed)
-        return all(far < -CLEARANCE or (far > CLEARANCE and rounds >= DECISIVE) for far in beyond)
+        errors = [
+            (found.estimate - self.limit(each)) / careful_noise(found.noise, rounds)
+            for each in self.timed
+            for found in (self._change(now[each.name], base[each.name]),)
+        ]
+        return all(error < -SURE or (error > SURE and rounds >= DECISIVE) for error in errors)
 
     def _change(self, now: Sequence[float], base: Sequence[float]) -> Change:
         return change(now, base, paired=self.paired, seed=self.seed)
@@ -131,3 +144,18 @@ class Judge:
             noise=found.noise,
             passed=found.estimate <= limit,
         )
+
+
+def careful_noise(noise: float, rounds: int) -> float:
+    """The standard error of a change, from its processes and `USUAL_ROUNDS` more with the usual scatter.
+
+    Parameters
+    ----------
+    noise
+        Standard error from the scatter between the processes alone; NaN where there is only one.
+    rounds
+        How many they are.
+    """
+    own = 0.0 if math.isnan(noise) else (rounds - 1) * noise**2
+    usual = USUAL_ROUNDS * USUAL_SCATTER**2 / rounds
+    return math.sqrt((own + usual) / (rounds - 1 + USUAL_ROUNDS))

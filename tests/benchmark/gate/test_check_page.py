@@ -41,7 +41,7 @@ def test_a_failed_check_leads_with_what_failed(verdict) -> None:
 def test_chances_of_error_are_said(verdict) -> None:
     text = words(render_page(check_page(verdict(), [], ORIGIN)))
     assert "chance of a false alarm" in text
-    assert "chance to miss 25 %" in text
+    assert "chance to miss twice the margin" in text
     assert "below 1e-06" in text
 
 

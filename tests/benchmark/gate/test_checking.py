@@ -236,5 +236,5 @@ def test_what_a_reader_must_know_of_the_measurement() -> None:
     assert remarks(Measured(({},), 4, True), [quiet]) == []
     said = remarks(Measured(({},), 4, False), [quiet, loud])
     assert "CPU times" in said[0]
-    assert "fit (31 %)" in said[1]
+    assert "fit (31 % instead of 25 %)" in said[1]
     assert "frame" not in said[1]

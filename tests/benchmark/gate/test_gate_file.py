@@ -44,9 +44,10 @@ def test_a_discovery_and_nothing_else_has_an_expected_effect(tiny_gate, old: str
         load_plan(gate.path)
 
 
-def test_its_margin_is_between_nothing_and_a_quarter() -> None:
+def test_its_margins_are_half_of_a_quarter_and_of_a_tenth() -> None:
     timing = load_plan(None).file.timing
     assert 0.10 <= timing.margin <= 0.125
+    assert 0.045 <= timing.margin_against <= 0.05
     assert timing.rounds[0] >= 4
 
 

@@ -18,7 +18,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from tests.performance.gate_trial.copies import PRODUCT, make_copy, make_faulty, run_check, values_gate
+from tests.performance.gate_trial.copies import PRODUCT, make_copy, make_faulty, run_check, times_gate, values_gate
 from tests.performance.gate_trial.faults import HOWS, Fault, deflections, slowdowns
 from tests.performance.gate_trial.log import Log
 from tests.performance.gate_trial.summary import TOGETHER, UNCHANGED, summary
@@ -36,7 +36,8 @@ def main(arguments: list[str] | None = None) -> int:
 
         def gate(tree: Path) -> list[str]:
             against = ["--against", "HEAD"] if options.against else []
-            return [*against, *(["--gate", str(values_gate(tree))] if options.values else [])]
+            chosen = values_gate if options.values else times_gate if options.times else None
+            return [*against, *(["--gate", str(chosen(tree))] if chosen is not None else [])]
 
         if not options.against and not (work / BASELINE).exists():
             accepted = run_check("accept", trees[UNCHANGED], work, "--accept", *gate(trees[UNCHANGED]))
@@ -56,6 +57,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--how", choices=HOWS, default="work", help="how it is slower (work)")
     parser.add_argument("--off", type=float, default=0.0, help="instead: deflections off by this share, such as 0.01")
     parser.add_argument("--values", action="store_true", help="values alone: the same gate without its times")
+    parser.add_argument("--times", action="store_true", help="times alone: the same gate with a single value")
     parser.add_argument("--only", nargs="*", default=[""], help="only faults with one of these in their names")
     parser.add_argument("--together", action="store_true", help="one copy with all faults, each counted by itself")
     parser.add_argument("--against", action="store_true", help="compare with the commit instead of a baseline")

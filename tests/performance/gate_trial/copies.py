@@ -84,6 +84,17 @@ def values_gate(tree: Path) -> Path:
     return path
 
 
+def times_gate(tree: Path) -> Path:
+    """Write the gate of the product in `tree` with its first case alone and all that it times; return its path."""
+    text = (tree / GATE).read_text(encoding="utf-8")
+    parts = re.split(r"(?m)^(?=\[)", text)
+    first = next(part for part in parts if part.startswith("[[cases]]"))
+    kept = [part for part in parts if part is first or not part.startswith("[[cases]]")]
+    path = (tree / GATE).with_name("times.toml")
+    path.write_text("".join(kept), encoding="utf-8")
+    return path
+
+
 def run_check(name: str, tree: Path, work: Path, *options: str) -> Check:
     """Run `python -m benchmark check` of the product in `tree`, in the folder `work`; its code is compiled once."""
     command = [sys.executable, "-m", "benchmark", "check", "--json", "--quiet", *options]
