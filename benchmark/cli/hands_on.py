@@ -11,6 +11,7 @@ import typer
 from benchmark.cli.options import Debug, Json, Out, Quiet, Set, parse_settings
 
 if TYPE_CHECKING:
+    from benchmark.press.live_capture import LiveCapture
     from benchmark.press.pressed_specimen import PressedSpecimen
 
 What = Annotated[
@@ -30,6 +31,10 @@ Tool = Annotated[
     list[str] | None, typer.Option("--tool", help='A further tool to choose on the page, by its radius: "2 mm".')
 ]
 Model = Annotated[Path | None, typer.Option("--model", help="Before and after the effects of a model file.")]
+Live = Annotated[
+    Path | None,
+    typer.Option("--live", help="Show a running capture beside: its session's folder, or its NAME.mcap.part."),
+]
 
 Records = Annotated[
     list[Path], typer.Argument(help="Records of press (CSV), or folders of them: two folders are compared as groups.")
@@ -48,6 +53,7 @@ def press(
     tissue: Tissue = None,
     tool: Tool = None,
     model: Model = None,
+    live: Live = None,
     settings: Set = None,
     port: Port = 0,
     browser: Browser = True,
@@ -58,7 +64,8 @@ def press(
     """Press a tissue by hand: the wave model in a page, with the finite elements' answer to the same press.
 
     Without WHAT the page offers several shipped tissues and tools. Without --save it is served to this machine alone,
-    where the finite elements can be asked for a press as it was made, until Ctrl-C.
+    where the finite elements can be asked for a press as it was made, until Ctrl-C. With --live it shows what a running
+    capture records: camera with markers, force and depth, and the models under the bench's own press.
     """
     from benchmark.cli.console import Console
     from benchmark.press.press_page import PressRequest, specimens
@@ -66,10 +73,12 @@ def press(
 
     console = Console(quiet=quiet)
     check_file(save, "--save")
+    watched = None if live is None else _watched(live, save)
+    what = "skin-5N" if what is None and live is not None else what
     request = PressRequest(what, tuple(tissue or ()), tuple(tool or ()), parse_settings(settings), model)
     found = specimens(request, console)
     if save is None:
-        _serve(found, port, open_page=browser, as_json=json)
+        _serve(found, port, watched, open_page=browser, as_json=json)
     else:
         _write(found, save, as_json=json)
     return 0
@@ -89,7 +98,22 @@ def _write(found: Sequence[PressedSpecimen], save: Path, *, as_json: bool) -> No
         print(f"{save}: {len(found)} to press, {len(page.encode()) / 1e6:.1f} MB; open it in a browser")
 
 
-def _serve(found: Sequence[PressedSpecimen], port: int, *, open_page: bool, as_json: bool) -> None:
+def _watched(live: Path, save: Path | None) -> LiveCapture:
+    from bench_hw.errors import BenchError
+    from benchmark.errors import InputError
+    from benchmark.press.live_capture import LiveCapture
+
+    if save is not None:
+        raise InputError("--live shows a capture while it runs, and --save a page that speaks with nobody: give one")
+    try:
+        return LiveCapture(live)
+    except BenchError as error:
+        raise InputError(f"--live {error}") from error
+
+
+def _serve(
+    found: Sequence[PressedSpecimen], port: int, watched: LiveCapture | None, *, open_page: bool, as_json: bool
+) -> None:
     import json
     import webbrowser
 
@@ -101,7 +125,13 @@ def _serve(found: Sequence[PressedSpecimen], port: int, *, open_page: bool, as_j
         if open_page:
             webbrowser.open(address)
 
-    serve(render_press_page(document(found), served=True), FemOnDemand(found).answer, port, say)
+    page = render_press_page(document(found), served=True, live=watched is not None)
+    if watched is None:
+        serve(page, FemOnDemand(found).answer, port, say)
+    else:
+        from benchmark.press.live_capture import LiveLine, tell
+
+        serve(page, FemOnDemand(found).answer, port, say, ("live", LiveLine, lambda served: tell(served, watched)))
 
 
 def assess(

@@ -181,7 +181,7 @@ def _published(variant: str) -> dict[str, float]:
     }
 
 
-def render_press_page(document: Mapping[str, Any], *, served: bool = False) -> str:
+def render_press_page(document: Mapping[str, Any], *, served: bool = False, live: bool = False) -> str:
     """The page.
 
     Parameters
@@ -190,13 +190,15 @@ def render_press_page(document: Mapping[str, Any], *, served: bool = False) -> s
         What `document` gives.
     served
         Whether it may speak with the server that it came from; a saved file may speak with nobody.
+    live
+        Whether it shows a running capture, too.
     """
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     templates = Environment(
         loader=PackageLoader("benchmark.press", "page"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
-    code = script()
+    code = script(*SCRIPTS, *(("live.js",) if live else ()))
     data = json.dumps(document, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
     ramps = [one["fem"]["levels"] for one in document["specimens"] if one["fem"] is not None]
     return templates.get_template("press.html.j2").render(
@@ -206,14 +208,15 @@ def render_press_page(document: Mapping[str, Any], *, served: bool = False) -> s
         policy=f"'sha256-{base64.b64encode(hashlib.sha256(code.encode()).digest()).decode('ascii')}'",
         data=data,
         served=served,
+        live=live,
         levels=max(ramps, default=0),
         version=version("tissuebench"),
     )
 
 
-def script() -> str:
-    """All of the page's script."""
-    return "\n" + "\n".join(part(name) for name in SCRIPTS)
+def script(*names: str) -> str:
+    """The page's script, of these files (all that a page without a capture has)."""
+    return "\n" + "\n".join(part(name) for name in names or SCRIPTS)
 
 
 def part(name: str) -> str:

@@ -14,9 +14,10 @@ import math
 import secrets
 import signal
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Annotated, Any
 
 import numpy as np
@@ -184,14 +185,19 @@ class _Page(RequestHandler):
         self.finish(self._served.page)
 
 
-class _Line(WebSocketHandler):
+class Line(WebSocketHandler):
+    """A line to a page of this server's own: its origin, the token and the number of pages are checked."""
+
     def initialize(self, served: Served) -> None:
+        """Take what the handlers share."""
         self._served, self._busy = served, False
 
     def check_origin(self, origin: str) -> bool:
+        """Whether the page that asks came from here."""
         return origin.removeprefix("http://") in self._served.hosts and origin.startswith("http://")
 
     async def get(self, token: str) -> None:
+        """Open the line, or refuse."""
         self._served.check(self, token)
         if "Origin" not in self.request.headers:
             raise HTTPError(REFUSED)
@@ -200,12 +206,19 @@ class _Line(WebSocketHandler):
         await super().get(token)
 
     def open(self, token: str) -> None:  # noqa: ARG002
+        """Count the page."""
         self._served.pages.add(self)
 
     def on_close(self) -> None:
+        """Count it no more."""
         self._served.pages.discard(self)
 
+
+class FemLine(Line):
+    """The line on which a page asks the finite elements, one question at a time."""
+
     async def on_message(self, message: str | bytes) -> None:
+        """Answer a question, or say that the one before is not answered yet."""
         if self._busy:
             answer: dict[str, Any] = {"error": "the finite elements are still at the press before"}
         elif isinstance(message, bytes):
@@ -223,8 +236,10 @@ class _Line(WebSocketHandler):
             return
 
 
-def make_server(served: Served, port: int) -> tuple[HTTPServer, int]:
-    """Listen on the loopback interface; port 0 takes a free one, which is returned.
+def make_server(
+    served: Served, port: int, lines: Mapping[str, type[Line]] = MappingProxyType({"fem": FemLine})
+) -> tuple[HTTPServer, int]:
+    """Listen on the loopback interface; port 0 takes a free one, which is returned. `lines` are by their addresses.
 
     Raises
     ------
@@ -232,7 +247,10 @@ def make_server(served: Served, port: int) -> tuple[HTTPServer, int]:
         The port is taken or not allowed.
     """
     application = Application(
-        [(r"/([\w-]+)/", _Page, {"served": served}), (r"/([\w-]+)/fem", _Line, {"served": served})],
+        [
+            (r"/([\w-]+)/", _Page, {"served": served}),
+            *((rf"/([\w-]+)/{name}", line, {"served": served}) for name, line in lines.items()),
+        ],
         websocket_max_message_size=LONGEST_MESSAGE,
         log_function=lambda _: None,
     )
@@ -247,8 +265,16 @@ def make_server(served: Served, port: int) -> tuple[HTTPServer, int]:
     return server, number
 
 
-def serve(page: str, answer: Callable[[str], dict[str, Any]], port: int, say: Callable[[str], None]) -> None:
+def serve(
+    page: str,
+    answer: Callable[[str], dict[str, Any]],
+    port: int,
+    say: Callable[[str], None],
+    beside: tuple[str, type[Line], Callable[[Served], Coroutine[Any, Any, None]]] | None = None,
+) -> None:
     """Serve until Ctrl-C or SIGTERM; `say` is told the address.
+
+    `beside` is a further line: its address, its handler, and what tells its pages until the end.
 
     Raises
     ------
@@ -257,17 +283,26 @@ def serve(page: str, answer: Callable[[str], dict[str, Any]], port: int, say: Ca
     """
     with ThreadPoolExecutor(max_workers=1, thread_name_prefix="fem") as worker:
         served = Served(secrets.token_urlsafe(24), page.encode(), answer, worker)
-        asyncio.run(_until_stopped(served, port, say))
+        asyncio.run(_until_stopped(served, port, say, beside))
         worker.shutdown(wait=True, cancel_futures=True)
 
 
-async def _until_stopped(served: Served, port: int, say: Callable[[str], None]) -> None:
+async def _until_stopped(
+    served: Served,
+    port: int,
+    say: Callable[[str], None],
+    beside: tuple[str, type[Line], Callable[[Served], Coroutine[Any, Any, None]]] | None,
+) -> None:
     stopped, loop = asyncio.Event(), asyncio.get_running_loop()
     for name in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(name, stopped.set)
-    server, number = make_server(served, port)
+    lines = {"fem": FemLine} | ({} if beside is None else {beside[0]: beside[1]})
+    server, number = make_server(served, port, lines)
+    telling = None if beside is None else loop.create_task(beside[2](served))
     say(f"http://{LOOPBACK}:{number}/{served.token}/")
     await stopped.wait()
+    if telling is not None:
+        telling.cancel()
     server.stop()
     for page in tuple(served.pages):
         page.close(1001, "the server ends")

@@ -98,6 +98,7 @@
       if (frame) bench.apply(frame); else { state.replay = null; restart(); }
     } else {
       if (state.script) state.script(dt);
+      state.live?.lead();
       bench.step(dt, chosen("drive"), rate());
     }
     const trace = { time: bench.time };
@@ -284,9 +285,11 @@
   const ladder = (most) => [1, 2, 5, 10].map((step) => step * 10 ** Math.floor(Math.log10(Math.max(most, 1e-3)))).find((step) => step >= most);
 
   function trace() {
-    const { traces, bench } = state, most = Math.max(0.05, ...traces.flatMap((one) => LINES.map(([name]) => one[name] ?? 0)));
+    const { traces, bench } = state, measured = state.live?.trace() ?? [];
+    const most = Math.max(0.05, ...traces.flatMap((one) => LINES.map(([name]) => one[name] ?? 0)), ...measured.map(([, force]) => force));
     const { line, dot } = chart("trace", [bench.time - SECONDS, bench.time], ladder(most), "10 s");
     for (const [name, colour] of LINES) if (bench.tissues[name]) line(traces.map((one) => [one.time, one[name]]), colour, name === "fem" ? 3.2 : 1.6);
+    if (measured.length) line(measured.filter(([time]) => time > bench.time - SECONDS), "measured", 1.4);
     for (const [at, force] of state.asked?.points ?? []) if (at > bench.time - SECONDS) dot(at, force, "fem");
   }
 
@@ -302,7 +305,7 @@
   }
 
   function tick(time) {
-    const dt = Math.min((time - state.last) / 1e3, 0.05);
+    const dt = Math.min((time - state.last) / 1e3, state.live ? 1 : 0.05);  // a bench does not wait for the page
     if (state.last) {
       state.frames.push(time - state.last);
       renderer?.pace(time - state.last);

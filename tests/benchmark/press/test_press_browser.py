@@ -5,12 +5,15 @@ import shutil
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
+import cv2
 import numpy as np
 import pytest
 
+from bench_hw.trial_file import DepthRecord, ForceRecord, FrameRecord, TrialHeader, open_trial
 from benchmark.assessment.attempt_measures import read_attempt
+from benchmark.press.live_capture import LiveCapture, LiveLine, tell
 from benchmark.press.press_page import render_press_page
-from benchmark.press.press_server import FemOnDemand, Served, make_server
+from benchmark.press.press_server import FemLine, FemOnDemand, Served, make_server
 from wavemodel.control.pressed_body import radii_of
 
 CHROMIUM = shutil.which("chromium")
@@ -230,23 +233,28 @@ def test_it_never_scrolls_sideways(page, width):
     assert page.evaluate("document.documentElement.scrollWidth") == width
 
 
-@pytest.fixture
-def server(specimen, page_document):
-    """The page served from a thread of its own; gives its address."""
+def serving(html, answer, lines, beside=None):
+    """A page served from a thread of its own; yields its address."""
     started, loop = threading.Event(), asyncio.new_event_loop()
     place = {}
 
     async def start(served):
-        place["server"], place["port"] = make_server(served, 0)
+        place["server"], place["port"] = make_server(served, 0, lines)
+        if beside is not None:
+            place["telling"] = loop.create_task(beside(served))
         started.set()
+
+    async def stop():
+        if "telling" in place:
+            place["telling"].cancel()
+        place["server"].stop()
+        await place["server"].close_all_connections()
 
     def run():
         with ThreadPoolExecutor(1) as worker:
-            html = render_press_page(page_document, served=True).encode()
-            loop.run_until_complete(start(Served("token", html, FemOnDemand([specimen]).answer, worker)))
+            loop.run_until_complete(start(Served("token", html.encode(), answer, worker)))
             loop.run_forever()
-            place["server"].stop()
-            loop.run_until_complete(place["server"].close_all_connections())
+            loop.run_until_complete(stop())
 
     thread = threading.Thread(target=run)
     thread.start()
@@ -255,6 +263,11 @@ def server(specimen, page_document):
     loop.call_soon_threadsafe(loop.stop)
     thread.join(30)
     loop.close()
+
+
+@pytest.fixture
+def server(specimen, page_document):
+    yield from serving(render_press_page(page_document, served=True), FemOnDemand([specimen]).answer, {"fem": FemLine})
 
 
 def test_a_served_page_asks_the_finite_elements_for_the_press_as_it_was(browser, server):
@@ -274,3 +287,55 @@ def test_a_served_page_asks_the_finite_elements_for_the_press_as_it_was(browser,
     assert "Finite elements, asked now" in page.evaluate("press.state.said")
     assert said == []
     page.context.close()
+
+
+@pytest.fixture
+def bench(page_document, tmp_path):
+    """A page that shows the captures of a folder; gives its address."""
+    html, live = render_press_page(page_document, served=True, live=True), LiveCapture(tmp_path)
+    yield from serving(html, lambda _: {}, {"live": LiveLine}, lambda served: tell(served, live, priority=0))
+
+
+def until(page, condition):
+    for _ in range(200):
+        if page.evaluate(condition):
+            return
+        page.wait_for_timeout(50)
+    raise AssertionError(condition)
+
+
+def test_a_running_capture_is_shown_with_its_pictures_and_leads_the_tool(browser, bench, tmp_path):
+    page = browser.new_context(viewport={"width": 900, "height": 700}).new_page()
+    said = []
+    page.on("console", lambda message: said.append(message.text) if message.type == "error" else None)
+    page.goto(bench)
+    page.evaluate("press.state.manual = true")
+    until(page, "document.getElementById('live-trial').textContent === 'Waiting for a capture'")
+    grey = np.full((240, 320), 220, np.uint8)
+    for k in range(18):
+        cv2.circle(grey, (60 + 40 * (k % 6), 80 + 40 * (k // 6)), 9, 30, -1, cv2.LINE_AA)
+    picture = cv2.imencode(".png", grey)[1].tobytes()
+    header = TrialHeader("trial_001", "2024-05-06T07:08:09+00:00", 10.0, "-z", "press", synthetic=True)
+    with open_trial(tmp_path / "trial_001.mcap", header, background=False) as writer:
+        for n in range(2000):
+            if n not in (300, 301):
+                writer.write_force(ForceRecord(10 + n / 1000, n, n, 0, (0.0, 0.0, -0.625), (0.0, 0.0, 0.0)))
+            if n % 10 == 0:
+                writer.write_depth(DepthRecord(10 + n / 1000, 1e-3))
+            if n % 40 == 0 and n != 400:
+                writer.write_frame(FrameRecord(10 + n / 1000, n // 40, picture, "png"))
+        writer._chunks.flush()
+        until(page, "press.state.live.pictures > 0")
+        page.evaluate("for (let n = 0; n < 5; n++) press.advance(0.02)")
+        texts = [
+            page.locator(f"#live-{name}").text_content() for name in ("force", "depth", "lost", "dropped", "markers")
+        ]
+        led = tool(page)
+        measured = page.evaluate("press.state.live.trace().at(-1)")
+        lit = page.evaluate("[...document.getElementById('film').getContext('2d').getImageData(5, 5, 1, 1).data]")
+    page.context.close()
+    assert texts == ["0.63", "1.00", "2", "1", "18 markers"]
+    assert (led["phase"], led["depth"]) == ("pressed", pytest.approx(1e-3))
+    assert measured[1] == 0.625
+    assert lit == [220, 220, 220, 255]
+    assert said == []
