@@ -15,6 +15,7 @@ from benchmark.errors import TissuebenchError
 from benchmark.files import Scenario
 from benchmark.models import Keeping, ModelResult, UncoveredError, prepare, scenario_drive
 from benchmark.runs.output.unfinished import is_kept
+from benchmark.side_by_side.parameter_bands import parameter_bands
 from reports.manifest import remove_known
 
 OK, FAILED = "ok", "failed"
@@ -23,7 +24,7 @@ MODELS = {"fem": "FEM", "wave": "wave model"}
 _ONE_AT_A_TIME = threading.Lock()
 """A Dask worker may have several threads; the solvers of one process take turns."""
 MM = 1e3
-SECONDS = "seconds_s"
+SECONDS, BAND = "seconds_s", "band_percent"
 
 
 @dataclass(frozen=True)
@@ -71,11 +72,12 @@ def evaluate(task: Task) -> PointResult:
 
     with _ONE_AT_A_TIME, threadpool_limits(1):
         answers = {model: _ModelAnswer.of(model, task.scenario, task.keep) for model in MODELS}
+        bands, unknown = _bands(task.scenario, answers["fem"].result)
     if task.keep is not None:
         remove_known(task.keep, is_kept)
     results = {model: answer.result for model, answer in answers.items()}
     faults = [answer.fault for answer in answers.values() if answer.fault]
-    warnings = [warning for answer in answers.values() for warning in answer.warnings]
+    warnings = [*(warning for answer in answers.values() for warning in answer.warnings), *unknown]
     if all(result is None for result in results.values()) and not faults:
         faults = warnings
     return PointResult(
@@ -83,8 +85,32 @@ def evaluate(task: Task) -> PointResult:
         status=FAILED if faults else OK,
         reason=_line(faults),
         warnings=_line(warnings),
-        values=point_values(task.scenario, results, {model: answer.seconds for model, answer in answers.items()}),
+        values=point_values(task.scenario, results, {model: answer.seconds for model, answer in answers.items()})
+        | bands,
     )
+
+
+def _bands(scenario: Scenario, fem: ModelResult | None) -> tuple[dict[str, float], list[str]]:
+    """What stated uncertainties leave of each layer's deflection at peak load, %, and why that is not known.
+
+    Columns `LAYER.fem_band_percent`, `LAYER.wave_band_percent`, and `LAYER.error_band_percent` of the wave against the
+    FEM: by how much the upper end of the 95 % band is above the value. None without stated uncertainties.
+    """
+    if fem is None or not scenario.uncertainties:
+        return {}, []
+    try:
+        bands = parameter_bands(scenario, scenario_drive(scenario))
+    except TissuebenchError as error:
+        return {}, [f"what uncertain parameters leave was not worked out: {error}"]
+    if bands is None:
+        return {}, []
+    parts = {"fem": bands.fem, "wave": bands.wave, "error": bands.difference}
+    values = {
+        f"{layer}.{name}_{BAND}": 100.0 * float(bands.factor(deviation[fem.peak_step, place]) - 1.0)
+        for name, deviation in parts.items()
+        for place, layer in enumerate(fem.layers)
+    }
+    return {name: value for name, value in values.items() if math.isfinite(value)}, []
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,7 @@ def test_results_are_those_of_the_models(scenario: Scenario) -> None:
     for layer, error in zip(scenario.tissue.layer_names, errors, strict=True):
         assert row.values[f"{layer}.error_percent"] == pytest.approx(error)
     assert row.values["error_percent"] == pytest.approx(errors[0])
+    assert not any("band" in name for name in row.values)
 
 
 def test_under_depth_control_the_force_is_the_result() -> None:
@@ -120,3 +121,39 @@ def test_a_long_point_goes_on_from_its_steps(scenario: Scenario, tmp_path: Path,
     assert "fem_seconds_s" not in row.values
     assert "fem_seconds_s" in whole.values
     assert not keep.exists()
+
+
+TWO_LAYERS = """
+schema = 1
+name = "two layers"
+citation = "Made up for this test."
+[[layers]]
+name = "top"
+thickness = "2 mm"
+density = "1070 kg/m^3"
+youngs_modulus = "100 kPa +/- 10 %"
+poisson_ratio = 0.45
+[[layers]]
+name = "base"
+thickness = "8 mm"
+density = "1070 kg/m^3"
+youngs_modulus = "50 kPa +/- 20 %"
+poisson_ratio = 0.45
+"""
+
+
+def test_stated_uncertainties_leave_bands_which_a_varied_value_does_not_widen(tmp_path: Path) -> None:
+    """All stresses 10 % up are the load 10 % down: in small strain so is every deflection."""
+    (tmp_path / "t.toml").write_text(TWO_LAYERS)
+    settings = {**SMALL, "tissue": str(tmp_path / "t.toml"), "load.peak": "0.02 N"}
+    row = evaluate(Task(1, load_scenario("skin-5N", settings)))
+    assert row.status == OK
+    both = [row.values[f"top.{name}_band_percent"] for name in ("fem", "wave")]
+    fixed = evaluate(Task(2, load_scenario("skin-5N", {**settings, "base.youngs_modulus": "50 kPa"})))
+    of_top = fixed.values["top.fem_band_percent"]
+    assert 0.0 < of_top < min(both)
+    sum_of_shares = np.sqrt(np.log1p(of_top / 100) ** 2 / (1.96 * 0.1) ** 2) + np.sqrt(
+        np.log1p(both[0] / 100) ** 2 - np.log1p(of_top / 100) ** 2
+    ) / (1.96 * 0.2)
+    assert sum_of_shares == pytest.approx(1.0, rel=0.02)
+    assert row.values["top.error_band_percent"] < 0.5 * min(both)
