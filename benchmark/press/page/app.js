@@ -7,7 +7,9 @@
   const get = (id) => document.getElementById(id);
   const data = JSON.parse(get("data").textContent), calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const canvas = get("view"), grid = Wave.grid(SIDE, SIDE, SPACING), P = grid.xs.length, Q = grid.ys.length;
-  const rows = grid.ys.slice(), shade = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+  const rows = grid.ys.slice(), shades = new Map();
+  const shade = (name) => shades.get(name) ?? shades.set(name, getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim()).get(name);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { shades.clear(); state.told = {}; });
   const value = (id) => Number(get(id).value), chosen = (name) => document.querySelector(`input[name="${name}"]:checked`).value;
   const mm = (metres) => 1e3 * metres, FLAT = new Float64Array(P * Q);
 
@@ -16,8 +18,10 @@
   const gl = renderer?.gl, camera = new Scene.Camera();
   const state = {
     renderer, bench: null, specimen: null, bodies: null, slabs: [], plate: null, sheet: null, ribbons: [], tools: [], faces: null, fem: null, values: null,
-    paused: false, slow: false, replay: null, demo: true, last: 0, active: 0, cost: 0, errorScale: 0.0025, traces: [], frames: [], orbit: null, pointers: new Map(), script: null,
+    paused: false, slow: false, replay: null, demo: true, last: 0, active: 0, cost: 0, errorScale: 0.0025, traces: [], frames: [], orbit: null, pointers: new Map(), script: null, told: {}, read: 0,
   };
+  // A text that has not changed costs nothing: without a graphics card every change is a picture drawn anew.
+  const tell = (id, text) => { if (state.told[id] !== text) { state.told[id] = text; get(id).textContent = text; } };
 
   // ---- what is pressed
   function choose(index) {
@@ -136,6 +140,7 @@
 
   function drawn(now) {
     renderer.resize();
+    if (renderer.software) renderer.ground = [...Scene.rgb(shade("raised")), 1];
     renderer.clear();
     const low = Scene.rgb(shade("fem")), high = Scene.rgb(shade("wave")), beside = state.bench.tissues.published;
     const layers = state.specimen.layers, hole = state.specimen.support === "hole", total = mm(layers.reduce((sum, layer) => sum + layer.thickness_m, 0));
@@ -147,14 +152,15 @@
       const raised = lift * (count - 1 - l), top = -depth + raised;
       depth += mm(layer.thickness_m);
       const last = l === count - 1, below = last ? (hole ? l * size : null) : (l + 1) * size;
-      state.slabs[l].fill(grid.xs, rows, state.faces, state.values, l * size, below, top, -depth + raised);
+      const slab = state.slabs[l], covered = l > 0 && lift === 0;
+      slab.fill(grid.xs, rows, state.faces, state.values, l * size, below, top, -depth + raised, covered);
       const colour = Scene.rgb(SKIN[layer.name] ?? OTHERS[l % OTHERS.length]);
-      renderer.draw(state.slabs[l].mesh, colour, { mode: now.wrong ? 1 : 0, lines: now.wrong ? 0 : 8 });
+      renderer.draw(slab.mesh, colour, { mode: now.wrong ? 1 : 0, lines: now.wrong ? 0 : 8, from: covered ? slab.faceIndices : 0 });
       if (now.compared) lines(l, top, now, low, high);
     });
     if (!hole) {
-      state.plate.fill(grid.xs, rows, FLAT, FLAT, 0, null, -depth - 0.02, -depth - PLATE);
-      renderer.draw(state.plate.mesh, Scene.rgb(shade("tool")));
+      state.plate.fill(grid.xs, rows, FLAT, FLAT, 0, null, -depth - 0.02, -depth - PLATE, true);
+      renderer.draw(state.plate.mesh, Scene.rgb(shade("tool")), { from: state.plate.faceIndices });
     }
     targets(lift * (count - 1));
     tools(state.bench.shown, lift * (count - 1));
@@ -165,7 +171,10 @@
 
   // The layers' names beside the right end of the cut.
   function names(cut, lift, share) {
-    const { layers } = state.specimen, labels = get("layers"), wide = canvas.clientWidth * share, high = canvas.clientHeight;
+    const { layers } = state.specimen, labels = get("layers"), { clientWidth, clientHeight } = renderer.size, wide = clientWidth * share, high = clientHeight;
+    const key = [state.specimen.tissue, cut, lift, wide, high, camera.azimuth, camera.elevation, camera.zoom, camera.target].join();
+    if (key === state.told.names) return;
+    state.told.names = key;
     if (labels.children.length !== layers.length || labels.dataset.of !== state.specimen.tissue) {
       labels.replaceChildren(...layers.map(({ name, thickness_m }) => Object.assign(document.createElement("span"), { textContent: `${name.replaceAll("_", " ")} ${+mm(thickness_m).toPrecision(3)} mm` })));
       labels.dataset.of = state.specimen.tissue;
@@ -227,45 +236,52 @@
   function read(now) {
     const { bench } = state, force = bench.shown.force.reduce((sum, part) => sum + part, 0), tool = bench.shown.tools[state.active];
     const held = tool.phase === "pressed" ? tool.depth : now.depth;
-    get("force").textContent = force.toFixed(2);
-    get("depth").textContent = mm(held).toFixed(2);
+    const turn = state.read++, due = state.manual || turn % (renderer?.software ? 6 : 2) === 0;
+    if (!due) return;
+    tell("force", force.toFixed(2));
+    tell("depth", mm(held).toFixed(2));
     const fem = now.compared && bench.tissues.fem.force.reduce((sum, part) => sum + part, 0);
-    get("fem-force").textContent = now.compared ? fem.toFixed(2) : "–";
-    get("error").textContent = now.compared && now.depth > 1e-5 ? (100 * now.share).toFixed(2) : "–";
+    tell("fem-force", now.compared ? fem.toFixed(2) : "–");
+    tell("error", now.compared && now.depth > 1e-5 ? (100 * now.share).toFixed(2) : "–");
     scale(now);
     const two = bench.busy > 1 && state.bench.tissues.fem ? "Finite elements were run for one tool: none of theirs with two." : "";
     const assumed = bench.lead === "after" && now.compared ? "The finite elements are those of the model as it was assumed: the error shows the effect." : "";
     const shallow = bench.tissues.published && tool.depth > bench.tissues.published.body.deepest ? "Eq. (8) of the article has no answer deeper than 1 mm." : "";
-    get("note").textContent = state.said ? state.said : state.replay ? "Replay" : bench.refused ? `The tool stays where it was: ${bench.refused}.` : shallow || (bench.task ? asked(bench.task) : two || assumed);
-    if (state.frames.length % 3 === 0) { trace(); law(now); }
+    tell("note", state.said ? state.said : state.replay ? "Replay" : bench.refused ? `The tool stays where it was: ${bench.refused}.` : shallow || (bench.task ? asked(bench.task) : two || assumed));
+    if (state.manual || turn % 12 === 0) { trace(); law(now); }
     const fast = state.cost, slow = state.specimen.fem;
-    if (state.frames.length % 30 === 0 && fast > 0) {
+    if (turn % 30 === 0 && fast > 0) {
       get("time").innerHTML = `Wave, in this page now: <b>${fast.toFixed(fast < 0.1 ? 3 : 2)} ms</b> for ${(state.faces.length).toLocaleString("en")} points.`
         + (slow ? ` Finite elements, when this page was made: <b>${(1e3 * slow.wall_s / slow.levels).toFixed(0)} ms</b> for each of ${slow.levels} depths, ${slow.unknowns.toLocaleString("en")} unknowns.` : "");
     }
   }
 
   function scale(now) {
-    const context = get("scale").getContext("2d"), wide = 220, ramp = context.createLinearGradient(0, 0, wide, 0);
+    const bound = +(100 * state.errorScale).toPrecision(2), key = [now.wrong, bound, now.deepest].join();
+    if (key === state.told.scale) return;
+    state.told.scale = key;
+    const context = plain(get("scale")), wide = 220, ramp = context.createLinearGradient(0, 0, wide, 0);
     const stops = now.wrong ? [[0, shade("fem")], [0.5, "#eeece8"], [1, shade("wave")]] : [[0, SKIN.epidermis], [0.38, "#ed6b5c"], [0.7, "#9e2b7a"], [1, "#33126b"]];
     stops.forEach(([at, colour]) => ramp.addColorStop(at, colour));
     context.fillStyle = ramp;
     context.fillRect(0, 0, wide, 10);
-    const bound = +(100 * state.errorScale).toPrecision(2);
     get("scale-low").textContent = now.wrong ? `−${bound}` : "0";
     get("scale-name").textContent = now.wrong ? "wave too deep by, % of depth" : "deflection";
     get("scale-high").textContent = now.wrong ? `+${bound}` : `${mm(now.deepest).toFixed(1)} mm`;
   }
 
+  // A small picture drawn by the processor: without a graphics card anything else is slower.
+  const plain = (target) => target.getContext("2d", { willReadFrequently: Boolean(renderer?.software) });
+
   function chart(id, x, y, unit) {
     const target = get(id), scale = Math.min(devicePixelRatio || 1, 2), wide = target.clientWidth, high = target.clientHeight;
     if (target.width !== Math.round(wide * scale)) { target.width = Math.round(wide * scale); target.height = Math.round(high * scale); }
-    const context = target.getContext("2d"), left = 26, bottom = 15, top = 6;
+    const context = plain(target), left = 26, bottom = 15, top = 6;
     context.setTransform(scale, 0, 0, scale, 0, 0);
     context.clearRect(0, 0, wide, high);
     const px = (v) => left + ((v - x[0]) / (x[1] - x[0])) * (wide - left - 4), py = (v) => high - bottom - (v / y) * (high - bottom - top);
     context.strokeStyle = shade("grid"); context.fillStyle = shade("muted"); context.lineWidth = 1;
-    context.font = `10px ${getComputedStyle(document.body).fontFamily}`;
+    context.font = state.font ??= `10px ${getComputedStyle(document.body).fontFamily}`;
     for (const part of [0, 0.5, 1]) {
       context.beginPath(); context.moveTo(left, py(part * y)); context.lineTo(wide - 4, py(part * y)); context.stroke();
       context.textAlign = "right"; context.fillText(`${+(part * y).toPrecision(2)}`, left - 4, py(part * y) + 3);

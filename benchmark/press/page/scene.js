@@ -3,34 +3,55 @@
 const Scene = (() => {
   const FLOATS = 7, TURN = 2 * Math.PI, SIDES = 48, BANDS = 8;
 
-  const VERTEX = `#version 300 es
+  const VERTEX = `
     in vec3 position; in vec3 normal; in float value;
     uniform mat4 view; out vec3 place; out vec3 facing; out float shown;
     void main() { place = position; facing = normal; shown = value; gl_Position = view * vec4(position, 1.0); }`;
+  const VERTEX_SHADED = (shading) => `
+    in vec3 position; in vec3 normal; in float value;
+    uniform mat4 view; out vec4 paint;
+    ${shading}
+    void main() {
+      vec3 n = dot(normal, eye - position) < 0.0 ? -normal : normal;
+      paint = shaded(n, position, value, hue(value)); gl_Position = view * vec4(position, 1.0);
+    }`;
+  const FRAGMENT_PAINTED = `
+    precision mediump float;
+    in vec4 paint; out vec4 colour;
+    void main() { colour = paint; }`;
 
-  // mode 0: deflection as a share of the deepest; 1: signed difference, -1 to 1; 2: plain colour.
-  const FRAGMENT = `#version 300 es
-    precision highp float;
-    in vec3 place; in vec3 facing; in float shown;
-    uniform vec3 base, eye, low, high; uniform float mode, lines, alpha; out vec4 colour;
+  // With a graphics card every point of the picture is shaded; without one, where that is what takes the time, every
+  // vertex is, and points take what lies between. mode 0: deflection as a share of the deepest; 1: signed difference, -1 to 1; 2: plain colour.
+  const SHADING = `
+    uniform vec3 base, eye, low, high; uniform float mode, lines, alpha;
     vec3 deep(float t) {
       vec3 a = vec3(0.93, 0.42, 0.36), b = vec3(0.62, 0.17, 0.48), c = vec3(0.20, 0.07, 0.42);
       return t < 0.38 ? mix(base, a, smoothstep(0.0, 1.0, t / 0.38)) : t < 0.7 ? mix(a, b, (t - 0.38) / 0.32) : mix(b, c, min((t - 0.7) / 0.3, 1.0));
     }
+    vec3 hue(float shown) {
+      if (mode < 0.5) return deep(clamp(shown, 0.0, 1.0));
+      if (mode < 1.5) return mix(vec3(0.93, 0.92, 0.90), shown < 0.0 ? low : high, pow(min(abs(shown), 1.0), 0.75));
+      return base;
+    }
+    vec4 shaded(vec3 facing, vec3 place, float shown, vec3 paint) {
+      vec3 n = normalize(facing), light = normalize(vec3(-0.35, -0.55, 0.9)), to = normalize(eye - place);
+      float diffuse = max(dot(n, light), 0.0), sky = 0.5 + 0.5 * n.z;
+      float gleam = pow(max(dot(n, normalize(light + to)), 0.0), 40.0) * 0.22;
+      return vec4((paint * (0.46 + 0.2 * sky + 0.44 * diffuse) + gleam * (mode < 2.5 ? 1.0 : 0.0)) * alpha, alpha);
+    }`;
+
+  const FRAGMENT = `
+    precision highp float;
+    in vec3 place; in vec3 facing; in float shown; out vec4 colour;
+    ${SHADING}
     void main() {
-      vec3 n = normalize(gl_FrontFacing ? facing : -facing), light = normalize(vec3(-0.35, -0.55, 0.9)), to = normalize(eye - place);
-      vec3 paint = base;
-      if (mode < 0.5) paint = deep(clamp(shown, 0.0, 1.0));
-      else if (mode < 1.5) paint = shown < 0.0 ? mix(vec3(0.93, 0.92, 0.90), low, pow(min(-shown, 1.0), 0.75)) : mix(vec3(0.93, 0.92, 0.90), high, pow(min(shown, 1.0), 0.75));
+      vec3 paint = hue(shown);
       if (mode < 1.5 && lines > 0.0) {
         float step = shown * lines, edge = abs(fract(step - 0.5) - 0.5) / max(fwidth(step), 1e-6);
         float near = smoothstep(0.03, 0.12, abs(shown));
         paint = mix(paint, paint * 0.62, (1.0 - smoothstep(0.4, 1.5, edge)) * near);
       }
-      float diffuse = max(dot(n, light), 0.0), sky = 0.5 + 0.5 * n.z;
-      float gleam = pow(max(dot(n, normalize(light + to)), 0.0), 40.0) * 0.22;
-      colour = vec4(paint * (0.46 + 0.2 * sky + 0.44 * diffuse) + gleam * (mode < 2.5 ? 1.0 : 0.0), 1.0) * vec4(vec3(1.0), alpha);
-      colour.rgb *= alpha;
+      colour = shaded(gl_FrontFacing ? facing : -facing, place, shown, paint);
     }`;
 
   const subtract = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -95,9 +116,9 @@ const Scene = (() => {
       this.gl.bufferSubData(this.gl.ARRAY_BUFFER, 0, this.data);
     }
 
-    draw() {
+    draw(from = 0) {
       this.gl.bindVertexArray(this.array);
-      this.gl.drawElements(this.gl.TRIANGLES, this.count, this.gl.UNSIGNED_INT, 0);
+      this.gl.drawElements(this.gl.TRIANGLES, this.count - from, this.gl.UNSIGNED_INT, 4 * from);
     }
   }
 
@@ -109,7 +130,7 @@ const Scene = (() => {
       for (let i = 0; i + 1 < P; i++) for (let j = 0; j + 1 < Q; j++) {
         indices.push(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i, j + 1));
       }
-      this.walls = [];
+      this.walls = []; this.faceIndices = indices.length;
       let next = P * Q;
       for (const [count, vertex, normal] of [
         [P, (k) => at(k, 0), [0, -1, 0]], [P, (k) => at(k, Q - 1), [0, 1, 0]],
@@ -126,11 +147,13 @@ const Scene = (() => {
     }
 
     // Deflections (m) and values of this face and of the one below, from offsets in shared arrays; heights in mm.
-    fill(xs, ys, faces, values, own, below, top, bottom) {
+    // A covered face is not drawn, so only its border, where the walls begin, is filled.
+    fill(xs, ys, faces, values, own, below, top, bottom, covered = false) {
       const { P, Q } = this, data = this.mesh.data;
+      this.covered = covered;
       for (let i = 0; i < P; i++) {
         const left = Math.max(i - 1, 0), right = Math.min(i + 1, P - 1), dx = xs[right] - xs[left];
-        for (let j = 0; j < Q; j++) {
+        for (let j = 0, step = covered && i > 0 && i < P - 1 ? Q - 1 : 1; j < Q; j += step) {
           const near = Math.max(j - 1, 0), far = Math.min(j + 1, Q - 1), dy = ys[far] - ys[near];
           const here = own + i * Q + j;
           const nx = (faces[own + right * Q + j] - faces[own + left * Q + j]) / dx;
@@ -206,13 +229,16 @@ const Scene = (() => {
 
   class Renderer {
     constructor(canvas) {
-      const gl = canvas.getContext("webgl2", { antialias: !inSoftware(), alpha: true, premultipliedAlpha: true });
+      const software = (this.software = inSoftware());
+      const gl = canvas.getContext("webgl2", { antialias: !software, alpha: !software, premultipliedAlpha: true });
       if (!gl) throw new Error("WebGL 2 is not available");
-      this.gl = gl; this.canvas = canvas; this.detail = 1; this.slow = 0;
+      this.gl = gl; this.canvas = canvas; this.detail = software ? 0.64 : 1; this.recent = []; this.good = 0; this.patience = 8; this.tried = false; this.ground = [0, 0, 0, 0];
+      new ResizeObserver(() => { this.size = null; }).observe(canvas);
       const program = (this.program = gl.createProgram());
-      for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
+      const texts = software ? [VERTEX_SHADED(SHADING), FRAGMENT_PAINTED] : [VERTEX, FRAGMENT];
+      for (const [kind, text] of [[gl.VERTEX_SHADER, texts[0]], [gl.FRAGMENT_SHADER, texts[1]]]) {
         const shader = gl.createShader(kind);
-        gl.shaderSource(shader, text);
+        gl.shaderSource(shader, `#version 300 es${text}`);
         gl.compileShader(shader);
         if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
         gl.attachShader(program, shader);
@@ -227,24 +253,33 @@ const Scene = (() => {
     }
 
     resize() {
-      const scale = Math.min(window.devicePixelRatio || 1, 2) * this.detail, { clientWidth, clientHeight } = this.canvas;
+      this.size ??= { clientWidth: this.canvas.clientWidth, clientHeight: this.canvas.clientHeight };
+      const scale = (this.software ? 1 : Math.min(window.devicePixelRatio || 1, 2)) * this.detail, { clientWidth, clientHeight } = this.size;
       const width = Math.max(1, Math.round(clientWidth * scale)), height = Math.max(1, Math.round(clientHeight * scale));
       if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
     }
 
-    // Fewer pixels where frames (ms) come too slowly, more again where there is time.
+    // Fewer pixels where most of thirty frames (ms) come too slowly. More are tried after a while of good ones; where they
+    // were too many, the next try waits twice as long.
     pace(frame) {
-      this.slow += 0.1 * (frame - this.slow);
-      this.waited = (this.waited ?? 0) + 1;
-      if (this.waited < 20) return;
-      const wanted = this.slow > 19 ? this.detail * 0.8 : this.slow < 10 ? this.detail * 1.25 : this.detail;
-      const next = Math.min(Math.max(wanted, 0.45), 1);
-      if (next !== this.detail) { this.detail = next; this.waited = 0; }
+      this.recent.push(frame);
+      if (this.recent.length < 30) return;
+      const median = this.recent.sort((a, b) => a - b)[15];
+      this.recent = [];
+      this.good = median < 17.5 ? this.good + 1 : 0;
+      if (median > 19) {
+        if (this.tried) this.patience *= 2;
+        this.detail = Math.max(0.8 * this.detail, this.software ? 0.4 : 0.45);
+        this.tried = false;
+      } else if (this.good >= this.patience && this.detail < 1) {
+        this.detail = Math.min(1.25 * this.detail, 1);
+        this.tried = true; this.good = 0;
+      } else if (this.good > 4) this.tried = false;
     }
 
     clear() {
       this.gl.viewport(0, 0, this.canvas.width, this.canvas.height);
-      this.gl.clearColor(0, 0, 0, 0);
+      this.gl.clearColor(...this.ground);
       this.gl.clear(this.gl.COLOR_BUFFER_BIT | this.gl.DEPTH_BUFFER_BIT);
     }
 
@@ -257,12 +292,12 @@ const Scene = (() => {
       gl.uniform3fv(at.eye, eye); gl.uniform3fv(at.low, low); gl.uniform3fv(at.high, high);
     }
 
-    draw(mesh, base, { mode = 2, lines = 0, alpha = 1 } = {}) {
+    draw(mesh, base, { mode = 2, lines = 0, alpha = 1, from = 0 } = {}) {
       const { gl, at } = this;
       gl.uniform3fv(at.base, base);
       gl.uniform1f(at.mode, mode); gl.uniform1f(at.lines, lines); gl.uniform1f(at.alpha, alpha);
       if (alpha < 1) { gl.enable(gl.BLEND); gl.depthMask(false); }
-      mesh.draw();
+      mesh.draw(from);
       if (alpha < 1) { gl.disable(gl.BLEND); gl.depthMask(true); }
     }
   }

@@ -14,6 +14,9 @@ from benchmark.assessment.attempt_measures import read_attempt
 from benchmark.press.live_capture import LiveCapture, LiveLine, tell
 from benchmark.press.press_page import render_press_page
 from benchmark.press.press_server import FemLine, FemOnDemand, Served, make_server
+from benchmark.press.radial_table import table_of_body
+from wavemodel import Prony
+from wavemodel.control import Grid, InteractiveTissue, layered_body
 from wavemodel.control.pressed_body import radii_of
 
 CHROMIUM = shutil.which("chromium")
@@ -155,6 +158,44 @@ def test_a_second_tool_takes_the_finite_elements_away(page):
     assert page.evaluate("press.state.bench.busy") == 2
     assert not now["compared"]
     assert "one tool" in page.locator("#note").text_content()
+
+
+OFFER = """([wave, memory]) => {
+  press.data.specimens[1] = { ...press.data.specimens[0], wave, memory, fem: null, after: null, made: undefined };
+  press.choose(1);
+}"""
+RECORD = """press.state.bench.record.map(
+  ({ dt, tools }) => [dt, tools.map((tool) => tool && [tool[0], tool[1], tool[2].wave])]
+)"""
+
+
+@pytest.mark.parametrize(("strain", "remembers"), [("linear", False), ("linear", True), ("corrected", True)])
+def test_two_dragged_tools_press_the_mesh_as_the_library_does(page, wave, series, strain, remembers):
+    grid, prony = Grid(49e-3, 49e-3, 1e-3), series if remembers else Prony()
+    body = layered_body(wave(large_press=strain), grid)
+    memory = {"strength": prony.strength, "time_s": prony.time, "retardation_s": 0.0}
+    page.evaluate(OFFER, [table_of_body(body, min(body.deepest, 3e-3)).to_dict(), memory])
+    page.evaluate("document.getElementById('stay').checked = true")
+    hold(page, 0.42, 0.42)
+    page.evaluate(STEP, 0.3)
+    page.mouse.up()
+    box = hold(page, 0.66, 0.36)
+    page.evaluate(STEP, 0.3)
+    page.mouse.move(box["x"] + 0.62 * box["width"], box["y"] + 0.46 * box["height"], steps=3)
+    page.evaluate(STEP, 0.5)
+    tissue = InteractiveTissue(body, grid, 4, series=prony)
+    for dt, tools in page.evaluate(RECORD):
+        for k, touch in enumerate(tools):
+            if touch:
+                tissue.touch(k, *touch)
+        tissue.frame(dt)
+    force = np.array(page.evaluate("Array.from(press.state.bench.shown.force)"))
+    np.testing.assert_allclose(force, tissue.force, rtol=0.0, atol=1e-6 * tissue.force.max())
+    found, wanted = faces(page), tissue.frame(1e-3)
+    page.evaluate("document.getElementById('stay').checked = false; press.choose(0)")
+    assert np.count_nonzero(force) == 2
+    assert wanted.max() > 1e-3
+    np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-6 * wanted.max())
 
 
 def test_memory_lets_the_force_fade_while_the_tool_holds(page):
