@@ -122,14 +122,20 @@ class Side:
 
 
 def _environment(tree: Path, *, temporary: bool) -> dict[str, str]:
-    """One thread in every library, kept memory, the same order of sets, and the packages of `tree` first.
+    """One thread in every library, kept memory, no film kept from before, and the packages of `tree` first.
 
     A tree that is where packages are installed is found anyway, and must not go before the standard library.
     Code of a temporary tree is compiled once for all its processes, whatever the caller wants for other folders.
     """
     first = [] if str(tree) == sysconfig.get_path("purelib") else [str(tree)]
     paths = os.pathsep.join([*first, *filter(None, [os.environ.get("PYTHONPATH")])])
-    fixed = {"PYTHONPATH": paths, "PYTHONHASHSEED": "0", **KEPT_MEMORY, **dict.fromkeys(THREAD_VARIABLES, "1")}
+    fixed = {
+        "PYTHONPATH": paths,
+        "PYTHONHASHSEED": "0",
+        "TISSUEBENCH_CACHE": "",
+        **KEPT_MEMORY,
+        **dict.fromkeys(THREAD_VARIABLES, "1"),
+    }
     left_out = {"PYTHONDONTWRITEBYTECODE"} if temporary else set()
     return {**{name: value for name, value in os.environ.items() if name not in left_out}, **fixed}
 

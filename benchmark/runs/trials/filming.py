@@ -14,16 +14,14 @@ from bench_hw.tables import MarkerTable
 from bench_hw.vision.camera.camera_file import read_camera
 from bench_hw.vision.camera.pinhole import Camera, distance_of
 from bench_hw.vision.displacement.tracks import tracks_of
-from bench_hw.vision.frames.opening import TrialFrames
 from bench_hw.vision.markers.grid import Layout
-from bench_hw.vision.tracking.film import TrackOrder, track
-from bench_hw.vision.tracking.pipeline import TrackOutcome
 from benchmark.errors import InputError
 from benchmark.files import Session, Trial
 from benchmark.files.sessions.trials import read_markers
 from benchmark.identification import Film
 from benchmark.response import CameraView
 from benchmark.runs.options import Listener
+from benchmark.runs.trials.film_cache import KeptFilm, film_key, keep_film, kept_film
 
 Key = tuple[str, str]
 
@@ -128,6 +126,8 @@ def _sources(session: Session, layout: Layout, listener: Listener) -> Iterator[F
 
 
 def _filmed(path: Path) -> bool:
+    from bench_hw.vision.frames.opening import TrialFrames
+
     try:
         TrialFrames(path)
     except TrialFileError:
@@ -141,9 +141,28 @@ def _camera_file(session: Session) -> Path | None:
 
 
 def _track(session: Session, trial: Trial, layout: Layout, listener: Listener) -> Found:
-    """Track the pictures of a trial in a folder that is gone afterwards."""
+    """The tracks of a trial's pictures: kept from an earlier command on the same ones, or made now."""
     camera = _camera_file(session)
     assert camera is not None
+    key = film_key(trial.path, camera, (layout.rows, layout.columns))
+    film = kept_film(key)
+    if film is None:
+        film = _tracked_now(trial, camera, layout, listener)
+        keep_film(key, film)
+    else:
+        listener.say(f"{trial.name}: the same pictures were tracked before, their tracks are taken")
+    with tempfile.TemporaryDirectory() as scratch:
+        table = Path(scratch) / "markers.csv"
+        table.write_bytes(film.table)
+        markers = replace(read_markers(table), source=str(trial.path))
+    tracked = Tracked(trial.name, film.table, film.still, film.frames, film.missing_percent)
+    return markers, tracked, tuple(f"{trial.name}: {text}" for text in film.warnings)
+
+
+def _tracked_now(trial: Trial, camera: Path, layout: Layout, listener: Listener) -> KeptFilm:
+    """Track the pictures of a trial in a folder that is gone afterwards."""
+    from bench_hw.vision.tracking.film import TrackOrder, track
+
     with tempfile.TemporaryDirectory() as scratch, listener.progress(f"{trial.name}: tracking the markers") as advance:
         out, still = Path(scratch) / "markers.csv", Path(scratch) / "still.png"
         order = TrackOrder(str(trial.path), camera, out, layout=layout, still=still)
@@ -151,14 +170,9 @@ def _track(session: Session, trial: Trial, layout: Layout, listener: Listener) -
             outcome = track(order, lambda done, total: advance("tracking", done, total or done, f"picture {done}"))
         except BenchError as error:
             raise InputError(f"{error}.") from None
-        markers = replace(read_markers(out), source=str(trial.path))
         picture = still.read_bytes() if still.is_file() else None
-        tracked = Tracked(trial.name, out.read_bytes(), picture, outcome.tally.frames, _missing(outcome))
-    return markers, tracked, tuple(f"{trial.name}: {text}" for text in outcome.warnings)
-
-
-def _missing(outcome: TrackOutcome) -> float:
-    return 100.0 * float(outcome.tally.missing.mean()) / max(outcome.tally.frames, 1)
+        missing = 100.0 * float(outcome.tally.missing.mean()) / max(outcome.tally.frames, 1)
+        return KeptFilm(out.read_bytes(), picture, outcome.tally.frames, missing, tuple(outcome.warnings))
 
 
 def _view(session: Session) -> tuple[CameraView, tuple[str, ...]]:

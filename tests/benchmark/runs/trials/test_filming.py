@@ -110,3 +110,18 @@ def test_an_unknown_distance_is_said(session) -> None:
 def test_another_grid_is_refused(session, rows, columns, camera) -> None:
     with pytest.raises(InputError, match="marker"):
         session_films(session(rows, columns, camera), Quiet())
+
+
+def test_the_same_pictures_are_tracked_once(session, tmp_path, monkeypatch) -> None:
+    monkeypatch.setenv("TISSUEBENCH_CACHE", str(tmp_path / "kept"))
+    first = session_films(session(), Quiet())
+
+    def never(*_: object) -> None:
+        raise AssertionError("it was tracked again")
+
+    monkeypatch.setattr("bench_hw.vision.tracking.film.track", never)
+    again = session_films(session(), Quiet())
+    assert again.tracked == first.tracked
+    assert again.warnings == first.warnings
+    for key, film in first.films.items():
+        np.testing.assert_array_equal(again.films[key].places, film.places)
