@@ -123,9 +123,9 @@ bench-discovery: $(RUN_STAMP)
 # Needs uv (`pip install uv`). Only names and versions are written, no addresses.
 lock:
 	uv pip compile --universal --python-version 3.11 --no-header --no-annotate \
-		--output-file requirements.lock pyproject.toml
+		--extra all --output-file requirements.lock pyproject.toml
 	uv pip compile --universal --python-version 3.11 --no-header --no-annotate \
-		--extra dev --extra peers --output-file requirements-dev.lock pyproject.toml
+		--extra all --extra dev --extra peers --output-file requirements-dev.lock pyproject.toml
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info

@@ -37,9 +37,6 @@ def _bench() -> None:
     """Measure with the bench, look at what was measured, save it, take it elsewhere."""
 
 
-EXIT_BUG = 70
-"""A mistake in the program; the codes of the contract stay for what a user can mend."""
-
 app = make_app()
 
 
@@ -48,5 +45,4 @@ def main() -> None:
     try:
         app()
     except Exception as error:
-        report_unexpected(error, debug="--debug" in sys.argv)
-        sys.exit(EXIT_BUG)
+        sys.exit(report_unexpected(error, debug="--debug" in sys.argv))

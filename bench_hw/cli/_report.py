@@ -12,6 +12,11 @@ from typing import Annotated, Any
 import typer
 
 from bench_hw.errors import BenchError
+from bench_hw.optional import what_is_missing
+
+EXIT_MISSING = 2
+EXIT_BUG = 70
+"""A mistake in the program; the codes of the contract stay for what a user can mend."""
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
@@ -48,12 +53,17 @@ def say_error(error: BaseException) -> None:
     print("error: " + " ".join("; ".join(parts).split()), file=sys.stderr)
 
 
-def report_unexpected(error: Exception, debug: bool) -> None:
-    """Print an error that nobody foresaw; it is a mistake in the program."""
+def report_unexpected(error: Exception, debug: bool) -> int:
+    """Print an error that no verb foresaw, and return the exit code: a library left out, or our mistake."""
     if debug:
         traceback.print_exception(error)
+    missing = what_is_missing(error)
+    if missing is not None:
+        print(f"error: {missing}", file=sys.stderr)
+        return EXIT_MISSING
     hint = "" if debug else "; `--debug` shows where"
     print(f"unexpected error: {type(error).__name__}: {error}{hint}", file=sys.stderr)
+    return EXIT_BUG
 
 
 def print_json(content: dict[str, Any]) -> None:

@@ -107,6 +107,7 @@ def _report(error: Exception, *, debug: bool) -> int:
         return _fail(f"{error.format_message()} See python -m benchmark --help.", EXIT_USAGE)
     if isinstance(error, typer.Abort):
         return _fail("interrupted", EXIT_INTERRUPTED)
+    from bench_hw.optional import what_is_missing
     from benchmark.errors import TissuebenchError
 
     if isinstance(error, TissuebenchError):
@@ -115,6 +116,9 @@ def _report(error: Exception, *, debug: bool) -> int:
         return _fail(str(error), EXIT_USAGE)
     if isinstance(error, MemoryError):
         return _fail(f"{TOO_LITTLE}; {error}" if str(error) else TOO_LITTLE, EXIT_USAGE)
+    missing = what_is_missing(error)
+    if missing is not None:
+        return _fail(missing, EXIT_USAGE)
     text = f"a fault of the program, {type(error).__name__}: {error}; --debug shows where"
     return _fail(text, EXIT_BUG)
 

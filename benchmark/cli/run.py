@@ -72,8 +72,13 @@ def run(
     from benchmark.cli.console import Console
     from benchmark.cli.show import show_discovery, show_runs
     from benchmark.discovery.discovery_request import discover_shipped
+    from benchmark.errors import InputError
     from benchmark.runs import RunOptions, RunRequest, carry_out
+    from benchmark.runs.fields import missing_vtk
 
+    missing = missing_vtk() if fields == "all" else None
+    if missing is not None:
+        raise InputError(f"--fields all: {missing}")
     console = Console(quiet=quiet)
     request = RunRequest(
         scenario, trials, specimen, parse_settings(settings), out, wave, reference, tuple(tissue or ()), model, effects

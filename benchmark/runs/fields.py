@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 
+from bench_hw.optional import how_to_get
 from benchmark.models import FieldSnapshot, LastState
+
+
+def missing_vtk() -> str | None:
+    """What to install before fields can be written or drawn; None where it is there."""
+    return None if find_spec("pyvista") is not None else how_to_get("pyvista")
 
 
 def save_grid(snapshot: FieldSnapshot, path: Path) -> None:
@@ -30,14 +37,14 @@ LAST = "last.vtu"
 
 def write_last(folder: Path, last: LastState | None) -> None:
     """Write the last state of equilibrium into `folder`, where there is one."""
-    if last is not None and last.field is not None:
+    if last is not None and last.field is not None and missing_vtk() is None:
         folder.mkdir(parents=True, exist_ok=True)
         save_grid(last.field, folder / LAST)
 
 
 def write_fields(folder: Path, snapshots: Sequence[FieldSnapshot]) -> list[Path]:
-    """Write one `step_NNNN.vtu` a snapshot into `folder` and return the paths; steps count from 1."""
-    if not snapshots:
+    """Write one `step_NNNN.vtu` a snapshot into `folder` and return the paths; steps count from 1; none without VTK."""
+    if not snapshots or missing_vtk() is not None:
         return []
     folder.mkdir(parents=True, exist_ok=True)
     paths = []

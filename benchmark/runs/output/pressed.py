@@ -13,7 +13,7 @@ from pathlib import Path
 
 from benchmark.files import Scenario
 from benchmark.models.model_result import FieldSnapshot
-from benchmark.runs.fields import save_grid
+from benchmark.runs.fields import missing_vtk, save_grid
 from benchmark.runs.record import RunRecord
 from reports import Block, Figure, Paragraph, write_bytes, write_text
 
@@ -45,6 +45,9 @@ def draw_pressed(snapshot: FieldSnapshot, axis: tuple[float, float], reach: floa
     reach
         Distance in m from it up to which plane layers are shown.
     """
+    missing = missing_vtk()
+    if missing is not None:
+        return Drawn(b"", missing)
     with tempfile.TemporaryDirectory() as name:
         vtu, png = Path(name) / "pressed.vtu", Path(name) / "pressed.png"
         save_grid(snapshot, vtu)
@@ -91,6 +94,8 @@ def pressed_picture(record: RunRecord, drawn: Drawn | None) -> Block | None:
     if drawn is None or fem is None:
         return None
     file = f"fields/step_{fem.peak_step + 1:04d}.vtu"
+    if not drawn.png and "not installed" in drawn.reason:
+        return Paragraph(f"No picture of the pressed tissue and no files of its fields: {drawn.reason}.")
     if not drawn.png:
         return Paragraph(
             f"No picture of the pressed tissue: {drawn.reason}. On Debian the packages {PACKAGES} bring off-screen "

@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,7 +15,6 @@ from bench_hw.tables import MarkerTable
 from bench_hw.vision.camera.camera_file import read_camera
 from bench_hw.vision.camera.pinhole import Camera, distance_of
 from bench_hw.vision.displacement.tracks import tracks_of
-from bench_hw.vision.markers.grid import Layout
 from benchmark.errors import InputError
 from benchmark.files import Session, Trial
 from benchmark.files.sessions.trials import read_markers
@@ -22,6 +22,10 @@ from benchmark.identification import Film
 from benchmark.response import CameraView
 from benchmark.runs.options import Listener
 from benchmark.runs.trials.film_cache import KeptFilm, film_key, keep_film, kept_film
+
+if TYPE_CHECKING:
+    from bench_hw.vision.markers.grid import Layout
+    from benchmark.files.sessions.description import Camera as SessionCamera
 
 Key = tuple[str, str]
 
@@ -77,7 +81,7 @@ def session_films(session: Session, listener: Listener) -> Films:
     camera = session.camera
     if camera is None:
         return NO_FILMS
-    layout = Layout(camera.marker_rows, camera.marker_columns)
+    layout = _layout(camera)
     films: dict[Key, Film] = {}
     tracked: list[Tracked] = []
     warnings: list[str] = []
@@ -106,13 +110,20 @@ def with_markers(session: Session, listener: Listener) -> tuple[Session, tuple[s
     """
     if session.camera is None:
         return session, ()
-    layout = Layout(session.camera.marker_rows, session.camera.marker_columns)
+    layout = _layout(session.camera)
     trials: list[Trial] = []
     warnings: list[str] = []
     for trial, found in zip(session.trials, _sources(session, layout, listener), strict=True):
         trials.append(trial if found is None else replace(trial, markers=found[0]))
         warnings += () if found is None else found[2]
     return replace(session, trials=tuple(trials)), tuple(warnings)
+
+
+def _layout(camera: SessionCamera) -> Layout:
+    """The grid of the session's markers; where markers are found needs OpenCV, so it is loaded for films alone."""
+    from bench_hw.vision.markers.grid import Layout
+
+    return Layout(camera.marker_rows, camera.marker_columns)
 
 
 def _sources(session: Session, layout: Layout, listener: Listener) -> Iterator[Found | None]:

@@ -1,0 +1,37 @@
+"""Libraries that an installation may leave out: each has its extra, and who meets it missing is told which."""
+
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from bench_hw.cli._report import report_unexpected
+from bench_hw.optional import EXTRAS, what_is_missing
+
+PYPROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+DISTRIBUTIONS = {"cv2": "opencv-python-headless", "vtkmodules": "pyvista"}
+
+
+@pytest.mark.parametrize("module", EXTRAS)
+def test_the_extra_has_it_and_the_core_has_not(module: str) -> None:
+    name, extra = DISTRIBUTIONS.get(module, module), EXTRAS[module][1]
+    assert any(each.startswith(name) for each in PYPROJECT["optional-dependencies"][extra])
+    assert not any(each.startswith(name) for each in PYPROJECT["dependencies"])
+    assert extra in PYPROJECT["optional-dependencies"]["all"][0]
+
+
+def test_a_missing_library_is_an_error_of_the_installation(monkeypatch, capsys) -> None:
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    with pytest.raises(ModuleNotFoundError) as caught:
+        import cv2  # noqa: F401
+    assert report_unexpected(caught.value, debug=False) == 2
+    said = capsys.readouterr().err
+    assert "tissuebench[camera]" in said
+    assert len(said.splitlines()) == 1
+
+
+def test_any_other_missing_module_is_a_fault(capsys) -> None:
+    assert what_is_missing(ModuleNotFoundError("No module named 'fem.gone'", name="fem.gone")) is None
+    assert report_unexpected(ModuleNotFoundError("gone", name="gone"), debug=False) == 70
+    assert what_is_missing(ValueError()) is None
