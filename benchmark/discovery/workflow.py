@@ -29,7 +29,7 @@ from benchmark.discovery.answer.gap import (
     unbent,
     worse,
 )
-from benchmark.discovery.answer.sizes import channel_sizes
+from benchmark.discovery.answer.sizes import channel_sizes, within_tolerance
 from benchmark.discovery.answer.verdict import Facts, statement, verdict
 from benchmark.discovery.base.calibration import Calibrated, calibrate
 from benchmark.discovery.base.effect_model import Fit
@@ -54,7 +54,7 @@ from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fing
 from benchmark.discovery.evidence.selection import Selection, first_gain, select, usable
 from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, remark, screen
 from benchmark.discovery.evidence.showing import not_shown
-from benchmark.discovery.evidence.told_setup import on_told, stands, taken_up
+from benchmark.discovery.evidence.told_setup import on_told, setup_first, stands, taken_up
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import Session
 from benchmark.physics import Effect, catalogue
@@ -145,26 +145,56 @@ def findings(
     key = fingerprint(VERSION, code_version(), session.fingerprint, settings, own, *sorted(without))
     listener("detect", 0, 1, "")
     with pool(settings.workers, store, key, effects, listener) as work:
-        base, selection, before, remarks = _answered(calibrated.base, told_priors(session), known, settings, work)
-    calibrated = replace(calibrated, warnings=(*calibrated.warnings, *remarks))
+        searched = _answered(calibrated.base, told_priors(session), known, settings, work)
+    calibrated = replace(calibrated, warnings=(*calibrated.warnings, *searched.remarks))
     listener("verify", 0, 1, "")
-    answer = _verified(base, selection, before, settings)
+    answer = _verified(searched, settings)
+    selection = searched.selection
     discovery = _discovery(session, calibrated, answer, known, settings, began)
     return Findings(discovery, calibrated, selection, entries, answer.chosen)
 
 
+@dataclass(frozen=True, eq=False)
+class _Searched:
+    """What the search ends with.
+
+    Attributes
+    ----------
+    base : Fit
+        That is taken.
+    selection : Selection
+    before : Detection
+    told : Fit
+        The base whose misfit counts: with the set-up as told where what was found on it is taken up by another.
+    remarks : tuple of str
+    """
+
+    base: Fit
+    selection: Selection
+    before: Detection
+    told: Fit
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def taken_up(self) -> bool:
+        """Whether another set-up has taken up what the set-up as told would need."""
+        return self.told is not self.base
+
+
 def _answered(
     moving: Fit, told: Mapping[str, float], known: Sequence[Effect], settings: Settings, work: Pool
-) -> tuple[Fit, Selection, Detection, tuple[str, ...]]:
-    """The base that is taken, what was found on it, and remarks: the set-up as told where that stands, else another."""
+) -> _Searched:
+    """What was found on the set-up as told where that stands, else on another."""
     trusted = on_told(moving, told)
     selection, before = _searched(trusted, known, settings, work)
     if trusted is not moving:
         silent_on_it = before.p < settings.level and not selection.steps
         if silent_on_it or not stands(selection.chosen, selection.base, on_some(moving, compared(moving)), work):
             found, seen = _searched(moving, known, settings, work)
-            return moving, found, seen, taken_up(selection, found)
-    return trusted, selection, before, ()
+            if found.steps or not setup_first(selection):
+                gone = bool(selection.steps) and not found.steps
+                return _Searched(moving, found, seen, trusted if gone else moving, taken_up(selection, found))
+    return _Searched(trusted, selection, before, trusted)
 
 
 def _searched(base: Fit, known: Sequence[Effect], settings: Settings, work: Pool) -> tuple[Selection, Detection]:
@@ -184,35 +214,49 @@ class _Answer:
 
     Attributes
     ----------
-    base, chosen : Fit
-        Of all trials; the same where nothing was chosen.
+    searched : _Searched
+    chosen : Fit
+        Of all trials; the base where nothing was chosen.
     plain : Fit
         Without effects, unbent: the "before" of pictures, places and gap.
-    selection : Selection
-    before, after : Detection
-        Without and with the effects.
+    after : Detection
+        With the effects.
     held : HeldOut
     left : float
         Share of the misfit that trials share which the effects leave.
     """
 
-    base: Fit
+    searched: _Searched
     chosen: Fit
     plain: Fit
-    selection: Selection
-    before: Detection
     after: Detection
     held: HeldOut
     left: float
 
+    @property
+    def base(self) -> Fit:
+        """Of all trials, without effects."""
+        return self.searched.base
 
-def _verified(base: Fit, selection: Selection, before: Detection, settings: Settings) -> _Answer:
-    chosen = on_all(base, selection.chosen)
+    @property
+    def selection(self) -> Selection:
+        """What was chosen, with its look-alikes."""
+        return self.searched.selection
+
+    @property
+    def before(self) -> Detection:
+        """The test without effects."""
+        return self.searched.before
+
+
+def _verified(searched: _Searched, settings: Settings) -> _Answer:
+    base, before = searched.base, searched.before
+    chosen = on_all(base, searched.selection.chosen)
     if chosen is base:
-        return _Answer(base, base, base, selection, before, before, held_out_residuals(base, base), 0.0)
+        return _Answer(searched, base, base, before, held_out_residuals(base, base), 0.0)
     after, plain = detect(chosen, settings), unbent(base, chosen)
     held = held_out_residuals(plain, chosen)
-    return _Answer(base, chosen, plain, selection, before, after, held, share_left(plain, chosen))
+    return _Answer(searched, chosen, plain, after, held, share_left(plain, chosen))
 
 
 def _discovery(
@@ -248,7 +292,7 @@ def _discovery(
         channels=tuple(dict.fromkeys(problem.study.channels)),
         trials=tuple(trial.name for trial in problem.trials),
         seconds=time.perf_counter() - began,
-        sizes=channel_sizes(answer.plain, base if nothing else chosen),
+        sizes=channel_sizes(*((answer.searched.told,) * 2 if nothing else (answer.plain, chosen))),
         not_shown=not_shown(problem.study, known),
         worse=() if nothing else facts.worse,
         undetermined=() if nothing else facts.undetermined,
@@ -271,7 +315,9 @@ def _facts(answer: _Answer, known: Sequence[Effect], settings: Settings) -> Fact
         p_after=answer.after.p,
         transfers=constant(answer.chosen),
         level=settings.level,
-        within=all(each.before <= each.tolerance for each in channel_sizes(answer.base, answer.base)),
+        within=within_tolerance(answer.searched.told),
+        fitted=within_tolerance(answer.chosen),
+        taken_up=answer.searched.taken_up,
         worse=() if answer.chosen is answer.base else worse(answer.base, answer.held),
         conditions=len(answer.base.model.problem.study.conditions),
         undetermined=undetermined(answer.chosen),

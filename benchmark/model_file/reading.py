@@ -89,14 +89,9 @@ def _effect(effect: _Effect, place: int, known: Mapping[str, EffectDescription],
             raise _wrong(source, where, f"{effect.name} has {parameter.name} already; give one of the two")
         values[parameter.name] = _value(given, parameter, where, source)
     missing = [name for name in parameters if name not in values]
-    if missing and not _optional(missing, values):
+    if missing and set(missing) != set(description.may_lack):
         raise _wrong(source, (*at, "parameters"), f"{effect.name} needs the parameter {missing[0]}; it is missing")
     return AddedEffect(effect.name, values)
-
-
-def _optional(missing: list[str], given: Mapping[str, Value]) -> bool:
-    """A second Prony term is left out as a whole where one was enough."""
-    return all(name.endswith("_2") for name in missing) and not any(name.endswith("_2") for name in given)
 
 
 def _value(given: _Parameter | str, parameter: EffectParameter, at: KeyPath, source: Source) -> Value:

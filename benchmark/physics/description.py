@@ -109,6 +109,8 @@ class EffectDescription:
         Parameters of older model files that cannot be converted, and what to do instead.
     needs : tuple of tuples of str
         What trials must have to show it, one of each tuple; without it nothing tells it from the base's own form.
+    may_lack : tuple of str
+        Parameters of its richer form, which a model file leaves out together where the plain one is meant.
     """
 
     slug: str
@@ -122,6 +124,7 @@ class EffectDescription:
     in_fem: str = ""
     retired: tuple[tuple[str, str], ...] = ()
     needs: tuple[tuple[Sign, ...], ...] = ()
+    may_lack: tuple[str, ...] = ()
 
     @property
     def keys(self) -> dict[str, EffectParameter]:

@@ -29,6 +29,11 @@ def channel_sizes(before: Fit, after: Fit) -> tuple[ChannelSize, ...]:
     )
 
 
+def within_tolerance(fitted: Fit) -> bool:
+    """Whether a model misses by no more than the stated tolerance in every channel."""
+    return all(each.after <= each.tolerance for each in channel_sizes(fitted, fitted))
+
+
 def _misses(fitted: Fit) -> dict[str, float]:
     """The largest miss of each channel, N or m."""
     problem = fitted.model.problem

@@ -34,7 +34,12 @@ class Facts:
         Whether each condition alone tells the same parameters; None with one condition.
     level : float
     within : bool
-        Whether the base misses by no more than the stated tolerance.
+        Whether the base, with its set-up as told where that would need an effect, misses by no more than the stated
+        tolerance.
+    taken_up : bool
+        Whether a set-up as far off as people are usually wrong has taken up what the set-up as told would need.
+    fitted : bool
+        Whether the model with the effects misses by no more than the stated tolerance.
     worse : tuple of str
         Held-out conditions that the effects predict worse than the base.
     conditions : int
@@ -61,6 +66,8 @@ class Facts:
     undetermined: tuple[str, ...] = ()
     unsteady: tuple[str, ...] = ()
     p_strained: float = 1.0
+    taken_up: bool = False
+    fitted: bool = True
 
     @property
     def partial(self) -> bool:
@@ -89,7 +96,7 @@ def verdict(facts: Facts) -> str:
         return "outside_catalogue"
     if facts.lookalikes:
         return "instrument_first" if _mixed((*facts.effects, *facts.lookalikes)) else "lookalikes"
-    if facts.worse or facts.strained or (facts.partial and facts.transfers is not None):
+    if facts.worse or facts.strained or not facts.fitted or (facts.partial and facts.transfers is not None):
         return "partly_explained"
     return "named" if facts.transfers else "conditional"
 
@@ -147,6 +154,12 @@ def _untold(facts: Facts) -> str:
             "These trials cannot tell: too few trials, or none repeated, to show a disagreement at the "
             f"{100.0 * facts.level:g} % level; nothing is named, and agreement is not shown either."
         )
+    if facts.taken_up:
+        return (
+            "These trials cannot tell: with the set-up as told the model misses them by more than the stated "
+            "tolerance, and a set-up that is off by what people are usually wrong by explains that as well as an "
+            "effect does; nothing is named, and agreement is not shown either."
+        )
     return (
         f"These trials cannot tell: the model misses them by more than the stated tolerance, but they differ so much "
         f"that this may be chance (p = {facts.p:.2g}); nothing is named, and agreement is not shown either."
@@ -159,6 +172,8 @@ def _more(facts: Facts) -> str:
         return f"held out, {', '.join(facts.worse)} is predicted worse with it than without"
     if facts.strained:
         return "beside it the set-up must still be another than was told"
+    if not facts.fitted:
+        return "with it in the model the trials are still missed by more than the stated tolerance"
     return "cells still disagree with it in the model"
 
 

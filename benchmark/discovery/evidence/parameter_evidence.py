@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,6 +46,10 @@ def sandwich(fitted: Fit) -> Array:
     slopes = fitted.blocks.slope - fitted.blocks.slope.mean(axis=0)
     count = len(slopes)
     return np.asarray(inner @ (slopes.T @ slopes * count / max(count - 1, 1)) @ inner)
+
+
+SLOPE_STEP = 0.05
+"""By which, in standard errors, a parameter is changed for the slope of what an effect adds."""
 
 
 @dataclass(frozen=True)
@@ -110,25 +115,42 @@ def told_parameters(fitted: Fit, effect: Effect) -> int:
 
 
 def undetermined(fitted: Fit) -> tuple[str, ...]:
-    """Effects of a fit whose strength the data do not tell.
+    """Effects of a fit of which the data tell neither the strength nor what they add to the force.
 
-    One that makes most of the force is told, however large it may be: its strength times the base's modulus is known.
+    With a modulus that nobody knows a strength may be any large number, while its product with the modulus is known.
     """
     effects = fitted.model.effects
-    return tuple(each.slug for each in effects if not determined(fitted, each) and not makes_most(fitted, each))
+    return tuple(each.slug for each in effects if not determined(fitted, each) and not adds_force(fitted, each))
 
 
-def makes_most(fitted: Fit, effect: Effect) -> bool:
-    """Whether without an effect less than half of the largest force is left, in the middle one of the trials."""
-    none = fitted.vector.copy()
-    for each in strengths(fitted, effect):
-        none[each.place] = max(each.parameter.low, 0.0)
-    if any(each.parameter.logarithmic for each in strengths(fitted, effect)):
+def adds_force(fitted: Fit, effect: Effect) -> bool:
+    """Whether what an effect adds to the largest force surely differs from none, by Wald's statistic.
+
+    Shares are no such strengths, since one at its bound is another form's, nor are logarithmic ones: they have no none.
+    """
+    grown = strengths(fitted, effect)
+    if any(each.parameter.logarithmic or each.parameter.high <= 1.0 for each in grown):
         return False
-    rest = fitted.model.signals(none, fitted.nuisance)
-    whole = fitted.model.signals(fitted.vector, fitted.nuisance)
-    shares = [np.max(a[:, 0]) / max(float(np.max(b[:, 0])), 1e-300) for a, b in zip(rest, whole, strict=True)]
-    return bool(np.median(shares) < criteria.MOST_OF_FORCE)
+    amount = _added_force(fitted, grown, fitted.vector)
+    slopes = np.zeros(fitted.vector.size)
+    errors = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    for k, (error, highest) in enumerate(zip(errors, fitted.model.bounds[1], strict=True)):
+        moved = fitted.vector.copy()
+        step = SLOPE_STEP * error
+        moved[k] += step if moved[k] + step <= highest else -step
+        change = moved[k] - fitted.vector[k]
+        slopes[k] = (_added_force(fitted, grown, moved) - amount) / change if change else 0.0
+    variance = max(float(slopes @ m @ slopes) for m in (fitted.covariance, sandwich(fitted)))
+    return bool(amount > 0.0 and amount**2 > chi2.ppf(criteria.DETERMINED, 1) * variance)
+
+
+def _added_force(fitted: Fit, grown: Sequence[_Strength], vector: Array) -> float:
+    """What strengths add to the largest force at a vector (p,), as a share of it, in the mean of the trials."""
+    none = vector.copy()
+    for each in grown:
+        none[each.place] = max(each.parameter.low, 0.0)
+    pairs = zip(*(fitted.model.signals(at, fitted.nuisance) for at in (none, vector)), strict=True)
+    return float(np.mean([1.0 - np.max(rest[:, 0]) / max(float(np.max(whole[:, 0])), 1e-300) for rest, whole in pairs]))
 
 
 def every_term_told(fitted: Fit) -> bool:

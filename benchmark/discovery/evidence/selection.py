@@ -10,6 +10,7 @@ import numpy as np
 from scipy.stats import t as t_distribution
 
 from benchmark.discovery import criteria
+from benchmark.discovery.answer.sizes import within_tolerance
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence.gains import (
@@ -146,14 +147,30 @@ def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
 def _accepted(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:
     physics = [step for step in steps if setup_key(step.slug) is None]
     worth = not physics or scored.gain.mean >= criteria.WORTH * physics[0].gain.mean
-    if steps and not determined(scored.fit, scored.fit.model.effects[-1]):
+    if steps and not (determined(scored.fit, scored.fit.model.effects[-1]) and carries_over(scored)):
         return False
     evident = scored.gain.z >= settings.accept_z or broad(scored.gain) > criteria.BROAD
     return worth and evident and scored.delta_bic < criteria.ACCEPT_BIC
 
 
+def carries_over(scored: Scored) -> bool:
+    """Whether a condition that the fit has not seen gains from the candidate, too.
+
+    What an effect's form misses of the true one differs from condition to condition; a further effect that follows it
+    helps trials whose mates it has seen, and no others. Where one condition has nearly all of the gain, as with a limit
+    that only the deeper presses reach, no other condition can tell.
+    """
+    if scored.transfer is None:
+        return True
+    groups = conditions(scored.fit)
+    parts = np.array([max(float(scored.gain.each[groups == number].sum()), 0.0) for number in np.unique(groups)])
+    if parts.max() > criteria.ONE_ALONE * parts.sum():
+        return True
+    return scored.transfer.mean >= criteria.CARRIED * scored.gain.mean
+
+
 def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
-    """Memory effects near the top with one more term, where BIC prefers it and the data tell how strong it is."""
+    """Effects near the top in their richer form, where BIC prefers it and the data tell how strong each part is."""
     if not scored:
         return scored
     top = scored[0].gain.mean
@@ -238,10 +255,11 @@ def _in_place(
         made = work.fits("look-alikes", [(under, rival) for rival in _nearest(rounds, taken)])
     else:
         made = [s.fit for s in rounds[0] if s.slug not in taken]
-    alike = []
+    alike, fitted = [], within_tolerance(current)
     for rival in made:
         lead = gain(now, held_out(rival), groups)
-        if lead.z < settings.lookalike_z or lead.mean < _close(effect, rival.model.effects[-1]) * own.mean:
+        close = _close(effect, rival.model.effects[-1]) if fitted else criteria.CLOSE_UNFITTED
+        if lead.z < settings.lookalike_z or lead.mean < close * own.mean:
             alike.append((lead.mean, rival))
     alike.sort(key=lambda pair: pair[0])
     return effect.slug, tuple(rival for _, rival in alike), own

@@ -14,7 +14,7 @@ from dataclasses import replace
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import EffectModel, Fit, fit
 from benchmark.discovery.base.setup_priors import is_setup
-from benchmark.discovery.evidence.gains import held_out
+from benchmark.discovery.evidence.gains import broad, held_out
 from benchmark.discovery.evidence.pool import Pool
 from benchmark.discovery.evidence.selection import Selection, rebuilt
 from benchmark.physics.setup_entry import setup_key
@@ -54,6 +54,15 @@ def stands(chosen: Fit, told: Fit, moving: Fit, work: Pool) -> bool:
             return False
     slack = max(criteria.OVER_SETUP, criteria.TIE * (found - float(held_out(told).sum())))
     return float(held_out(rebuilt(moving, effects, work, "set-up")).sum()) - found < slack
+
+
+def setup_first(told: Selection) -> bool:
+    """Whether what was found on the set-up as told is that the set-up is another, on good evidence.
+
+    Then that is the answer, with what looks like it, though a base that may be so far off needs none.
+    """
+    first = told.steps[0] if told.steps else None
+    return first is not None and setup_key(first.slug) is not None and broad(first.gain) > criteria.BROAD
 
 
 def taken_up(told: Selection, moving: Selection) -> tuple[str, ...]:

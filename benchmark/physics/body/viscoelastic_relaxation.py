@@ -29,6 +29,7 @@ def _description(terms: int) -> EffectDescription:
         needs=(("hold", "second_rate"),),
         source="Y. C. Fung, Biomechanics: Mechanical Properties of Living Tissues, section 7.6",
         parameters=tuple(parameters),
+        may_lack=("g_2", "tau_2") if terms > 1 else (),
         in_wave="Prony series on top of its elastic law; a scenario's layers have series of their own (`relaxation`)",
         in_fem="a Prony series of every layer's shear, identified so that the force fades as much; else quasi-linear",
     )

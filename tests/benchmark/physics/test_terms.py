@@ -236,6 +236,12 @@ def test_compliance_gives_the_tissue_less_depth():
     assert made.force[DEEP] == pytest.approx(STIFFNESS * PEAK / 1.2, rel=1e-4)
 
 
+def test_a_rig_may_give_way_by_a_power_of_the_force():
+    made = readings(MOTION, machine_compliance={"compliance": 1e-3, "power": 2.0})
+    lost = PEAK - made.force[DEEP] / STIFFNESS
+    assert lost == pytest.approx(1e-3 * made.force[DEEP] ** 2, rel=1e-4)
+
+
 def test_backlash_is_lost_on_the_chosen_side():
     for side, loading, unloading in ((1.0, 0.0, 0.2e-3), (0.0, -0.2e-3, 0.0)):
         made = readings(MOTION, backlash={"width": 0.2e-3, "side": side})

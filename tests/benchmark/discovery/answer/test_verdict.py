@@ -52,6 +52,21 @@ def test_a_disagreement_without_an_effect_is_outside_the_catalogue():
     assert verdict(facts(effects=())) == "outside_catalogue"
 
 
+def test_an_answer_that_misses_by_more_than_the_tolerance_is_not_all():
+    made = facts(fitted=False)
+    assert verdict(made) == "partly_explained"
+    assert "stated tolerance" in statement("partly_explained", made)
+    assert verdict(facts(fitted=False, lookalikes=(DRAINAGE,))) == "lookalikes"
+
+
+def test_what_another_set_up_takes_up_is_no_agreement_where_the_set_up_as_told_misses():
+    silent = {"effects": (), "p": 0.4, "p_cells": 0.4, "taken_up": True}
+    made = facts(**silent, within=False)
+    assert verdict(made) == "cannot_tell"
+    assert "set-up as told" in statement("cannot_tell", made)
+    assert verdict(facts(**silent)) == "no_discrepancy"
+
+
 def test_too_few_trials_cannot_tell():
     made = facts(enough=False)
     assert verdict(made) == "cannot_tell"

@@ -1,5 +1,6 @@
 """Which candidates are accepted, which are equals, look-alikes or needless: each rule on numbers that decide it."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,10 +11,10 @@ from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence import selection
 from benchmark.discovery.evidence.gains import Gain
 from benchmark.discovery.evidence.parameter_evidence import (
+    adds_force,
     by_condition,
     constant,
     determined,
-    makes_most,
     told_parameters,
     undetermined,
     unsteady,
@@ -52,6 +53,7 @@ def all_determined(monkeypatch):
 @pytest.fixture
 def known_densities(monkeypatch):
     monkeypatch.setattr(selection, "held_out", lambda fit: fit.density)
+    monkeypatch.setattr(selection, "within_tolerance", lambda fit: True)
 
 
 class Work:
@@ -79,9 +81,27 @@ def test_an_effect_needs_evidence_over_trials_and_bic(z, bic, each, expected):
     assert selection._accepted(scored("a", 5.0, z, bic, each), [], SETTINGS) is expected
 
 
-@pytest.mark.parametrize(("mean", "expected"), [(1.2, True), (1.19, False)])
-def test_a_further_effect_must_gain_an_eighth_of_the_first(mean, expected):
+@pytest.mark.parametrize(("mean", "expected"), [(2.0, True), (1.99, False)])
+def test_a_further_effect_must_gain_a_fifth_of_the_first(mean, expected):
     assert selection._accepted(scored("b", mean), [scored("a", 10.0)], SETTINGS) is expected
+
+
+@pytest.mark.parametrize(
+    ("each", "kept", "expected"),
+    [
+        ([9.0] * 8, 2.7, True),
+        ([9.0] * 8, 2.6, False),  # the other condition gains nothing: what the first effect's form misses
+        ([18.0] * 4 + [1.9] * 4, 0.0, True),  # one condition has over nine tenths: the other cannot tell
+        ([18.0] * 4 + [2.1] * 4, 0.0, False),
+    ],
+)
+def test_a_further_effect_must_carry_over_to_a_condition_that_is_not_fitted(each, kept, expected):
+    made = scored("b", float(np.mean(each)), each=each)
+    made.fit.model.problem.trials = tuple(SimpleNamespace(condition=number) for number in (0,) * 4 + (1,) * 4)
+    moved = replace(made, transfer=Gain(np.full(8, kept), kept, 1.0, 9.0))
+    assert selection.carries_over(moved) is expected
+    assert selection._accepted(moved, [scored("a", 20.0)], SETTINGS) is expected
+    assert selection._accepted(moved, [], SETTINGS)
 
 
 def test_of_equals_the_simplest_is_taken_then_the_first_of_the_catalogue():
@@ -90,6 +110,18 @@ def test_of_equals_the_simplest_is_taken_then_the_first_of_the_catalogue():
     assert selection._simplest([best, scored("second", 9.71), scored("first", 9.7)], catalogue).slug == "first"
     assert selection._simplest([best, scored("second", 9.71), scored("first", 9.69)], catalogue).slug == "second"
     assert selection._simplest([best, scored("first", 9.69)], catalogue).slug == "two"
+
+
+def test_where_no_form_is_within_the_tolerance_half_the_gain_makes_a_lookalike(monkeypatch, known_densities):
+    base, best, other = fitted(), scored("best", 10.0), scored("other", 6.0)
+    rounds = [[best, other]]
+
+    def alike():
+        return selection._in_place(base, best.fit, best.fit.model.effects[0], rounds, SETTINGS, Work())[1]
+
+    assert alike() == ()
+    monkeypatch.setattr(selection, "within_tolerance", lambda fit: False)
+    assert alike() == (other.fit,)
 
 
 def test_two_candidates_are_always_fitted_and_more_where_they_promise_something():
@@ -293,18 +325,34 @@ def test_a_strength_is_told_where_it_is_off_its_bounds_and_off_nothing(values, v
 
 
 GROWTH = EffectParameter("growth", "", (1.0,), 0.0, 30.0, False, "growth of the force with depth")
+OTHER = EffectParameter("other", "", (0.0,), 0.0, 9.0, False, "what the base can do as well")
 
 
-@pytest.mark.parametrize(("growth", "most"), [(29.9, True), (1.1, True), (0.9, False), (0.0, False)])
-def test_what_makes_most_of_the_force_is_told_though_its_strength_may_be_any(growth, most):
+@pytest.mark.parametrize(
+    ("growth", "linear", "told"),
+    [
+        (29.9, 1.0, True),  # 15 of 16 parts of the force are its own, however large it is
+        (0.0, 1.0, False),
+        (0.5, 1.0, False),
+        (29.9, 1e4, False),
+    ],
+)
+def test_a_strength_is_told_by_what_it_adds_to_the_force(growth, linear, told):
     one = SimpleNamespace(slug="one", amplitude="growth", amplitudes=())
-    made = Told((growth,), (200.0,), GROWTH)
+    made = Told((growth, 0.0), (300.0, 1.0), GROWTH, OTHER)
     made.nuisance, made.model.effects = None, (one,)
+    made.model.bounds = (np.zeros(2), np.array([30.0, 9.0]))
     depth = np.linspace(0.0, 1.0, 5)
-    made.model.signals = lambda vector, _: [(depth * (1.0 + vector[0] * depth))[:, None]] * 3
+    made.model.signals = lambda vector, _: [(depth * (linear + vector[0] * depth))[:, None]] * 3
     assert not determined(made, one)
-    assert makes_most(made, one) is most
-    assert undetermined(made) == (() if most else ("one",))
+    assert adds_force(made, one) is told
+    assert undetermined(made) == (() if told else ("one",))
+
+
+def test_a_share_at_its_bound_is_not_told_by_what_it_adds():
+    one = SimpleNamespace(slug="one", amplitude="share", amplitudes=())
+    made = Told((0.95,), (1e-6,), SHARE)
+    assert not adds_force(made, one)
 
 
 def test_a_parameter_that_only_its_prior_holds_does_not_count():
@@ -331,5 +379,5 @@ def test_the_least_p_counts_how_many_were_tried():
 
 
 def test_the_rules_are_those_of_the_criteria():
-    assert (criteria.TIE, criteria.WORTH, criteria.CLOSE) == (0.03, 0.12, 0.1)
+    assert (criteria.TIE, criteria.WORTH, criteria.CLOSE) == (0.03, 0.2, 0.1)
     assert (criteria.ACCEPT_BIC, criteria.RICHER_BIC, SETTINGS.accept_z, SETTINGS.lookalike_z) == (-4.0, -6.0, 3.0, 2.0)

@@ -8,8 +8,9 @@ import pytest
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.base.setup_priors import setup_entries, setup_priors, told_priors
+from benchmark.discovery.evidence.gains import Gain
 from benchmark.discovery.evidence.pool import Pool
-from benchmark.discovery.evidence.told_setup import on_told, stands, taken_up
+from benchmark.discovery.evidence.told_setup import on_told, setup_first, stands, taken_up
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import load_session
 from benchmark.physics import catalogue
@@ -51,6 +52,20 @@ def test_an_effect_stands_and_what_people_are_wrong_by_does_not(relaxing):
     found = fit_candidate(told, RELAXATION)
     assert stands(found, told, moving, ALONE)
     assert not stands(fit_candidate(told, thickness), told, moving, ALONE)
+
+
+@pytest.mark.parametrize(
+    ("slug", "each", "first"),
+    [
+        ("setup.layer.thickness", [3.0] * 4, True),  # 9 without the best trial
+        ("setup.layer.thickness", [2.0] * 4, False),
+        ("machine_compliance", [3.0] * 4, False),
+    ],
+)
+def test_a_set_up_that_is_surely_another_is_an_answer(slug, each, first):
+    gain = Gain(np.array(each), float(np.mean(each)), 0.1, 9.0)
+    assert setup_first(SimpleNamespace(steps=(SimpleNamespace(slug=slug, gain=gain),))) is first
+    assert not setup_first(SimpleNamespace(steps=()))
 
 
 def chosen(fit, *slugs):
