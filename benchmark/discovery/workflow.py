@@ -29,7 +29,6 @@ from benchmark.discovery.answer.gap import (
     unbent,
     worse,
 )
-from benchmark.discovery.answer.sizes import channel_sizes, within_tolerance
 from benchmark.discovery.answer.verdict import Facts, statement, verdict
 from benchmark.discovery.base.calibration import Calibrated, calibrate
 from benchmark.discovery.base.effect_model import Fit
@@ -47,6 +46,7 @@ from benchmark.discovery.detection.disagreement import (
     strained,
 )
 from benchmark.discovery.detection.places import places
+from benchmark.discovery.detection.sizes import channel_sizes, within_tolerance
 from benchmark.discovery.discovery_result import Discovery
 from benchmark.discovery.evidence.gains import conditions, tissue_gain
 from benchmark.discovery.evidence.parameter_evidence import constant, undetermined, unsteady

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.stats import t as t_distribution
 
 from benchmark.discovery import criteria
-from benchmark.discovery.answer.sizes import within_tolerance
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.criteria import Settings
+from benchmark.discovery.detection.sizes import within_tolerance
 from benchmark.discovery.evidence.gains import (
     Gain,
     broad,

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from benchmark.discovery.answer.sizes import channel_sizes
+from benchmark.discovery.detection.sizes import channel_sizes
 from benchmark.discovery.discovery_result import PHASES
 
 LOAD, HOLD = PHASES.index("load"), PHASES.index("hold")
