@@ -154,9 +154,12 @@ def _added_force(fitted: Fit, grown: Sequence[_Strength], vector: Array) -> floa
 
 
 def every_term_told(fitted: Fit) -> bool:
-    """Whether the data tell the strength of each term of the last effect: with more terms than one, any may be idle."""
+    """Whether the data tell the strength of each term of the last effect: with more terms than one, any may be idle.
+
+    A power has no none, and is no strength.
+    """
     effect = fitted.model.effects[-1]
-    terms = [p.name for p in effect.description.parameters if not p.logarithmic]
+    terms = [p.name for p in effect.description.parameters if not p.logarithmic and p.low <= 0.0]
     return all(determined(fitted, effect, (term,)) for term in terms)
 
 
@@ -190,6 +193,11 @@ def constant(fitted: Fit) -> bool | None:
     if np.unique(conditions(fitted)).size < 2 or not fitted.model.effects:
         return None
     return all(each.agrees for _, each in by_condition(fitted))
+
+
+def steady(fitted: Fit, slug: str) -> bool:
+    """Whether no condition alone speaks against an effect's parameters."""
+    return all(each.agrees for of, each in by_condition(fitted) if of == slug)
 
 
 def unsteady(fitted: Fit) -> tuple[str, ...]:

@@ -23,7 +23,7 @@ from benchmark.discovery.evidence.gains import (
     held_out,
     held_out_conditions,
 )
-from benchmark.discovery.evidence.parameter_evidence import determined, every_term_told, told_parameters
+from benchmark.discovery.evidence.parameter_evidence import determined, every_term_told, steady, told_parameters
 from benchmark.discovery.evidence.pool import Pool
 from benchmark.discovery.evidence.shortlist import Screened, screen
 from benchmark.discovery.evidence.showing import missing
@@ -157,14 +157,14 @@ def carries_over(scored: Scored) -> bool:
     """Whether a condition that the fit has not seen gains from the candidate, too.
 
     What an effect's form misses of the true one differs from condition to condition; a further effect that follows it
-    helps trials whose mates it has seen, and no others. Where one condition has nearly all of the gain, as with a limit
-    that only the deeper presses reach, no other condition can tell.
+    helps trials whose mates it has seen, and no others. Where one condition has nearly all of the gain and the others do
+    not speak against its parameters, as with a limit that only the deeper presses reach, no other condition can tell.
     """
     if scored.transfer is None:
         return True
     groups = conditions(scored.fit)
     parts = np.array([max(float(scored.gain.each[groups == number].sum()), 0.0) for number in np.unique(groups)])
-    if parts.max() > criteria.ONE_ALONE * parts.sum():
+    if parts.max() > criteria.ONE_ALONE * parts.sum() and steady(scored.fit, scored.slug):
         return True
     return scored.transfer.mean >= criteria.CARRIED * scored.gain.mean
 

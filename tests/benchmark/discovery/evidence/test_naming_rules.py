@@ -87,18 +87,20 @@ def test_a_further_effect_must_gain_a_fifth_of_the_first(mean, expected):
 
 
 @pytest.mark.parametrize(
-    ("each", "kept", "expected"),
+    ("each", "kept", "agrees", "expected"),
     [
-        ([9.0] * 8, 2.7, True),
-        ([9.0] * 8, 2.6, False),  # the other condition gains nothing: what the first effect's form misses
-        ([18.0] * 4 + [1.9] * 4, 0.0, True),  # one condition has over nine tenths: the other cannot tell
-        ([18.0] * 4 + [2.1] * 4, 0.0, False),
+        ([9.0] * 8, 2.7, False, True),
+        ([9.0] * 8, 2.6, True, False),  # the other condition gains nothing: what the first effect's form misses
+        ([18.0] * 4 + [1.9] * 4, 0.0, True, True),  # one condition has over nine tenths: the other cannot tell
+        ([18.0] * 4 + [1.9] * 4, 0.0, False, False),  # but it does
+        ([18.0] * 4 + [2.1] * 4, 0.0, True, False),
     ],
 )
-def test_a_further_effect_must_carry_over_to_a_condition_that_is_not_fitted(each, kept, expected):
+def test_a_further_effect_must_carry_over_to_a_condition_that_is_not_fitted(each, kept, agrees, expected, monkeypatch):
     made = scored("b", float(np.mean(each)), each=each)
     made.fit.model.problem.trials = tuple(SimpleNamespace(condition=number) for number in (0,) * 4 + (1,) * 4)
     moved = replace(made, transfer=Gain(np.full(8, kept), kept, 1.0, 9.0))
+    monkeypatch.setattr(selection, "steady", lambda fit, slug: agrees)
     assert selection.carries_over(moved) is expected
     assert selection._accepted(moved, [scored("a", 20.0)], SETTINGS) is expected
     assert selection._accepted(moved, [], SETTINGS)
