@@ -157,8 +157,8 @@ def carries_over(scored: Scored) -> bool:
     """Whether a condition that the fit has not seen gains from the candidate, too.
 
     What an effect's form misses of the true one differs from condition to condition; a further effect that follows it
-    helps trials whose mates it has seen, and no others. Where one condition has nearly all of the gain and the others do
-    not speak against its parameters, as with a limit that only the deeper presses reach, no other condition can tell.
+    helps trials whose mates it has seen, and no others. Where one condition has nearly all of the gain and the others
+    do not speak against its parameters, as with a limit that only the deeper presses reach, no other one can tell.
     """
     if scored.transfer is None:
         return True
