@@ -24,6 +24,9 @@ Law = Annotated[
 ]
 Forward = Annotated[str | None, typer.Option("--forward", help="Model that is fitted: fem (default) or wave.")]
 Exact = Annotated[str | None, typer.Option("--exact", help="Told values to take as exact, KEY,KEY, or all.")]
+Discrepancy = Annotated[
+    str | None, typer.Option("--discrepancy", help='Let the model be wrong over depth by so much, "1 %" of the force.')
+]
 Posterior = Annotated[bool, typer.Option("--posterior", help="Draw from the posterior (with emcee).")]
 Export = Annotated[
     str | None,
@@ -49,6 +52,7 @@ def fit(
     forward: Forward = None,
     exact: Exact = None,
     fit_file: FitFile = None,
+    discrepancy: Discrepancy = None,
     posterior: Posterior = False,
     export: Export = None,
     out: Out = None,
@@ -69,7 +73,7 @@ def fit(
 
     console = Console(quiet=quiet)
     files = tuple(sessions[1:]), fit_file
-    wish = ParameterWish(_keys(free), _keys(exact), _laws(law), forward, *files, posterior=posterior, seed=seed)
+    wish = ParameterWish(_keys(free), _keys(exact), _laws(law), forward, *files, discrepancy, posterior, seed)
     request = FitRequest(
         sessions[0], specimen, parse_settings(settings), model, effects, seed, wish, _keys(export) or ()
     )

@@ -177,7 +177,7 @@ def _weighed(answer: Identified, press: Press, pressed: Pressed, experiment: Exp
     found, size = answer.found, answer.found.vector.size
     total = np.zeros((block.shape[0], block.shape[0]))
     total[:size, :size] = found.fit.blocks.matrix.sum(axis=0) + np.diag(_told(answer))
-    total[size:, size:] = np.diag(np.full(block.shape[0] - size, found.problem.trust**-2))
+    total[size:, size:] = np.diag(found.problem.error.deviations**-2.0)
     then = _covariance(total + TRIALS * block, found.problem)
     determinant = float(np.linalg.slogdet(now)[1] - np.linalg.slogdet(then)[1])
     trace = float(np.trace(np.minimum(now, _MOST)) - np.trace(np.minimum(then, _MOST)))
@@ -203,18 +203,19 @@ def _covariance(matrix: Array, problem: FitProblem) -> Array:
 
 
 def _information(answer: Identified, press: Press, pressed: Pressed, time: Array, depth: Array) -> Array:
-    """(p + 2, p + 2) what one trial of a motion tells of the fit's coordinates and of the new press's own error."""
+    """(p + m, p + m) what one trial of a motion tells of the fit's coordinates and of the new press's own error."""
     found = answer.found
     problem, surrogate = pressed(round(float(depth.max()), 6))
     trial = _trial(answer, time, np.minimum(depth, problem.presses[0].depth))
     fading = tuple(_moved(one) for one in _first_fading(found.model, found.problem, press))
     count = len(found.problem.parameters)
-    size = found.vector.size + 2
+    errors = found.problem.error.deviations.size
+    size = found.vector.size + errors
     by = np.zeros((size, surrogate.depth.size))
     own = next((k for k, one in enumerate(found.problem.presses) if _alike(one, press)), None)
-    place = size - 2 if own is None else count + 2 * own
-    by[:count], by[place : place + 2] = surrogate.by[:count], surrogate.by[count:]
-    vector = np.append(found.vector, [0.0, 0.0])
+    place = size - errors if own is None else count + errors * own
+    by[:count], by[place : place + errors] = surrogate.by[:count], surrogate.by[count:]
+    vector = np.append(found.vector, np.zeros(errors))
     table = replace(surrogate, by=by, at=vector)
     noise = np.array([float(np.median(found.model.noise))])
     white = (whitener(trial.count, found.memory),)
@@ -234,7 +235,7 @@ def _pressed(answer: Identified, press: Press, depth: float) -> tuple[FitProblem
     """The press to a depth, or less deep where the model does not follow it; raises SolverError."""
     found = answer.found
     count = len(found.problem.parameters)
-    vector = np.concatenate([found.vector[:count], np.zeros(2)])
+    vector = np.concatenate([found.vector[:count], np.zeros(found.problem.error.deviations.size)])
     for _ in range(3):
         problem = replace(found.problem, presses=(replace(press, depth=1.02 * depth),))
         try:

@@ -45,6 +45,8 @@ class ParameterWish:
         Further sessions that are fitted together with the first.
     file : Path or None
         A TOML file with a `[fit]` table in the place of the session's.
+    discrepancy : str or None
+        Of the model over depth, a share of the force.
     posterior : bool
         Whether to draw from the posterior.
     seed : int
@@ -57,6 +59,7 @@ class ParameterWish:
     forward: str | None = None
     sessions: tuple[Path, ...] = field(default_factory=tuple)
     file: Path | None = None
+    discrepancy: str | None = None
     posterior: bool = False
     seed: int = 0
 
@@ -70,6 +73,7 @@ class ParameterWish:
                 raise InputError(f"{self.file}: fit = {table!r}; allowed is a table [fit]")
         law = None if self.laws is None else self.laws[0]
         said = {"free": self.free, "exact": self.exact, "law": law, "forward": self.forward}
+        said |= {"discrepancy": self.discrepancy}
         return validated(FitTable, table | {key: value for key, value in said.items() if value is not None}, source)
 
 

@@ -42,6 +42,8 @@ class FitTable(FileModel):
         Free keys that each session has for itself; the others are shared.
     specimen_pattern : str or None
         Regular expression on a trial's name whose first group is its specimen: trials of one specimen go together.
+    discrepancy : str, float or None
+        Standard deviation of a discrepancy of the model over depth, a share of the force, "1 %".
     exact : tuple of str
         Told values that are taken without any uncertainty; ("all",) for all.
     fixed : mapping
@@ -57,6 +59,7 @@ class FitTable(FileModel):
     forward: Literal["fem", "wave"] = "fem"
     per_specimen: tuple[Name, ...] = ()
     specimen_pattern: Name | None = None
+    discrepancy: str | float | None = None
     exact: tuple[Name, ...] = ()
     fixed: Mapping[str, str | float] = Field(default_factory=dict)
     bounds: Mapping[str, tuple[str | float, str | float]] = Field(default_factory=dict)

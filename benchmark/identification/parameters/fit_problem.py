@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.identification.parameters.free_parameters import COMMON, RELAXATION, SHARE, Parameter
 from benchmark.identification.parameters.layer_model import Fading, FitTrial
+from benchmark.identification.parameters.presses.model_error import ModelError
 from benchmark.identification.parameters.presses.press_surrogate import Forward, Press
 from benchmark.response.force_curve import Array
 
@@ -20,6 +22,8 @@ in shape between meshes of another code, three layers under sharp tools; our own
 """
 WEAK = 2.0
 """Standard deviation of a free parameter's logarithm round its start (sevenfold): it stops what no data hold."""
+ERROR_LIMITS = (-0.1, 0.1)
+"""Bounds of each coordinate of the model's own error."""
 FARTHEST = 0.7
 """How far a coordinate may go in a round: twofold."""
 
@@ -39,6 +43,8 @@ class FitProblem:
     forward : "fem" or "wave"
     trust : float
         Standard deviation of the model's own error, a share of the force.
+    discrepancy : float
+        Standard deviation of a discrepancy over depth, a share of the force; 0 for none.
     specimens : tuple of str
         The specimen of each trial, where several were tried repeatedly; empty where that is not told.
     """
@@ -50,16 +56,22 @@ class FitProblem:
     forward: Forward = "fem"
     trust: float = MODEL_TRUST
     specimens: tuple[str, ...] = ()
+    discrepancy: float = 0.0
 
     @property
     def free(self) -> tuple[int, ...]:
         """Numbers of the free parameters."""
         return tuple(k for k, one in enumerate(self.parameters) if not one.told)
 
+    @cached_property
+    def error(self) -> ModelError:
+        """How the model may be wrong in each press."""
+        return ModelError(self.trust, self.discrepancy)
+
     @property
     def size(self) -> int:
         """Coordinates of the fit: parameters, and the model's own error in each press."""
-        return len(self.parameters) + 2 * len(self.presses)
+        return len(self.parameters) + self.error.deviations.size * len(self.presses)
 
     @property
     def freedom(self) -> int:
@@ -94,7 +106,8 @@ def curved_coordinates(problem: FitProblem, number: int) -> NDArray[np.int64]:
 
 def priors(problem: FitProblem) -> tuple[Array, Array]:
     """Mean and precision (p,) of the coordinates' priors."""
-    mean, precision = np.zeros(problem.size), np.full(problem.size, problem.trust**-2)
+    own = np.tile(problem.error.deviations**-2.0, len(problem.presses))
+    mean, precision = np.zeros(problem.size), np.append(np.zeros(len(problem.parameters)), own)
     for k, one in enumerate(problem.parameters):
         value, deviation = (one.start, WEAK) if one.prior is None else (one.prior.value, one.prior.deviation)
         mean[k], precision[k] = one.coordinate(value), deviation**-2
@@ -103,6 +116,7 @@ def priors(problem: FitProblem) -> tuple[Array, Array]:
 
 def round_limits(problem: FitProblem, vector: Array) -> tuple[Array, Array]:
     """Bounds of the next round round a point."""
-    ends = [one.limits for one in problem.parameters] + [(-0.1, 0.1)] * (2 * len(problem.presses))
+    ends = [one.limits for one in problem.parameters]
+    ends += [ERROR_LIMITS] * (problem.size - len(ends))
     low, high = np.array(ends).T
     return np.maximum(low, vector - FARTHEST), np.minimum(high, vector + FARTHEST)

@@ -12,16 +12,18 @@ rests on curvature alone.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from benchmark.identification.parameters.layer_fit import LayerFit
-from benchmark.identification.parameters.layer_model import LayerModel
+from benchmark.identification.parameters.layer_model import MM, LayerModel
+from benchmark.identification.parameters.presses.model_error import PLAIN
+from benchmark.identification.parameters.presses.press_surrogate import GRID
 from benchmark.response.force_curve import Array
-from benchmark.response.least_squares import TrialsFit
+from benchmark.response.least_squares import TrialsFit, scaled_inverse
 
 KNOWN = math.log(2.0)
 """A parameter is determined where its interval ends within a factor of two, either way. Wider is said to be unknown."""
@@ -141,3 +143,60 @@ def correlation_words(found: LayerFit, least: float = 0.8) -> tuple[str, ...]:
         for j in range(i)
         if abs(unit[i, j]) >= least
     )
+
+
+@dataclass(frozen=True)
+class DiscrepancyUse:
+    """What a discrepancy over depth took up in a fit.
+
+    Attributes
+    ----------
+    percent : float
+        Its prior standard deviation, % of the force.
+    taken : tuple of (float, float, float)
+        Of each press: the tool's radius and the depth, mm, at which it took most, and how much, % of the force.
+    variance : mapping of key to float
+        Share of each free parameter's variance that it makes.
+    """
+
+    percent: float
+    taken: tuple[tuple[float, float, float], ...]
+    variance: Mapping[str, float]
+
+    @property
+    def text(self) -> str:
+        """In words, with what it is confounded with."""
+        places = [f"{size:.2g} % under the {radius:.3g} mm tool at {at:.2g} mm" for radius, at, size in self.taken]
+        parts = ", ".join(f"{100 * share:.0f} % of {key}" for key, share in self.variance.items())
+        return (
+            f"a discrepancy of {self.percent:.2g} % over depth was let into the model and took up to "
+            f"{'; '.join(places)}. Of the variance it makes {parts}. It is confounded with every parameter that bends "
+            "the force over depth alike: "
+            "neither what it took nor what it left is a finding about the specimen"
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Entry of `fit.json`."""
+        names = ("tool_radius_mm", "depth_mm", "percent")
+        taken = [dict(zip(names, one, strict=True)) for one in self.taken]
+        return {"percent": self.percent, "taken": taken, "share_of_variance": dict(self.variance), "text": self.text}
+
+
+def discrepancy_use(found: LayerFit) -> DiscrepancyUse | None:
+    """What the discrepancy took up; None where a fit has none."""
+    problem = found.problem
+    if not problem.discrepancy:
+        return None
+    count, size = len(problem.parameters), problem.error.deviations.size
+    taken, functions = [], problem.error.functions(GRID)
+    for number, press in enumerate(problem.presses):
+        own = found.vector[count + number * size : count + (number + 1) * size]
+        course = own[PLAIN:] @ functions[PLAIN:]
+        at = int(np.argmax(np.abs(course)))
+        taken.append((MM * press.setup[1].radius, MM * press.depth * at / (GRID - 1), 100.0 * float(course[at])))
+    total = found.fit.blocks.matrix.sum(axis=0) + np.diag(found.fit.precision)
+    places = np.arange(total.shape[0])
+    kept = np.flatnonzero((places < count) | ((places - count) % size < PLAIN))
+    known = scaled_inverse(total[np.ix_(kept, kept)])
+    shares = {problem.parameters[k].key: 1.0 - known[k, k] / found.fit.covariance[k, k] for k in problem.free}
+    return DiscrepancyUse(100.0 * problem.discrepancy, tuple(taken), {k: float(v) for k, v in shares.items()})

@@ -22,6 +22,7 @@ from benchmark.identification.parameters.identifiability import (
     Direction,
     correlation_words,
     directions,
+    discrepancy_use,
     errors_alone,
 )
 from benchmark.identification.parameters.layer_fit import LayerFit
@@ -172,6 +173,8 @@ class Identified:
         """What a reader must know before a figure is quoted."""
         said = [*self.remarks, *([] if self.found.spread is None else [self.found.spread.text])]
         said += [f"{one.key} is {NOT_DETERMINED}: {one.reason}" for one in self.undetermined]
+        use = discrepancy_use(self.found)
+        said += [] if use is None else [use.text]
         said += [f"another answer follows the trials as well: {self._values(one)}" for one in self.others]
         if not self.found.settled:
             said.append(
@@ -209,7 +212,7 @@ class Identified:
 
     def to_dict(self) -> dict[str, Any]:
         """What `fit.json` gains."""
-        found = self.found
+        found, use = self.found, discrepancy_use(self.found)
         predicted = zip(found.problem.trials, found.predicted, strict=True)
         rms = [np.sqrt(np.mean((one.data.force - f) ** 2)) / np.ptp(one.data.force) for one, f in predicted]
         return {
@@ -225,6 +228,7 @@ class Identified:
             "trial_scatter_percent": 100.0 * found.model.gain_deviation,
             "noise_memory": found.memory,
             **({} if found.spread is None else {"spread": found.spread.to_dict()}),
+            **({} if use is None else {"discrepancy": use.to_dict()}),
             "rounds": found.rounds,
             "settled": found.settled,
             "other_answers": [self._values(one) for one in self.others],

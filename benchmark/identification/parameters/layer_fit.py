@@ -117,7 +117,7 @@ def begun(problem: FitProblem, touches: Array, zeros: Array) -> LayerFit:
     SolverError
         The model does not follow the presses.
     """
-    start = np.concatenate([start_vector(problem.parameters), np.zeros(2 * len(problem.presses))])
+    start = np.concatenate([start_vector(problem.parameters), np.zeros(problem.size - len(problem.parameters))])
     problem, surrogates = followed(problem, start)
     model = _first_model(problem, surrogates, start)
     nuisance = np.column_stack([1e3 * touches, zeros, np.zeros(len(problem.trials))])
@@ -154,7 +154,7 @@ def fit_layers(start: LayerFit, say: Say = lambda _: None, rounds: int = MOST_RO
     for done in range(1, rounds + 1):
         model, fit, memory = _fitted(problem, model, vector, nuisance)
         pressed, vector = pressed_anew(problem, fit.vector, vector)
-        apart = disagreement(model.surrogates, pressed, vector)
+        apart = disagreement(model.surrogates, pressed, vector, len(problem.parameters))
         say(f"round {done}: model and surrogate differ by {100 * apart:.2g} % of the force")
         stopped = _at_edge(problem, model, fit.vector)
         model, nuisance = _renewed(problem, model, pressed, vector), fit.nuisance

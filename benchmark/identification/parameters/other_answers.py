@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from benchmark.errors import SolverError
+from benchmark.identification.parameters.fit_problem import ERROR_LIMITS
 from benchmark.identification.parameters.free_parameters import Parameter
 from benchmark.identification.parameters.identifiability import directions
 from benchmark.identification.parameters.layer_fit import AGREES, SEARCH, LayerFit, knowing
@@ -84,7 +85,7 @@ def _explored(found: LayerFit, vector: Array) -> tuple[LayerFit, Array | None]:
 def limits(parameters: tuple[Parameter, ...], size: int) -> tuple[Array, Array]:
     """Bounds (p,) of all coordinates, those of the model's own error last."""
     ends = [one.limits for one in parameters]
-    low, high = np.array([*ends, *[(-0.1, 0.1)] * (size - len(ends))]).T
+    low, high = np.array([*ends, *[ERROR_LIMITS] * (size - len(ends))]).T
     return low, high
 
 
@@ -102,7 +103,7 @@ def _pursued(answers: list[LayerFit], at: Array, say: Callable[[str], None]) -> 
             pressed = press_all(best.problem, fit.vector)
         except SolverError:
             return None
-        apart = disagreement(model.surrogates, pressed, fit.vector)
+        apart = disagreement(model.surrogates, pressed, fit.vector, len(best.problem.parameters))
         say(f"another answer, round {turn}: model and surrogate differ by {100 * apart:.2g} % of the force")
         model, at, nuisance = replace(model, surrogates=joined(model.surrogates, pressed)), fit.vector, fit.nuisance
         if apart <= AGREES:

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from benchmark.errors import InputError
+from benchmark.identification.parameters.fit_problem import ERROR_LIMITS
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.layer_model import GAIN
 from benchmark.response.force_curve import Array
@@ -133,7 +134,7 @@ class _Density:
         self._normal = np.array([one.T @ one for one in self._columns])
         self.start = np.append(found.vector, np.log(found.model.gain_deviation))
         ends = [one.limits for one in found.problem.parameters]
-        ends += [(-0.1, 0.1)] * (found.vector.size - len(ends))
+        ends += [ERROR_LIMITS] * (found.vector.size - len(ends))
         told = SCATTERS if found.problem.freedom > 0 else found.model.gain_deviation * np.array(HELD)
         self.bounds = tuple(np.array([*ends, np.log(told)]).T)
 

@@ -53,9 +53,9 @@ def _surrogate(problem: FitProblem, number: int, vector: Array) -> PressSurrogat
     press, count = problem.presses[number], len(problem.parameters)
     relaxing = [name for name in relaxing_layers(problem) if name in press.setup[0].layer_names]
     found = surrogate(press, problem.parameters, vector[:count], problem.law, relaxing, problem.forward)
-    own = np.zeros((2 * len(problem.presses), found.depth.size))
-    own[2 * number] = 1.0
-    own[2 * number + 1] = np.linspace(-1.0, 1.0, found.depth.size)
+    functions = problem.error.functions(found.depth.size)
+    own = np.zeros((problem.size - count, found.depth.size))
+    own[number * len(functions) : (number + 1) * len(functions)] = functions
     at = np.concatenate([found.at, np.zeros(own.shape[0])])
     return replace(found, by=np.vstack([found.by, own]), at=at)
 
@@ -70,11 +70,13 @@ def pressed_anew(problem: FitProblem, vector: Array, before: Array) -> tuple[tup
     return press_all(problem, before), before
 
 
-def disagreement(old: Sequence[ForceTable], new: Sequence[PressSurrogate], vector: Array) -> float:
-    """Largest difference of the force that the old tables foretold and the new one, as a share."""
+def disagreement(old: Sequence[ForceTable], new: Sequence[PressSurrogate], vector: Array, count: int) -> float:
+    """Largest difference of the force that the old tables foretold and the new one, as a share.
+
+    The model's own error, the coordinates beyond the first `count`, is left out.
+    """
     deep = slice(old[0].depth.size // 8, None)
-    count = new[0].at.size
-    own = np.where(np.arange(count) < count - 2 * len(new), vector, 0.0)
+    own = np.where(np.arange(vector.size) < count, vector, 0.0)
     return max(
         float(np.abs(np.log(one.force_at(own)[deep] / two.force[deep])).max())
         for one, two in zip(old, new, strict=True)

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from benchmark.errors import SolverError
+from benchmark.identification.parameters.fit_problem import ERROR_LIMITS
 from benchmark.identification.parameters.identifiability import KNOWN, errors_alone
 from benchmark.identification.parameters.layer_fit import LayerFit, knowing
 from benchmark.identification.parameters.pressed_set_ups import joined, press_all
@@ -145,7 +146,7 @@ class _Walk:
         self.wanted = max(math.sqrt(max(quantile**2 - lost, 0.0)), 1e-3)
         ends = [one.limits for one in found.problem.parameters]
         count = found.vector.size - len(ends)
-        low, high = np.array([*ends, *[(-0.1, 0.1)] * count]).T
+        low, high = np.array([*ends, *[ERROR_LIMITS] * count]).T
         told = found.model.prior_precision.copy()
         told[[k for k in found.problem.free if found.problem.parameters[k].prior is None]] = 0.0
         unsaid = np.sum((found.model.prior_precision - told) * (found.vector - found.model.prior_mean) ** 2)

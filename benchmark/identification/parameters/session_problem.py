@@ -29,6 +29,7 @@ from benchmark.identification.parameters.free_parameters import (
 )
 from benchmark.identification.parameters.law_shapes import law_shape
 from benchmark.identification.parameters.layer_model import FitTrial
+from benchmark.identification.parameters.presses.model_error import LARGEST
 from benchmark.identification.parameters.presses.press_surrogate import Press
 from benchmark.identification.session_fit import SessionFit
 from benchmark.identification.trial_data import LEAST_ROWS, TrialData
@@ -80,16 +81,30 @@ def assembled(bases: Sequence[FittedBase], wish: FitTable) -> Assembled:
     InputError
         A key that a specimen does not have, or values that cannot be used.
     """
+    discrepancy = _discrepancy(wish)
     presses, trials, keys, warnings = _presses(bases, wish)
     if not trials:
         raise InputError("no trial is left for a fit of parameters: none reaches into the model's range")
     free = _free(bases, presses, wish)
     told = _told(presses, wish, {one.key for one in free})
-    problem = FitProblem(presses, trials, (*free, *told), wish.law, wish.forward)
+    problem = FitProblem(presses, trials, (*free, *told), wish.law, wish.forward, discrepancy=discrepancy)
     problem = replace(problem, parameters=_started(problem, bases), specimens=_specimens(trials, wish))
     own = [bases[specimen].fit.trial(*key) for specimen, key in keys]
     touches, zeros = np.array([one.onset for one in own]), np.array([one.zero for one in own])
     return Assembled(problem, touches, zeros, warnings)
+
+
+def _discrepancy(wish: FitTable) -> float:
+    """The discrepancy over depth that is let into the model, a share of the force."""
+    if wish.discrepancy is None:
+        return 0.0
+    share = quantity("discrepancy", wish.discrepancy)
+    if not 0.0 < share <= LARGEST:
+        raise InputError(
+            f"[fit] discrepancy = {wish.discrepancy!r}: allowed is a share of the force above 0 and up to "
+            f'{100 * LARGEST:.0f} %, as in "1 %"'
+        )
+    return share
 
 
 def _specimens(trials: Sequence[FitTrial], wish: FitTable) -> tuple[str, ...]:
