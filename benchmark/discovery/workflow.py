@@ -311,7 +311,7 @@ def _facts(answer: _Answer, known: Sequence[Effect], settings: Settings) -> Fact
         enough=reachable(conditions(answer.base), settings),
         effects=tuple(sorted(selection.chosen.model.effects, key=lambda each: -own_gain(selection, each.slug))),
         lookalikes=tuple(by_slug[slug] for slug in sorted(alike)),
-        left=answer.left,
+        left=min(answer.left, criteria.OUTSIDE) if selection.withheld else answer.left,
         p_after=answer.after.p,
         transfers=constant(answer.chosen),
         level=settings.level,

@@ -53,7 +53,8 @@ class Selection:
 
     `candidates` are those fitted, round by round, the best of a round first; `screened` all effects by what one step
     gains. `lookalikes`, `rivals` and `own` are by the slug of a chosen effect: who does as well in its place, their
-    fits, and what it gains itself over the others.
+    fits, and what it gains itself over the others. `withheld` are further effects with all the evidence but that they
+    do not carry over: the catalogue has something like what is left, and it is not named.
     """
 
     base: Fit
@@ -64,6 +65,7 @@ class Selection:
     lookalikes: dict[str, tuple[str, ...]]
     rivals: dict[str, tuple[Fit, ...]]
     own: dict[str, Gain] = field(default_factory=dict)
+    withheld: tuple[str, ...] = ()
 
 
 def select(
@@ -71,6 +73,7 @@ def select(
 ) -> Selection:
     """Choose effects; `first_screen` is that of the base, where it is known."""
     current, ranked = base, first_screen
+    withheld: tuple[str, ...] = ()
     steps: list[Scored] = []
     rounds: list[list[Scored]] = []
     for number in range(1, settings.most_effects + 1):
@@ -84,8 +87,10 @@ def select(
         promising = _promising(ranked, criteria.REFINED if number == 1 else criteria.REFINED_LATER)
         scored = score(current, work.fits(f"round {number}", [(current, s.effect) for s in promising]))
         rounds.append(_enriched(current, scored, work))
-        accepted = [s for s in rounds[-1] if _accepted(s, steps, settings)]
+        evident = [s for s in rounds[-1] if _evident(s, steps, settings)]
+        accepted = [s for s in evident if not steps or carries_over(s)]
         if not accepted:
+            withheld = tuple(s.slug for s in evident)
             break
         steps.append(_simplest(accepted, effects))
         current = steps[-1].fit
@@ -95,7 +100,7 @@ def select(
     tried = tuple(scored for each in rounds for scored in each)
     lookalikes = {slug: tuple(fit.model.effects[-1].slug for fit in fits) for slug, fits, _ in places}
     rivals, own = {slug: fits for slug, fits, _ in places}, {slug: gained for slug, _, gained in places}
-    return Selection(base, current, tuple(steps), tried, first_screen, lookalikes, rivals, own)
+    return Selection(base, current, tuple(steps), tried, first_screen, lookalikes, rivals, own, withheld)
 
 
 def first_gain(selection: Selection) -> float:
@@ -144,10 +149,11 @@ def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
     return min(told or ties, key=lambda s: (told_parameters(s.fit, s.fit.model.effects[-1]), places[s.slug]))
 
 
-def _accepted(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:
+def _evident(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:
+    """Whether a candidate has the evidence of trials, and beside others a strength and a gain worth naming."""
     physics = [step for step in steps if setup_key(step.slug) is None]
     worth = not physics or scored.gain.mean >= criteria.WORTH * physics[0].gain.mean
-    if steps and not (determined(scored.fit, scored.fit.model.effects[-1]) and carries_over(scored)):
+    if steps and not determined(scored.fit, scored.fit.model.effects[-1]):
         return False
     evident = scored.gain.z >= settings.accept_z or broad(scored.gain) > criteria.BROAD
     return worth and evident and scored.delta_bic < criteria.ACCEPT_BIC

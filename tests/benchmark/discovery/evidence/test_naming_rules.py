@@ -78,12 +78,12 @@ class Work:
     ],
 )
 def test_an_effect_needs_evidence_over_trials_and_bic(z, bic, each, expected):
-    assert selection._accepted(scored("a", 5.0, z, bic, each), [], SETTINGS) is expected
+    assert selection._evident(scored("a", 5.0, z, bic, each), [], SETTINGS) is expected
 
 
 @pytest.mark.parametrize(("mean", "expected"), [(2.0, True), (1.99, False)])
 def test_a_further_effect_must_gain_a_fifth_of_the_first(mean, expected):
-    assert selection._accepted(scored("b", mean), [scored("a", 10.0)], SETTINGS) is expected
+    assert selection._evident(scored("b", mean), [scored("a", 10.0)], SETTINGS) is expected
 
 
 @pytest.mark.parametrize(
@@ -102,8 +102,6 @@ def test_a_further_effect_must_carry_over_to_a_condition_that_is_not_fitted(each
     moved = replace(made, transfer=Gain(np.full(8, kept), kept, 1.0, 9.0))
     monkeypatch.setattr(selection, "steady", lambda fit, slug: agrees)
     assert selection.carries_over(moved) is expected
-    assert selection._accepted(moved, [scored("a", 20.0)], SETTINGS) is expected
-    assert selection._accepted(moved, [], SETTINGS)
 
 
 def test_of_equals_the_simplest_is_taken_then_the_first_of_the_catalogue():
@@ -193,8 +191,8 @@ def test_of_equals_one_of_known_strength_is_taken_and_no_further_one_of_unknown_
     catalogue = [effect("vague"), effect("clear", 3)]
     assert selection._simplest([scored("vague", 10.0), scored("clear", 9.8, parameters=3)], catalogue).slug == "clear"
     assert selection._simplest([scored("vague", 10.0), scored("clear", 9.6, parameters=3)], catalogue).slug == "vague"
-    assert not selection._accepted(scored("vague", 9.0), [scored("first", 10.0)], SETTINGS)
-    assert selection._accepted(scored("vague", 9.0), [], SETTINGS)  # the verdict then names it nearest only
+    assert not selection._evident(scored("vague", 9.0), [scored("first", 10.0)], SETTINGS)
+    assert selection._evident(scored("vague", 9.0), [], SETTINGS)  # the verdict then names it nearest only
 
 
 def test_a_further_effect_of_unknown_strength_is_dropped():
