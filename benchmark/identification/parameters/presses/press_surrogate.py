@@ -7,7 +7,7 @@ each depth for itself. A fit refreshes it where it has come to. The model's own 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -17,6 +17,7 @@ from benchmark.errors import SolverError
 from benchmark.files import Session
 from benchmark.identification.parameters.free_parameters import (
     COMMON,
+    FRICTION,
     MODULUS,
     POISSON,
     Parameter,
@@ -122,7 +123,8 @@ def surrogate(
     setup = with_values(press.setup, values, law)
     chains = {k: _chain(parameters[k], values, setup) for k in acting}
     wanted = {key for chain in chains.values() for key in chain} | {f"{name}.stiffness" for name in relaxing}
-    ramp = differentiated_ramp(press.session, *setup, press.depth, sorted(wanted), forward, STEPS)
+    session = _with_friction(press.session, values)
+    ramp = differentiated_ramp(session, *setup, press.depth, sorted(wanted), forward, STEPS)
     if ramp.failure is not None or ramp.depth[-1] < press.depth * (1.0 - 1e-9):
         raise StopsError(press.depth, float(ramp.depth[-1]))
     by = np.zeros((len(parameters), GRID))
@@ -139,13 +141,11 @@ def acting_values(press: Press, parameters: Sequence[Parameter], vector: Array) 
     return {one.key: one.value(float(x)) for one, x in pairs if press.has(one) and not one.fading}
 
 
-def elastic_force(press: Press, setup: SetUp, forward: Forward) -> Array:
-    """(k,) N of a set-up at the depths of a press's grid; raises as `surrogate`."""
-    ramp = differentiated_ramp(press.session, *setup, press.depth, (), forward, STEPS)
-    if ramp.failure is not None:
-        raise StopsError(press.depth, float(ramp.depth[-1]))
-    grid = np.linspace(0.0, press.depth, GRID)
-    return np.asarray(CubicSpline(ramp.depth, ramp.force)(grid))
+def _with_friction(session: Session, values: Values) -> Session:
+    """The session with a fitted friction coefficient in its settings."""
+    if FRICTION not in values:
+        return session
+    return replace(session, settings={**session.settings, FRICTION: repr(values[FRICTION])})
 
 
 def _logarithmic(ramp: DifferentiatedRamp, chain: Mapping[str, float]) -> Array:
