@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 ASSUMED_STIFFNESS = 1000.0
 """Press force per depth assumed for moves to a force, N/m."""
+PICTURE = "motion of a trial, tissuebench"
+"""Title of the picture's file."""
 Piece = tuple[float, float, bool]
 _WIDTH, _HEIGHT = 64, 11
 
@@ -166,6 +168,8 @@ def write_plot(plan: MotionPlan, path: Path) -> Path:
 
     Raises
     ------
+    InputError
+        There is a file that is no such picture.
     OSError
         The folder cannot be made or written.
     """
@@ -173,8 +177,9 @@ def write_plot(plan: MotionPlan, path: Path) -> Path:
 
     from matplotlib.figure import Figure
 
-    from bench_hw.storage.atomic import write_bytes
+    from bench_hw.storage.atomic import check_replaceable, write_bytes
 
+    check_replaceable(path, PICTURE.encode(), "a picture of a motion")
     figure = Figure(figsize=(8.0, 3.0), layout="constrained")
     axes = figure.add_subplot()
     times = [0.0] + [step.start + step.duration for step in plan.steps]
@@ -184,7 +189,7 @@ def write_plot(plan: MotionPlan, path: Path) -> Path:
     axes.invert_yaxis()
     axes.set(xlabel="time, s", ylabel="depth, mm", title=f"{plan.name}: {plan.duration:.1f} s (dry run)")
     picture = io.BytesIO()
-    figure.savefig(picture, format="svg", metadata={"Date": None})
+    figure.savefig(picture, format="svg", metadata={"Date": None, "Title": PICTURE})
     return write_bytes(path, picture.getvalue())
 
 

@@ -68,11 +68,11 @@ def press(
     capture records: camera with markers, force and depth, and the models under the bench's own press.
     """
     from benchmark.cli.console import Console
-    from benchmark.press.press_page import PressRequest, specimens
+    from benchmark.press.press_page import SIGN, PressRequest, specimens
     from benchmark.runs.output.destination import check_file
 
     console = Console(quiet=quiet)
-    check_file(save, "--save")
+    check_file(save, "--save", SIGN, "a page of press")
     watched = None if live is None else _watched(live, save)
     what = "skin-5N" if what is None and live is not None else what
     request = PressRequest(what, tuple(tissue or ()), tuple(tool or ()), parse_settings(settings), model)

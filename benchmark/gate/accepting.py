@@ -12,6 +12,7 @@ from typing import Any
 from benchmark.errors import InputError, SolverError, TissuebenchError
 from benchmark.gate.accuracy import tolerance_of
 from benchmark.gate.baseline import (
+    BASELINE_SIGN,
     Baseline,
     StoredTiming,
     StoredValue,
@@ -19,12 +20,12 @@ from benchmark.gate.baseline import (
     staged_baseline,
     write_baseline,
 )
-from benchmark.gate.history.history_file import HistoryEntry, append
+from benchmark.gate.history.history_file import HISTORY_SIGN, HistoryEntry, append
 from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
 from benchmark.gate.processes import measure
 from benchmark.gate.versions import Origin, gated_values, origin_of, this_version
 from benchmark.runs.options import Listener
-from benchmark.runs.output.destination import check_ready
+from benchmark.runs.output.destination import check_file, check_ready
 
 NEEDED = 1_000_000
 """Bytes of a baseline and a line of its history, with room to spare."""
@@ -77,6 +78,8 @@ def accept(request: CheckRequest, listener: Listener) -> Accepted:
     plan = load_plan(request.gate)
     for path in (request.baseline_path, request.history_path):
         check_ready(path.absolute().parent, needed=NEEDED)
+    check_file(request.baseline_path, "--baseline", BASELINE_SIGN, "a baseline")
+    check_file(request.history_path, "--history", HISTORY_SIGN, "a history of checks")
     origin = origin_of(plan, request.seed)
     old, warnings = _old(request.baseline_path)
     new = _measured(plan, origin, listener)

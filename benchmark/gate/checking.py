@@ -12,8 +12,8 @@ from typing import Any
 from benchmark.gate.accuracy import compare_values
 from benchmark.gate.check_basis import CheckBasis, stored_baseline
 from benchmark.gate.check_page import check_page
-from benchmark.gate.ci_files import junit_text, markdown_text
-from benchmark.gate.history.history_file import HistoryEntry, append, read_history
+from benchmark.gate.ci_files import JUNIT_SIGN, MARKDOWN_SIGN, junit_text, markdown_text
+from benchmark.gate.history.history_file import HISTORY_SIGN, HistoryEntry, append, read_history
 from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
 from benchmark.gate.processes import Measured, Party, measure
 from benchmark.gate.timing import Judge, TimingRow
@@ -58,8 +58,9 @@ def check(request: CheckRequest, listener: Listener) -> CheckOutcome:
 
 
 def _checked(request: CheckRequest, folder: Path, listener: Listener) -> CheckOutcome:
-    for option, path in (("--junit", request.junit), ("--markdown", request.markdown)):
-        check_file(path, option)
+    check_file(request.junit, "--junit", JUNIT_SIGN, "the list of a check")
+    check_file(request.markdown, "--markdown", MARKDOWN_SIGN, "the summary of a check")
+    check_file(request.history_path, "--history", HISTORY_SIGN, "a history of checks")
     plan = load_plan(request.gate)
     baseline = stored_baseline(request, plan)
     origin = origin_of(plan, request.seed)

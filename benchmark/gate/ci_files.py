@@ -10,6 +10,9 @@ from benchmark.gate.timing import TimingRow
 from benchmark.gate.verdict import CheckVerdict, time_words, value_words
 
 SUITE = "tissuebench check"
+HEADING = "Regression check `"
+JUNIT_SIGN, MARKDOWN_SIGN = f'<testsuites name="{SUITE}'.encode(), HEADING.encode()
+"""What tells these files from others that must not be replaced."""
 
 
 def junit_text(verdict: CheckVerdict) -> str:
@@ -37,7 +40,7 @@ def markdown_text(verdict: CheckVerdict) -> str:
     """The check as Markdown: verdict, what got worse or better, times, and what a check here would have seen."""
     mark = "✅" if verdict.passed else "❌"
     parts = [
-        f"### {mark} Regression check `{verdict.gate}`\n\n{verdict.headline()}",
+        f"### {mark} {HEADING}{verdict.gate}`\n\n{verdict.headline()}",
         f"Values against {verdict.accuracy_source}; times against {verdict.timing_source}.",
         _bullets("Got worse", verdict.failures()),
         _bullets("Got better", verdict.improvements()),

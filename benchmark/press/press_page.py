@@ -35,6 +35,8 @@ DEFAULT_PRESSES: Sequence[Mapping[str, str]] = (
     {"tissue": "ecoflex_00_30"},
 )
 """Changes of the default scenario that a page without a request offers."""
+SIGN = b"<title>Press it:"
+"""What tells the page from other files that must not be replaced."""
 SCRIPTS = ("wave.js", "hands.js", "scene.js", "app.js")
 """In the order in which they stand in the page; the first two run without one."""
 

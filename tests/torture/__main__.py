@@ -15,6 +15,7 @@ os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS
 
 from tests.torture import inputs, kills, places
 from tests.torture.commands import COMMANDS
+from tests.torture.journal import Journal
 from tests.torture.scene import complete_scene, make_scene
 
 MODULES = {
@@ -28,6 +29,11 @@ MODULES = {
     "blind": ("benchmark.blind.running", "benchmark.blind.blind_folder"),
     "reproduce": ("benchmark.reproduce.reproduction",),
     "capture": ("bench_hw.capture.session",),
+    "assess": ("benchmark.assessment.skill_comparison",),
+    "press": ("benchmark.press.press_page",),
+    "dossier": ("benchmark.dossier",),
+    "session": ("benchmark.files.sessions",),
+    "simulate": ("bench_hw.capture.session",),
     "track": ("bench_hw.vision.tracking.film",),
 }
 """By the first word of a command."""
@@ -45,24 +51,26 @@ def main() -> int:
     parser.add_argument(
         "--verbs", nargs="*", default=[each.verb for each in COMMANDS], help="of the kills and the surroundings"
     )
+    parser.add_argument("--log", type=Path, help="a file of what was tried, added to: a torture that stopped goes on")
     asked = parser.parse_args()
+    journal = Journal(asked.log)
     _warm([each.verb for each in COMMANDS] if "inputs" in asked.only else asked.verbs)
     folder = Path(tempfile.mkdtemp(prefix="torture-"))
     try:
         scene = make_scene(folder / "scene")
         complete_scene(scene, [each.verb for each in COMMANDS] if "inputs" in asked.only else asked.verbs)
-        failures = [_part(name, scene, asked) for name in asked.only]
+        failures = [_part(name, scene, asked, journal) for name in asked.only]
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     return 1 if any(failures) else 0
 
 
-def _part(name: str, scene: Path, asked: argparse.Namespace) -> int:
+def _part(name: str, scene: Path, asked: argparse.Namespace, journal: Journal) -> int:
     """One part, its table and its failures on standard output; how many there were."""
     until = time.monotonic() + 60.0 * asked.minutes
     if name == "kills":
-        tallies = kills.torture(scene, until, asked.seed, asked.moments, asked.verbs)
-        table, failed = kills.rows(tallies), {verb: each.failures for verb, each in tallies.items()}
+        kills.torture(scene, until, asked.seed, asked.moments, asked.verbs, journal)
+        table, failed = kills.rows(journal), {"kills": kills.failures(journal)}
     elif name == "inputs":
         counts = inputs.torture(scene / "fuzzed", until, asked.seed, asked.each)
         table, failed = inputs.rows(counts), {kind: each.failures for kind, each in counts.items()}

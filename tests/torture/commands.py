@@ -18,9 +18,12 @@ from typing import Any
 
 from reports.manifest import MANIFEST
 
+LONGEST = 900.0
+"""A command that takes longer hangs, s: machines may be busy."""
 CONTRACT = (0, 1, 2, 3, 4, 5)
 """Exit codes."""
 COARSE = ("fem.mesh=coarse", "fem.kinematics=linear", "wave.large_press=linear", "load.observations=4")
+QUICK = ("fem.mesh=coarse", "fem.kinematics=linear", "wave.large_press=linear")
 LONG = ("fem.mesh=coarse", "tool.contact=rigid_frictional", "tool.edge_radius=1 mm", "physics.friction_coefficient=0.3",
         "load.peak=2 N", "load.observations=120")  # fmt: skip
 """A press with friction in finite strain, long enough that steps of it are kept."""
@@ -67,9 +70,17 @@ COMMANDS = (
     Command("tissues new", "benchmark", ("tissues", "new", "p"), "p.toml", careful=True),
     Command("reference new", "benchmark", ("reference", "new", "skin-5N", "--out", "p.csv"), "p.csv", careful=True),
     Command("clean", "benchmark", ("clean", "."), "p"),
-    Command("import", "bench_hw", ("import", "foreign.csv", *MAPS, "--out", "p.csv"), "p.csv"),
+    Command("import", "bench_hw", ("import", "foreign.csv", *MAPS, "--out", "p.csv"), "p.csv", careful=True),
     Command("export", "bench_hw", ("export", "trial.mcap", *OUT), careful=True),
-    Command("recover", "bench_hw", ("recover", "cut.mcap", "--out", "p.mcap"), "p.mcap"),
+    Command("recover", "bench_hw", ("recover", "cut.mcap", "--out", "p.mcap"), "p.mcap",
+            careful=True),
+    Command("simulate session", "bench_hw", ("simulate", "session", "--trials", "1", "--no-camera", "--quiet", *OUT),
+            careful=True),
+    Command("session new", "benchmark", ("session", "new", "fresh"), "fresh/session.toml", ("fresh/specimen.toml",),
+            careful=True),
+    Command("assess", "benchmark", ("assess", "experts", "novices", *OUT)),
+    Command("dossier", "benchmark", ("dossier", "finished", "--context", "context.toml", *OUT)),
+    Command("press --save", "benchmark", ("press", "skin-5N", *_set(QUICK), "--save", "p.html"), "p.html"),
     Command("track", "bench_hw", ("track", "pictures", "--camera", "camera.toml", "--out", "p.csv"), "p.csv"),
     Command("calibrate", "bench_hw", ("calibrate", "boards/*.png", "--corners", "9x6", "--square-mm", "8", "--out",
                                       "p.toml"), "p.toml"),
@@ -80,10 +91,11 @@ COMMANDS = (
     Command("capture", "bench_hw", (*CAPTURE, *OUT), careful=True, share=0.7),
     Command("sweep", "benchmark", ("sweep", "skin-5N", *_set(COARSE), *VARIED, *OUT), share=0.7),
     Command("discover", "benchmark", ("discover", "session", *OUT), share=0.7),
-    Command("run", "benchmark", ("run", "skin-5N", *_set(COARSE), *OUT), share=0.5),
+    Command("run", "benchmark", ("run", "skin-5N", *_set(COARSE), "--export", "inp", *OUT), share=0.5),
     Command("run, steps kept", "benchmark", ("run", "skin-5N", *_set(LONG), *OUT), share=0.4),
     Command("run --trials", "benchmark", ("run", "--trials", "session", *OUT), share=0.25),
     Command("fit --free", "benchmark", ("fit", "sheet", "--free", "pad.youngs_modulus", *OUT), share=0.2),
+    Command("discover --refit", "benchmark", ("discover", "sheet", "--refit", "strain_stiffening", *OUT), share=0.25),
     Command("discover --bench", "benchmark", ("discover", "sheet", *BENCH, *OUT), share=0.25),
     Command("check", "benchmark", (*CHECK, "--baseline", "base.json", "--history", "p.jsonl", "--junit", "p.xml",
                                    "--markdown", "p.md", *OUT), "p", ("p.xml", "p.md", "p.jsonl"), share=0.25),
@@ -118,8 +130,8 @@ def is_plain(text: str) -> bool:
 def run(command: Command, folder: Path, *, kill: tuple[float, int] | None = None, before: str = "") -> Ended:
     """Run a command in a fork of this process, which has imported the libraries; `kill` is (seconds, signal).
 
-    `before` is Python that the child runs first: faults of disk and memory are put in by it. A child that takes five
-    minutes counts as hanging.
+    `before` is Python that the child runs first: faults of disk and memory are put in by it. A child that takes longer
+    than `LONGEST` counts as hanging.
     """
     err = folder.parent / f"{folder.name}.stderr"
     started = time.monotonic()
@@ -133,7 +145,7 @@ def run(command: Command, folder: Path, *, kill: tuple[float, int] | None = None
 
 
 def _wait(child: int, started: float, kill: tuple[float, int] | None) -> int:
-    while time.monotonic() - started < 300.0:
+    while time.monotonic() - started < LONGEST:
         found, status = os.waitpid(child, os.WNOHANG)
         if found:
             return os.waitstatus_to_exitcode(status)
@@ -191,6 +203,8 @@ VOLATILE = re.compile(
     re.I,
 )
 """Keys and columns whose values are of the clock or the machine."""
+CLOCKED = re.compile(r'"(setup|wall|cpu)_s": ?[0-9.e-]+')
+"""Times in a page of press."""
 SKIPPED = ("environment.json", "manifest.json", "timing.csv", "report.html", "capture.json", "journal.jsonl",
            "check.json", "rounds.csv", "p.xml", "p.md", "p.jsonl", "p.history.jsonl")  # fmt: skip
 """Files that hold little else, or pages that show it; they must be there. So must recordings, whose rows follow the
@@ -222,6 +236,8 @@ def _of_file(path: Path) -> Any:
         rows = list(csv.reader(path.read_text(encoding="utf-8").splitlines()))
         steady = [k for k, name in enumerate(rows[0]) if not VOLATILE.search(name) or name == "time_s"]
         return [[row[k] for k in steady] for row in rows]
+    if path.suffix == ".html":
+        return hashlib.sha256(CLOCKED.sub("", path.read_text(encoding="utf-8")).encode()).hexdigest()
     if path.suffix == ".md":
         return [line for line in path.read_text(encoding="utf-8").splitlines() if "seconds" not in line]
     return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -8,23 +8,16 @@ import signal
 import sys
 import time
 from collections import defaultdict
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tests.torture.commands import COMMANDS, Command, differences, digest, run
+from tests.torture.commands import COMMANDS, Command, Ended, differences, digest, run
+from tests.torture.journal import Journal
 from tests.torture.scene import contents, make_litter
 
-
-@dataclass
-class Tally:
-    """What was seen of a verb: moments, how many came before its end, and each kind of failure in words."""
-
-    moments: int = 0
-    hit: int = 0
-    to_the_bit: int = 0
-    credit: float = 0.0
-    failures: list[str] = field(default_factory=list)
+PART = "kills"
+SIGNALS = (signal.SIGKILL, signal.SIGINT)
 
 
 @dataclass(frozen=True)
@@ -35,67 +28,115 @@ class Usual:
     result: dict[str, Any]
 
 
-def torture(scene: Path, until: float, seed: int, most: int, verbs: list[str]) -> dict[str, Tally]:
-    """Kill commands in turn until the time or the number of moments is over; what was seen by verb."""
-    tallies = defaultdict(Tally)
-    draws = {verb: random.Random(f"{seed} {verb}") for verb in verbs}  # each verb's moments are its own
+def torture(scene: Path, until: float, seed: int, most: int, verbs: list[str], journal: Journal) -> None:
+    """Kill commands in turn until the time or the number of moments is over; the journal's own are counted."""
+    credits: dict[str, float] = defaultdict(lambda: 1.0)
     usual: dict[str, Usual] = {}
-    commands = [each for each in COMMANDS if each.verb in verbs]
-    while sum(each.moments for each in tallies.values()) < most and time.monotonic() < until:
-        for command in commands:
-            tally = tallies[command.verb]
-            tally.credit += command.share
-            if tally.credit < 1.0 and tally.moments:
+    while len(journal.of(PART)) < most and time.monotonic() < until:
+        for command in (each for each in COMMANDS if each.verb in verbs):
+            credits[command.verb] += command.share
+            if credits[command.verb] < 1.0 or _is_ahead(command, journal, verbs):
                 continue
-            tally.credit -= 1.0
-            if time.monotonic() < until:
+            credits[command.verb] -= 1.0
+            if time.monotonic() < until and len(journal.of(PART)) < most:
                 if command.verb not in usual:
-                    usual[command.verb] = _unkilled(scene, command, tally)
-                known = len(tally.failures)
-                _moment(scene, command, usual[command.verb], draws[command.verb], tally)
-                for text in tally.failures[known:]:
-                    print(f"{command.verb}: {text}", file=sys.stderr, flush=True)
-    return dict(tallies)
+                    usual[command.verb] = _unkilled(scene, command, journal)
+                _moment(scene, command, usual[command.verb], seed, journal)
 
 
-def _unkilled(scene: Path, command: Command, tally: Tally) -> Usual:
+def _is_ahead(command: Command, journal: Journal, verbs: list[str]) -> bool:
+    """Whether the journal has more moments of a command than of the others, by its share."""
+    counts = {each.verb: _count(journal, each.verb) / each.share for each in COMMANDS if each.verb in verbs}
+    return counts[command.verb] > min(counts.values()) + 1.0 / command.share
+
+
+def _count(journal: Journal, verb: str) -> int:
+    return sum(each["verb"] == verb for each in journal.of(PART))
+
+
+def _unkilled(scene: Path, command: Command, journal: Journal) -> Usual:
     """How long a command takes, and what comes of it, where nobody kills it."""
-    clear(scene, command)
+    _begin(scene, command)
     ended = run(command, scene)
     if ended.code not in (0, 1):
-        tally.failures.append(f"unkilled it ended with {ended.code}: {ended.err[-200:]}")
+        _say(command, f"unkilled it ended with {ended.code}: {ended.err[-300:]}")
+        journal.add("unkilled", verb=command.verb, failures=[f"it ended with {ended.code}: {ended.err[-300:]}"])
     return Usual(ended.seconds, result(scene, command))
 
 
-def _moment(scene: Path, command: Command, usual: Usual, draw: random.Random, tally: Tally) -> None:
+def _begin(scene: Path, command: Command) -> None:
     clear(scene, command)
-    before = contents(scene, command.outs)
     if command.verb == "clean":
         make_litter(scene)
-    how = draw.choice((signal.SIGKILL, signal.SIGINT))
-    after = draw.uniform(0.02, 1.0) * usual.seconds
+
+
+def _moment(scene: Path, command: Command, usual: Usual, seed: int, journal: Journal) -> None:
+    """Kill a command once, run it again, and keep what was seen."""
+    index = _count(journal, command.verb)
+    draw = random.Random(f"{seed} {command.verb} {index}")
+    how, after = SIGNALS[draw.randrange(2)], draw.uniform(0.02, 1.0) * usual.seconds
+    clear(scene, command)
+    before = contents(scene, command.outs)
+    _begin(scene, command)
     killed = run(command, scene, kill=(after, how))
-    tally.moments += 1
-    tally.hit += killed.code in (-signal.SIGKILL, -signal.SIGINT, 130, 5)
-    where = f"{how.name} after {after:.2f} of {usual.seconds:.2f} s"
-    allowed = (0, 1, -how, 130, 5) if command.verb == "capture" else (0, 1, -how, 130)
-    if killed.code not in allowed or not killed.is_plain:
-        tally.failures.append(f"{where}: it ended with {killed.code}: {killed.err.strip()[-400:]}")
+    failures = _ending(command, killed, how)
     if command.careful:  # it never writes over what is there: a person removes it
+        failures += _not_whole(scene, command, usual)
         clear(scene, command)
     again = run(command, scene)
+    apart: list[str] = []
     if again.code not in (0, 1):
-        tally.failures.append(f"{where}: the next run ended with {again.code}: {again.err.strip()[-200:]}")
-        return
-    apart, far = differences(usual.result, result(scene, command))
-    tally.to_the_bit += not apart
-    if apart:
-        how_far = "by more than 1e-6" if far else "by less than 1e-6"
-        tally.failures.append(f"{where}: another result, {how_far}, in {', '.join(apart)}")
+        failures.append(f"the next run ended with {again.code}: {again.err.strip()[-300:]}")
+    else:
+        apart, far = differences(usual.result, result(scene, command))
+        if apart:
+            failures.append(f"another result, by {'more' if far else 'less'} than 1e-6, in {', '.join(apart)}")
+    failures += _beside(scene, command, before)
+    for text in failures:
+        _say(command, f"{how.name} after {after:.2f} of {usual.seconds:.2f} s: {text}")
+    journal.add(
+        PART,
+        verb=command.verb,
+        seed=seed,
+        index=index,
+        signal=how.name,
+        after=round(after, 3),
+        usual=round(usual.seconds, 3),
+        hit=killed.code in (-signal.SIGKILL, -signal.SIGINT, 130, 5),
+        same=again.code in (0, 1) and not apart,
+        failures=failures,
+    )
+
+
+def _ending(command: Command, killed: Ended, how: signal.Signals) -> list[str]:
+    """What is wrong with how a killed command ended."""
+    allowed = (0, 1, -how, 130, 5) if command.words[0] in ("capture", "simulate") else (0, 1, -how, 130)
+    if killed.code in allowed and killed.is_plain:
+        return []
+    return [f"it ended with {killed.code}: {killed.err.strip()[-400:]}"]
+
+
+def _not_whole(scene: Path, command: Command, usual: Usual) -> list[str]:
+    """What a command that writes over nothing left in its place when it was killed, if it is not whole."""
+    if command.words[0] in ("capture", "simulate"):  # what was recorded stays, as far as it got
+        return []
+    there = result(scene, command)
+    torn = [name for name in there if there[name] != usual.result.get(name)]
+    return [f"not whole in its place: {', '.join(torn)}"] if torn else []
+
+
+def _beside(scene: Path, command: Command, before: dict[str, str]) -> list[str]:
+    """What changed or was left beside the result; it is taken away, so that the next moment begins clean."""
     left = contents(scene, command.outs)
     changed = sorted(name for name in {*before, *left} if before.get(name) != left.get(name))
-    if changed:
-        tally.failures.append(f"{where}: changed or left beside it: {', '.join(changed)}")
+    for name in set(left) - set(before):
+        place = scene / name
+        shutil.rmtree(place) if place.is_dir() else place.unlink()
+    return [f"changed or left beside it: {', '.join(changed)}"] if changed else []
+
+
+def _say(command: Command, text: str) -> None:
+    print(f"{command.verb}: {text}", file=sys.stderr, flush=True)
 
 
 def result(scene: Path, command: Command) -> dict[str, Any]:
@@ -110,9 +151,22 @@ def clear(scene: Path, command: Command) -> None:
         shutil.rmtree(place, ignore_errors=True) if place.is_dir() else place.unlink(missing_ok=True)
 
 
-def rows(tallies: dict[str, Tally]) -> list[tuple[str, ...]]:
+def failures(journal: Journal) -> list[str]:
+    """All of them, in words."""
+    tried = [*journal.of("unkilled"), *journal.of(PART)]
+    return [f"{each['verb']}: {text}" for each in tried for text in each["failures"]]
+
+
+def rows(journal: Journal) -> list[tuple[str, ...]]:
     """The table by verb."""
-    head = ("verb", "moments", "before its end", "same to the bit", "failures")
-    body = [(verb, str(t.moments), str(t.hit), str(t.to_the_bit), str(len(t.failures))) for verb, t in tallies.items()]
-    total = [sum(int(row[k]) for row in body) for k in range(1, 5)]
-    return [head, *body, ("all", *map(str, total))]
+    moments = journal.of(PART)
+    verbs = [each.verb for each in COMMANDS if any(moment["verb"] == each.verb for moment in moments)]
+    body = [_row(verb, [each for each in moments if each["verb"] == verb]) for verb in verbs]
+    head = ("verb", "moments", "of them SIGKILL", "before its end", "same to the bit", "failures")
+    return [head, *body, _row("all", moments)]
+
+
+def _row(verb: str, moments: list[dict[str, Any]]) -> tuple[str, ...]:
+    killed = sum(each["signal"] == "SIGKILL" for each in moments)
+    counts = [sum(bool(each[key]) for each in moments) for key in ("hit", "same", "failures")]
+    return (verb, *map(str, (len(moments), killed, *counts)))

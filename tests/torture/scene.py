@@ -54,6 +54,15 @@ contact = "rigid_bonded"
 [support]
 kind = "bonded"
 """
+CONTEXT = """schema = 1
+name = "a trainer"
+question_of_interest = "Is it right?"
+context_of_use = "Presses to 5 N."
+model_influence = "high"
+decision_consequence = "low"
+quantities = ["force over depth"]
+max_force = "5 N"
+"""
 GATE = """schema = 1
 name = "small"
 [timing]
@@ -87,6 +96,18 @@ def trial_text(rows: int = 200, peak: float = 2.0) -> str:
     return "time_s,depth_mm,force_N\n" + "".join(f"{t:.3f},{d:.6f},{f:.6f}\n" for t, d, f in table)
 
 
+def attempt_text(astray: float, rows: int = 400) -> str:
+    """A synthetic record of a hand that goes to three targets."""
+    time = 0.01 * np.arange(rows)
+    target = np.minimum(3 * np.arange(rows) // rows, 2)
+    aims = np.array([[10.0, 10.0, 1.0], [30.0, 12.0, 2.0], [20.0, 35.0, 1.5]])[target]
+    here = aims * (1.0 - np.exp(-(time % 1.34) / 0.2))[:, None] + astray * np.sin(57.0 * time)[:, None]
+    here[:, 2] = np.maximum(here[:, 2], 0.0)
+    head = "time_s,tool,x_mm,y_mm,depth_mm,force_N,target,target_x_mm,target_y_mm,target_depth_mm\n"
+    numbers = np.column_stack([time, 0 * time, here, 1.3 * here[:, 2], target, aims])
+    return head + "".join(",".join(f"{number:.10g}" for number in row) + "\n" for row in numbers)
+
+
 def make_scene(folder: Path) -> Path:
     """Put everything into a new folder that the commands read, and what they must not touch."""
     folder.mkdir(parents=True)
@@ -100,6 +121,12 @@ def make_scene(folder: Path) -> Path:
     (folder / "sheet" / "pad.toml").write_text(PAD)
     (folder / "sheet" / "session.toml").write_text(SHEET)
     (folder / "gate.toml").write_text(GATE)
+    (folder / "context.toml").write_text(CONTEXT)
+    shutil.copytree(folder / "session", folder / "fresh")
+    for group, astray in (("experts", 0.05), ("novices", 0.4)):
+        (folder / group).mkdir()
+        for number in range(1, 4):
+            (folder / group / f"attempt_{number}.csv").write_text(attempt_text(astray * (1.0 + 0.1 * number)))
     (folder / "foreign.csv").write_text(trial_text())
     (folder / "camera.toml").write_text(CAMERA)
     _pictures(folder / "pictures")
@@ -113,7 +140,7 @@ def complete_scene(folder: Path, verbs: Collection[str]) -> None:
         recording = (folder / "made" / "trial_001.mcap").read_bytes()
         (folder / "trial.mcap").write_bytes(recording)
         (folder / "cut.mcap").write_bytes(recording[: int(0.8 * len(recording))])
-    if {"report", "report, two"} & set(verbs):
+    if {"report", "report, two", "dossier"} & set(verbs):
         run(_command("run", "finished"), folder)
         shutil.copytree(folder / "finished", folder / "other")
     if "check" in verbs:
@@ -174,13 +201,13 @@ def _pictures(folder: Path) -> None:
 
 
 def contents(folder: Path, without: tuple[str, ...] = ()) -> dict[str, str]:
-    """Hash of every file of a folder by its path, but of those under the names `without`."""
+    """Hash of every file of a folder by its path, but of those at or under the paths `without`."""
     found = {}
     for parent, folders, files in os.walk(folder):
         for name in (*files, *(each for each in folders if not any(Path(parent, each).iterdir()))):
             path = Path(parent, name)
             relative = path.relative_to(folder).as_posix()
-            if relative.split("/")[0] not in without:
+            if not any(f"{relative}/".startswith(f"{name}/") for name in without):
                 data = path.read_bytes() if path.is_file() else b"folder"
                 found[relative] = hashlib.sha256(data).hexdigest()
     return found

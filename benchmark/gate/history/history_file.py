@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import Any
 
 HISTORY_SCHEMA = 1
+HISTORY_SIGN = b'"revision"'
+"""What tells it from files that nothing must be added to."""
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,8 @@ from reports import check_place
 RESULTS = Path("results")
 PROBE = 1 << 16
 """Bytes that are written before anything is computed."""
+BEGINNING = 1 << 12
+"""Bytes in which the sign of a file's kind must stand."""
 NEEDED = 16_000_000
 """Bytes of a result without fields, its page with the embedded plots being the most of it (6 MB); an earlier result
 stays until the new one is complete."""
@@ -90,13 +92,35 @@ def check_ready(out: Path, inputs: Iterable[Path | str | None] = (), needed: int
     _check_writable(out, f"--out {out}", needed)
 
 
-def check_file(path: Path | None, option: str) -> None:
-    """Refuse a file that cannot be written, or a folder in its place."""
+def check_file(path: Path | None, option: str, sign: bytes, kind: str) -> None:
+    """Refuse a file that cannot be written, a folder in its place, and one that is not what will be written there.
+
+    Parameters
+    ----------
+    path
+        The file, if one is asked for; it may be missing or empty.
+    option
+        How it was asked for.
+    sign
+        What stands in the first 4 kB of a file of its kind.
+    kind
+        Of the file, in words.
+
+    Raises
+    ------
+    InputError
+        The file is refused; nothing in it has changed.
+    """
     if path is None:
         return
     if path.is_dir():
         raise InputError(f"{option} {path} is a folder; give a file")
     _check_writable(path, f"{option} {path}", PROBE)
+    if path.is_file():
+        with path.open("rb") as stream:
+            beginning = stream.read(BEGINNING)
+        if beginning and sign not in beginning:
+            raise InputError(f"{option} {path} is there and is not {kind}; nothing else is replaced, give another name")
 
 
 def fresh(name: str) -> Path:

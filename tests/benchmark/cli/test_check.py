@@ -134,6 +134,18 @@ def test_a_folder_in_the_place_of_a_ci_file_is_found_before_measuring(call) -> N
     assert "--junit here is a folder" in paragraph(called)
 
 
+def test_files_of_somebody_elses_are_not_replaced(call) -> None:
+    for words in (
+        ("--junit", "mine"), ("--markdown", "mine"), ("--history", "mine"), ("--accept", "--baseline", "mine"),
+        ("--accept", "--history", "mine"),
+    ):  # fmt: skip
+        Path("mine").write_text('{"a": 1}\n')
+        called = call("--quiet", *words)
+        assert called.code == 2, words
+        assert "mine is there and is not" in paragraph(called)
+        assert Path("mine").read_text() == '{"a": 1}\n'
+
+
 def test_another_schema_is_exit_three_and_a_broken_file_exit_two(call) -> None:
     call("--accept", "--quiet")
     change("tissuebench-baseline.json", lambda table: table.update(schema=2))
