@@ -38,6 +38,7 @@ MODULES = {
 }
 """By the first word of a command."""
 PARTS = ("kills", "inputs", "places")
+PLACES = ("disks", "faults", "outside")
 
 
 def main() -> int:
@@ -51,6 +52,7 @@ def main() -> int:
     parser.add_argument(
         "--verbs", nargs="*", default=[each.verb for each in COMMANDS], help="of the kills and the surroundings"
     )
+    parser.add_argument("--places", nargs="*", choices=PLACES, default=PLACES, help="kinds of surroundings")
     parser.add_argument("--log", type=Path, help="a file of what was tried, added to: a torture that stopped goes on")
     asked = parser.parse_args()
     journal = Journal(asked.log)
@@ -76,7 +78,7 @@ def _part(name: str, scene: Path, asked: argparse.Namespace, journal: Journal) -
         table, failed = inputs.rows(counts), {kind: each.failures for kind, each in counts.items()}
         shutil.rmtree(scene / "fuzzed", ignore_errors=True)
     else:
-        found = places.torture(scene, until, asked.verbs)
+        found = places.torture(scene, until, asked.verbs, asked.places)
         table, failed = places.rows(found), {place: each.failures for place, each in found.items()}
     widths = [max(len(row[k]) for row in table) for k in range(len(table[0]))]
     print(f"\n{name}, seed {asked.seed}")

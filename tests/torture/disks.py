@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import time
+from collections import Counter
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -46,16 +47,19 @@ LONG = ("run --trials", "fit --free", "discover --bench", "check", "check --acce
 
 @dataclass
 class Environment:
-    """What was tried in one surrounding: how often, how it ended by exit code, and failures in words."""
+    """What was tried in one surrounding: how each verb ended, by exit code and times, and failures in words."""
 
-    tries: int = 0
-    codes: dict[int, int] = field(default_factory=dict)
+    codes: dict[str, Counter[int]] = field(default_factory=dict)
     failures: list[str] = field(default_factory=list)
+
+    @property
+    def tries(self) -> int:
+        """How many commands were run."""
+        return sum(sum(each.values()) for each in self.codes.values())
 
     def note(self, code: int, allowed: tuple[int, ...], err: str, what: str) -> None:
         """Count an ending; a code that is not allowed, a traceback or several paragraphs are failures."""
-        self.tries += 1
-        self.codes[code] = self.codes.get(code, 0) + 1
+        self.codes.setdefault(what.split(", point")[0], Counter())[code] += 1
         if code not in allowed:
             self.fail(f"{what}: exit {code}: {err.strip()[-300:]}")
         elif not is_plain(err):

@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 from tests.torture.commands import COMMANDS, CONTRACT, Command, differences, run
 from tests.torture.disks import LONG, Environment, full_disks, usual_result
@@ -26,27 +27,62 @@ time.time = lambda: 2 * began - really() - 86400.0
 NOBODY = "import os; os.setgroups([]); os.setgid(65534); os.setuid(65534)"
 CLOSED = "import os; os.close(1)"
 BROKEN = "import os, signal; reader, writer = os.pipe(); os.close(reader); os.dup2(writer, 1)"
-SEVERAL = ("tissues new", "import", "track", "verify", "fit", "report", "sweep")
+UNKNOWN = "import os; os.environ.pop('HOME', None); os.environ.update(TMPDIR='/nonexistent', TERM='', COLUMNS='1')"
+FAR = "import os, time; os.environ['TZ'] = 'Pacific/Kiritimati'; time.tzset()"
+CLOCK = "import time; really = time.time; time.time = lambda: really() - {seconds}"
+NO_ROOM = "import shutil; shutil.disk_usage = lambda _: shutil._ntuple_diskusage(1 << 40, 1 << 40, 0)"
+ALONE = """
+import _posixsubprocess, errno, os
+def none(*_, **__):
+    raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+os.fork = os.posix_spawn = _posixsubprocess.fork_exec = none
+import multiprocessing.util, subprocess
+subprocess._fork_exec = multiprocessing.util.spawnv_passfds = none
+"""
+NO_THREADS = """
+import _thread, threading
+def none(*_, **__):
+    raise RuntimeError("can't start new thread")
+threading._start_new_thread = threading._start_joinable_thread = none
+"""
+CHEAP = ("tissues new", "reference new", "import", "export", "recover", "session new", "assess", "dossier", "track",
+         "fit")  # fmt: skip
 """Verbs that are put into the surroundings other than full disks."""
 
 
-def torture(scene: Path, until: float, verbs: list[str]) -> dict[str, Environment]:
-    """Try the commands in every surrounding, until the time is over."""
+def torture(scene: Path, until: float, verbs: list[str], parts: list[str]) -> dict[str, Environment]:
+    """Try the commands in every surrounding, until the time is over; `parts` are disks, faults and outside."""
     found: dict[str, Environment] = {}
     commands = [each for each in COMMANDS if each.verb in verbs and each.verb not in LONG]
-    for command in commands:
-        if time.monotonic() < until:
-            found[f"full disk: {command.verb}"] = full_disks(scene, command, until)
-    several = [each for each in commands if each.verb in SEVERAL]
-    trials: dict[str, Callable[[], Environment]] = {
-        name: lambda fault=fault: _faulty(scene, several, fault)  # type: ignore[misc]
-        for name, fault in _faults().items()
-    }
-    for name, trial in {**trials, **_together(scene), **_outside(scene)}.items():
+    several = [each for each in commands if each.verb in CHEAP]
+    trials: dict[str, Callable[[], Environment]] = {}
+    if "disks" in parts:
+        trials |= {"a disk that fills, ten points": lambda: _all_disks(scene, commands, until)}
+    if "faults" in parts:
+        usual: dict[str, dict[str, Any]] = {}
+        trials |= {
+            name: lambda fault=fault: _faulty(scene, several, fault, usual)  # type: ignore[misc]
+            for name, fault in _faults().items()
+        }
+    if "outside" in parts:
+        trials |= {**_together(scene), **_outside(scene)}
+    for name, trial in trials.items():
         if time.monotonic() < until:
             print(name, file=sys.stderr, flush=True)
             found[name] = trial()
+            print("  " + " | ".join(_row(name, found[name])), file=sys.stderr, flush=True)
     return {name: each for name, each in found.items() if each.tries}
+
+
+def _all_disks(scene: Path, commands: list[Command], until: float) -> Environment:
+    found = Environment()
+    for command in commands:
+        if time.monotonic() < until:
+            one = full_disks(scene, command, until)
+            found.codes |= one.codes
+            found.failures += one.failures
+            print(f"  {command.verb}: {dict(one.codes.get(command.verb, {}))}", file=sys.stderr, flush=True)
+    return found
 
 
 def _faults() -> dict[str, str]:
@@ -57,26 +93,39 @@ def _faults() -> dict[str, str]:
     }
     faults = {
         **sizes,
+        "a disk without room": NO_ROOM,
         "24 open files": LIMIT.format(which="RLIMIT_NOFILE", most=24),
         "1.5 GB of address space": LIMIT.format(which="RLIMIT_AS", most=1_500_000_000),
+        "no further process": ALONE,
+        "no further thread": NO_THREADS,
         "a clock that goes back": BACKWARDS,
+        "a clock of 1970": CLOCK.format(seconds="really() + 3600.0"),
+        "a clock of 2126": CLOCK.format(seconds="-3.16e9"),
+        "a time zone 14 hours off": FAR,
+        "standard input closed": "import os; os.close(0)",
         "standard output closed": CLOSED,
         "standard output a broken pipe": BROKEN,
+        "standard output full": "import os; os.dup2(os.open('/dev/full', os.O_WRONLY), 1)",
+        "standard error closed": "import os; os.close(2)",
+        "no home, no temporary folder, no terminal": UNKNOWN,
+        "files that only the owner reads": "import os; os.umask(0o077)",
+        "Ctrl-C ignored": "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)",
     }
     return {**faults, "a folder of somebody else's": NOBODY} if os.getuid() == 0 else faults
 
 
-def _faulty(scene: Path, commands: list[Command], fault: str) -> Environment:
+def _faulty(scene: Path, commands: list[Command], fault: str, usual: dict[str, dict[str, Any]]) -> Environment:
     """Each command with a fault put in: it ends well or is refused, and leaves nothing that is not whole."""
     found = Environment()
     for command in commands:
-        usual = usual_result(scene, command)
+        if command.verb not in usual:
+            usual[command.verb] = usual_result(scene, command)
         clear(scene, command)
         before = contents(scene)
         ended = run(command, scene, before=fault)
         found.note(ended.code, CONTRACT, ended.err, command.verb)
         there = result(scene, command)
-        if there and differences(usual, there)[1] and command.verb != "sweep":
+        if there and differences(usual[command.verb], there)[1]:
             found.fail(f"{command.verb}: it left a result that is not whole: {ended.err.strip()[-200:]}")
         if not there and ended.code in (0, 1):
             found.fail(f"{command.verb}: it ended with {ended.code} without a result")
@@ -241,11 +290,18 @@ def _process(folder: Path, words: list[str], changes: dict[str, str]) -> subproc
 
 def rows(found: dict[str, Environment]) -> list[tuple[str, ...]]:
     """The table by surrounding."""
-    head = ("surrounding", "commands", "exit codes", "failures")
-    return [
-        head,
-        *(
-            (name, str(e.tries), ", ".join(f"{code}: {n}" for code, n in sorted(e.codes.items())), str(len(e.failures)))
-            for name, e in found.items()
-        ),
+    return [("surrounding", "commands", "how they ended", "failures"), *(_row(*each) for each in found.items())]
+
+
+def _row(name: str, found: Environment) -> tuple[str, ...]:
+    """A surrounding: the verbs by their exit codes, with how often where it was more than once."""
+    codes = sorted({code for each in found.codes.values() for code in each})
+    ends = [
+        f"{code}: {', '.join(_times(verb, each[code]) for verb, each in found.codes.items() if each[code])}"
+        for code in codes
     ]
+    return name, str(found.tries), "; ".join(ends), str(len(found.failures))
+
+
+def _times(verb: str, often: int) -> str:
+    return verb if often == 1 else f"{verb} ({often})"

@@ -2,6 +2,7 @@
 
 import pytest
 
+from bench_hw.errors import InputError
 from bench_hw.motion.plan import drawing, plan, summary, write_plot
 from bench_hw.motion.protocol_file import Protocol, load_protocol, shipped
 
@@ -74,3 +75,12 @@ def test_the_plot_is_written_whole(tmp_path):
     text = path.read_text()
     assert "<svg" in text
     assert text.rstrip().endswith("</svg>")
+
+
+def test_the_plot_replaces_a_plot_and_nothing_else(tmp_path):
+    mine, planned = tmp_path / "mine.svg", plan(load_protocol("paper_press").protocol)
+    mine.write_text("<svg>mine</svg>")
+    with pytest.raises(InputError, match="is not a picture of a motion"):
+        write_plot(planned, mine)
+    assert mine.read_text() == "<svg>mine</svg>"
+    assert write_plot(planned, write_plot(planned, tmp_path / "plot.svg")).stat().st_size > 1000

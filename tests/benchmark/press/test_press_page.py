@@ -9,8 +9,9 @@ import pytest
 
 from benchmark.cli.app import main
 from benchmark.errors import InputError
-from benchmark.press.press_page import PressRequest, render_press_page, specimens
+from benchmark.press.press_page import SIGN, PressRequest, render_press_page, specimens
 from benchmark.runs.options import Listener
+from benchmark.runs.output.destination import check_file
 
 COARSE = {"fem.mesh": "coarse", "wave.large_press": "linear"}
 STIFFENING = """schema = 1
@@ -104,6 +105,10 @@ def test_the_command_writes_one_file(tmp_path, capsys, monkeypatch):
     assert code == 0
     assert said["bytes"] == target.stat().st_size < 2e6
     assert [one["tissue"] for one in said["presses"]] == ["skin_forearm"]
+    check_file(target, "--save", SIGN, "a page of press")
+    target.write_text("mine")
+    assert main(["press", "skin-5N", "--save", str(target), "--quiet"]) == 2
+    assert target.read_text() == "mine"
 
 
 def test_nothing_in_the_page_ends_its_data_early(page_document):
