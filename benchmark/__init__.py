@@ -12,8 +12,8 @@
 """
 
 from importlib import import_module
-from typing import TYPE_CHECKING
 
+TYPE_CHECKING = False  # not from `typing`: this is imported before files of the current folder are passed over
 if TYPE_CHECKING:
     from benchmark.scripting import compare, discover, fit, run, sweep
 

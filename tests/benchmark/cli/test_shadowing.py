@@ -23,7 +23,7 @@ def put(folder, *names):
         path.write_text(THEIRS)
 
 
-@pytest.mark.parametrize("name", [*PACKAGES, "fem.py", "numpy.py", "pydantic.py", "socket.py", "typer.py"])
+@pytest.mark.parametrize("name", [*PACKAGES, "fem.py", "numpy.py", "pydantic.py", "typing.py", "typer.py"])
 def test_the_command_line_answers_as_ever_and_says_it(tmp_path, name):
     put(tmp_path, name)
     done = call(tmp_path, "-m", "benchmark", "tissues", "skin_forearm")
