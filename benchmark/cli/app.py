@@ -91,12 +91,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SystemExit as end:  # nothing of ours ends so; an effects file of the user's may
         return _fail(_who_ended(end), EXIT_USAGE)
     except Exception as error:
-        return _report(error, debug="--debug" in arguments)
+        if not _is_interruption(error):
+            return _report(error, debug="--debug" in arguments)
+        code = EXIT_INTERRUPTED
     if code == EXIT_INTERRUPTED:  # by the command-line library or from before it
         return _fail("interrupted; results that were not finished were not written", EXIT_INTERRUPTED)
     if not arguments:
         return EXIT_USAGE
     return code if isinstance(code, int) else 0
+
+
+def _is_interruption(error: BaseException | None) -> bool:
+    """Whether an error is Ctrl-C under another name, as libraries give it whose callbacks it met."""
+    while error is not None:
+        if isinstance(error, KeyboardInterrupt) or "KeyboardInterrupt" in str(error):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
 
 
 def _report(error: Exception, *, debug: bool) -> int:

@@ -80,6 +80,17 @@ def test_an_interruption_has_its_own_code(benchmark_cli, monkeypatch: pytest.Mon
     assert benchmark_cli("tissues").code == app.EXIT_INTERRUPTED
 
 
+def test_an_interruption_under_another_name_is_one_too(benchmark_cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    def as_a_library_does(*_: object, **__: object) -> int:
+        try:
+            raise KeyboardInterrupt
+        except KeyboardInterrupt as met:
+            raise ValueError("a callback failed") from met
+
+    monkeypatch.setattr(app, "app", as_a_library_does)
+    assert benchmark_cli("tissues").code == 130
+
+
 def test_without_a_verb_the_help_is_shown_as_it_is(benchmark_cli) -> None:
     called = benchmark_cli()
     assert called.code == 2
