@@ -4,6 +4,7 @@ import itertools
 
 import pytest
 
+from benchmark.discovery import criteria
 from benchmark.discovery.answer.verdict import Facts, statement, verdict
 from benchmark.discovery.discovery_result import VERDICTS
 from benchmark.physics import catalogue
@@ -65,6 +66,11 @@ def test_what_another_set_up_takes_up_is_no_agreement_where_the_set_up_as_told_m
     assert verdict(made) == "cannot_tell"
     assert "set-up as told" in statement("cannot_tell", made)
     assert verdict(facts(**silent)) == "no_discrepancy"
+
+
+def test_what_a_withheld_effect_would_take_is_no_unknown_cause():
+    assert verdict(facts(left=criteria.OUTSIDE, p_after=0.002)) == "partly_explained"
+    assert verdict(facts(left=1.01 * criteria.OUTSIDE, p_after=0.002)) == "outside_catalogue"
 
 
 def test_too_few_trials_cannot_tell():

@@ -104,6 +104,29 @@ def test_a_further_effect_must_carry_over_to_a_condition_that_is_not_fitted(each
     assert selection.carries_over(moved) is expected
 
 
+@pytest.mark.parametrize(("kept", "chosen", "withheld"), [(30.0, ["a", "b"], ()), (1.0, ["a"], ("b",))])
+def test_a_further_effect_that_does_not_carry_over_is_withheld(monkeypatch, known_densities, kept, chosen, withheld):
+    a, b, groups = effect("a"), effect("b"), (0,) * 4 + (1,) * 4
+    one, other = fitted(a, density=100.0, conditions=groups), fitted(b, density=9.0, conditions=groups)
+    both = fitted(a, b, density=130.0, objective=-9.0, conditions=groups)
+    gain = Gain(np.full(8, 30.0), 30.0, 1.0, 9.0)
+    second = Scored(both, "b", gain, Gain(np.full(8, kept), kept, 1.0, 9.0), -50.0)
+    first = Scored(one, "a", Gain(np.full(8, 100.0), 100.0, 1.0, 9.0), None, -50.0)
+    monkeypatch.setattr(selection, "usable", lambda base, effect: True)
+    ranked = [Screened(each, 9.0, np.zeros((1, 8))) for each in (a, b)]
+    monkeypatch.setattr(
+        selection, "screen", lambda fit, rest: tuple(r for r in ranked if r.effect in rest) if rest else ()
+    )
+    monkeypatch.setattr(
+        selection, "score", lambda fit, fits: [] if not fits else [second] if fit.model.effects else [first]
+    )
+    found = selection.select(
+        fitted(conditions=groups), [a, b], replace(SETTINGS, most_effects=2), Work(one, other, both, fitted(b, a))
+    )
+    assert [each.slug for each in found.chosen.model.effects] == chosen
+    assert found.withheld == withheld
+
+
 def test_of_equals_the_simplest_is_taken_then_the_first_of_the_catalogue():
     catalogue = [effect("two", 2), effect("first"), effect("second")]
     best = scored("two", 10.0, parameters=2)
