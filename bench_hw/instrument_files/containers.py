@@ -269,11 +269,39 @@ def _matlab(path: Path) -> list[Block]:
     from scipy.io import loadmat
 
     with open_regular(path, DOCUMENT) as stream:
-        if b"MATLAB 7.3" in stream.read(64):
-            allowed = "save(..., '-v7') in MATLAB, or writetable to a csv"
-            raise TableError(path, "this is a MATLAB file of version 7.3, which is HDF5", allowed)
-    table = loadmat(str(path), simplify_cells=True)
+        is_hdf5 = b"MATLAB 7.3" in stream.read(64)
+    table = _matlab_hdf5(path) if is_hdf5 else loadmat(str(path), simplify_cells=True)
     return list(_matlab_blocks(path, "", {key: value for key, value in table.items() if not key.startswith("__")}))
+
+
+def _matlab_hdf5(path: Path) -> dict[str, Any]:
+    """The variables of a file of version 7.3, which is HDF5 with the axes of arrays turned round."""
+    h5py = _library(path, "h5py", "h5py", "instruments")
+    with h5py.File(str(path), "r") as file:
+        return {key: _hdf5_value(file, item) for key, item in file.items() if not key.startswith("#")}
+
+
+def _hdf5_value(file: Any, item: Any) -> Any:
+    """A structure as a table, an array of structures as tables, a cell array as a list, text, or numbers."""
+    if hasattr(item, "items"):
+        fields = {key: _hdf5_value(file, inner) for key, inner in item.items()}
+        listed = [len(value) for key, value in fields.items() if _is_field_of_many(item[key])]
+        if fields and len(listed) == len(fields) and len(set(listed)) == 1:
+            return [{key: value[k] for key, value in fields.items()} for k in range(listed[0])]
+        return fields
+    if item.attrs.get("MATLAB_empty", 0):
+        return np.zeros(0)
+    values = np.asarray(item[()]).T
+    if values.dtype == object:
+        return [_hdf5_value(file, file[reference]) for reference in values.ravel(order="F")]
+    if item.attrs.get("MATLAB_class", b"") == b"char":
+        return "".join(map(chr, values.ravel(order="F")))
+    return float(values.ravel()[0]) if values.size == 1 else np.squeeze(values)
+
+
+def _is_field_of_many(item: Any) -> bool:
+    """Whether this is a field of an array of structures: references that are no cell array."""
+    return getattr(getattr(item, "dtype", None), "kind", "") == "O" and "MATLAB_class" not in item.attrs
 
 
 def _matlab_blocks(path: Path, name: str, table: Mapping[str, Any]) -> Iterator[Block]:

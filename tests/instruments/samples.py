@@ -358,6 +358,32 @@ def matlab(folder: Path) -> Path:
     return folder / "run.mat"
 
 
+def matlab_73(folder: Path) -> Path:
+    """Version 7.3, HDF5 behind a block of text: two structures by references, axes turned, texts as numbers."""
+    import h5py
+
+    one, path = press(), folder / "run73.mat"
+    with h5py.File(path, "w", userblock_size=512) as file:
+        hidden, runs = file.create_group("#refs#"), file.create_group("runs")
+        runs.attrs["MATLAB_class"] = np.bytes_("struct")
+        fields = {"time_s": one.time, "position_um": 3e3 + 1e3 * one.depth, "load_mN": 1e3 * one.force}
+        for key, values in fields.items():
+            references = []
+            for number in range(2):
+                inner = hidden.create_dataset(f"{key}{number}", data=values[None, :])
+                inner.attrs["MATLAB_class"] = np.bytes_("double")
+                references.append([inner.ref])
+            runs.create_dataset(key, data=references, dtype=h5py.ref_dtype)
+        radius = file.create_dataset("tool_radius_mm", data=[[5.0]])
+        radius.attrs["MATLAB_class"] = np.bytes_("double")
+        note = file.create_dataset("note", data=np.array([[ord(letter)] for letter in "second batch"], np.uint16))
+        note.attrs["MATLAB_class"] = np.bytes_("char")
+    content = bytearray(path.read_bytes())
+    content[:19] = b"MATLAB 7.3 MAT-file"
+    path.write_bytes(content)
+    return path
+
+
 def parquet(folder: Path) -> Path:
     """Columns with units in the fields' metadata; position instead of depth."""
     import pyarrow as pa
@@ -409,6 +435,7 @@ SAMPLES = {
     "jpk": Sample(jpk, "afmformats", depth=2e-6, force=8.485e-9),
     "tdms": Sample(tdms, "nptdms", depth=2e-6, force=0.8485e-6, radius=25e-6),
     "matlab": Sample(matlab, radius=5e-3),
+    "matlab_73": Sample(matlab_73, "h5py", 2),
     "parquet": Sample(parquet),
     "chinese": Sample(chinese),
 }

@@ -34,6 +34,8 @@ class TrialEntry(FileModel):
         What the trial shares with others: a speed, a depth, a day.
     markers : str or None
         CSV file of the marker tracks, inside the session's folder.
+    film : str or None
+        Video of the markers, inside the session's folder, tracked in the run with the camera of [camera] file.
     sheet : str or None
         The sheet, group or test of an instrument's file; None: each that holds a record is a trial.
     """
@@ -41,6 +43,7 @@ class TrialEntry(FileModel):
     file: Name
     condition: Name
     markers: Name | None = None
+    film: Name | None = None
     sheet: Name | None = None
 
 

@@ -34,6 +34,10 @@ NOTES = (".txt", ".dat", ".asc", ".tab", ".tsv")
 """Endings of text that need not be a trial: without rows of numbers it is left aside where nobody listed it."""
 
 
+SHALLOWEST = 25e-6
+"""A session pressed less deep (m) has no tool of the assumed 5 mm radius, 200 times as wide: it is asked for."""
+
+
 @dataclass(frozen=True, eq=False)
 class Recording:
     """One trial of a file.
@@ -153,6 +157,28 @@ def with_headers(file: SessionFile, trials: Sequence[Recording]) -> tuple[Sessio
         update = {"tool": {**common, **file.tool}}
     said = sorted({source for trial in trials for source in trial.header.sources})
     return file.model_copy(update=update), [f"tool and specimen as the files' headers tell: {'; '.join(said)}"]
+
+
+def check_tool_is_told(file: SessionFile, trials: Sequence[Recording]) -> None:
+    """Refuse presses for which the usual tool is out of the question, where nobody says which it was.
+
+    Raises
+    ------
+    InputError
+        A condition is pressed less deep than `SHALLOWEST` and its tool's radius is not told.
+    """
+    for name in dict.fromkeys(trial.entry.condition for trial in trials):
+        own = [trial for trial in trials if trial.entry.condition == name]
+        deepest = max(float(trial.table.depth.max()) for trial in own)
+        keys = file.conditions.get(name, ConditionKeys())
+        if deepest < SHALLOWEST and "radius" not in file.tool and "radius" not in keys.tool:
+            raise InputError(
+                f"condition {name}: pressed {1e6 * deepest:.3g} um deep, and neither file nor "
+                f"session tells the tool's radius; 5 mm are assumed from {1e6 * SHALLOWEST:g} um on. "
+                "State it: "
+                '--set tool.radius="..." (for a ball also --set tool.edge_radius="..." of the same value and '
+                "--set tool.contact=rigid_frictionless), or the keys in session.toml."
+            )
 
 
 def _tool(condition: str, trials: Sequence[Recording]) -> dict[str, str]:

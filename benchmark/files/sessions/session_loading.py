@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
 from bench_hw.tables import TrialTable
+from benchmark.errors import InputError
 from benchmark.files.load import Load
 from benchmark.files.loading import (
     TISSUE_KEYS,
@@ -26,6 +28,7 @@ from benchmark.files.sessions.depth_counts import even_depths
 from benchmark.files.sessions.description import Camera, SessionFile, assumptions, base_setup, setups
 from benchmark.files.sessions.recordings import (
     Recording,
+    check_tool_is_told,
     on_trials_clock,
     read_recordings,
     recorded_names,
@@ -83,10 +86,13 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
     paths = {key: route for key in inner if (route := _session_path(key, table))}
     changed, source = put_in(table, source, paths, inner)
     file = validated(SessionFile, changed, source)
-    paths_of, marker_paths = trial_paths(file.trials, source)
+    paths_of, marker_paths, film_paths = trial_paths(file.trials, source)
+    _check_films(file, source, film_paths)
     read = read_recordings(file, paths_of, listed=bool(source.text))
     file, told = with_headers(file, read.trials)
+    check_tool_is_told(file, read.trials)
     trials, warnings = _trials(file, source, read.trials, paths_of, marker_paths)
+    trials = _filmed(trials, read.trials, dict(zip(map(id, file.trials), film_paths, strict=True)))
     chosen = overrides.get("specimen", specimen)
     of_tissue = {key: value for key, value in inner.items() if key not in paths}
     tissue, assumed, tissue_file = _specimen(file, source, chosen, read.trials, of_tissue)
@@ -111,6 +117,19 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
     )
     _check_presses(session)
     return session
+
+
+def _check_films(file: SessionFile, source: Source, films: Sequence[Path | None]) -> None:
+    """Refuse a film whose camera nobody gave."""
+    if any(films) and (file.camera is None or file.camera.file is None):
+        raise InputError(
+            f"{source.place(('trials',), 'trials')}: a film is tracked with its camera; give [camera] with "
+            'marker_rows, marker_columns, marker_spacing and file = "camera.toml", as bench_hw calibrate writes it.'
+        )
+
+
+def _filmed(trials: Sequence[Trial], read: Sequence[Recording], films: Mapping[int, Path | None]) -> list[Trial]:
+    return [replace(trial, film=films.get(id(each.entry))) for trial, each in zip(trials, read, strict=True)]
 
 
 def _check_presses(session: Session) -> None:
@@ -210,7 +229,7 @@ def _check_key(key: str, tissue: dict[str, Any]) -> None:
 
 
 def _files(trials: Sequence[Trial]) -> list[Path]:
-    return [path for trial in trials for path in (trial.path, trial.markers_path) if path is not None]
+    return [path for trial in trials for path in (trial.path, trial.markers_path, trial.film) if path is not None]
 
 
 def _other_files(file: SessionFile, source: Source, specimen: Path | None) -> list[Path]:

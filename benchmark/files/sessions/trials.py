@@ -41,6 +41,8 @@ class Trial:
         Marker tracks.
     markers_path : Path or None
         Their file.
+    film : Path or None
+        A video of them, to be tracked.
     """
 
     name: str
@@ -51,17 +53,24 @@ class Trial:
     table: TrialTable
     markers: MarkerTable | None = None
     markers_path: Path | None = None
+    film: Path | None = None
 
 
-def trial_paths(entries: Sequence[TrialEntry], source: Source) -> tuple[list[Path], list[Path | None]]:
-    """The files of the trials and of their markers, all inside the session's folder; raises InputError."""
-    files, markers = [], []
+def trial_paths(
+    entries: Sequence[TrialEntry], source: Source
+) -> tuple[list[Path], list[Path | None], list[Path | None]]:
+    """The files of the trials, of their markers and films, all inside the session's folder; raises InputError."""
+    files, markers, films = [], [], []
     for index, entry in enumerate(entries):
         place = source.place(("trials", index, "file"), f"trials[#{index + 1}].file")
         files.append(inside(source.folder, entry.file, place))
         place = source.place(("trials", index, "markers"), f"trials[#{index + 1}].markers")
         markers.append(None if entry.markers is None else inside(source.folder, entry.markers, place))
-    return files, markers
+        place = source.place(("trials", index, "film"), f"trials[#{index + 1}].film")
+        films.append(None if entry.film is None else inside(source.folder, entry.film, place))
+        if entry.film is not None and entry.markers is not None:
+            raise InputError(f"{place}: this trial has marker tracks, too; allowed: markers or film.")
+    return files, markers, films
 
 
 def trial_names(paths: Sequence[Path], folder: Path) -> list[str]:

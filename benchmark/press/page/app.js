@@ -159,7 +159,7 @@
       if (now.compared) lines(l, top, now, low, high);
     });
     if (!hole) {
-      state.plate.fill(grid.xs, rows, FLAT, FLAT, 0, null, -depth - 0.02, -depth - PLATE, true);
+      state.plate.fill(grid.xs, rows, FLAT, FLAT, 0, null, -depth, -depth - PLATE, true);
       renderer.draw(state.plate.mesh, Scene.rgb(shade("tool")), { from: state.plate.faceIndices });
     }
     targets(lift * (count - 1));

@@ -17,6 +17,7 @@ from bench_hw.vision.camera.pinhole import Camera, distance_of
 from bench_hw.vision.displacement.tracks import tracks_of
 from benchmark.errors import InputError
 from benchmark.files import Session, Trial
+from benchmark.files.sessions.recordings import on_trials_clock
 from benchmark.files.sessions.trials import read_markers
 from benchmark.identification import Film
 from benchmark.response import CameraView
@@ -130,8 +131,10 @@ def _sources(session: Session, layout: Layout, listener: Listener) -> Iterator[F
     for trial in session.trials:
         if trial.markers is not None:
             yield trial.markers, None, ()
+        elif trial.film is not None:
+            yield _on_clock(session, trial, _track(session, trial, trial.film, layout, listener))
         elif trial.path.suffix.lower() == ".mcap" and _camera_file(session) is not None and _filmed(trial.path):
-            yield _track(session, trial, layout, listener)
+            yield _track(session, trial, trial.path, layout, listener)
         else:
             yield None
 
@@ -151,32 +154,49 @@ def _camera_file(session: Session) -> Path | None:
     return None if camera is None or camera.file is None else session.folder / camera.file
 
 
-def _track(session: Session, trial: Trial, layout: Layout, listener: Listener) -> Found:
+def _on_clock(session: Session, trial: Trial, found: Found) -> Found:
+    """Tracks of a film that started at another time, on the trial's clock by the press itself."""
+    markers, tracked, said = found
+    if session.camera is None or session.camera.clock != "press" or tracked is None:
+        return found
+    moved, sentence = on_trials_clock(trial.name, trial.table, markers)
+    shift = float(moved.time[0] - markers.time[0])
+    return moved, replace(tracked, table=_later(tracked.table, shift)), (*said, sentence)
+
+
+def _later(table: bytes, shift: float) -> bytes:
+    """A table of tracks whose first column, the time in s, is later by `shift`."""
+    head, *rows = table.decode("utf-8").splitlines()
+    moved = (f"{float(time) + shift!r},{rest}" for time, _, rest in (row.partition(",") for row in rows))
+    return "\n".join([head, *moved, ""]).encode("utf-8")
+
+
+def _track(session: Session, trial: Trial, pictures: Path, layout: Layout, listener: Listener) -> Found:
     """The tracks of a trial's pictures: kept from an earlier command on the same ones, or made now."""
     camera = _camera_file(session)
     assert camera is not None
-    key = film_key(trial.path, camera, (layout.rows, layout.columns))
+    key = film_key(pictures, camera, (layout.rows, layout.columns))
     film = kept_film(key)
     if film is None:
-        film = _tracked_now(trial, camera, layout, listener)
+        film = _tracked_now(trial, pictures, camera, layout, listener)
         keep_film(key, film)
     else:
         listener.say(f"{trial.name}: the same pictures were tracked before, their tracks are taken")
     with tempfile.TemporaryDirectory() as scratch:
         table = Path(scratch) / "markers.csv"
         table.write_bytes(film.table)
-        markers = replace(read_markers(table), source=str(trial.path))
+        markers = replace(read_markers(table), source=str(pictures))
     tracked = Tracked(trial.name, film.table, film.still, film.frames, film.missing_percent)
     return markers, tracked, tuple(f"{trial.name}: {text}" for text in film.warnings)
 
 
-def _tracked_now(trial: Trial, camera: Path, layout: Layout, listener: Listener) -> KeptFilm:
+def _tracked_now(trial: Trial, pictures: Path, camera: Path, layout: Layout, listener: Listener) -> KeptFilm:
     """Track the pictures of a trial in a folder that is gone afterwards."""
     from bench_hw.vision.tracking.film import TrackOrder, track
 
     with tempfile.TemporaryDirectory() as scratch, listener.progress(f"{trial.name}: tracking the markers") as advance:
         out, still = Path(scratch) / "markers.csv", Path(scratch) / "still.png"
-        order = TrackOrder(str(trial.path), camera, out, layout=layout, still=still)
+        order = TrackOrder(str(pictures), camera, out, layout=layout, still=still)
         try:
             outcome = track(order, lambda done, total: advance("tracking", done, total or done, f"picture {done}"))
         except BenchError as error:

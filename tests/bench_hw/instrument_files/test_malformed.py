@@ -144,7 +144,7 @@ BINARIES = {
     "a TDMS file that is text": ("a.tdms", table().encode(), "no whole TDMS file"),
     "a curve that is no zip": ("a.jpk-force", b"abc", "no whole atomic-force curve"),
     "a MATLAB file that is text": ("a.mat", table().encode(), "no whole MATLAB file"),
-    "a MATLAB file of version 7.3": ("a.mat", b"MATLAB 7.3 MAT-file".ljust(128), "save.*-v7"),
+    "a MATLAB file of version 7.3 that is cut": ("a.mat", b"MATLAB 7.3 MAT-file".ljust(128), "no whole MATLAB file"),
     "a Parquet file cut": ("a.parquet", b"PAR1abc", "no whole Parquet file"),
 }
 

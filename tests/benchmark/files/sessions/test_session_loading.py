@@ -10,6 +10,7 @@ from benchmark.files import load_session, load_tissue
 from benchmark.files.load import Load
 from benchmark.files.sessions.session_loading import assumed_specimen
 from benchmark.files.tool import Support, Tool
+from tests.instruments.samples import jpk
 
 DATA = os.environ.get("TISSUEBENCH_DATA")
 
@@ -297,3 +298,14 @@ def test_columns_are_named_by_options_of_the_session(tmp_path, write_trial):
     told = {"import.time": "a:s", "import.depth": "b:mm", "import.force": "-c:N"}
     (trial,) = load_session(tmp_path, told).trials
     assert trial.table.force.max() == pytest.approx(79 / 300, abs=1e-5)
+
+
+def test_the_tool_of_an_atomic_force_curve_is_asked_for(tmp_path):
+    pytest.importorskip("afmformats")
+    curve = jpk(tmp_path)
+    with pytest.raises(InputError, match=r"condition curve: pressed 2 um deep.*--set tool\.radius"):
+        load_session(curve)
+    told = load_session(
+        curve, {"tool.radius": "5 um", "tool.edge_radius": "5 um", "tool.contact": "rigid_frictionless"}
+    )
+    assert told.tool.radius == 5e-6

@@ -4,9 +4,12 @@ import shutil
 from contextlib import nullcontext
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
+from bench_hw.trial_file import read_trial_mcap
+from bench_hw.vision.frames.opening import TrialFrames
 from benchmark.errors import InputError
 from benchmark.files import load_session
 from benchmark.runs.trials.film_tables import circles, marker_fits, motions_of
@@ -125,3 +128,65 @@ def test_the_same_pictures_are_tracked_once(session, tmp_path, monkeypatch) -> N
     assert again.warnings == first.warnings
     for key, film in first.films.items():
         np.testing.assert_array_equal(again.films[key].places, film.places)
+
+
+FILMED = """\
+schema = 1
+name = "webcam"
+specimen = "rtv3498_sheet"
+[tool]
+radius = "5 mm"
+contact = "rigid_bonded"
+[camera]
+marker_rows = 3
+marker_columns = 6
+marker_spacing = "8 mm"
+{camera}
+clock = "press"
+[[trials]]
+file = "force.csv"
+film = "film.avi"
+condition = "press"
+{more}
+"""
+
+
+@pytest.fixture
+def webcam(tmp_path):
+    """The phantom's first press as a lab without a bench has it: a video that started later, and a force file."""
+    frames = [frame for frame in TrialFrames(PHANTOM / "press_01.mcap").frames() if frame.time >= 0.8]
+    rate = (len(frames) - 1) / (frames[-1].time - frames[0].time)
+    writer = cv2.VideoWriter(str(tmp_path / "film.avi"), cv2.VideoWriter.fourcc(*"FFV1"), rate, (640, 480), False)
+    for frame in frames:
+        writer.write(frame.grey)
+    writer.release()
+    table = read_trial_mcap(PHANTOM / "press_01.mcap")
+    rows = zip(table.time[::5], 1e3 * table.depth[::5], table.force[::5], strict=True)
+    lines = (f"{time:.4f},{depth:.4f},{force:.5f}" for time, depth, force in rows)
+    (tmp_path / "force.csv").write_text("\n".join(["Time (s),Displacement (mm),Load (N)", *lines]))
+    shutil.copy(PHANTOM / "camera.toml", tmp_path)
+
+    def load(camera='file = "camera.toml"', more=""):
+        (tmp_path / "session.toml").write_text(FILMED.format(camera=camera, more=more))
+        return load_session(tmp_path)
+
+    return load, frames[0].time
+
+
+def test_a_video_that_started_at_another_time_is_put_on_the_force_s_clock_by_the_press(webcam):
+    load, began = webcam
+    found = session_films(load(), Quiet())
+    film = found.films["press", "force"]
+    assert film.time[0] == pytest.approx(began, abs=0.02)
+    (said,) = (text for text in found.warnings if "clock is shifted" in text)
+    assert "standard deviation 0.00" in said
+    first = float(found.tracked[0].table.decode().splitlines()[1].split(",")[0])
+    assert first == pytest.approx(film.time[0], abs=1e-9)  # the table that is kept is on that clock, too
+
+
+def test_a_film_needs_its_camera_and_no_tracks_beside_it(webcam):
+    load, _ = webcam
+    with pytest.raises(InputError, match="tracked with its camera"):
+        load(camera="")
+    with pytest.raises(InputError, match="allowed: markers or film"):
+        load(more='markers = "force.csv"')
