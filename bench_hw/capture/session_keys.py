@@ -88,6 +88,7 @@ class TrialKeys(StrictModel):
     file: Name
     condition: Name
     markers: Name | None = None
+    film: Name | None = None
     sheet: Name | None = None
 
 
