@@ -23,6 +23,7 @@ import numpy as np
 from bench_hw.vision.camera.camera_file import read_camera
 from bench_hw.vision.camera.pinhole import Camera
 from bench_hw.vision.markers import detect_grid
+from bench_hw.vision.markers.grid import unseen
 from bench_hw.vision.tracking import METHODS
 from bench_hw.vision.tracking.linking import JumpError
 
@@ -165,6 +166,12 @@ class Score:
         return Score(*((a[0] + b[0], a[1] + b[1]) if isinstance(a, tuple) else a + b for a, b in pairs))
 
     @property
+    def standardised(self) -> float:
+        """Root mean square of true over stated error of the kept, along an axis; 1 where the statement is right."""
+        squares, count = self.calibrated
+        return float(np.sqrt(squares / max(count, 1)))
+
+    @property
     def rms(self) -> float:
         """Of the kept, pixels."""
         return float(np.sqrt(self.squares / max(self.kept, 1)))
@@ -173,23 +180,25 @@ class Score:
         """For people."""
         return (
             f"{name:34} kept {100 * self.kept / max(self.true, 1):6.2f} % of {self.true}, wrong {self.wrong:3d}, "
-            f"rms {self.rms:.4f} px, {self.pictures / max(self.seconds, 1e-9):.0f} a CPU second"
+            f"rms {self.rms:.4f} px, {self.standardised:.2f} of the error stated, "
+            f"{self.pictures / max(self.seconds, 1e-9):.0f} a CPU second"
         )
 
 
 def judged(method: str, film: Film, seed: int, camera: Camera, kit: ModuleType) -> Score:
     """Follow a film."""
-    true = kept = wrong = pictures = 0
-    squares = seconds = 0.0
+    true = kept = wrong = pictures = stated = 0
+    squares = seconds = ratios = 0.0
     tracker = None
     for shot in shots(film, seed, kit):
         if tracker is None:
             tracker = METHODS[method](shot.grey, detect_grid(shot.grey, straight=camera.straightened), camera)
         begun = time.process_time()
         try:
-            pixels = camera.to_pixels(tracker.step(shot.grey).points)
+            sighting = tracker.step(shot.grey)
         except JumpError:
-            pixels = np.full_like(shot.truth, np.nan)
+            sighting = unseen(len(shot.truth))
+        pixels = camera.to_pixels(sighting.points)
         seconds += time.process_time() - begun
         off = np.hypot(*(pixels - shot.truth).T)
         found = np.isfinite(off)
@@ -198,7 +207,11 @@ def judged(method: str, film: Film, seed: int, camera: Camera, kit: ModuleType) 
         wrong += int((found & ~good).sum())
         squares += float((off[good & shot.visible] ** 2).sum())
         pictures += 1
-    return Score(true, kept, wrong, squares, seconds, pictures)
+        if sighting.error.size:
+            chosen = good & shot.visible
+            ratios += float(((pixels - shot.truth)[chosen] ** 2 / sighting.error[chosen, None] ** 2).sum())
+            stated += 2 * int(chosen.sum())
+    return Score(true, kept, wrong, squares, seconds, pictures, (ratios, stated))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -120,12 +120,16 @@ class Sighting:
         Of a circle of the same area, pixels; NaN likewise.
     confidence : ndarray, shape (m,)
         0 (not seen) to 1.
+    error : ndarray, shape (m,) or (0,)
+        Standard deviation of a centroid along one axis as the picture's noise and what is covered let it be expected,
+        pixels; NaN where a marker was not seen; empty where the method cannot say.
     """
 
     points: FloatArray
     pixels: FloatArray
     radius: FloatArray
     confidence: FloatArray
+    error: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     @property
     def seen(self) -> NDArray[np.bool_]:
@@ -140,14 +144,16 @@ class Sighting:
             _with_nan(self.pixels, hidden),
             _with_nan(self.radius, hidden),
             np.where(chosen, self.confidence, 0.0),
+            _with_nan(self.error, hidden) if self.error.size else self.error,
         )
 
     def merged(self, other: Sighting, which: NDArray[np.int64]) -> Sighting:
         """Give it with the markers `which` as another sighting, of just those, has them."""
         arrays = []
-        for name in ("points", "pixels", "radius", "confidence"):
+        for name in ("points", "pixels", "radius", "confidence", "error"):
             values = getattr(self, name).copy()
-            values[which] = getattr(other, name)
+            if values.size:
+                values[which] = getattr(other, name)
             arrays.append(values)
         return Sighting(*arrays)
 
@@ -155,7 +161,8 @@ class Sighting:
 def unseen(count: int) -> Sighting:
     """Give a picture in which none of `count` markers was seen."""
     nowhere = np.full((count, 2), np.nan)
-    return Sighting(nowhere, nowhere.copy(), np.full(count, np.nan), np.zeros(count))
+    nan = np.full(count, np.nan)
+    return Sighting(nowhere, nowhere.copy(), nan, np.zeros(count), nan.copy())
 
 
 def _with_nan(values: FloatArray, where: NDArray[np.bool_]) -> FloatArray:

@@ -37,13 +37,21 @@ class Tally:
         self.missing: IntArray = np.zeros(markers, dtype=np.int64)
         self.unplaced = 0
         self.confidence = np.zeros(markers)
+        self.squares = np.zeros(markers)
 
     def count(self, sighting: Sighting, places: FloatArray) -> None:
         """Count a picture."""
         self.frames += 1
         self.missing += ~sighting.seen
         self.confidence += sighting.confidence
+        self.squares += np.nan_to_num(sighting.error**2) if sighting.error.size else np.nan
         self.unplaced += int((sighting.seen & ~np.isfinite(places).all(axis=1)).sum())
+
+    @property
+    def error(self) -> FloatArray:
+        """Stated standard deviation of each marker's centroid along an axis, root mean square, pixels, (m,)."""
+        seen = self.frames - self.missing
+        return np.asarray(np.sqrt(self.squares / np.where(seen > 0, seen, np.nan)))
 
     def warnings(self) -> list[str]:
         """Give a sentence for each thing that was not as it should be."""
@@ -107,6 +115,7 @@ class TrackOutcome:
             "spacing_px": grid.spacing,
             "missing": tally.missing.tolist(),
             "mean_confidence": (tally.confidence / max(tally.frames, 1)).tolist(),
+            "error_px": tally.error.tolist(),
             "warnings": list(self.warnings),
         }
 

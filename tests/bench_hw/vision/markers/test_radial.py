@@ -35,6 +35,15 @@ def test_the_truth_is_found_to_two_hundredths_of_a_pixel(set_up):
     assert sighting.radius == pytest.approx(1.2 / renderer.scene.mm_per_px, rel=0.08)
 
 
+def test_the_error_that_is_stated_is_the_error(set_up):
+    renderer, camera, grid, edges = set_up
+    ratios = []
+    for _ in range(12):
+        sighting = edges.look(renderer.frame(), grid.centres, EVERYONE)
+        ratios.append(errors(sighting, camera, renderer) ** 2 / (2.0 * sighting.error**2))
+    assert 0.8 < np.sqrt(np.mean(ratios)) < 1.25  # nothing in the statement was fitted to errors
+
+
 @pytest.mark.parametrize("off", [0.5, 1.5, 3.0, 4.0])
 def test_where_it_begins_makes_no_difference(set_up, off):
     renderer, camera, grid, edges = set_up
