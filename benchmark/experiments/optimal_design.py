@@ -9,7 +9,7 @@ there may not be so elsewhere.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from typing import Any, TypeAlias
@@ -113,11 +113,23 @@ def designed(answer: Identified, specimen: int = 0) -> Design | None:
                 proposals.append(made)
     if not proposals:
         return None
-    most = max(one.determines for one in proposals)
-    able = [one for one in proposals if one.determines == most]
+    able = _able(proposals, {one.setup[1].radius for one in presses})
     best_d = max(able, key=lambda one: one.determinant / one.minutes)
     best_a = max(able, key=lambda one: one.trace / one.minutes)
     return Design(tuple(proposals), best_d, best_a, np.sqrt(np.diag(now)))
+
+
+def _able(proposals: Sequence[Proposal], radii: Collection[float]) -> list[Proposal]:
+    """Proposals that determine the most; where one tool has pressed, of these those with another tool, if there are.
+
+    Under one tool layers are told apart by the bend of force over depth alone, in which finite-element codes differ by
+    0.2 to 0.4 %: a deeper press then narrows intervals more than it should.
+    """
+    most = max(one.determines for one in proposals)
+    able = [one for one in proposals if one.determines == most]
+    if len(radii) > 1:
+        return able
+    return [one for one in able if one.tool.radius not in radii] or able
 
 
 def _tools(presses: Sequence[Press]) -> Iterator[tuple[Press, Tool, str]]:

@@ -1,8 +1,10 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from bench_hw.motion.protocol_file import load_protocol
-from benchmark.experiments.optimal_design import designed
+from benchmark.experiments.optimal_design import _able, designed
 from benchmark.identification.parameters.identifiability import directions
 from benchmark.identification.parameters.identified import identify
 
@@ -34,3 +36,13 @@ def test_the_bench_reads_what_is_proposed(design, tmp_path) -> None:
     protocol = load_protocol(path).protocol
     assert protocol.segments
     assert np.isfinite(design.best_d.minutes)
+
+
+def test_after_one_tool_another_is_proposed_where_it_determines_as_much(design) -> None:
+    other = design.best_d
+    same = replace(other, tool=other.tool.model_copy(update={"radius": 2e-3}))
+    assert other.tool.radius != 2e-3
+    assert _able((same, other), {2e-3}) == [other]
+    assert _able((same,), {2e-3}) == [same]
+    assert _able((same, other), {2e-3, 5e-3}) == [same, other]
+    assert _able((same, replace(other, errors=other.errors + 9.0)), {2e-3}) == [same]
