@@ -13,7 +13,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from benchmark.errors import SolverError
+from benchmark.errors import InputError, SolverError
 from benchmark.files import Session
 from benchmark.identification.parameters.free_parameters import (
     COMMON,
@@ -124,7 +124,14 @@ def surrogate(
     chains = {k: _chain(parameters[k], values, setup) for k in acting}
     wanted = {key for chain in chains.values() for key in chain} | {f"{name}.stiffness" for name in relaxing}
     session = _with_friction(press.session, values)
-    ramp = differentiated_ramp(session, *setup, press.depth, sorted(wanted), forward, STEPS)
+    try:
+        ramp = differentiated_ramp(session, *setup, press.depth, sorted(wanted), forward, STEPS)
+    except InputError:
+        if FRICTION not in values:
+            raise
+        raise SolverError(
+            f"the press is not differentiated at a friction coefficient of {values[FRICTION]:.3g}"
+        ) from None
     if ramp.failure is not None or ramp.depth[-1] < press.depth * (1.0 - 1e-9):
         raise StopsError(press.depth, float(ramp.depth[-1]))
     by = np.zeros((len(parameters), GRID))
