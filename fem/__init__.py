@@ -24,6 +24,7 @@ from fem.problem.problem import Problem
 from fem.results.solution import Failure, Resumed, Solution, StepReport
 from fem.sensitivity.differentiate import differentiate
 from fem.sensitivity.problem_change import DifferentiatedSolution, ProblemChange, SolutionDerivative
+from fem.setup.mesh_error import MeshError, estimate_mesh_error
 from fem.setup.prepare import prepare
 
 __all__ = [
@@ -39,6 +40,7 @@ __all__ = [
     "LinearElastic",
     "Load",
     "Material",
+    "MeshError",
     "MooneyRivlin",
     "NeoHookean",
     "NotDifferentiableError",
@@ -54,6 +56,7 @@ __all__ = [
     "Tool",
     "Yeoh",
     "differentiate",
+    "estimate_mesh_error",
     "prepare",
     "read_surface",
 ]

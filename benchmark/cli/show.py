@@ -34,7 +34,11 @@ def show_runs(
         for warning in outcome.warnings:
             console.say(f"  warning: {warning}")
         if not as_json:
-            print(f"{outcome.document['name']}: {outcome.headline}\n  report: {outcome.report}")
+            print(f"{outcome.document['name']}: {outcome.headline}")
+            fem = outcome.document.get("models", {}).get("fem", {}).get("notes", {})
+            if "discretisation error" in fem:
+                print(f"  FEM mesh: {fem['discretisation error']}")
+            print(f"  report: {outcome.report}")
     stopped = [outcome for outcome in outcomes if not outcome.complete]
     if stopped:
         failures = [

@@ -17,6 +17,8 @@ from benchmark.models.model_result import Array, Drive, LowerFace, RunFailure
 from fem.analysis.prepared import Model
 from fem.arrays import IntArray
 
+STEEP = 1e-6  # of an element's length: where the radius changes less with the place in it, it stands still
+
 
 @dataclass(frozen=True)
 class ScenarioChange:
@@ -176,12 +178,23 @@ def _derivative(
 
 
 def slopes(radius: Array, values: Array) -> Array:
-    """Derivative over the radius (2 e + 1,) of values (n, 2 e + 1, c) on e quadratic elements; at corners the mean."""
-    start, middle, end = values[:, :-2:2], values[:, 1:-1:2], values[:, 2::2]
-    length = np.diff(radius[::2])[None, :, None]
-    first, last = (-3.0 * start + 4.0 * middle - end) / length, (start - 4.0 * middle + 3.0 * end) / length
+    """Derivative over the radius (2 e + 1,) of values (n, 2 e + 1, c) on e quadratic elements; at corners the mean.
+
+    Where an element holds the square root of the distance from a corner, its slope half-way stands for that there.
+    """
+    rises, runs = _rises(values), _rises(radius[None, :, None])
+    middle = rises[1] / runs[1]
+    first, last = (
+        np.where(np.abs(run) > STEEP * np.abs(runs[1]), rise / np.where(run == 0.0, 1.0, run), middle)
+        for rise, run in ((rises[0], runs[0]), (rises[2], runs[2]))
+    )
     out = np.empty_like(values)
-    out[:, 1::2] = (end - start) / length
-    out[:, 0], out[:, -1] = first[:, 0], last[:, -1]
+    out[:, 1::2], out[:, 0], out[:, -1] = middle, first[:, 0], last[:, -1]
     out[:, 2:-1:2] = 0.5 * (last[:, :-1] + first[:, 1:])
     return out
+
+
+def _rises(values: Array) -> tuple[Array, Array, Array]:
+    """Derivatives of values (n, 2 e + 1, c) by the place in each of e elements, 0 to 1, at its three nodes."""
+    start, middle, end = values[:, :-2:2], values[:, 1:-1:2], values[:, 2::2]
+    return -3.0 * start + 4.0 * middle - end, end - start, start - 4.0 * middle + 3.0 * end

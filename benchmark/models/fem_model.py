@@ -27,6 +27,9 @@ from benchmark.models.model_result import (
 from benchmark.models.scenario_effects import Given, refuse_options
 from fem.analysis.prepared import Model
 
+DISCRETISATION = "discretisation error"
+UNITS = {"force": (1.0, "N"), "depth": (1e3, "mm")}
+
 
 class FemModel:
     """A scenario meshed and set up.
@@ -39,6 +42,8 @@ class FemModel:
         Keep the fields of each step instead of the peak's and the last one's.
     keeping
         Where the steps of the one load history that is followed are kept, and taken up; None keeps nothing.
+    judge_mesh
+        Whether results tell the discretisation error of their mesh, which takes further solutions.
     added
         Effects of a model file; those that the solver does not carry by itself are `carried.on_top`.
 
@@ -56,12 +61,14 @@ class FemModel:
         *,
         every_field: bool = False,
         keeping: Keeping | None = None,
+        judge_mesh: bool = False,
         added: tuple[Given, ...] = (),
     ):
         refuse_options(scenario, carried_keys(), fibres=True)
         self._scenario = scenario
         self._every_field = every_field
         self._keeping = keeping
+        self._judge_mesh = judge_mesh
         refuse_contact(scenario)
         try:
             slow = scenario.fem.geometry == "surface"
@@ -100,6 +107,7 @@ class FemModel:
         peak = int(np.abs(drive.value[:steps]).argmax()) if steps else 0
         radii = profile_radii(self._scenario.tool.radius)
         layers, choices = solution.layer_names, self._choices(model)
+        mesh_error = fem.estimate_mesh_error(model, load, solution) if self._judge_mesh else None
         return ModelResult(
             model="fem",
             layers=tuple(layers),
@@ -111,12 +119,13 @@ class FemModel:
             profile=solution.profile(peak, radii) if steps else np.full((len(layers), radii.size), np.nan),
             peak_step=peak,
             unknowns=model.unknowns,
-            notes=choices.notes(),
+            notes={**choices.notes(), **({DISCRETISATION: mesh_error_words(mesh_error)} if self._judge_mesh else {})},
             choices=choices,
             warnings=(*self.carried.remarks, *solution.warnings),
             resumed=_resumption(solution, load),
             failure=run_failure(solution, load),
             last=_last(solution),
+            mesh_error=mesh_error,
             fields=tuple(_snapshot(solution, step) for step in self._field_steps(peak, steps)),
         )
 
@@ -129,6 +138,19 @@ class FemModel:
         if not steps:
             return []
         return list(range(steps)) if self._every_field else sorted({peak, steps - 1})
+
+
+def mesh_error_words(found: fem.MeshError | None) -> str:
+    """The discretisation error of a mesh in a sentence."""
+    if found is None:
+        return "not estimated: there is no like mesh with larger elements that follows the press"
+    prescribed = "force" if found.quantity == "depth" else "depth"
+    (scale, unit), (load_scale, load_unit) = UNITS[found.quantity], UNITS[prescribed]
+    side = "large" if found.percent > 0.0 else "small"
+    return (
+        f"{found.quantity} {scale * found.value:.5g} {unit} at {load_scale * found.load:.4g} {load_unit} is estimated "
+        f"{abs(found.percent):.2g} % too {side} ({scale * found.extrapolated:.5g} {unit} in the limit of refinement)"
+    )
 
 
 def _resumption(solution: fem.Solution, load: fem.Load) -> Resumption | None:

@@ -79,9 +79,9 @@ class KeptSteps:
         self._due = now + max(LEAST_PAUSE, (now - started) / SHARE)
 
 
-WIDER = (2.0, 4.0)
+WIDER = (2.0, 4.0, 8.0)
 """How much larger the elements at the edge are in each further try."""
-MOST_APART = 3.0
+MOST_APART = 3.5
 """Difference from the usual mesh in %, where both are known, beyond which a try is not believed."""
 
 Run = Callable[[Model, float], fem.Solution]

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from fem import MeshError
 
 Array = NDArray[np.float64]
 _SAME = 1e-9
@@ -209,6 +212,8 @@ class ModelResult:
         What the model chose, as facts; None of a user's own.
     last
         Of a run that stopped early its last state of equilibrium, if it has one (FEM only).
+    mesh_error
+        Estimated discretisation error at the largest load; None where it was not asked for or cannot be told.
     """
 
     model: str
@@ -228,6 +233,7 @@ class ModelResult:
     resumed: Resumption | None = None
     last: LastState | None = None
     choices: FemChoices | WaveChoices | None = None
+    mesh_error: MeshError | None = None
 
     @property
     def complete(self) -> bool:
@@ -302,14 +308,8 @@ def profile_radii(tool_radius: float) -> Array:
 class LowerFace:
     """Displacement of the lower face at each depth of a ramp; SI.
 
-    Attributes
-    ----------
-    depth : (k,) array
-        Of the press, m, increasing from 0.
-    radius : (m,) array
-        Distance from the tool axis before the press, m, increasing from 0.
-    outward, sunk : (k, m) array
-        Away from the axis and downwards, m.
+    `depth` (k,) of the press and `radius` (m,), the distance from the tool axis before it, increase from 0; `outward`
+    and `sunk` (k, m) are away from the axis and downwards.
     """
 
     depth: Array

@@ -14,6 +14,7 @@ def prepare(
     every_field: bool = False,
     own: UserFile | None = None,
     keeping: Keeping | None = None,
+    judge_mesh: bool = False,
 ) -> PreparedModel:
     """Set a model up for a scenario.
 
@@ -29,6 +30,8 @@ def prepare(
         A user's own model in the wave's place.
     keeping
         Where the steps of the load history are kept (FEM); None keeps nothing.
+    judge_mesh
+        Whether the result tells the discretisation error of its mesh (FEM), which takes further solutions.
 
     Raises
     ------
@@ -40,7 +43,7 @@ def prepare(
     if model == "fem":
         from benchmark.models.fem_model import FemModel
 
-        return FemModel(scenario, every_field=every_field, keeping=keeping)
+        return FemModel(scenario, every_field=every_field, keeping=keeping, judge_mesh=judge_mesh)
     if own is not None:
         from benchmark.models.user_model import UserModel
 

@@ -98,6 +98,7 @@ def prepare_with_effects(
     every_field: bool = False,
     own: UserFile | RepairedModel | None = None,
     keeping: Keeping | None = None,
+    judge_mesh: bool = False,
 ) -> PreparedModel:
     """Set a model up as `benchmark.models.prepare`, or with the effects of a model file switched on.
 
@@ -109,7 +110,7 @@ def prepare_with_effects(
         The scenario is at fault.
     """
     if not isinstance(own, RepairedModel):
-        return prepare(model, scenario, every_field=every_field, own=own, keeping=keeping)
+        return prepare(model, scenario, every_field=every_field, own=own, keeping=keeping, judge_mesh=judge_mesh)
     refuse_options_twice(own, scenario)
     scenario, switched = on_its_base(own, scenario), switched_on(own, scenario, model)
     if model == "fem":

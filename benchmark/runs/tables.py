@@ -11,6 +11,7 @@ from benchmark.comparison import normal_fit_columns, statistics_columns
 from benchmark.identification import parameter_columns
 from benchmark.models import Array, ModelResult
 from benchmark.runs.record import RunRecord
+from benchmark.runs.report.values import mesh_error_entry
 from benchmark.runs.trials.film_tables import circles, marker_fits
 from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.runs.validation import refinement_columns, validation_columns
@@ -31,6 +32,9 @@ def run_tables(record: RunRecord) -> dict[str, Columns]:
         "normal_fits.csv": normal_fit_columns(record.comparisons, (record.pair.fem.key, record.pair.wave.key)),
         "timing.csv": timing(record.pair),
     }
+    judged = None if record.pair.fem.result is None else record.pair.fem.result.mesh_error
+    if judged is not None:
+        tables["mesh_error.csv"] = {name: [value] for name, value in mesh_error_entry(judged).items()}
     if record.measured is not None:
         tables["fitted_parameters.csv"] = parameter_columns(record.measured.fit.parameters)
         tables["measured.csv"] = measured(record.measured)

@@ -149,8 +149,14 @@ def _run(connection: Connection, command: RunCommand, job: ModelJob) -> Finished
     drive = scenario_drive(job.scenario)
     keeping = Keeping(job.keep, say) if command.keep_result and job.keep is not None else None
     started = time.perf_counter()
-    every_field = job.every_field and command.keep_result
-    prepared = prepare_with_effects(job.model, job.scenario, every_field=every_field, own=job.own, keeping=keeping)
+    prepared = prepare_with_effects(
+        job.model,
+        job.scenario,
+        every_field=job.every_field and command.keep_result,
+        own=job.own,
+        keeping=keeping,
+        judge_mesh=command.keep_result,
+    )
     ready, cpu_ready = time.perf_counter(), time.process_time()
     reading = prepared.follow(drive, report if command.keep_result else silent)
     wall, cpu = time.perf_counter() - ready, time.process_time() - cpu_ready

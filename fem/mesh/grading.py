@@ -97,6 +97,27 @@ def graded_line(breaks: tuple[float, ...], sizing: Sizing, density: float = 1.0)
     return np.concatenate(pieces)
 
 
+def every_second(lines: FloatArray, breaks: tuple[float, ...]) -> FloatArray:
+    """Half the elements: every second grid line is left out, counted from both ends of each interval between breaks.
+
+    Parameters
+    ----------
+    lines
+        Positions (n,) in m, increasing.
+    breaks
+        Positions among them that stay. Of an odd number of elements the middle one stays whole.
+    """
+    ends = np.searchsorted(lines, np.array(breaks))
+    kept = [ends[:1]]
+    for start, end in itertools.pairwise(ends):
+        half = (end - start) // 4
+        left = start + 2 * np.arange(1, half + 1)
+        right = end - 2 * np.arange((end - start + 1) // 2 - half)[::-1]
+        kept.append(np.unique(np.concatenate((left, right))))
+    out: FloatArray = lines[np.concatenate(kept)]
+    return out
+
+
 def _samples(start: float, end: float, sizing: Sizing) -> FloatArray:
     """Points dense near the features, on which 1/size is integrated."""
     length = end - start

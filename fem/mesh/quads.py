@@ -1,18 +1,20 @@
 """Meshes of biquadratic quadrilaterals, and the node sets every part of the solver works with.
 
-The mesh of a layered specimen is a tensor product, with a fan of elements round the tool's edge if wanted. The two
-sides of an interface may be parted: nodes of their own, at the same places at rest.
+The mesh of a layered specimen is a tensor product, with fans of elements (:mod:`fem.mesh.fan`) round the tool's edge
+and the rim of a hole if wanted. The two sides of an interface may be parted: nodes of their own, at the same places at
+rest.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 import skfem
 
 from fem.arrays import BoolArray, FloatArray, IntArray
+from fem.mesh.fan import Fan
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,7 @@ class Mesh:
         return np.stack([along_row(self.nodes[row, 0], values[row], r) for row in self.interfaces])
 
 
-def mesh_of_quads(points: FloatArray, quads: IntArray, layer_tops: FloatArray) -> Mesh:
+def mesh_of_quads(points: FloatArray, quads: IntArray, layer_tops: FloatArray, fans: Iterable[Fan] = ()) -> Mesh:
     """Biquadratic mesh of quadrilaterals, its nodes numbered by scikit-fem.
 
     Parameters
@@ -78,6 +80,8 @@ def mesh_of_quads(points: FloatArray, quads: IntArray, layer_tops: FloatArray) -
         Corner numbers (4, E) around each quadrilateral.
     layer_tops
         Depths (L,) of the layers' top faces in m, from 0.
+    fans
+        Whose nodes at their points become one each.
     """
     basis = skfem.Basis(
         skfem.MeshQuad(np.ascontiguousarray(points.T), np.ascontiguousarray(quads)),
@@ -86,6 +90,8 @@ def mesh_of_quads(points: FloatArray, quads: IntArray, layer_tops: FloatArray) -
     )
     nodes = np.ascontiguousarray(basis.doflocs.T)
     elements = np.asarray(basis.element_dofs, dtype=np.int64)
+    for fan in fans:
+        nodes, elements = fan.gathered(nodes, elements)
     r, z = nodes.T
     interfaces = tuple(_row(r, np.flatnonzero(z == -depth)) for depth in layer_tops)
     return Mesh(
@@ -183,29 +189,7 @@ def _split_below(mesh: Mesh, layer: int) -> Mesh:
     )
 
 
-@dataclass(frozen=True)
-class Fan:
-    """A box round the tool's edge meshed by rays from the edge, collapsed quadrilaterals in its middle.
-
-    Under a stuck tool the material turns round the sharp edge. One element spanning the right angle under the
-    edge cannot follow and folds; rays share the turn among several elements.
-
-    Attributes
-    ----------
-    radius
-        Radius of the edge in m.
-    half_width
-        Half width and depth of the box in m; its sides must be grid lines.
-    rings
-        Sizes of the rings relative to the box, decreasing from 1.
-    """
-
-    radius: float
-    half_width: float
-    rings: tuple[float, ...]
-
-
-def build_mesh(r_lines: FloatArray, depth_lines: FloatArray, layer_tops: FloatArray, fan: Fan | None = None) -> Mesh:
+def build_mesh(r_lines: FloatArray, depth_lines: FloatArray, layer_tops: FloatArray, fans: Iterable[Fan] = ()) -> Mesh:
     """Mesh of the rectangles between grid lines.
 
     Parameters
@@ -216,32 +200,14 @@ def build_mesh(r_lines: FloatArray, depth_lines: FloatArray, layer_tops: FloatAr
         Depths (m,) in m, increasing from 0.
     layer_tops
         Depths (L,) of the layers' top faces in m, each one of `depth_lines`.
-    fan
-        Replaces the rectangles in its box.
+    fans
+        Each replaces the rectangles in its box.
     """
-    rows = len(depth_lines)
+    rows, fans = len(depth_lines), tuple(fans)
     r, depth = (grid.ravel() for grid in np.meshgrid(r_lines, depth_lines, indexing="ij"))
     points = np.stack((r, -depth), axis=1)
     corner = np.arange(len(r)).reshape(-1, rows)[:-1, 1:].ravel()
     quads = np.stack((corner, corner + rows, corner + rows - 1, corner - 1))
-    if fan is not None:
-        points, quads = _with_fan(points, quads, fan)
-    return mesh_of_quads(points, quads, layer_tops)
-
-
-def _with_fan(points: FloatArray, quads: IntArray, fan: Fan) -> tuple[FloatArray, IntArray]:
-    edge = np.array([fan.radius, 0.0])
-    offset = np.abs(points - edge).max(axis=1)
-    limit = fan.half_width * (1.0 + 1e-9)
-    kept = quads[:, ~(offset[quads] <= limit).all(axis=0)]
-    side = np.flatnonzero((offset <= limit) & (offset >= fan.half_width * (1.0 - 1e-9)))
-    angle = np.arctan2(-points[side, 1], points[side, 0] - fan.radius)
-    outer = side[np.argsort(-angle)]
-    rays, pieces, fans = points[outer] - edge, [points], [kept]
-    for ring in (*fan.rings[1:], 0.0):
-        inner = sum(len(piece) for piece in pieces) + np.arange(len(outer))
-        pieces.append(edge + ring * rays)
-        fans.append(np.stack((outer[:-1], outer[1:], inner[1:], inner[:-1])))
-        outer = inner
-    used, renumbered = np.unique(np.concatenate(fans, axis=1), return_inverse=True)
-    return np.concatenate(pieces)[used], renumbered.reshape(4, -1)
+    for fan in fans:
+        points, quads = fan.opened(points, quads)
+    return mesh_of_quads(points, quads, layer_tops, fans)

@@ -16,7 +16,7 @@ CLAMPS = ("plate", "rim")
 TOUCHING = ("rigid_frictionless", "rigid_frictional")
 LARGEST_FRICTION, LARGEST_ADHESION = 10.0, 1e3  # adhesion in N
 LARGEST_SHEAR_LIMIT = 1e12  # Pa
-LARGEST_EDGE = 4.0
+LARGEST_EDGE = 8.0
 LARGEST_TILT = math.radians(30.0)
 
 
@@ -176,14 +176,18 @@ class Discretisation:
         Finite strain: part of the bulk modulus, in shear moduli, that acts at each Gauss point instead of
         on the pressure field (see :func:`fem.assembly.elements.make_elements`); 0 gives the plain Q2/P1 element.
     edge
-        How much larger than usual, 1 to 4, the elements are round the edge of a tool stuck to a first layer that is not
-        thin, in finite strain and axial symmetry: a little stiffer, but they fold later.
+        How much larger than usual, 1 to 8, the elements are round the edge of a tool stuck to a first layer that is
+        not thin, in finite strain and axial symmetry: a little stiffer, but they fold later.
+    halved
+        Half as many elements in each direction, as two solutions need that tell the error of a mesh
+        (:func:`fem.estimate_mesh_error`).
     """
 
     density: Literal["coarse", "default", "fine"] = "default"
     radius: float | None = None
     stabilisation: float = 1.0
     edge: float = 1.0
+    halved: bool = False
 
     def __post_init__(self) -> None:
         require_one_of("discretisation.density", self.density, ("coarse", "default", "fine"))

@@ -25,7 +25,7 @@ from fem.problem.problem import Problem
 from fem.setup.contacts import Conditions
 from fem.setup.supports import on_the_plate
 
-CLAMP_STICK = 3e3  # stiffness against sliding below the limit, in shear moduli over the thickness of the lowest layer
+CLAMP_STICK = 6e3  # stiffness against sliding below the limit, in shear moduli over the thickness of the lowest layer
 HOLD, GIVE = 1e2, 1e-5  # k in shear moduli over the thickness of the layer that gives more; what it gives
 HALF_WAVE = 1.0 / 6.0  # length in tool radii over which a thin side is bent
 INTERFACE_UNKNOWNS = 3  # of a node, besides its displacements

@@ -1,20 +1,24 @@
 """Where the mesh of a problem has its grid lines.
 
 Radially the lines gather at the tool's edge and at what the support names; vertically they gather at the
-top face. The edge stress is singular, so its element size sets the accuracy. In linear kinematics the edge
-elements may be tiny. In finite strain they would fold, so they are larger, and under a tool stuck to a thick
-soft layer, where the material turns round the edge, they form a fan.
+top face. The stress is singular at the edge of a stuck tool and where a clamp begins: the element size there sets
+the accuracy. In linear kinematics the edge elements may be tiny. In finite strain they fold under a tool stuck to a
+thick soft layer, where the material turns round the edge: there they form a fan whose rings become smaller towards the
+edge, as few as a deep press bears. The rim of a hole, round which the material hardly turns, has a fan that holds the
+square root of the distance.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.mesh.grading import Feature, Sizing, graded_line
-from fem.mesh.quads import Fan, Mesh, build_mesh
+from fem.mesh.fan import Fan
+from fem.mesh.grading import Feature, Sizing, every_second, graded_line
+from fem.mesh.quads import Mesh, build_mesh
 from fem.problem.problem import Problem
 from fem.setup.contacts import CONTACT_MODELS, Resolution
 from fem.setup.supports import SUPPORT_MODELS, Extent
@@ -26,6 +30,8 @@ FAN_HALF_WIDTH = 0.1
 FAN_ELEMENT = 0.05
 FAN_LEAST_LAYER = 0.06
 LARGEST_FAN = 4.0  # times the usual one; a larger one would come near the axis
+TOOL_RINGS = 3  # each half as large as the one round it; with a fourth a tool no longer goes 7 mm into soft 15 mm
+FEWER_RINGS = 2.0  # up to this factor on the size at the edge the fan has fewer rings, beyond it is larger
 
 
 def lay_out(problem: Problem) -> Mesh:
@@ -36,67 +42,112 @@ def lay_out(problem: Problem) -> Mesh:
         resolution=CONTACT_MODELS[problem.tool.contact].resolution(problem),
         density=DENSITY[problem.discretisation.density],
         edge=problem.discretisation.edge,
+        halved=problem.discretisation.halved,
     ).mesh()
 
 
 @dataclass(frozen=True)
 class _Layout:
-    """Tool radius (m), extent, resolution at the tool, density, and factor on the size of the fan."""
+    """Tool radius (m), extent, resolution at the tool, density, factor on the size at a stuck edge, halved or not."""
 
     radius: float
     extent: Extent
     resolution: Resolution
     density: float
     edge: float
+    halved: bool
 
     def mesh(self) -> Mesh:
-        half_width = self._fan_half_width()
-        return self._graded() if half_width is None else self._fanned(half_width)
+        tool = self._tool_fan()
+        fans = self._support_fans(tool)
+        r_lines = self._radial_lines(tool, fans)
+        return build_mesh(
+            r_lines, self._depth_lines(tool, fans), self._depths[:-1], fans if tool is None else (tool, *fans)
+        )
 
     @property
     def _depths(self) -> FloatArray:
         return np.concatenate(([0.0], np.cumsum(self.extent.thickness)))
 
     @property
-    def _fan_factor(self) -> float:
-        return min(self.extent.edge_factor * self.edge, LARGEST_FAN)
+    def _fan_element(self) -> float:
+        """Size of the outer elements of the tool's fan in m."""
+        factor = self.extent.edge_factor * max(self.edge / FEWER_RINGS, 1.0)
+        return FAN_ELEMENT * min(factor, LARGEST_FAN) * self.radius
 
-    def _graded(self) -> Mesh:
-        edge = self.resolution.edge * self.radius
-        breaks = {0.0, self.radius, self.extent.radius, *(f.position for f in self.extent.radial)}
-        r_lines = graded_line(tuple(sorted(breaks)), self._radial(self.radius, edge), self.density)
-        depth_lines = graded_line(tuple(self._depths), self._vertical(0.0, edge), self.density)
-        return build_mesh(r_lines, depth_lines, self._depths[:-1])
-
-    def _fan_half_width(self) -> float | None:
-        """Half width of the fan in m, or None where the edge needs none or there is no room."""
+    def _tool_fan(self) -> Fan | None:
+        """The fan at the tool's edge; None where the edge needs none or there is no room."""
         first = self.extent.thickness[0]
-        wanted = FAN_HALF_WIDTH * self._fan_factor * self.radius
+        wanted = self._fan_element * FAN_HALF_WIDTH / FAN_ELEMENT
         half_width = first if first < 2.0 * wanted else wanted
         in_the_way = any(abs(f.position - self.radius) <= 2.0 * half_width for f in self.extent.radial)
         room = self.extent.radius > self.radius + half_width and first >= FAN_LEAST_LAYER * self.radius
-        return half_width if self.resolution.fan and room and not in_the_way else None
+        if not self.resolution.fan or not room or in_the_way:
+            return None
+        fewer = round(math.log2(min(self.edge, FEWER_RINGS)))
+        return Fan(self.radius, half_width, self._rings(TOOL_RINGS - fewer))
 
-    def _fanned(self, half_width: float) -> Mesh:
-        element = FAN_ELEMENT * self._fan_factor * self.radius
-        pieces = max(1, round(half_width / element))
-        count = max(1, round(pieces * self.density))
-        fan = Fan(self.radius, half_width, _rings(self.density))
-        r_lines = self._lines_round_the_box(half_width, half_width / pieces, count)
-        below = (half_width, *self._depths[self._depths > half_width * (1.0 + 1e-9)])
-        sizing = self._vertical(half_width, half_width / pieces)
-        box = np.linspace(0.0, half_width, count + 1)[:-1]
-        depth_lines = np.concatenate((box, graded_line(below, sizing, self.density)))
-        return build_mesh(r_lines, depth_lines, self._depths[:-1], fan)
+    def _support_fans(self, tool: Fan | None) -> tuple[Fan, ...]:
+        """The fans of the support for which there is room; on the upper face they are as high as the tool's."""
+        box = 0.0 if tool is None else tool.half_width
+        found = []
+        for fan in self.extent.fans:
+            half_width = box if box and fan.depth == 0.0 else fan.half_width * self._coarsening(fan)
+            fitted = replace(fan, half_width=half_width, rings=self._rings(len(fan.rings)))
+            if self._has_room(fitted, box):
+                found.append(fitted)
+        return tuple(found)
 
-    def _lines_round_the_box(self, half_width: float, size: float, count: int) -> FloatArray:
-        inner, outer = self.radius - half_width, self.radius + half_width
-        named = [f.position for f in self.extent.radial]
-        within = tuple(sorted({0.0, inner, *(at for at in named if at < inner)}))
-        beyond = tuple(sorted({outer, self.extent.radius, *(at for at in named if at > outer)}))
-        left = graded_line(within, self._radial(inner, size), self.density)
-        right = graded_line(beyond, self._radial(outer, size), self.density)
+    def _coarsening(self, fan: Fan) -> float:
+        """A fan of few rings is made coarser by its size."""
+        return 2.0 if self.halved and len(fan.rings) == 1 and 2.0 * fan.half_width <= self.extent.thickness[-1] else 1.0
+
+    def _has_room(self, fan: Fan, box: float) -> bool:
+        """Whether a fan is clear of the tool's, whose half width is told, and of axis and border, or at the border."""
+        clear = abs(fan.radius - self.radius) > fan.half_width + box and fan.radius > fan.half_width
+        inside = fan.radius + fan.half_width < self.extent.radius or fan.radius == self.extent.radius
+        return clear and inside and (fan.depth == 0.0 or fan.depth - fan.half_width > box)
+
+    def _rings(self, usual: int) -> tuple[float, ...]:
+        """Ring sizes from 1 down to the collapsed ring: the usual number by default, one more when fine."""
+        count = max(1, usual + round(math.log2(self.density)) - self.halved)
+        return tuple(0.5**k for k in range(count))
+
+    def _radial_lines(self, tool: Fan | None, fans: tuple[Fan, ...]) -> FloatArray:
+        sides = [fan.radius + side * fan.half_width for fan in fans for side in (-1.0, 1.0)]
+        places = {0.0, self.extent.radius, *(f.position for f in self.extent.radial)}
+        places |= {side for side in sides if side < self.extent.radius}
+        if tool is None:
+            edge = self.resolution.edge * self.radius
+            return self._lines(places | {self.radius}, self._radial(self.radius, edge))
+        count, size = self._pieces(tool)
+        inner, outer = tool.radius - tool.half_width, tool.radius + tool.half_width
+        left = self._lines({inner, *(at for at in places if at < inner)}, self._radial(inner, size))
+        right = self._lines({outer, *(at for at in places if at > outer)}, self._radial(outer, size))
         return np.concatenate((left[:-1], np.linspace(inner, outer, 2 * count + 1)[:-1], right))
+
+    def _depth_lines(self, tool: Fan | None, fans: tuple[Fan, ...]) -> FloatArray:
+        first, last = self.extent.thickness[0], self.extent.thickness[-1]
+        levels = set(self._depths.tolist())
+        levels |= {fan.half_width for fan in fans if fan.depth == 0.0 and fan.half_width < first}
+        levels |= {fan.depth - fan.half_width for fan in fans if fan.depth > 0.0 and fan.half_width < last}
+        if tool is None:
+            return self._lines(levels, self._vertical(0.0, self.resolution.edge * self.radius))
+        count, size = self._pieces(tool)
+        below = {tool.half_width, *(level for level in levels if level > tool.half_width * (1.0 + 1e-9))}
+        box = np.linspace(0.0, tool.half_width, count + 1)[:-1]
+        return np.concatenate((box, self._lines(below, self._vertical(tool.half_width, size))))
+
+    def _pieces(self, tool: Fan) -> tuple[int, float]:
+        """Elements over the half width of the tool's fan, and their usual size in m."""
+        pieces = max(1, round(tool.half_width / self._fan_element))
+        count = max(1, round(pieces * self.density))
+        return max(1, count // 2) if self.halved else count, tool.half_width / pieces
+
+    def _lines(self, breaks: set[float], sizing: Sizing) -> FloatArray:
+        places = tuple(sorted(breaks))
+        lines = graded_line(places, sizing, self.density)
+        return every_second(lines, places) if self.halved else lines
 
     def _radial(self, position: float, size: float) -> Sizing:
         places = [position + (share - 1.0) * self.radius for share in self.resolution.gather]
@@ -106,9 +157,3 @@ class _Layout:
 
     def _vertical(self, position: float, size: float) -> Sizing:
         return Sizing((Feature(position, size, VERTICAL_GROWTH, self.extent.far), *self.extent.vertical))
-
-
-def _rings(density: float) -> tuple[float, ...]:
-    """Ring sizes from 1 down to the collapsed ring: (1, 0.5) by default, twice as many when fine."""
-    count = max(1, round(2.0 * density))
-    return tuple(float(1.0 - k / count) for k in range(count))

@@ -17,7 +17,7 @@ import numpy as np
 from fem.arrays import FloatArray
 from fem.assembly.solid import SOLID_ELEMENTS
 from fem.errors import FemError
-from fem.mesh.grading import Feature, Sizing, graded_line
+from fem.mesh.grading import Feature, Sizing, every_second, graded_line
 from fem.mesh.solid import DiscGrid, SolidMesh, build_block
 from fem.mesh.surface.specimen import build_surface_mesh
 from fem.mesh.surface.surface_file import Surface
@@ -52,6 +52,8 @@ def lay_out_block(problem: Problem) -> SolidMesh:
     edge = resolution.edge * problem.tool.radius
     vertical = Sizing((Feature(0.0, edge, VERTICAL_GROWTH, extent.far), *extent.vertical))
     depth_lines = graded_line(tuple(depths), vertical, density)
+    if problem.discretisation.halved:
+        depth_lines = every_second(depth_lines, tuple(depths))
     grid = _grid(problem, extent, resolution, density)
     return build_block(grid, depth_lines, depths[:-1], SOLID_ELEMENTS[ELEMENT].node_places, ELEMENT)
 
@@ -69,11 +71,12 @@ def _grid(problem: Problem, extent: Extent, resolution: Resolution, density: flo
     radius, (x, _) = problem.tool.radius, problem.tool.position
     rims = [f.position for f in extent.radial]
     _require_room(problem, rims, extent.radius)
-    pieces = PIECES[problem.discretisation.density]
+    halved = problem.discretisation.halved
+    pieces = PIECES[problem.discretisation.density] // (2 if halved else 1)
     smallest = pieces * resolution.edge / INNER_SQUARE
     inner = INNER_SQUARE * min([*rims, *(max(place, smallest) * radius for place in resolution.gather)])
     return DiscGrid(
-        rings=_rings(radius, inner, extent, resolution, density),
+        rings=_rings(radius, inner, extent, resolution, density, halved),
         pieces=pieces,
         quarters=1 if x == 0.0 and problem.tool.tilt == 0.0 else 2,
         centre=x,
@@ -83,12 +86,15 @@ def _grid(problem: Problem, extent: Extent, resolution: Resolution, density: flo
     )
 
 
-def _rings(radius: float, inner: float, extent: Extent, resolution: Resolution, density: float) -> FloatArray:
+def _rings(
+    radius: float, inner: float, extent: Extent, resolution: Resolution, density: float, halved: bool
+) -> FloatArray:
     size = resolution.edge * radius
     edges = [Feature(place * radius, size, resolution.growth, extent.far) for place in resolution.gather]
     sizing = Sizing((*edges, *extent.radial), ((radius, resolution.under * radius),))
     breaks = sorted({inner, radius, extent.radius, *(f.position for f in extent.radial)})
     lines = graded_line(tuple(breaks), sizing, density)
+    lines = every_second(lines, tuple(breaks)) if halved else lines
     kept: FloatArray = lines[(lines == inner) | (lines >= THICKEST_RING * inner)]
     return kept
 

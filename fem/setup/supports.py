@@ -10,6 +10,7 @@ from typing import Protocol
 
 from fem.arrays import BoolArray
 from fem.errors import FemError
+from fem.mesh.fan import Fan
 from fem.mesh.grading import Feature
 from fem.mesh.solid import AnyMesh
 from fem.problem.problem import Problem
@@ -22,6 +23,8 @@ FAR_FIELD = 40.0  # in the same, from where the mesh grows geometrically
 CLAMP_IN_THICKNESSES = 4.0
 # A sheet bends: the tool's edge weighs little, but the press goes several thicknesses deep.
 EDGE_FACTOR = 1.5
+CORNER_RINGS = (1.0, 0.5, 0.25)  # of the fans where a clamped edge meets the faces
+SLIDING_RIM = 0.33  # size of the elements at a rim on which a sheet slides, over the usual one; it has no fan
 
 
 @dataclass(frozen=True)
@@ -42,6 +45,8 @@ class Extent:
         Distance in m from the tool beyond which only a decaying far field is left.
     edge_factor
         Factor on the size of the fan at the tool's edge.
+    fans
+        Fans of elements that are wanted besides that at the tool's edge.
     """
 
     radius: float
@@ -50,6 +55,7 @@ class Extent:
     vertical: tuple[Feature, ...] = ()
     far: float = math.inf
     edge_factor: float = 1.0
+    fans: tuple[Fan, ...] = ()
 
 
 class SupportModel(Protocol):
@@ -123,11 +129,19 @@ class Hole:
         if radius is None:
             radius = max(hole, problem.tool.radius) + CLAMP_IN_THICKNESSES * total
         size = min(total, hole) / 8.0
+        fans: tuple[Fan, ...] = ()
         if problem.support.clamp == "rim":
             radius = hole
-        rim = Feature(hole, size, 0.4)
-        underside = Feature(total, 2.0 * size, 0.5)
-        return Extent(radius, thickness, (rim,), (underside,), edge_factor=EDGE_FACTOR)
+            fans = (
+                Fan(hole, min(size, thickness[0]), CORNER_RINGS),
+                Fan(hole, min(size, thickness[-1]), CORNER_RINGS, depth=total),
+            )
+        elif problem.support.clamp_shear_limit is None:
+            fans = (Fan(hole, min(size, thickness[-1]), (1.0,), depth=total, square_root=True),)
+        smaller = 1.0 if fans else SLIDING_RIM
+        rim = Feature(hole, smaller * size, 0.4)
+        underside = Feature(total, 2.0 * smaller * size, 0.5)
+        return Extent(radius, thickness, (rim,), (underside,), edge_factor=EDGE_FACTOR, fans=fans)
 
     def fixed(self, mesh: AnyMesh, problem: Problem) -> BoolArray:
         """Lower face outside the hole, rim included, and the outer border."""

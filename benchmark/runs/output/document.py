@@ -15,7 +15,7 @@ from benchmark.comparison import comparison_summary
 from benchmark.models import LastState
 from benchmark.runs.fields import LAST
 from benchmark.runs.record import RunRecord
-from benchmark.runs.report.values import measured_headline
+from benchmark.runs.report.values import measured_headline, mesh_error_entry
 from benchmark.side_by_side import ModelRun
 
 SCHEMA = 1
@@ -81,6 +81,7 @@ def _model(run: ModelRun, record: RunRecord) -> dict[str, Any]:
         "picture_us": None if run.frame is None else 1e6 * run.frame,
         "choices": None if result is None or result.choices is None else asdict(result.choices),
         "notes": {} if result is None else dict(result.notes),
+        "mesh_error": None if result is None or result.mesh_error is None else mesh_error_entry(result.mesh_error),
         "resumed": None if result is None or result.resumed is None else asdict(result.resumed),
         "failure": None if result is None or result.failure is None else str(result.failure),
         "last_state": None if result is None or result.last is None else _last_state(result.last, record.layers),

@@ -13,7 +13,8 @@ from fem.assembly.elements import make_elements
 from fem.assembly.scatter import build_scatter, number_unknowns
 from fem.assembly.system import System, make_system
 from fem.materials.element_laws import element_laws
-from fem.mesh.quads import Fan, Mesh, build_mesh
+from fem.mesh.fan import Fan
+from fem.mesh.quads import Mesh, build_mesh
 
 
 @pytest.fixture
@@ -23,7 +24,7 @@ def block() -> Callable[..., Mesh]:
     def make(n: int = 2, fan: bool = False) -> Mesh:
         if fan:
             lines = np.array([0.0, 0.4, 0.5, 0.6, 1.0])
-            return build_mesh(lines, np.array([0.0, 0.1, 0.5, 1.0]), np.array([0.0, 0.5]), Fan(0.5, 0.1, (1.0, 0.5)))
+            return build_mesh(lines, np.array([0.0, 0.1, 0.5, 1.0]), np.array([0.0, 0.5]), [Fan(0.5, 0.1, (1.0, 0.5))])
         r = np.linspace(0.0, 1.0, n + 1) ** 1.2
         return build_mesh(r, np.concatenate((np.linspace(0, 0.5, n + 1), [1.0])), np.array([0.0, 0.5]))
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from fem.assembly.axisymmetric import gauss_geometry
-from fem.mesh.quads import Fan, build_mesh, ring_areas, split_interfaces
+from fem.mesh.fan import Fan
+from fem.mesh.quads import build_mesh, ring_areas, split_interfaces
 
 WHOLE = build_mesh(np.array([0.0, 1.0, 3.0]), np.array([0.0, 1.0, 2.0, 4.0]), np.array([0.0, 1.0, 2.0]))
 
@@ -48,7 +49,7 @@ TOPS = np.array([0.0, 0.6])
 FAN = Fan(1.0, 0.2, (1.0, 0.5))
 
 
-@pytest.fixture(params=[None, FAN], ids=["graded", "fan"])
+@pytest.fixture(params=[(), (FAN,)], ids=["graded", "fan"])
 def mesh(request):
     return build_mesh(R_LINES, DEPTHS, TOPS, request.param)
 
@@ -84,7 +85,7 @@ def test_node_sets_lie_on_their_lines(mesh):
 
 
 def test_the_fan_shares_the_half_turn_among_its_rays():
-    mesh = build_mesh(R_LINES, DEPTHS, TOPS, FAN)
+    mesh = build_mesh(R_LINES, DEPTHS, TOPS, [FAN])
     at_edge = (mesh.nodes[mesh.elements[2]] == [1.0, 0.0]).all(axis=1) & (
         mesh.nodes[mesh.elements[3]] == [1.0, 0.0]
     ).all(axis=1)

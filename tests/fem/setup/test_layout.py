@@ -76,6 +76,7 @@ def test_elements_at_a_stuck_edge_are_larger_on_request(slab, skin):
     sizes = [size(slab("rigid_bonded"), edge) for edge in (1.0, 2.0, 4.0)]
     assert sizes[1] > 1.4 * sizes[0]
     assert sizes[2] > 1.4 * sizes[1]
+    assert size(slab("rigid_bonded"), 8.0) > 1.4 * sizes[2]
     for other in (slab("uniform_pressure"), skin("rigid_bonded")):
         assert size(other, 4.0) == size(other, 1.0)
 

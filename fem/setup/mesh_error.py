@@ -1,0 +1,168 @@
+"""The discretisation error of a mesh, estimated from solutions with half as many elements in each direction.
+
+With errors that go with the power p of the element size (L. F. Richardson, Philosophical Transactions of the Royal
+Society A 210 (1911) 307) the finer of two solutions is off by their difference over 2^p - 1. Where a face is held up to
+an edge, the energy's error goes with the element size at the edge: its order is twice the exponent of the displacement
+there, which is 1/2 in small strain. In deep presses, where the material turns round the edge, it is lower. There
+further solutions with larger elements at the edge alone tell it, and the share of the edge.
+"""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem.errors import FemError
+from fem.load import Load
+from fem.problem.parts import LARGEST_EDGE
+from fem.problem.problem import Problem
+from fem.results.solution import Solution
+from fem.setup.prepare import prepare
+
+if TYPE_CHECKING:
+    from fem.analysis.prepared import Model
+    from fem.arrays import FloatArray
+
+SINGULAR_ORDER = 1.0
+LEAST_ORDER = 0.5  # seen in deep presses, where the material turns round the edge
+SMOOTH_ORDER = 2.0  # where no edge is stuck; a low one, with which the estimate is rather too large
+EDGES = (1.0, 2.0, 4.0)
+ELASTIC_STEPS = 3
+REMEMBERED_STEPS = 25  # of a body whose state follows from those before
+
+
+@dataclass(frozen=True)
+class MeshError:
+    """What a second solution tells about the largest load of a run.
+
+    Attributes
+    ----------
+    quantity
+        "depth" or "force": what the load leaves free.
+    load
+        The load value (N or m) at which it is told.
+    value
+        The quantity (m or N) in the run.
+    halved
+        The same with half as many elements in each direction.
+    error
+        Estimated value less limit of refinement (m or N).
+    order
+        Order of convergence that is assumed, at a stuck edge that which was observed.
+    unknowns
+        Of the solution with half as many elements in each direction.
+    seconds
+        CPU time in s that the further solutions took.
+    """
+
+    quantity: str
+    load: float
+    value: float
+    halved: float
+    error: float
+    order: float
+    unknowns: int
+    seconds: float
+
+    @property
+    def percent(self) -> float:
+        """The estimated error in % of the value."""
+        return 100.0 * self.error / self.value
+
+    @property
+    def extrapolated(self) -> float:
+        """Estimated limit of refinement (m or N)."""
+        return self.value - self.error
+
+
+def estimate_mesh_error(model: Model, load: Load, solution: Solution) -> MeshError | None:
+    """Estimate the discretisation error of a run at its largest load.
+
+    Parameters
+    ----------
+    model
+        The model that ran.
+    load
+        The load history that it followed.
+    solution
+        What it found; of a run that stopped early what it reached.
+
+    Returns
+    -------
+    MeshError or None
+        None without a loaded step, on a body from a surface, which has no like mesh with larger elements, and where
+        these cannot follow the press.
+    """
+    reached = load.value[: len(solution.time)]
+    if model.problem.geometry == "surface" or not np.abs(reached).any():
+        return None
+    began, peak = clock.process_time(), int(np.abs(reached).argmax())
+    quantity = "depth" if load.control == "force" else "force"
+    value = float(getattr(solution, quantity)[peak])
+    further = list(_coarser(model.problem, _shortened(model.problem, load, peak), quantity))
+    if not further:
+        return None
+    error, order = _judged(value, [found for found, _ in further], _is_stuck(model.problem))
+    halved, unknowns = further[0]
+    return MeshError(
+        quantity, float(reached[peak]), value, halved, error, order, unknowns, clock.process_time() - began
+    )
+
+
+def _coarser(problem: Problem, load: Load, quantity: str) -> Iterator[tuple[float, int]]:
+    """What half as many elements give, and unknowns; at a stuck edge also with elements 2 and 4 times larger there."""
+    own, before = problem.discretisation, 0
+    edges = [own.edge * factor for factor in EDGES if own.edge * factor <= LARGEST_EDGE]
+    for edge in edges if _is_stuck(problem) else edges[:1]:
+        try:
+            model = prepare(replace(problem, discretisation=replace(own, halved=True, edge=edge)))
+        except FemError:
+            return
+        if model.unknowns == before:
+            return  # there is no fan
+        found, before = model.run(load), model.unknowns
+        if not found.complete:
+            return
+        yield float(getattr(found, quantity)[-1]), model.unknowns
+
+
+def _judged(value: float, coarser: list[float], stuck: bool) -> tuple[float, float]:
+    """Estimated error of a value and the order, from what the coarser meshes give.
+
+    The elements at the edge, e of whose error is left, change the value by (2^p - 1) e when they alone are doubled.
+    """
+    halved, difference = coarser[0], coarser[0] - value
+    if not stuck or len(coarser) == 1:
+        order = SINGULAR_ORDER if stuck else SMOOTH_ORDER
+        return difference / (2.0**order - 1.0), order
+    first, order = coarser[1] - halved, SINGULAR_ORDER
+    if len(coarser) == 3 and first * (coarser[2] - coarser[1]) > 0.0:
+        order = float(np.clip(np.log2((coarser[2] - coarser[1]) / first), LEAST_ORDER, SINGULAR_ORDER))
+    at_edge = first / 2.0**order
+    return at_edge / (2.0**order - 1.0) + (difference - at_edge) / (2.0**SMOOTH_ORDER - 1.0), order
+
+
+def _shortened(problem: Problem, load: Load, peak: int) -> Load:
+    """The history up to its peak in few steps; straight there where only the last state counts."""
+    if not _remembers(problem):
+        count = min(ELASTIC_STEPS, peak + 1)
+        part: FloatArray = np.linspace(0.0, 1.0, count + 1)[1:]
+        return Load(load.control, part, load.value[peak] * part)
+    kept = np.linspace(-1, peak, min(REMEMBERED_STEPS, peak + 1) + 1)[1:].round().astype(np.int64)
+    return Load(load.control, load.time[kept], load.value[kept])
+
+
+def _remembers(problem: Problem) -> bool:
+    """Whether a state depends on those before it."""
+    slides = problem.support.clamp_shear_limit is not None or any(limit is not None for limit in problem.shear_limits)
+    grips = problem.touches and (problem.tool.contact == "rigid_frictional" or problem.tool.adhesion_force > 0.0)
+    return slides or grips or any(layer.relaxation for layer in problem.layers)
+
+
+def _is_stuck(problem: Problem) -> bool:
+    """Whether the surface is stuck, or kept level, up to a sharp edge."""
+    return problem.tool.contact != "uniform_pressure" and not problem.touches

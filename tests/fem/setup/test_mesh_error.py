@@ -1,0 +1,70 @@
+"""The estimated discretisation error of a mesh beside that which refinement shows."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fem
+from fem.setup.supports import SUPPORT_MODELS
+
+STACK = ((1.5e-3, 3.5e5), (2e-3, 1.8e5), (1.5e-3, 2.6e5))
+HOLE = fem.Support("hole", 15e-3)
+
+
+def sheet(contact, kinematics="finite", **mesh):
+    law = fem.LinearElastic if kinematics == "linear" else fem.NeoHookean
+    layers = tuple(fem.Layer(f"{n}", h, 1000.0, law(E, 0.49)) for n, (h, E) in enumerate(STACK))
+    return fem.Problem(layers, fem.Tool(5e-3, contact), HOLE, kinematics, fem.Discretisation(**mesh))
+
+
+def judged(problem, load):
+    model = fem.prepare(problem)
+    solution = model.run(load)
+    return solution, fem.estimate_mesh_error(model, load, solution)
+
+
+@pytest.mark.parametrize(("contact", "least", "most"), [("uniform_pressure", 0.5, 3.0), ("rigid_bonded", 1.0, 4.0)])
+def test_small_strain_error_is_known_to_a_factor(contact, least, most, ramp):
+    load = ramp("force", 1.0, 1)
+    solution, found = judged(sheet(contact, "linear"), load)
+    fine, _ = judged(sheet(contact, "linear", density="fine"), load)
+    assert found.quantity == "depth"
+    assert found.error < 0.0  # a tied mesh is too stiff
+    assert least < found.error / (solution.depth[-1] - fine.depth[-1]) < most
+
+
+@pytest.mark.parametrize(("contact", "least", "most"), [("uniform_pressure", 0.5, 4.0), ("rigid_bonded", 1.0, 4.0)])
+def test_large_strain_error_is_known_to_a_factor(contact, least, most, ramp):
+    load = ramp("depth", 3e-3, 3)
+    solution, found = judged(sheet(contact), load)
+    fine, _ = judged(sheet(contact, density="fine"), load)
+    assert (found.quantity, found.load) == ("force", pytest.approx(3e-3))
+    assert least < found.error / (solution.force[-1] - fine.force[-1]) < most
+    assert abs(found.extrapolated / fine.force[-1] - 1.0) < 0.01
+
+
+def test_the_rim_of_a_hole_is_resolved_without_more_elements(monkeypatch, ramp):
+    load, kind = ramp("force", 1.0, 1), SUPPORT_MODELS["hole"]
+    shipped, fine = (
+        judged(sheet("uniform_pressure", "linear", density=mesh), load)[0].depth[-1] for mesh in ("default", "fine")
+    )
+    usual = kind.extent
+    monkeypatch.setattr(type(kind), "extent", lambda self, problem: replace(usual(problem), fans=()))
+    plain, _ = judged(sheet("uniform_pressure", "linear"), load)
+    assert abs(shipped / fine - 1.0) < 5e-4
+    assert abs(plain.depth[-1] / fine - 1.0) > 5.0 * abs(shipped / fine - 1.0)
+
+
+def test_a_body_that_remembers_is_followed_through_its_history(slab, triangle):
+    problem = slab("uniform_pressure")
+    layer = replace(problem.layers[0], relaxation=(fem.PronyTerm(0.5, 0.2),))
+    solution, found = judged(replace(problem, layers=(layer,)), triangle("depth", 1e-3, 8))
+    assert found.load == 1e-3
+    assert found.value == pytest.approx(solution.force[3])
+    assert abs(found.percent) < 1.0
+
+
+def test_without_a_load_there_is_no_estimate(slab):
+    load = fem.Load("depth", np.ones(1), np.zeros(1))
+    assert judged(slab("uniform_pressure"), load)[1] is None
