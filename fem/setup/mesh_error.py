@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from fem.arrays import FloatArray
 
 SINGULAR_ORDER = 1.0
-LEAST_ORDER = 0.5  # seen in deep presses, where the material turns round the edge
+LEAST_ORDER = 0.6  # seen in deep presses of two sheets, with up to five rings of elements at the edge
 SMOOTH_ORDER = 2.0  # where no edge is stuck; a low one, with which the estimate is rather too large
 EDGES = (1.0, 2.0, 4.0)
 ELASTIC_STEPS = 3
