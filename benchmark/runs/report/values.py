@@ -73,7 +73,6 @@ def mesh_error_entry(found: MeshError) -> dict[str, Any]:
         "error_percent": found.percent,
         **{f"{name}_{unit}": scale * value for name, value in lengths.items()},
         "order": found.order,
-        "cpu_s": found.seconds,
     }
 
 

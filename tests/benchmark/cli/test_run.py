@@ -24,8 +24,14 @@ def test_a_run_leaves_every_file_of_the_contract(benchmark_cli, tmp_path: Path) 
         "manifest.json", "results.json", "report.html", "scenario.toml", "environment.json", "fields/step_0010.vtu",
         "fields/step_0020.vtu", "tables/max_deformation.csv", "tables/profile.csv", "tables/statistics.csv",
         "tables/normal_fits.csv", "tables/timing.csv", "pictures/pressed.txt", "tables/force_depth.csv",
+        "tables/mesh_error.csv",
     }  # fmt: skip
     check_tables(out, document)
+    judged, told = document["models"]["fem"]["mesh_error"], pd.read_csv(out / "tables/mesh_error.csv")
+    assert told.to_dict("records") == [judged]
+    assert (judged["quantity"], 0.0 < abs(judged["error_percent"]) < 2.0) == ("depth", True)
+    assert f"{abs(judged['error_percent']):.2g} % too" in document["models"]["fem"]["notes"]["discretisation error"]
+    assert "in the limit of refinement" in (out / "report.html").read_text()
 
 
 def check_tables(out: Path, document: dict) -> None:
