@@ -11,10 +11,9 @@ from benchmark.comparison import normal_fit_columns, statistics_columns
 from benchmark.identification import parameter_columns
 from benchmark.models import Array, ModelResult
 from benchmark.runs.record import RunRecord
-from benchmark.runs.report.values import mesh_error_entry
 from benchmark.runs.trials.film_tables import circles, marker_fits
 from benchmark.runs.trials.measured import MeasuredComparison
-from benchmark.runs.validation import refinement_columns, validation_columns
+from benchmark.runs.validation import mesh_error_entry, refinement_columns, validation_columns
 from benchmark.side_by_side import SideBySide
 from benchmark.side_by_side.parameter_bands import ParameterBands
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from benchmark.runs.record import RunRecord
 from benchmark.runs.refinement import ORDER, Level, convergence
 from benchmark.runs.trials.measured import MeasuredComparison, TrialPrediction
 from benchmark.side_by_side import ModelRun
+
+if TYPE_CHECKING:
+    from fem import MeshError
 
 Columns = dict[str, list[Any]]
 Row = tuple[str, str, str, str, float | str | None, str]
@@ -50,6 +53,18 @@ def refinement_columns(levels: tuple[Level, ...]) -> Columns:
         for place, layer in enumerate(each.result.layers)
     ]
     return {name: [row[place] for row in rows] for place, name in enumerate(LEVELS)}
+
+
+def mesh_error_entry(found: MeshError) -> dict[str, Any]:
+    """The estimated discretisation error at the largest load, in mm and N."""
+    scale, unit = (1e3, "mm") if found.quantity == "depth" else (1.0, "N")
+    lengths = {"value": found.value, "half_as_many_elements": found.halved, "extrapolated": found.extrapolated}
+    return {
+        "quantity": found.quantity,
+        "error_percent": found.percent,
+        **{f"{name}_{unit}": scale * value for name, value in lengths.items()},
+        "order": found.order,
+    }
 
 
 def validation_columns(record: RunRecord, levels: tuple[Level, ...]) -> Columns | None:

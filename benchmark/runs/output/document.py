@@ -15,7 +15,8 @@ from benchmark.comparison import comparison_summary
 from benchmark.models import LastState
 from benchmark.runs.fields import LAST
 from benchmark.runs.record import RunRecord
-from benchmark.runs.report.values import measured_headline, mesh_error_entry
+from benchmark.runs.report.values import measured_headline
+from benchmark.runs.validation import mesh_error_entry
 from benchmark.side_by_side import ModelRun
 
 SCHEMA = 1

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 import numpy as np
 
 from benchmark.identification import SessionFit, SheetFit
@@ -13,9 +11,6 @@ from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.side_by_side import Speedup
 from reports.figures.style import Pair
 from reports.formatting import format_number
-
-if TYPE_CHECKING:
-    from fem import MeshError
 
 MM = 1e3
 
@@ -61,18 +56,6 @@ def peak_errors(record: RunRecord) -> dict[str, float]:
         name: float(100.0 * (wave[step, column] - fem[column]) / fem[column])
         for column, name in enumerate(record.layers)
         if np.isfinite(fem[column]) and fem[column] != 0.0
-    }
-
-
-def mesh_error_entry(found: MeshError) -> dict[str, Any]:
-    """The estimated discretisation error at the largest load, in mm and N."""
-    scale, unit = (1e3, "mm") if found.quantity == "depth" else (1.0, "N")
-    lengths = {"value": found.value, "half_as_many_elements": found.halved, "extrapolated": found.extrapolated}
-    return {
-        "quantity": found.quantity,
-        "error_percent": found.percent,
-        **{f"{name}_{unit}": scale * value for name, value in lengths.items()},
-        "order": found.order,
     }
 
 
