@@ -82,7 +82,7 @@ class WaveOptions(FileModel):
     Attributes
     ----------
     model : str
-        layered (over a hole the plate) | published | plate (a sheet over a hole).
+        layered | published | plate (the plate theory of a sheet over a hole).
     modes : int or None
         N for m, n = 1..N; None follows the window.
     window : float or None

@@ -25,8 +25,6 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
         A value that the model does not take.
     """
     hole, load, options = scenario.support.hole_radius, scenario.load, scenario.wave
-    if scenario.support.clamp == "rim":
-        raise UncoveredError("the wave's clamp holds a sheet on a plate round the hole, not at its rim (support.clamp)")
     by_depth = load.control == "depth"
     explicit = options.model == "plate"
     series, warnings = _sheet_series(scenario)
@@ -37,11 +35,14 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
         scenario.support.kind,
         hole,
         PlateSettings(
-            modes=options.modes if explicit else None, reach=FIRST_REACH * hole if hole is not None else None
+            modes=options.modes if explicit else None,
+            reach=FIRST_REACH * hole if hole is not None else None,
+            tension="local" if explicit else None,
         ),
         pretension=stress * sum(layer.thickness for layer in scenario.tissue.layers),
         relaxation=series,
         physics=wave_physics(scenario),
+        clamp=scenario.support.clamp,
     )
     peak = np.array([abs(load.peak)])
     try:
@@ -51,7 +52,9 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
     return PreparedWave(
         follow=lambda drive: wave.run(drive.control, drive.time, drive.value),
         unknowns=wave.unknowns,
-        choices=WaveChoices(None, wave.window, wave.modes, scenario.tool.contact == "rigid_bonded"),
+        choices=WaveChoices(
+            None, wave.window, wave.modes, wave.tension != "layered" and scenario.tool.contact == "rigid_bonded"
+        ),
         warnings=(*warnings, *law_warnings(scenario), *_ignored(scenario)),
     )
 

@@ -162,8 +162,8 @@ def _layered(scenario: Scenario) -> tuple[LayeredWave, tuple[str, ...]]:
 
 def _sheet(scenario: Scenario) -> tuple[RadialTable, Memory, tuple[str, ...]]:
     hole = scenario.support.hole_radius
-    if hole is None or scenario.support.clamp == "rim":
-        raise UncoveredError("the wave's clamp holds a sheet on a plate round the hole")
+    if hole is None:
+        raise UncoveredError("the sheet needs a hole")
     stress = scenario.physics.pretension or 0.0
     wave = PlateWave(
         wave_layers(scenario.tissue.layers),
@@ -172,6 +172,7 @@ def _sheet(scenario: Scenario) -> tuple[RadialTable, Memory, tuple[str, ...]]:
         hole,
         PlateSettings(reach=0.1 * hole),
         pretension=stress * sum(layer.thickness for layer in scenario.tissue.layers),
+        clamp=scenario.support.clamp,
     )
     peak = abs(scenario.load.peak)
     depth = peak if scenario.load.control == "depth" else float(wave.depth_of_force(np.array([peak]))[0])

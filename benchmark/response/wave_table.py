@@ -122,10 +122,10 @@ def _sheet_fields(
     """Force (k,) N on the grid; outward motion and sinking (levels, radii) m of the lower face."""
     from wavemodel import DiscTool, PlateSettings, PlateWave
 
-    if support.clamp == "rim":
-        raise InputError("the wave's clamp holds a sheet on a plate round the hole, not at its rim (support.clamp)")
     hole, settings = float(support.hole_radius or 0.0), PlateSettings(reach=float(grid[-1]))
-    wave = PlateWave(_layers(tissue), DiscTool(tool.radius, _contact(tool)), "hole", hole, settings)
+    wave = PlateWave(
+        _layers(tissue), DiscTool(tool.radius, _contact(tool)), "hole", hole, settings, clamp=support.clamp
+    )
     faces = np.array([wave.field(float(level), radii)[:, -1] for level in levels[1:]])
     faces = np.concatenate([np.zeros((1, *faces.shape[1:])), faces])
     return wave.force_of_depth(grid), faces[:, 0], faces[:, 1]

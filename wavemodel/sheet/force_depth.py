@@ -6,6 +6,7 @@ Equilibria are found by Newton's method along a path of rising loads, as far as 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -15,17 +16,14 @@ from wavemodel.errors import WaveError
 from wavemodel.integrators.equilibrium_path import EquilibriumState, RisingCurve, follow, straight_on
 from wavemodel.integrators.load_history import Load
 from wavemodel.sheet.faces import Faces
-from wavemodel.sheet.sheet import Sheet
 from wavemodel.sheet.sheet_runs import SheetHistory
 
 CORRECTIONS = 14
 TOLERANCE = 1e-9
 """Of the sheet's thickness: largest correction of a coefficient that counts as none."""
 FINEST_STEP = 1.0 / 256.0
-STEPS = 20
 CROWDING = 1.5
-"""Equilibria over the depth or force that is asked for; the splines between them are right to 1e-4.
-They crowd at small loads, where the tension sets in."""
+"""Equilibria crowd at small loads, where the tension sets in."""
 CLOSE = 1e-15
 """Of the force, to which a depth is found."""
 MARGIN, LARGEST_GROWTH = 1.05, 6.0
@@ -34,11 +32,103 @@ ROUNDING = 1e-9
 """So little beyond the last equilibrium the curve goes on by itself."""
 
 
+class SheetBody(Protocol):
+    """A sheet whose equilibria are looked for, one load after the other."""
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the load is the depth of a rigid tool (m), not the force of a pressure (N)."""
+        ...
+
+    @property
+    def unknowns(self) -> int:
+        """Of a state."""
+        ...
+
+    @property
+    def levels(self) -> int:
+        """Equilibria over the depth or force that is asked for: enough for splines right to some 1e-4."""
+        ...
+
+    @property
+    def first_load(self) -> float:
+        """Force of a pressure to begin with, N."""
+        ...
+
+    def equilibrium(self, path: Sequence[EquilibriumState], load: float) -> FloatArray | None:
+        """State at a load near the last one of a path; None where none is found."""
+        ...
+
+    def force(self, state: FloatArray, load: float) -> float:
+        """Press in N."""
+        ...
+
+    def displacement(self, state: FloatArray, depth: float, radius: FloatArray, force: float) -> FloatArray:
+        """(2, L + 1, R) of the faces at radii (R,), m, with the depth of a rigid tool or the force of a pressure."""
+        ...
+
+
+@dataclass(frozen=True)
+class PlateBody:
+    """The plate theory's sheet as a `SheetBody`.
+
+    Attributes
+    ----------
+    faces
+        Of the sheet at rest.
+    """
+
+    faces: Faces
+    levels = 20
+
+    @property
+    def rigid(self) -> bool:
+        """See `SheetBody`."""
+        return self.faces.sheet.tool is not None
+
+    @property
+    def unknowns(self) -> int:
+        """See `SheetBody`."""
+        return self.faces.sheet.unknowns
+
+    @property
+    def first_load(self) -> float:
+        """About one thickness of depth, by the plate's theory."""
+        section = self.faces.sheet.section
+        return 16.0 * np.pi * section.bending * section.thickness / self.faces.sheet.functions.outer**2
+
+    def force(self, state: FloatArray, load: float) -> float:
+        """See `SheetBody`."""
+        return -float(state[-1]) if self.rigid else load
+
+    def displacement(self, state: FloatArray, depth: float, radius: FloatArray, force: float) -> FloatArray:
+        """See `SheetBody`."""
+        return self.faces.displacement(state, depth, radius, force)
+
+    def equilibrium(self, path: Sequence[EquilibriumState], load: float) -> FloatArray | None:
+        """Newton's method from straight on; None where it does not converge."""
+        sheet = self.faces.sheet
+        state: FloatArray = straight_on(path, load)
+        depth, force = (load, 0.0) if self.rigid else (0.0, load)
+        small = TOLERANCE * sheet.section.thickness
+        for _ in range(CORRECTIONS):
+            with np.errstate(all="ignore"):
+                residual, jacobian = sheet.residual(state, depth, force)
+            if not np.isfinite(jacobian).all():
+                return None
+            scale = 1.0 / np.sqrt(np.abs(jacobian).max(axis=1))
+            change = -scale * np.linalg.solve(jacobian * np.outer(scale, scale), residual * scale)
+            state = state + change
+            if np.abs(change[: sheet.functions.unknowns]).max() < small:
+                return state
+        return None
+
+
 @dataclass(frozen=True)
 class _ToLoad:
     """A sheet loaded to a target: depth of a rigid tool (m), or force of a pressure (N) (a `Loading`)."""
 
-    sheet: Sheet
+    body: SheetBody
     target: float
 
     def next_load(self, path: Sequence[EquilibriumState], step: float) -> float:
@@ -51,29 +141,16 @@ class _ToLoad:
         return path[-1].load >= self.target
 
     def advance(self, path: Sequence[EquilibriumState], load: float) -> EquilibriumState | None:
-        """Newton's method from straight on; None where it does not converge."""
-        sheet, state = self.sheet, straight_on(path, load)
-        depth, force = (load, 0.0) if sheet.tool is not None else (0.0, load)
-        small = TOLERANCE * sheet.section.thickness
-        for _ in range(CORRECTIONS):
-            with np.errstate(all="ignore"):
-                residual, jacobian = sheet.residual(state, depth, force)
-            if not np.isfinite(jacobian).all():
-                return None
-            scale = 1.0 / np.sqrt(np.abs(jacobian).max(axis=1))
-            change = -scale * np.linalg.solve(jacobian * np.outer(scale, scale), residual * scale)
-            state = state + change
-            if np.abs(change[: sheet.functions.unknowns]).max() < small:
-                return EquilibriumState(load, state)
-        return None
+        state = self.body.equilibrium(path, load)
+        return None if state is None else EquilibriumState(load, state)
 
 
-def sheet_path(sheet: Sheet, start: Sequence[EquilibriumState], loads: FloatArray) -> tuple[EquilibriumState, ...]:
+def sheet_path(body: SheetBody, start: Sequence[EquilibriumState], loads: FloatArray) -> tuple[EquilibriumState, ...]:
     """Equilibria at rising loads (n,), from the last ones of a path on; stops early where none is found."""
     found = list(start)
     for target in loads.tolist():
         step = target - found[-1].load
-        *_, last = follow(_ToLoad(sheet, target), found[-2:], step, FINEST_STEP * step)
+        *_, last = follow(_ToLoad(body, target), found[-2:], step, FINEST_STEP * step)
         if last.load < target:
             break
         found.append(last)
@@ -140,8 +217,8 @@ class LocalTension:
 
     Parameters
     ----------
-    faces
-        Of the sheet at rest.
+    body
+        The sheet, by the plate's theory or in layers.
     reach
         Depth up to which equilibria are found now, m.
 
@@ -151,13 +228,10 @@ class LocalTension:
         If the sheet has no equilibrium up to there.
     """
 
-    def __init__(self, faces: Faces, reach: float) -> None:
-        sheet = faces.sheet
-        self._faces, self._sheet, self._rigid = faces, sheet, sheet.tool is not None
-        self._path: tuple[EquilibriumState, ...] = (EquilibriumState(0.0, np.zeros(sheet.unknowns)),)
-        # Under a pressure the force is prescribed: begin with about one thickness of depth, by the plate's theory.
-        linear = 16.0 * np.pi * sheet.section.bending * sheet.section.thickness / sheet.functions.outer**2
-        self._curve = self._loaded(reach if self._rigid else linear)
+    def __init__(self, body: SheetBody, reach: float) -> None:
+        self._body, self._rigid = body, body.rigid
+        self._path: tuple[EquilibriumState, ...] = (EquilibriumState(0.0, np.zeros(body.unknowns)),)
+        self._curve = self._loaded(reach if self._rigid else body.first_load)
         self._extend("depth", reach)
 
     def rest(self, control: str, value: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -179,7 +253,7 @@ class LocalTension:
         deep = abs(depth)
         self._extend("depth", deep)
         force = float(self._curve.force_at(np.array([deep]))[0])
-        return np.asarray(np.sign(depth) * self._faces.displacement(self._curve.state_at(deep), deep, radii, force))
+        return np.asarray(np.sign(depth) * self._body.displacement(self._curve.state_at(deep), deep, radii, force))
 
     def _extend(self, control: str, wanted: float) -> None:
         """Find equilibria up to a depth (m) or force (N) that is wanted."""
@@ -205,11 +279,11 @@ class LocalTension:
         last = self._path[-1].load
         if load <= last:
             return self._curve
-        count = max(2, int(np.ceil(STEPS * (load - last) / load)))
+        count = max(2, int(np.ceil(self._body.levels * (load - last) / load)))
         share = np.linspace(last / load, 1.0, count + 1)[1:]
         if last == 0.0:
             share = share**CROWDING
-        path = sheet_path(self._sheet, self._path, share * load)
+        path = sheet_path(self._body, self._path, share * load)
         if path[-1].load < load:
             unit, scale = ("mm", 1e3) if self._rigid else ("N", 1.0)
             raise WaveError(
@@ -222,11 +296,11 @@ class LocalTension:
     def _splines(self) -> EquilibriumCurve:
         state, load = np.stack([one.state for one in self._path]), np.array([one.load for one in self._path])
         given = [(one.load, 0.0) if self._rigid else (0.0, one.load) for one in self._path]
+        press = np.array([self._body.force(one.state, one.load) for one in self._path])
         axis = np.stack(
             [
-                self._faces.displacement(one.state, depth, np.zeros(1), force)[1, :, 0]
+                self._body.displacement(one.state, depth, np.zeros(1), force)[1, :, 0]
                 for one, (depth, force) in zip(self._path, given, strict=True)
             ]
         )
-        depth, force = (load, -state[:, -1]) if self._rigid else (axis[:, 0], load)
-        return EquilibriumCurve(depth, force, state, axis[:, :-1])
+        return EquilibriumCurve(load if self._rigid else axis[:, 0], press, state, axis[:, :-1])

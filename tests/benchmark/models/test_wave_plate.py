@@ -27,13 +27,15 @@ def test_it_follows_the_fem_at_every_load_step(name: str, settings: dict[str, st
     np.testing.assert_allclose(wave.profile[:, inside], fem.profile[:, inside], atol=0.05 * fem.profile.max())
 
 
-def test_layered_over_a_hole_is_the_plate() -> None:
+def test_layered_over_a_hole_is_the_layered_sheet_and_the_plate_theory_is_near() -> None:
+    light = {"load.observations": "4", "load.peak": "0.5 N"}
     by_default, by_name = (
-        pressed(load_scenario("phantom", {**SHORT, "wave.model": word})) for word in ("layered", "plate")
+        pressed(load_scenario("phantom", {**light, "wave.model": word})) for word in ("layered", "plate")
     )
-    np.testing.assert_array_equal(by_default.top_deflection, by_name.top_deflection)
+    np.testing.assert_allclose(by_default.top_deflection, by_name.top_deflection, rtol=0.02)
     assert by_default.notes["window"] == "the hole, 60 mm wide"
-    assert "identified once" in by_default.notes["model"]
+    assert "no calibration" in by_default.notes["model"]
+    assert "identified once" in by_name.notes["model"]
 
 
 def test_a_profile_ends_at_the_hole_s_edge() -> None:
@@ -54,7 +56,7 @@ def test_more_or_fewer_functions_only_where_the_plate_is_asked_for() -> None:
     asked = pressed(load_scenario("phantom", {**SHORT, "wave.model": "plate", "wave.modes": "8"}))
     assert (asked.notes["modes"], asked.warnings) == ("8 radial functions each", ())
     automatic = pressed(load_scenario("phantom", {**SHORT, "wave.modes": "8", "wave.window": "40 mm"}))
-    assert automatic.notes["modes"] == "12 radial functions each"
+    assert automatic.notes["modes"] == "34 radial functions each"
     assert [warning.split(" is left out")[0] for warning in automatic.warnings] == ["wave.window", "wave.modes"]
 
 

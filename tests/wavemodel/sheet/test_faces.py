@@ -4,7 +4,7 @@ import pytest
 from wavemodel import DiscTool
 from wavemodel.integrators.equilibrium_path import EquilibriumState
 from wavemodel.sheet.faces import Faces, indentation
-from wavemodel.sheet.force_depth import sheet_path
+from wavemodel.sheet.force_depth import PlateBody, sheet_path
 from wavemodel.sheet.sheet import face_bulge, sheet
 
 
@@ -12,14 +12,18 @@ from wavemodel.sheet.sheet import face_bulge, sheet
 def test_linear_table_is_the_limit_of_small_deflections(pressed_sheet, contact):
     sheet = pressed_sheet(contact)
     faces, radius = Faces(sheet), np.array([0.0, 3e-3, 5.5e-3, 12e-3, 29e-3])
-    state = sheet_path(sheet, (EquilibriumState(0.0, np.zeros(sheet.unknowns)),), np.array([1e-7]))[-1].state
+    state = sheet_path(PlateBody(Faces(sheet)), (EquilibriumState(0.0, np.zeros(sheet.unknowns)),), np.array([1e-7]))[
+        -1
+    ].state
     table = faces.linear(radius) @ np.append(state, 1e-7)
     np.testing.assert_allclose(table, faces.displacement(state, 1e-7, radius), atol=1e-12)
 
 
 def test_surface_is_continuous_under_the_tool_s_edge(pressed_sheet):
     sheet = pressed_sheet("rigid_bonded")
-    state = sheet_path(sheet, (EquilibriumState(0.0, np.zeros(sheet.unknowns)),), np.array([1e-5]))[-1].state
+    state = sheet_path(PlateBody(Faces(sheet)), (EquilibriumState(0.0, np.zeros(sheet.unknowns)),), np.array([1e-5]))[
+        -1
+    ].state
     inside, outside = np.moveaxis(Faces(sheet).displacement(state, 1e-5, np.array([5e-3 - 1e-9, 5e-3 + 1e-9])), 2, 0)
     np.testing.assert_allclose(inside, outside, atol=5e-8)
 

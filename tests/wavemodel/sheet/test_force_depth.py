@@ -2,13 +2,14 @@ import numpy as np
 import pytest
 
 from wavemodel.integrators.equilibrium_path import EquilibriumState
-from wavemodel.sheet.force_depth import EquilibriumCurve, sheet_path
+from wavemodel.sheet.faces import Faces
+from wavemodel.sheet.force_depth import EquilibriumCurve, PlateBody, sheet_path
 
 
 def test_follows_to_the_loads_and_balances_forces(pressed_sheet):
     sheet = pressed_sheet("rigid_bonded")
     rest = (EquilibriumState(0.0, np.zeros(sheet.unknowns)),)
-    path = sheet_path(sheet, rest, np.array([1e-3, 6e-3]))
+    path = sheet_path(PlateBody(Faces(sheet)), rest, np.array([1e-3, 6e-3]))
     assert [point.load for point in path] == [0.0, 1e-3, 6e-3]
     for point in path:
         assert np.abs(sheet.residual(point.state, point.load, 0.0)[0]).max() < 1e-6
@@ -20,7 +21,7 @@ def test_stops_where_there_is_no_equilibrium(pressed_sheet):
     """A pressure of a thousand newtons tears the sheet out of any reasonable shape: what was found is kept."""
     sheet = pressed_sheet("uniform_pressure")
     rest = (EquilibriumState(0.0, np.zeros(sheet.unknowns)),)
-    path = sheet_path(sheet, rest, np.array([0.5, 1e7]))
+    path = sheet_path(PlateBody(Faces(sheet)), rest, np.array([0.5, 1e7]))
     assert [point.load for point in path] == [0.0, 0.5]
 
 

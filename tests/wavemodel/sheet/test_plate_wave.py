@@ -13,6 +13,7 @@ HELD_OUT = [
     "held out: 3 mm, tool 7.5 mm, hole 25 mm", "held out: 5 mm, tool 4 mm, nu 0.45", "held out: two layers",
     "held out: 1.5 mm, tool 3 mm, hole 40 mm",
 ]  # fmt: skip
+PLATE = PlateSettings(tension="local")
 LARGEST = {"hole 20 mm": 0.024, "pressure": 0.047, "pressure, 2 mm": 0.025}
 """Error of the maximum where it is above 2 %."""
 
@@ -34,6 +35,7 @@ def model(case, **options):
 
 
 def pressed(case, **options):
+    options.setdefault("tension", "local")
     force = np.array(case["force"])
     return model(case, **options).run("force", np.arange(1.0, force.size + 1), force)
 
@@ -55,7 +57,10 @@ def test_a_small_press_is_that_of_linear_finite_elements(silicone, contact):
     allowed = 0.002 if contact.startswith("rigid") else 0.008
     for radius, expected in zip((2.5e-3, 5e-3, 10e-3), SMALL_PRESS[contact], strict=True):
         plate = PlateWave(
-            silicone(), DiscTool(radius, contact), settings=PlateSettings(reach=0.1e-3), hole_radius=30e-3
+            silicone(),
+            DiscTool(radius, contact),
+            settings=PlateSettings(tension="local", reach=0.1e-3),
+            hole_radius=30e-3,
         )
         assert plate.depth_of_force(np.array([1e-3]))[0] * 1e6 == pytest.approx(expected, rel=allowed)
 
@@ -82,7 +87,11 @@ def test_a_stretched_membrane_of_closed_form():
     """w = F ln(R / a) / (2 pi T) where the pretension is all."""
     layer = WaveLayer("film", 0.1e-3, 1000.0, 1e6, 0.3)
     plate = PlateWave(
-        [layer], DiscTool(5e-3, "rigid_bonded"), settings=PlateSettings(reach=1e-5), hole_radius=30e-3, pretension=10.0
+        [layer],
+        DiscTool(5e-3, "rigid_bonded"),
+        settings=PlateSettings(tension="local", reach=1e-5),
+        hole_radius=30e-3,
+        pretension=10.0,
     )
     expected = 2 * np.pi * 10.0 / np.log(6.0)
     assert plate.force_of_depth(np.array([1e-5]))[0] / 1e-5 == pytest.approx(expected, rel=0.03)
@@ -91,13 +100,17 @@ def test_a_stretched_membrane_of_closed_form():
 def test_force_scales_with_the_modulus(silicone):
     tool, depth = DiscTool(5e-3, "rigid_bonded"), np.linspace(0.0, 12e-3, 7)
     soft, stiff = silicone(), [WaveLayer("sheet", 4e-3, 1100.0, 1.6e6, 0.49)]
-    forces = [PlateWave(layers, tool, hole_radius=30e-3).force_of_depth(depth) for layers in (soft, stiff)]
+    forces = [
+        PlateWave(layers, tool, settings=PLATE, hole_radius=30e-3).force_of_depth(depth) for layers in (soft, stiff)
+    ]
     np.testing.assert_allclose(forces[1], 4.0 * forces[0], rtol=1e-7, atol=1e-12)
 
 
 @pytest.mark.parametrize("contact", ["rigid_bonded", "uniform_pressure"])
 def test_depth_control_is_the_inverse_of_force_control(silicone, contact):
-    plate = PlateWave(silicone(), DiscTool(5e-3, contact), settings=PlateSettings(reach=2e-3), hole_radius=30e-3)
+    plate = PlateWave(
+        silicone(), DiscTool(5e-3, contact), settings=PlateSettings(tension="local", reach=2e-3), hole_radius=30e-3
+    )
     time = np.arange(1.0, 8.0)
     by_force = plate.run("force", time, 0.3 * time)
     by_depth = plate.run("depth", time, by_force.depth)
@@ -107,7 +120,12 @@ def test_depth_control_is_the_inverse_of_force_control(silicone, contact):
 
 
 def test_profile_is_empty_outside_the_hole_and_refuses_negative_radii(silicone):
-    plate = PlateWave(silicone(), DiscTool(5e-3, "rigid_bonded"), settings=PlateSettings(reach=2e-3), hole_radius=30e-3)
+    plate = PlateWave(
+        silicone(),
+        DiscTool(5e-3, "rigid_bonded"),
+        settings=PlateSettings(tension="local", reach=2e-3),
+        hole_radius=30e-3,
+    )
     solution = plate.run("depth", np.array([1.0]), np.array([1e-3]))
     profile = solution.profile(-1, np.array([0.0, 29.9e-3, 30.1e-3]))
     assert profile[0, 0] == pytest.approx(1e-3)
@@ -119,7 +137,12 @@ def test_profile_is_empty_outside_the_hole_and_refuses_negative_radii(silicone):
 
 
 def test_a_deep_press_says_that_it_was_not_verified(silicone):
-    plate = PlateWave(silicone(), DiscTool(5e-3, "rigid_bonded"), settings=PlateSettings(reach=2e-3), hole_radius=30e-3)
+    plate = PlateWave(
+        silicone(),
+        DiscTool(5e-3, "rigid_bonded"),
+        settings=PlateSettings(tension="local", reach=2e-3),
+        hole_radius=30e-3,
+    )
     assert plate.run("depth", np.ones(1), np.array([10e-3])).warnings == ()
     (warning,) = plate.run("depth", np.ones(1), np.array([16e-3])).warnings
     assert "16 mm" in warning
@@ -131,13 +154,13 @@ def test_a_thick_sheet_and_a_deep_pressure_say_that_they_were_not_verified(silic
     tool, depth = DiscTool(5e-3, contact), np.array([1e-3])
     for layers, expected in ((silicone(), 0), (silicone(thickness), 1)):
         found = (
-            PlateWave(layers, tool, settings=PlateSettings(reach=2e-3), hole_radius=30e-3)
+            PlateWave(layers, tool, settings=PlateSettings(tension="local", reach=2e-3), hole_radius=30e-3)
             .run("depth", np.ones(1), depth)
             .warnings
         )
         assert len(found) == expected
     assert f"its thickness, {1e3 * thickness:g} mm" in found[0]
-    deep = PlateWave(silicone(), tool, settings=PlateSettings(reach=2e-3), hole_radius=30e-3).run(
+    deep = PlateWave(silicone(), tool, settings=PlateSettings(tension="local", reach=2e-3), hole_radius=30e-3).run(
         "depth", np.ones(1), np.array([9.5e-3])
     )
     assert len(deep.warnings) == (contact == "uniform_pressure")
@@ -176,7 +199,12 @@ def test_a_pretension_is_not_negative(silicone):
 
 
 def test_a_load_without_equilibrium_is_refused_and_changes_nothing(silicone):
-    plate = PlateWave(silicone(), DiscTool(5e-3, "rigid_bonded"), settings=PlateSettings(reach=2e-3), hole_radius=30e-3)
+    plate = PlateWave(
+        silicone(),
+        DiscTool(5e-3, "rigid_bonded"),
+        settings=PlateSettings(tension="local", reach=2e-3),
+        hole_radius=30e-3,
+    )
     before = plate.force_of_depth(np.array([1e-3]))
     with pytest.raises(WaveError, match="followed up to"):
         plate.force_of_depth(np.array([10.0]))

@@ -1,0 +1,171 @@
+"""The layered sheet over a hole as an elastic body at finite strain, in modes over the radius (no plate theory).
+
+Each layer has its own stiffness and its own strain through the thickness; the lower face is free over the hole. The
+energy is that of the large press on a base (`wavemodel.layered.finite_strain.modal_body`): neo-Hookean with the moduli
+at rest. Tensors have five components: rr, rz, zr, zz and the hoop. Nothing is calibrated.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from typing import TypeAlias
+
+import numpy as np
+
+from wavemodel.arrays import FloatArray
+from wavemodel.layered.finite_strain.modal_body import Deformed, deformed
+from wavemodel.sheet.layered.held_faces import STIFFNESS, Amplitudes, HeldFaces, bonded_tool, border, plate, pressure_on
+from wavemodel.sheet.layered.stretched_modes import RadialTables, StretchedRadius, stretched_modes
+from wavemodel.sheet.layered.through_thickness import Piece, SheetThickness, sheet_thickness
+from wavemodel.specimen import DiscTool, WaveLayer
+
+BEHIND = 3.0
+"""Thicknesses of the sheet that lie on the plate round the hole: behind it nothing moves."""
+FAR, AT_TOOL, AT_HOLE = 1.0, 0.03, 0.05
+"""Resolved sizes: over the thickness (or the tool's radius, if less) away from the edges and at the tool's edge, and
+over the thickness at the hole's."""
+MOST_SIZES = 40.0
+"""Of them over the hole's radius away from the edges: a thin sheet needs no more."""
+_Terms: TypeAlias = tuple[tuple[int, FloatArray, FloatArray], ...]
+"""Component of the gradient, its radial table and its table through the thickness."""
+
+
+@dataclass(frozen=True)
+class LayeredSheet:
+    """A sheet, held, in modes.
+
+    Attributes
+    ----------
+    place
+        Its amplitudes.
+    radial
+        Tables over the radius, (Q, ..).
+    thickness
+        Tables through the thickness, (Z, n).
+    held
+        Tool and clamp.
+    tool
+        The tool.
+    """
+
+    place: Amplitudes
+    radial: RadialTables
+    thickness: SheetThickness
+    held: HeldFaces
+    tool: DiscTool
+
+    @cached_property
+    def volume(self) -> FloatArray:
+        """(Q, Z) weights of the points, m3."""
+        return np.outer(self.radial.area, self.thickness.weight)
+
+    def _split(self, amplitude: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """U (N, n) and W (N + 1, n)."""
+        u, w = np.split(amplitude, [self.place.outward])
+        return u.reshape(-1, self.place.nodes), w.reshape(-1, self.place.nodes)
+
+    def gradient(self, amplitude: FloatArray) -> FloatArray:
+        """(5, Q, Z) displacement gradient."""
+        (u, w), r, t = self._split(amplitude), self.radial, self.thickness
+        across, along = u @ t.shape.T, w @ t.shape.T
+        steep, deep = u @ t.slope.T, w @ t.slope.T
+        return np.stack([r.stretch @ across, r.outward @ steep, r.slope @ along, r.level @ deep, r.hoop @ across])
+
+    def forces(self, stress: FloatArray) -> FloatArray:
+        """(A,) internal forces of stresses (5, Q, Z), N."""
+        r, t = self.radial, self.thickness
+        rr, rz, zr, zz, hoop = stress * self.volume
+        out = (r.stretch.T @ rr + r.hoop.T @ hoop) @ t.shape + (r.outward.T @ rz) @ t.slope
+        up = (r.slope.T @ zr) @ t.shape + (r.level.T @ zz) @ t.slope
+        return np.concatenate([out.ravel(), up.ravel()])
+
+    def state(self, amplitude: FloatArray) -> Deformed | None:
+        """Deformation at the points; None where matter is crushed or turned over."""
+        return deformed(self.gradient(amplitude), self.thickness.shear, self.thickness.bulk)
+
+    def energy(self, state: Deformed) -> float:
+        """Of the whole sheet, J."""
+        return float((self.volume * state.energy).sum())
+
+    def tangent(self, state: Deformed) -> FloatArray:
+        """(A, A) derivative of the internal forces, N/m."""
+        units = np.eye(5).reshape(5, 5, 1, 1)
+        moduli = np.stack([state.stress_change(np.broadcast_to(one, state.F.shape)) for one in units], axis=1)
+        moduli *= self.volume
+        r, t, nodes = self.radial, self.thickness, self.place.nodes
+        out_terms: _Terms = ((0, r.stretch, t.shape), (4, r.hoop, t.shape), (1, r.outward, t.slope))
+        up_terms: _Terms = ((2, r.slope, t.shape), (3, r.level, t.slope))
+        whole, first = np.empty((self.place.size, self.place.size)), self.place.outward
+        for rows, columns, left, right in (
+            (slice(0, first), slice(0, first), out_terms, out_terms),
+            (slice(0, first), slice(first, None), out_terms, up_terms),
+            (slice(first, None), slice(first, None), up_terms, up_terms),
+        ):
+            block = np.zeros((left[0][1].shape[1], nodes, right[0][1].shape[1], nodes))
+            for piece in t.pieces:
+                block[:, piece.nodes, :, piece.nodes] += _piece_tangent(moduli, left, right, piece)
+            whole[rows, columns] = block.reshape(block.shape[0] * nodes, -1)
+        whole[first:, :first] = whole[:first, first:].T
+        return whole
+
+    def displacement(self, amplitude: FloatArray, depth: float, radius: FloatArray) -> FloatArray:
+        """(2, L + 1, R) outwards and downwards of the layers' faces at radii (R,), m, the tool at a depth, m."""
+        (u, w), faces = self._split(amplitude), self.thickness.faces
+        modes = self.place.modes
+        out = np.stack([(modes.outward(radius)[0] @ u[:, faces]).T, (modes.level(radius)[0] @ w[:, faces]).T])
+        if self.tool.rigid:
+            under = radius <= self.tool.radius
+            out[0, 0, under], out[1, 0, under] = 0.0, depth
+        return out
+
+
+def _piece_tangent(moduli: FloatArray, left: _Terms, right: _Terms, piece: Piece) -> FloatArray:
+    """(N, p + 1, M, p + 1) of one polynomial."""
+    total: FloatArray | None = None
+    for (row, across, tall), (column, beside, high) in product(left, right):
+        weight = moduli[row, column][:, piece.points].T
+        radial = across.T @ (weight[:, :, None] * beside)
+        deep = tall[piece.points, piece.nodes, None] * high[piece.points, None, piece.nodes]
+        part = np.tensordot(radial, deep, axes=(0, 0))
+        total = part if total is None else total + part
+    assert total is not None
+    return np.asarray(total.transpose(0, 2, 1, 3))
+
+
+def layered_sheet(layers: Sequence[WaveLayer], tool: DiscTool, hole: float, clamp: str) -> LayeredSheet:
+    """Set up a sheet.
+
+    Parameters
+    ----------
+    layers
+        From the surface down.
+    tool
+        Uniform pressure, or rigid and bonded.
+    hole
+        Radius, m.
+    clamp
+        "plate": the lower face is held outside the hole; "rim": the whole border, at the hole.
+    """
+    total = sum(layer.thickness for layer in layers)
+    size = min(total, tool.radius)
+    around = StretchedRadius(
+        hole + BEHIND * total if clamp == "plate" else hole,
+        max(FAR * size, hole / MOST_SIZES),
+        ((tool.radius, AT_TOOL * size), (hole, AT_HOLE * total)),
+    )
+    modes, thickness = stretched_modes(around), sheet_thickness(layers)
+    place = Amplitudes(modes, int(thickness.shape.shape[1]))
+    return LayeredSheet(place, modes.tables(), thickness, _held(place, layers, tool, hole, clamp), tool)
+
+
+def _held(place: Amplitudes, layers: Sequence[WaveLayer], tool: DiscTool, hole: float, clamp: str) -> HeldFaces:
+    below = plate(place, hole) if clamp == "plate" else border(place)
+    stiff = np.full(below.shape[1], STIFFNESS * 2.0 * np.pi * hole * layers[-1].shear_modulus)
+    if not tool.rigid:
+        return HeldFaces(below, stiff, np.zeros(stiff.size), pressure_on(place, tool.radius))
+    above = bonded_tool(place, tool.radius)
+    with_tool = np.zeros(above.shape[1] + stiff.size)
+    with_tool[0] = 1.0
+    spring = np.full(above.shape[1], STIFFNESS * tool.radius * layers[0].shear_modulus)
+    return HeldFaces(np.hstack([above, below]), np.concatenate([spring, stiff]), with_tool, None)
