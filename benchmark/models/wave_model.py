@@ -95,7 +95,7 @@ class WaveModel:
 
 
 def _prepare(scenario: Scenario) -> PreparedWave:
-    """The wave that the scenario asks for; over a hole "layered" is the plate."""
+    """The wave that the scenario asks for; over a hole "layered" is the layered sheet."""
     model = scenario.wave.model
     if model == "published":
         raise UncoveredError(
