@@ -3,6 +3,9 @@
 What is minimised at a depth of a rigid tool, or under the force of a pressure, is the energy of the sheet and of the
 springs that hold it, less the work of the pressure. Where the tangent is not positive it is shifted until it is, so
 that a step always goes down.
+
+The matrices are too small for more than one thread: on a busy machine the threads of a linear-algebra library, which
+wait for each other, made a set-up twenty times as long.
 """
 
 from collections.abc import Sequence
@@ -10,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from threadpoolctl import ThreadpoolController
 
 from wavemodel.arrays import FloatArray
 from wavemodel.integrators.equilibrium_path import EquilibriumState, straight_on
@@ -51,6 +55,13 @@ class SheetEquilibrium:
 
     def __init__(self, body: LayeredSheet) -> None:
         self.body, self.rigid, self.unknowns = body, body.tool.rigid, body.place.size
+        self._threads = ThreadpoolController()
+        with self._threads.limit(limits=1):
+            self._start()
+
+    def _start(self) -> None:
+        """Tangent at rest, and the linear answer."""
+        body = self.body
         rest = body.state(np.zeros(self.unknowns))
         assert rest is not None
         held = body.held
@@ -74,6 +85,10 @@ class SheetEquilibrium:
 
     def equilibrium(self, path: Sequence[EquilibriumState], load: float) -> FloatArray | None:
         """Amplitudes (A,) at a load near the last one of a path; None where none are found."""
+        with self._threads.limit(limits=1):
+            return self._equilibrium(path, load)
+
+    def _equilibrium(self, path: Sequence[EquilibriumState], load: float) -> FloatArray | None:
         start = self._linear * load if len(path) == 1 else straight_on(path, load)
         here = self._at(start, load)
         last = np.inf
