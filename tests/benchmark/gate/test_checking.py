@@ -165,11 +165,17 @@ def test_the_trend_is_in_the_report_from_the_second_check(tiny_gate, request_of)
     assert "<svg" in check(request, Said()).report.read_text()
 
 
-def test_a_history_that_cannot_be_written_is_a_warning(tiny_gate, request_of, tmp_path: Path) -> None:
+def test_a_history_that_cannot_be_written_any_more_is_a_warning(
+    tiny_gate, request_of, monkeypatch: pytest.MonkeyPatch
+) -> None:
     gate = tiny_gate()
     accept(request_of(gate), Said())
-    (tmp_path / "folder").mkdir()
-    outcome = check(request_of(gate, history=tmp_path / "folder"), Said())
+
+    def full(*_: object) -> None:
+        raise OSError(28, "no space left on device")
+
+    monkeypatch.setattr("benchmark.gate.checking.append", full)
+    outcome = check(request_of(gate), Said())
     assert outcome.verdict.passed
     assert any("cannot be written" in warning for warning in outcome.document["warnings"])
 
@@ -209,9 +215,16 @@ def test_accepting_says_old_and_new(tiny_gate, request_of, tmp_path: Path) -> No
     assert read_baseline(tmp_path / "b.json").accuracy["springs.max_deformation_mm.skin"].value == pytest.approx(5.1)
 
 
-def test_accepting_replaces_what_cannot_be_read_and_says_so(tiny_gate, request_of, tmp_path: Path) -> None:
-    (tmp_path / "b.json").write_text('{"schema": 99}')
-    accepted = accept(request_of(tiny_gate()), Said())
+def test_a_folder_in_the_place_of_the_history_is_refused_before_anything(tiny_gate, request_of, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="folder"):
+        check(request_of(tiny_gate(), history=tmp_path), Said())
+
+
+def test_accepting_replaces_a_baseline_of_another_schema_and_says_so(tiny_gate, request_of, tmp_path: Path) -> None:
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    rewrite(tmp_path / "b.json", lambda table: table.update(schema=99))
+    accepted = accept(request_of(gate), Said())
     assert "schema 99" in accepted.warnings[0]
     assert read_baseline(tmp_path / "b.json").gate == "tiny"
 
