@@ -42,7 +42,7 @@ def lab_table(cases: Sequence[Judged]) -> tuple[BlindRow, ...]:
         share("as labs are: right name first", off, first_right, ">= 0.75"),
         share("as labs are: first or a look-alike", off, alike_right, ">= 0.9"),
         share("nulls named, all labs", nulls, lambda case: bool(case.named), "<= 0.01"),
-        share("nulls: set-up named that is right", nulls, _wrong_setup, ""),
+        share("nulls: set-up said that is as told", nulls, _wrong_setup, ""),
         share("without markers: right name first", bare, first_right, ">= 0.75"),
         share("without markers: in the set", bare, in_set, ">= 0.92"),
         _effects_reached(singles),

@@ -165,7 +165,7 @@ def test_a_set_up_that_is_wrong_is_no_effect_named_on_a_null() -> None:
     setup = replace(NULL, verdict="named", said="setup.tool.radius", reported="setup.tool.radius")
     rows = lab_rows(NULL, setup, replace(setup, setup_off="setup.tool.radius"), replace(setup, said="adhesion"))
     assert rows["nulls named, all labs"].value == 0.25
-    assert rows["nulls: set-up named that is right"].value == 0.25
+    assert rows["nulls: set-up said that is as told"].value == 0.25
 
 
 def test_too_few_trials_count_by_themselves() -> None:
