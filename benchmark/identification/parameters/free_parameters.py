@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import TypeAlias
 
 import numpy as np
@@ -26,21 +25,17 @@ from benchmark.response.setup_change import RADIUS, THICKNESS, changed_setup
 
 SetUp: TypeAlias = tuple[Tissue, Tool, Support]
 Values: TypeAlias = Mapping[str, float]
-NO_SETTINGS: Mapping[str, str] = MappingProxyType({})
 
 STRESS = ("youngs_modulus", "c10", "c01", "c20", "c30", "mu", "k1")
 LENGTHS = ("radius", "hole_radius", "edge_radius")
 
 COMMON = "stiffness_factor"
 """Key of one factor on all stresses of all layers."""
-FRICTION = "physics.friction_coefficient"
-"""Key of Coulomb's friction between tool and surface, which the session's settings begin."""
 MODULUS, POISSON, RELAXATION = "youngs_modulus", "poisson_ratio", "relaxation"
 SHARE, TIME = ".relaxation.g", ".relaxation.tau"
 FAR = 30.0
 """A parameter without bounds of its own may go this many times up or down."""
 POISSON_BOUNDS = (0.05, 0.4995)
-MOST_FRICTION = 10.0
 SHARE_BOUNDS, TIME_BOUNDS = (1e-3, 0.95), (1e-2, 1e4)
 
 
@@ -125,10 +120,8 @@ class Parameter:
         return self.key.endswith(POISSON)
 
 
-def parameters_of(
-    key: str, setup: SetUp, law: str | None, settings: Mapping[str, str] = NO_SETTINGS
-) -> tuple[Parameter, ...]:
-    """The parameters that a key of `--free` stands for, as a set-up has them, and a session's settings.
+def parameters_of(key: str, setup: SetUp, law: str | None) -> tuple[Parameter, ...]:
+    """The parameters that a key of `--free` stands for, as a set-up has them.
 
     Raises
     ------
@@ -141,24 +134,12 @@ def parameters_of(
         return (_shape(key, law),)
     if key in (COMMON, THICKNESS):
         return (Parameter(key, 1.0, 1.0 / FAR, FAR),)
-    value = _friction(setup, settings) if key == FRICTION else value_of(key, setup)
+    value = value_of(key, setup)
     if not value > 0.0 or math.isinf(value):
         raise InputError(f"--free {key}: {value:g} is nothing to vary by shares; allowed: values above 0")
     if key.endswith(POISSON):
         return (Parameter(key, value, min(POISSON_BOUNDS[0], value), max(POISSON_BOUNDS[1], value)),)
-    if key == FRICTION:
-        return (Parameter(key, value, value / FAR, min(value * FAR, MOST_FRICTION)),)
     return (Parameter(key, value, value / FAR, value * FAR),)
-
-
-def _friction(setup: SetUp, settings: Mapping[str, str]) -> float:
-    """The friction coefficient that the session begins with; raises InputError."""
-    if setup[1].contact != "rigid_frictional" or FRICTION not in settings:
-        raise InputError(
-            f'--free {FRICTION}: allowed with tool.contact = "rigid_frictional" and a value to begin with, '
-            f"--set {FRICTION}=0.3; the contact is {setup[1].contact}"
-        )
-    return float(settings[FRICTION])
 
 
 def _relaxation(key: str, tissue: Tissue) -> tuple[Parameter, ...]:
@@ -212,7 +193,7 @@ def _no_key(key: str, tissue: Tissue) -> InputError:
     return InputError(
         f"--free {key}: this specimen and set-up have no such number; allowed: LAYER.youngs_modulus, LAYER.thickness, "
         f"LAYER.poisson_ratio, LAYER.relaxation, LAYER.hyperelastic.NAME for the layers {layers}; thickness, "
-        f"relaxation, tool.radius, support.hole_radius, {FRICTION}, and a law's constant of shape"
+        f"relaxation, tool.radius, support.hole_radius, and a law's constant of shape"
     )
 
 

@@ -186,13 +186,8 @@ def _free(bases: Sequence[FittedBase], presses: Sequence[Press], wish: FitTable)
         own = key in wish.per_specimen and len(bases) > 1
         for specimen in range(len(bases)) if own else (None,):
             at = next(one for one in presses if specimen in (None, one.specimen))
-            out += [replace(_informed(one, wish), specimen=specimen) for one in _own_parameters(key, at, wish)]
+            out += [replace(_informed(one, wish), specimen=specimen) for one in parameters_of(key, at.setup, wish.law)]
     return tuple(out)
-
-
-def _own_parameters(key: str, press: Press, wish: FitTable) -> tuple[Parameter, ...]:
-    """The parameters of a key as a press has them."""
-    return parameters_of(key, press.setup, wish.law, press.session.settings)
 
 
 def _fixed(setup: SetUp, wish: FitTable) -> dict[str, float]:

@@ -7,17 +7,16 @@ each depth for itself. A fit refreshes it where it has come to. The model's own 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from benchmark.errors import InputError, SolverError
+from benchmark.errors import SolverError
 from benchmark.files import Session
 from benchmark.identification.parameters.free_parameters import (
     COMMON,
-    FRICTION,
     MODULUS,
     POISSON,
     Parameter,
@@ -123,15 +122,7 @@ def surrogate(
     setup = with_values(press.setup, values, law)
     chains = {k: _chain(parameters[k], values, setup) for k in acting}
     wanted = {key for chain in chains.values() for key in chain} | {f"{name}.stiffness" for name in relaxing}
-    session = _with_friction(press.session, values)
-    try:
-        ramp = differentiated_ramp(session, *setup, press.depth, sorted(wanted), forward, STEPS)
-    except InputError:
-        if FRICTION not in values:
-            raise
-        raise SolverError(
-            f"the press is not differentiated at a friction coefficient of {values[FRICTION]:.3g}"
-        ) from None
+    ramp = differentiated_ramp(press.session, *setup, press.depth, sorted(wanted), forward, STEPS)
     if ramp.failure is not None or ramp.depth[-1] < press.depth * (1.0 - 1e-9):
         raise StopsError(press.depth, float(ramp.depth[-1]))
     by = np.zeros((len(parameters), GRID))
@@ -146,13 +137,6 @@ def acting_values(press: Press, parameters: Sequence[Parameter], vector: Array) 
     """Values of the elastic parameters that act on a press, SI, by key."""
     pairs = zip(parameters, vector, strict=True)
     return {one.key: one.value(float(x)) for one, x in pairs if press.has(one) and not one.fading}
-
-
-def _with_friction(session: Session, values: Values) -> Session:
-    """The session with a fitted friction coefficient in its settings."""
-    if FRICTION not in values:
-        return session
-    return replace(session, settings={**session.settings, FRICTION: repr(values[FRICTION])})
 
 
 def _logarithmic(ramp: DifferentiatedRamp, chain: Mapping[str, float]) -> Array:

@@ -1,22 +1,15 @@
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
 
-import numpy as np
 import pytest
 
 from benchmark.errors import InputError
 from benchmark.files import Support, Tool, load_tissue
 from benchmark.identification.parameters.free_parameters import (
-    FRICTION,
-    MOST_FRICTION,
     parameters_of,
     value_of,
     with_values,
 )
 from benchmark.identification.parameters.law_shapes import LAW_SHAPES, shear_modulus, with_law
-from benchmark.identification.parameters.presses import press_surrogate
-from benchmark.identification.parameters.presses.press_surrogate import Press, StopsError, surrogate
 
 SETUP = (load_tissue("skin_forearm"), Tool(radius=5e-3), Support())
 
@@ -63,33 +56,3 @@ def test_relaxation_is_a_share_and_a_time() -> None:
 def test_what_is_no_positive_number_is_refused_with_what_is_allowed(key) -> None:
     with pytest.raises(InputError, match="allowed"):
         parameters_of(key, SETUP, None)
-
-
-FRICTIONAL = (SETUP[0], Tool(radius=5e-3, contact="rigid_frictional", edge_radius=1e-3), Support())
-
-
-def test_friction_begins_with_the_sessions_setting_and_is_pressed_with(monkeypatch) -> None:
-    (one,) = parameters_of(FRICTION, FRICTIONAL, None, {FRICTION: "0.4"})
-    assert (one.start, one.unit, one.high) == (0.4, "", MOST_FRICTION)
-    seen = {}
-
-    def ramp(session, *setup_and_depth):
-        seen.update(session.settings, keys=setup_and_depth[4])
-        raise StopsError(1.0, 0.5)
-
-    @dataclass(frozen=True)
-    class Rubbed:
-        settings: Mapping[str, str]
-
-    monkeypatch.setattr(press_surrogate, "differentiated_ramp", ramp)
-    press = Press(0, Rubbed({FRICTION: "0.4", "fem.mesh": "coarse"}), FRICTIONAL, 1e-3)
-    with pytest.raises(StopsError):
-        surrogate(press, (one,), np.log([0.25]), None, (), "fem")
-    assert float(seen[FRICTION]) == pytest.approx(0.25)
-    assert (seen["fem.mesh"], seen["keys"]) == ("coarse", [FRICTION])
-
-
-@pytest.mark.parametrize(("setup", "settings"), [(SETUP, {FRICTION: "0.4"}), (FRICTIONAL, {})])
-def test_friction_needs_a_tool_that_rubs_and_a_value_to_begin_with(setup, settings) -> None:
-    with pytest.raises(InputError, match="rigid_frictional"):
-        parameters_of(FRICTION, setup, None, settings)
