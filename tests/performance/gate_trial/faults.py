@@ -13,7 +13,7 @@ HOWS = ("work", "burn", "repeat", "sleep")
 
 SLOWER = """
 
-import time as _time
+import time as _clock_of_the_fault
 
 
 def _slower(function, share={share}, how={how!r}):
@@ -27,16 +27,16 @@ def _slower(function, share={share}, how={how!r}):
         return function(*arguments, **keywords)
 
     def delayed(*arguments, **keywords):
-        start = _time.process_time()
+        start = _clock_of_the_fault.process_time()
         result = function(*arguments, **keywords)
-        end = _time.process_time()
+        end = _clock_of_the_fault.process_time()
         owed[0] += share * (end - start)
         if how == "burn":
-            while _time.process_time() - end < owed[0]:
+            while _clock_of_the_fault.process_time() - end < owed[0]:
                 pass
             owed[0] = 0.0
         elif owed[0] >= 1e-3:
-            _time.sleep(owed[0])
+            _clock_of_the_fault.sleep(owed[0])
             owed[0] = 0.0
         return result
 
