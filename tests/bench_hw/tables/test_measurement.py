@@ -177,7 +177,7 @@ def tables(draw: st.DrawFn) -> TrialTable:
     return TrialTable(time, draw(column), draw(column), extra, "", {n: units[n] for n in extra if n in units})
 
 
-@settings(deadline=None, max_examples=60, derandomize=True)
+@settings(max_examples=60)
 @given(table=tables())
 def test_what_is_written_reads_back_the_same(tmp_path_factory, table):
     read = read_trial_csv(write_trial_csv(tmp_path_factory.mktemp("round") / "trial.csv", table))
@@ -190,7 +190,7 @@ def test_what_is_written_reads_back_the_same(tmp_path_factory, table):
         np.testing.assert_allclose(read.extra[name], values, rtol=1e-11)
 
 
-@settings(deadline=None, max_examples=200, derandomize=True)
+@settings(max_examples=200)
 @given(content=st.one_of(st.binary(max_size=300), st.text(alphabet='0123456789.,-+eE\n\r" naif#;\t', max_size=300)))
 def test_no_content_ends_in_anything_but_a_table_or_a_table_error(tmp_path_factory, content):
     path = tmp_path_factory.getbasetemp() / "any.csv"
@@ -297,7 +297,7 @@ def test_a_missing_column_and_too_few_rows(marker_lines, write):
         read_marker_csv(write(marker_lines[:20]))
 
 
-@settings(deadline=None, max_examples=40, derandomize=True)
+@settings(max_examples=40)
 @given(
     frames=st.integers(5, 20),
     markers=st.lists(st.integers(0, 500), min_size=4, max_size=8, unique=True),

@@ -4,7 +4,7 @@ import json
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bench_hw.trial_file.encoding import (
@@ -57,28 +57,24 @@ def test_the_bytes_of_an_event_are_foxgloves_log():
     }
 
 
-@settings(deadline=None, derandomize=True)
 @given(sequence=words, sample=words, status=words, force=vectors, torque=vectors, raw=counts)
 def test_force_comes_back_exactly(sequence, sample, status, force, torque, raw):
     record = ForceRecord(3.5, sequence, sample, status, force, torque, raw)
     assert decode_force(3.5, encode(record)[1]) == record
 
 
-@settings(deadline=None, derandomize=True)
 @given(depth=numbers, raw=st.none() | st.integers(0, 1023), target=st.none() | numbers)
 def test_depth_comes_back_exactly(depth, raw, target):
     record = DepthRecord(3.5, depth, raw, target)
     assert decode_depth(3.5, encode(record)[1]) == record
 
 
-@settings(deadline=None, derandomize=True)
 @given(frame=words, data=st.binary(max_size=500), kind=st.sampled_from(["jpeg", "png", "webp"]))
 def test_pictures_come_back_exactly(frame, data, kind):
     record = FrameRecord(3.5, frame, data, kind)
     assert decode_frame(3.5, encode(record)[1]) == record
 
 
-@settings(deadline=None, derandomize=True)
 @given(kind=st.text(), message=st.text(), level=st.sampled_from(["info", "warning", "fault"]))
 def test_events_come_back_exactly(kind, message, level):
     record = EventRecord(3.5, kind, message, level)

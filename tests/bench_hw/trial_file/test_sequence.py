@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bench_hw.trial_file.sequence import check_sequence
@@ -46,7 +46,6 @@ def test_rows_in_order_are_neither_late_nor_doubled():
     assert check.in_order.tolist() == [True, True, True, False, False, True, False, True]
 
 
-@settings(deadline=None, derandomize=True)
 @given(
     start=st.integers(0, 2**32 - 1),
     count=st.integers(3, 400),
