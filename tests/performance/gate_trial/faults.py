@@ -16,13 +16,15 @@ SLOWER = """
 import time as _clock_of_the_fault
 
 
+_GOLDEN = 0.6180339887498949
+
+
 def _slower(function, share={share}, how={how!r}):
-    owed = [0.0]
+    owed, calls = [0.0], [0]
 
     def repeated(*arguments, **keywords):
-        owed[0] += share
-        if owed[0] >= 1.0:
-            owed[0] -= 1.0
+        calls[0] += 1
+        if calls[0] * _GOLDEN % 1.0 < share:
             function(*arguments, **keywords)
         return function(*arguments, **keywords)
 
@@ -88,9 +90,10 @@ def slowdowns(share: float, how: str) -> list[Fault]:
     share
         0.25 is 25 %.
     how
-        burn: an empty loop after each call; repeat: every fourth call is made twice (for 0.25); sleep: the share is
-        slept away, a millisecond or more at a time; work: repeat for what is called many times in a block, burn for the
-        rest. A loop after a call of 40 microseconds adds some 5 % of its own.
+        burn: an empty loop after each call; repeat: that share of the calls is made twice, those whose multiple of the
+        golden ratio says so, since every tenth call would be the same one in each block where a block makes twenty;
+        sleep: the share is slept away, a millisecond or more at a time; work: repeat for what is called many times in a
+        block, burn for the rest. A loop after a call of 40 microseconds adds some 5 % of its own.
     """
     often, once = ("repeat", "burn") if how == "work" else (how, how)
     return [
