@@ -6,7 +6,7 @@ from wavemodel.errors import NotCoveredError, WaveError
 from wavemodel.integrators.viscoelastic import Damping, Prony
 from wavemodel.layered.finite_strain.correction import FiniteStrainLaw, finite_strain_law
 from wavemodel.layered.finite_strain.equilibrium import ModalEquilibrium, press_path
-from wavemodel.layered.finite_strain.modal_body import ModalBody, disc_modes, thickness_of
+from wavemodel.layered.finite_strain.modal_body import StackBody, disc_modes, thickness_of
 from wavemodel.layered.finite_strain.tool_contact import BondedContact, PressureContact, ToolContact
 from wavemodel.layered.layer_relaxation import shared
 from wavemodel.layered.press import Press
@@ -136,17 +136,17 @@ def correction(press: Press, tool: DiscTool, *, deep: bool = False) -> FiniteStr
         )
     border = BORDER * press.field.domain.width
     limit = min(RESOLUTION / tool.radius, 3.1 * MOST_MODES / border)
-    body = ModalBody(disc_modes(border, limit), thickness_of(press.stack))
+    body = StackBody(disc_modes(border, limit), thickness_of(press.stack))
     equilibrium = ModalEquilibrium(body, contact_of(press, body))
     height = press.stack.height
     path = press_path(equilibrium, height, (DEEP if deep else REACH) * height)
     if path.force.size < FEWEST_LEVELS:
         raise WaveError("large press: no equilibrium was found beyond a small load")
     radius = tool.radius if tool.rigid else 0.0
-    return finite_strain_law(path, body.modes.wavenumber, press.compliance, radius, height if deep else 0.0)
+    return finite_strain_law(path, body.radial.wavenumber, press.compliance, radius, height if deep else 0.0)
 
 
-def contact_of(press: Press, body: ModalBody) -> ToolContact:
+def contact_of(press: Press, body: StackBody) -> ToolContact:
     """How the tool of a press pushes the modes of a body."""
     basis = press.field.traction.basis
     if press.flexibility is None:

@@ -11,7 +11,8 @@ import numpy as np
 
 from wavemodel.arrays import FloatArray
 from wavemodel.integrators.equilibrium_path import EquilibriumState, follow, straight_on
-from wavemodel.layered.finite_strain.modal_body import Deformed, ModalBody
+from wavemodel.layered.finite_strain.deformation_state import Deformed
+from wavemodel.layered.finite_strain.modal_body import StackBody
 from wavemodel.layered.finite_strain.tool_contact import ToolContact
 
 TOLERANCE = 1e-4
@@ -35,7 +36,7 @@ comes to a largest force and then sinks in, and must not be followed to another 
 class ModalEquilibrium:
     """A body, its contact, and the potential of both under a force."""
 
-    body: ModalBody
+    body: StackBody
     contact: ToolContact
 
     def answer(self, forces: FloatArray) -> FloatArray:
@@ -197,7 +198,7 @@ def press_path(equilibrium: ModalEquilibrium, height: float, reach: float) -> Pr
     step = spacing / compliance
     loading = _ToDepth(equilibrium, linear, compliance, spacing, reach)
     path = follow(loading, [_Pressed(0.0, np.zeros_like(linear))], step, SHORTEST * step)
-    tops, nodes = equilibrium.body.thickness.top, equilibrium.body.nodes
+    tops, nodes = equilibrium.body.thickness.faces, equilibrium.body.nodes
     outward, deflection = (np.stack([one.state[:, tops + shift].T for one in path]) for shift in (0, nodes))
     return PressPath(
         force=np.array([one.load for one in path]),

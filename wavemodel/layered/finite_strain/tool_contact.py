@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.layered.finite_strain.modal_body import ModalBody
+from wavemodel.layered.finite_strain.modal_body import StackBody
 from wavemodel.layered.tractions import TractionBasis
 
 STIFFEST = 1e-7
@@ -37,7 +37,7 @@ class ToolContact(Protocol):
         ...
 
 
-def _push(body: ModalBody, load: FloatArray) -> FloatArray:
+def _push(body: StackBody, load: FloatArray) -> FloatArray:
     """(N, 2 n, J) forces on all amplitudes from (N, J, 2) along U and W of the surface."""
     out = np.zeros((load.shape[0], 2 * body.nodes, load.shape[1]))
     out[:, 0], out[:, body.nodes] = load[..., 0], load[..., 1]
@@ -55,9 +55,9 @@ class PressureContact:
         The pressure.
     """
 
-    def __init__(self, body: ModalBody, basis: TractionBasis) -> None:
+    def __init__(self, body: StackBody, basis: TractionBasis) -> None:
         self._node = body.nodes
-        self.load: FloatArray = _push(body, basis.transform(body.modes.wavenumber))[..., 0]
+        self.load: FloatArray = _push(body, basis.transform(body.radial.wavenumber))[..., 0]
 
     def held(self, amplitude: FloatArray) -> FloatArray:
         """Nothing is held."""
@@ -85,8 +85,8 @@ class BondedContact:
         (J, J) of them on the linear body, m/N.
     """
 
-    def __init__(self, body: ModalBody, basis: TractionBasis, flexibility: FloatArray) -> None:
-        self._push = _push(body, basis.transform(body.modes.wavenumber))
+    def __init__(self, body: StackBody, basis: TractionBasis, flexibility: FloatArray) -> None:
+        self._push = _push(body, basis.transform(body.radial.wavenumber))
         self._answer = body.linear_compliance @ self._push
         modal = np.einsum("nim,nij->mj", self._push, self._answer)
         stiffness = _springs(flexibility, modal)

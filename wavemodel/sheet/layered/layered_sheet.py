@@ -1,22 +1,22 @@
 """The layered sheet over a hole as an elastic body at finite strain, in modes over the radius (no plate theory).
 
 Each layer has its own stiffness and its own strain through the thickness; the lower face is free over the hole. The
-energy is that of the large press on a base (`wavemodel.layered.finite_strain.modal_body`): neo-Hookean with the moduli
-at rest. Tensors have five components: rr, rz, zr, zz and the hoop. Nothing is calibrated.
+body is that of the large press on a base (`wavemodel.layered.finite_strain.modal_body`) but for its functions and what
+holds it. Nothing is calibrated.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import product
 from typing import TypeAlias
 
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.layered.finite_strain.modal_body import Deformed, deformed
+from wavemodel.layered.finite_strain.deformation_state import Deformed
+from wavemodel.layered.finite_strain.modal_body import ModalBody
 from wavemodel.sheet.layered.held_faces import STIFFNESS, Amplitudes, HeldFaces, bonded_tool, border, plate, pressure_on
-from wavemodel.sheet.layered.stretched_modes import RadialTables, StretchedRadius, stretched_modes
+from wavemodel.sheet.layered.stretched_modes import StretchedRadius, stretched_modes
 from wavemodel.sheet.layered.through_thickness import Piece, SheetThickness, sheet_thickness
 from wavemodel.specimen import DiscTool, WaveLayer
 
@@ -32,61 +32,34 @@ _Terms: TypeAlias = tuple[tuple[int, FloatArray, FloatArray], ...]
 
 
 @dataclass(frozen=True)
-class LayeredSheet:
+class LayeredSheet(ModalBody):
     """A sheet, held, in modes.
 
     Attributes
     ----------
+    thickness
+        Its functions through the thickness, in pieces.
     place
         Its amplitudes.
-    radial
-        Tables over the radius, (Q, ..).
-    thickness
-        Tables through the thickness, (Z, n).
     held
         Tool and clamp.
     tool
         The tool.
     """
 
-    place: Amplitudes
-    radial: RadialTables
     thickness: SheetThickness
+    place: Amplitudes
     held: HeldFaces
     tool: DiscTool
 
-    @cached_property
-    def volume(self) -> FloatArray:
-        """(Q, Z) weights of the points, m3."""
-        return np.outer(self.radial.area, self.thickness.weight)
-
-    def _split(self, amplitude: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """U (N, n) and W (N + 1, n)."""
+    def split(self, amplitude: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """U (N, n) and W (N + 1, n) of amplitudes (A,)."""
         u, w = np.split(amplitude, [self.place.outward])
         return u.reshape(-1, self.place.nodes), w.reshape(-1, self.place.nodes)
 
-    def gradient(self, amplitude: FloatArray) -> FloatArray:
-        """(5, Q, Z) displacement gradient."""
-        (u, w), r, t = self._split(amplitude), self.radial, self.thickness
-        across, along = u @ t.shape.T, w @ t.shape.T
-        steep, deep = u @ t.slope.T, w @ t.slope.T
-        return np.stack([r.stretch @ across, r.outward @ steep, r.slope @ along, r.level @ deep, r.hoop @ across])
-
-    def forces(self, stress: FloatArray) -> FloatArray:
-        """(A,) internal forces of stresses (5, Q, Z), N."""
-        r, t = self.radial, self.thickness
-        rr, rz, zr, zz, hoop = stress * self.volume
-        out = (r.stretch.T @ rr + r.hoop.T @ hoop) @ t.shape + (r.outward.T @ rz) @ t.slope
-        up = (r.slope.T @ zr) @ t.shape + (r.level.T @ zz) @ t.slope
-        return np.concatenate([out.ravel(), up.ravel()])
-
-    def state(self, amplitude: FloatArray) -> Deformed | None:
-        """Deformation at the points; None where matter is crushed or turned over."""
-        return deformed(self.gradient(amplitude), self.thickness.shear, self.thickness.bulk)
-
-    def energy(self, state: Deformed) -> float:
-        """Of the whole sheet, J."""
-        return float((self.volume * state.energy).sum())
+    def packed(self, outward: FloatArray, down: FloatArray) -> FloatArray:
+        """(A,) of U (N, n) and W (N + 1, n)."""
+        return np.concatenate([outward.ravel(), down.ravel()])
 
     def tangent(self, state: Deformed) -> FloatArray:
         """(A, A) derivative of the internal forces, N/m."""
@@ -111,7 +84,7 @@ class LayeredSheet:
 
     def displacement(self, amplitude: FloatArray, depth: float, radius: FloatArray) -> FloatArray:
         """(2, L + 1, R) outwards and downwards of the layers' faces at radii (R,), m, the tool at a depth, m."""
-        (u, w), faces = self._split(amplitude), self.thickness.faces
+        (u, w), faces = self.split(amplitude), self.thickness.faces
         modes = self.place.modes
         out = np.stack([(modes.outward(radius)[0] @ u[:, faces]).T, (modes.level(radius)[0] @ w[:, faces]).T])
         if self.tool.rigid:
@@ -156,7 +129,7 @@ def layered_sheet(layers: Sequence[WaveLayer], tool: DiscTool, hole: float, clam
     )
     modes, thickness = stretched_modes(around), sheet_thickness(layers)
     place = Amplitudes(modes, int(thickness.shape.shape[1]))
-    return LayeredSheet(place, modes.tables(), thickness, _held(place, layers, tool, hole, clamp), tool)
+    return LayeredSheet(modes.tables(), thickness, place, _held(place, layers, tool, hole, clamp), tool)
 
 
 def _held(place: Amplitudes, layers: Sequence[WaveLayer], tool: DiscTool, hole: float, clamp: str) -> HeldFaces:

@@ -17,7 +17,7 @@ from threadpoolctl import ThreadpoolController
 
 from wavemodel.arrays import FloatArray
 from wavemodel.integrators.equilibrium_path import EquilibriumState, straight_on
-from wavemodel.layered.finite_strain.modal_body import Deformed
+from wavemodel.layered.finite_strain.deformation_state import Deformed
 from wavemodel.sheet.layered.layered_sheet import LayeredSheet
 
 TOLERANCE = 1e-10

@@ -16,6 +16,7 @@ import numpy as np
 from scipy.special import j0, j1, jn_zeros
 
 from wavemodel.arrays import FloatArray
+from wavemodel.layered.finite_strain.modal_body import RadialTables
 
 POINTS_PER_MODE, PANEL = 3.0, 6
 """Radial quadrature: Gauss points a mode (products of modes are resolved), and in a panel."""
@@ -72,29 +73,6 @@ class StretchedRadius:
         for edge, near in inside:
             ends = ends[np.abs(ends - edge) > CLOSE * near]
         return np.unique(np.concatenate([[0.0], ends[1:-1], [edge for edge, _ in inside], [self.border]]))
-
-
-@dataclass(frozen=True)
-class RadialTables:
-    """Functions at Q radii.
-
-    Attributes
-    ----------
-    radius, area
-        (Q,) m, and weights 2 pi r dr, m2.
-    outward, stretch, hoop
-        (Q, N) u, du/dr and u/r per U.
-    level, slope
-        (Q, N + 1) w and dw/dr per W.
-    """
-
-    radius: FloatArray
-    area: FloatArray
-    outward: FloatArray
-    stretch: FloatArray
-    hoop: FloatArray
-    level: FloatArray
-    slope: FloatArray
 
 
 @dataclass(frozen=True)

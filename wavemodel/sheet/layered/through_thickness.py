@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import legendre
 
-from wavemodel.arrays import FloatArray, IntArray
+from wavemodel.arrays import FloatArray
+from wavemodel.layered.finite_strain.modal_body import Thickness
 from wavemodel.specimen import WaveLayer
 
 CUT, LEAST = 0.15, 0.03
@@ -34,29 +35,15 @@ class Piece:
 
 
 @dataclass(frozen=True)
-class SheetThickness:
-    """n nodes and Z Gauss points from the upper to the lower face.
+class SheetThickness(Thickness):
+    """Functions from the upper to the lower face of a sheet, both free.
 
     Attributes
     ----------
-    shape, slope
-        (Z, n) of the nodes' functions, 1 and 1/m.
-    weight
-        (Z,) m.
-    shear, bulk
-        (Z,) moduli, Pa.
-    faces
-        (L + 1,) nodes on the layers' faces.
     pieces
         The polynomials.
     """
 
-    shape: FloatArray
-    slope: FloatArray
-    weight: FloatArray
-    shear: FloatArray
-    bulk: FloatArray
-    faces: IntArray
     pieces: tuple[Piece, ...]
 
 
