@@ -75,7 +75,8 @@ def setup_words(ratio: Speedup, wave: str) -> str:
     first = f"with the set-up before it, one load history is {times_words(ratio.with_setup)} times as fast"
     if ratio.pays_from is None:
         return f"{first}; the {wave} is never ahead"
-    return f"{first}; the {wave} is ahead from load history {ratio.pays_from} of one set-up on"
+    many = "already in the first" if ratio.pays_from == 1 else f"from {ratio.pays_from} load histories of one set-up on"
+    return f"{first}; the {wave} is ahead {many}"
 
 
 def fit_headline(fit: SessionFit) -> str:
