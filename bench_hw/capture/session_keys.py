@@ -50,9 +50,10 @@ class ToolKeys(StrictModel):
 class SupportKeys(StrictModel):
     """What the specimen lies on."""
 
-    kind: Literal["bonded", "hole", "half_space"] | None = None
+    kind: Literal["bonded", "hole", "half_space", "plates", "grips"] | None = None
     hole_radius: Length | None = None
     clamp: Literal["plate", "rim"] | None = None
+    specimen_radius: Length | None = None
 
 
 class DriveKeys(StrictModel):

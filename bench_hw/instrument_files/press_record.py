@@ -215,20 +215,22 @@ def record_of(block: Block, told: Told) -> PressRecord:
     lines = block.lines[rows]
     values = {role: block.numbers(taken.column, rows) * taken.scale for role, taken in found.items()}
     time = np.arange(len(rows)) / told.rate if told.rate else _times(block.path, values["time"], lines, notes)
-    kind = _kind(block, found)
+    kind = _kind(block, found, told)
     if kind != "press":
-        notes.append(f"this is {kind} of a block between plates, not a press of a tool: depth and force are its faces'")
+        notes.append(f"this is {kind} of a cylinder or block, not a press of a tool: depth and force are its faces'")
     depth, force = _si_press(found, values, told)
     table = _pressing(block, found, time, depth, force, values, told, notes)
     shown = {role: taken.shown for role, taken in found.items()}
     return PressRecord(block.name, table, shown, tuple(notes), kind)
 
 
-def _kind(block: Block, found: Mapping[str, Taken]) -> str:
-    """What the words of the file call the test, where it has stress and strain."""
-    if "stress" not in found:
+def _kind(block: Block, found: Mapping[str, Taken], told: Told) -> str:
+    """What the words of the file call the test, where it has stress and strain or a cross-section and no tool."""
+    pulled, pressed = TENSION.search(block.spoken), COMPRESSION.search(block.spoken)
+    of_faces = told.area is not None and not told.tool and (pulled or pressed)
+    if "stress" not in found and not of_faces:
         return "press"
-    return "tension" if TENSION.search(block.spoken) and not COMPRESSION.search(block.spoken) else "compression"
+    return "tension" if pulled and not pressed else "compression"
 
 
 def _of_stress(block: Block, found: dict[str, Taken], told: Told) -> dict[str, Taken]:

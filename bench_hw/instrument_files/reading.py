@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -126,8 +126,13 @@ def _records(path: Path, blocks: Sequence[Block], told: Told) -> tuple[list[Pres
         _refuse(path, parts, told)
     results = [fact for part in parts if part.rows < MINIMUM_ROWS for fact in _table_facts(part)]
     header = header_reading([*(fact for part in trials for fact in part.facts), *results])
-    known = Told(**{**vars(told), "height": told.height or header.height, "area": told.area or header.area})
-    records = [record_of(part, known) for part in trials]
+    known = replace(
+        told,
+        height=told.height or header.height,
+        area=told.area or header.area,
+        tool=told.tool or header.tool_radius is not None,
+    )
+    records = [record_of(_with_all_words(part), known) for part in trials]
     taken = {part.name for part in trials}
     aside = [
         f"{part.name!r} holds no record of a press and is left aside"
@@ -135,6 +140,11 @@ def _records(path: Path, blocks: Sequence[Block], told: Told) -> tuple[list[Pres
         if part.name not in taken and part.rows >= 2
     ]
     return records, header, list(dict.fromkeys(aside))
+
+
+def _with_all_words(block: Block) -> Block:
+    """A block whose words are also those of the header lines that other sheets hold."""
+    return replace(block, spoken=" ".join((block.spoken, *(f"{fact.key} {fact.value}" for fact in block.facts))))
 
 
 def _table_facts(table: Block) -> Iterator[HeaderFact]:
@@ -175,8 +185,6 @@ def _key(block: Block, column: int) -> tuple[str, str]:
 
 
 def _part(block: Block, number: int, start: int, width: int) -> Block:
-    from dataclasses import replace
-
     import numpy as np
 
     columns = range(start, min(start + width, len(block.names)))
@@ -211,8 +219,6 @@ def _joined(parts: Sequence[Block]) -> list[Block]:
 
 
 def _renamed(block: Block, name: str) -> Block:
-    from dataclasses import replace
-
     return replace(block, name=name)
 
 
@@ -236,8 +242,6 @@ def _is_time(name: str) -> bool:
 
 
 def _append(before: Block, after: Block) -> Block:
-    from dataclasses import replace
-
     import numpy as np
 
     columns = tuple(

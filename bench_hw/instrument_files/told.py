@@ -41,6 +41,8 @@ class Told:
         `auto`: depth is counted from the first touch where the record begins in air; `none`: as the file has it.
     height, area : float or None
         Of the specimen, m and m2, for a file of stress and strain.
+    tool : bool
+        Whether the file or a person tells of a tool, which is narrower than the specimen.
     """
 
     columns: Mapping[str, str] = field(default_factory=lambda: _NO_COLUMNS)
@@ -53,6 +55,7 @@ class Told:
     touch: str = AUTOMATIC
     height: float | None = None
     area: float | None = None
+    tool: bool = False
 
     def __post_init__(self) -> None:
         if self.decimal not in ("", ".", ","):

@@ -123,9 +123,9 @@ def exported_press(scenario: Scenario, *, memory: bool = False) -> ExportedPress
     conditions = CONTACT_MODELS[problem.tool.contact].conditions(mesh, problem)
     held = SUPPORT_MODELS[problem.support.kind].fixed(mesh, problem)
     radially = (mesh.axis | conditions.held) & ~held
-    return ExportedPress(
-        scenario, problem, mesh, scenario_drive(scenario), held, radially, conditions.tied & ~held, conditions.load
-    )
+    drive = scenario_drive(scenario)
+    drive = replace(drive, value=scenario.support.pull * drive.value)
+    return ExportedPress(scenario, problem, mesh, drive, held, radially, conditions.tied & ~held, conditions.load)
 
 
 def _refuse(scenario: Scenario, problem: fem.Problem, memory: bool) -> None:
@@ -147,8 +147,10 @@ def _refuse(scenario: Scenario, problem: fem.Problem, memory: bool) -> None:
     for key, value in stated.items():
         if value is not None and value != 0.0:
             raise _not(key, str(value), "scenarios without it")
+    if problem.slides_on_plates:
+        raise _not("tool.contact", "rigid_frictionless between plates", "rigid_bonded")
     if problem.support.kind == "half_space":
-        raise _not("support.kind", "half_space", "bonded, hole")
+        raise _not("support.kind", "half_space", "bonded, hole, plates, grips")
     if (np.abs(scenario_drive(scenario).value) == 0.0).all():
         raise InputError(f"--export: scenario {scenario.name} presses nothing")
 

@@ -146,6 +146,8 @@ class Scenario(FileModel):
 
     def _check_tool(self) -> None:
         tool = self.tool
+        if self.support.cylinder:
+            return
         if tool.contact in TOUCHING and self.fem.kinematics == "finite" and tool.edge_radius is None:
             other = ', or set fem.kinematics to "linear"' if tool.contact == "rigid_frictionless" else ""
             raise problem(
@@ -160,6 +162,12 @@ class Scenario(FileModel):
 
     def _check_domains(self) -> None:
         radius, window = self.fem.radius, self.wave.window
+        if self.support.cylinder and (radius is not None or self.fem.geometry != "axisymmetric"):
+            raise problem(
+                "a cylinder between plates is axisymmetric and ends at support.specimen_radius; leave fem.radius and "
+                "fem.geometry out",
+                key="fem",
+            )
         hole = self.support.hole_radius if self.support.kind == "hole" else None
         inner, what = (self.tool.radius, "tool") if hole is None else (hole, "hole")
         if radius is not None and radius <= inner:

@@ -14,6 +14,8 @@ Contact = Literal["uniform_pressure", "rigid_bonded", "rigid_frictionless", "rig
 
 TOUCHING = ("rigid_frictionless", "rigid_frictional")
 """Contacts by real contact, which need a rounded edge in finite strain."""
+BETWEEN_PLATES = ("rigid_bonded", "rigid_frictionless")
+"""What the faces of a cylinder do on its plates: stick, or slide without friction."""
 
 
 class Tool(FileModel):
@@ -61,16 +63,30 @@ class Support(FileModel):
     Attributes
     ----------
     kind : str
-        bonded | hole | half_space (the last layer is endless).
+        bonded | hole | half_space (the last layer is endless) | plates, grips (a cylinder whose side is free, pressed
+        between two plates or pulled by two grips; both faces stick or slide as the tool's contact says).
     hole_radius : float or None
         m; needed by a hole, ignored otherwise.
     clamp : str
         How a hole holds a sheet: plate (on a plate round the hole) | rim (at the hole's rim, where the sheet ends).
+    specimen_radius : float or None
+        m; needed between plates or grips, and only there.
     """
 
-    kind: Literal["bonded", "hole", "half_space"] = "bonded"
+    kind: Literal["bonded", "hole", "half_space", "plates", "grips"] = "bonded"
     hole_radius: Length | None = None
     clamp: Literal["plate", "rim"] = "plate"
+    specimen_radius: Length | None = None
+
+    @property
+    def cylinder(self) -> bool:
+        """Whether the specimen is a cylinder between two plates or grips."""
+        return self.kind in ("plates", "grips")
+
+    @property
+    def pull(self) -> float:
+        """-1 where forces and depths are counted positive as the specimen is pulled, 1 where as it is pressed."""
+        return -1.0 if self.kind == "grips" else 1.0
 
     @model_validator(mode="after")
     def _hole_has_a_radius(self) -> Self:
@@ -78,6 +94,10 @@ class Support(FileModel):
             raise problem('a support of kind "hole" needs it; give a length such as "30 mm"', key="hole_radius")
         if self.kind != "hole" and self.clamp == "rim":
             raise problem('only a support of kind "hole" has a rim; leave it out', key="clamp")
+        if self.cylinder and self.specimen_radius is None:
+            raise problem(f'a support of kind "{self.kind}" needs it; give "10 mm"', key="specimen_radius")
+        if self.specimen_radius is not None and not self.cylinder:
+            raise problem('only the kinds "plates" and "grips" have it; leave it out', key="specimen_radius")
         return self
 
 
@@ -89,16 +109,33 @@ def setup_uncertainties(tissue: Tissue, tool: Tool, support: Support) -> dict[st
 
 
 def check_hole(tool: Tool, support: Support) -> None:
-    """Refuse a tool that does not pass through the hole it presses into.
+    """Refuse a tool that does not pass through the hole it presses into, and a plate that does not cover its cylinder.
 
     Raises
     ------
     PydanticCustomError
-        Naming `support.hole_radius`.
+        Naming `support.hole_radius`, or a key of the tool.
     """
+    if support.cylinder:
+        _check_plate(tool, support)
     if support.kind == "hole" and support.hole_radius is not None and support.hole_radius <= tool.radius:
         raise problem(
             f"{support.hole_radius * 1e3:g} mm is not larger than the tool's radius of {tool.radius * 1e3:g} mm; "
             "allowed: above the tool's radius",
             key="support.hole_radius",
         )
+
+
+def _check_plate(tool: Tool, support: Support) -> None:
+    if tool.radius < (support.specimen_radius or 0.0):
+        raise problem(
+            f"{tool.radius * 1e3:g} mm does not cover the specimen between plates; allowed: from its radius of "
+            f"{(support.specimen_radius or 0.0) * 1e3:g} mm (support.specimen_radius) on",
+            key="tool.radius",
+        )
+    if tool.contact not in BETWEEN_PLATES:
+        raise problem(
+            f"{tool.contact} is no contact of a plate; allowed: {' or '.join(BETWEEN_PLATES)}", key="tool.contact"
+        )
+    if tool.edge_radius is not None or tool.tilt != 0.0 or tool.position != (0.0, 0.0):
+        raise problem("a plate has no edge, tilt or place on the specimen; leave these keys out", key="tool")

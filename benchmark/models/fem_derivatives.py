@@ -98,6 +98,8 @@ def differentiated_press(
     fem.NotDifferentiableError
         The solver has no direct derivative here.
     """
+    if scenario.support.pull < 0.0:
+        raise fem.NotDifferentiableError("a cylinder between grips: the solver's own derivatives are those of a press")
     load = fem.Load(drive.control, drive.time, drive.value)
     prepared = FemModel(scenario).prepared
     problems = {key: _change(prepared.problem, each, key) for key, each in changes.items()}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 import fem
@@ -89,10 +91,11 @@ class FemModel:
 
     def follow(self, drive: Drive, on_step: OnStep = silent) -> Reading:
         """Follow a load history; a run that stops early keeps what it reached."""
-        load = fem.Load(drive.control, drive.time, drive.value)
+        pull = self._scenario.support.pull
+        load = fem.Load(drive.control, drive.time, pull * drive.value)
 
         def report(step: fem.StepReport) -> None:
-            on_step(StepProgress(step.step, step.total, step.force, step.depth))
+            on_step(StepProgress(step.step, step.total, pull * step.force, pull * step.depth))
 
         def run(model: Model, edge: float) -> fem.Solution:
             kept = None if self._keeping is None else kept_steps(self._keeping, model, load, edge)
@@ -102,29 +105,30 @@ class FemModel:
         return lambda: self._result(model, solution, load, drive)
 
     def _result(self, model: Model, solution: fem.Solution, load: fem.Load, drive: Drive) -> ModelResult:
-        """The solution in the harness's terms, with its profile and fields."""
+        """The solution in the harness's terms, with its profile and fields; a pull counts as positive there."""
+        pull = self._scenario.support.pull
         steps = solution.force.size
         peak = int(np.abs(drive.value[:steps]).argmax()) if steps else 0
         radii = profile_radii(self._scenario.tool.radius)
         layers, choices = solution.layer_names, self._choices(model)
-        mesh_error = fem.estimate_mesh_error(model, load, solution) if self._judge_mesh else None
+        mesh_error = _turned(fem.estimate_mesh_error(model, load, solution) if self._judge_mesh else None, pull)
         return ModelResult(
             model="fem",
             layers=tuple(layers),
             time=solution.time,
-            force=solution.force,
-            depth=solution.depth,
-            top_deflection=solution.top_deflection,
+            force=pull * solution.force,
+            depth=pull * solution.depth,
+            top_deflection=pull * solution.top_deflection,
             profile_radii=radii,
-            profile=solution.profile(peak, radii) if steps else np.full((len(layers), radii.size), np.nan),
+            profile=pull * solution.profile(peak, radii) if steps else np.full((len(layers), radii.size), np.nan),
             peak_step=peak,
             unknowns=model.unknowns,
             notes={**choices.notes(), **({DISCRETISATION: mesh_error_words(mesh_error)} if self._judge_mesh else {})},
             choices=choices,
             warnings=(*self.carried.remarks, *solution.warnings),
             resumed=_resumption(solution, load),
-            failure=run_failure(solution, load),
-            last=_last(solution),
+            failure=run_failure(solution, load, pull),
+            last=_last(solution, pull),
             mesh_error=mesh_error,
             fields=tuple(_snapshot(solution, step) for step in self._field_steps(peak, steps)),
         )
@@ -159,15 +163,22 @@ def _resumption(solution: fem.Solution, load: fem.Load) -> Resumption | None:
     return None if earlier is None else Resumption(earlier.steps, load.time.size, earlier.seconds)
 
 
-def run_failure(solution: fem.Solution, load: fem.Load) -> RunFailure | None:
+def _turned(found: fem.MeshError | None, pull: float) -> fem.MeshError | None:
+    """An estimate with the signs of the harness."""
+    if found is None or pull > 0.0:
+        return found
+    return replace(found, load=-found.load, value=-found.value, halved=-found.halved, error=-found.error)
+
+
+def run_failure(solution: fem.Solution, load: fem.Load, pull: float = 1.0) -> RunFailure | None:
     """The solver's failure in the harness's terms."""
     stop = solution.failure
     if stop is None:
         return None
-    return RunFailure(stop.step, stop.time, stop.reached, stop.target, load.unit, stop.reason)
+    return RunFailure(stop.step, stop.time, pull * stop.reached, pull * stop.target, load.unit, stop.reason)
 
 
-def _last(solution: fem.Solution) -> LastState | None:
+def _last(solution: fem.Solution, pull: float) -> LastState | None:
     """The last state of equilibrium of a run that stopped early, at a step or between two; None if that is rest."""
     found = solution if solution.last is None else solution.last
     if solution.failure is None or not found.time.size:
@@ -175,9 +186,9 @@ def _last(solution: fem.Solution) -> LastState | None:
     row = found.time.size - 1
     return LastState(
         time=float(found.time[row]),
-        force=float(found.force[row]),
-        depth=float(found.depth[row]),
-        top_deflection=found.top_deflection[row],
+        force=pull * float(found.force[row]),
+        depth=pull * float(found.depth[row]),
+        top_deflection=pull * found.top_deflection[row],
         field=_snapshot(found, row),
     )
 

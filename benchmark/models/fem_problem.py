@@ -84,9 +84,10 @@ def _without_effects(scenario: Scenario) -> fem.Problem:
             scenario.physics.friction_coefficient,
         ),
         support=fem.Support(
-            scenario.support.kind,
+            "plates" if scenario.support.cylinder else scenario.support.kind,
             scenario.support.hole_radius if scenario.support.kind == "hole" else None,
             clamp=scenario.support.clamp,
+            specimen_radius=scenario.support.specimen_radius,
         ),
         kinematics=options.kinematics,
         discretisation=fem.Discretisation(options.mesh, options.radius),

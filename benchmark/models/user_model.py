@@ -59,10 +59,14 @@ class UserTool:
 
 @dataclass(frozen=True)
 class UserSupport:
-    """What holds the lower face: `kind` (bonded, hole, half_space) and, of a hole, `hole_radius` in m."""
+    """What holds the lower face: `kind`, of a hole `hole_radius`, of a cylinder between plates its radius, in m.
+
+    Kinds are bonded, hole, half_space, plates and grips; grips pull, and force and depth count the pull as positive.
+    """
 
     kind: str
     hole_radius: float | None
+    specimen_radius: float | None = None
 
 
 FRICTION = "friction_coefficient"
@@ -98,7 +102,11 @@ def specimen_of(scenario: Scenario) -> Specimen:
     )
     tool, support = scenario.tool, scenario.support
     hole = support.hole_radius if support.kind == "hole" else None
-    return layers, UserTool(tool.radius, tool.contact, tool.edge_radius), UserSupport(support.kind, hole)
+    return (
+        layers,
+        UserTool(tool.radius, tool.contact, tool.edge_radius),
+        UserSupport(support.kind, hole, support.specimen_radius),
+    )
 
 
 DEFORM, SET_UP, PROFILE, PRESS = "deform", "set_up", "profile", "press"

@@ -97,6 +97,10 @@ class WaveModel:
 def _prepare(scenario: Scenario) -> PreparedWave:
     """The wave that the scenario asks for; over a hole "layered" is the layered sheet."""
     model = scenario.wave.model
+    if scenario.support.cylinder:
+        raise UncoveredError(
+            "the wave runs in tissue that goes on beside the tool; a cylinder between plates ends there"
+        )
     if model == "published":
         raise UncoveredError(
             "the wave model published does not predict a scenario: it returns the depth it is fed; layered and plate do"

@@ -128,6 +128,8 @@ def _wave(scenario: Scenario) -> tuple[RadialTable, Memory, tuple[str, ...]]:
     """The wave's table, memory and remarks; raises `WaveError` or `UncoveredError`."""
     if scenario.support.kind == "half_space":
         raise UncoveredError("the layered wave needs a base at a finite depth, a half_space has none")
+    if scenario.support.cylinder:
+        raise UncoveredError("a cylinder between plates has no surface to press by hand")
     if scenario.support.kind == "hole":
         return _sheet(scenario)
     wave, remarks = _layered(scenario)

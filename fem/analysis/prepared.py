@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from fem.analysis.checkpoint import Checkpoint, Keeper, run_fingerprint
 from fem.analysis.equilibrium import Equilibrium
 from fem.analysis.linear import run_linear
@@ -21,6 +23,9 @@ from fem.results.solution import Solution, StepReport
 
 PULLING = "the load history pulls (negative values): the contact is tied to the surface and cannot lift off"
 
+BULGE = 0.01
+"""Of a cylinder's height, by which its side may go past a plate before it is said."""
+GLUED = "the load history pulls (negative values): the specimen is glued to its plates and cannot come off"
 COARSER = "a coarser mesh, whose elements at the tool's edge fold later, may follow a deeper press"
 ROUNDER = "a larger edge_radius of the tool may follow a deeper press"
 
@@ -102,7 +107,7 @@ class Model:
             if self.problem.kinematics == "linear":
                 return run_linear(record, load, warnings, on_step)
             kept = self.checkpoint(load, checkpoint) if isinstance(checkpoint, (str, Path)) else checkpoint
-            return self._advised(run_nonlinear(record, load, self.newton, warnings, on_step, kept))
+            return self._bulged(self._advised(run_nonlinear(record, load, self.newton, warnings, on_step, kept)))
 
     def checkpoint(self, load: Load, path: str | Path) -> Checkpoint:
         """The file in which a run of a load history keeps its steps."""
@@ -118,9 +123,28 @@ class Model:
         advice = ROUNDER if touches else COARSER
         return replace(solution, failure=replace(failure, reason=f"{failure.reason}; {advice}"))
 
+    def _bulged(self, solution: Solution) -> Solution:
+        """The solution; that of a cylinder with how far its free side goes past the plates, which do not stop it."""
+        mesh, height = self.mesh, -float(self.mesh.nodes[:, -1].min())
+        if self.problem.support.kind != "plates" or not solution.depth.size:
+            return solution
+        z = mesh.nodes[mesh.border, -1] + solution.displacement[:, mesh.border, -1]
+        past = np.maximum(z.max(axis=1) + solution.depth, -height - z.min(axis=1))
+        seen = np.flatnonzero(past > BULGE * height)
+        if not seen.size:
+            return solution
+        first, most = 1e3 * float(solution.depth[seen[0]]), 1e3 * float(past.max())
+        said = (
+            f"the cylinder's free side bulges past the plates, by {most:.2g} mm at most and from {first:.3g} mm on by "
+            f"more than {100 * BULGE:g} % of its height; real plates stop it and carry more force there"
+        )
+        return replace(solution, warnings=(*solution.warnings, said))
+
     @property
     def _pulling(self) -> str:
         """What a history that pulls must know of this contact."""
+        if self.problem.support.kind == "plates":
+            return GLUED
         return LIFTING if self.problem.touches else PULLING
 
     def _names(self) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from fem.materials import Material
 from fem.materials.prony import PronyTerm, require_something_left
 
 CONTACTS = ("uniform_pressure", "rigid_bonded", "rigid_frictionless", "rigid_frictional")
-SUPPORTS = ("bonded", "hole", "half_space")
+SUPPORTS = ("bonded", "hole", "half_space", "plates")
 CLAMPS = ("plate", "rim")
 TOUCHING = ("rigid_frictionless", "rigid_frictional")
 LARGEST_FRICTION, LARGEST_ADHESION = 10.0, 1e3  # adhesion in N
@@ -124,7 +124,8 @@ class Support:
     ----------
     kind
         "bonded" (lower face fixed), "hole" (lower face fixed from `hole_radius` outwards, free inside)
-        or "half_space" (the last layer is endless).
+        "half_space" (the last layer is endless) or "plates" (a cylinder on a plate, its side free; the tool is the
+        other plate, and both faces stick or slide as its contact says; a negative load pulls).
     hole_radius
         In m, above 0; needed for "hole", and only there.
     clamp_shear_limit
@@ -133,20 +134,27 @@ class Support:
     clamp
         For "hole": "plate" (the lower face is held outside the hole, the sheet goes on above it) or "rim" (the sheet
         ends at the hole, where its whole edge is held).
+    specimen_radius
+        In m, above 0; needed for "plates", and only there.
     """
 
     kind: str
     hole_radius: float | None = None
     clamp_shear_limit: float | None = None
     clamp: str = "plate"
+    specimen_radius: float | None = None
 
     def __post_init__(self) -> None:
         require_one_of("support.kind", self.kind, SUPPORTS)
-        if (self.hole_radius is None) == (self.kind == "hole"):
-            state = "missing" if self.hole_radius is None else f"{self.hole_radius:g} m"
-            raise FemError(f"support.hole_radius = {state}: needed for the support 'hole', and only there")
-        if self.hole_radius is not None:
-            require_positive("support.hole_radius", self.hole_radius, "m")
+        for key, value, kind in (
+            ("hole_radius", self.hole_radius, "hole"),
+            ("specimen_radius", self.specimen_radius, "plates"),
+        ):
+            if (value is None) == (self.kind == kind):
+                state = "missing" if value is None else f"{value:g} m"
+                raise FemError(f"support.{key} = {state}: needed for the support {kind!r}, and only there")
+            if value is not None:
+                require_positive(f"support.{key}", value, "m")
         require_one_of("support.clamp", self.clamp, CLAMPS)
         if self.clamp == "rim" and (self.kind != "hole" or self.clamp_shear_limit is not None):
             raise FemError("support.clamp = 'rim': only with the support 'hole', and without clamp_shear_limit")

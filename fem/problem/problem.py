@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 GEOMETRIES = ("axisymmetric", "block", "surface")
 LARGEST_PRETENSION = 1e8  # Pa
+BETWEEN_PLATES = ("rigid_bonded", "rigid_frictionless")
 
 
 @dataclass(frozen=True)
@@ -85,6 +86,7 @@ class Problem:
         require_fibre_symmetry({layer.name: layer.material for layer in self.layers}, self.geometry)
         self._require_pretension()
         self._require_room()
+        self._require_plates()
         self._require_sliding()
         self._require_slipping()
         self._require_three_dimensions()
@@ -124,6 +126,31 @@ class Problem:
                 "support.clamp = 'rim': only with geometry = 'axisymmetric' and without discretisation.radius, since "
                 "the sheet ends at the hole"
             )
+
+    def _require_plates(self) -> None:
+        """What a cylinder between two plates can be: it has no other border, and no plane to be stretched in."""
+        tool, radius = self.tool, self.support.specimen_radius
+        if radius is None:
+            return
+        if tool.contact not in BETWEEN_PLATES or tool.edge_radius is not None:
+            raise FemError(
+                f"tool.contact = {tool.contact!r}: between plates only {' or '.join(BETWEEN_PLATES)}, without "
+                "tool.edge_radius: the plate covers the face"
+            )
+        if tool.radius < radius:
+            raise FemError(
+                f"tool.radius = {tool.radius:g} m: the plate must cover the specimen; must be at least "
+                f"support.specimen_radius = {radius:g} m"
+            )
+        stated = {
+            "geometry": self.geometry != "axisymmetric",
+            "discretisation.radius": self.discretisation.radius is not None,
+            "pretension": self.pretension != 0.0,
+            "interface_shear_limit": self.interface_shear_limit is not None,
+        }
+        if any(stated.values()):
+            names = ", ".join(name for name, given in stated.items() if given)
+            raise FemError(f"support.kind = 'plates': only axisymmetric and without {names}; leave it out")
 
     def _require_sliding(self) -> None:
         slides = self.support.clamp_shear_limit is not None
@@ -178,7 +205,12 @@ class Problem:
     @property
     def touches(self) -> bool:
         """Whether the tool touches the tissue and comes off it, rather than being tied to it."""
-        return self.tool.contact in TOUCHING and self.kinematics == "finite"
+        return self.tool.contact in TOUCHING and self.kinematics == "finite" and self.support.kind != "plates"
+
+    @property
+    def slides_on_plates(self) -> bool:
+        """Whether a cylinder's faces slide on the plates without friction."""
+        return self.support.kind == "plates" and self.tool.contact == "rigid_frictionless"
 
     def _require_surface(self) -> None:
         if (self.surface is None) == (self.geometry == "surface"):

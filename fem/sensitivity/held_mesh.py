@@ -59,6 +59,8 @@ def _depths(problem: Problem, mesh: AnyMesh) -> FloatArray:
 def _radii(problem: Problem, mesh: AnyMesh) -> FloatArray:
     """Radii in m of what the mesh's radial lines go through."""
     tool = problem.tool
+    if problem.support.specimen_radius is not None:
+        return np.array([0.0, problem.support.specimen_radius])
     face = tool.radius - tool.edge_radius if problem.touches and tool.edge_radius is not None else 0.0
     inner = [face] if face > 0.0 else []
     rim = [] if problem.support.hole_radius is None else [problem.support.hole_radius]

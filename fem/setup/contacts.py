@@ -75,6 +75,7 @@ class Resolution:
 
 
 SMALL_STRAIN = Resolution(edge=1.0 / 200.0, under=1.0 / 3.0)
+SLIDING_PLATE = Resolution(edge=1.0 / 20.0, under=1.0 / 6.0)  # no edge is stuck
 
 
 class ContactModel(Protocol):
@@ -140,7 +141,7 @@ class RigidBonded:
 
 @dataclass(frozen=True)
 class RigidFrictionless:
-    """Uniform vertical displacement and no shear under the tool, in linear kinematics only."""
+    """Uniform vertical displacement and no shear under the tool, in linear kinematics or under a plate."""
 
     def check(self, problem: Problem) -> tuple[str, ...]:
         """An edge radius means nothing here."""
@@ -148,9 +149,8 @@ class RigidFrictionless:
         return () if problem.tool.edge_radius is None else (ignored,)
 
     def resolution(self, problem: Problem) -> Resolution:
-        """Linear kinematics only."""
-        del problem
-        return SMALL_STRAIN
+        """The edge is singular, but for a plate that goes past the specimen."""
+        return SLIDING_PLATE if problem.slides_on_plates else SMALL_STRAIN
 
     def conditions(self, mesh: AnyMesh, problem: Problem) -> Conditions:
         """Tie the vertical displacement only."""
@@ -205,7 +205,7 @@ class RoundedPunch:
 
 @dataclass(frozen=True)
 class FrictionlessPunch:
-    """Tied and sharp in linear kinematics, real contact with a rounded edge in finite strain."""
+    """Tied in linear kinematics and under a plate, real contact with a rounded edge in finite strain."""
 
     def check(self, problem: Problem) -> tuple[str, ...]:
         """Finite strain needs a rounded edge."""
@@ -220,7 +220,8 @@ class FrictionlessPunch:
         return self._of(problem).conditions(mesh, problem)
 
     def _of(self, problem: Problem) -> RoundedPunch | RigidFrictionless:
-        return RigidFrictionless() if problem.kinematics == "linear" else RoundedPunch("rigid_frictionless")
+        tied = problem.kinematics == "linear" or problem.slides_on_plates
+        return RigidFrictionless() if tied else RoundedPunch("rigid_frictionless")
 
 
 CONTACT_MODELS: Mapping[str, ContactModel] = MappingProxyType(

@@ -66,7 +66,9 @@ def make_items(
 
 
 def sliding_nodes(mesh: Mesh, problem: Problem) -> BoolArray:
-    """Nodes (N,) that slide on the plate: all on it but those of the outer border."""
+    """Nodes (N,) that slide on the plate: all on it but those of the outer border; of a cylinder that slides all."""
+    if problem.slides_on_plates:
+        return mesh.base
     if problem.support.clamp_shear_limit is None:
         return np.zeros(len(mesh.nodes), dtype=np.bool_)
     return on_the_plate(mesh, problem) & ~mesh.border

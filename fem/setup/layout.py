@@ -37,7 +37,7 @@ FEWER_RINGS = 2.0  # up to this factor on the size at the edge the fan has fewer
 def lay_out(problem: Problem) -> Mesh:
     """Mesh of a problem whose contact is available."""
     return _Layout(
-        radius=problem.tool.radius,
+        radius=problem.support.specimen_radius or problem.tool.radius,
         extent=SUPPORT_MODELS[problem.support.kind].extent(problem),
         resolution=CONTACT_MODELS[problem.tool.contact].resolution(problem),
         density=DENSITY[problem.discretisation.density],
@@ -48,7 +48,7 @@ def lay_out(problem: Problem) -> Mesh:
 
 @dataclass(frozen=True)
 class _Layout:
-    """Tool radius (m), extent, resolution at the tool, density, factor on the size at a stuck edge, halved or not."""
+    """Pressed radius (m), extent, resolution at the tool, density, factor on the size at an edge, halved or not."""
 
     radius: float
     extent: Extent
@@ -68,6 +68,11 @@ class _Layout:
     @property
     def _depths(self) -> FloatArray:
         return np.concatenate(([0.0], np.cumsum(self.extent.thickness)))
+
+    @property
+    def _covered(self) -> bool:
+        """Whether the tool is a plate that covers the face and has no edge on it."""
+        return self.radius >= self.extent.radius
 
     @property
     def _fan_element(self) -> float:
@@ -93,7 +98,8 @@ class _Layout:
         found = []
         for fan in self.extent.fans:
             half_width = box if box and fan.depth == 0.0 else fan.half_width * self._coarsening(fan)
-            fitted = replace(fan, half_width=half_width, rings=self._rings(len(fan.rings)))
+            fewer = round(math.log2(self.edge)) if self._covered else 0
+            fitted = replace(fan, half_width=half_width, rings=self._rings(len(fan.rings) - fewer))
             if self._has_room(fitted, box):
                 found.append(fitted)
         return tuple(found)
@@ -104,7 +110,7 @@ class _Layout:
 
     def _has_room(self, fan: Fan, box: float) -> bool:
         """Whether a fan is clear of the tool's, whose half width is told, and of axis and border, or at the border."""
-        clear = abs(fan.radius - self.radius) > fan.half_width + box and fan.radius > fan.half_width
+        clear = (self._covered or abs(fan.radius - self.radius) > fan.half_width + box) and fan.radius > fan.half_width
         inside = fan.radius + fan.half_width < self.extent.radius or fan.radius == self.extent.radius
         return clear and inside and (fan.depth == 0.0 or fan.depth - fan.half_width > box)
 

@@ -165,4 +165,5 @@ def _remembers(problem: Problem) -> bool:
 
 def _is_stuck(problem: Problem) -> bool:
     """Whether the surface is stuck, or kept level, up to a sharp edge."""
-    return problem.tool.contact != "uniform_pressure" and not problem.touches
+    level = problem.tool.contact == "uniform_pressure" or problem.slides_on_plates
+    return not level and not problem.touches

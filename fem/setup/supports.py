@@ -24,6 +24,7 @@ CLAMP_IN_THICKNESSES = 4.0
 # A sheet bends: the tool's edge weighs little, but the press goes several thicknesses deep.
 EDGE_FACTOR = 1.5
 CORNER_RINGS = (1.0, 0.5, 0.25)  # of the fans where a clamped edge meets the faces
+PLATE_CORNER = 16.0  # elements over the radius or height of a cylinder, whichever is less, at its corners
 SLIDING_RIM = 0.33  # size of the elements at a rim on which a sheet slides, over the usual one; it has no fan
 
 
@@ -132,10 +133,7 @@ class Hole:
         fans: tuple[Fan, ...] = ()
         if problem.support.clamp == "rim":
             radius = hole
-            fans = (
-                Fan(hole, min(size, thickness[0]), CORNER_RINGS),
-                Fan(hole, min(size, thickness[-1]), CORNER_RINGS, depth=total),
-            )
+            fans = _corner_fans(hole, size, thickness)
         elif problem.support.clamp_shear_limit is None:
             fans = (Fan(hole, min(size, thickness[-1]), (1.0,), depth=total, square_root=True),)
         smaller = 1.0 if fans else SLIDING_RIM
@@ -146,6 +144,33 @@ class Hole:
     def fixed(self, mesh: AnyMesh, problem: Problem) -> BoolArray:
         """Lower face outside the hole, rim included, and the outer border."""
         return on_the_plate(mesh, problem) | mesh.border
+
+
+@dataclass(frozen=True)
+class Plates:
+    """The lower face held vertically, and along the plate where it sticks; the border is the specimen's free side."""
+
+    def extent(self, problem: Problem) -> Extent:
+        """The specimen itself; the corners of faces that stick are resolved."""
+        radius, thickness = problem.support.specimen_radius or 0.0, tuple(layer.thickness for layer in problem.layers)
+        if problem.slides_on_plates:
+            return Extent(radius, thickness)
+        size, total = min(sum(thickness), radius) / PLATE_CORNER, sum(thickness)
+        corner, faces = Feature(radius, size, 0.4), (Feature(0.0, size, 0.5), Feature(total, size, 0.5))
+        return Extent(radius, thickness, (corner,), faces, fans=_corner_fans(radius, size, thickness))
+
+    def fixed(self, mesh: AnyMesh, problem: Problem) -> BoolArray:
+        """Lower face; a cylinder that slides leaves it along the plate."""
+        del problem
+        return mesh.base
+
+
+def _corner_fans(radius: float, size: float, thickness: tuple[float, ...]) -> tuple[Fan, ...]:
+    """Fans where a held edge or face meets the border, above and below."""
+    return (
+        Fan(radius, min(size, thickness[0]), CORNER_RINGS),
+        Fan(radius, min(size, thickness[-1]), CORNER_RINGS, depth=sum(thickness)),
+    )
 
 
 def on_the_plate(mesh: AnyMesh, problem: Problem) -> BoolArray:
@@ -168,5 +193,5 @@ def hole_radius(problem: Problem) -> float:
 
 
 SUPPORT_MODELS: Mapping[str, SupportModel] = MappingProxyType(
-    {"bonded": Bonded(), "hole": Hole(), "half_space": HalfSpace()}
+    {"bonded": Bonded(), "hole": Hole(), "half_space": HalfSpace(), "plates": Plates()}
 )

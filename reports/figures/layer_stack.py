@@ -24,7 +24,7 @@ __all__ = ["StackLayer", "layer_stack"]
 
 _TISSUE, _TOOL = PALETTE["tissue"].light, PALETTE["tool"].light
 _LEFT, _SECTION, _BELOW, _ABOVE, _LABEL = 58.0, 345.0, 50.0, 8.0, 40.0
-_SUPPORTS = ("bonded", "hole", "half_space")
+_SUPPORTS = ("bonded", "hole", "half_space", "plates", "grips")
 
 
 @dataclass(frozen=True)
@@ -59,9 +59,17 @@ class CrossSection:
     half_width: float
     endless: bool
     hole_radius: float | None
+    specimen_radius: float | None = None
 
     @classmethod
-    def of(cls, layers: Sequence[StackLayer], tool: ToolShape, support: str, hole_radius: float | None) -> CrossSection:
+    def of(
+        cls,
+        layers: Sequence[StackLayer],
+        tool: ToolShape,
+        support: str,
+        hole_radius: float | None,
+        specimen_radius: float | None = None,
+    ) -> CrossSection:
         """Return the section of a stack; an endless layer is drawn as deep as makes a good picture."""
         endless = support == "half_space" or layers[-1].thickness_mm is None
         given = [layer.thickness_mm or 0.0 for layer in layers]
@@ -69,7 +77,9 @@ class CrossSection:
             given[-1] = max(2.5 * tool.radius_mm, 0.8 * sum(given[:-1]))
         hole = hole_radius if support == "hole" else None
         half_width = max(2.6 * tool.radius_mm, 0.9 * sum(given), 1.25 * (hole or 0.0))
-        return cls(layers, np.cumsum([0.0, *given]), tool, half_width, endless, hole)
+        if specimen_radius is not None:
+            half_width = 1.3 * max(tool.radius_mm, specimen_radius)
+        return cls(layers, np.cumsum([0.0, *given]), tool, half_width, endless, hole, specimen_radius)
 
     @property
     def depth(self) -> float:
@@ -120,11 +130,15 @@ def paint_section(drawing: Drawing, section: CrossSection) -> None:
 
 def _paint_layers(axes: Axes, section: CrossSection) -> None:
     """Fill the layers, the stiffer the stronger, by the logarithm of Young's modulus."""
+    from matplotlib.patches import Rectangle
+
     stiffness = np.log([layer.youngs_modulus_kPa for layer in section.layers])
     shades = 0.2 + 0.55 * (stiffness - stiffness.min()) / (np.ptp(stiffness) or 1.0)
+    half = section.specimen_radius or section.half_width
     for top, bottom, shade in zip(section.faces[:-1], section.faces[1:], shades, strict=True):
-        axes.axhspan(top, bottom, facecolor=_TISSUE, alpha=float(shade), linewidth=0, zorder=1)
-        axes.axhline(top, color=_TISSUE, linewidth=1, zorder=2)
+        place = ((-half, top), 2.0 * half, bottom - top)
+        axes.add_patch(Rectangle(*place, facecolor=_TISSUE, alpha=float(shade), linewidth=0, zorder=1))
+        axes.plot([-half, half], [top, top], color=_TISSUE, linewidth=1, zorder=2)
 
 
 def _paint_tool(axes: Axes, section: CrossSection) -> None:
@@ -209,6 +223,7 @@ def layer_stack(
     tool: ToolShape,
     support: str = "bonded",
     hole_radius_mm: float | None = None,
+    specimen_radius_mm: float | None = None,
 ) -> Figure:
     """Draw a tissue's cross-section through the tool axis, all thicknesses to scale.
 
@@ -219,9 +234,12 @@ def layer_stack(
     tool
         What stands on it.
     support
-        `bonded`, `hole` (needs `hole_radius_mm`) or `half_space` (the last layer is endless).
+        `bonded`, `hole` (needs `hole_radius_mm`), `half_space` (the last layer is endless), `plates` or `grips` (a
+        cylinder; needs `specimen_radius_mm`).
     hole_radius_mm
         Radius in mm of the hole the stack lies over.
+    specimen_radius_mm
+        Radius in mm of a cylinder.
 
     Raises
     ------
@@ -229,7 +247,7 @@ def layer_stack(
         Without a layer, for a thickness, modulus or radius that is not above zero, or another support.
     """
     _check(layers, tool.radius_mm, support, hole_radius_mm)
-    section = CrossSection.of(layers, tool, support, hole_radius_mm)
+    section = CrossSection.of(layers, tool, support, hole_radius_mm, specimen_radius_mm)
     held = _support_words(support, hole_radius_mm)
     caption = f"Cross-section through the tool axis, thicknesses to scale, stronger colour where stiffer; {held}."
     if abs(section.stretch - 1) > 0.05:
@@ -244,6 +262,8 @@ def layer_stack(
 def _support_words(support: str, hole_radius_mm: float | None) -> str:
     if support == "half_space":
         return "the last layer is endless"
+    if support in ("plates", "grips"):
+        return f"a cylinder between two {support}, its side free"
     if hole_radius_mm is None or support == "bonded":
         return "its lower face is bonded to a rigid base"
     return f"it lies over a hole of {format_number(float(hole_radius_mm), 3, trim=True)} mm radius"

@@ -439,3 +439,28 @@ SAMPLES = {
     "parquet": Sample(parquet),
     "chinese": Sample(chinese),
 }
+
+
+def cylinder_workbook(folder: Path, word: str, youngs_modulus: float = 50e3) -> Path:
+    """testXpert's workbook of three cylinders, 20 mm wide and 12 mm high, faces sliding, pressed or pulled by 25 %.
+
+    Incompressible neo-Hookean in closed form, F = E/3 A |l - 1/l^2| with the stretch l, and 2 mN of noise.
+    """
+    time = np.arange(0.0, 20.0, 0.05)
+    strain = np.interp(time, [0.0, 1.0, 10.0, 12.0, 20.0], [0.0, 0.0, 0.25, 0.25, 0.0])
+    stretch = 1.0 + strain * (1.0 if word.startswith("Zug") else -1.0)
+    force = youngs_modulus / 3.0 * np.pi * 10e-3**2 * np.abs(stretch - stretch**-2)
+    sheets: dict[str, list[list[object]]] = {
+        "Parameter": [["Prüfvorschrift", word], ["Probendurchmesser", 20.0, "mm"], ["Vorkraft", 0.01, "N"]],
+        "Ergebnisse": [["Probe", "h0", "Fmax"], ["", "mm", "N"], *[[f"Probe {k}", 12.0, 1.0] for k in (1, 2, 3)]],
+    }
+    for number in (1, 2, 3):
+        noisy = force + np.random.default_rng(number).normal(0.0, 2e-3, time.size)
+        table: list[list[object]] = [
+            [f"Probe {number}"],
+            ["Prüfzeit", "Standardweg", "Standardkraft"],
+            ["s", "mm", "N"],
+        ]
+        table += [[t, d, f] for t, d, f in zip(time, 12.0 * strain, noisy, strict=True)]
+        sheets[f"Probe {number}"] = table
+    return workbook(folder / "cylinders.xlsx", sheets)

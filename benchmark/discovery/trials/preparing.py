@@ -68,8 +68,13 @@ def prepare(session: Session, rows: int) -> Study:
 
 
 def _few(session: Session) -> list[str]:
-    """What few trials cannot show."""
+    """What few trials cannot show; a session of cylinders is refused."""
     count = len(session.trials)
+    if any(trial.support.cylinder for trial in session.trials):
+        raise InputError(
+            f"session {session.name}: a cylinder between plates or grips (support.kind); discover looks for what the "
+            "press of a tool lacks. Allowed here: run --trials and fit, which set finite elements beside the trials."
+        )
     if count < criteria.LEAST_TRIALS:
         raise InputError(
             f"session {session.name}: {count} trial(s); at least {criteria.LEAST_TRIALS} are needed to tell a "

@@ -218,7 +218,11 @@ def setups(file: SessionFile, conditions: Iterable[str], source: Source) -> dict
 def assumptions(file: SessionFile, conditions: Mapping[str, Setup]) -> list[str]:
     """One sentence for each key of tool and support that no one gave; `conditions` are the set-ups in use."""
     tools = [_given(file, file.conditions.get(name, ConditionKeys())) for name in conditions]
-    said = [_WHY[key] for key in _ASSUMED if any(key not in tool for tool, _ in tools)]
+    said = [
+        _WHY[key]
+        for key in _ASSUMED
+        if any(key not in tool and not (key == "radius" and "specimen_radius" in support) for tool, support in tools)
+    ]
     edges = {
         setup.tool.edge_radius
         for setup, (tool, _) in zip(conditions.values(), tools, strict=True)
@@ -238,7 +242,7 @@ def _setup(file: SessionFile, condition: ConditionKeys, source: Source) -> Setup
     """Tool and support of a condition; a touching tool without an edge gets the assumed one."""
     setup = validated(Setup, _tables(file, condition), source)
     tool = setup.tool
-    if tool.contact not in TOUCHING or tool.edge_radius is not None:
+    if tool.contact not in TOUCHING or tool.edge_radius is not None or setup.support.cylinder:
         return setup
     return setup.model_copy(update={"tool": tool.model_copy(update={"edge_radius": ASSUMED_EDGE * tool.radius})})
 
@@ -249,4 +253,5 @@ def _given(file: SessionFile, condition: ConditionKeys) -> tuple[dict[str, Any],
 
 def _tables(file: SessionFile, condition: ConditionKeys) -> dict[str, Any]:
     tool, support = _given(file, condition)
-    return {"tool": {**_ASSUMED, **tool}, "support": support}
+    covering = {"radius": support["specimen_radius"]} if "specimen_radius" in support else {}
+    return {"tool": {**_ASSUMED, **covering, **tool}, "support": support}

@@ -100,7 +100,7 @@ def propose(folder: Path) -> Proposal:
         'contact = "rigid_bonded"  # SAY: rigid_bonded where the surface sticks, rigid_frictionless where it slides',
         "",
         "[support]",
-        'kind = "bonded"  # SAY: bonded to a base, or hole with hole_radius, or half_space',
+        *_support_lines(resolved),
     ]
     trials = [line for trial, condition in zip(read.trials, named, strict=True) for line in _entry(trial, condition)]
     body = f"# SAY: layers, thickness and modulus; until then: {why}\n{specimen.to_toml()}"
@@ -129,6 +129,16 @@ def _tool_lines(tools: set[tuple[tuple[str, str], ...]]) -> list[str]:
         ]
     said = "headers tell of several tools: one a condition, [conditions.NAME.tool]" if tools else "no file tells it"
     return [f'radius = "5 mm"  # SAY: {said}']
+
+
+def _support_lines(file: SessionFile) -> list[str]:
+    """What holds the specimen: as the files tell it, where they are of one cylinder between plates."""
+    told = {tuple(keys.support.items()) for keys in file.conditions.values()}
+    if len(told) == 1 and (keys := next(iter(told))):
+        return [f"{key} = {_text(str(value))}  # from the files" for key, value in keys]
+    return [
+        'kind = "bonded"  # SAY: bonded to a base, hole with hole_radius, half_space, or plates with specimen_radius'
+    ]
 
 
 def _to_say(tools: set[tuple[tuple[str, str], ...]], why: str) -> tuple[str, ...]:

@@ -2,34 +2,27 @@
 
 A file of another instrument may hold several trials, and its header may tell of tool and specimen. How it is read is
 `bench_hw.instrument_files`; what a session makes of it is here.
-
-A film that started at another time than the force is put on its clock by the press. Markers move as the tool goes in.
-Their mean way from where they rested, m(t), is fitted by a quadratic of the depth d (zero in air) at the film's
-instants shifted by tau, m = a + b d(t + tau) + c d(t + tau)^2; the tau of least squares is the film's clock. Its
-standard deviation is that of the curvature of the sum of squares, widened by how long residuals stay alike. A second
-minimum that is nearly as deep (a press like the one before) is not decided here: it is asked for.
 """
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench_hw.errors import BenchError
 from bench_hw.instrument_files import ENDINGS, NoNumbersError, Reading, is_plain_trial, preview, read_instrument_file
-from bench_hw.tables import MarkerTable, TrialTable
+from bench_hw.tables import TrialTable
 from benchmark.errors import InputError
 from benchmark.files.sessions.description import ConditionKeys, SessionFile, TrialEntry
 from benchmark.files.sessions.trials import read_table
 from benchmark.files.units import LENGTH, format_quantity
 
-Array = NDArray[np.float64]
 NOTES = (".txt", ".dat", ".asc", ".tab", ".tsv")
 """Endings of text that need not be a trial: without rows of numbers it is left aside where nobody listed it."""
 
@@ -141,10 +134,11 @@ def with_headers(file: SessionFile, trials: Sequence[Recording]) -> tuple[Sessio
     InputError
         The headers of one condition contradict each other.
     """
+    file, plates = _between_plates(file, trials)
     told = {name: _tool(name, trials) for name in dict.fromkeys(trial.entry.condition for trial in trials)}
     told = {name: keys for name, keys in told.items() if keys and "radius" not in file.tool}
     if not told:
-        return file, []
+        return file, plates
     conditions = dict(file.conditions)
     for name, keys in told.items():
         own = conditions.get(name, ConditionKeys())
@@ -156,7 +150,41 @@ def with_headers(file: SessionFile, trials: Sequence[Recording]) -> tuple[Sessio
     if alike:
         update = {"tool": {**common, **file.tool}}
     said = sorted({source for trial in trials for source in trial.header.sources})
-    return file.model_copy(update=update), [f"tool and specimen as the files' headers tell: {'; '.join(said)}"]
+    return file.model_copy(update=update), [
+        *plates,
+        f"tool and specimen as the files' headers tell: {'; '.join(said)}",
+    ]
+
+
+CYLINDER: Final[Mapping[str, tuple[str, str]]] = {
+    "compression": ("plates", "pressed between plates"),
+    "tension": ("grips", "pulled by grips, force and depth positive as it is pulled"),
+}
+"""The support of what files call compression or tension, and its words."""
+
+
+def _between_plates(file: SessionFile, trials: Sequence[Recording]) -> tuple[SessionFile, list[str]]:
+    """The session with the cylinders that its files tell of, in conditions of which nobody says what they were."""
+    conditions, said = dict(file.conditions), []
+    for name in dict.fromkeys(trial.entry.condition for trial in trials):
+        own, keys = [each for each in trials if each.entry.condition == name], conditions.get(name, ConditionKeys())
+        kinds = {each.kind for each in own}
+        stated = "kind" in {**file.support, **keys.support} or "radius" in {**file.tool, **keys.tool}
+        if stated or len(kinds) > 1 or not kinds <= set(CYLINDER):
+            continue
+        told = file.import_.told().area
+        radii = [math.sqrt((told or each.header.area or 0.0) / math.pi) for each in own]
+        radius, (kind, words) = float(np.median(radii)), CYLINDER[kinds.pop()]
+        text = format_quantity(radius, LENGTH)
+        conditions[name] = keys.model_copy(update={"support": {"kind": kind, "specimen_radius": text, **keys.support}})
+        spread = (
+            f", from {1e3 * min(radii):.4g} to {1e3 * max(radii):.4g} mm" if max(radii) > 1.001 * min(radii) else ""
+        )
+        said.append(
+            f"condition {name}: a cylinder {words}, of {1e3 * radius:.4g} mm radius by its cross-section{spread}; its "
+            "faces stick unless told: --set tool.contact=rigid_frictionless where they slide"
+        )
+    return file.model_copy(update={"conditions": conditions}), said
 
 
 def check_tool_is_told(file: SessionFile, trials: Sequence[Recording]) -> None:
@@ -210,103 +238,3 @@ def recorded_names(trials: Sequence[Recording], names: Sequence[str]) -> list[st
     full = [f"{name} {trial.name}".strip() for name, trial in zip(names, trials, strict=True)]
     times = Counter(full)
     return [name if times[name] == 1 else f"{name} #{number}" for number, name in enumerate(full, start=1)]
-
-
-STEPS = 4
-"""Shifts tried for each step of the slower clock."""
-RIVAL = 1.5
-"""Of the least sum of squares: another shift, apart by a tenth of the press, below so much could be the right one."""
-LEAST_EXPLAINED = 0.9
-"""Of the markers' variance that the best shift must explain."""
-
-
-@dataclass(frozen=True)
-class ClockShift:
-    """What is added to the film's times (s), its standard deviation (s), and the share of variance it explains."""
-
-    shift: float
-    deviation: float
-    explained: float
-
-
-def marker_way(markers: MarkerTable) -> tuple[Array, Array]:
-    """Frames (f,) s and the mean way (f,) m of all markers from their median place in the first tenth of the frames."""
-    frames = np.unique(markers.time)
-    ways = []
-    for number in np.unique(markers.marker):
-        mine = markers.marker == number
-        x, y = (np.interp(frames, markers.time[mine], values[mine]) for values in (markers.x, markers.y))
-        rest = max(3, len(frames) // 10)
-        ways.append(np.hypot(x - np.median(x[:rest]), y - np.median(y[:rest])))
-    return frames, np.mean(ways, axis=0)
-
-
-def film_shift(name: str, table: TrialTable, markers: MarkerTable) -> ClockShift:
-    """By how much the film's clock is behind the trial's.
-
-    Raises
-    ------
-    InputError
-        The markers do not follow the press, or two shifts are as likely.
-    """
-    frames, way = marker_way(markers)
-    step = max(float(np.median(np.diff(frames))), float(np.median(np.diff(table.time)))) / STEPS
-    overlap = 0.5 * min(float(np.ptp(frames)), float(np.ptp(table.time)))
-    shifts = np.arange(table.time[0] - frames[-1] + overlap, table.time[-1] - frames[0] - overlap, step)
-    if len(shifts) < 5:
-        raise InputError(f"trial {name}: film and force are too short to be aligned; allowed: a whole press in both.")
-    squares = np.array([_squares(table, frames + shift, way) for shift in shifts])
-    best = int(np.clip(np.argmin(squares), 1, len(shifts) - 2))
-    total = float(((way - way.mean()) ** 2).sum())
-    explained = 1.0 - float(squares[best]) / max(total, 1e-300)
-    if explained < LEAST_EXPLAINED:
-        raise InputError(
-            f"trial {name}: the markers do not follow the press at any shift of the film ({100 * explained:.0f} % of "
-            f'their way explained); allowed: a film of this press, or one clock (camera.clock = "shared").'
-        )
-    apart = np.abs(shifts - shifts[best]) > 0.1 * float(np.ptp(frames))
-    valley = apart & (squares <= np.roll(squares, 1)) & (squares <= np.roll(squares, -1))
-    rival = shifts[valley & (squares < RIVAL * squares[best])]
-    if len(rival):
-        raise InputError(
-            f"trial {name}: the film fits the force shifted by {shifts[best]:.3f} s and by {rival[0]:.3f} s; allowed: "
-            f'a film that shows the whole record, or marker times on the trial\'s clock (camera.clock = "shared").'
-        )
-    return _refined(shifts, squares, best, len(frames), _alike(table, frames + shifts[best], way), explained)
-
-
-def _refined(shifts: Array, squares: Array, best: int, count: int, alike: float, explained: float) -> ClockShift:
-    """The parabola's minimum through the three lowest, and its deviation: 2 s^2 over the curvature, times `alike`."""
-    left, middle, right = squares[best - 1 : best + 2]
-    step = float(shifts[1] - shifts[0])
-    bend = max(float(left - 2.0 * middle + right), 1e-300)
-    offset = float(np.clip(0.5 * (left - right) / bend, -1.0, 1.0)) * step
-    variance = 2.0 * (float(middle) / max(count - 4, 1)) / (bend / step**2) * alike
-    return ClockShift(float(shifts[best]) + offset, float(np.sqrt(variance)), explained)
-
-
-def _residual(table: TrialTable, times: Array, way: Array) -> Array:
-    depth = 1e3 * np.clip(np.interp(times, table.time, table.depth), 0.0, None)  # in air nothing moves
-    columns = np.column_stack([np.ones_like(depth), depth, depth**2])
-    return np.asarray(way - columns @ np.linalg.lstsq(columns, way, rcond=None)[0])
-
-
-def _squares(table: TrialTable, times: Array, way: Array) -> float:
-    return float((_residual(table, times, way) ** 2).sum())
-
-
-def _alike(table: TrialTable, times: Array, way: Array) -> float:
-    """How many frames residuals stay alike: (1 + r) / (1 - r) of their first autocorrelation, one at least."""
-    left = _residual(table, times, way)
-    r = float(left[1:] @ left[:-1]) / max(float(left @ left), 1e-300)
-    return max(1.0, (1.0 + r) / max(1.0 - r, 1e-3))
-
-
-def on_trials_clock(name: str, table: TrialTable, markers: MarkerTable) -> tuple[MarkerTable, str]:
-    """Markers with their times on the trial's clock, and the sentence that says by how much they were shifted."""
-    found = film_shift(name, table, markers)
-    said = (
-        f"trial {name}: the film's clock is shifted by {found.shift:.4f} s (standard deviation {found.deviation:.4f} "
-        f"s), found from the press: it explains {100 * found.explained:.1f} % of the markers' way"
-    )
-    return replace(markers, time=markers.time + found.shift), said

@@ -36,6 +36,8 @@ def _facts(scenario: Scenario) -> Facts:
     support = scenario.support.kind.replace("_", " ")
     if scenario.support.kind == "hole" and scenario.support.hole_radius is not None:
         support += f" of radius {MM * scenario.support.hole_radius:g} mm"
+    if scenario.support.specimen_radius is not None:
+        support += f", a cylinder of radius {MM * scenario.support.specimen_radius:g} mm with a free side"
     return Facts(
         (
             Fact("Tissue", scenario.tissue.name),
@@ -63,7 +65,8 @@ def layer_stack_of(scenario: Scenario) -> Block:
     ]
     support = scenario.support
     hole = None if support.hole_radius is None else MM * support.hole_radius
-    return layer_stack(layers, tool_shape(scenario.tool), support.kind, hole)
+    side = None if support.specimen_radius is None else MM * support.specimen_radius
+    return layer_stack(layers, tool_shape(scenario.tool), support.kind, hole, side)
 
 
 def tool_shape(tool: Tool) -> ToolShape:

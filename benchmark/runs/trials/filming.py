@@ -17,7 +17,7 @@ from bench_hw.vision.camera.pinhole import Camera, distance_of
 from bench_hw.vision.displacement.tracks import tracks_of
 from benchmark.errors import InputError
 from benchmark.files import Session, Trial
-from benchmark.files.sessions.recordings import on_trials_clock
+from benchmark.files.sessions.film_clock import on_trials_clock
 from benchmark.files.sessions.trials import read_markers
 from benchmark.identification import Film
 from benchmark.response import CameraView

@@ -66,7 +66,7 @@ def test_stress_and_strain_are_labelled_as_of_a_block(tmp_path):
     path.write_text("\n".join(["Time (s),Compressive strain (%),Compressive stress (kPa)", *lines]))
     (record,) = read_instrument_file(path, Told(height=0.01, area=1e-4)).records
     assert record.kind == "compression"
-    assert any("compression of a block" in note for note in record.notes)
+    assert any("compression of a cylinder or block" in note for note in record.notes)
     assert record.table.force.max() == pytest.approx(1e3 * one.force.max() * 1e-4, rel=0.01)
     assert np.ptp(record.table.depth) == pytest.approx(np.ptp(one.depth) * 1e-2 * 0.01, rel=1e-3)
 

@@ -39,7 +39,7 @@ def test_a_plain_name_may_be_a_file(tmp_path):
 def test_a_name_that_is_nothing_lists_the_nearest():
     with pytest.raises(InputError, match="did you mean skin_forearm"):
         find("skin_forarm", "tissue")
-    with pytest.raises(InputError, match="known: paper, phantom, skin-5N"):
+    with pytest.raises(InputError, match="known: compression, paper, phantom, skin-5N"):
         find("zzzz", "scenario")
     for odd in ("", "x" * 400, "a\0b"):
         with pytest.raises(InputError):

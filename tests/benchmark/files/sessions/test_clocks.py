@@ -5,7 +5,7 @@ import pytest
 
 from bench_hw.tables import MarkerTable, TrialTable
 from benchmark.errors import InputError
-from benchmark.files.sessions.recordings import film_shift, on_trials_clock
+from benchmark.files.sessions.film_clock import film_shift, on_trials_clock
 from tests.instruments.samples import press
 
 

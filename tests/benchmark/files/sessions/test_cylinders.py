@@ -1,0 +1,54 @@
+"""Compression and tension as an instrument exports them become a cylinder between plates or grips. All synthetic."""
+
+import numpy as np
+import pytest
+
+from benchmark.errors import InputError
+from benchmark.files import load_session
+from benchmark.files.sessions.proposal import propose
+from benchmark.gate.measuring.jobs import SilentListener
+from benchmark.runs.fitted_session import fit_trials
+from tests.instruments.samples import cylinder_workbook
+
+
+@pytest.mark.parametrize(("word", "kind"), [("Druckversuch", "plates"), ("Zugversuch", "grips")])
+def test_a_test_of_a_cylinder_is_recognised_and_said(word, kind, tmp_path):
+    session = load_session(cylinder_workbook(tmp_path, word))
+    assert {trial.support.kind for trial in session.trials} == {kind}
+    for trial in session.trials:
+        assert trial.support.specimen_radius == trial.tool.radius == pytest.approx(10e-3)
+    assert session.specimen.thickness == pytest.approx(12e-3)
+    text = " ".join(session.warnings)
+    assert "10 mm radius by its cross-section" in text
+    assert "tool.contact=rigid_frictionless" in text
+    assert "tool's radius is not given" not in text
+
+
+@pytest.mark.parametrize("key", ["tool.radius", "support.kind"])
+def test_what_a_person_says_comes_first(key, tmp_path):
+    value = {"tool.radius": "3 mm", "support.kind": "bonded"}[key]
+    session = load_session(cylinder_workbook(tmp_path, "Druckversuch"), {key: value})
+    assert {trial.support.kind for trial in session.trials} == {"bonded"}
+
+
+def test_a_narrow_plate_and_friction_are_refused(tmp_path):
+    file = cylinder_workbook(tmp_path, "Druckversuch")
+    told = {"support.kind": "plates", "support.specimen_radius": "10 mm"}
+    with pytest.raises(InputError, match="does not cover the specimen"):
+        load_session(file, {**told, "tool.radius": "3 mm"})
+    with pytest.raises(InputError, match="rigid_bonded or rigid_frictionless"):
+        load_session(file, {**told, "tool.contact": "uniform_pressure"})
+
+
+def test_a_proposal_names_plates(tmp_path):
+    text = propose(cylinder_workbook(tmp_path, "Druckversuch").parent).texts["session.toml"]
+    assert 'kind = "plates"' in text
+    assert 'specimen_radius = "10 mm"' in text
+
+
+@pytest.mark.parametrize("word", ["Druckversuch", "Zugversuch"])
+def test_the_modulus_that_was_put_in_is_fitted(word, tmp_path):
+    told = {"tool.contact": "rigid_frictionless", "specimen.poisson_ratio": "0.4999"}
+    found = fit_trials(cylinder_workbook(tmp_path, word), None, told, SilentListener(), films=False)
+    assert 20e3 * found.stiffness_factor == pytest.approx(50e3, rel=2e-3)
+    assert np.median([trial.residual_percent for trial in found.fit.trials]) < 0.2
