@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 from scipy.optimize import brentq
@@ -35,6 +35,9 @@ ALLOWED_PERCENT = 1e-6
 SOURCE = "neo-Hookean closed form (Bonet and Wood, 2nd ed., chapter 6)"
 COUNT, SEED = 3, 20
 SHEAR_STEPS = 12
+FEBIO_SOURCE = "FEBio's test suite, te01.feb, and the gold standard of its Linux build (FEBio 3)"
+FEBIO_UNIT, FEBIO_LENGTH, FEBIO_PERCENT = 1e4, 0.44268188785, 1e-4
+"""Pa for the suite's unit of stress; the suite's length; what the two volumetric energies may part by."""
 LAW_POISSON_RATIOS, LAW_STRETCHES = (0.45, 0.4999), (0.7, 1.4)
 LAW_SOURCE = "closed form in principal stretches (Ogden 1984, chapter 7)"
 C10, C01, C20, C30, MU, JM = 1.2e4, 5e3, -2e3, 1.5e3, 3e4, 20.0
@@ -87,12 +90,7 @@ def pressed(
     stabilisation
         See :func:`fem.assembly.elements.make_elements`.
     """
-    mesh = distorted_square(COUNT, SEED)
-    body = Body(mesh, material, np.stack((mesh.axis, mesh.base)), mesh.top, stabilisation)
-    probe = int(body.numbering.unknown[1, mesh.interfaces[0][0]])
-    load = np.zeros(body.numbering.count)
-    load[probe] = -1.0
-    stepper = Stepper(body.equilibrium(load, probe), "depth", 1e-3 * YOUNGS_MODULUS, NewtonSettings())
+    body, stepper = _between_plates(material, "depth", stabilisation)
     state = stepper.advance(1.0 - stretch).state
     exact = float(brentq(lambda a: principal(a, stretch)[0], 0.2, 5.0, xtol=1e-15))
     unknowns, found = body.numbering.count, 1.0 + body.gradient(state.y)[2]
@@ -101,6 +99,18 @@ def pressed(
         Quantity("nominal_stress", 1e-3 * stress, -1e-3 * state.force / np.pi, "kPa", ALLOWED_PERCENT, unknowns),
         Quantity("lateral_stretch", exact, worst(found, exact), "", ALLOWED_PERCENT, unknowns),
     )
+
+
+def _between_plates(
+    material: Material, control: Literal["force", "depth"], stabilisation: float
+) -> tuple[Body, Stepper]:
+    """Cylinder of radius and height 1 m between frictionless plates, and what presses it."""
+    mesh = distorted_square(COUNT, SEED)
+    body = Body(mesh, material, np.stack((mesh.axis, mesh.base)), mesh.top, stabilisation)
+    probe = int(body.numbering.unknown[1, mesh.interfaces[0][0]])
+    load = np.zeros(body.numbering.count)
+    load[probe] = -1.0
+    return body, Stepper(body.equilibrium(load, probe), control, 1e-3 * YOUNGS_MODULUS, NewtonSettings())
 
 
 def equibiaxial(poisson_ratio: float, stretch: float) -> tuple[Quantity, ...]:
@@ -136,6 +146,26 @@ def _shear_stress(material: NeoHookean, amount: float) -> FloatArray:
     """Nominal stress (rr, rz, tt, zr, zz) in Pa of u_z = amount x."""
     third = 1.0 + amount * amount / 3.0
     return material.shear_modulus * np.array([1.0 - third, third * amount, 1.0 - third, amount, 1.0 - third])
+
+
+def another_code_cases() -> tuple[Case, ...]:
+    """What another code prints of a homogeneous press of its own suite."""
+    return (Case("febio_te01", FEBIO_SOURCE, febio_tetrahedron),)
+
+
+def febio_tetrahedron() -> tuple[Quantity, ...]:
+    """Length of the three free displacements of a corner tetrahedron whose nominal axial stress is -3 c1.
+
+    FEBio's own volumetric energy, K/2 (ln J)^2, gives 0.442681893 in closed form and ours 0.442681662: 5e-5 % apart.
+    """
+    mu, bulk = 2.0 * FEBIO_UNIT, 1000.0 * FEBIO_UNIT
+    material = MooneyRivlin(0.5 * mu, 0.0, (1.5 * bulk - mu) / (3.0 * bulk + mu))
+    body, stepper = _between_plates(material, "force", 1.0)
+    y = stepper.advance(3.0 * FEBIO_UNIT * np.pi).state.y
+    slopes = body.gradient(y)
+    found = np.sqrt(2.0 * slopes[2] ** 2 + slopes[4] ** 2)
+    ours = worst(found, FEBIO_LENGTH)
+    return (Quantity("", FEBIO_LENGTH, ours, "", FEBIO_PERCENT, body.numbering.count),)
 
 
 Slopes: TypeAlias = Callable[[FloatArray], FloatArray]

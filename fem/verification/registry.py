@@ -24,6 +24,7 @@ FAMILIES: tuple[Callable[[], tuple[Case, ...]], ...] = (
     manufactured.cases,
     homogeneous.cases,
     homogeneous.law_cases,
+    homogeneous.another_code_cases,
     indentation.half_space_cases,
     indentation.hayes_cases,
     indentation.hertz_cases,
