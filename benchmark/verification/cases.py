@@ -108,7 +108,7 @@ def _within(name: str, whole: str) -> bool:
 
 
 def _allowed(cases: Sequence[Case], name: str) -> str:
-    near = difflib.get_close_matches(name, [*families(cases), *(case.name for case in cases)], n=3)
+    near = difflib.get_close_matches(name, dict.fromkeys([*families(cases), *(case.name for case in cases)]), n=3)
     meant = f"did you mean {' or '.join(near)}? " if near else ""
     return f"{meant}Families: {', '.join(families(cases))}"
 

@@ -150,7 +150,7 @@ def _shear_stress(material: NeoHookean, amount: float) -> FloatArray:
 
 def another_code_cases() -> tuple[Case, ...]:
     """What another code prints of a homogeneous press of its own suite."""
-    return (Case("febio_te01", FEBIO_SOURCE, febio_tetrahedron),)
+    return (Case("febio/te01", FEBIO_SOURCE, febio_tetrahedron),)
 
 
 def febio_tetrahedron() -> tuple[Quantity, ...]:
