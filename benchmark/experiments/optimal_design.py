@@ -25,6 +25,7 @@ from benchmark.identification.parameters.identified import Identified
 from benchmark.identification.parameters.layer_fit import LOOKED_UP
 from benchmark.identification.parameters.layer_model import MM, Fading, FitTrial, LayerModel
 from benchmark.identification.parameters.pressed_set_ups import press_all
+from benchmark.identification.parameters.presses.model_error import COUNT
 from benchmark.identification.parameters.presses.press_surrogate import Press, PressSurrogate, StopsError
 from benchmark.identification.trial_data import TrialData
 from benchmark.identification.trial_features import ContactRange
@@ -189,7 +190,7 @@ def _weighed(answer: Identified, press: Press, pressed: Pressed, experiment: Exp
     found, size = answer.found, answer.found.vector.size
     total = np.zeros((block.shape[0], block.shape[0]))
     total[:size, :size] = found.fit.blocks.matrix.sum(axis=0) + np.diag(_told(answer))
-    total[size:, size:] = np.diag(found.problem.error.deviations**-2.0)
+    total[size:, size:] = np.diag(found.problem.errors[_like(found.problem, press)].deviations ** -2.0)
     then = _covariance(total + TRIALS * block, found.problem)
     determinant = float(np.linalg.slogdet(now)[1] - np.linalg.slogdet(then)[1])
     trace = float(np.trace(np.minimum(now, _MOST)) - np.trace(np.minimum(then, _MOST)))
@@ -221,13 +222,12 @@ def _information(answer: Identified, press: Press, pressed: Pressed, time: Array
     trial = _trial(answer, time, np.minimum(depth, problem.presses[0].depth))
     fading = tuple(_moved(one) for one in _first_fading(found.model, found.problem, press))
     count = len(found.problem.parameters)
-    errors = found.problem.error.deviations.size
-    size = found.vector.size + errors
+    size = found.vector.size + COUNT
     by = np.zeros((size, surrogate.depth.size))
     own = next((k for k, one in enumerate(found.problem.presses) if _alike(one, press)), None)
-    place = size - errors if own is None else count + errors * own
-    by[:count], by[place : place + errors] = surrogate.by[:count], surrogate.by[count:]
-    vector = np.append(found.vector, np.zeros(errors))
+    place = size - COUNT if own is None else count + COUNT * own
+    by[:count], by[place : place + COUNT] = surrogate.by[:count], surrogate.by[count:]
+    vector = np.append(found.vector, np.zeros(COUNT))
     table = replace(surrogate, by=by, at=vector)
     noise = np.array([float(np.median(found.model.noise))])
     white = (whitener(trial.count, found.memory),)
@@ -247,7 +247,7 @@ def _pressed(answer: Identified, press: Press, depth: float) -> tuple[FitProblem
     """The press to a depth, or less deep where the model does not follow it; raises SolverError."""
     found = answer.found
     count = len(found.problem.parameters)
-    vector = np.concatenate([found.vector[:count], np.zeros(found.problem.error.deviations.size)])
+    vector = np.concatenate([found.vector[:count], np.zeros(COUNT)])
     for _ in range(3):
         problem = replace(found.problem, presses=(replace(press, depth=1.02 * depth),))
         try:
@@ -268,8 +268,13 @@ def _trial(answer: Identified, time: Array, depth: Array) -> FitTrial:
 
 def _first_fading(model: LayerModel, problem: FitProblem, press: Press) -> list[Fading]:
     """What fades in the presses of the same specimen."""
-    like = next(k for k, one in enumerate(problem.presses) if one.specimen == press.specimen)
+    like = _like(problem, press)
     return [one for one in model.fading if one.press == like]
+
+
+def _like(problem: FitProblem, press: Press) -> int:
+    """The number of the first press of the same specimen."""
+    return next(k for k, one in enumerate(problem.presses) if one.specimen == press.specimen)
 
 
 def _moved(one: Fading) -> Fading:

@@ -66,6 +66,9 @@ class DifferentiatedPress:
     by : mapping of str to PressDerivative
     failure : RunFailure or None
         Where the solver stopped early.
+    mesh_error : float or None
+        Estimated error of the quantity that the largest load leaves free, a share of it; None where it was not asked
+        for or has no estimate.
     """
 
     depth: Array
@@ -73,10 +76,17 @@ class DifferentiatedPress:
     face: LowerFace | None
     by: Mapping[str, PressDerivative]
     failure: RunFailure | None
+    mesh_error: float | None = None
 
 
 def differentiated_press(
-    scenario: Scenario, drive: Drive, changes: Mapping[str, ScenarioChange], *, face: bool = False, second: bool = False
+    scenario: Scenario,
+    drive: Drive,
+    changes: Mapping[str, ScenarioChange],
+    *,
+    face: bool = False,
+    second: bool = False,
+    judge_mesh: bool = False,
 ) -> DifferentiatedPress:
     """Follow a load history and differentiate each step directly.
 
@@ -90,6 +100,8 @@ def differentiated_press(
         Whether the lower face is wanted (axial symmetry only).
     second : bool
         Whether second derivatives are wanted.
+    judge_mesh : bool
+        Whether the error of the mesh is to be estimated, which takes further solutions.
 
     Raises
     ------
@@ -122,7 +134,14 @@ def differentiated_press(
         None if row is None else _face(solution, row),
         {key: _derivative(solution, each, row, model) for key, each in found[id(model)].by.items()},
         run_failure(solution, load),
+        _mesh_error(model, load, solution) if judge_mesh else None,
     )
+
+
+def _mesh_error(model: Model, load: fem.Load, solution: fem.Solution) -> float | None:
+    """The estimated error of the mesh, a share."""
+    found = fem.estimate_mesh_error(model, load, solution)
+    return None if found is None else 0.01 * found.percent
 
 
 def _change(told: fem.Problem, change: ScenarioChange, key: str) -> fem.ProblemChange:

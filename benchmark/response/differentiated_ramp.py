@@ -79,6 +79,8 @@ class DifferentiatedRamp:
         Keys as in `--set` and `benchmark.response.setup_change`.
     failure : RunFailure or None
         Where the model stopped before the depth asked for.
+    mesh_error : float or None
+        Estimated error of the largest depth's force, a share of it; None where it was not asked for or has no estimate.
     """
 
     depth: Array
@@ -86,6 +88,7 @@ class DifferentiatedRamp:
     face: LowerFace | None = None
     by: Mapping[str, RampDerivative] = field(default_factory=lambda: MappingProxyType({}))
     failure: RunFailure | None = None
+    mesh_error: float | None = None
 
     @property
     def ramp(self) -> Ramp:
@@ -104,6 +107,7 @@ def differentiated_ramp(
     steps: int = STEPS,
     *,
     second: bool = False,
+    judge_mesh: bool = False,
 ) -> DifferentiatedRamp:
     """Press a set-up to a depth and differentiate the press; the layers' relaxation is left out.
 
@@ -126,6 +130,8 @@ def differentiated_ramp(
         Load steps.
     second : bool
         Whether second derivatives are wanted.
+    judge_mesh : bool
+        Whether the error of the mesh is to be estimated (of the finite elements' own derivatives only).
 
     Raises
     ------
@@ -139,7 +145,7 @@ def differentiated_ramp(
         levels = np.linspace(0.0, depth, steps + 1)
         return _by_differences(lambda other: wave_ramp(*other, levels), setup, keys, WAVE_DIFFERENCE)
     try:
-        return _direct(session, setup, depth, keys, steps, second=second)
+        return _direct(session, setup, depth, keys, steps, second=second, judge_mesh=judge_mesh)
     except NotDifferentiableError:
         return _by_differences(lambda other: elastic_ramp(session, *other, depth, steps), setup, keys, DIFFERENCE)
 
@@ -166,7 +172,7 @@ def _elastic(session: Session, setup: Setup) -> Scenario:
 
 
 def _direct(
-    session: Session, setup: Setup, depth: float, keys: Sequence[str], steps: int, *, second: bool
+    session: Session, setup: Setup, depth: float, keys: Sequence[str], steps: int, *, second: bool, judge_mesh: bool
 ) -> DifferentiatedRamp:
     """Derivatives by the solver's own, of each step of one ramp."""
     from benchmark.models.fem_derivatives import differentiated_press
@@ -179,6 +185,7 @@ def _direct(
             {key: _change(session, setup, key) for key in keys},
             face=setup[2].kind == "hole",
             second=second,
+            judge_mesh=judge_mesh,
         )
     except UncoveredError as error:
         raise InputError(f"the finite elements do not cover {session.name}: {error}") from None
@@ -186,7 +193,7 @@ def _direct(
     if face is not None:
         face = LowerFace(depths, face.radius, _from_rest(face.outward), _from_rest(face.sunk))
     by = {key: _ramp_derivative(each) for key, each in press.by.items()}
-    return DifferentiatedRamp(depths, np.append(0.0, press.force), face, by, press.failure)
+    return DifferentiatedRamp(depths, np.append(0.0, press.force), face, by, press.failure, press.mesh_error)
 
 
 def _ramp_derivative(press: PressDerivative) -> RampDerivative:

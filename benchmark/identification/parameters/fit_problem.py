@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from benchmark.identification.parameters.free_parameters import COMMON, RELAXATION, SHARE, Parameter
 from benchmark.identification.parameters.layer_model import Fading, FitTrial
-from benchmark.identification.parameters.presses.model_error import ModelError
+from benchmark.identification.parameters.presses.model_error import COUNT, ModelError, bend_of
 from benchmark.identification.parameters.presses.press_surrogate import Forward, Press
 from benchmark.response.force_curve import Array
 
@@ -44,7 +44,7 @@ class FitProblem:
     trust : float
         Standard deviation of the model's own error, a share of the force.
     discrepancy : float
-        Standard deviation of a discrepancy over depth, a share of the force; 0 for none.
+        Standard deviation of a discrepancy over depth that was asked for, a share of the force; 0 for none.
     specimens : tuple of str
         The specimen of each trial, where several were tried repeatedly; empty where that is not told.
     """
@@ -64,14 +64,14 @@ class FitProblem:
         return tuple(k for k, one in enumerate(self.parameters) if not one.told)
 
     @cached_property
-    def error(self) -> ModelError:
-        """How the model may be wrong in each press."""
-        return ModelError(self.trust, self.discrepancy)
+    def errors(self) -> tuple[ModelError, ...]:
+        """How the model may be wrong in each press: what is asked for, and no less than what is known of it."""
+        return tuple(ModelError(self.trust, max(self.discrepancy, bend_of(one.mesh_error))) for one in self.presses)
 
     @property
     def size(self) -> int:
         """Coordinates of the fit: parameters, and the model's own error in each press."""
-        return len(self.parameters) + self.error.deviations.size * len(self.presses)
+        return len(self.parameters) + COUNT * len(self.presses)
 
     @property
     def freedom(self) -> int:
@@ -106,7 +106,7 @@ def curved_coordinates(problem: FitProblem, number: int) -> NDArray[np.int64]:
 
 def priors(problem: FitProblem) -> tuple[Array, Array]:
     """Mean and precision (p,) of the coordinates' priors."""
-    own = np.tile(problem.error.deviations**-2.0, len(problem.presses))
+    own = np.concatenate([one.deviations**-2.0 for one in problem.errors])
     mean, precision = np.zeros(problem.size), np.append(np.zeros(len(problem.parameters)), own)
     for k, one in enumerate(problem.parameters):
         value, deviation = (one.start, WEAK) if one.prior is None else (one.prior.value, one.prior.deviation)

@@ -20,7 +20,7 @@ import numpy as np
 
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.layer_model import MM, LayerModel
-from benchmark.identification.parameters.presses.model_error import PLAIN
+from benchmark.identification.parameters.presses.model_error import COUNT, PLAIN, functions
 from benchmark.identification.parameters.presses.press_surrogate import GRID
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import TrialsFit, scaled_inverse
@@ -187,16 +187,15 @@ def discrepancy_use(found: LayerFit) -> DiscrepancyUse | None:
     problem = found.problem
     if not problem.discrepancy:
         return None
-    count, size = len(problem.parameters), problem.error.deviations.size
-    taken, functions = [], problem.error.functions(GRID)
+    count, taken, own_functions = len(problem.parameters), [], functions(GRID)
     for number, press in enumerate(problem.presses):
-        own = found.vector[count + number * size : count + (number + 1) * size]
-        course = own[PLAIN:] @ functions[PLAIN:]
+        own = found.vector[count + number * COUNT : count + (number + 1) * COUNT]
+        course = own[PLAIN:] @ own_functions[PLAIN:]
         at = int(np.argmax(np.abs(course)))
         taken.append((MM * press.setup[1].radius, MM * press.depth * at / (GRID - 1), 100.0 * float(course[at])))
     total = found.fit.blocks.matrix.sum(axis=0) + np.diag(found.fit.precision)
     places = np.arange(total.shape[0])
-    kept = np.flatnonzero((places < count) | ((places - count) % size < PLAIN))
+    kept = np.flatnonzero((places < count) | ((places - count) % COUNT < PLAIN))
     known = scaled_inverse(total[np.ix_(kept, kept)])
     shares = {problem.parameters[k].key: 1.0 - known[k, k] / found.fit.covariance[k, k] for k in problem.free}
     return DiscrepancyUse(100.0 * problem.discrepancy, tuple(taken), {k: float(v) for k, v in shares.items()})

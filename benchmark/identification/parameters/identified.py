@@ -26,6 +26,9 @@ from benchmark.identification.parameters.identifiability import (
     errors_alone,
 )
 from benchmark.identification.parameters.layer_fit import LayerFit
+from benchmark.identification.parameters.layer_model import MM
+from benchmark.identification.parameters.presses.model_error import ModelError
+from benchmark.identification.parameters.presses.press_surrogate import Press
 from benchmark.identification.parameters.profile_likelihood import Profile, largest_errors, verified_profiles
 
 NOT_DETERMINED = "not determined"
@@ -212,7 +215,7 @@ class Identified:
 
     def to_dict(self) -> dict[str, Any]:
         """What `fit.json` gains."""
-        found, use = self.found, discrepancy_use(self.found)
+        found, use, problem = self.found, discrepancy_use(self.found), self.found.problem
         predicted = zip(found.problem.trials, found.predicted, strict=True)
         rms = [np.sqrt(np.mean((one.data.force - f) ** 2)) / np.ptp(one.data.force) for one, f in predicted]
         return {
@@ -227,6 +230,9 @@ class Identified:
             "residual_percent_of_peak": 100.0 * float(np.median(rms)),
             "trial_scatter_percent": 100.0 * found.model.gain_deviation,
             "noise_memory": found.memory,
+            "model_error": [
+                _model_error(one, error) for one, error in zip(problem.presses, problem.errors, strict=True)
+            ],
             **({} if found.spread is None else {"spread": found.spread.to_dict()}),
             **({} if use is None else {"discrepancy": use.to_dict()}),
             "rounds": found.rounds,
@@ -235,6 +241,17 @@ class Identified:
             "held_out": {one.condition: one.to_dict() for one in self.held_out},
             "profiles": {name: _curve(self, k) for k, name in enumerate(self.names)},
         }
+
+
+def _model_error(press: Press, error: ModelError) -> dict[str, float | None]:
+    """How far the model is trusted in a press: entry of `fit.json`."""
+    return {
+        "tool_radius_mm": MM * press.setup[1].radius,
+        "depth_mm": MM * press.depth,
+        "mesh_percent": None if press.mesh_error is None else 100.0 * press.mesh_error,
+        "size_percent": 100.0 * error.trust,
+        "bend_percent": 100.0 * error.bend,
+    }
 
 
 def _curve(identified: Identified, place: int) -> Mapping[str, list[float]]:

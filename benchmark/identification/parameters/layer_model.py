@@ -71,24 +71,27 @@ class FitTrial:
         Number of the press it belongs to.
     touch : ContactRange
         Where it may touch.
+    onset : float
+        Where it touches by the first fit, m.
     """
 
     data: TrialData
     count: Array
     press: int
     touch: ContactRange
+    onset: float = 0.0
 
     @staticmethod
-    def of(trial: TrialData, press: int, touch: ContactRange) -> FitTrial:
+    def of(trial: TrialData, press: int, touch: ContactRange, onset: float = 0.0) -> FitTrial:
         """A measured trial with rows averaged in groups."""
         group = -(-trial.rows // MOST_ROWS)
         starts = np.arange(0, trial.rows, group)
         count = np.diff(np.append(starts, trial.rows)).astype(np.float64)
-        return FitTrial(reduced(trial, MOST_ROWS), count, press, touch)
+        return FitTrial(reduced(trial, MOST_ROWS), count, press, touch, onset)
 
     def up_to(self, depth: float) -> FitTrial:
-        """The trial without the rows that are deeper than `depth` (m) below the earliest touch."""
-        kept = self.data.depth <= self.touch.low + depth
+        """The trial without the rows that are deeper than `depth` (m) below where it touches."""
+        kept = self.data.depth <= self.onset + depth
         return replace(self, data=rows_of(self.data, kept), count=self.count[kept])
 
 

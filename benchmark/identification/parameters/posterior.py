@@ -1,7 +1,8 @@
 """The posterior of a fit's coordinates by an ensemble of walkers, with the diagnostics that say whether to trust it.
 
 emcee draws (Foreman-Mackey et al. 2013, PASP 125:306); it is optional (`pip install tissuebench[posterior]`). Touch,
-zero and gain of each trial are integrated out to second order round the fit. The scatter of the gains is drawn along,
+zero and gain of each trial, and the model's own error in each press, are integrated out to second order round the fit;
+parameters alone and the scatter of the gains are drawn. The scatter of the gains is drawn along,
 flat in its standard deviation (Gelman 2006, Bayesian Analysis 1:515): few trials do not tell it surely, and held at its
 estimate the intervals would be too narrow, as a normal quantile is beside Student's. Walkers move by
 differential evolution (ter Braak and Vrugt 2008, Statistics and Computing 18:435), whose steps along curved valleys are
@@ -18,13 +19,12 @@ from typing import Any
 import numpy as np
 
 from benchmark.errors import InputError
-from benchmark.identification.parameters.fit_problem import ERROR_LIMITS
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.layer_model import GAIN
 from benchmark.response.force_curve import Array
 
 WALKERS, STEPS, BURNT = 40, 3000, 600
-"""Walkers, and steps of each, of which the first are thrown away."""
+"""Walkers (twice the coordinates at least), and steps of each, of which the first are thrown away."""
 SCATTERS = (1e-3, 0.3)
 """Standard deviations of the gains between which it is drawn."""
 HELD = (0.99, 1.01)
@@ -100,12 +100,14 @@ def posterior(found: LayerFit, seed: int) -> Posterior:
         ) from None
     random = np.random.default_rng(seed)
     density = _Density(found)
-    spread = np.append(np.sqrt(np.maximum(np.diag(found.fit.covariance), 1e-14)), SCATTER_SPREAD)
-    start = density.start + spread * random.normal(size=(WALKERS, spread.size)) * 0.5
+    count = len(found.problem.parameters)
+    spread = np.append(np.sqrt(np.maximum(np.diag(found.fit.covariance)[:count], 1e-14)), SCATTER_SPREAD)
+    walkers = max(WALKERS, 2 * spread.size + 2)
+    start = density.start + spread * random.normal(size=(walkers, spread.size)) * 0.5
     low, high = density.bounds
     start = np.clip(start, low + 1e-9, high - 1e-9)
     moves = [(emcee.moves.DEMove(), 0.8), (emcee.moves.DESnookerMove(), 0.2)]
-    sampler = emcee.EnsembleSampler(WALKERS, spread.size, density, moves=moves)
+    sampler = emcee.EnsembleSampler(walkers, spread.size, density, moves=moves)
     sampler.random_state = np.random.RandomState(seed).get_state()
     sampler.run_mcmc(start, STEPS)
     free = list(found.problem.free)
@@ -126,33 +128,55 @@ def split_r_hat(chains: Array) -> Array:
 
 
 class _Density:
-    """Log posterior density of coordinates (p,) and the log of the gains' scatter; `start` is the fit itself.
+    """Log posterior density of the parameters (p,) and the log of the gains' scatter; `start` is the fit itself.
 
-    The trials' nuisances are integrated out to second order round the fit. A scatter that no trials told is held.
+    The trials' nuisances and the model's own error are integrated out to second order round the fit: with white columns
+    N of a trial's nuisances and J of the error, whose precision is P, the error's is P + sum of J^T J - J^T N (N^T N +
+    W)^-1 N^T J. A scatter that no trials told is held.
     """
 
     def __init__(self, found: LayerFit):
-        self._model, self._nuisance = found.model, found.fit.nuisance
-        self._columns = found.fit.columns.nuisance
+        self._model, self._nuisance, self._vector = found.model, found.fit.nuisance, found.vector
+        count = len(found.problem.parameters)
+        self._count, self._columns = count, found.fit.columns.nuisance
+        self._errors = [one[:, count:] for one in found.fit.columns.vector]
         self._normal = np.array([one.T @ one for one in self._columns])
-        self.start = np.append(found.vector, np.log(found.model.gain_deviation))
-        ends = [one.limits for one in found.problem.parameters]
-        ends += [ERROR_LIMITS] * (found.vector.size - len(ends))
+        self._across = np.array([one.T @ error for one, error in zip(self._columns, self._errors, strict=True)])
+        self._error_normal = sum(one.T @ one for one in self._errors) + np.diag(found.model.prior_precision[count:])
+        self.start = np.append(found.vector[:count], np.log(found.model.gain_deviation))
         told = SCATTERS if found.problem.freedom > 0 else found.model.gain_deviation * np.array(HELD)
-        self.bounds = tuple(np.array([*ends, np.log(told)]).T)
+        self.bounds = tuple(np.array([*(one.limits for one in found.problem.parameters), np.log(told)]).T)
 
     def __call__(self, coordinates: Array) -> float:
         if (coordinates < self.bounds[0]).any() or (coordinates > self.bounds[1]).any():
             return -np.inf
-        model, vector, log_scatter = self._model, coordinates[:-1], float(coordinates[-1])
-        pairs = zip(model.evaluated(vector, self._nuisance).residuals, self._columns, self._nuisance, strict=True)
-        unfitted = [(residual + columns @ own, columns) for residual, columns, own in pairs]
-        pulls = np.array([columns.T @ residual for residual, columns in unfitted])
+        model, log_scatter = self._model, float(coordinates[-1])
+        unfitted = self._unfitted(coordinates[:-1])
         inner = self._normal.copy()
         inner[:, GAIN, GAIN] += np.exp(-2.0 * log_scatter)
-        best = np.linalg.solve(inner, pulls[:, :, None])[:, :, 0]
-        misfit = sum(float(residual @ residual) for residual, _ in unfitted) - float(np.sum(pulls * best))
+        pulls = np.array([one.T @ each for one, each in zip(self._columns, unfitted, strict=True)])
+        solved = np.linalg.solve(inner, np.concatenate([self._across, pulls[:, :, None]], axis=2))
+        known = self._error_normal - np.einsum("rqi,rqj->ij", self._across, solved[:, :, :-1])
+        pull = sum(one.T @ each for one, each in zip(self._errors, unfitted, strict=True))
+        pull = pull - np.einsum("rqi,rq->i", self._across, solved[:, :, -1])
+        misfit = sum(float(each @ each) for each in unfitted) - float(np.sum(pulls * solved[:, :, -1]))
+        misfit -= float(pull @ np.linalg.solve(known, pull))
         size = float(np.linalg.slogdet(inner)[1].sum()) + 2.0 * len(unfitted) * log_scatter
-        prior = float(np.sum(model.prior_precision * (vector - model.prior_mean) ** 2))
+        size += float(np.linalg.slogdet(known)[1])
+        off = coordinates[:-1] - model.prior_mean[: self._count]
+        prior = float(np.sum(model.prior_precision[: self._count] * off**2))
         density = -0.5 * (misfit + size + prior) + log_scatter
         return density if np.isfinite(density) else -np.inf
+
+    def _unfitted(self, parameters: Array) -> list[Array]:
+        """White residuals of the trials, with nuisances and the model's own error at zero."""
+        vector, error = self._vector.copy(), self._vector[self._count :]
+        vector[: self._count] = parameters
+        rows = zip(
+            self._model.evaluated(vector, self._nuisance).residuals,
+            self._columns,
+            self._nuisance,
+            self._errors,
+            strict=True,
+        )
+        return [residual + columns @ own + errors @ error for residual, columns, own, errors in rows]

@@ -10,6 +10,7 @@ import numpy as np
 from benchmark.errors import SolverError
 from benchmark.identification.parameters.fit_problem import FitProblem, relaxing_layers
 from benchmark.identification.parameters.layer_model import ForceTable
+from benchmark.identification.parameters.presses.model_error import COUNT, functions
 from benchmark.identification.parameters.presses.press_atlas import PressAtlas
 from benchmark.identification.parameters.presses.press_surrogate import PressSurrogate, StopsError, surrogate
 from benchmark.response.force_curve import Array
@@ -20,12 +21,15 @@ LEAST_REACH, SAFE_REACH = 0.5, 0.95
 
 
 def followed(problem: FitProblem, start: Array) -> tuple[FitProblem, tuple[PressSurrogate, ...]]:
-    """The presses where a fit begins, as deep as the model follows them, with the trials' rows so deep."""
+    """The presses where a fit begins, as deep as the model follows them, with the trials' rows so deep.
+
+    The model estimates the error of its mesh there, which the problem's presses then have.
+    """
     surrogates = []
     for number in range(len(problem.presses)):
         for _ in range(RETRIES):
             try:
-                surrogates.append(_surrogate(problem, number, start))
+                surrogates.append(_surrogate(problem, number, start, judge_mesh=True))
                 break
             except StopsError as stop:
                 if stop.reach < LEAST_REACH * problem.presses[number].depth:
@@ -33,7 +37,9 @@ def followed(problem: FitProblem, start: Array) -> tuple[FitProblem, tuple[Press
                 problem = _shallower(problem, number, SAFE_REACH * stop.reach)
         else:
             surrogates.append(_surrogate(problem, number, start))
-    return problem, tuple(surrogates)
+    pairs = zip(problem.presses, surrogates, strict=True)
+    judged = tuple(replace(press, mesh_error=pressed.mesh_error) for press, pressed in pairs)
+    return replace(problem, presses=judged), tuple(surrogates)
 
 
 def _shallower(problem: FitProblem, number: int, depth: float) -> FitProblem:
@@ -49,13 +55,13 @@ def press_all(problem: FitProblem, vector: Array) -> tuple[PressSurrogate, ...]:
     return tuple(_surrogate(problem, number, vector) for number in range(len(problem.presses)))
 
 
-def _surrogate(problem: FitProblem, number: int, vector: Array) -> PressSurrogate:
+def _surrogate(problem: FitProblem, number: int, vector: Array, *, judge_mesh: bool = False) -> PressSurrogate:
     press, count = problem.presses[number], len(problem.parameters)
     relaxing = [name for name in relaxing_layers(problem) if name in press.setup[0].layer_names]
-    found = surrogate(press, problem.parameters, vector[:count], problem.law, relaxing, problem.forward)
-    functions = problem.error.functions(found.depth.size)
+    values = vector[:count]
+    found = surrogate(press, problem.parameters, values, problem.law, relaxing, problem.forward, judge_mesh=judge_mesh)
     own = np.zeros((problem.size - count, found.depth.size))
-    own[number * len(functions) : (number + 1) * len(functions)] = functions
+    own[number * COUNT : (number + 1) * COUNT] = functions(found.depth.size)
     at = np.concatenate([found.at, np.zeros(own.shape[0])])
     return replace(found, by=np.vstack([found.by, own]), at=at)
 

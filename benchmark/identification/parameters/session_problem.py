@@ -39,8 +39,8 @@ from benchmark.response.nearest_curve import tool_name
 from benchmark.response.ramp import Ramp, Setup
 from benchmark.response.setup_change import RADIUS, THICKNESS
 
-MARGIN = 1.02
-"""A press goes this much deeper than its trials."""
+MARGIN = 1.04
+"""A press goes this much deeper than its trials do below where the first fit has them touch."""
 UNSTATED = {"tool.radius": 0.01, "support.hole_radius": 0.01, "thickness": 0.035, "youngs_modulus": 0.25}
 """Relative standard uncertainty of what is told without one: what people know of a set-up.
 
@@ -135,13 +135,15 @@ def _presses(
             fitted = _trials_of(base, setup)
             if not fitted:
                 continue
-            press, said = _press(specimen, base, setup, fitted)
+            onsets = [base.fit.trial(data.name, data.condition).onset for data in fitted]
+            wanted = MARGIN * max(float(data.depth.max()) - onset for data, onset in zip(fitted, onsets, strict=True))
+            press, said = _press(specimen, base, setup, wanted)
             press = replace(press, setup=with_values(press.setup, _fixed(press.setup, wish)))
             warnings += said
-            for data in fitted:
-                touch = contact_range(data.depth, data.force)
-                if int((data.depth <= touch.low + press.depth).sum()) >= LEAST_ROWS:
-                    trials.append(FitTrial.of(data, len(presses), touch).up_to(press.depth))
+            for data, onset in zip(fitted, onsets, strict=True):
+                if int((data.depth <= onset + press.depth).sum()) >= LEAST_ROWS:
+                    touch = contact_range(data.depth, data.force)
+                    trials.append(FitTrial.of(data, len(presses), touch, onset).up_to(press.depth))
                     keys.append((specimen, (data.name, data.condition)))
             presses.append(press)
     return tuple(presses), tuple(trials), keys, tuple(warnings)
@@ -154,9 +156,8 @@ def _trials_of(base: FittedBase, setup: Setup) -> list[TrialData]:
     return [data for trial, data in pairs if (trial.tool, trial.support) == setup and data.key in used]
 
 
-def _press(specimen: int, base: FittedBase, setup: Setup, trials: Sequence[TrialData]) -> tuple[Press, list[str]]:
-    """A press under the tool that the model follows deepest, as deep as its trials, or as it goes."""
-    wanted = MARGIN * max(float(one.depth.max()) - contact_range(one.depth, one.force).low for one in trials)
+def _press(specimen: int, base: FittedBase, setup: Setup, wanted: float) -> tuple[Press, list[str]]:
+    """A press under the tool that the model follows deepest, to the depth wanted (m), or as deep as it goes."""
     told, support = setup
     tool, reach, said = told, wanted, []
     followed = base.followed.get(setup, ())

@@ -13,6 +13,7 @@ from benchmark.files import Session
 from benchmark.identification.parameters.held_out import prediction_bands
 from benchmark.identification.parameters.identifiability import KNOWN, LARGEST_ERROR, Direction, correlation_words
 from benchmark.identification.parameters.identified import NOT_DETERMINED, Identified
+from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.posterior import Posterior
 from benchmark.models import Array
 from benchmark.runs.report.values import MM, sentence
@@ -153,11 +154,18 @@ def _fit(answer: Identified) -> Section:
         trials.append(BandedTrial(one.data.name, group, MM * one.data.depth, one.data.force, force, low, high))
     text = (
         f"Gains of the trials scatter by {100 * found.model.gain_deviation:.2g} %; the model is trusted to "
-        f"{100 * found.problem.trust:.2g} % of the force in each set-up. {found.rounds} rounds of the model; in the "
+        f"{100 * found.problem.trust:.2g} % of the force in each set-up, and to {_bends(found)} in bend over depth. "
+        f"{found.rounds} rounds of the model; in the "
         f"last one it differed from its surrogate by {100 * found.disagreement:.1g} % of the force."
     )
     synthetic = any(press.session.synthetic for press in found.problem.presses)
     return Section("Fitted against measured", [Paragraph(text), fitted_bands(trials, synthetic)])
+
+
+def _bends(found: LayerFit) -> str:
+    """How far the model's bend over depth is trusted in the presses, in words."""
+    shares = sorted(100.0 * one.bend for one in found.problem.errors)
+    return f"{shares[0]:.2g} %" if shares[-1] < 1.05 * shares[0] else f"{shares[0]:.2g} to {shares[-1]:.2g} %"
 
 
 def _held_out(whole: ParametersAnswer) -> Section:

@@ -60,6 +60,8 @@ class PressSurrogate:
         Derivatives of the force's logarithm by each relaxing layer's stiffness.
     at : (p,) array
         Coordinates.
+    mesh_error : float or None
+        Estimated error of the force at the press's depth, a share of it; None where it was not estimated.
     """
 
     depth: Array
@@ -67,6 +69,7 @@ class PressSurrogate:
     by: Array
     layers: Mapping[str, Array]
     at: Array
+    mesh_error: float | None = None
 
     def force_at(self, vector: Array) -> Array:
         """(k,) N at the depths of the grid, at other coordinates (p,)."""
@@ -87,12 +90,16 @@ class PressSurrogate:
 
 @dataclass(frozen=True, eq=False)
 class Press:
-    """What is pressed with what: a specimen's number in the fit, its session, set-up as told, and how deep, m."""
+    """What is pressed with what: a specimen's number in the fit, its session, set-up as told, and how deep, m.
+
+    `mesh_error` is by what share of the force at that depth the model is estimated to be wrong; None: not estimated.
+    """
 
     specimen: int
     session: Session
     setup: SetUp
     depth: float
+    mesh_error: float | None = None
 
     def has(self, parameter: Parameter) -> bool:
         """Whether a parameter acts on this press."""
@@ -107,8 +114,12 @@ def surrogate(
     law: str | None,
     relaxing: Sequence[str],
     forward: Forward,
+    *,
+    judge_mesh: bool = False,
 ) -> PressSurrogate:
     """Press a set-up with the values that the coordinates (p,) give, and differentiate the press.
+
+    With `judge_mesh` the model estimates the error of its mesh, which takes further solutions.
 
     Raises
     ------
@@ -122,7 +133,8 @@ def surrogate(
     setup = with_values(press.setup, values, law)
     chains = {k: _chain(parameters[k], values, setup) for k in acting}
     wanted = {key for chain in chains.values() for key in chain} | {f"{name}.stiffness" for name in relaxing}
-    ramp = differentiated_ramp(press.session, *setup, press.depth, sorted(wanted), forward, STEPS)
+    keys = sorted(wanted)
+    ramp = differentiated_ramp(press.session, *setup, press.depth, keys, forward, STEPS, judge_mesh=judge_mesh)
     if ramp.failure is not None or ramp.depth[-1] < press.depth * (1.0 - 1e-9):
         raise StopsError(press.depth, float(ramp.depth[-1]))
     by = np.zeros((len(parameters), GRID))
@@ -130,7 +142,8 @@ def surrogate(
         by[k] = 1.0 if parameters[k].key == COMMON else _logarithmic(ramp, chain)
     grid = np.linspace(0.0, press.depth, GRID)
     layers = {name: _logarithmic(ramp, {f"{name}.stiffness": 1.0}) for name in relaxing}
-    return PressSurrogate(grid, np.asarray(CubicSpline(ramp.depth, ramp.force)(grid)), by, layers, vector.copy())
+    force = np.asarray(CubicSpline(ramp.depth, ramp.force)(grid))
+    return PressSurrogate(grid, force, by, layers, vector.copy(), ramp.mesh_error)
 
 
 def acting_values(press: Press, parameters: Sequence[Parameter], vector: Array) -> dict[str, float]:

@@ -49,11 +49,13 @@ def toy_force(tissue, tool, depth):
     return 4.0 * tool.radius * depth * np.exp(np.log(moduli) @ powers(tool.radius, depth))
 
 
-def toy_ramp(session, tissue, tool, support, depth, keys, model="fem", steps=24):
+def toy_ramp(session, tissue, tool, support, depth, keys, model="fem", steps=24, *, judge_mesh=False):
     levels = np.linspace(0.0, depth, steps + 1)
     force, shares = toy_force(tissue, tool, levels), powers(tool.radius, levels)
     by = {f"{name}.stiffness": RampDerivative(share * force) for name, share in zip(LAYERS, shares, strict=True)}
-    return DifferentiatedRamp(levels, force, None, {key: by[key] for key in keys})
+    return DifferentiatedRamp(
+        levels, force, None, {key: by[key] for key in keys}, mesh_error=0.0 if judge_mesh else None
+    )
 
 
 def toy_trial(seed, tool=0, name="a", noise=0.005, gain=0.015, truth=TRUTH, fade=None):

@@ -18,14 +18,16 @@ DERMIS, TRIALS, SCATTER = "dermis", 6, 2e-2
 TOLD = shear_modulus(TISSUE.layer(DERMIS))
 
 
-def folded_ramp(session, tissue, tool, support, depth, keys, model="fem", steps=24):
+def folded_ramp(session, tissue, tool, support, depth, keys, model="fem", steps=24, *, judge_mesh=False):
     """A force that is least where the dermis is as told, and rises faster to the soft side."""
     levels = np.linspace(0.0, depth, steps + 1)
     away = np.log(shear_modulus(tissue.layer(DERMIS)) / TOLD)
     steep = 0.06 if away > 0.0 else 0.15
     force = 1e4 * tool.radius * levels * np.exp(steep * away**2)
     by = {f"{DERMIS}.stiffness": RampDerivative(2.0 * steep * away * force)}
-    return DifferentiatedRamp(levels, force, None, {key: by[key] for key in keys})
+    return DifferentiatedRamp(
+        levels, force, None, {key: by[key] for key in keys}, mesh_error=0.0 if judge_mesh else None
+    )
 
 
 @pytest.fixture

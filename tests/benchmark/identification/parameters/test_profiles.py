@@ -16,7 +16,7 @@ from benchmark.response.least_squares import least_squares
 TRIALS, SCATTER = 6, 1.2e-2
 
 
-def series_ramp(session, tissue, tool, support, depth, keys, model="fem", steps=24):
+def series_ramp(session, tissue, tool, support, depth, keys, model="fem", steps=24, *, judge_mesh=False):
     """Layers in series, whose shares shift with depth: the force is bounded by each of them."""
     levels = np.linspace(0.0, depth, steps + 1)
     deep = levels / tool.radius
@@ -25,7 +25,9 @@ def series_ramp(session, tissue, tool, support, depth, keys, model="fem", steps=
     force = 4.0 * tool.radius * levels / soft.sum(axis=0)
     parts = zip(tissue.layers, soft / soft.sum(axis=0), strict=True)
     by = {f"{one.name}.stiffness": RampDerivative(part * force) for one, part in parts}
-    return DifferentiatedRamp(levels, force, None, {key: by[key] for key in keys})
+    return DifferentiatedRamp(
+        levels, force, None, {key: by[key] for key in keys}, mesh_error=0.0 if judge_mesh else None
+    )
 
 
 @pytest.fixture

@@ -10,7 +10,16 @@ from benchmark.files.sessions.fit_table import FitTable
 from benchmark.identification.parameters.identifiability import directions, discrepancy_use
 from benchmark.identification.parameters.identified import identify
 from benchmark.identification.parameters.layer_fit import begun, fit_layers
-from benchmark.identification.parameters.presses.model_error import LENGTH, ModelError
+from benchmark.identification.parameters.presses.model_error import (
+    COUNT,
+    LENGTH,
+    OTHER_CODE,
+    PLAIN,
+    SHARE_OF_MESH,
+    ModelError,
+    bend_of,
+    functions,
+)
 from benchmark.identification.parameters.session_problem import assembled
 from tests.benchmark.identification.parameters.conftest import MODULI, TRUTH, zeros_of
 
@@ -20,11 +29,19 @@ BEND, ALLOWED = 0.02, 0.02
 def test_the_discrepancy_is_the_process_that_it_is_said_to_be() -> None:
     """Variance and correlation of the sum of its functions are those of a squared exponential."""
     error = ModelError(0.005, 0.02)
-    own = error.deviations[2:, None] * error.functions(101)[2:]
+    own = error.deviations[PLAIN:, None] * functions(101)[PLAIN:]
     covariance = own.T @ own
     assert covariance[50, 50] == pytest.approx(0.02**2, rel=0.02)
     assert covariance[50, 70] / covariance[50, 50] == pytest.approx(np.exp(-0.5 * (0.2 / LENGTH) ** 2), abs=0.02)
-    assert ModelError(0.005).functions(5).tolist() == [[1.0] * 5, [-1.0, -0.5, 0.0, 0.5, 1.0]]
+    assert functions(5)[:PLAIN].tolist() == [[1.0] * 5, [-1.0, -0.5, 0.0, 0.5, 1.0]]
+    assert error.deviations.size == COUNT == len(functions(5))
+
+
+def test_the_coarser_the_mesh_the_more_a_press_may_be_bent() -> None:
+    fine, coarse, untold = (bend_of(each) for each in (0.0, -0.012, None))
+    assert fine == OTHER_CODE
+    assert coarse == pytest.approx(np.hypot(OTHER_CODE, SHARE_OF_MESH * 0.012))
+    assert fine < untold < coarse
 
 
 @pytest.fixture
@@ -65,3 +82,17 @@ def test_what_bends_the_force_is_taken_for_the_specimen_unless_the_model_may_be_
 def test_a_discrepancy_that_is_no_share_is_refused(value) -> None:
     with pytest.raises(InputError, match="discrepancy"):
         assembled([], FitTable(free=("a.youngs_modulus",), discrepancy=value))
+
+
+def test_rows_are_kept_as_deep_as_the_press_below_where_the_trial_touches(toy) -> None:
+    """Not below the earliest touch that the force allows, which would let presses go deeper than any trial."""
+    trial = replace(toy().trials[0], onset=-1e-4)
+    assert trial.touch.low < -1.5e-4
+    assert trial.up_to(1e-3).data.depth.max() == pytest.approx(0.9e-3, abs=2e-5)
+
+
+def test_a_fit_states_how_far_it_trusts_each_press(toy_fit) -> None:
+    first, second = answer(toy_fit()).to_dict()["model_error"]
+    assert first["tool_radius_mm"] == pytest.approx(5.0)
+    assert first["mesh_percent"] == 0.0
+    assert first["bend_percent"] == second["bend_percent"] == pytest.approx(100.0 * OTHER_CODE)
