@@ -159,6 +159,12 @@ ENOUGH_ALIKE = 3
 """Trials of a condition that have a usual noise of their own; fewer share that of all. First choice."""
 LEAST_HEIGHT = 1e-3
 """Of the deepest press, by which the depth at touch may differ between trials in any case. First choice."""
+THICKNESS_SEEN = 2.0
+"""Standard deviations by which the specimens of half of the trials must differ in thickness from their mates for the
+trials to have thicknesses of their own. First choice."""
+LEAST_THICKNESS, MOST_THICKNESS = 0.003, 0.1
+"""Spread of thickness between specimens, as a share: less is none, and more is not what a lab calls equal specimens.
+First choice; a caliper tells 0.02 mm of 5 mm."""
 LATEST, LATE_ROWS = 0.03, 2.0
 """Force and frames are late against depth by no more than this, s, or so many samples: a USB buffer. First choice."""
 OVER_NOISE, UNSEEN_ZERO = 3.0, 0.1
@@ -220,6 +226,9 @@ WORTH = 0.2
 Sessions by another code that had been looked at: further effects that were not there gained 0.13 to 0.15 (and 0.30,
 which no other condition gained from), those that were 0.5 and more. It was 0.12, a first choice.
 """
+MOSTLY = 0.8
+"""Share of what a further effect wins that is in the force alone, or in the markers alone, for it to be measured
+against what the first one won there. First choice."""
 CARRIED, ONE_ALONE = 0.3, 0.9
 """Share of its gain that a further effect must keep in conditions which its fit has not seen, unless one condition has
 so much of that gain. One session by another code kept 0.02; first choice within what is left.

@@ -52,6 +52,8 @@ class TrialValues:
         Depth at which the tool touches, m.
     at_bound : tuple of str
         Names of those that stand as far off as physics allows.
+    thicker : float
+        Share by which its specimen is thicker than the session's; 0 where specimens do not differ.
     """
 
     trial: str
@@ -60,3 +62,4 @@ class TrialValues:
     late: float
     touch: float
     at_bound: tuple[str, ...] = ()
+    thicker: float = 0.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 from benchmark.physics import LowerFaceMotion
 from benchmark.response.elastic_table import ElasticTable, SeparableField
 from benchmark.response.force_curve import Array
+
+THICKNESS = ".thickness"
+"""End of the key of a layer's thickness."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +82,13 @@ class ShapedTable:
         bent = force * (1.0 + shape.bend * second + shape.turn * third) * np.maximum(x, 1e-4) ** shape.exponent
         return np.asarray(np.exp(shape.modulus) * np.maximum(bent, 0.0))
 
+    def thicker(self, share: float) -> ShapedTable:
+        """Of a specimen whose layers are all thicker by a share."""
+        if not share:
+            return self
+        own = {key: self.shape.setup.get(key, 0.0) + share for key in self.table.by if key.endswith(THICKNESS)}
+        return replace(self, shape=replace(self.shape, setup={**self.shape.setup, **own}))
+
     @cached_property
     def slope(self) -> float:
         """N/m beyond the table."""
@@ -129,9 +139,9 @@ class ShapedTable:
         if shape.tilt_x or shape.tilt_y:
             moved = moved + sunk[..., None] * np.array([shape.tilt_x, shape.tilt_y])
         if shape.lens:
-            there, reach = rest + moved, float(np.max(np.sum(rest**2, axis=-1)))
-            bent = there * np.sum(there**2, axis=-1, keepdims=True) - rest * np.sum(rest**2, axis=-1, keepdims=True)
-            moved = moved + shape.lens * bent / max(reach, 1e-12)
+            there, near = rest + moved, _squared(rest)
+            bent = there * _squared(there)[..., None] - rest * near[..., None]
+            moved = moved + shape.lens / max(float(near.max()), 1e-12) * bent
         return np.asarray(rest + moved)
 
     def _over_depth(self, depth: Array) -> tuple[NDArray[np.int64], Array, Array]:
@@ -158,3 +168,8 @@ class ShapedTable:
     def _kept(self) -> dict[tuple[int, bytes], Array]:
         """Fields (k, m) over the table's depths at radii that were asked for."""
         return {}
+
+
+def _squared(places: Array) -> Array:
+    """Squared distances (...) of places (..., 2) from the axis; sums over so short an axis are slow."""
+    return np.asarray(places[..., 0] ** 2 + places[..., 1] ** 2)

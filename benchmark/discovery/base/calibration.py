@@ -10,6 +10,7 @@ import numpy as np
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import EffectModel, Fit, fit, nuisance_count
 from benchmark.discovery.base.setup_priors import setup_priors, table_keys, unused
+from benchmark.discovery.base.thickness_spread import thickness_spread, unlike_in_thickness
 from benchmark.discovery.base.trials_problem import OWN, NoiseModel, TrialPrior, TrialRef, TrialsProblem, trial_refs
 from benchmark.discovery.trials.marker_layout import PLACED
 from benchmark.discovery.trials.study import Study
@@ -43,10 +44,20 @@ def calibrate(session: Session, study: Study, table_of: TableOf | None = None) -
     start = fit(model, vector, state, most=6)
     problem, warnings = _estimated(start)
     second = fit(EffectModel(problem, ()), start.vector, _kept_state(start, problem), most=6)
+    second_signals = second.model.signals(second.vector, second.nuisance)
+    if unlike_in_thickness(second, second_signals, unlike_mates(second, second_signals)):
+        second = _with_thicknesses(second)
     problem = _estimated(second)[0]
     base = fit(EffectModel(problem, ()), second.vector, _kept_state(second, problem), most=8)
     notes = [*(table.note for table in tables if table.note), *unused(session, tables)]
     return Calibrated(problem, base, tuple(dict.fromkeys([*notes, *warnings])))
+
+
+def _with_thicknesses(fitted: Fit) -> Fit:
+    """The fit with a thickness of each trial's own."""
+    problem = fitted.model.problem
+    problem = replace(problem, prior=replace(problem.prior, thickness=criteria.MOST_THICKNESS))
+    return fit(EffectModel(problem, ()), fitted.vector, fitted.nuisance, most=6)
 
 
 def _tables(session: Session, study: Study, table_of: TableOf) -> tuple[ElasticTable, ...]:
@@ -107,8 +118,14 @@ def pure_errors(fitted: Fit, alike: Sequence[int] | None = None) -> list[Array]:
     Mates are the trials of its condition, or those of the same number in `alike` (R,). Scaled so that the variance is
     the noise's; NaN for a trial without mates.
     """
-    problem = fitted.model.problem
     signals = fitted.model.signals(fitted.vector, fitted.nuisance)
+    rows = unlike_mates(fitted, signals, alike)
+    return [_less_nuisances(each, signal) for each, signal in zip(rows, signals, strict=True)]
+
+
+def unlike_mates(fitted: Fit, signals: Sequence[Array], alike: Sequence[int] | None = None) -> list[Array]:
+    """The same with what the trial's own nuisances could take up of it still in; `signals` (n, C) are the model's."""
+    problem = fitted.model.problem
     groups = [trial.condition for trial in problem.trials] if alike is None else list(alike)
     out: list[Array] = [np.zeros(0)] * len(groups)
     for number in dict.fromkeys(groups):
@@ -124,7 +141,7 @@ def pure_errors(fitted: Fit, alike: Sequence[int] | None = None) -> list[Array]:
         factor = np.sqrt(len(mine) / (len(mine) - 1.0))
         own = (rows - mean) * counts * gains * factor
         for k, i in enumerate(mine):
-            out[i] = _less_nuisances(own[k], signals[i])
+            out[i] = own[k]
     return out
 
 
@@ -232,4 +249,5 @@ def _spreads(fitted: Fit, scale: Array) -> TrialPrior:
         height=max(_spread(state[:, 3]), criteria.LEAST_HEIGHT * deepest),
         offset=max(offset, 0.3 * floor, 1e-9),
         rest=max(rest, 0.3 * floor, 1e-9),
+        thickness=thickness_spread(fitted),
     )

@@ -27,6 +27,8 @@ from benchmark.response.trials_model import TrialColumns, TrialsEvaluation
 
 SHAPE_STEP = 1e-3
 """By which the base's nuisances are changed to differentiate."""
+FIXED = 1e-6
+"""Standard deviation of what does not differ between trials."""
 MOST = 12
 """Steps of a fit at most."""
 
@@ -161,7 +163,7 @@ class EffectModel:
         vector
             (p,) of the model.
         nuisance
-            (trials, q): log gain, force zero, time shift, depth at touch, marker zeros.
+            (trials, q): log gain, force zero, time shift, depth at touch, thickness, marker zeros.
         """
         tables, values = self.shaped(vector), self.values(vector)
         return [self._trial(index, tables, values, own) for index, own in enumerate(nuisance)]
@@ -169,8 +171,8 @@ class EffectModel:
     def _trial(self, index: int, tables: Sequence[ShapedTable], values: Mapping[str, Values], nuisance: Array) -> Array:
         """(n, C) signals of one trial."""
         trial = self.problem.trials[index]
-        gain, zero, shift, height = nuisance[: len(OWN)].tolist()
-        pipeline, table = self.pipelines[trial.condition], tables[trial.condition]
+        gain, zero, shift, height, thickness = nuisance[: len(OWN)].tolist()
+        pipeline, table = self.pipelines[trial.condition], tables[trial.condition].thicker(thickness)
         readings = pipeline.readings(table, values, trial.motion, float(np.exp(gain)), shift, height)
         signals = self.as_signals(readings, zero, nuisance[len(OWN) :])
         layout = self.problem.study.layout
@@ -256,10 +258,11 @@ class EffectModel:
 
     @cached_property
     def _nuisance_steps(self) -> Mapping[int, float]:
-        """By which log gain, time shift and depth at touch are changed to differentiate."""
+        """By which log gain, time shift, depth at touch and thickness are changed to differentiate."""
         study = self.problem.study
         deepest = max(condition.around.peak_depth for condition in study.conditions)
-        return {0: 0.01, 2: max(0.2 * study.raw_interval, 1e-3), 3: 1e-3 * deepest}
+        steps = {0: 0.01, 2: max(0.2 * study.raw_interval, 1e-3), 3: 1e-3 * deepest}
+        return steps | ({OWN.index("thickness"): SHAPE_STEP} if self.problem.prior.thickness else {})
 
 
 Fit: TypeAlias = TrialsFit[EffectModel]
@@ -309,13 +312,13 @@ def _inner(parameter: EffectParameter, value: float) -> float:
 
 
 def nuisance_count(problem: TrialsProblem) -> int:
-    """Nuisances of a trial: gain, zero, shift, height, and the marker zeros."""
+    """Nuisances of a trial: those of `OWN`, and the marker zeros."""
     return len(OWN) + len(problem.zeros)
 
 
 def nuisance_precision(problem: TrialsProblem) -> Array:
     """(q,) prior precisions of a trial's nuisances."""
     prior = problem.prior
-    sizes = [getattr(prior, name) for name in OWN]
+    sizes = [getattr(prior, name) or FIXED for name in OWN]
     sizes += [prior.offset if name in PLACED else prior.rest for name in problem.zeros]
     return np.array(sizes) ** -2.0

@@ -21,11 +21,12 @@ def trial_bounds(problem: TrialsProblem) -> tuple[Array, Array]:
     """Lower and upper bounds (R, q) of the trials' nuisances."""
     count = len(OWN) + len(problem.zeros)
     low, high = np.full((len(problem.trials), count), -np.inf), np.full((len(problem.trials), count), np.inf)
+    thicker = (-criteria.FAR_SETUP, criteria.FAR_SETUP)
     late = max(criteria.LATEST, criteria.LATE_ROWS * problem.study.raw_interval)
     for index, trial in enumerate(problem.trials):
         noise = float(problem.noise.scale[index, 0])
         zero, touch = zero_range(problem, trial, noise), touch_range(problem, trial, noise)
-        for name, ends in (("zero", zero), ("shift", (-late, late)), ("height", touch)):
+        for name, ends in (("zero", zero), ("shift", (-late, late)), ("height", touch), ("thickness", thicker)):
             low[index, OWN.index(name)], high[index, OWN.index(name)] = ends
     return low, high
 
@@ -65,9 +66,9 @@ def trial_values(problem: TrialsProblem, nuisance: Array) -> tuple[TrialValues, 
     stuck = (nuisance <= low) | (nuisance >= high)
     out = []
     for index, trial in enumerate(problem.trials):
-        gain, zero, shift, height = nuisance[index, : len(OWN)].tolist()
+        gain, zero, shift, height, thickness = nuisance[index, : len(OWN)].tolist()
         names = tuple(name for name, at in zip(OWN, stuck[index], strict=False) if at)
-        out.append(TrialValues(trial.name, float(np.exp(gain)), zero, shift, height, names))
+        out.append(TrialValues(trial.name, float(np.exp(gain)), zero, shift, height, names, thickness))
     return tuple(out)
 
 

@@ -19,8 +19,11 @@ from benchmark.response.noise import Whitener, whitener
 GRID_SCALE = "grid_scale"
 MARKER_SHAPES = ("width", "marker_exponent", "marker_size", "tilt_x", "tilt_y", "lens")
 FOLLOWED = ("modulus", "exponent", "width")
-OWN = ("gain", "zero", "shift", "height")
-"""What each trial has of its own whatever is measured; the zeros of its markers follow."""
+OWN = ("gain", "zero", "shift", "height", "thickness")
+"""What each trial has of its own whatever is measured; the zeros of its markers follow.
+
+`height` is the depth at which the tool touches, `thickness` by which share its specimen is thicker than the session's.
+"""
 
 
 def followed(name: str) -> bool:
@@ -32,7 +35,8 @@ def followed(name: str) -> bool:
 class TrialPrior:
     """Standard deviations over trials: log gain, force zero (N), time shift (s), touching depth, marker zeros (m).
 
-    `offset` is of zeros that tell where the camera stands, `rest` of the others, where the layout has them.
+    `offset` is of zeros that tell where the camera stands, `rest` of the others, where the layout has them; `thickness`
+    is a share, 0 where all trials are of one specimen or of equal ones.
     """
 
     gain: float
@@ -41,6 +45,7 @@ class TrialPrior:
     height: float
     offset: float
     rest: float = 1e-2
+    thickness: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,6 +22,7 @@ from benchmark.discovery.evidence.gains import (
     gain,
     held_out,
     held_out_conditions,
+    won_by_sensor,
 )
 from benchmark.discovery.evidence.parameter_evidence import determined, every_term_told, steady, told_parameters
 from benchmark.discovery.evidence.pool import Pool
@@ -33,13 +34,14 @@ from benchmark.physics.setup_entry import setup_key
 
 @dataclass(frozen=True, eq=False)
 class Scored:
-    """A candidate with its evidence against the model it adds to."""
+    """A candidate with its evidence against the model `under` it, to which it adds."""
 
     fit: Fit
     slug: str
     gain: Gain
     transfer: Gain | None
     delta_bic: float
+    under: Fit
 
     @property
     def slugs(self) -> tuple[str, ...]:
@@ -132,7 +134,7 @@ def score(current: Fit, fits: Sequence[Fit]) -> list[Scored]:
     for made in fits:
         transfer = gain(held_out_conditions(made), before_conditions, groups) if before_conditions is not None else None
         slug, bic = made.model.effects[-1].slug, delta_bic(made, current, samples)
-        out.append(Scored(made, slug, gain(held_out(made), before, groups), transfer, bic))
+        out.append(Scored(made, slug, gain(held_out(made), before, groups), transfer, bic, current))
     return sorted(out, key=lambda each: -each.gain.mean)
 
 
@@ -152,11 +154,27 @@ def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
 def _evident(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:
     """Whether a candidate has the evidence of trials, and beside others a strength and a gain worth naming."""
     physics = [step for step in steps if setup_key(step.slug) is None]
-    worth = not physics or scored.gain.mean >= criteria.WORTH * physics[0].gain.mean
+    worth = not physics or _worth(scored, physics[0])
     if steps and not determined(scored.fit, scored.fit.model.effects[-1]):
         return False
     evident = scored.gain.z >= settings.accept_z or broad(scored.gain) > criteria.BROAD
     return worth and evident and scored.delta_bic < criteria.ACCEPT_BIC
+
+
+def _worth(scored: Scored, first: Scored) -> bool:
+    """Whether a further effect gains more than what the form of the first one misses.
+
+    Where nearly all of what it wins is in the force, or in the markers, what counts is the first one's gain there: a
+    form that shows in the force leaves its misfit in the force, and not in the markers.
+    """
+    least = criteria.WORTH * first.gain.mean
+    if scored.gain.mean >= least:
+        return True
+    own, its = (won_by_sensor(each.fit, each.under).clip(0.0) for each in (scored, first))
+    place = int(np.argmax(own))
+    if own[place] < criteria.MOSTLY * own.sum():
+        return False
+    return bool(scored.gain.mean >= least * its[place] / max(its.sum(), 1e-12))
 
 
 def carries_over(scored: Scored) -> bool:

@@ -123,6 +123,7 @@ def _own(values: TrialValues) -> dict[str, Any]:
         "zero_N": values.zero,
         "late_ms": 1e3 * values.late,
         "touch_mm": 1e3 * values.touch,
+        "thicker_percent": 1e2 * values.thicker,
         "at_bound": " ".join(values.at_bound),
     }
 
@@ -222,7 +223,7 @@ COLUMNS = {
     "parameters.csv": ("part", "name", "value", "unit", "ci95_low", "ci95_high"),
     "refitted.csv": ("model", "held_out", "conditions", "channel", "unit", "rmse_before", "rmse_after", "noise_floor",
                      "before_in_noise", "after_in_noise", "explained"),
-    "trials.csv": ("trial", "gain", "zero_N", "late_ms", "touch_mm", "at_bound"),
+    "trials.csv": ("trial", "gain", "zero_N", "late_ms", "touch_mm", "thicker_percent", "at_bound"),
     "layers.csv": ("layer", "rmse_before_mm", "rmse_after_mm", "closed", "percent_at_peak_before",
                    "percent_at_peak_after"),
 }  # fmt: skip

@@ -13,7 +13,8 @@ SETUP = (
 )
 TRIALS = (
     "What each trial has of its own. A zero lies within what the sensor shows at rest, a touch not beyond where the "
-    "force has risen over its noise, and force and frames are late by a sample or two at most."
+    "force has risen over its noise, and force and frames are late by a sample or two at most. Where trials differ as "
+    "specimens of unlike thickness do, each has a thickness of its own, by which the base's force and field follow."
 )
 
 
@@ -29,7 +30,7 @@ def own_section(record: DiscoveryRecord) -> Section:
         blocks += [Paragraph(SETUP), Table("The set-up", columns, [_setup(each) for each in found.setup], folded=False)]
     heads = (
         "trial", Column("gain", "", 4), Column("zero", "N", 3), Column("late", "ms", 3), Column("touch", "mm", 3),
-        "at its bound",
+        Column("thicker", "%", 2), "at its bound",
     )  # fmt: skip
     rows = [_own(each) for each in found.own]
     download = Download("tables/trials.csv", "the same")
@@ -41,4 +42,5 @@ def _setup(each: SetupEstimate) -> tuple[object, ...]:
 
 
 def _own(each: TrialValues) -> tuple[object, ...]:
-    return (each.trial, each.gain, each.zero, 1e3 * each.late, 1e3 * each.touch, ", ".join(each.at_bound))
+    own = (each.gain, each.zero, 1e3 * each.late, 1e3 * each.touch, 1e2 * each.thicker)
+    return (each.trial, *own, ", ".join(each.at_bound))

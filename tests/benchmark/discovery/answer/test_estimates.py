@@ -48,7 +48,9 @@ def test_the_chosen_candidate_stands_first_then_single_ones_by_gain(monkeypatch)
     monkeypatch.setattr(estimates, "constant", lambda fit: None)
 
     def scored(slug, mean):
-        return Scored(fitted(slug, np.zeros(8)), slug, Gain(np.zeros(8), mean, 1.0, 3.0), None, -10.0)
+        return Scored(
+            fitted(slug, np.zeros(8)), slug, Gain(np.zeros(8), mean, 1.0, 3.0), None, -10.0, fitted(slug, 0.0)
+        )
 
     made = selected(
         fitted("chosen", np.zeros(8)),

@@ -8,6 +8,7 @@ from benchmark.discovery.base.base_shape import Shape, ShapedTable
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.effect_model import EffectModel
 from benchmark.discovery.base.setup_priors import setup_entries, setup_priors, shares, table_keys, unused
+from benchmark.discovery.base.trials_problem import OWN
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import load_session
 from benchmark.response.elastic_table import ElasticTable, SetupDerivative
@@ -88,8 +89,8 @@ def test_an_entry_changes_the_base_beyond_what_its_prior_allows(tmp_path, quick_
     model = EffectModel(problem, (entry,))
     vector = model.vector(np.zeros(model.shape_count), {entry.slug: {"change": 0.1}})
     assert model.shape(vector).setup["layer.thickness"] == pytest.approx(0.1)
-    plain = EffectModel(problem, ()).signals(np.zeros(model.shape_count), np.zeros((6, 4)))
-    moved = model.signals(vector, np.zeros((6, 4)))
+    plain = EffectModel(problem, ()).signals(np.zeros(model.shape_count), np.zeros((6, len(OWN))))
+    moved = model.signals(vector, np.zeros((6, len(OWN))))
     assert moved[0][:, 0].max() < 0.97 * plain[0][:, 0].max()  # a thicker layer on a base is softer
 
 

@@ -8,7 +8,7 @@ import pytest
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import EffectModel, fit
 from benchmark.discovery.base.trial_bounds import large_remarks, touch_range, trial_bounds, trial_values, zero_range
-from benchmark.discovery.base.trials_problem import NoiseModel, TrialPrior, TrialsProblem, trial_refs
+from benchmark.discovery.base.trials_problem import OWN, NoiseModel, TrialPrior, TrialsProblem, trial_refs
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import load_session
 from benchmark.response.elastic_table import ElasticTable
@@ -58,7 +58,7 @@ def test_a_clock_that_is_far_too_late_is_followed_to_its_bound_and_said(problem)
 
 
 def test_what_is_small_is_not_warned_of(problem):
-    assert large_remarks(problem, np.zeros((6, 4))) == ()
+    assert large_remarks(problem, np.zeros((6, len(OWN)))) == ()
 
 
 def _later(trial):

@@ -41,7 +41,8 @@ def fitted(*effects, density=0.0, objective=0.0, conditions=(0,) * 8):
 
 def scored(slug, mean, z=9.0, bic=-50.0, each=None, **changes):
     values = np.full(8, mean) if each is None else np.asarray(each, dtype=float)
-    return Scored(fitted(effect(slug, **changes), density=values), slug, Gain(values, mean, 1.0, z), None, bic)
+    made = fitted(effect(slug, **changes), density=values)
+    return Scored(made, slug, Gain(values, mean, 1.0, z), None, bic, fitted())
 
 
 @pytest.fixture(autouse=True)
@@ -82,8 +83,27 @@ def test_an_effect_needs_evidence_over_trials_and_bic(z, bic, each, expected):
 
 
 @pytest.mark.parametrize(("mean", "expected"), [(2.0, True), (1.99, False)])
-def test_a_further_effect_must_gain_a_fifth_of_the_first(mean, expected):
+def test_a_further_effect_must_gain_a_fifth_of_the_first(mean, expected, monkeypatch):
+    monkeypatch.setattr(selection, "won_by_sensor", lambda fit, under: np.array([80.0, 0.0]))
     assert selection._evident(scored("b", mean), [scored("a", 10.0)], SETTINGS) is expected
+
+
+@pytest.mark.parametrize(
+    ("own", "expected"),
+    [
+        ((0.0, 12.0), True),  # in the markers, where the first won an eighth
+        ((3.0, 12.0), True),
+        ((3.1, 12.0), False),  # too much of it is in the force
+        ((12.0, 0.0), False),  # in the force, where the first won the rest
+        ((-5.0, 12.0), True),
+    ],
+)
+def test_a_weak_further_effect_counts_where_the_first_ones_form_could_not_leave_it(own, expected, monkeypatch):
+    won = {"b": own, "a": (70.0, 10.0)}
+    monkeypatch.setattr(selection, "won_by_sensor", lambda fit, under: np.array(won[fit.model.effects[-1].slug]))
+    first = scored("a", 10.0)
+    assert selection._evident(scored("b", 0.3), [first], SETTINGS) is expected
+    assert not selection._evident(scored("b", 0.2), [first], SETTINGS)  # a fifth of an eighth is 0.25
 
 
 @pytest.mark.parametrize(
@@ -110,8 +130,8 @@ def test_a_further_effect_that_does_not_carry_over_is_withheld(monkeypatch, know
     one, other = fitted(a, density=100.0, conditions=groups), fitted(b, density=9.0, conditions=groups)
     both = fitted(a, b, density=130.0, objective=-9.0, conditions=groups)
     gain = Gain(np.full(8, 30.0), 30.0, 1.0, 9.0)
-    second = Scored(both, "b", gain, Gain(np.full(8, kept), kept, 1.0, 9.0), -50.0)
-    first = Scored(one, "a", Gain(np.full(8, 100.0), 100.0, 1.0, 9.0), None, -50.0)
+    second = Scored(both, "b", gain, Gain(np.full(8, kept), kept, 1.0, 9.0), -50.0, one)
+    first = Scored(one, "a", Gain(np.full(8, 100.0), 100.0, 1.0, 9.0), None, -50.0, fitted())
     monkeypatch.setattr(selection, "usable", lambda base, effect: True)
     ranked = [Screened(each, 9.0, np.zeros((1, 8))) for each in (a, b)]
     monkeypatch.setattr(
