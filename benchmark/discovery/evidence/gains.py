@@ -95,7 +95,7 @@ def tissue_gain(fitted: Fit, own: Mapping[str, Gain]) -> float:
 
 
 def broad(gain: Gain) -> float:
-    """Held-out log density gained in all trials but the one that gains most; 0 where others lose a tenth of it.
+    """Held-out log density gained in all trials but the one that gains most; 0 where others lose too much of it.
 
     What acts in the stiffest specimens alone scatters too much between trials for z.
     """

@@ -164,17 +164,14 @@ def _evident(scored: Scored, steps: Sequence[Scored], settings: Settings) -> boo
 def _worth(scored: Scored, first: Scored) -> bool:
     """Whether a further effect gains more than what the form of the first one misses.
 
-    Where nearly all of what it wins is in the force, or in the markers, what counts is the first one's gain there: a
-    form that shows in the force leaves its misfit in the force, and not in the markers.
+    A form that shows in the force leaves its misfit there, and not in the markers: the first one's gain counts by its
+    shares of force and markers, the larger for 1, in the mean over where the further effect wins.
     """
     least = criteria.WORTH * first.gain.mean
     if scored.gain.mean >= least:
         return True
-    own, its = (won_by_sensor(each.fit, each.under).clip(0.0) for each in (scored, first))
-    place = int(np.argmax(own))
-    if own[place] < criteria.MOSTLY * own.sum():
-        return False
-    return bool(scored.gain.mean >= least * its[place] / max(its.sum(), 1e-12))
+    own, its = (won_by_sensor(each.fit, each.under).clip(1e-9) for each in (scored, first))
+    return bool(scored.gain.mean >= least * float(own @ its / (own.sum() * its.max())))
 
 
 def carries_over(scored: Scored) -> bool:

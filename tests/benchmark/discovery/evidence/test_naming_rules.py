@@ -75,7 +75,8 @@ class Work:
         (3.0, -4.0, None, False),
         (0.5, -4.1, [5.0, 4.0, 5.0, 0, 0, 0, 0, 90.0], True),  # 14 without the best trial
         (0.5, -4.1, [2.0, 2.0, 3.0, 0, 0, 0, 0, 90.0], False),  # 7 without it
-        (0.5, -4.1, [5.0, 4.0, 5.0, -3.0, 0, 0, 0, 90.0], False),  # others lose over a tenth
+        (0.5, -4.1, [5.0, 4.0, 7.0, -3.0, 0, 0, 0, 90.0], True),  # 13, and 3 are lost
+        (0.5, -4.1, [5.0, 4.0, 5.0, -3.0, 0, 0, 0, 90.0], False),  # others lose over a quarter
     ],
 )
 def test_an_effect_needs_evidence_over_trials_and_bic(z, bic, each, expected):
@@ -89,21 +90,19 @@ def test_a_further_effect_must_gain_a_fifth_of_the_first(mean, expected, monkeyp
 
 
 @pytest.mark.parametrize(
-    ("own", "expected"),
+    ("own", "least"),
     [
-        ((0.0, 12.0), True),  # in the markers, where the first won an eighth
-        ((3.0, 12.0), True),
-        ((3.1, 12.0), False),  # too much of it is in the force
-        ((12.0, 0.0), False),  # in the force, where the first won the rest
-        ((-5.0, 12.0), True),
+        ((0.0, 12.0), 2.0 / 7.0),  # in the markers, where the first won a seventh of what it won in the force
+        ((12.0, 0.0), 2.0),
+        ((6.0, 6.0), 8.0 / 7.0),
+        ((-5.0, 12.0), 2.0 / 7.0),
     ],
 )
-def test_a_weak_further_effect_counts_where_the_first_ones_form_could_not_leave_it(own, expected, monkeypatch):
+def test_a_weak_further_effect_counts_where_the_first_ones_form_could_not_leave_it(own, least, monkeypatch):
     won = {"b": own, "a": (70.0, 10.0)}
-    monkeypatch.setattr(selection, "won_by_sensor", lambda fit, under: np.array(won[fit.model.effects[-1].slug]))
-    first = scored("a", 10.0)
-    assert selection._evident(scored("b", 0.3), [first], SETTINGS) is expected
-    assert not selection._evident(scored("b", 0.2), [first], SETTINGS)  # a fifth of an eighth is 0.25
+    monkeypatch.setattr(selection, "won_by_sensor", lambda fit, _: np.array(won[fit.model.effects[-1].slug]))
+    assert selection._evident(scored("b", 1.01 * least), [scored("a", 10.0)], SETTINGS)
+    assert not selection._evident(scored("b", 0.99 * least), [scored("a", 10.0)], SETTINGS)
 
 
 @pytest.mark.parametrize(
