@@ -24,8 +24,7 @@ from benchmark.discovery.discovery_result import (
 )
 from benchmark.discovery.from_run.body_effects import BodyEffectFit, fit_body_effect
 from benchmark.discovery.from_run.finished_run import FinishedRun
-from benchmark.discovery.from_run.run_case import RunCase, layer_gaps, split
-from benchmark.discovery.from_run.run_places import contrasts, places
+from benchmark.discovery.from_run.run_case import RunCase, contrasts, layer_gaps, places, split
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, LayerGap
 from benchmark.physics import Effect
 from benchmark.response.pipeline import physics_of

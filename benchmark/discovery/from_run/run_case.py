@@ -1,14 +1,15 @@
-"""A finished run as a fit sees it: its wave model as a ramp, the loads that are held out, and the gap in each layer."""
+"""A finished run as a fit sees it: the wave model as a ramp, loads held out, where it misses, the gap in each layer."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.discovery import criteria
-from benchmark.discovery.discovery_result import Array
+from benchmark.discovery.discovery_result import Array, Contrast, Place
 from benchmark.discovery.from_run.finished_run import FinishedRun
 from benchmark.discovery.report.discovery_record import LayerGap
 from benchmark.errors import InputError
@@ -18,6 +19,8 @@ from benchmark.response import Ramp
 from wavemodel.physics import Physics, QuasiStaticPress, drive_by_force
 
 HALF = 0.5
+CLASSES = 3
+"""Classes of depth in which a disagreement is placed."""
 NOTHING = Physics()
 
 
@@ -110,3 +113,41 @@ def _layer_gap(name: str, case: RunCase, column: int, after: Array) -> LayerGap:
     errors = [100.0 * float((each[peak] - reference[peak]) / reference[peak]) for each in (before, after)]
     sizes = [float(np.sqrt(np.mean((each - reference)[case.held] ** 2))) for each in (before, after)]
     return LayerGap(name, run.force, reference, before, after, *sizes, *errors)
+
+
+def places(case: RunCase, smallest: float) -> tuple[Place, ...]:
+    """Cells whose mean residual is beyond `smallest` (N), largest first; without p, for nothing here is random."""
+    residual = case.run.force - case.force()
+    depth, peak = case.depth, float(case.depth.max())
+    phases = _phases(case)
+    found = []
+    for phase in ("load", "hold", "unload_high", "unload_low"):
+        for part in range(CLASSES):
+            low, high = part * peak / CLASSES, (part + 1) * peak / CLASSES
+            rows = (phases == phase) & (depth >= low) & (depth <= high)
+            size = float(residual[rows].mean()) if rows.any() else 0.0
+            if abs(size) > smallest:
+                percent = 100.0 * size / float(case.run.force.max())
+                found.append(Place("force_z", phase, case.run.name, 1, (low, high), size, percent, math.nan))
+    return tuple(sorted(found, key=lambda place: -abs(place.size)))
+
+
+def contrasts(case: RunCase) -> tuple[Contrast, ...]:
+    """Whether the reference has a memory: unload minus load at equal depth."""
+    force, depth, phases = case.run.force, case.depth, _phases(case)
+    load, unload = phases == "load", np.char.startswith(phases, "unload")
+    if load.sum() < 2 or not unload.any():
+        return ()
+    at_depth = np.interp(depth[unload], depth[load], force[load])
+    size = float(np.mean(force[unload] - at_depth))
+    return (Contrast("Unload minus load at equal depth, in the reference", "force_z", size, math.nan),)
+
+
+def _phases(case: RunCase) -> np.ndarray:
+    """(n,) phase of each row: of one press, up to its peak, held near it, and back."""
+    force, depth = case.run.force, case.depth
+    last = int(np.flatnonzero(force >= force.max() * (1.0 - 1e-9))[-1])
+    first = int(force.argmax())
+    rows = np.arange(force.size)
+    below = np.where(depth >= 0.5 * depth.max(), "unload_high", "unload_low")
+    return np.where(rows <= first, "load", np.where(rows <= last, "hold", below))
