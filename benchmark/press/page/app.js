@@ -40,9 +40,9 @@
     const size = one.layers.length * P * Q;
     Object.assign(state, { faces: new Float64Array(size), fem: new Float64Array(size), values: new Float64Array(size), errorScale: 0.0025 });
     if (renderer) {
-      state.slabs = one.layers.map(() => new Scene.Slab(gl, P, Q));
-      state.plate ??= new Scene.Slab(gl, P, Q);
-      state.sheet ??= new Scene.Slab(gl, P, Q);
+      state.slabs = one.layers.map(() => new Scene.Slab(gl, P, Q, renderer.software ? 4 : 8));
+      state.plate ??= new Scene.Slab(gl, P, Q, 1);
+      state.sheet ??= new Scene.Slab(gl, P, Q, 1);
       state.ribbons = one.layers.map(() => [new Scene.Ribbon(gl, P), new Scene.Ribbon(gl, P)]);
       state.rings ??= Array.from({ length: 6 }, () => new Scene.Cylinder(gl));
       if (!state.tools.length) state.tools = Array.from({ length: Hands.MOST }, () => new Scene.Cylinder(gl));
@@ -155,12 +155,12 @@
       const slab = state.slabs[l], covered = l > 0 && lift === 0;
       slab.fill(grid.xs, rows, state.faces, state.values, l * size, below, top, -depth + raised, covered);
       const colour = Scene.rgb(SKIN[layer.name] ?? OTHERS[l % OTHERS.length]);
-      renderer.draw(slab.mesh, colour, { mode: now.wrong ? 1 : 0, lines: now.wrong ? 0 : 8, from: covered ? slab.faceIndices : 0 });
+      renderer.draw(slab, colour, { mode: now.wrong ? 1 : 0, lines: now.wrong ? 0 : 8 });
       if (now.compared) lines(l, top, now, low, high);
     });
     if (!hole) {
       state.plate.fill(grid.xs, rows, FLAT, FLAT, 0, null, -depth, -depth - PLATE, true);
-      renderer.draw(state.plate.mesh, Scene.rgb(shade("tool")), { from: state.plate.faceIndices });
+      renderer.draw(state.plate, Scene.rgb(shade("tool")));
     }
     targets(lift * (count - 1));
     tools(state.bench.shown, lift * (count - 1));
@@ -228,7 +228,7 @@
     const size = P * Q, faces = tissue.draw(new Float64Array(size), grid.xs, rows), most = Math.abs(tissue.body.coefficient);
     renderer.begin(camera, 0.5, 1, low, high);
     state.sheet.fill(grid.xs, rows, faces, faces.map((deflection) => deflection / most), 0, 0, 0, -0.5);
-    renderer.draw(state.sheet.mesh, Scene.rgb(SKIN.skin), { mode: 0, lines: 8 });
+    renderer.draw(state.sheet, Scene.rgb(SKIN.skin), { mode: 0, lines: 8 });
     tools(tissue, 0);
   }
 
@@ -252,7 +252,8 @@
     const fast = state.cost, slow = state.specimen.fem;
     if (turn % 30 === 0 && fast > 0) {
       get("time").innerHTML = `Wave, in this page now: <b>${fast.toFixed(fast < 0.1 ? 3 : 2)} ms</b> for ${(state.faces.length).toLocaleString("en")} points.`
-        + (slow ? ` Finite elements, when this page was made: <b>${(1e3 * slow.wall_s / slow.levels).toFixed(0)} ms</b> for each of ${slow.levels} depths, ${slow.unknowns.toLocaleString("en")} unknowns.` : "");
+        + (slow ? ` Finite elements, when this page was made: <b>${(1e3 * slow.wall_s / slow.levels).toFixed(0)} ms</b> for each of ${slow.levels} depths, ${slow.unknowns.toLocaleString("en")} unknowns.` : "")
+        + (renderer?.rough || renderer?.detail < 0.6 ? " Drawn with fewer points and pixels than computed, since pictures came too slowly." : "");
     }
   }
 

@@ -1,7 +1,7 @@
 "use strict";
 // Draws blocks of layers, tools and lines by WebGL 2, with nothing else. Lengths in mm, z upwards, y away from the viewer.
 const Scene = (() => {
-  const FLOATS = 7, TURN = 2 * Math.PI, SIDES = 48, BANDS = 8;
+  const FLOATS = 7, TURN = 2 * Math.PI, SIDES = 48, BLOCK = 8;
 
   const VERTEX = `
     in vec3 position; in vec3 normal; in float value;
@@ -111,37 +111,49 @@ const Scene = (() => {
       gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, new Uint32Array(indices), gl.STATIC_DRAW);
     }
 
-    upload() {
+    // What changed: all, or what stands behind a vertex.
+    upload(vertex = 0) {
       this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.buffer);
-      this.gl.bufferSubData(this.gl.ARRAY_BUFFER, 0, this.data);
+      this.gl.bufferSubData(this.gl.ARRAY_BUFFER, 4 * FLOATS * vertex, this.data, FLOATS * vertex);
     }
 
-    draw(from = 0) {
+    draw(from = 0, count = this.count - from) {
       this.gl.bindVertexArray(this.array);
-      this.gl.drawElements(this.gl.TRIANGLES, this.count - from, this.gl.UNSIGNED_INT, 4 * from);
+      this.gl.drawElements(this.gl.TRIANGLES, count, this.gl.UNSIGNED_INT, 4 * from);
     }
   }
 
-  // One layer: its top face on P x Q vertices and a wall round it down to the face below.
-  class Slab {
-    constructor(gl, P, Q) {
-      this.P = P; this.Q = Q;
-      const indices = [], at = (i, j) => i * Q + j;
-      for (let i = 0; i + 1 < P; i++) for (let j = 0; j + 1 < Q; j++) {
-        indices.push(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i, j + 1));
+  // Squares of a P x Q grid, `step` vertices wide, in blocks: a vertex is then shaded once or twice, not six times.
+  function squares(P, Q, step) {
+    const indices = [], at = (i, j) => Math.min(i, P - 1) * Q + Math.min(j, Q - 1);
+    for (let block = 0; block < Q - 1; block += BLOCK * step) for (let i = 0; i < P - 1; i += step) {
+      for (let j = block; j < Math.min(block + BLOCK * step, Q - 1); j += step) {
+        const [a, b, c, d] = [at(i, j), at(i + step, j), at(i + step, j + step), at(i, j + step)];
+        indices.push(a, b, c, a, c, d);
       }
-      this.walls = []; this.faceIndices = indices.length;
+    }
+    return indices;
+  }
+
+  // One layer: its top face on P x Q vertices and a wall round it down to the face below, of so many bands.
+  class Slab {
+    constructor(gl, P, Q, BANDS = 8) {
+      this.P = P; this.Q = Q; this.BANDS = BANDS;
+      const fine = squares(P, Q, 1), rough = squares(P, Q, 2), indices = [...fine, ...rough], at = (i, j) => i * Q + j;
+      this.walls = []; this.faces = [{ from: 0, count: fine.length }, { from: fine.length, count: rough.length }];
       let next = P * Q;
       for (const [count, vertex, normal] of [
         [P, (k) => at(k, 0), [0, -1, 0]], [P, (k) => at(k, Q - 1), [0, 1, 0]],
         [Q, (k) => at(0, k), [-1, 0, 0]], [Q, (k) => at(P - 1, k), [1, 0, 0]],
       ]) {
-        this.walls.push({ first: next, count, vertex, normal });
+        const wall = { first: next, count, vertex, normal, from: indices.length };
+        this.walls.push(wall);
         for (let k = 0; k + 1 < count; k++) for (let band = 0; band < BANDS; band++) {
           const a = next + (BANDS + 1) * k + band, b = a + BANDS + 1;
           indices.push(a, a + 1, b, a + 1, b + 1, b);
         }
         next += (BANDS + 1) * count;
+        wall.indices = indices.length - wall.from;
       }
       this.mesh = new Mesh(gl, next, indices);
     }
@@ -149,8 +161,8 @@ const Scene = (() => {
     // Deflections (m) and values of this face and of the one below, from offsets in shared arrays; heights in mm.
     // A covered face is not drawn, so only its border, where the walls begin, is filled.
     fill(xs, ys, faces, values, own, below, top, bottom, covered = false) {
-      const { P, Q } = this, data = this.mesh.data;
-      this.covered = covered;
+      const { P, Q, BANDS } = this, data = this.mesh.data;
+      this.covered = covered; this.bottom = bottom;
       for (let i = 0; i < P; i++) {
         const left = Math.max(i - 1, 0), right = Math.min(i + 1, P - 1), dx = xs[right] - xs[left];
         for (let j = 0, step = covered && i > 0 && i < P - 1 ? Q - 1 : 1; j < Q; j += step) {
@@ -176,7 +188,18 @@ const Scene = (() => {
           }
         }
       }
-      this.mesh.upload();
+      this.mesh.upload(covered ? P * Q : 0);
+    }
+
+    // Its top face, unless that is covered, of fewer squares where they are `rough`, and the walls that look at the eye; from
+    // below all walls, since there is no underside.
+    draw(eye, rough) {
+      const { data } = this.mesh, face = this.faces[rough ? 1 : 0];
+      if (!this.covered) this.mesh.draw(face.from, face.count);
+      for (const { first, normal, from, indices } of this.walls) {
+        const place = first * FLOATS, ahead = normal[0] * (eye[0] - data[place]) + normal[1] * (eye[1] - data[place + 1]);
+        if (ahead > 0 || eye[2] < this.bottom) this.mesh.draw(from, indices);
+      }
     }
   }
 
@@ -232,7 +255,7 @@ const Scene = (() => {
       const software = (this.software = inSoftware());
       const gl = canvas.getContext("webgl2", { antialias: !software, alpha: !software, premultipliedAlpha: true });
       if (!gl) throw new Error("WebGL 2 is not available");
-      this.gl = gl; this.canvas = canvas; this.detail = software ? 0.64 : 1; this.recent = []; this.good = 0; this.patience = 8; this.tried = false; this.ground = [0, 0, 0, 0];
+      this.gl = gl; this.canvas = canvas; this.detail = software ? 0.64 : 1; this.recent = []; this.good = 0; this.patience = 8; this.tried = false; this.rough = false; this.ground = [0, 0, 0, 0];
       new ResizeObserver(() => { this.size = null; }).observe(canvas);
       const program = (this.program = gl.createProgram());
       const texts = software ? [VERTEX_SHADED(SHADING), FRAGMENT_PAINTED] : [VERTEX, FRAGMENT];
@@ -259,8 +282,8 @@ const Scene = (() => {
       if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
     }
 
-    // Fewer pixels where most of thirty frames (ms) come too slowly. More are tried after a while of good ones; where they
-    // were too many, the next try waits twice as long.
+    // Fewer squares of each face, then fewer pixels, where most of thirty frames (ms) come too slowly. More are tried after a
+    // while of good ones; where they were too many, the next try waits twice as long.
     pace(frame) {
       this.recent.push(frame);
       if (this.recent.length < 30) return;
@@ -269,10 +292,10 @@ const Scene = (() => {
       this.good = median < 17.5 ? this.good + 1 : 0;
       if (median > 19) {
         if (this.tried) this.patience *= 2;
-        this.detail = Math.max(0.8 * this.detail, this.software ? 0.4 : 0.45);
+        if (this.software && !this.rough) this.rough = true; else this.detail = Math.max(0.8 * this.detail, this.software ? 0.4 : 0.45);
         this.tried = false;
-      } else if (this.good >= this.patience && this.detail < 1) {
-        this.detail = Math.min(1.25 * this.detail, 1);
+      } else if (this.good >= this.patience && (this.detail < 1 || this.rough)) {
+        if (this.detail < 1) this.detail = Math.min(1.25 * this.detail, 1); else this.rough = false;
         this.tried = true; this.good = 0;
       } else if (this.good > 4) this.tried = false;
     }
@@ -288,16 +311,17 @@ const Scene = (() => {
       const { gl, at } = this, width = this.canvas.width, left = Math.round(from * width), wide = Math.round(to * width) - left;
       gl.viewport(left, 0, wide, this.canvas.height);
       const { eye, matrix } = camera.matrix(wide / this.canvas.height);
+      this.eye = eye;
       gl.uniformMatrix4fv(at.view, false, matrix);
       gl.uniform3fv(at.eye, eye); gl.uniform3fv(at.low, low); gl.uniform3fv(at.high, high);
     }
 
-    draw(mesh, base, { mode = 2, lines = 0, alpha = 1, from = 0 } = {}) {
+    draw(mesh, base, { mode = 2, lines = 0, alpha = 1 } = {}) {
       const { gl, at } = this;
       gl.uniform3fv(at.base, base);
       gl.uniform1f(at.mode, mode); gl.uniform1f(at.lines, lines); gl.uniform1f(at.alpha, alpha);
       if (alpha < 1) { gl.enable(gl.BLEND); gl.depthMask(false); }
-      mesh.draw(from);
+      if (mesh instanceof Slab) mesh.draw(this.eye, this.rough); else mesh.draw();
       if (alpha < 1) { gl.disable(gl.BLEND); gl.depthMask(true); }
     }
   }
