@@ -347,6 +347,14 @@ def _named_matrix(table: Mapping[str, Any], value: object) -> dict[str, np.ndarr
     return None
 
 
+@_opens("MCAP recording", ".mcap")
+def _recording(path: Path) -> list[Block]:
+    """The topics of another program's recording."""
+    from bench_hw.instrument_files.mcap_topics import topic_blocks
+
+    return topic_blocks(path)
+
+
 @_opens("Parquet file", ".parquet", ".pq")
 def _parquet(path: Path) -> list[Block]:
     """Its numeric columns, empty cells as gaps; units from the fields' metadata or their names."""

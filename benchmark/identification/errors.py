@@ -1,6 +1,6 @@
 """The errors of the fits."""
 
-from benchmark.response.errors import ResponseError
+from benchmark.response.force_curve import ResponseError
 
 
 class FittingError(ResponseError):

@@ -6,8 +6,7 @@ through drive, body and observation with effects; `least_squares` is the engine 
 """
 
 from benchmark.response.elastic_table import ElasticTable, SeparableField, SetupDerivative, TableOf
-from benchmark.response.errors import ResponseError
-from benchmark.response.force_curve import ForceCurve
+from benchmark.response.force_curve import ForceCurve, ResponseError
 from benchmark.response.pipeline import TrialPipeline, trial_force
 from benchmark.response.ramp import Ramp, depth_ramp
 from benchmark.response.ramp_table import CameraView, FaceField, Neighbour, RampTable

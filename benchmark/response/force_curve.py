@@ -14,12 +14,14 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from benchmark.response.errors import ResponseError
-
 Array: TypeAlias = NDArray[np.float64]
 
 BEYOND = 0.01
 """A curve may be continued by this fraction of its last depth, with its slope at the end; not further."""
+
+
+class ResponseError(ValueError):
+    """Curves or faces that are no elastic answer, or a depth beyond them; the message names the value and the limit."""
 
 
 @dataclass(frozen=True)

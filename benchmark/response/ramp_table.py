@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from benchmark.response.errors import ResponseError
-from benchmark.response.force_curve import Array, ForceCurve
+from benchmark.response.force_curve import Array, ForceCurve, ResponseError
 
 
 @dataclass(frozen=True)

@@ -408,6 +408,53 @@ def chinese(folder: Path) -> Path:
     return path
 
 
+def recording(
+    path: Path, topics: dict[str, tuple[str, dict, list[tuple[float, dict]]]], encoding: str = "json"
+) -> Path:
+    """A recording by the `mcap` library's writer: by topic its schema's name and contents, times in s and messages."""
+    import json
+
+    from mcap.writer import Writer
+
+    with path.open("wb") as stream:
+        writer = Writer(stream)
+        writer.start(profile="", library="another program")
+        for topic, (name, schema, messages) in topics.items():
+            kind = writer.register_schema(name, "jsonschema" if schema else "", json.dumps(schema).encode())
+            channel = writer.register_channel(topic, encoding, kind)
+            for time, message in messages:
+                instant = round(1e9 * time)
+                writer.add_message(channel, instant, json.dumps(message).encode(), instant)
+        writer.finish()
+    return path
+
+
+def robot_mcap(folder: Path) -> Path:
+    """A robot's recording: a wrench in ROS's words, and the probe's place, slower, in a schema with units; stamps."""
+    one, epoch = press(), 1_700_000_000.0
+
+    def stamp(time: float) -> dict:
+        return {"sec": int(epoch + time), "nanosec": round(1e9 * (time % 1.0))}
+
+    wrenches = [
+        (
+            epoch + t + 0.013,
+            {
+                "header": {"stamp": stamp(t), "frame_id": "ft"},
+                "wrench": {"force": {"x": 0.1, "y": 0.2, "z": -f}, "torque": {"x": 0.0, "y": 0.0, "z": 0.0}},
+            },
+        )
+        for t, f in zip(one.time.tolist(), one.force.tolist(), strict=True)
+    ]
+    places = [
+        (epoch + t + 0.002, {"timestamp": stamp(t), "probe": {"position": 80.0 - d}, "busy": True})
+        for t, d in zip(one.time[::2].tolist(), one.depth[::2].tolist(), strict=True)
+    ]
+    schema = {"type": "object", "properties": {"probe": {"properties": {"position": {"type": "number", "unit": "mm"}}}}}
+    topics = {"/ft": ("geometry_msgs/WrenchStamped", {}, wrenches), "/stage": ("stage/Place", schema, places)}
+    return recording(folder / "robot.mcap", topics)
+
+
 @dataclass(frozen=True)
 class Sample:
     """A format: what writes it, what reads it besides NumPy, the scale of its press (m, N), its number of trials."""
@@ -438,6 +485,7 @@ SAMPLES = {
     "matlab_73": Sample(matlab_73, "h5py", 2),
     "parquet": Sample(parquet),
     "chinese": Sample(chinese),
+    "robot_mcap": Sample(robot_mcap),
 }
 
 

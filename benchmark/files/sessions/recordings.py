@@ -17,6 +17,7 @@ import numpy as np
 
 from bench_hw.errors import BenchError
 from bench_hw.instrument_files import ENDINGS, NoNumbersError, Reading, is_plain_trial, preview, read_instrument_file
+from bench_hw.instrument_files.mcap_topics import is_foreign
 from bench_hw.tables import TrialTable
 from benchmark.errors import InputError
 from benchmark.files.sessions.description import ConditionKeys, SessionFile, TrialEntry
@@ -70,6 +71,8 @@ class Recordings:
 
 def is_instruments(path: Path) -> bool:
     """Whether a file is to be read as another instrument wrote it, not as the bench's own."""
+    if path.suffix.lower() == ".mcap":
+        return is_foreign(path)
     return path.suffix.lower() in ENDINGS and not (path.suffix.lower() == ".csv" and is_plain_trial(path))
 
 

@@ -16,7 +16,7 @@ from benchmark.files.shipped import session_folder, shipped_sessions
 from benchmark.files.sources import Source, is_file
 
 SESSION_FILE = "session.toml"
-TRIAL_SUFFIXES = (".mcap", *ENDINGS)
+TRIAL_SUFFIXES = ENDINGS
 """Of the bench's own recordings, and of the files of other instruments."""
 _ENDINGS = ", ".join(TRIAL_SUFFIXES)
 MARKERS = "_markers.csv"
