@@ -27,6 +27,9 @@ Exact = Annotated[str | None, typer.Option("--exact", help="Told values to take 
 Discrepancy = Annotated[
     str | None, typer.Option("--discrepancy", help='Let the model be wrong over depth by so much, "1 %" of the force.')
 ]
+Markers = Annotated[
+    bool | None, typer.Option("--markers/--no-markers", help="Fit parameters to markers over a hole, too (default).")
+]
 Posterior = Annotated[bool, typer.Option("--posterior", help="Draw from the posterior (with emcee).")]
 Export = Annotated[
     str | None,
@@ -53,6 +56,7 @@ def fit(
     exact: Exact = None,
     fit_file: FitFile = None,
     discrepancy: Discrepancy = None,
+    markers: Markers = None,
     posterior: Posterior = False,
     export: Export = None,
     out: Out = None,
@@ -73,7 +77,7 @@ def fit(
 
     console = Console(quiet=quiet)
     files = tuple(sessions[1:]), fit_file
-    wish = ParameterWish(_keys(free), _keys(exact), _laws(law), forward, *files, discrepancy, posterior, seed)
+    wish = ParameterWish(_keys(free), _keys(exact), _laws(law), forward, *files, discrepancy, markers, posterior, seed)
     request = FitRequest(
         sessions[0], specimen, parse_settings(settings), model, effects, seed, wish, _keys(export) or ()
     )

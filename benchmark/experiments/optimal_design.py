@@ -225,7 +225,7 @@ def _information(answer: Identified, press: Press, pressed: Pressed, time: Array
     size = found.vector.size + COUNT
     by = np.zeros((size, surrogate.depth.size))
     own = next((k for k, one in enumerate(found.problem.presses) if _alike(one, press)), None)
-    place = size - COUNT if own is None else count + COUNT * own
+    place = size - COUNT if own is None else count + found.problem.block * own
     by[:count], by[place : place + COUNT] = surrogate.by[:count], surrogate.by[count:]
     vector = np.append(found.vector, np.zeros(COUNT))
     table = replace(surrogate, by=by, at=vector)
@@ -249,7 +249,7 @@ def _pressed(answer: Identified, press: Press, depth: float) -> tuple[FitProblem
     count = len(found.problem.parameters)
     vector = np.concatenate([found.vector[:count], np.zeros(COUNT)])
     for _ in range(3):
-        problem = replace(found.problem, presses=(replace(press, depth=1.02 * depth),))
+        problem = replace(found.problem, presses=(replace(press, depth=1.02 * depth, rings=None),))
         try:
             return problem, press_all(problem, vector)[0]
         except StopsError:

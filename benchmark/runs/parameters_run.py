@@ -21,6 +21,7 @@ from benchmark.identification.parameters.other_answers import other_answers
 from benchmark.identification.parameters.posterior import posterior
 from benchmark.identification.parameters.session_problem import Assembled, FittedBase, assembled
 from benchmark.response.least_squares import least_squares
+from benchmark.response.ramp_table import EVERYWHERE
 from benchmark.runs.fitted_session import FittedSession
 from benchmark.runs.options import Listener
 
@@ -47,6 +48,8 @@ class ParameterWish:
         A TOML file with a `[fit]` table in the place of the session's.
     discrepancy : str or None
         Of the model over depth, a share of the force.
+    markers : bool or None
+        Whether markers are fitted along.
     posterior : bool
         Whether to draw from the posterior.
     seed : int
@@ -60,6 +63,7 @@ class ParameterWish:
     sessions: tuple[Path, ...] = field(default_factory=tuple)
     file: Path | None = None
     discrepancy: str | None = None
+    markers: bool | None = None
     posterior: bool = False
     seed: int = 0
 
@@ -72,8 +76,8 @@ class ParameterWish:
             if not isinstance(table, dict):
                 raise InputError(f"{self.file}: fit = {table!r}; allowed is a table [fit]")
         law = None if self.laws is None else self.laws[0]
-        said = {"free": self.free, "exact": self.exact, "law": law, "forward": self.forward}
-        said |= {"discrepancy": self.discrepancy}
+        said: dict[str, object] = {"free": self.free, "exact": self.exact, "law": law, "forward": self.forward}
+        said |= {"discrepancy": self.discrepancy, "markers": self.markers}
         return validated(FitTable, table | {key: value for key, value in said.items() if value is not None}, source)
 
 
@@ -123,7 +127,12 @@ def _group(made: Assembled, number: int, several: bool) -> str:
 
 
 def _base(found: FittedSession) -> FittedBase:
-    return FittedBase(found.session, found.fit, found.trials, found.followed)
+    sheet = None if found.filmed is None else found.filmed.sheet
+    films, view = {}, EVERYWHERE
+    for key, (filmed, table) in found.sheets.items():
+        own = None if sheet is None else sheet.trial(key)
+        films[key], view = (filmed, (0.0, 0.0) if own is None else own.state.axis), table.view
+    return FittedBase(found.session, found.fit, found.trials, found.followed, films, view)
 
 
 def common_factor_warnings(found: FittedSession, listener: Listener) -> tuple[str, ...]:

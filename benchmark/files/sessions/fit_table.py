@@ -44,6 +44,8 @@ class FitTable(FileModel):
         Regular expression on a trial's name whose first group is its specimen: trials of one specimen go together.
     discrepancy : str, float or None
         Standard deviation of a discrepancy of the model over depth, a share of the force, "1 %".
+    markers : bool
+        Whether the markers of trials over a hole are fitted along with the force.
     exact : tuple of str
         Told values that are taken without any uncertainty; ("all",) for all.
     fixed : mapping
@@ -60,6 +62,7 @@ class FitTable(FileModel):
     per_specimen: tuple[Name, ...] = ()
     specimen_pattern: Name | None = None
     discrepancy: str | float | None = None
+    markers: bool = True
     exact: tuple[Name, ...] = ()
     fixed: Mapping[str, str | float] = Field(default_factory=dict)
     bounds: Mapping[str, tuple[str | float, str | float]] = Field(default_factory=dict)

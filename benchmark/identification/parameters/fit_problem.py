@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from benchmark.identification.parameters.free_parameters import COMMON, RELAXATION, SHARE, Parameter
 from benchmark.identification.parameters.layer_model import Fading, FitTrial
+from benchmark.identification.parameters.presses.marker_rings import TRUST
 from benchmark.identification.parameters.presses.model_error import COUNT, ModelError, bend_of
 from benchmark.identification.parameters.presses.press_surrogate import Forward, Press
 from benchmark.response.force_curve import Array
@@ -71,7 +72,17 @@ class FitProblem:
     @property
     def size(self) -> int:
         """Coordinates of the fit: parameters, and the model's own error in each press."""
-        return len(self.parameters) + COUNT * len(self.presses)
+        return len(self.parameters) + self.block * len(self.presses)
+
+    @property
+    def rings(self) -> int:
+        """Rings of markers that are fitted in a press; 0 without markers."""
+        return max((0 if one.rings is None else len(one.rings.weights) for one in self.presses), default=0)
+
+    @property
+    def block(self) -> int:
+        """Coordinates of the model's own error in a press: of the force, and of the size of each ring's motion."""
+        return COUNT + self.rings
 
     @property
     def freedom(self) -> int:
@@ -106,7 +117,8 @@ def curved_coordinates(problem: FitProblem, number: int) -> NDArray[np.int64]:
 
 def priors(problem: FitProblem) -> tuple[Array, Array]:
     """Mean and precision (p,) of the coordinates' priors."""
-    own = np.concatenate([one.deviations**-2.0 for one in problem.errors])
+    rings = np.full(problem.rings, TRUST)
+    own = np.concatenate([np.append(one.deviations, rings) ** -2.0 for one in problem.errors])
     mean, precision = np.zeros(problem.size), np.append(np.zeros(len(problem.parameters)), own)
     for k, one in enumerate(problem.parameters):
         value, deviation = (one.start, WEAK) if one.prior is None else (one.prior.value, one.prior.deviation)

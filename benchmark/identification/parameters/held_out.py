@@ -61,7 +61,9 @@ def _predicted(found: LayerFit, out: Array, name: str) -> HeldOut:
     others = subset(found.model, np.flatnonzero(~out.astype(bool)))
     fit = least_squares(others, found.vector, found.fit.nuisance[~out.astype(bool)], search=SEARCH)
     held = subset(found.model, np.flatnonzero(out))
-    nuisance = settled(_without_gain(held), fit.vector, found.fit.nuisance[out.astype(bool)] * [1.0, 1.0, 0.0])
+    start = found.fit.nuisance[out.astype(bool)].copy()
+    start[:, GAIN] = 0.0
+    nuisance = settled(_without_gain(held), fit.vector, start)
     predicted = held.predicted(fit.vector, nuisance)
     squares, inside = [], 0
     for k, (trial, force) in enumerate(zip(held.trials, predicted, strict=True)):
@@ -85,6 +87,7 @@ def subset(model: LayerModel, kept: NDArray[np.int64]) -> LayerModel:
         trials=tuple(model.trials[k] for k in kept),
         white=tuple(model.white[k] for k in kept),
         noise=model.noise[kept],
+        film_noise=tuple(model.film_noise[k] for k in kept) if model.film_noise else (),
     )
 
 

@@ -189,13 +189,14 @@ def discrepancy_use(found: LayerFit) -> DiscrepancyUse | None:
         return None
     count, taken, own_functions = len(problem.parameters), [], functions(GRID)
     for number, press in enumerate(problem.presses):
-        own = found.vector[count + number * COUNT : count + (number + 1) * COUNT]
+        own = found.vector[count + number * problem.block :][:COUNT]
         course = own[PLAIN:] @ own_functions[PLAIN:]
         at = int(np.argmax(np.abs(course)))
         taken.append((MM * press.setup[1].radius, MM * press.depth * at / (GRID - 1), 100.0 * float(course[at])))
     total = found.fit.blocks.matrix.sum(axis=0) + np.diag(found.fit.precision)
     places = np.arange(total.shape[0])
-    kept = np.flatnonzero((places < count) | ((places - count) % COUNT < PLAIN))
+    place = (places - count) % problem.block
+    kept = np.flatnonzero((places < count) | (place < PLAIN) | (place >= COUNT))
     known = scaled_inverse(total[np.ix_(kept, kept)])
     shares = {problem.parameters[k].key: 1.0 - known[k, k] / found.fit.covariance[k, k] for k in problem.free}
     return DiscrepancyUse(100.0 * problem.discrepancy, tuple(taken), {k: float(v) for k, v in shares.items()})

@@ -27,6 +27,7 @@ from benchmark.identification.parameters.identifiability import (
 )
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.layer_model import MM
+from benchmark.identification.parameters.presses.marker_rings import TRUST
 from benchmark.identification.parameters.presses.model_error import ModelError
 from benchmark.identification.parameters.presses.press_surrogate import Press
 from benchmark.identification.parameters.profile_likelihood import Profile, largest_errors, verified_profiles
@@ -159,6 +160,22 @@ class Identified:
         size = "nothing of it" if deviation > 10.0 else f"it to {100 * deviation:.0f} % alone"
         return f"the trials tell {size} (standard error without priors): {what}"
 
+    @cached_property
+    def markers(self) -> dict[str, float] | None:
+        """What was fitted of markers: trials, rings, and the rms that is left of a ring (um); None without any."""
+        found = self.found
+        pairs = zip(found.problem.trials, found.model.moved(found.vector, found.fit.nuisance), strict=False)
+        left = [one.film.moved - moved for one, moved in pairs if one.film is not None and moved is not None]
+        if not left:
+            return None
+        rms = math.sqrt(float(np.mean(np.concatenate(left) ** 2)))
+        return {
+            "trials": len(left),
+            "rings": found.problem.rings,
+            "residual_um": 1e6 * rms,
+            "trust_percent": 100.0 * TRUST,
+        }
+
     @property
     def undetermined(self) -> tuple[Estimate, ...]:
         """Those that the trials do not determine."""
@@ -235,6 +252,7 @@ class Identified:
             ],
             **({} if found.spread is None else {"spread": found.spread.to_dict()}),
             **({} if use is None else {"discrepancy": use.to_dict()}),
+            **({} if self.markers is None else {"markers": self.markers}),
             "rounds": found.rounds,
             "settled": found.settled,
             "other_answers": [self._values(one) for one in self.others],

@@ -21,9 +21,10 @@ from benchmark.identification.parameters.fit_problem import (
     round_limits,
 )
 from benchmark.identification.parameters.free_parameters import start_vector
-from benchmark.identification.parameters.layer_model import GAIN, ForceTable, LayerModel
+from benchmark.identification.parameters.layer_model import GAIN, FilmNoise, ForceTable, LayerModel
 from benchmark.identification.parameters.mixed_effects import SpreadParts, renoised, spread_parts
 from benchmark.identification.parameters.pressed_set_ups import disagreement, followed, joined, pressed_anew
+from benchmark.identification.parameters.presses.marker_rings import MarkerRows
 from benchmark.identification.parameters.presses.press_atlas import PressAtlas
 from benchmark.identification.parameters.presses.press_surrogate import PressSurrogate
 from benchmark.response.force_curve import Array
@@ -31,6 +32,8 @@ from benchmark.response.least_squares import Search, TrialsFit, least_squares
 from benchmark.response.noise import whitener
 
 FIRST_NOISE, FIRST_MEMORY = 0.01, 0.6
+FIRST_FILM_NOISE = 1e-5
+"""m."""
 USUAL_SCATTER = 0.015
 """Standard deviation of trials' gains to begin with, and where there are too few trials to tell it."""
 AGREES = 5e-4
@@ -120,7 +123,7 @@ def begun(problem: FitProblem, touches: Array, zeros: Array) -> LayerFit:
     start = np.concatenate([start_vector(problem.parameters), np.zeros(problem.size - len(problem.parameters))])
     problem, surrogates = followed(problem, start)
     model = _first_model(problem, surrogates, start)
-    nuisance = np.column_stack([1e3 * touches, zeros, np.zeros(len(problem.trials))])
+    nuisance = np.column_stack([1e3 * touches, zeros, np.zeros((len(problem.trials), 1 + model.rings))])
     nuisance[:, 0] = np.clip(nuisance[:, 0], model.trial_bounds[0][:, 0], model.trial_bounds[1][:, 0])
     fit = least_squares(model, start, nuisance, search=LOOKED_UP)
     return LayerFit(problem, fit, FIRST_MEMORY, 0, np.inf)
@@ -172,9 +175,13 @@ def _first_model(problem: FitProblem, surrogates: tuple[PressSurrogate, ...], st
     limits = round_limits(problem, start)
     fading = fading_of(problem)
     atlases = tuple(PressAtlas((one,), curved_coordinates(problem, k)) for k, one in enumerate(surrogates))
-    return LayerModel(
-        atlases, problem.trials, fading, limits, mean, precision, USUAL_SCATTER, white, np.maximum(noise, 1e-9)
-    )
+    films = tuple(None if one.film is None else _usual_film(one.film) for one in problem.trials)
+    noise, films = np.maximum(noise, 1e-9), films if problem.rings else ()
+    return LayerModel(atlases, problem.trials, fading, limits, mean, precision, USUAL_SCATTER, white, noise, films)
+
+
+def _usual_film(film: MarkerRows) -> FilmNoise:
+    return FilmNoise(whitener(film.count, FIRST_MEMORY), np.full(film.moved.shape[1], FIRST_FILM_NOISE))
 
 
 def _fitted(

@@ -4,6 +4,7 @@ Each trial has three nuisances: the depth at which it touches, the force's zero,
 is a random effect. A layer that fades takes its share of the force along: where its stiffness falls by the share g, the
 force falls by 1 - (1 - g)^s, s the sensitivity of the force to that layer; this share fades with the layer's time
 constant. That is exact at once and at last, and between them as far as the force follows the layer evenly.
+The markers of a filmed trial move with the depth alone, each ring with a zero of its own in each trial.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import Protocol
 
 import numpy as np
 
+from benchmark.identification.parameters.presses.marker_rings import MarkerRows
 from benchmark.identification.sheet_model import Relaxation, relaxed
 from benchmark.identification.trial_data import TrialData, reduced, rows_of
 from benchmark.identification.trial_features import ContactRange
@@ -24,8 +26,11 @@ from benchmark.response.trials_model import TrialColumns, TrialsEvaluation
 
 TOUCH, ZERO, GAIN = 0, 1, 2
 NUISANCES = 3
+"""Before the zeros of the rings."""
 MM = 1e3
-"""Nuisances have the depth at touch in mm."""
+"""Nuisances have the depth at touch, and the zeros of the markers' rings, in mm."""
+RING_ZERO = 1.0
+"""Standard deviation of a ring's zero, mm: no more than that it can be eliminated in trials without a film."""
 TOUCH_STEP, COORDINATE_STEP = 1e-3, 1e-4
 """Steps of differences: mm, and of a time constant's logarithm."""
 MOST_ROWS = 250
@@ -52,8 +57,16 @@ class ForceTable(Protocol):
         """(p, k) derivatives of the force's logarithm by the coordinates."""
         ...
 
+    def rings_at(self, vector: Array) -> Array:
+        """(s, k) m of the markers' rings."""
+        ...
+
+    def rings_by_at(self, vector: Array) -> Array:
+        """(p, s, k) derivatives of the rings' motion by the coordinates, m."""
+        ...
+
     def curve(self, grid: Array, depth: Array) -> Array:
-        """(n,) of a quantity on the grid at depths (n,), m."""
+        """(..., n) of quantities on the grid (..., k) at depths (n,), m."""
         ...
 
 
@@ -73,6 +86,8 @@ class FitTrial:
         Where it may touch.
     onset : float
         Where it touches by the first fit, m.
+    film : MarkerRows or None
+        What its markers show, where they are fitted.
     """
 
     data: TrialData
@@ -80,6 +95,7 @@ class FitTrial:
     press: int
     touch: ContactRange
     onset: float = 0.0
+    film: MarkerRows | None = None
 
     @staticmethod
     def of(trial: TrialData, press: int, touch: ContactRange, onset: float = 0.0) -> FitTrial:
@@ -92,7 +108,21 @@ class FitTrial:
     def up_to(self, depth: float) -> FitTrial:
         """The trial without the rows that are deeper than `depth` (m) below where it touches."""
         kept = self.data.depth <= self.onset + depth
-        return replace(self, data=rows_of(self.data, kept), count=self.count[kept])
+        film = None if self.film is None else self.film.up_to(self.onset + depth)
+        return replace(self, data=rows_of(self.data, kept), count=self.count[kept], film=film)
+
+
+@dataclass(frozen=True, eq=False)
+class FilmNoise:
+    """The noise of a film's rows: what whitens it, and the standard deviation (s,) m of each ring in a frame."""
+
+    whitener: Whitener
+    deviation: Array
+
+    def white(self, rows: Array) -> Array:
+        """(f, s, ...) rows to white ones."""
+        own = self.deviation.reshape(-1, *[1] * (rows.ndim - 2))
+        return np.asarray(self.whitener(rows) / own)
 
 
 @dataclass(frozen=True)
@@ -125,6 +155,8 @@ class LayerModel:
         Each trial's noise.
     noise : (R,) array
         Standard deviation of a measured row, N.
+    film_noise : tuple of FilmNoise or None
+        Each film's; empty where no markers are fitted.
     """
 
     surrogates: tuple[ForceTable, ...]
@@ -136,6 +168,7 @@ class LayerModel:
     gain_deviation: float
     white: tuple[Whitener, ...]
     noise: Array
+    film_noise: tuple[FilmNoise | None, ...] = ()
 
     @property
     def bounds(self) -> tuple[Array, Array]:
@@ -144,15 +177,21 @@ class LayerModel:
 
     @cached_property
     def trial_precision(self) -> Array:
-        """Flat in touch and zero, normal in the gain."""
-        return np.array([0.0, 0.0, self.gain_deviation**-2])
+        """Flat in touch and zero, normal in the gain; next to nothing of the rings' zeros."""
+        return np.array([0.0, 0.0, self.gain_deviation**-2, *[RING_ZERO**-2] * self.rings])
+
+    @property
+    def rings(self) -> int:
+        """Rings of markers."""
+        return max((0 if one is None else one.deviation.size for one in self.film_noise), default=0)
 
     @cached_property
     def trial_bounds(self) -> tuple[Array, Array]:
         """Where each trial may touch, mm; zero and gain are free."""
         ranges = [(MM * one.touch.low, MM * one.touch.high) for one in self.trials]
-        low = np.array([[low, -np.inf, -1.0] for low, _ in ranges])
-        high = np.array([[high, np.inf, 1.0] for _, high in ranges])
+        free = [np.inf] * self.rings
+        low = np.array([[low, -np.inf, -1.0, *(-each for each in free)] for low, _ in ranges])
+        high = np.array([[high, np.inf, 1.0, *free] for _, high in ranges])
         return low, high
 
     def prior(self, start: Array) -> tuple[Array, Array]:  # noqa: ARG002 - priors do not follow the start
@@ -164,27 +203,65 @@ class LayerModel:
         grids = [one.force_at(vector) for one in self.surrogates]
         signals = [self._force(k, vector, own, grids) for k, own in enumerate(nuisance)]
         residuals = [self._whitened(k, one.data.force - signals[k]) for k, one in enumerate(self.trials)]
+        for k, moved in enumerate(self.moved(vector, nuisance)):
+            film, noise = self.trials[k].film, self.film_noise[k]
+            if film is not None and noise is not None and moved is not None:
+                residuals[k] = np.concatenate([residuals[k], noise.white(film.moved - moved).ravel()])
         return TrialsEvaluation(vector, nuisance, signals, residuals)
+
+    def moved(self, vector: Array, nuisance: Array) -> list[Array | None]:
+        """Motion (f, s) m of each trial's rings; None of one without a film, and an empty list without markers."""
+        if not self.rings:
+            return []
+        grids = [one.rings_at(vector) for one in self.surrogates]
+        return [self._moved(k, own, grids) for k, own in enumerate(nuisance)]
+
+    def _moved(self, k: int, own: Array, grids: Sequence[Array]) -> Array | None:
+        trial = self.trials[k]
+        if trial.film is None:
+            return None
+        curve = self.surrogates[trial.press].curve(grids[trial.press], trial.film.depth - own[TOUCH] / MM)
+        return np.asarray(curve.T + own[NUISANCES:] / MM)
 
     def columns(self, at: TrialsEvaluation, warm: TrialColumns | None = None) -> TrialColumns:  # noqa: ARG002
         """Derivatives of all trials."""
         grids = [one.force_at(at.vector) for one in self.surrogates]
         shares = [one.by_at(at.vector) for one in self.surrogates]
         vector = [self._vector_columns(k, at, grids, shares) for k in range(len(self.trials))]
+        rings = [one.rings_by_at(at.vector) for one in self.surrogates] if self.rings else []
+        for k, trial in enumerate(self.trials):
+            if trial.film is not None and (noise := self.film_noise[k]) is not None:
+                below = trial.film.depth - at.nuisance[k, TOUCH] / MM
+                by = self.surrogates[trial.press].curve(rings[trial.press], below).transpose(2, 1, 0)
+                vector[k] = np.vstack([vector[k], noise.white(by).reshape(-1, at.vector.size)])
         return TrialColumns(vector, self.nuisance_columns(at))
 
     def nuisance_columns(self, at: TrialsEvaluation) -> list[Array]:
-        """By touch, zero and gain."""
+        """By touch, zero and gain, and the rings' zeros."""
         grids = [one.force_at(at.vector) for one in self.surrogates]
+        rings = [one.rings_at(at.vector) for one in self.surrogates] if self.rings else []
         out = []
         for k, own in enumerate(at.nuisance):
-            step = np.array([TOUCH_STEP, 0.0, 0.0])
+            step = np.zeros(own.size)
+            step[TOUCH] = TOUCH_STEP
             by_touch = (self._force(k, at.vector, own + step, grids) - self._force(k, at.vector, own - step, grids)) / (
                 2.0 * TOUCH_STEP
             )
             pressing = at.signals[k] - own[ZERO]
-            out.append(self._whitened(k, np.column_stack([by_touch, np.ones_like(pressing), pressing])))
+            none = np.zeros((pressing.size, self.rings))
+            force = self._whitened(k, np.column_stack([by_touch, np.ones_like(pressing), pressing, none]))
+            out.append(np.vstack([force, self._film_columns(k, own, step, rings)]))
         return out
+
+    def _film_columns(self, k: int, own: Array, step: Array, grids: Sequence[Array]) -> Array:
+        """(f s, q) white derivatives of one trial's rings by its nuisances; no rows without a film."""
+        more, less = (self._moved(k, own + sign * step, grids) if grids else None for sign in (1.0, -1.0))
+        if more is None or less is None or (noise := self.film_noise[k]) is None:
+            return np.zeros((0, own.size))
+        by = np.zeros((*more.shape, own.size))
+        by[:, :, TOUCH] = (more - less) / (2.0 * TOUCH_STEP)
+        by[:, :, NUISANCES:] = np.eye(more.shape[1]) / MM
+        return noise.white(by).reshape(-1, own.size)
 
     def fixed_at(self, index: int, value: float) -> LayerModel:
         """The model with one coordinate held at a value."""

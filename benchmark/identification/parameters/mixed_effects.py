@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from benchmark.identification.parameters.layer_model import GAIN, LayerModel
+from benchmark.identification.parameters.layer_model import GAIN, FilmNoise, LayerModel
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import TrialsFit
 from benchmark.response.noise import fit_memory, scales, whitener
@@ -23,6 +23,8 @@ RATIOS = np.concatenate([[0.0], np.geomspace(1e-3, 1e4, 281)])
 """Variance between over variance within that are tried."""
 CHI_SQUARED = 3.841
 LEAST_SCATTER = 1e-3
+LEAST_FILM_NOISE = 1e-9
+"""m."""
 
 
 @dataclass(frozen=True)
@@ -136,7 +138,29 @@ def renoised(fit: TrialsFit[LayerModel], freedom: int) -> tuple[LayerModel, floa
     white = tuple(whitener(count, memory) for count in counts)
     noise = np.maximum(scales(errors, counts, memory), 1e-9)
     scatter = model.gain_deviation if freedom < 1 else _scatter(fit, freedom)
-    return replace(model, white=white, noise=noise, gain_deviation=scatter), memory
+    films = _film_noise(model, fit.vector, fit.nuisance)
+    return replace(model, white=white, noise=noise, gain_deviation=scatter, film_noise=films), memory
+
+
+def _film_noise(model: LayerModel, vector: Array, nuisance: Array) -> tuple[FilmNoise | None, ...]:
+    """Noise of the rings of markers: a memory for all films, a size for each ring of each."""
+    moved = model.moved(vector, nuisance)
+    left = [
+        None if m is None or t.film is None else t.film.moved - m for t, m in zip(model.trials, moved, strict=False)
+    ]
+    films = [
+        (one, trial.film.count)
+        for one, trial in zip(left, model.trials, strict=False)
+        if one is not None and trial.film
+    ]
+    if not films:
+        return model.film_noise
+    memory = fit_memory([ring for one, _ in films for ring in one.T], [count for one, count in films for _ in one.T])
+    found = iter(
+        FilmNoise(whitener(count, memory), np.maximum(scales(one.T, [count] * one.shape[1], memory), LEAST_FILM_NOISE))
+        for one, count in films
+    )
+    return tuple(None if one is None else next(found) for one in left)
 
 
 def _scatter(fit: TrialsFit[LayerModel], freedom: int) -> float:

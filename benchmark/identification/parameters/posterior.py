@@ -152,8 +152,8 @@ class _Density:
             return -np.inf
         model, log_scatter = self._model, float(coordinates[-1])
         unfitted = self._unfitted(coordinates[:-1])
-        inner = self._normal.copy()
-        inner[:, GAIN, GAIN] += np.exp(-2.0 * log_scatter)
+        inner = self._normal + np.diag(model.trial_precision)
+        inner[:, GAIN, GAIN] = self._normal[:, GAIN, GAIN] + np.exp(-2.0 * log_scatter)
         pulls = np.array([one.T @ each for one, each in zip(self._columns, unfitted, strict=True)])
         solved = np.linalg.solve(inner, np.concatenate([self._across, pulls[:, :, None]], axis=2))
         known = self._error_normal - np.einsum("rqi,rqj->ij", self._across, solved[:, :, :-1])

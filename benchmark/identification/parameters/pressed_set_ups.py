@@ -60,10 +60,23 @@ def _surrogate(problem: FitProblem, number: int, vector: Array, *, judge_mesh: b
     relaxing = [name for name in relaxing_layers(problem) if name in press.setup[0].layer_names]
     values = vector[:count]
     found = surrogate(press, problem.parameters, values, problem.law, relaxing, problem.forward, judge_mesh=judge_mesh)
-    own = np.zeros((problem.size - count, found.depth.size))
-    own[number * COUNT : (number + 1) * COUNT] = functions(found.depth.size)
+    own, first = np.zeros((problem.size - count, found.depth.size)), number * problem.block
+    own[first : first + COUNT] = functions(found.depth.size)
     at = np.concatenate([found.at, np.zeros(own.shape[0])])
-    return replace(found, by=np.vstack([found.by, own]), at=at)
+    return replace(_with_rings(problem, found, first), by=np.vstack([found.by, own]), at=at)
+
+
+def _with_rings(problem: FitProblem, found: PressSurrogate, first: int) -> PressSurrogate:
+    """The press with its rings' motion by all coordinates; `first` is that of its own error."""
+    if not problem.rings:
+        return found
+    count, grid = len(problem.parameters), found.depth.size
+    rings = found.rings if len(found.rings) else np.zeros((problem.rings, grid))
+    by = np.zeros((problem.size, problem.rings, grid))
+    by[:count] = 0.0 if found.rings_by is None else found.rings_by
+    for ring, moved in enumerate(rings):
+        by[count + first + COUNT + ring, ring] = moved
+    return replace(found, rings=rings, rings_by=by)
 
 
 def pressed_anew(problem: FitProblem, vector: Array, before: Array) -> tuple[tuple[PressSurrogate, ...], Array]:

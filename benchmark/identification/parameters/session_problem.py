@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -29,14 +29,17 @@ from benchmark.identification.parameters.free_parameters import (
 )
 from benchmark.identification.parameters.law_shapes import law_shape
 from benchmark.identification.parameters.layer_model import FitTrial
+from benchmark.identification.parameters.presses.marker_rings import MarkerRings, MarkerRows, rings_of
 from benchmark.identification.parameters.presses.model_error import LARGEST
 from benchmark.identification.parameters.presses.press_surrogate import Press
 from benchmark.identification.session_fit import SessionFit
+from benchmark.identification.sheet_model import FilmedTrial
 from benchmark.identification.trial_data import LEAST_ROWS, TrialData
 from benchmark.identification.trial_features import contact_range
 from benchmark.response.force_curve import Array
 from benchmark.response.nearest_curve import tool_name
 from benchmark.response.ramp import Ramp, Setup
+from benchmark.response.ramp_table import EVERYWHERE, CameraView
 from benchmark.response.setup_change import RADIUS, THICKNESS
 
 MARGIN = 1.04
@@ -54,13 +57,17 @@ UNSTATED_POISSON = 0.5
 class FittedBase:
     """A session with the fit of one common stiffness, which a fit of parameters begins with.
 
-    `followed` are the tools that the model covers in each set-up, the one told first, each with its ramp.
+    `followed` are the tools that the model covers in each set-up, the one told first, each with its ramp; `films` what
+    cameras saw of trials over a hole, with where the tool's axis met the face (m), by condition and name; `view` the
+    camera.
     """
 
     session: Session
     fit: SessionFit
     trials: Sequence[TrialData]
     followed: Mapping[Setup, tuple[tuple[Tool, Ramp], ...]]
+    films: Mapping[tuple[str, str], tuple[FilmedTrial, tuple[float, float]]] = field(default_factory=dict)
+    view: CameraView = EVERYWHERE
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,13 +147,28 @@ def _presses(
             press, said = _press(specimen, base, setup, wanted)
             press = replace(press, setup=with_values(press.setup, _fixed(press.setup, wish)))
             warnings += said
+            rings, films = _films(base, fitted) if wish.markers else (None, {})
+            press = replace(press, rings=rings)
             for data, onset in zip(fitted, onsets, strict=True):
                 if int((data.depth <= onset + press.depth).sum()) >= LEAST_ROWS:
                     touch = contact_range(data.depth, data.force)
-                    trials.append(FitTrial.of(data, len(presses), touch, onset).up_to(press.depth))
+                    one = replace(FitTrial.of(data, len(presses), touch, onset), film=films.get(data.key))
+                    trials.append(one.up_to(press.depth))
                     keys.append((specimen, (data.name, data.condition)))
             presses.append(press)
     return tuple(presses), tuple(trials), keys, tuple(warnings)
+
+
+def _films(
+    base: FittedBase, trials: Sequence[TrialData]
+) -> tuple[MarkerRings | None, Mapping[tuple[str, str], MarkerRows | None]]:
+    """The rings of markers of a set-up, and what the films of its trials show of them; None without any."""
+    keys = [one.key for one in trials if one.key in base.films]
+    if not keys:
+        return None, {}
+    films, axes = zip(*(base.films[key] for key in keys), strict=True)
+    made = rings_of(films, axes, base.view)
+    return (None, {}) if made is None else (made[0], dict(zip(keys, made[1], strict=True)))
 
 
 def _trials_of(base: FittedBase, setup: Setup) -> list[TrialData]:

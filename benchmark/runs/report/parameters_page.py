@@ -158,6 +158,12 @@ def _fit(answer: Identified) -> Section:
         f"{found.rounds} rounds of the model; in the "
         f"last one it differed from its surrogate by {100 * found.disagreement:.1g} % of the force."
     )
+    if answer.markers is not None:
+        own = answer.markers
+        text += (
+            f" The markers of {own['trials']:.0f} trials are fitted along, in {own['rings']:.0f} rings, of whose mean "
+            f"motion {own['residual_um']:.2g} um (rms) are left; each is trusted to {own['trust_percent']:.2g} %."
+        )
     synthetic = any(press.session.synthetic for press in found.problem.presses)
     return Section("Fitted against measured", [Paragraph(text), fitted_bands(trials, synthetic)])
 

@@ -74,7 +74,26 @@ class PressAtlas:
         weights = self._weights
         if weights is None:
             return plain
-        return np.asarray(plain * np.exp(_values(vector[self.curved] - self._points).ravel() @ weights))
+        own = weights[:, : self.depth.size]
+        return np.asarray(plain * np.exp(_values(vector[self.curved] - self._points).ravel() @ own))
+
+    def rings_at(self, vector: Array) -> Array:
+        """(s, k) m of the markers' rings on the grid of depths, at coordinates (p,)."""
+        plain, weights = self.newest.rings_at(vector), self._weights
+        if weights is None or not plain.size:
+            return plain
+        added = _values(vector[self.curved] - self._points).ravel() @ weights[:, self.depth.size :]
+        return np.asarray(plain + added.reshape(plain.shape))
+
+    def rings_by_at(self, vector: Array) -> Array:
+        """(p, s, k) derivatives of the rings' motion by the coordinates, m."""
+        plain, weights = self.newest.rings_by_at(vector), self._weights
+        if weights is None or not plain.size:
+            return plain
+        gradients = _gradients(vector[self.curved] - self._points).reshape(self.curved.size, -1)
+        out = plain.copy()
+        out[self.curved] += (gradients @ weights[:, self.depth.size :]).reshape(-1, *plain.shape[1:])
+        return out
 
     def by_at(self, vector: Array) -> Array:
         """(p, k) derivatives of the force's logarithm by the coordinates."""
@@ -83,7 +102,7 @@ class PressAtlas:
             return self.newest.by
         out = self.newest.by.copy()
         gradients = _gradients(vector[self.curved] - self._points)
-        out[self.curved] += gradients.reshape(self.curved.size, -1) @ weights
+        out[self.curved] += gradients.reshape(self.curved.size, -1) @ weights[:, : self.depth.size]
         return out
 
     def curve(self, grid: Array, depth: Array) -> Array:
@@ -96,7 +115,10 @@ class PressAtlas:
 
     @cached_property
     def _weights(self) -> Array | None:
-        """(m (1 + a), k) weights of the radial functions and their derivatives; None with one press alone."""
+        """(m (1 + a), k + s k) weights of the radial functions and their derivatives; None with one press alone.
+
+        The first k are of the force's logarithm, the others of the rings' motion.
+        """
         if len(self.presses) < 2 or self.curved.size == 0:
             return None
         away = self._points[:, None, :] - self._points[None, :, :]
@@ -111,11 +133,14 @@ class PressAtlas:
         return np.asarray(np.linalg.solve(flat, left.reshape(count * size, -1)))
 
     def _left(self, one: PressSurrogate) -> Array:
-        """(1 + a, k) what first order round the newest press leaves of a press, and of its derivatives."""
+        """(1 + a, k + s k) what first order round the newest press leaves of a press, and of its derivatives."""
         first = np.zeros_like(one.force)
         first[1:] = np.log(one.force[1:] / self.newest.force_at(one.at)[1:])
         first[0] = first[1]
-        return np.vstack([first, one.by[self.curved] - self.newest.by[self.curved]])
+        force = np.vstack([first, one.by[self.curved] - self.newest.by[self.curved]])
+        moved = (one.rings - self.newest.rings_at(one.at)).reshape(1, -1)
+        slopes = (one.rings_by_at(one.at) - self.newest.rings_by_at(one.at))[self.curved]
+        return np.hstack([force, np.vstack([moved, slopes.reshape(self.curved.size, -1)])])
 
 
 def _values(away: Array) -> Array:

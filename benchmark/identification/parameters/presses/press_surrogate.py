@@ -7,7 +7,7 @@ each depth for itself. A fit refreshes it where it has come to. The model's own 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -25,6 +25,7 @@ from benchmark.identification.parameters.free_parameters import (
     value_of,
     with_values,
 )
+from benchmark.identification.parameters.presses.marker_rings import MarkerRings
 from benchmark.response.differentiated_ramp import DifferentiatedRamp, differentiated_ramp
 from benchmark.response.force_curve import Array
 from benchmark.response.setup_change import is_absolute
@@ -62,6 +63,10 @@ class PressSurrogate:
         Coordinates.
     mesh_error : float or None
         Estimated error of the force at the press's depth, a share of it; None where it was not estimated.
+    rings : (s, k) array
+        Motion of the markers' rings, m; without markers of no ring.
+    rings_by : (p, s, k) array or None
+        Its derivatives by the coordinates, m; None without markers.
     """
 
     depth: Array
@@ -70,6 +75,16 @@ class PressSurrogate:
     layers: Mapping[str, Array]
     at: Array
     mesh_error: float | None = None
+    rings: Array = field(default_factory=lambda: np.zeros((0, GRID)))
+    rings_by: Array | None = None
+
+    def rings_at(self, vector: Array) -> Array:
+        """(s, k) m of the markers' rings on the grid of depths, at other coordinates (p,): linear in them."""
+        return self.rings if self.rings_by is None else self.rings + np.tensordot(vector - self.at, self.rings_by, 1)
+
+    def rings_by_at(self, vector: Array) -> Array:
+        """(p, s, k) derivatives of the rings' motion by the coordinates, m."""
+        return np.zeros((vector.size, *self.rings.shape)) if self.rings_by is None else self.rings_by
 
     def force_at(self, vector: Array) -> Array:
         """(k,) N at the depths of the grid, at other coordinates (p,)."""
@@ -93,6 +108,7 @@ class Press:
     """What is pressed with what: a specimen's number in the fit, its session, set-up as told, and how deep, m.
 
     `mesh_error` is by what share of the force at that depth the model is estimated to be wrong; None: not estimated.
+    `rings` are the markers on its lower face, where they are fitted.
     """
 
     specimen: int
@@ -100,6 +116,7 @@ class Press:
     setup: SetUp
     depth: float
     mesh_error: float | None = None
+    rings: MarkerRings | None = None
 
     def has(self, parameter: Parameter) -> bool:
         """Whether a parameter acts on this press."""
@@ -143,7 +160,31 @@ def surrogate(
     grid = np.linspace(0.0, press.depth, GRID)
     layers = {name: _logarithmic(ramp, {f"{name}.stiffness": 1.0}) for name in relaxing}
     force = np.asarray(CubicSpline(ramp.depth, ramp.force)(grid))
-    return PressSurrogate(grid, force, by, layers, vector.copy(), ramp.mesh_error)
+    return PressSurrogate(
+        grid, force, by, layers, vector.copy(), ramp.mesh_error, *_rings(press, ramp, chains, len(parameters))
+    )
+
+
+def _rings(
+    press: Press, ramp: DifferentiatedRamp, chains: Mapping[int, Mapping[str, float]], count: int
+) -> tuple[Array, Array | None]:
+    """The motion (s, k) of the markers' rings over the grid, and its derivatives (p, s, k); none without markers."""
+    rings, face = press.rings, ramp.face
+    if rings is None or face is None:
+        return np.zeros((0, GRID)), None
+    grid = np.linspace(0.0, ramp.depth[-1], GRID)
+
+    def over_grid(levels: Array) -> Array:
+        return np.asarray(CubicSpline(ramp.depth, levels)(grid).T)
+
+    seen = over_grid(rings.seen(face, ramp.depth))
+    by = np.zeros((count, *seen.shape))
+    for k, chain in chains.items():
+        for key, weight in chain.items():
+            outward, sunk = ramp.by[key].outward, ramp.by[key].sunk
+            if outward is not None and sunk is not None:
+                by[k] += weight * over_grid(rings.changes(face, outward, sunk, ramp.depth))
+    return seen, by
 
 
 def acting_values(press: Press, parameters: Sequence[Parameter], vector: Array) -> dict[str, float]:
