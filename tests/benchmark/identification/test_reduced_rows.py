@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmark.identification.reduction import PER_STROKE, group_bounds, turning_rows
-from benchmark.identification.trial_data import TrialData, reduced
+from benchmark.identification.trial_data import PER_STROKE, TrialData, group_bounds, reduced, turning_rows
 from benchmark.identification.trial_fit import fit_trial
 from benchmark.response.force_curve import ForceCurve
 
