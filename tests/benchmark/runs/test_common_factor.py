@@ -28,7 +28,9 @@ def plain_fit(toy):
             settings={},
         )
         rows = [one for _, one in data]
-        return SimpleNamespace(session=told, fit=fit_session(rows, layered.TISSUE.layers), trials=rows, followed={})
+        return SimpleNamespace(
+            session=told, fit=fit_session(rows, layered.TISSUE.layers), trials=rows, followed={}, filmed=None, sheets={}
+        )
 
     return fitted
 
