@@ -78,6 +78,7 @@ bench-wave: $(RUN_STAMP)
 bench-accuracy: $(RUN_STAMP)
 	$(PY) -m tests.performance.wave.linear
 	$(PY) -m tests.performance.wave.tissues
+	$(PY) -m tests.performance.wave.laws
 
 bench-peers: $(DEV_STAMP)
 	$(PY) -m tests.performance.peers

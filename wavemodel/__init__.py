@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from wavemodel.published.membrane import PublishedWave
     from wavemodel.sheet.plate_wave import PlateSettings, PlateWave
     from wavemodel.solution import WaveSolution, marker_motion
-    from wavemodel.specimen import DiscTool, WaveLayer
+    from wavemodel.specimen import DiscTool, StrainEnergy, WaveLayer
 
 __all__ = [
     "Damping",
@@ -50,6 +50,7 @@ __all__ = [
     "PublishedWave",
     "QuasiStaticPress",
     "ShearLimit",
+    "StrainEnergy",
     "WaveDiscretisation",
     "WaveError",
     "WaveLayer",
@@ -69,7 +70,7 @@ __getattr__ = loader(
         "published": "PublishedWave",
         "sheet.plate_wave": "PlateSettings PlateWave",
         "solution": "WaveSolution marker_motion",
-        "specimen": "DiscTool WaveLayer",
+        "specimen": "DiscTool StrainEnergy WaveLayer",
     },
 )
 

@@ -1,10 +1,38 @@
 """What is pressed and with what: the layers of the specimen and the disc-shaped tool (SI units)."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
+import numpy as np
+
+from wavemodel.arrays import FloatArray
 from wavemodel.errors import WaveError, require_positive
 
 CONTACTS = ("uniform_pressure", "rigid_bonded", "rigid_frictionless", "rigid_frictional")
+
+LAW_MISFIT = 1e-3
+"""A law's shear modulus at rest may differ by this share from that of its layer's moduli."""
+
+
+class StrainEnergy(Protocol):
+    """Shape-changing (isochoric) strain energy of a layer's material, at any points (...).
+
+    Displacement gradients (5, ...) have the components rr, rz, zr, zz and the hoop, z down. The volumetric part is the
+    wave's, K / 2 (J - 1)^2. Values that are not finite mean that the law has no answer there. Laws are compared and
+    hashed with their layer: a frozen dataclass of numbers serves.
+    """
+
+    def energy(self, gradient: FloatArray) -> FloatArray:
+        """(...) J/m3."""
+        ...
+
+    def stress(self, gradient: FloatArray) -> FloatArray:
+        """(5, ...) first Piola-Kirchhoff stress, Pa."""
+        ...
+
+    def tangent(self, gradient: FloatArray) -> FloatArray:
+        """(5, 5, ...) derivative of the stress by the gradient, Pa."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -23,6 +51,9 @@ class WaveLayer:
         In Pa.
     poisson_ratio
         Above -1 and below 0.5.
+    law
+        Energy at finite strain, whose stiffness at rest is that of the moduli; None: neo-Hookean. The layered waves
+        follow it where they follow finite strain; what is of small strain or a plate theory takes the moduli only.
 
     Raises
     ------
@@ -35,6 +66,7 @@ class WaveLayer:
     density: float
     youngs_modulus: float
     poisson_ratio: float
+    law: StrainEnergy | None = None
 
     def __post_init__(self) -> None:
         where = f"layer {self.name!r}"
@@ -43,6 +75,15 @@ class WaveLayer:
         require_positive(f"{where}: youngs_modulus", self.youngs_modulus, "Pa")
         if not -1.0 < self.poisson_ratio < 0.5:
             raise WaveError(f"{where}: poisson_ratio = {self.poisson_ratio:g} is not allowed: above -1 and below 0.5")
+        if self.law is not None:
+            self._require_stiffness(float(self.law.tangent(np.zeros((5, 1)))[1, 1, 0]), where)
+
+    def _require_stiffness(self, at_rest: float, where: str) -> None:
+        if not abs(at_rest / self.shear_modulus - 1.0) <= LAW_MISFIT:
+            raise WaveError(
+                f"{where}: law = {type(self.law).__name__} has a shear modulus of {at_rest:g} Pa at rest; "
+                f"youngs_modulus and poisson_ratio give {self.shear_modulus:g} Pa, which it must be"
+            )
 
     @property
     def shear_modulus(self) -> float:

@@ -1,6 +1,5 @@
 """One face over the finite-element solver, the wave models, and a user's own in their places."""
 
-from benchmark.models.frames import frame_seconds
 from benchmark.models.model_result import (
     Array,
     Drive,
@@ -19,7 +18,7 @@ from benchmark.models.model_result import (
     silent,
 )
 from benchmark.models.own_models import NOTHING, Own, Reference, read_reference
-from benchmark.models.prepare import prepare, scenario_drive
+from benchmark.models.prepare import frame_seconds, prepare, scenario_drive
 from benchmark.models.user_file import UserFile, read_user_file
 
 __all__ = [

@@ -66,7 +66,7 @@ class FemModel:
         judge_mesh: bool = False,
         added: tuple[Given, ...] = (),
     ):
-        refuse_options(scenario, carried_keys(), fibres=True)
+        refuse_options(scenario, carried_keys())
         self._scenario = scenario
         self._every_field = every_field
         self._keeping = keeping

@@ -1,10 +1,26 @@
-"""From a scenario to a model that is ready to run, and to the wave of small strain beside one of finite strain."""
+"""From a scenario to a model that is ready to run, what its picture costs, and the wave of small strain beside it."""
 
 from __future__ import annotations
 
+import statistics
+import time
+from typing import Protocol, runtime_checkable
+
 from benchmark.files import Scenario
-from benchmark.models.model_result import Array, Drive, Keeping, ModelResult, PreparedModel, WaveChoices
+from benchmark.models.model_result import Array, Drive, Keeping, ModelResult, Picture, PreparedModel, WaveChoices
 from benchmark.models.user_file import UserFile
+
+FRAMES = 50
+"""Pictures that are timed."""
+
+
+@runtime_checkable
+class Pictured(Protocol):
+    """A model that can draw its faces again and again from tables made beforehand."""
+
+    def picture(self, drive: Drive) -> Picture | None:
+        """Make ready to draw the faces at the peak of a load history; None where the model in use cannot."""
+        ...
 
 
 def prepare(
@@ -57,6 +73,18 @@ def scenario_drive(scenario: Scenario) -> Drive:
     """Return the scenario's load history."""
     history = scenario.load_history()
     return Drive(scenario.load.control, history.time, history.value)
+
+
+def frame_seconds(prepared: PreparedModel, drive: Drive) -> float | None:
+    """Median wall s of a picture at the peak of a load history, tables made before; None of a model without one."""
+    picture = prepared.picture(drive) if isinstance(prepared, Pictured) else None
+    return None if picture is None else statistics.median(_seconds(picture) for _ in range(FRAMES))
+
+
+def _seconds(picture: Picture) -> float:
+    started = time.perf_counter()
+    picture()
+    return time.perf_counter() - started
 
 
 def in_small_strain(scenario: Scenario) -> Scenario:

@@ -11,7 +11,7 @@ import numpy as np
 from benchmark.files import Layer, Scenario
 from benchmark.files.tool import Support
 from benchmark.models.model_result import UncoveredError
-from benchmark.models.wave_parts import wave_layers
+from benchmark.models.solver_layers import wave_layers
 from benchmark.physics import Effect, TrialContext, option_effects
 from wavemodel import ShearLimit, WaveLayer
 from wavemodel.physics import Physics
@@ -26,7 +26,7 @@ REASONS = {
 """Why an option is in no model."""
 
 
-def refuse_options(scenario: Scenario, has: Collection[str] = (), fibres: bool = False) -> None:
+def refuse_options(scenario: Scenario, has: Collection[str] = ()) -> None:
     """Refuse what a model does not have.
 
     Parameters
@@ -35,22 +35,17 @@ def refuse_options(scenario: Scenario, has: Collection[str] = (), fibres: bool =
         Resolved scenario.
     has
         Options of the body that the model has.
-    fibres
-        Whether it has fibres.
 
     Raises
     ------
     UncoveredError
-        For options of the body, or fibres.
+        For options of the body.
     """
     given = [name for name, value in dict(scenario.physics).items() if value is not None]
     lacking = [name for name in given if name not in (FRICTION, *has)]
     if lacking:
         reason = REASONS.get(lacking[0], f"it has {', '.join(has) or 'none'}")
         raise UncoveredError(f"the option physics.{lacking[0]} is not part of this model: {reason}")
-    names = [layer.name for layer in scenario.tissue.layers if layer.fibre is not None]
-    if names and not fibres:
-        raise UncoveredError(f"the layer {names[0]} has fibres, which this model does not have")
 
 
 def refuse_solid(scenario: Scenario) -> None:
@@ -115,7 +110,7 @@ def scenario_context(scenario: Scenario) -> TrialContext:
 
 def specimen_layers(layers: Iterable[Layer]) -> tuple[WaveLayer, ...]:
     """The layers of a specimen as effects know them, without an endless base."""
-    return tuple(wave_layers(layer for layer in layers if math.isfinite(layer.thickness)))
+    return tuple(wave_layers((layer for layer in layers if math.isfinite(layer.thickness)), laws=False))
 
 
 def open_radius(support: Support) -> float:

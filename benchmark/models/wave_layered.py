@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from benchmark.files import Scenario
-from benchmark.models.frames import vertices
 from benchmark.models.model_result import Drive, Picture, UncoveredError, WaveChoices
 from benchmark.models.scenario_effects import wave_physics, wave_slip
-from benchmark.models.wave_parts import PreparedWave, Solution, law_warnings, wave_layers, wave_relaxation, wave_tool
+from benchmark.models.solver_layers import wave_layers
+from benchmark.models.wave_parts import PreparedWave, Solution, refuse_fibres, vertices, wave_relaxation, wave_tool
 from wavemodel import LayeredWave, NotCoveredError, WaveDiscretisation, WaveError
 
 MM = 1e3
@@ -26,22 +26,24 @@ def layered_wave(scenario: Scenario) -> PreparedWave:
     Raises
     ------
     UncoveredError
-        For an endless base.
+        For an endless base, or fibres in small strain or in one direction.
     wavemodel.WaveError
         A value or, unless automatic, a press that the model does not take.
     """
     if scenario.support.kind == "half_space":
         raise UncoveredError("the layered wave needs a base at a finite depth, a half_space has none")
     wanted = scenario.wave.large_press
+    linear = wanted == "linear" or (wanted == "auto" and scenario.fem.kinematics == "linear")
+    refuse_fibres(scenario, finite=not linear)
     if wanted != "auto":
         return _prepared(scenario, wanted)
-    if scenario.fem.kinematics == "linear":
+    if linear:
         return _prepared(scenario, "linear")
     try:
         return _falling_back(scenario, _to_peak(scenario))
     except WaveError as error:
-        linear = _small_strain(scenario)
-        return replace(linear, warnings=(*linear.warnings, _fell_back(error)))
+        small = _small_strain(scenario)
+        return replace(small, warnings=(*small.warnings, _fell_back(error)))
 
 
 def _to_peak(scenario: Scenario) -> PreparedWave:
@@ -74,7 +76,6 @@ def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) ->
         follow=lambda drive: wave.run(drive.control, drive.time, drive.value),
         unknowns=wave.unknowns,
         choices=WaveChoices(large_press, wave.window, wave.modes),
-        warnings=() if large_press == "linear" else law_warnings(scenario),
         picture=lambda drive: _picture(wave, scenario.tool.radius, drive),
     )
 
@@ -108,6 +109,7 @@ def _falling_back(scenario: Scenario, corrected: PreparedWave) -> PreparedWave:
 
 def _small_strain(scenario: Scenario) -> PreparedWave:
     """What is fallen back to: the linear wave, which knows no bottom, as far as it stays in the stack."""
+    refuse_fibres(scenario, finite=False)
     linear, stack = _prepared(scenario, "linear"), scenario.tissue.thickness
 
     def follow(drive: Drive) -> Solution:

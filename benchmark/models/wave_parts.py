@@ -1,14 +1,22 @@
-"""What the waves of the harness share: their face, and a scenario's layers, tool and relaxation in their terms."""
+"""What the waves of the harness share: their face and picture, a scenario's tool, relaxation, laws, fibres."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from benchmark.files import Layer, Scenario
-from benchmark.models.model_result import Array, Drive, Picture, WaveChoices
-from wavemodel import DiscTool, Prony, WaveLayer
+import numpy as np
+
+from benchmark.files import Scenario
+from benchmark.models.model_result import Array, Drive, Picture, UncoveredError, WaveChoices
+from wavemodel import DiscTool, Prony
+
+ISOTROPIC = 1.0 / 3.0 - 1e-9
+"""Dispersion from which on fibres have no direction."""
+VERTICES = 81
+REACH = 4.0
+"""Pictures are squares of 81 x 81 vertices, four tool radii to each side of the axis, or to the model's border."""
 
 
 class Solution(Protocol):
@@ -78,20 +86,6 @@ class PreparedWave:
     picture: Callable[[Drive], Picture] | None = None
 
 
-def wave_layers(layers: Iterable[Layer]) -> list[WaveLayer]:
-    """Layers with the initial moduli of their laws."""
-    return [
-        WaveLayer(layer.name, layer.thickness, layer.density, initial_modulus(layer), layer.poisson_ratio)
-        for layer in layers
-    ]
-
-
-def initial_modulus(layer: Layer) -> float:
-    """Initial Young's modulus of the layer's law, Pa: what its finite elements begin with."""
-    shear = layer.hyperelastic.shear_modulus
-    return layer.youngs_modulus if shear is None else 2.0 * shear * (1.0 + layer.poisson_ratio)
-
-
 def wave_tool(scenario: Scenario) -> DiscTool:
     """The tool."""
     return DiscTool(scenario.tool.radius, scenario.tool.contact)
@@ -108,11 +102,46 @@ def wave_relaxation(scenario: Scenario) -> list[Prony | None] | None:
     return series if any(series) else None
 
 
+def refuse_fibres(scenario: Scenario, *, finite: bool = True) -> None:
+    """Refuse fibres that a wave cannot follow.
+
+    Parameters
+    ----------
+    scenario
+        Resolved scenario.
+    finite
+        Whether the wave follows the layers' finite strain; else it has no fibres at all.
+
+    Raises
+    ------
+    UncoveredError
+        Naming the layer.
+    """
+    for layer in scenario.tissue.layers:
+        if layer.fibre is None:
+            continue
+        if not finite:
+            raise UncoveredError(
+                f"the layer {layer.name} has fibres, which a wave of small strain or of the plate theory does not have"
+            )
+        if layer.fibre.angle is not None and layer.fibre.dispersion < ISOTROPIC:
+            raise UncoveredError(
+                f"the layer {layer.name} has fibres in one direction, which breaks the wave's axial symmetry: leave "
+                "the angle out (fibres spread evenly over the plane)"
+            )
+
+
 def law_warnings(scenario: Scenario) -> tuple[str, ...]:
-    """Say which layers have another law than the neo-Hookean one of a wave in finite strain."""
+    """Say which layers have another law than the neo-Hookean one of a sheet by the plate theory."""
     return tuple(
         f"the wave takes the layer {layer.name} for neo-Hookean with the initial modulus of "
         f"its {layer.hyperelastic.law} law"
         for layer in scenario.tissue.layers
         if layer.hyperelastic.law != "neo_hookean"
     )
+
+
+def vertices(tool_radius: float, border: float) -> Array:
+    """Positions (P,) of a picture's vertices along one side, m from the tool axis, none beyond the border, m."""
+    reach = min(REACH * tool_radius, border)
+    return np.linspace(-reach, reach, VERTICES)

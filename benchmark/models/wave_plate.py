@@ -7,7 +7,8 @@ import numpy as np
 from benchmark.files import Scenario
 from benchmark.models.model_result import UncoveredError, WaveChoices
 from benchmark.models.scenario_effects import relaxation_warnings, wave_physics
-from benchmark.models.wave_parts import PreparedWave, law_warnings, wave_layers, wave_relaxation, wave_tool
+from benchmark.models.solver_layers import wave_layers
+from benchmark.models.wave_parts import PreparedWave, law_warnings, refuse_fibres, wave_relaxation, wave_tool
 from wavemodel import PlateSettings, PlateWave, Prony, WaveError
 
 FIRST_REACH = 0.1
@@ -20,7 +21,7 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
     Raises
     ------
     UncoveredError
-        The sheet has no equilibrium under the peak.
+        The sheet has no equilibrium under the peak; or fibres under the plate theory or in one direction.
     wavemodel.WaveError
         A value that the model does not take.
     """
@@ -44,6 +45,8 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
         physics=wave_physics(scenario),
         clamp=scenario.support.clamp,
     )
+    layered = wave.tension == "layered"
+    refuse_fibres(scenario, finite=layered)
     peak = np.array([abs(load.peak)])
     try:
         _ = wave.force_of_depth(peak) if by_depth else wave.depth_of_force(peak)
@@ -52,10 +55,8 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
     return PreparedWave(
         follow=lambda drive: wave.run(drive.control, drive.time, drive.value),
         unknowns=wave.unknowns,
-        choices=WaveChoices(
-            None, wave.window, wave.modes, wave.tension != "layered" and scenario.tool.contact == "rigid_bonded"
-        ),
-        warnings=(*warnings, *law_warnings(scenario), *_ignored(scenario)),
+        choices=WaveChoices(None, wave.window, wave.modes, not layered and scenario.tool.contact == "rigid_bonded"),
+        warnings=(*warnings, *(() if layered else law_warnings(scenario)), *_ignored(scenario)),
     )
 
 

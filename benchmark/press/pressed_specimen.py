@@ -21,7 +21,8 @@ from benchmark.models import UncoveredError
 from benchmark.models.fem_model import FemModel
 from benchmark.models.model_result import Array
 from benchmark.models.scenario_effects import refuse_solid
-from benchmark.models.wave_parts import law_warnings, wave_layers, wave_relaxation, wave_tool
+from benchmark.models.solver_layers import wave_layers
+from benchmark.models.wave_parts import law_warnings, refuse_fibres, wave_relaxation, wave_tool
 from benchmark.press.radial_table import RadialTable, table_of_body, table_of_levels
 from benchmark.response.model_with_effects import SwitchedOn, on_its_base, switched_on
 from wavemodel import LayeredWave, NotCoveredError, PlateSettings, PlateWave, Prony, WaveError
@@ -155,10 +156,13 @@ def _layered(scenario: Scenario) -> tuple[LayeredWave, tuple[str, ...]]:
 
     wanted = scenario.wave.large_press
     if wanted == "linear" or (wanted == "auto" and scenario.fem.kinematics == "linear"):
+        refuse_fibres(scenario, finite=False)
         return wave("linear"), ()
+    refuse_fibres(scenario)
     try:
-        return wave("corrected"), law_warnings(scenario)
+        return wave("corrected"), ()
     except WaveError as error:
+        refuse_fibres(scenario, finite=False)
         return wave("linear"), (f"The wave is that of small strain: {error}",)
 
 
@@ -176,12 +180,15 @@ def _sheet(scenario: Scenario) -> tuple[RadialTable, Memory, tuple[str, ...]]:
         pretension=stress * sum(layer.thickness for layer in scenario.tissue.layers),
         clamp=scenario.support.clamp,
     )
+    layered = wave.tension == "layered"
+    refuse_fibres(scenario, finite=layered)
     peak = abs(scenario.load.peak)
     depth = peak if scenario.load.control == "depth" else float(wave.depth_of_force(np.array([peak]))[0])
     table = table_of_body(sheet_body(wave, PATCH, deepest := min(BEYOND_PEAK * depth, SHEET_REACH * hole)), deepest)
     series = wave_relaxation(scenario) or [None]
     alike = series[0] is not None and all(one == series[0] for one in series)
-    remarks = ("The sheet's patch is as wide as its hole and moves along with the tool.", *law_warnings(scenario))
+    laws = () if layered else law_warnings(scenario)
+    remarks = ("The sheet's patch is as wide as its hole and moves along with the tool.", *laws)
     return table, Memory(series[0] or ELASTIC) if alike else Memory(), remarks
 
 

@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 
 from wavemodel import DiscTool, WaveError, WaveLayer
@@ -35,3 +36,14 @@ def test_refuses_tools_that_cannot_be():
 def test_rigid_contacts_are_told_from_pressure():
     assert not DiscTool(1e-3).rigid
     assert DiscTool(1e-3, "rigid_bonded").rigid
+
+
+class Stiff:
+    def tangent(self, gradient):
+        return 2.0e4 * np.eye(5).reshape(5, 5, *(1,) * (gradient.ndim - 1))
+
+
+def test_refuses_a_law_that_is_not_as_stiff_at_rest_as_its_moduli():
+    assert WaveLayer("gel", 1e-3, 1000.0, 5.6e4, 0.4, Stiff()).law is not None
+    with pytest.raises(WaveError, match=r"'gel': law = Stiff has a shear modulus of 20000 Pa at rest.*give 10000 Pa"):
+        WaveLayer("gel", 1e-3, 1000.0, 2.8e4, 0.4, Stiff())

@@ -18,6 +18,9 @@ from wavemodel.specimen import DiscTool
 LARGE_PRESS = ("auto", "linear", "corrected", "deep")
 RESOLUTION, MOST_MODES = 16.0, 256
 """Largest wavenumber times the tool's radius, and the most modes."""
+SHARPER = 32.0
+"""The first under a rigid tool on layers with laws of their own: where those stiffen, the edge's part that the modes do
+not have stays as soft as at rest. With 16 profiles are up to 3.5 % off, with 32 up to 1.3 %."""
 BORDER = 0.75
 """Radius of the disc over the side of the window, which just lets the linear field die away."""
 REACH, DEEP = 0.4, 0.75
@@ -135,7 +138,8 @@ def correction(press: Press, tool: DiscTool, *, deep: bool = False) -> FiniteStr
             "'rigid_bonded' are covered"
         )
     border = BORDER * press.field.domain.width
-    limit = min(RESOLUTION / tool.radius, 3.1 * MOST_MODES / border)
+    resolution = SHARPER if tool.rigid and any(press.stack.laws) else RESOLUTION
+    limit = min(resolution / tool.radius, 3.1 * MOST_MODES / border)
     body = StackBody(disc_modes(border, limit), thickness_of(press.stack))
     equilibrium = ModalEquilibrium(body, contact_of(press, body))
     height = press.stack.height

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from benchmark.models.frames import REACH, VERTICES
+from benchmark.models.wave_parts import REACH, VERTICES
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.values import pair_names, setup_words, speedup_words
 from benchmark.side_by_side import NAMES, ModelRun

@@ -9,8 +9,23 @@ FIBRE = '{ k1 = "10 kPa", k2 = 1.0 }'
 OUTSIDE = {
     "option of the body": ({"physics.floor_depth": "6 mm"}, "floor_depth", ("fem",)),
     "clamp": ({"physics.clamp_shear_limit": "6 kPa"}, "clamp_shear_limit", ("fem", "wave")),
-    "fibres": ({"dermis.fibre": FIBRE}, "fibres", ("wave",)),
-    "fibres in small strain": ({"dermis.fibre": FIBRE, "fem.kinematics": "linear"}, "fibres", ("fem",)),
+    "fibres in small strain": ({"dermis.fibre": FIBRE, "fem.kinematics": "linear"}, "fibres", ("fem", "wave")),
+    "fibres in one direction": (
+        {"dermis.fibre": '{ angle = "30 deg", k1 = "10 kPa", k2 = 1.0 }'},
+        "one direction",
+        ("wave",),
+    ),
+    "fibres in a plate": (
+        {
+            "dermis.fibre": FIBRE,
+            "support.kind": "hole",
+            "support.hole_radius": "30 mm",
+            "wave.model": "plate",
+            "load.peak": "0.1 N",
+        },
+        "plate theory",
+        ("wave",),
+    ),
     "tilted tool": ({"tool.tilt": "3 deg"}, "tilted", ("wave",)),
     "off the hole's centre": (
         {"support.kind": "hole", "support.hole_radius": "30 mm", "tool.position": '["5 mm", "0 mm"]'},

@@ -10,7 +10,9 @@ through the thickness, then W. Through the thickness the functions are quadratic
 take all terms, which leaves no volumetric locking, as in the linear wave.
 """
 
+import itertools
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,8 +20,9 @@ import numpy as np
 from scipy.special import j0, j1, jn_zeros
 
 from wavemodel.arrays import FloatArray, IntArray
-from wavemodel.layered.finite_strain.deformation_state import Deformed, deformed
+from wavemodel.layered.finite_strain.deformation_state import Deformed, LawColumns, deformed
 from wavemodel.layered.stack.laminate import Laminate
+from wavemodel.specimen import StrainEnergy
 
 POINTS_PER_MODE = 3.0
 """Radial quadrature points a mode: products of modes are resolved."""
@@ -65,6 +68,8 @@ class Thickness:
         (Z,) moduli in Pa.
     faces
         (F,) nodes on the layers' faces; without the lowest, where that is bonded.
+    laws
+        Of layers that are not neo-Hookean, on their points.
     """
 
     shape: FloatArray
@@ -73,6 +78,24 @@ class Thickness:
     shear: FloatArray
     bulk: FloatArray
     faces: IntArray
+    laws: tuple[LawColumns, ...]
+
+    @cached_property
+    def neo_hookean(self) -> FloatArray:
+        """(Z,) shear moduli, Pa, zero where a law stands for them."""
+        out = self.shear.copy()
+        for one in self.laws:
+            out[one.columns] = 0.0
+        return out
+
+
+def law_columns(laws: Sequence[StrainEnergy | None], first: Sequence[int]) -> tuple[LawColumns, ...]:
+    """Put laws of L layers on their points, which begin at `first` (L + 1,)."""
+    return tuple(
+        LawColumns(slice(begin, end), law)
+        for law, (begin, end) in zip(laws, itertools.pairwise(first), strict=True)
+        if law is not None
+    )
 
 
 @dataclass(frozen=True)
@@ -123,7 +146,7 @@ class ModalBody(ABC):
 
     def state(self, amplitude: FloatArray) -> Deformed | None:
         """Deformation at the points; None where matter is crushed or turned over."""
-        return deformed(self.gradient(amplitude), self.thickness.shear, self.thickness.bulk)
+        return deformed(self.gradient(amplitude), self.thickness.neo_hookean, self.thickness.bulk, self.thickness.laws)
 
     def energy(self, state: Deformed) -> float:
         """Of the whole body, J."""
@@ -183,7 +206,9 @@ def thickness_of(stack: Laminate) -> Thickness:
     shear = np.repeat(stack.shear_modulus, 2)
     bulk = np.repeat(stack.lame_modulus, 2) + 2.0 / 3.0 * shear
     weight = np.repeat(0.5 * stack.thickness, 2)
-    return Thickness(shape[:, :-1], slope[:, :-1], weight, shear, bulk, 2 * stack.top_of_layer)
+    tops = 2 * stack.top_of_layer
+    laws = law_columns(stack.laws or [None] * tops.size, [*tops.tolist(), 2 * count])
+    return Thickness(shape[:, :-1], slope[:, :-1], weight, shear, bulk, tops, laws)
 
 
 @dataclass(frozen=True)

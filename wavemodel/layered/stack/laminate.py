@@ -7,7 +7,7 @@ import numpy as np
 
 from wavemodel.arrays import FloatArray, IntArray
 from wavemodel.errors import WaveError
-from wavemodel.specimen import WaveLayer
+from wavemodel.specimen import StrainEnergy, WaveLayer
 
 BASES = ("bonded", "free")
 
@@ -27,6 +27,8 @@ class Laminate:
     tension
         In-plane tensile stress before the press, Pa: None, (S,), or (n, S) for n wavenumbers whose directions see
         different stresses.
+    laws
+        (L,) of each layer at finite strain; None: neo-Hookean. Empty: all are.
     """
 
     thickness: FloatArray
@@ -36,6 +38,7 @@ class Laminate:
     top_of_layer: IntArray
     base: str
     tension: FloatArray | None = None
+    laws: tuple[StrainEnergy | None, ...] = ()
 
     def at(self, wavenumbers: IntArray) -> "Laminate":
         """The stack as some of the wavenumbers see it."""
@@ -98,4 +101,5 @@ def laminate(
         top_of_layer=np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.intp),
         base=base,
         tension=None if tension is None else np.repeat(tension, counts),
+        laws=tuple(layer.law for layer in layers),
     )

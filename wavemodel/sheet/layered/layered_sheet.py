@@ -25,6 +25,8 @@ BEHIND = 3.0
 FAR, AT_TOOL, AT_HOLE = 1.0, 0.03, 0.05
 """Resolved sizes: over the thickness (or the tool's radius, if less) away from the edges and at the tool's edge, and
 over the thickness at the hole's."""
+AT_TOOL_BY_LAW = 0.015
+"""The second under a rigid tool on layers with laws of their own: where those stiffen, its edge weighs more."""
 MOST_SIZES = 40.0
 """Of them over the hole's radius away from the edges: a thin sheet needs no more."""
 _Terms: TypeAlias = tuple[tuple[int, FloatArray, FloatArray], ...]
@@ -122,10 +124,11 @@ def layered_sheet(layers: Sequence[WaveLayer], tool: DiscTool, hole: float, clam
     """
     total = sum(layer.thickness for layer in layers)
     size = min(total, tool.radius)
+    at_tool = AT_TOOL_BY_LAW if tool.rigid and any(layer.law for layer in layers) else AT_TOOL
     around = StretchedRadius(
         hole + BEHIND * total if clamp == "plate" else hole,
         max(FAR * size, hole / MOST_SIZES),
-        ((tool.radius, AT_TOOL * size), (hole, AT_HOLE * total)),
+        ((tool.radius, at_tool * size), (hole, AT_HOLE * total)),
     )
     modes, thickness = stretched_modes(around), sheet_thickness(layers)
     place = Amplitudes(modes, int(thickness.shape.shape[1]))

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from wavemodel.arrays import FloatArray
-from wavemodel.layered.finite_strain.modal_body import Thickness
+from wavemodel.layered.finite_strain.modal_body import Thickness, law_columns
 from wavemodel.specimen import WaveLayer
 
 CUT, LEAST = 0.15, 0.03
@@ -66,9 +66,9 @@ def sheet_thickness(layers: Sequence[WaveLayer]) -> SheetThickness:
     shear = np.repeat([layer.shear_modulus for layer, _ in heights], degrees)
     lame = np.repeat([layer.lame_modulus for layer, _ in heights], degrees)
     per_layer = np.cumsum([0, *(ends.size - 1 for ends in cuts)])
-    return SheetThickness(
-        shape, slope, weight, shear, lame + 2.0 / 3.0 * shear, first[per_layer].astype(np.intp), tuple(pieces)
-    )
+    faces = first[per_layer].astype(np.intp)
+    laws = law_columns([layer.law for layer in layers], faces.tolist())
+    return SheetThickness(shape, slope, weight, shear, lame + 2.0 / 3.0 * shear, faces, laws, tuple(pieces))
 
 
 def _cuts(layers: Sequence[WaveLayer], index: int) -> FloatArray:

@@ -5,8 +5,9 @@ import pytest
 
 from benchmark.files import load_scenario
 from benchmark.models import frame_seconds, prepare, scenario_drive
-from benchmark.models.frames import FRAMES, VERTICES, vertices
+from benchmark.models.prepare import FRAMES
 from benchmark.models.wave_model import WaveModel
+from benchmark.models.wave_parts import VERTICES, vertices
 
 QUICK = {"load.observations": "4", "load.peak": "0.5 N", "wave.large_press": "linear"}
 
