@@ -6,7 +6,7 @@ A block is one table of a sheet. Which of its columns are time, depth and force 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.text_sheet import Cell, Sheet, is_number, number_text
-from bench_hw.instrument_files.vocabulary import HeaderFact, label_and_unit, role_of, unit_of
+from bench_hw.instrument_files.vocabulary import HeaderFact, label_and_unit, plain, role_of, unit_of
 from bench_hw.tables.columns import numbers_of
 from bench_hw.tables.units import FloatArray
 
@@ -242,3 +242,79 @@ def header_facts(rows: Sequence[Sequence[Cell]]) -> Iterator[HeaderFact]:
                 label, unit = label_and_unit((after or before).strip(" #"))
                 behind = rest[1] if len(rest) > 1 and unit_of(rest[1]) else ""
                 yield HeaderFact(label, rest[0].lstrip(": "), unit or behind)
+
+
+def side_by_side(block: Block) -> Iterator[Block]:
+    """The tests of a block that holds several side by side: its names begin again, each as long as it is filled."""
+    starts = [k for k, name in enumerate(block.names) if name and _key(block, k) == _key(block, 0)]
+    width = starts[1] if len(starts) > 1 else 0
+    names = [_key(block, k) for k in range(len(block.names))]
+    if width < 2 or any(names[k] != names[k % width] for k in range(len(names)) if names[k] != ("", "")):
+        yield block
+        return
+    for number, start in enumerate(starts, start=1):
+        yield _part(block, number, start, width)
+
+
+def _key(block: Block, column: int) -> tuple[str, str]:
+    return plain(block.names[column]), block.units[column]
+
+
+def _part(block: Block, number: int, start: int, width: int) -> Block:
+    columns = range(start, min(start + width, len(block.names)))
+    filled = np.flatnonzero(~np.logical_or.reduce([block.lacking(k) for k in columns]))
+    rows = int(filled[-1]) + 1 if len(filled) else 0
+    return replace(
+        block,
+        name=f"{block.name} {number}".strip(),
+        names=tuple(block.names[k] for k in columns),
+        headers=tuple(block.headers[k] for k in columns),
+        units=tuple(block.units[k] for k in columns),
+        columns=tuple(block.columns[k][:rows] for k in columns),
+        lines=block.lines[:rows],
+    )
+
+
+def joined(parts: Sequence[Block]) -> list[Block]:
+    """Blocks of one record that the instrument wrote in pieces: the same names again, and time that goes on."""
+    out: list[Block] = []
+    for part in parts:
+        if out and _goes_on(out[-1], part):
+            out[-1] = _append(out[-1], part)
+        else:
+            out.append(part)
+    names = [part.name for part in out]
+    return [
+        part
+        if names.count(part.name) == 1
+        else _renamed(part, f"{part.name} {names[: k + 1].count(part.name)}".strip())
+        for k, part in enumerate(out)
+    ]
+
+
+def _renamed(block: Block, name: str) -> Block:
+    return replace(block, name=name)
+
+
+def _goes_on(before: Block, after: Block) -> bool:
+    if before.names != after.names or before.units != after.units or not before.rows or not after.rows:
+        return False
+    time = next((k for k, name in enumerate(before.names) if (name and _is_time(name))), None)
+    if time is None or before.lacking(time)[-1] or after.lacking(time)[0]:
+        return False
+    last = before.numbers(time, np.array([before.rows - 1]))[0]
+    return bool(after.numbers(time, np.array([0]))[0] > last)
+
+
+def _is_time(name: str) -> bool:
+    meaning = role_of(name)
+    return meaning is not None and meaning[0] == "time"
+
+
+def _append(before: Block, after: Block) -> Block:
+    columns = tuple(
+        np.concatenate([a, b]) if isinstance(a, np.ndarray) and isinstance(b, np.ndarray) else [*a, *b]
+        for a, b in zip(before.columns, after.columns, strict=True)
+    )
+    lines = np.concatenate([before.lines, after.lines])
+    return replace(before, columns=columns, lines=lines, facts=(*before.facts, *after.facts))

@@ -14,7 +14,7 @@ import numpy as np
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.blocks import Block
-from bench_hw.instrument_files.told import AUTOMATIC, ColumnSource, Told, asking, asking_key, parse_source
+from bench_hw.instrument_files.told import AUTOMATIC, KEPT, ColumnSource, Told, asking, asking_key, parse_source
 from bench_hw.instrument_files.vocabulary import (
     COMPRESSION,
     DIMENSIONS,
@@ -219,7 +219,10 @@ def record_of(block: Block, told: Told) -> PressRecord:
     if kind != "press":
         notes.append(f"this is {kind} of a cylinder or block, not a press of a tool: depth and force are its faces'")
     depth, force = _si_press(found, values, told)
-    table = _pressing(block, found, time, depth, force, values, told, notes)
+    gripped = replace(told, touch=KEPT) if kind == "tension" and told.touch == AUTOMATIC else told
+    table = _pressing(block, found, time, depth, force, values, gripped, notes)
+    if kind == "tension" and told.touch == AUTOMATIC:
+        table = replace(table, depth=table.depth - table.depth[0])
     shown = {role: taken.shown for role, taken in found.items()}
     return PressRecord(block.name, table, shown, tuple(notes), kind)
 

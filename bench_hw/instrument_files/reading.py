@@ -8,19 +8,23 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
+import numpy as np
+
 from bench_hw.errors import TableError
-from bench_hw.instrument_files.blocks import Block, blocks_of
+from bench_hw.instrument_files.blocks import Block, blocks_of, joined, side_by_side
 from bench_hw.instrument_files.containers import OPENERS, ending_of, open_container
 from bench_hw.instrument_files.press_record import PressRecord, is_record, phases, record_of, takes
 from bench_hw.instrument_files.text_sheet import text_sheet
 from bench_hw.instrument_files.told import Told
 from bench_hw.instrument_files.vocabulary import (
+    DIMENSIONS,
     FACT_DIMENSIONS,
     FACTS,
     SPHERE,
     TA_PROBE,
     HeaderFact,
     plain,
+    role_of,
     unit_scale,
 )
 from bench_hw.tables.columns import MINIMUM_ROWS
@@ -30,6 +34,13 @@ ENDINGS: Final = (*TEXT_ENDINGS, *OPENERS)
 """Of the files that this reads."""
 FACT_LIMITS: Final = {"tool_radius": (1e-9, 1.0), "height": (1e-7, 1.0), "area": (1e-14, 1.0)}
 """What a header may tell, m and m2: other values are no tool and no specimen (0 for `not entered`)."""
+DIVIDED: Final[dict[str, tuple[tuple[str, ...], str]]] = {
+    "height": (("displacement", "depth"), "strain"),
+    "area": (("force",), "stress"),
+}
+"""Columns of which an instrument divided one by the specimen's height or cross-section to give the other."""
+PROPORTIONAL: Final = 3e-3
+"""Of the range, within which one column must be a constant times the other."""
 
 
 @dataclass(frozen=True)
@@ -119,13 +130,13 @@ def _chosen(path: Path, parts: Sequence[Block], told: Told) -> list[Block]:
 
 def _records(path: Path, blocks: Sequence[Block], told: Told) -> tuple[list[PressRecord], Reading, list[str]]:
     """The trials of all blocks, what the headers tell, and which blocks are none."""
-    parts = [part for block in blocks for part in _side_by_side(block)]
-    parts = _chosen(path, _joined(parts), told)
+    parts = [part for block in blocks for part in side_by_side(block)]
+    parts = _chosen(path, joined(parts), told)
     trials = [part for part in parts if is_record(part, told) and part.rows >= MINIMUM_ROWS]
     if not trials:
         _refuse(path, parts, told)
     results = [fact for part in parts if part.rows < MINIMUM_ROWS for fact in _table_facts(part)]
-    header = header_reading([*(fact for part in trials for fact in part.facts), *results])
+    header = _with_faces(header_reading([*(fact for part in trials for fact in part.facts), *results]), trials)
     known = replace(
         told,
         height=told.height or header.height,
@@ -140,6 +151,50 @@ def _records(path: Path, blocks: Sequence[Block], told: Told) -> tuple[list[Pres
         if part.name not in taken and part.rows >= 2
     ]
     return records, header, list(dict.fromkeys(aside))
+
+
+def _with_faces(header: Reading, trials: Sequence[Block]) -> Reading:
+    """What the header tells, and where it is silent the height and cross-section by which its columns were divided."""
+    tall, height = _told_or_divided("height", header.height, trials, 1e3, "mm")
+    wide, area = _told_or_divided("area", header.area, trials, 1e6, "mm2")
+    return replace(header, height=height, area=area, sources=(*header.sources, *tall, *wide))
+
+
+def _told_or_divided(
+    key: str, told: float | None, trials: Sequence[Block], scale: float, unit: str
+) -> tuple[list[str], float | None]:
+    """What was told, or else the median quotient of the blocks' columns, with its words."""
+    quotients = _quotients(trials, *DIVIDED[key]) if told is None else []
+    value = _within(key, float(np.median([each for each, _ in quotients]))) if quotients else None
+    if value is None:
+        return [], told
+    return [f"{quotients[0][1]}: {scale * value:.4g} {unit}"], value
+
+
+def _quotients(trials: Sequence[Block], above: tuple[str, ...], below: str) -> list[tuple[float, str]]:
+    """Of each block in which one column is another times a constant, that constant in SI and its words."""
+    out = []
+    for block in trials:
+        over, under = (_column(block, roles) for roles in (above, (below,)))
+        if over is None or under is None:
+            continue
+        rows = np.flatnonzero(~block.lacking(over[0]) & ~block.lacking(under[0]))
+        a, b = (scale * block.numbers(column, rows) for column, scale in (over, under))
+        slope = float(a @ b) / max(float(b @ b), 1e-300)
+        if slope > 0.0 and float(np.abs(a - slope * b).max()) < PROPORTIONAL * float(np.ptp(a)):
+            out.append((slope, f"{block.names[over[0]]} over {block.names[under[0]]}"))
+    return out
+
+
+def _column(block: Block, roles: Sequence[str]) -> tuple[int, float] | None:
+    """The first column that means one of some quantities in a unit of its own, and the unit's SI value."""
+    for role in roles:
+        for column, (name, unit) in enumerate(zip(block.names, block.units, strict=True)):
+            meaning = role_of(name)
+            scale = unit_scale(unit, DIMENSIONS[role]) if unit and meaning is not None and meaning[0] == role else None
+            if scale is not None:
+                return column, scale
+    return None
 
 
 def _with_all_words(block: Block) -> Block:
@@ -166,90 +221,6 @@ def _refuse(path: Path, parts: Sequence[Block], told: Told) -> None:
         raise TableError(path, problem, f"at least {MINIMUM_ROWS} rows", row=int(best.lines[-1]))
     record_of(best, told)
     raise TableError(path, "no table is a trial", f"columns of time, force and depth; it has {best.header}")
-
-
-def _side_by_side(block: Block) -> Iterator[Block]:
-    """The tests of a block that holds several side by side: its names begin again, each as long as it is filled."""
-    starts = [k for k, name in enumerate(block.names) if name and _key(block, k) == _key(block, 0)]
-    width = starts[1] if len(starts) > 1 else 0
-    names = [_key(block, k) for k in range(len(block.names))]
-    if width < 2 or any(names[k] != names[k % width] for k in range(len(names)) if names[k] != ("", "")):
-        yield block
-        return
-    for number, start in enumerate(starts, start=1):
-        yield _part(block, number, start, width)
-
-
-def _key(block: Block, column: int) -> tuple[str, str]:
-    return plain(block.names[column]), block.units[column]
-
-
-def _part(block: Block, number: int, start: int, width: int) -> Block:
-    import numpy as np
-
-    columns = range(start, min(start + width, len(block.names)))
-    filled = np.flatnonzero(~np.logical_or.reduce([block.lacking(k) for k in columns]))
-    rows = int(filled[-1]) + 1 if len(filled) else 0
-    return replace(
-        block,
-        name=f"{block.name} {number}".strip(),
-        names=tuple(block.names[k] for k in columns),
-        headers=tuple(block.headers[k] for k in columns),
-        units=tuple(block.units[k] for k in columns),
-        columns=tuple(block.columns[k][:rows] for k in columns),
-        lines=block.lines[:rows],
-    )
-
-
-def _joined(parts: Sequence[Block]) -> list[Block]:
-    """Blocks of one record that the instrument wrote in pieces: the same names again, and time that goes on."""
-    out: list[Block] = []
-    for part in parts:
-        if out and _goes_on(out[-1], part):
-            out[-1] = _append(out[-1], part)
-        else:
-            out.append(part)
-    names = [part.name for part in out]
-    return [
-        part
-        if names.count(part.name) == 1
-        else _renamed(part, f"{part.name} {names[: k + 1].count(part.name)}".strip())
-        for k, part in enumerate(out)
-    ]
-
-
-def _renamed(block: Block, name: str) -> Block:
-    return replace(block, name=name)
-
-
-def _goes_on(before: Block, after: Block) -> bool:
-    if before.names != after.names or before.units != after.units or not before.rows or not after.rows:
-        return False
-    time = next((k for k, name in enumerate(before.names) if (name and _is_time(name))), None)
-    if time is None or before.lacking(time)[-1] or after.lacking(time)[0]:
-        return False
-    import numpy as np
-
-    last = before.numbers(time, np.array([before.rows - 1]))[0]
-    return bool(after.numbers(time, np.array([0]))[0] > last)
-
-
-def _is_time(name: str) -> bool:
-    from bench_hw.instrument_files.vocabulary import role_of
-
-    meaning = role_of(name)
-    return meaning is not None and meaning[0] == "time"
-
-
-def _append(before: Block, after: Block) -> Block:
-    import numpy as np
-
-    columns = tuple(
-        np.concatenate([a, b]) if isinstance(a, np.ndarray) and isinstance(b, np.ndarray) else [*a, *b]
-        for a, b in zip(before.columns, after.columns, strict=True)
-    )
-    lines = np.concatenate([before.lines, after.lines])
-    return replace(before, columns=columns, lines=lines, facts=(*before.facts, *after.facts))
 
 
 def header_reading(facts: Sequence[HeaderFact]) -> Reading:

@@ -33,7 +33,7 @@ _BOMS: Final = (
     (codecs.BOM_UTF16_LE, "utf-16"),
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
-_BYTE_ENCODINGS: Final = ("gb18030", "shift_jis", "cp1252")
+_BYTE_ENCODINGS: Final = ("gb18030", "shift_jis", "cp1250", "cp1252")
 _NUMBER: Final = {
     ".": re.compile(r"[+-]?(?:\d{1,3}(?:,\d{3})+|\d+)?(?:\.\d*)?(?:[eE][+-]?\d+)?", re.ASCII),
     ",": re.compile(r"[+-]?(?:\d{1,3}(?:\.\d{3})+|\d+)?(?:,\d*)?(?:[eE][+-]?\d+)?", re.ASCII),

@@ -29,7 +29,7 @@ UNITS: Final[dict[str, tuple[float, str]]] = {
     "Pa": (1.0, "Pa"), "hPa": (1e2, "Pa"), "kPa": (1e3, "Pa"), "MPa": (1e6, "Pa"), "GPa": (1e9, "Pa"),
     "N/mm2": (1e6, "Pa"), "N/mm²": (1e6, "Pa"), "psi": (6894.757293168361, "Pa"),
     "%": (1e-2, "1"), "mm/mm": (1.0, "1"), "m/m": (1.0, "1"), "-": (1.0, "1"), "1": (1.0, "1"),
-    "mm2": (MM2, "m2"), "mm²": (MM2, "m2"), "cm2": (1e-4, "m2"), "cm²": (1e-4, "m2"),
+    "mm2": (MM2, "m2"), "mm²": (MM2, "m2"), "mm^2": (MM2, "m2"), "cm2": (1e-4, "m2"), "cm²": (1e-4, "m2"),
     "mm/s": (1e-3, "m/s"), "mm/sec": (1e-3, "m/s"), "mm/min": (1e-3 / 60.0, "m/s"), "µm/s": (1e-6, "m/s"),
     "V": (1.0, "V"), "mV": (1e-3, "V"), "°C": (1.0, "K"), "C": (1.0, "K"), "Hz": (1.0, "Hz"),
     "N/m": (1.0, "N/m"), "mN/m": (1e-3, "N/m"),
@@ -73,6 +73,8 @@ def label_and_unit(header: str) -> tuple[str, str]:
     for pattern in (_BRACKETS, _AFTER):
         found = pattern.fullmatch(header.strip())
         if found and found["label"] and (unit := unit_of(found["unit"])) is not None:
+            if pattern is _AFTER and found["unit"].isdigit():
+                break  # the first of several, `Dehnung 1`
             return found["label"].strip(), unit
     return header.strip(), ""
 
@@ -85,20 +87,21 @@ DIMENSIONS: Final = {
 
 _QUALIFIED = r"(?:(?:axial|normal|vertical|compressive|compression|tensile|standard|test|primary|measured|tip|net|machine|digital|corrected|probe|actuator|tool|indenter|crosshead) )?"  # noqa: E501
 _WORDS: Final[tuple[tuple[str, int, str], ...]] = (
-    ("time", 0, r"time|(?:test|elapsed|total|running|run) time|zeit|pr(?:ü|ue|u)fzeit|testzeit|laufzeit|temps|tiempo|tempo|时间|測試時間|测试时间|試験時間|時間|t"),  # noqa: E501
+    ("time", 0, r"time|(?:test|elapsed|total|running|run) time|zeit|pr(?:ü|ue|u)fzeit|testzeit|laufzeit|temps|tiempo|tempo|czas|godzina|时间|測試時間|测试时间|試験時間|時間|t"),  # noqa: E501
     ("time", 1, r"time(?: ?stamp)?(?: \d+)?|series time|scan time|zeit \d+"),
-    ("force", 0, r"force|load|(?:force|f) ?z|f ?n|f|kraft|standardkraft|pr(?:ü|ue|u)fkraft|normalkraft|druckkraft|fuerza|carga|charge|effort|forza|力|载荷|负荷|试验力|荷重|試験力"),  # noqa: E501
+    ("force", 0, r"force|load|(?:force|f) ?z|f ?n|f|kraft|standardkraft|pr(?:ü|ue|u)fkraft|normalkraft|druckkraft|last|si(?:ł|l)a|obci(?:ąż|az)enie|fuerza|carga|charge|effort|forza|力|载荷|负荷|试验力|荷重|試験力"),  # noqa: E501
     ("force", 1, _QUALIFIED + r"(?:force|load)(?: z)?|load ?cell|kraft z"),
     ("force", 2, _QUALIFIED + r"(?:force|load|load ?cell|kraft) \d+"),
     ("depth", 0, r"depth|indentation(?: depth)?|penetration(?: depth)?|eindring(?:tiefe|weg|ung)|profondeur|profundidad|压入深度|压痕深度|押込み深さ"),  # noqa: E501
-    ("displacement", 0, r"displacement|disp|extension|travel|distance|stroke|standardweg|weg|verfahrweg|d[eé]placement|desplazamiento|course|位移|行程|変位|ストローク"),  # noqa: E501
+    ("displacement", 0, r"displacement|disp|extension|travel|distance|stroke|standardweg|weg|verfahrweg|d[eé]placement|desplazamiento|przemieszczenie|wyd(?:ł|l)u(?:ż|z)enie|course|位移|行程|変位|ストローク"),  # noqa: E501
     ("displacement", 1, _QUALIFIED + r"(?:displacement|disp|extension|travel|distance|stroke|deflection)|traversenweg|verformung|deformation|stauchung|变形|横梁位移"),  # noqa: E501
     ("displacement", 2, r"crosshead|traverse(?: abs)?|piezo|" + _QUALIFIED + r"(?:displacement|disp|extension) \d+"),
     ("gap", 0, r"gap|tool gap|spalt|size|plate (?:separation|distance)|werkzeugabstand|abstand"),
     ("position", 0, _QUALIFIED + r"(?:position|pos)|height|z|h[oö]he|position z|z position|tip position"),
     ("position", 1, r"height measured|z sensor|" + _QUALIFIED + r"(?:position|pos) \d+"),
-    ("stress", 0, _QUALIFIED + r"stress|spannung|druckspannung|contrainte|应力"),
-    ("strain", 0, _QUALIFIED + r"strain|dehnung|d[eé]formation relative|应变"),
+    ("stress", 0, _QUALIFIED + r"stress|(?:druck|zug)?spannung|contrainte|napr(?:ęż|ez)enie|(?:压缩|拉伸)?应力"),
+    ("strain", 0, _QUALIFIED + r"strain|dehnung|d[eé]formation relative|(?:压缩|拉伸)?应变(?: 位移)?"),
+    ("strain", 1, _QUALIFIED + r"strain \d+|dehnung \d+|odkszta(?:ł|l)cenie(?: \d+)?"),
 )  # fmt: skip
 _PATTERNS: Final = tuple((role, rank, re.compile(words)) for role, rank, words in _WORDS)
 
@@ -147,5 +150,9 @@ TA_PROBE = re.compile(
 )
 """A probe's catalogue line, `P/10 10mm DIA CYLINDER ALUMINIUM`: its diameter."""
 SPHERE = re.compile(r"\b(?:ball|spher\w*|bead|kugel)\b", re.IGNORECASE)
-TENSION = re.compile(r"\b(?:tensile|tension|zugversuch|zug|traction|拉伸)\b", re.IGNORECASE)
-COMPRESSION = re.compile(r"\b(?:compressive|compression|druckversuch|druck|stauch\w*|压缩)\b", re.IGNORECASE)
+TENSION = re.compile(
+    r"\b(?:tensile|tension|zug(?:versuch|spannung)?|rozci(?:ą|a)gani\w*|traction)\b|拉伸", re.IGNORECASE
+)
+COMPRESSION = re.compile(
+    r"\b(?:compressive|compression|druck(?:versuch|spannung)?|stauch\w*|(?:ś|s)ciskani\w*)\b|压缩", re.IGNORECASE
+)

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from bench_hw.instrument_files import Told, preview, read_instrument_file
+from bench_hw.instrument_files.vocabulary import label_and_unit
+from tests.instruments import samples
 from tests.instruments.samples import SAMPLES, press
 
 
@@ -81,3 +83,45 @@ def test_what_is_told_comes_before_what_is_found(tmp_path):
     (record,) = read_instrument_file(path, told).records
     np.testing.assert_allclose(record.table.depth, one.depth * 25.4 * 25.4e-6, atol=1e-9)
     np.testing.assert_allclose(record.table.force, one.force, atol=1e-6)
+
+
+def cylinder_text(head, units, unit_row="(s){0}(mm){0}(N){0}(%){0}(kPa)", between=",", sign="."):
+    """A cylinder, 10 mm high and 100 mm2 wide, with the stress and strain that the instrument wrote beside."""
+    one = press()
+    depth, force = one.depth - one.depth[0], one.force - one.force.min()
+    columns = (one.time, depth, force, 10.0 * depth, 10.0 * force)
+    lines = samples.rows(*columns, digits=(3, 6, 6, 6, 6), sign=sign, between=between)
+    return "\n".join([head, unit_row.format(between) if units else "", *lines]) + "\n"
+
+
+def test_height_and_section_are_told_by_what_columns_were_divided_by(tmp_path):
+    path = tmp_path / "cylinder.csv"
+    path.write_bytes(cylinder_text("时间,位移,载荷,压缩应变 (位移),压缩应力", units=True).encode("gbk"))
+    read = read_instrument_file(path)
+    assert read.header.height == pytest.approx(10e-3, rel=1e-3)
+    assert read.header.area == pytest.approx(100e-6, rel=1e-3)
+    assert read.records[0].kind == "compression"
+    assert any("载荷 over 压缩应力: 100 mm2" in source for source in read.header.sources)
+
+
+@pytest.mark.parametrize(
+    ("head", "encoding", "between", "sign", "kind"),
+    [
+        ("Zeit;Traversenweg;Last;Dehnung 1;Zugspannung", "cp1252", ";", ",", "tension"),
+        ("Godzina;Przemieszczenie;Obciążenie;Odkształcenie 1;Naprężenie", "cp1250", ";", ",", "press"),
+    ],
+)
+def test_german_and_polish_words_are_known(head, encoding, between, sign, kind, tmp_path):
+    path = tmp_path / "machine.csv"
+    path.write_bytes(cylinder_text(head, units=True, between=between, sign=sign).encode(encoding))
+    (record,) = read_instrument_file(path).records
+    assert record.kind == kind
+    assert record.columns["force"] in ("Last [N]", "Obciążenie [N]")
+    if kind == "tension":
+        assert record.table.depth[0] == 0.0
+        assert not any("first touch" in note for note in record.notes)
+
+
+def test_the_number_of_a_column_is_no_unit():
+    assert label_and_unit("Dehnung 1") == ("Dehnung 1", "")
+    assert label_and_unit("Strain (1)") == ("Strain", "1")
