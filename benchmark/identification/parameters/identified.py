@@ -130,7 +130,7 @@ class Identified:
     @cached_property
     def estimates(self) -> tuple[Estimate, ...]:
         """Values and intervals."""
-        largest = largest_errors(self.profiles, self.found.quantile)
+        largest = largest_errors(self.profiles)
         return tuple(self._estimate(place, float(largest[place])) for place in range(len(self.names)))
 
     def _estimate(self, place: int, largest: float) -> Estimate:

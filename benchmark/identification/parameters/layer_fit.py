@@ -7,8 +7,10 @@ last where the model, pressed anew, agrees with the surrogate that led there.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import scipy
@@ -28,7 +30,7 @@ from benchmark.identification.parameters.presses.marker_rings import MarkerRows
 from benchmark.identification.parameters.presses.press_atlas import PressAtlas
 from benchmark.identification.parameters.presses.press_surrogate import PressSurrogate
 from benchmark.response.force_curve import Array
-from benchmark.response.least_squares import Search, TrialsFit, least_squares
+from benchmark.response.least_squares import Search, TrialsFit, least_squares, scaled_inverse
 from benchmark.response.noise import whitener
 
 FIRST_NOISE, FIRST_MEMORY = 0.01, 0.6
@@ -41,6 +43,9 @@ AGREES = 5e-4
 MOST_ROUNDS = 6
 SEARCH = Search(most=25, gain=1e-3, share=1e-7)
 LOOKED_UP = Search(most=0)
+NORMAL = 1.96
+LEAST_SHARE = 1e-3
+"""Share of a variance below which what makes it counts as known."""
 
 Say = Callable[[str], None]
 
@@ -88,11 +93,37 @@ class LayerFit:
 
     @property
     def quantile(self) -> float:
-        """Standard errors on either side of a 95 % interval: Student's t with the freedom of trials or specimens."""
+        """Standard errors on either side of 95 % of what the gains scatter: Student's t of trials or specimens."""
         spread, freedom = self.spread, self.problem.freedom
         if spread is not None:
             return spread.inflation * float(scipy.stats.t.ppf(0.975, spread.specimens - 1))
-        return float(scipy.stats.t.ppf(0.975, freedom)) if freedom > 0 else 1.96
+        return float(scipy.stats.t.ppf(0.975, freedom)) if freedom > 0 else NORMAL
+
+    def quantile_of(self, index: int) -> float:
+        """Standard errors on either side of a coordinate's 95 % interval.
+
+        Of its variance the share s is that of the gains' scatter, which n degrees of freedom tell, and the rest is
+        known: Student's t with n / s^2 (Satterthwaite 1946, Biometrics Bulletin 2:110).
+        """
+        spread, freedom = self.spread, self.problem.freedom
+        if spread is None and freedom < 1:
+            return NORMAL
+        inflation, freedom = (1.0, freedom) if spread is None else (spread.inflation, spread.specimens - 1)
+        known = min(float(self._with_known_gains[index] / self.fit.covariance[index, index]), 1.0)
+        grown = known + inflation**2 * (1.0 - known)
+        share = max(1.0 - known / grown, LEAST_SHARE)
+        return math.sqrt(grown) * float(scipy.stats.t.ppf(0.975, freedom / share**2))
+
+    @cached_property
+    def _with_known_gains(self) -> Array:
+        """(p,) variances of the coordinates if the trials' gains were known."""
+        weight = np.diag(np.delete(self.model.trial_precision, GAIN))
+        total = np.diag(self.fit.precision)
+        for by, nuisances in zip(self.fit.columns.vector, self.fit.columns.nuisance, strict=True):
+            others = np.delete(nuisances, GAIN, axis=1)
+            across = others.T @ by
+            total = total + by.T @ by - across.T @ np.linalg.pinv(others.T @ others + weight, hermitian=True) @ across
+        return np.diag(scaled_inverse(total))
 
     @property
     def spread(self) -> SpreadParts | None:

@@ -48,6 +48,8 @@ class Profile:
         Standard errors of all free coordinates by the trials alone, where the refits ended.
     low, high : float
         Ends of the 95 % interval of the coordinate; infinite where it does not end within reach.
+    quantile : float
+        Its square is the rise at the ends.
     """
 
     coordinate: Array
@@ -55,6 +57,7 @@ class Profile:
     errors: Array
     low: float
     high: float
+    quantile: float
 
     def determined(self, at: float) -> bool:
         """Whether the interval ends within a factor of two of the estimate, either way."""
@@ -100,17 +103,18 @@ def profile(found: LayerFit, index: int, others: Sequence[LayerFit] = ()) -> Pro
     return _drawn(_walks((found, *others), index))
 
 
-def largest_errors(profiles: Sequence[Profile], quantile: float) -> Array:
+def largest_errors(profiles: Sequence[Profile]) -> Array:
     """(f,) largest standard error of each free coordinate by the trials alone, in all that 95 % of confidence holds."""
-    reached = (1.0 + CLOSE) ** 2 * quantile**2
-    return np.asarray(np.max([one.errors[one.rise <= reached].max(axis=0) for one in profiles], axis=0))
+    held = [one.errors[one.rise <= ((1.0 + CLOSE) * one.quantile) ** 2] for one in profiles]
+    return np.asarray(np.max([errors.max(axis=0) for errors in held], axis=0))
 
 
 def _walks(answers: Sequence[LayerFit], index: int, before: Sequence[_Walk] = ()) -> tuple[_Walk, ...]:
     """Walks to both ends of a coordinate's interval round each answer, as high as the best one's allows."""
     best, out = answers[0], []
+    quantile = best.quantile_of(index)
     for number, one in enumerate(answers):
-        walk = _Walk(one, index, best.quantile, max(2.0 * (one.fit.objective - best.fit.objective), 0.0))
+        walk = _Walk(one, index, quantile, max(2.0 * (one.fit.objective - best.fit.objective), 0.0))
         spread = math.sqrt(max(float(one.fit.covariance[index, index]), 1e-12))
         for sign in (-1.0, 1.0):
             told = before[number].reach(sign) if before else min(walk.wanted * spread, 2.0 * KNOWN)
@@ -130,7 +134,7 @@ def _drawn(walks: Sequence[_Walk]) -> Profile:
     points.sort(key=lambda each: each[0])
     coordinate, rise, errors = (np.array(column) for column in zip(*points, strict=True))
     low, high = min(walk.ends[-1.0] for walk in walks), max(walk.ends[1.0] for walk in walks)
-    return Profile(coordinate, rise, errors, low, high)
+    return Profile(coordinate, rise, errors, low, high, walks[0].quantile)
 
 
 class _Walk:
@@ -142,7 +146,7 @@ class _Walk:
     """
 
     def __init__(self, found: LayerFit, index: int, quantile: float, lost: float):
-        self._found, self._index, self.lost = found, index, lost
+        self._found, self._index, self.lost, self.quantile = found, index, lost, quantile
         self.wanted = max(math.sqrt(max(quantile**2 - lost, 0.0)), 1e-3)
         ends = [one.limits for one in found.problem.parameters]
         count = found.vector.size - len(ends)

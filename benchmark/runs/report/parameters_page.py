@@ -97,7 +97,7 @@ def _told_apart(answer: Identified, drawn: Posterior | None) -> Section:
             np.array([parameter.scale * parameter.value(float(x)) for x in own.coordinate]),
             own.rise,
             one.value,
-            found.quantile**2,
+            own.quantile**2,
             one.low is not None,
         )
         for name, parameter, own, one in zip(answer.names, answer.free, answer.profiles, answer.estimates, strict=True)

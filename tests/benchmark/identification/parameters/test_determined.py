@@ -82,5 +82,5 @@ def test_away_from_the_fold_the_same_trials_determine_it(folded) -> None:
 
 def test_only_points_within_the_region_count() -> None:
     errors = np.array([[9.0, 9.0], [0.1, 0.2], [0.3, 0.1], [9.0, 9.0]])
-    one = Profile(np.arange(4.0), np.array([9.0, 0.0, 3.0, 9.0]), errors, 0.5, 2.5)
-    assert largest_errors((one, one), 2.0) == pytest.approx([0.3, 0.2])
+    one = Profile(np.arange(4.0), np.array([9.0, 0.0, 3.0, 9.0]), errors, 0.5, 2.5, 2.0)
+    assert largest_errors((one, one)) == pytest.approx([0.3, 0.2])

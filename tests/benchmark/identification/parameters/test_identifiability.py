@@ -17,7 +17,7 @@ def answer(found):
 def test_a_profile_is_the_parabola_of_the_covariance_where_the_problem_is_even(toy_fit) -> None:
     found = toy_fit()
     own, spread = profile(found, 1), math.sqrt(found.fit.covariance[1, 1])
-    assert own.high - found.vector[1] == pytest.approx(found.quantile * spread, rel=0.1)
+    assert own.high - found.vector[1] == pytest.approx(found.quantile_of(1) * spread, rel=0.1)
     assert own.rise.min() == pytest.approx(0.0, abs=1e-6)
 
 

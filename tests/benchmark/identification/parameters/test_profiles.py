@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy
 
 from benchmark.identification.parameters.law_shapes import shear_modulus
 from benchmark.identification.parameters.layer_fit import begun, fit_layers
@@ -75,7 +76,7 @@ def test_ends_are_where_the_models_own_likelihood_has_fallen_as_far(found) -> No
     for index, own in zip(found.problem.free, profiles, strict=True):
         for end in (own.low, own.high):
             if math.isfinite(end) and abs(end - found.vector[index]) > 0.1:
-                assert rise_of_the_model(richer, index, end) == pytest.approx(found.quantile**2, rel=0.15)
+                assert rise_of_the_model(richer, index, end) == pytest.approx(found.quantile_of(index) ** 2, rel=0.15)
                 checked += 1
     assert checked >= 2
 
@@ -86,3 +87,12 @@ def test_the_slope_at_the_estimate_alone_is_not_enough(found) -> None:
     plain = [profile(found, k) for k in found.problem.free]
     ends = [(one.low, one.high) for one in plain], [(one.low, one.high) for one in verified]
     assert np.abs(np.subtract(*ends)).max() > 0.05
+
+
+def test_the_quantile_is_students_where_the_gains_make_the_variance_and_normal_where_they_do_not(toy_fit) -> None:
+    scattered, even = toy_fit(keys=("stiffness_factor",), gain=0.1), toy_fit(gain=0.0, noise=0.02)
+    freedom = scattered.problem.freedom
+    assert scattered.quantile == pytest.approx(scipy.stats.t.ppf(0.975, freedom))
+    assert scattered.quantile_of(0) == pytest.approx(scattered.quantile, rel=0.01)
+    for index in even.problem.free:
+        assert 1.959 < even.quantile_of(index) < 2.0 < even.quantile
