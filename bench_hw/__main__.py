@@ -4,15 +4,17 @@ import os
 import sys
 
 from bench_hw.safe_path import leave_current_folder, speak_utf8, tell
+from bench_hw.streams import end, open_streams
 
 
 def start() -> None:
-    """Run the command line with modules from the installation alone; see `bench_hw.safe_path`."""
+    """Run the command line with modules from the installation alone; see `bench_hw.safe_path` and `streams`."""
+    open_streams()
     speak_utf8()
     tell(leave_current_folder(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), sys.argv)
     from bench_hw.cli import main
 
-    main()
+    sys.exit(end(main()))
 
 
 if __name__ == "__main__":

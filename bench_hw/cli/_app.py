@@ -13,7 +13,7 @@ from pathlib import Path
 
 import typer
 
-from bench_hw.cli._report import report_unexpected
+from bench_hw.cli._report import EXIT_MISSING, report_unexpected, say_error
 
 
 def make_app() -> typer.Typer:
@@ -40,9 +40,15 @@ def _bench() -> None:
 app = make_app()
 
 
-def main() -> None:
-    """Run the command line and end the process with its exit code."""
+def main() -> int:
+    """Run the command line and return its exit code."""
     try:
         app()
+    except SystemExit as end:
+        if isinstance(end.__context__, BrokenPipeError):  # the command-line library met it
+            say_error(end.__context__)
+            return EXIT_MISSING
+        return end.code if isinstance(end.code, int) else 1
     except Exception as error:
-        sys.exit(report_unexpected(error, debug="--debug" in sys.argv))
+        return report_unexpected(error, debug="--debug" in sys.argv)
+    return 0

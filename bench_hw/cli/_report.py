@@ -13,6 +13,7 @@ import typer
 
 from bench_hw.errors import BenchError
 from bench_hw.optional import what_is_missing
+from bench_hw.streams import unsaid
 
 EXIT_MISSING = 2
 EXIT_BUG = 70
@@ -48,15 +49,19 @@ def reporting(debug: bool = False) -> Iterator[None]:
 
 def say_error(error: BaseException) -> None:
     """Print an error, and what was noted on it, as one paragraph on standard error."""
+    unheard = unsaid() if isinstance(error, OSError) else None
     plain = "there is too little memory for this" if isinstance(error, MemoryError) else type(error).__name__
-    parts = [str(error) or plain, *getattr(error, "__notes__", [])]
+    parts = [unheard or str(error) or plain, *getattr(error, "__notes__", [])]
     print("error: " + " ".join("; ".join(parts).split()), file=sys.stderr)
 
 
 def report_unexpected(error: Exception, debug: bool) -> int:
-    """Print an error that no verb foresaw, and return the exit code: a library left out, or our mistake."""
+    """Print an error that no verb foresaw, and return the exit code: the system's, a library left out, our mistake."""
     if debug:
         traceback.print_exception(error)
+    if isinstance(error, OSError):
+        say_error(error)
+        return EXIT_MISSING
     missing = what_is_missing(error)
     if missing is not None:
         print(f"error: {missing}", file=sys.stderr)

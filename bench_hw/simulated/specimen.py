@@ -48,7 +48,8 @@ class Specimen(Protocol):
         depth : ndarray (n,)
             Depth of the tool's face below the specimen's resting surface, m; negative in air.
         start : int
-            The answer is wanted for rows `start` to n - 1; the rows before are history.
+            The answer is wanted for rows `start` to n - 1; the rows before are history, of which a bench keeps the
+            last seconds alone: what must be known of longer ago is the specimen's to remember.
 
         Returns
         -------

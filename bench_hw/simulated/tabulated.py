@@ -59,7 +59,7 @@ class SheetTable:
 class _Memory:
     """What is not worked out twice: where the relaxation of the newest row stands, and the face at the markers."""
 
-    row: int = -1
+    time: float = -1.0
     elastic: float = 0.0
     lags: tuple[float, ...] = ()
     face: Callable[[FloatArray], FloatArray] | None = None
@@ -120,8 +120,8 @@ class TabulatedSpecimen:
         }
 
     def _press(self, time: FloatArray, pressed: FloatArray, start: int) -> FloatArray:
-        known = self._memory if self._memory.row == start - 1 else _Memory()
-        first = known.row + 1
+        goes_on = start > 0 and self._memory.time == time[start - 1]
+        known, first = (self._memory, start) if goes_on else (_Memory(), 0)
         elastic = self.gain * np.interp(pressed[first:], self.table.depth, self.table.force)
         total, ends = elastic, []
         step = float(time[1] - time[0]) if len(time) > 1 else 1e-3
@@ -131,8 +131,8 @@ class TabulatedSpecimen:
             gone, _ = lfilter([share * tau / step * (1.0 - keep)], [1.0, -keep], rises, zi=[keep * lag])
             total = total - share * elastic + gone
             ends.append(float(gone[-1]) if len(gone) else lag)
-        if len(time) - 1 > self._memory.row and len(elastic):
-            self._memory.row, self._memory.elastic = len(time) - 1, float(elastic[-1])
+        if len(elastic) and (time[-1] > self._memory.time or time[start] == 0.0):  # not one of the past
+            self._memory.time, self._memory.elastic = float(time[-1]), float(elastic[-1])
             self._memory.lags = tuple(ends)
         return np.asarray(total[start - first :])
 

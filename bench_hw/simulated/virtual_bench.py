@@ -2,7 +2,8 @@
 
 Nothing runs by itself: asking for an instant moves the bench on to it, in steps of `step`. Safe to use from several
 threads. The actuator moves towards its target at its speed, with limited acceleration, and stops as soon as
-its own reading, in whole counts, is inside the dead band around the target, as the LAC board does.
+its own reading, in whole counts, is inside the dead band around the target, as the LAC board does. Only the last seconds are
+kept, so that an hour takes no more memory than a minute.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ import numpy as np
 
 from bench_hw.simulated.specimen import FloatArray, Specimen
 
-_FIRST_CAPACITY = 4096
+KEPT = 10.0
+"""Seconds that a bench looks back at least; who asks for more gets the oldest instant that is kept."""
 
 
 @dataclass(slots=True)
@@ -85,6 +87,8 @@ class VirtualBench:
         Reading of the bench's clock now, s.
     step : float
         Length of a step of the physics, s.
+    kept : float
+        How far back force, depth and the specimen's history are kept at least, s.
     """
 
     def __init__(
@@ -95,15 +99,16 @@ class VirtualBench:
         contact: float,
         start: float = 0.0,
         step: float = 1e-3,
+        kept: float = KEPT,
     ) -> None:
         self.lock = threading.RLock()
         self.motion = motion
         self._specimen, self._contact = specimen, contact
         self._start, self._step = start, step
-        self._rows = 1
-        self._time = np.zeros(_FIRST_CAPACITY)
-        self._depth = np.zeros(_FIRST_CAPACITY)
-        self._force = np.zeros((_FIRST_CAPACITY, 3))
+        self._kept = max(round(kept / step), 2)
+        self._rows, self._gone = 1, 0  # since the start, and of them those that are forgotten
+        self._time, self._depth = np.zeros(2 * self._kept), np.zeros(2 * self._kept)
+        self._force = np.zeros((2 * self._kept, 3))
         self._depth[0] = motion.position - contact
         self._respond(0)
 
@@ -111,48 +116,59 @@ class VirtualBench:
         """Move the bench on to the reading `now`; earlier readings change nothing."""
         with self.lock:
             due = int((now - self._start) / self._step + 1e-6) + 1
-            if due <= self._rows:
-                return
-            first = self._rows
-            self._reserve(due)
-            for row in range(first, due):
-                self.motion.step(self._step)
-                self._depth[row] = self.motion.position - self._contact
-            self._time[first:due] = self._step * np.arange(first, due)
-            self._rows = due
-            self._respond(first)
+            while self._rows < due:
+                self._move_on(min(due, self._rows + self._kept))
 
     def force_at(self, instants: FloatArray) -> FloatArray:
-        """Force on the tool (n, 3), N (sideways x and y, press), at `instants` (n,), s of the clock, not decreasing."""
+        """Force on the tool (n, 3), N (sideways x and y, press), at `instants` (n,), s of the clock, not decreasing.
+
+        An instant that is forgotten is answered by the oldest that is kept.
+        """
+        span = self._kept * self._step
+        parts = np.split(instants, np.flatnonzero(np.diff((instants - instants[0]) // span)) + 1)
         with self.lock:
-            self.advance(float(instants[-1]))
-            since = instants - self._start
-            first = max(0, int(since[0] / self._step) - 1)
-            rows = slice(first, self._rows)
-            columns = [np.interp(since, self._time[rows], self._force[rows, axis]) for axis in range(3)]
-            return np.stack(columns, axis=-1)
+            return np.concatenate([self._force_within(part - self._start) for part in parts])
 
     def markers_at(self, now: float) -> FloatArray:
         """Markers (m, 3) on the lower face at the reading `now`, m: x, y and how far each has sunk."""
         with self.lock:
             self.advance(now)
-            row = min(self._rows - 1, max(0, int((now - self._start) / self._step + 0.5)))
+            row = int((now - self._start) / self._step + 0.5) - self._gone
+            row = min(self._rows - self._gone - 1, max(0, row))
             markers: FloatArray = self._specimen(self._time[: row + 1], self._depth[: row + 1], row).markers[0]
             return markers
 
     def depth(self) -> float:
         """Depth of the tool's face below the resting surface, m."""
         with self.lock:
-            return float(self._depth[self._rows - 1])
+            return float(self._depth[self._rows - self._gone - 1])
+
+    def _force_within(self, since: FloatArray) -> FloatArray:
+        """Force (n, 3) at instants since the start that are all kept at one time."""
+        self.advance(self._start + float(since[-1]))
+        first = max(0, int(since[0] / self._step) - 1 - self._gone)
+        rows = slice(first, self._rows - self._gone)
+        return np.stack([np.interp(since, self._time[rows], self._force[rows, axis]) for axis in range(3)], axis=-1)
+
+    def _move_on(self, due: int) -> None:
+        """Move on until there are `due` rows since the start."""
+        if due - self._gone > len(self._time):
+            self._forget()
+        first, end = self._rows - self._gone, due - self._gone
+        for row in range(first, end):
+            self.motion.step(self._step)
+            self._depth[row] = self.motion.position - self._contact
+        self._time[first:end] = self._step * np.arange(self._rows, due)
+        self._rows = due
+        self._respond(first)
 
     def _respond(self, first: int) -> None:
-        answer = self._specimen(self._time[: self._rows], self._depth[: self._rows], first)
-        self._force[first : self._rows] = answer.force
+        end = self._rows - self._gone
+        self._force[first:end] = self._specimen(self._time[:end], self._depth[:end], first).force
 
-    def _reserve(self, rows: int) -> None:
-        capacity = len(self._time)
-        if rows > capacity:
-            more = max(rows, 2 * capacity) - capacity
-            self._time = np.concatenate([self._time, np.zeros(more)])
-            self._depth = np.concatenate([self._depth, np.zeros(more)])
-            self._force = np.concatenate([self._force, np.zeros((more, 3))])
+    def _forget(self) -> None:
+        """Move the rows that must be kept to the front."""
+        rows = slice(self._rows - self._gone - self._kept, self._rows - self._gone)
+        for kept in (self._time, self._depth, self._force):
+            kept[: self._kept] = kept[rows].copy()
+        self._gone = self._rows - self._kept

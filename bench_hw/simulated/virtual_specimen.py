@@ -67,7 +67,7 @@ class SpecimenFile(StrictModel):
 class _Past:
     """Where the history stands at the newest row: elastic force, that with slip, lags of the fading modes, elements."""
 
-    row: int = -1
+    time: float = -1.0
     elastic: float = 0.0
     carried: float = 0.0
     lags: tuple[float, ...] = ()
@@ -101,16 +101,16 @@ class VirtualSpecimen:
         ValueError
             A depth beyond the curve of the tool.
         """
-        past = self._past if self._past.row == start - 1 else _Past()
-        first = past.row + 1
+        goes_on = start > 0 and self._past.time == time[start - 1]
+        past, first = (self._past, start) if goes_on else (_Past(), 0)
         step = float(time[1] - time[0]) if len(time) > 1 else 1e-3
         pressed = np.maximum(depth[first:], 0.0)
         elastic = self._elastic(pressed)
         carried, held = self._slipped(elastic, past)
         force, lags = self._faded(carried, past, step)
-        if len(elastic):
+        if len(elastic) and (time[-1] > self._past.time or time[start] == 0.0):  # not one of the past
+            self._past.time, self._past.lags, self._past.held = float(time[-1]), lags, held
             self._past.elastic, self._past.carried = float(elastic[-1]), float(carried[-1])
-        self._past.row, self._past.lags, self._past.held = len(time) - 1, lags, held
         press = np.maximum(force, 0.0) * (pressed > 0.0)
         out = np.zeros((len(depth) - start, 3))
         out[:, 2] = (press + 1e-3 * self.file.effects.drift_mN_per_s * time[first:])[start - first :]

@@ -14,6 +14,7 @@ from typing import Annotated
 
 import typer
 
+from bench_hw.streams import unsaid
 from benchmark.cli import (
     blind,
     check,
@@ -89,7 +90,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         code = EXIT_INTERRUPTED
     except SystemExit as end:  # nothing of ours ends so; an effects file of the user's may
-        return _fail(_who_ended(end), EXIT_USAGE)
+        return _fail(unsaid() or _who_ended(end), EXIT_USAGE)
     except Exception as error:
         if not _is_interruption(error):
             return _report(error, debug="--debug" in arguments)
@@ -124,7 +125,7 @@ def _report(error: Exception, *, debug: bool) -> int:
     if isinstance(error, TissuebenchError):
         return _fail(str(error), error.exit_code)
     if isinstance(error, OSError):
-        return _fail(str(error), EXIT_USAGE)
+        return _fail(unsaid() or str(error), EXIT_USAGE)
     if isinstance(error, MemoryError):
         return _fail(f"{TOO_LITTLE}; {error}" if str(error) else TOO_LITTLE, EXIT_USAGE)
     missing = what_is_missing(error)

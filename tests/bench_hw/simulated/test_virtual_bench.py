@@ -6,7 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bench_hw.simulated.specimen import Response, SheetSpecimen
+from bench_hw.simulated.tabulated import TabulatedSpecimen, read_sheet
 from bench_hw.simulated.virtual_bench import ActuatorMotion, VirtualBench
+from bench_hw.simulated.virtual_specimen import HiddenEffects, SpecimenFile, ToolCurve, VirtualSpecimen
 
 
 def run(motion, duration, step=1e-3):
@@ -47,6 +49,16 @@ def test_it_never_leaves_its_stroke_or_breaks_its_speed(targets, speed):
 def test_it_reads_whole_counts():
     motion = ActuatorMotion(stroke=0.05, position=0.01234, resolution=0.05 / 1024)
     assert motion.reading() == pytest.approx(253 * 0.05 / 1024)
+
+
+def relaxing_sheet():
+    return TabulatedSpecimen(read_sheet("phantom"), ((0.3, 2.0), (0.1, 30.0)))
+
+
+def relaxing_phantom():
+    curve = ToolCurve(radius_mm=5.0, depth_mm=(0.0, 1.0, 2.0, 4.0), force_N=(0.0, 1.0, 3.0, 9.0))
+    effects = HiddenEffects(relaxation=((0.3, 2.0),), slip_share=0.4, slip_force_N=0.5)
+    return VirtualSpecimen(SpecimenFile(schema=1, synthetic=True, tools=(curve,), effects=effects), 5e-3)
 
 
 @pytest.fixture
@@ -110,6 +122,37 @@ def test_any_callable_can_be_put_under_the_tool():
     assert bench.markers_at(0.1).shape == (4, 3)
     assert seen[0] == (1, 0)
     assert seen[1] == (101, 1)
+
+
+def test_an_hour_takes_no_more_memory_than_a_minute(bench):
+    sizes = []
+    for now in (30.0, 60.0, 150.0):
+        bench.advance(50.0 + now)
+        sizes.append(sum(kept.nbytes for kept in vars(bench).values() if isinstance(kept, np.ndarray)))
+    assert sizes[0] == sizes[2] < 1e6
+    assert bench.depth() == pytest.approx(2e-3, abs=2e-5)
+
+
+@pytest.mark.parametrize("make", [relaxing_sheet, relaxing_phantom])
+def test_what_is_forgotten_is_still_in_the_force(make):
+    def force(kept):
+        motion = ActuatorMotion(stroke=0.05, position=0.0135, target=0.0135)
+        bench = VirtualBench(make(), motion, contact=0.012, kept=kept)
+        found = []
+        for now in np.arange(1, 25) * 0.1:
+            found.append(bench.force_at(np.array([now]))[0, 2])
+            bench.markers_at(now - 0.02)
+            motion.target = 0.0135 + 0.001 * (now > 1.0)
+        return np.array(found)
+
+    assert np.allclose(force(0.3), force(100.0), rtol=1e-12)
+
+
+def test_a_long_wait_is_answered_from_its_beginning(bench):
+    instants = 50.0 + np.arange(1, 500) * 0.1
+    few = VirtualBench(SheetSpecimen(damping=0.0), ActuatorMotion(0.05, position=0.010, target=0.014, speed=0.002),
+                       contact=0.012, start=50.0, kept=2.0)  # fmt: skip
+    assert np.allclose(few.force_at(instants), bench.force_at(instants), rtol=1e-9, atol=1e-12)
 
 
 def test_long_histories_are_kept(bench):
