@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from bench_hw.streams import end, open_streams
 from reports.manifest import MANIFEST
 
 LONGEST = 900.0
@@ -92,18 +93,19 @@ COMMANDS = (
     Command("sweep", "benchmark", ("sweep", "skin-5N", *_set(COARSE), *VARIED, *OUT), share=0.7),
     Command("discover", "benchmark", ("discover", "session", *OUT), share=0.7),
     Command("run", "benchmark", ("run", "skin-5N", *_set(COARSE), "--export", "inp", *OUT), share=0.5),
-    Command("run, steps kept", "benchmark", ("run", "skin-5N", *_set(LONG), *OUT), share=0.4),
-    Command("run --trials", "benchmark", ("run", "--trials", "session", *OUT), share=0.25),
-    Command("fit --free", "benchmark", ("fit", "sheet", "--free", "pad.youngs_modulus", *OUT), share=0.2),
-    Command("discover --refit", "benchmark", ("discover", "sheet", "--refit", "strain_stiffening", *OUT), share=0.25),
-    Command("discover --bench", "benchmark", ("discover", "sheet", *BENCH, *OUT), share=0.25),
+    Command("run, steps kept", "benchmark", ("run", "skin-5N", *_set(LONG), *OUT), share=0.5),
+    Command("run --trials", "benchmark", ("run", "--trials", "session", *OUT), share=0.5),
+    Command("fit --free", "benchmark", ("fit", "pads", "--free", "pad.youngs_modulus", "--exact", "all", *OUT),
+            share=0.5),
+    Command("discover --refit", "benchmark", ("discover", "pads", "--refit", "strain_stiffening", *OUT), share=0.5),
+    Command("discover --bench", "benchmark", ("discover", "sheet", *BENCH, *OUT), share=0.5),
     Command("check", "benchmark", (*CHECK, "--baseline", "base.json", "--history", "p.jsonl", "--junit", "p.xml",
-                                   "--markdown", "p.md", *OUT), "p", ("p.xml", "p.md", "p.jsonl"), share=0.25),
+                                   "--markdown", "p.md", *OUT), "p", ("p.xml", "p.md", "p.jsonl"), share=0.5),
     Command("check --accept", "benchmark", (*CHECK, "--baseline", "p.json", "--accept"), "p.json",
-            ("p.history.jsonl",), share=0.25),
+            ("p.history.jsonl",), share=0.5),
     Command("blind", "benchmark", ("blind", "--cases", "null", "--most", "1", "--workers", "1", *OUT),
-            share=0.25),
-    Command("reproduce", "benchmark", ("reproduce", *OUT), share=0.25),
+            share=0.5),
+    Command("reproduce", "benchmark", ("reproduce", *OUT), share=0.5),
 )  # fmt: skip
 
 
@@ -170,9 +172,10 @@ def _child(command: Command, folder: Path, err: Path, before: str) -> None:
     try:
         if before:
             exec(before, {})
-        code = _main(command)
-    except SystemExit as end:
-        code = end.code if isinstance(end.code, int) else 1
+        open_streams()
+        code = end(_main(command))
+    except SystemExit as asked:
+        code = asked.code if isinstance(asked.code, int) else 1
     except KeyboardInterrupt:
         code = 130
     finally:
@@ -189,8 +192,7 @@ def _main(command: Command) -> int:
     from bench_hw.cli import main as bench
 
     sys.argv = ["torture", *(word for each in command.words for word in _expanded(each))]
-    bench()
-    return 0
+    return bench()
 
 
 def _expanded(word: str) -> list[str]:

@@ -235,10 +235,9 @@ def _code(module: str, words: list[str]) -> int:
                 return main(words)
             from bench_hw.cli import main as bench
 
-            bench()
+            return bench()
         except SystemExit as end:
             return end.code if isinstance(end.code, int) else 1
-    return 0
 
 
 def _dossier(finished: Path) -> Callable[[Path], object]:

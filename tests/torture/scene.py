@@ -66,8 +66,8 @@ max_force = "5 N"
 GATE = """schema = 1
 name = "small"
 [timing]
-rounds = [2, 3]
-blocks = 4
+rounds = [1, 1]
+blocks = 1
 margin = "90 %"
 [[tolerances]]
 quantity = "*"
@@ -88,10 +88,10 @@ calls = 1
 FOREIGN = {"notes.txt": "mine", ".git/HEAD": "ref: refs/heads/main\n", ".p.unfinished.bak": "mine", "data.part": "mine"}
 
 
-def trial_text(rows: int = 200, peak: float = 2.0) -> str:
-    """A synthetic press as CSV."""
-    depth = 2.0 * np.minimum(np.arange(rows), rows - np.arange(rows)) / (rows / 2)
-    force = peak * (np.maximum(depth - 0.05, 0.0) / 2.0) ** 1.3
+def trial_text(rows: int = 200, peak: float = 2.0, deepest: float = 2.0, power: float = 1.3) -> str:
+    """A synthetic press as CSV, with a touch at 0.05 mm."""
+    depth = deepest * np.minimum(np.arange(rows), rows - np.arange(rows)) / (rows / 2)
+    force = peak * (np.maximum(depth - 0.05, 0.0) / deepest) ** power
     table = zip(np.arange(rows) * 0.05, depth, force, strict=True)
     return "time_s,depth_mm,force_N\n" + "".join(f"{t:.3f},{d:.6f},{f:.6f}\n" for t, d, f in table)
 
@@ -120,6 +120,9 @@ def make_scene(folder: Path) -> Path:
     shutil.copytree(folder / "session", folder / "sheet")
     (folder / "sheet" / "pad.toml").write_text(PAD)
     (folder / "sheet" / "session.toml").write_text(SHEET)
+    shutil.copytree(folder / "sheet", folder / "pads")  # shallow presses, which the finite elements follow at once
+    for number, peak in enumerate((0.60, 0.62, 0.64), start=1):
+        (folder / "pads" / f"press_{number}.csv").write_text(trial_text(80, peak, 1.0, 1.05))
     (folder / "gate.toml").write_text(GATE)
     (folder / "context.toml").write_text(CONTEXT)
     shutil.copytree(folder / "session", folder / "fresh")
