@@ -19,12 +19,17 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
+from bench_hw.storage.regular_file import TABLE, open_regular
 from benchmark.errors import InputError
 
 Array = NDArray[np.float64]
 NEEDED = ("time_s", "tool", "x_mm", "y_mm", "depth_mm", "force_N")
 TARGET = ("target", "target_x_mm", "target_y_mm", "target_depth_mm")
 FEWEST_ROWS = 20
+SHORTEST, LONGEST = 0.5, 86_400.0
+"""s of a record: the filters below need half a second, and a day is no attempt."""
+LARGEST = 1e9
+"""Of any number in a record."""
 RATE = 100.0
 """Hz to which an attempt is brought, linear between its rows."""
 SMOOTHED = 10.0
@@ -233,34 +238,47 @@ def read_attempt(path: Path, group: str = "") -> Attempt:
         File, column or row, and what is allowed.
     """
     table = _table(path)
+    tools = {tool: table[table["tool"] == tool] for tool in sorted(set(table["tool"].astype(int)))}
+    for tool, rows in tools.items():
+        _check_tool(path, tool, rows)
     start, end = float(table["time_s"].min()), float(table["time_s"].max())
+    if not SHORTEST <= end - start <= LONGEST:
+        raise InputError(f"{path}: time_s spans {end - start:.6g} s; allowed are {SHORTEST:g} s to {LONGEST:,.0f} s")
     time = start + np.arange(int((end - start) * RATE + 1e-9) + 1) / RATE
     position, force = {}, {}
-    for tool, rows in table.groupby("tool", sort=True):
-        _check_tool(path, int(str(tool)), rows)
+    for tool, rows in tools.items():
         at = rows["time_s"].to_numpy()
         columns = [np.interp(time, at, 1e-3 * rows[name].to_numpy()) for name in ("x_mm", "y_mm", "depth_mm")]
-        position[int(str(tool))] = np.column_stack(columns)
-        force[int(str(tool))] = np.interp(time, at, rows["force_N"].to_numpy())
+        position[tool] = np.column_stack(columns)
+        force[tool] = np.interp(time, at, rows["force_N"].to_numpy())
     target, wanted = _targets(table)
     return Attempt(path.stem, group, time, position, force, target, wanted)
 
 
 def _table(path: Path) -> pd.DataFrame:
-    """The file's rows, its needed columns finite numbers."""
+    """The file's rows, its needed columns finite numbers, those of targets numbers or none."""
     try:
-        table = pd.read_csv(path)
+        with open_regular(path, TABLE) as stream:
+            table = pd.read_csv(stream)
     except (OSError, ValueError) as error:
-        raise InputError(f"{path} cannot be read as a record: {error}") from None
+        raise InputError(f"{path} cannot be read as a record: {' '.join(str(error).split())}") from None
     missing = [name for name in NEEDED if name not in table]
     if missing:
         raise InputError(f"{path}: the column {missing[0]} is missing; a record has {', '.join(NEEDED)}")
+    if table.empty:
+        raise InputError(f"{path} has no row; at least {FEWEST_ROWS} are needed for each tool")
     for name in NEEDED:
-        values = pd.to_numeric(table[name], errors="coerce")
-        wrong = np.flatnonzero(~np.isfinite(values.to_numpy(dtype=np.float64)))
+        table[name] = values = pd.to_numeric(table[name], errors="coerce").astype(np.float64)
+        wrong = np.flatnonzero(~(values.abs().to_numpy() <= LARGEST))
         if wrong.size:
-            raise InputError(f"{path}: {name} in row {wrong[0] + 2} is no finite number")
-        table[name] = values
+            raise InputError(f"{path}: {name} in row {wrong[0] + 2} is no number up to {LARGEST:g}")
+    odd = np.flatnonzero(table["tool"] % 1.0)
+    if odd.size:
+        raise InputError(f"{path}: tool in row {odd[0] + 2} is no whole number")
+    for name in (*TARGET, "target_force_N"):
+        if name in table:
+            values = pd.to_numeric(table[name], errors="coerce").astype(np.float64)
+            table[name] = values.where(values.abs() <= LARGEST)
     return table
 
 

@@ -48,11 +48,13 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--moments", type=int, default=200, help="kills over all verbs")
     parser.add_argument("--each", type=int, default=50, help="files of each kind")
+    parser.add_argument("--kinds", nargs="*", help="of the malformed files, those whose names begin so; all without")
     parser.add_argument("--only", nargs="*", choices=PARTS, default=PARTS)
     parser.add_argument(
         "--verbs", nargs="*", default=[each.verb for each in COMMANDS], help="of the kills and the surroundings"
     )
     parser.add_argument("--places", nargs="*", choices=PLACES, default=PLACES, help="kinds of surroundings")
+    parser.add_argument("--points", type=int, default=10, help="of a disk that fills")
     parser.add_argument("--log", type=Path, help="a file of what was tried, added to: a torture that stopped goes on")
     asked = parser.parse_args()
     journal = Journal(asked.log)
@@ -74,11 +76,11 @@ def _part(name: str, scene: Path, asked: argparse.Namespace, journal: Journal) -
         kills.torture(scene, until, asked.seed, asked.moments, asked.verbs, journal)
         table, failed = kills.rows(journal), {"kills": kills.failures(journal)}
     elif name == "inputs":
-        counts = inputs.torture(scene / "fuzzed", until, asked.seed, asked.each)
+        counts = inputs.torture(scene / "fuzzed", until, asked.seed, asked.each, tuple(asked.kinds or ("",)))
         table, failed = inputs.rows(counts), {kind: each.failures for kind, each in counts.items()}
         shutil.rmtree(scene / "fuzzed", ignore_errors=True)
     else:
-        found = places.torture(scene, until, asked.verbs, asked.places)
+        found = places.torture(scene, until, asked.verbs, asked.places, asked.points)
         table, failed = places.rows(found), {place: each.failures for place, each in found.items()}
     widths = [max(len(row[k]) for row in table) for k in range(len(table[0]))]
     print(f"\n{name}, seed {asked.seed}")

@@ -16,7 +16,6 @@ from tests.torture.commands import CONTRACT, Command, differences, is_plain, run
 from tests.torture.kills import clear, result
 from tests.torture.scene import contents
 
-POINTS = 10
 PAGE = 4096
 ROOM = "import shutil; plenty = shutil._ntuple_diskusage(1 << 40, 0, 1 << 40); shutil.disk_usage = lambda _: plenty\n"
 """The disk tells that it has room, so that it is full in the midst of writing instead of before computing."""
@@ -40,9 +39,6 @@ os.fsync, os.open = fsync, opened
 """
 """In the place of a small disk, where none can be mounted or the result has no ten pages: full from one synchronised
 write to the next."""
-LONG = ("run --trials", "fit --free", "discover --bench", "check", "check --accept", "blind", "reproduce",
-        "run, steps kept")  # fmt: skip
-"""Verbs that are left out of the full disks: each takes half a minute and more."""
 
 
 @dataclass
@@ -77,8 +73,8 @@ def usual_result(scene: Path, command: Command) -> dict[str, Any]:
     return result(scene, command)
 
 
-def full_disks(scene: Path, command: Command, until: float) -> Environment:
-    """A command on a disk that is full after a tenth, two tenths... of what it writes."""
+def full_disks(scene: Path, command: Command, until: float, points: int) -> Environment:
+    """A command on a disk that is full after so many equal parts of what it writes, from none on."""
     found, small, kept = Environment(), scene / "small", scene / "kept"
     moved = {out: f"small/{out}" for out in command.outs}
     words = tuple(moved.get(word, "small/p" if word == "p" else word) for word in command.words)
@@ -87,14 +83,14 @@ def full_disks(scene: Path, command: Command, until: float) -> Environment:
     usual = usual_result(scene, inside)
     need = sum(_pages(scene / out) for out in inside.outs)
     shutil.rmtree(small)
-    for point in range(POINTS):
+    for point in range(points):
         if time.monotonic() > until or command.verb == "clean":
             break
         small.mkdir()
         kept.mkdir()
         before = contents(scene, ("small", "kept"))
-        size = max(1, point * need // POINTS) * PAGE
-        mounted = need >= POINTS and _mount(small, size)
+        size = max(1, point * need // points) * PAGE
+        mounted = need >= points and _mount(small, size)
         fault = ROOM + HERE.format(place=str(kept)) + ("" if mounted else FULL.format(at=point))
         ended = run(inside, scene, before=fault)
         _judge_full(found, inside, scene, usual, ended.code, ended.err, f"{command.verb}, point {point}")

@@ -167,13 +167,13 @@ class Kind:
     read: Callable[[Path], object]
 
 
-def torture(folder: Path, until: float, seed: int, each: int) -> dict[str, Count]:
-    """Give `each` changed files of every kind to what reads them, until the time is over."""
+def torture(folder: Path, until: float, seed: int, each: int, names: tuple[str, ...] = ("",)) -> dict[str, Count]:
+    """Give `each` changed files of the kinds that begin with `names` to what reads them, until the time is over."""
     from tests.torture.kinds import kinds
 
     counts: dict[str, Count] = {}
     for kind in kinds(folder):
-        if time.monotonic() < until:
+        if kind.name.startswith(names) and time.monotonic() < until:
             counts[kind.name] = Count()
             _try(kind, folder, counts[kind.name], until, seed, each)
             for text in counts[kind.name].failures:

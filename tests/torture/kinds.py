@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import io
-import json
 import shutil
 import sys
 from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
+from json import dumps, loads
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
 from tests.torture.commands import CONTRACT, MAPS, is_plain
 from tests.torture.inputs import Kind, RefusedError, changed_bytes, changed_json, changed_rows, changed_table
-from tests.torture.scene import CAMERA, GATE, PAD, trial_text
+from tests.torture.scene import CAMERA, GATE, PAD, attempt_text, trial_text
 
 ROOT = Path(__file__).parents[2]
 MARKERS = "time_s,marker,x_mm,y_mm\n" + "".join(f"{0.1 * t:.1f},{m},{m}.5,0\n" for t in range(10) for m in range(3))
@@ -48,6 +48,12 @@ BASELINE = {
     "accuracy": {"w.max_deformation_mm.dermis": {"value": 4.4, "unit": "mm", "reason": None}},
     "timing": {"wave.frame": {"ratios": [3.6, 3.2, 3.4]}},
 }  # fmt: skip
+CHECKED = {
+    "schema": 1, "made": "2026-11-23T02:52:27+00:00", "revision": "a916", "machine": "a", "against": None,
+    "passed": True, "accuracy": {"w.max_deformation_mm.dermis": 4.4},
+    "timing": {"wave.frame": {"ratio": 3.4, "ci95": [3.2, 3.6], "allowed": 3.9}},
+}  # fmt: skip
+"""A line of the history of the gate's checks."""
 
 
 def kinds(folder: Path) -> list[Kind]:
@@ -55,7 +61,15 @@ def kinds(folder: Path) -> list[Kind]:
     (folder / "s").mkdir(parents=True, exist_ok=True)
     (folder / "s" / "a.csv").write_text(trial_text(40))
     (folder / "s" / "a_markers.csv").write_text(MARKERS)
-    return [*_of_models(folder), *_of_sessions(folder), *_of_results(folder), *_of_bench(folder), *_of_others(folder)]
+    return [
+        *_of_models(folder),
+        *_of_sessions(folder),
+        *_of_results(folder),
+        *_of_solvers(),
+        *_of_bench(folder),
+        *_of_presses(folder),
+        *_of_others(folder),
+    ]
 
 
 def _of_models(folder: Path) -> list[Kind]:
@@ -123,7 +137,7 @@ def _of_results(folder: Path) -> list[Kind]:
 
     finished = folder.parent / "finished"
     scenario = load_scenario(str(finished / "scenario.toml"))
-    result = json.loads((finished / "results.json").read_text())
+    result = loads((finished / "results.json").read_text())
     deep = (finished / "tables" / "max_deformation.csv").read_text()
     timing = (finished / "tables" / "timing.csv").read_text()
     (folder / "run").mkdir(exist_ok=True)
@@ -131,16 +145,64 @@ def _of_results(folder: Path) -> list[Kind]:
     return [
         Kind("reference csv", "r.csv", changed_rows(deep), lambda path: read_reference(path, scenario)),
         Kind("results.json", "run/results.json", changed_json(result), lambda path: read_run(_with(finished, path))),
-        Kind("results.json bytes", "run/results.json", changed_bytes(json.dumps(result).encode()),
+        Kind("results.json bytes", "run/results.json", changed_bytes(dumps(result).encode()),
              lambda path: read_run(_with(finished, path))),
         Kind("run's table", "run/tables/max_deformation.csv", changed_rows(deep),
              lambda path: read_run(_with(finished, path))),
         Kind("run's timing", "run/tables/timing.csv", changed_rows(timing),
              lambda path: read_run(_with(finished, path))),
         Kind("result in a dossier", "run/results.json", changed_json(result), _dossier(finished)),
+        Kind("gate's history", "checks.jsonl",
+             changed_table(CHECKED, lambda one: f"{dumps(CHECKED)}\n{dumps(one)}\n" * 3),
+             _cli("benchmark", "report", "{}", "--out", "drawn", out="drawn")),
         Kind("baseline.json", "b.json", changed_json(BASELINE), read_baseline),
-        Kind("baseline.json bytes", "b.json", changed_bytes(json.dumps(BASELINE).encode()), read_baseline),
+        Kind("baseline.json bytes", "b.json", changed_bytes(dumps(BASELINE).encode()), read_baseline),
     ]  # fmt: skip
+
+
+def _of_solvers() -> list[Kind]:
+    """What other finite-element codes print, given as `--reference`."""
+    from benchmark.models import read_reference
+    from tests.benchmark.models.fea_results.test_solver_results import SCENARIO, TEXTS
+
+    return [
+        Kind(f"reference {name}", f"solver/{name}", changed_bytes(text.encode()),
+             lambda path: read_reference(path, SCENARIO))
+        for name, text in TEXTS.items()
+    ]  # fmt: skip
+
+
+def _of_presses(folder: Path) -> list[Kind]:
+    """Records of a hand, messages of a page that is open, and a recording that grows while it is watched."""
+    from benchmark.files import load_scenario
+    from benchmark.press.live_capture import LiveCapture
+    from benchmark.press.press_server import FemOnDemand
+    from benchmark.press.pressed_specimen import pressed_specimen
+
+    asked = FemOnDemand([pressed_specimen(load_scenario("skin-5N", {"fem.mesh": "coarse", "load.peak": "2 N"}))])
+
+    def answered(path: Path) -> None:
+        answer = asked.answer(path.read_bytes().decode("utf-8", "replace"))
+        dumps(answer, allow_nan=False)
+        if "error" in answer:
+            raise RefusedError(answer["error"])
+
+    def watched(path: Path) -> None:
+        live = LiveCapture(path)
+        for _ in range(3):
+            if "error" in (news := live.look()):
+                raise RefusedError(news["error"])
+
+    message = {"press": 0, "history": [[0.1, 1e-4], [0.2, 2e-4]], "strength": [0.3], "time_s": [1.0]}
+    record, cut = attempt_text(0.05, 120), (folder.parent / "cut.mcap").read_bytes()
+    assess = _cli("benchmark", "assess", "{}", "--out", "assessed", out="assessed")
+    return [
+        Kind("record to assess", "hand/attempt.csv", changed_rows(record), assess),
+        Kind("record to assess, bytes", "hand/attempt.csv", changed_bytes(record.encode()), assess),
+        Kind("message to press", "message.json", changed_json(message), answered),
+        Kind("message to press, bytes", "message.json", changed_bytes(dumps(message).encode()), answered),
+        Kind("recording, watched", "live/trial_001.mcap.part", changed_bytes(cut), watched),
+    ]
 
 
 def _of_bench(folder: Path) -> list[Kind]:
@@ -176,6 +238,7 @@ def _of_bench(folder: Path) -> list[Kind]:
 def _of_others(folder: Path) -> list[Kind]:
     """Surfaces, and files of instruments."""
     from fem import read_surface
+    from tests.instruments.samples import SAMPLES
 
     def surface(path: Path) -> object:
         return read_surface(path, "mm")
@@ -184,7 +247,7 @@ def _of_others(folder: Path) -> list[Kind]:
         Kind("surface obj", "s.obj", changed_bytes(SURFACE.encode()), surface),
         Kind("surface stl", "s.stl", changed_bytes(f"solid a\n{FACETS}endsolid a\n".encode()), surface),
         Kind("surface ply", "s.ply", changed_bytes(PLY.encode()), surface),
-        *(_of_instrument(name, folder) for name in ("zwick_text", "bluehill_report", "cellscale", "matlab", "parquet")),
+        *(_of_instrument(name, folder) for name in SAMPLES),
     ]
 
 

@@ -110,12 +110,20 @@ def test_the_command_writes_tables_and_a_page(groups, tmp_path, capsys):
     assert (tmp_path / "out" / "attempts.csv").read_text().count("\n") == 13
 
 
+HEAD = "time_s,tool,x_mm,y_mm,depth_mm,force_N\n"
+
+
 @pytest.mark.parametrize(
     ("text", "word"),
     [
         ("time_s,tool\n0,0\n", "x_mm"),
         ("time_s,tool,x_mm,y_mm,depth_mm,force_N\n0,0,1,1,a,0\n", "depth_mm in row 2"),
         ("time_s,tool,x_mm,y_mm,depth_mm,force_N\n0,0,1,1,0,0\n", "at least 20"),
+        (HEAD, "no row"),
+        (HEAD + "0,0.5,1,1,0,0\n", "tool in row 2 is no whole number"),
+        (HEAD + "0,0,1e308,1,0,0\n", "x_mm in row 2"),
+        (HEAD + "".join(f"{0.001 * k},0,1,1,0,0\n" for k in range(30)), "time_s spans 0.029 s"),
+        (HEAD + "".join(f"{1e6 * k},0,1,1,0,0\n" for k in range(30)), "time_s spans 2.9e.07 s"),
     ],
 )
 def test_a_record_that_cannot_be_used_is_refused(tmp_path, text, word):

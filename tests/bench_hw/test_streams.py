@@ -1,0 +1,68 @@
+"""Standard streams that are closed, broken or full, in processes of their own."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+UNSAID = "error: standard output cannot be written: {}; results that are in their place stay there\n"
+SAY = """
+import sys
+from bench_hw.streams import end, open_streams, unsaid
+open_streams()
+file = open("result.csv", "w")
+print("to standard error", file=sys.stderr)
+code = 0
+try:
+    print("to standard output")
+    sys.stdout.flush()
+except OSError:
+    print(f"error: {unsaid()}", file=sys.stderr)
+    code = 2
+file.write("whole")
+file.close()
+sys.exit(end(code))
+"""
+
+
+def said(folder, shell, program=SAY):
+    """Exit code, standard error, and what was written, of a program whose streams a shell has changed."""
+    command = f'"$0" -c "$1" {shell}'
+    environment = {**os.environ, "PYTHONPATH": str(Path.cwd())}
+    environment.pop("PYTHONUNBUFFERED", None)
+    ran = subprocess.run(
+        ["sh", "-c", command, sys.executable, program], cwd=folder, env=environment, capture_output=True, text=True
+    )
+    return ran.returncode, ran.stderr, (folder / "result.csv").read_text()
+
+
+@pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-", "<&- >&- 2>&-"])
+def test_what_is_closed_is_no_error_and_no_file_takes_its_place(tmp_path, closed):
+    err = "" if "2>&-" in closed else "to standard error\n"
+    assert said(tmp_path, closed) == (0, err, "whole")
+
+
+def test_a_full_standard_error_is_no_error(tmp_path):
+    assert said(tmp_path, "2> /dev/full") == (0, "", "whole")
+
+
+def test_a_full_standard_output_is_told_once(tmp_path):
+    err = "to standard error\n" + UNSAID.format("No space left on device")
+    assert said(tmp_path, "> /dev/full") == (2, err, "whole")
+
+
+def test_a_standard_output_that_is_full_at_the_very_end_is_told(tmp_path):
+    program = SAY.replace("    sys.stdout.flush()\n", "")
+    err = "to standard error\n" + UNSAID.format("No space left on device")
+    assert said(tmp_path, "> /dev/full", program) == (2, err, "whole")
+
+
+@pytest.mark.parametrize("words", [("benchmark", "--help"), ("bench_hw", "--help")])
+def test_a_reader_that_went_away_is_told_and_no_fault_of_the_program(words):
+    reader, writer = os.pipe()
+    os.close(reader)
+    ran = subprocess.run([sys.executable, "-m", *words], stdout=writer, stderr=subprocess.PIPE, text=True)
+    os.close(writer)
+    assert (ran.returncode, ran.stderr) == (2, UNSAID.format("Broken pipe"))
