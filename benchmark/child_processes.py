@@ -9,6 +9,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import NoReturn
@@ -58,6 +59,7 @@ def start_child(process: BaseProcess) -> None:
         if not hasattr(signal, "pthread_sigmask"):
             process.start()
             return
+        resource_tracker.ensure_running()  # begun with the process, it would let the process hear again what is blocked
         before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # children begin with what is blocked here
         try:
             process.start()

@@ -1,8 +1,8 @@
 """`VirtualBench`: a specimen under a tool on an actuator, as it was at every instant; the twins ask it.
 
 Nothing runs by itself: asking for an instant moves the bench on to it, in steps of `step`. Safe to use from several
-threads. The actuator moves towards its target at its speed, with limited acceleration, and stops as soon as
-its own reading, in whole counts, is inside the dead band around the target, as the LAC board does. Only the last seconds are
+threads. The actuator moves towards its target at its speed, with limited acceleration, and stops as soon as its own
+reading, in whole counts, is inside the dead band around the target, as the LAC board does. Only the last seconds are
 kept, so that an hour takes no more memory than a minute.
 """
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
@@ -20,6 +21,7 @@ from bench_hw.trial_file.records import PressAxis
 from bench_hw.trial_file.scan import read_messages
 
 SCHEMA = 1
+FRAMES = "frames"
 ExportColumns = Mapping[str, NDArray[Any]]
 _ENDINGS = {"jpeg": "jpg", "png": "png", "webp": "webp"}
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
@@ -111,12 +113,10 @@ def export_trial(path: Path | str, out: Path | str, options: ExportOptions | Non
     files = {name: out / f"{name}.csv" for name in tables}
     parquet = {name: out / f"{name}.parquet" for name in tables} if options.parquet else {}
     _check_free([*files.values(), *parquet.values()], options)
-    if options.frames and not options.overwrite and (out / "frames").exists():
-        raise TrialFileError(
-            out / "frames", "the pictures exist; give another folder, or `--overwrite` to replace them"
-        )
+    if options.frames and not options.overwrite and (out / FRAMES).exists():
+        raise TrialFileError(out / FRAMES, "the pictures exist; give another folder, or `--overwrite` to replace them")
     try:
-        with _made(out):
+        with _all_or_none(out, [*files.values(), *parquet.values()], options):
             frames = _write_frames(contents, out) if options.frames else 0
             with ExitStack() as together:  # all are written before the first is put in place
                 for name, columns in tables.items():
@@ -136,14 +136,18 @@ def export_trial(path: Path | str, out: Path | str, options: ExportOptions | Non
 
 
 @contextmanager
-def _made(folder: Path) -> Iterator[None]:
-    """Take a folder away again that was not there before, if nothing came to be in it."""
+def _all_or_none(folder: Path, files: list[Path], options: ExportOptions) -> Iterator[None]:
+    """Take away again what was put in place, and a folder that was not there before, if not everything could be."""
     there = folder.exists()
     try:
         yield
     except BaseException:
-        if not there:
-            with suppress(OSError):
+        with suppress(OSError):
+            for file in files if not options.overwrite else ():  # none of them was there before
+                file.unlink(missing_ok=True)
+            if options.frames and not options.overwrite:
+                shutil.rmtree(folder / FRAMES, ignore_errors=True)
+            if not there:
                 folder.rmdir()
         raise
 
@@ -240,7 +244,7 @@ def _camera_table(contents: TrialContents, with_files: bool) -> ExportColumns:
 
 def frame_name(row: int, kind: str) -> str:
     """Give the name of the file of a picture, by its row and the name of its encoding."""
-    return f"frames/{row:06d}.{_ENDINGS.get(kind, 'bin')}"
+    return f"{FRAMES}/{row:06d}.{_ENDINGS.get(kind, 'bin')}"
 
 
 def text_cells(columns: ExportColumns) -> dict[str, list[str]]:

@@ -48,6 +48,24 @@ def test_children_get_one_thread_and_the_parent_keeps_its_own(monkeypatch: pytes
     assert "MKL_NUM_THREADS" not in os.environ
 
 
+FIRST = """
+import multiprocessing, os, signal, sys
+from benchmark.child_processes import start_child
+if __name__ == "__main__":
+    child = multiprocessing.get_context("spawn").Process(target=os.kill, args=(0, signal.SIGINT))
+    signal.signal(signal.SIGINT, lambda *_: None)
+    os.setpgid(0, 0)
+    start_child(child)
+    child.join()
+    sys.exit(child.exitcode)
+"""
+
+
+def test_the_first_child_of_a_program_is_deaf_too() -> None:
+    ran = subprocess.run([sys.executable, "-c", FIRST], capture_output=True, text=True, timeout=60)
+    assert (ran.returncode, ran.stderr) == (0, "")
+
+
 def _blocked(answers: "multiprocessing.SimpleQueue[bool]") -> None:
     os.kill(os.getpid(), signal.SIGINT)
     answers.put(signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ()))

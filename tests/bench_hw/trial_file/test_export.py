@@ -159,3 +159,23 @@ def test_an_interrupted_export_leaves_no_table_that_the_next_one_would_refuse(
     assert not out.exists()
     export_trial(trial, out)
     assert (out / "force.csv").is_file()
+
+
+@pytest.mark.parametrize("at", [1, 2, 3, 4])
+@pytest.mark.parametrize("there", [False, True])
+def test_a_disk_that_fills_between_two_tables_leaves_none(three_seconds, tmp_path, monkeypatch, at, there):
+    out, real, done = tmp_path / "out", Path.replace, []
+    if there:
+        out.mkdir()
+        (out / "notes.txt").write_text("mine")
+
+    def replace(self, target):
+        done.append(target)
+        if len(done) == at:
+            raise OSError(28, "No space left on device")
+        return real(self, target)
+
+    monkeypatch.setattr(Path, "replace", replace)
+    with pytest.raises(TrialFileError, match="No space left"):
+        export_trial(three_seconds, out, ExportOptions(frames=True))
+    assert [path.name for path in out.rglob("*")] == ["notes.txt"] if there else not out.exists()
