@@ -11,7 +11,6 @@ import signal
 import sys
 import time
 import warnings
-from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -178,6 +177,7 @@ def torture(folder: Path, until: float, seed: int, each: int, names: tuple[str, 
             _try(kind, folder, counts[kind.name], until, seed, each)
             for text in counts[kind.name].failures:
                 print(f"{kind.name}: {text}", file=sys.stderr, flush=True)
+            print(f"  {' | '.join(_row(kind.name, counts[kind.name]))}", file=sys.stderr, flush=True)
     return counts
 
 
@@ -254,20 +254,12 @@ def _bounded() -> Iterator[None]:
 
 def rows(counts: dict[str, Count]) -> list[tuple[str, ...]]:
     """The table by kind."""
-    body = [
-        (
-            name,
-            str(c.taken + c.refused + len(c.failures)),
-            str(c.taken),
-            str(c.refused),
-            f"{c.slowest:.1f}",
-            str(len(c.failures)),
-        )
-        for name, c in counts.items()
-    ]
-    total = Counter[int]()
-    for row in body:
-        total.update({k: int(row[k]) for k in (1, 2, 3, 5)})
-    slowest = max((c.slowest for c in counts.values()), default=0.0)
-    last = ("all", str(total[1]), str(total[2]), str(total[3]), f"{slowest:.1f}", str(total[5]))
+    body = [_row(name, each) for name, each in counts.items()]
+    totals = [str(sum(int(row[k]) for row in body)) for k in (1, 2, 3, 5)]
+    slowest = max((each.slowest for each in counts.values()), default=0.0)
+    last = ("all", *totals[:3], f"{slowest:.1f}", totals[3])
     return [("kind", "files", "taken", "refused", "slowest, s", "failures"), *body, last]
+
+
+def _row(name: str, c: Count) -> tuple[str, ...]:
+    return name, str(c.files), str(c.taken), str(c.refused), f"{c.slowest:.1f}", str(len(c.failures))
