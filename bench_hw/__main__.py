@@ -3,12 +3,11 @@
 import os
 import sys
 
-from bench_hw.safe_path import leave_current_folder, speak_utf8, tell
-from bench_hw.streams import end, open_streams
+from bench_hw.starting import end, leave_current_folder, open_streams, speak_utf8, tell
 
 
 def start() -> None:
-    """Run the command line with modules from the installation alone; see `bench_hw.safe_path` and `streams`."""
+    """Run the command line with modules from the installation alone; see `bench_hw.starting`."""
     open_streams()
     speak_utf8()
     tell(leave_current_folder(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), sys.argv)

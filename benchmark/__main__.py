@@ -5,11 +5,10 @@ import sys
 
 
 def start() -> int:
-    """Run the command line with modules from the installation alone; see `bench_hw.safe_path` and `streams`."""
+    """Run the command line with modules from the installation alone; see `bench_hw.starting`."""
     root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     sys.path.insert(0, root)
-    from bench_hw.safe_path import leave_current_folder, speak_utf8, tell
-    from bench_hw.streams import end, open_streams
+    from bench_hw.starting import end, leave_current_folder, open_streams, speak_utf8, tell
 
     sys.path.remove(root)
     open_streams()

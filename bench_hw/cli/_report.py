@@ -13,7 +13,7 @@ import typer
 
 from bench_hw.errors import BenchError
 from bench_hw.optional import what_is_missing
-from bench_hw.streams import unsaid
+from bench_hw.starting import unsaid
 
 EXIT_MISSING = 2
 EXIT_BUG = 70

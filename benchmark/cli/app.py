@@ -14,7 +14,7 @@ from typing import Annotated
 
 import typer
 
-from bench_hw.streams import unsaid
+from bench_hw.starting import unsaid
 from benchmark.cli import (
     blind,
     check,

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from bench_hw.streams import end, open_streams
+from bench_hw.starting import end, open_streams
 from reports.manifest import MANIFEST
 
 LONGEST = 900.0

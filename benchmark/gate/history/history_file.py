@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+import math
 import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -86,10 +87,24 @@ def _entry(line: bytes) -> HistoryEntry | None:
         if table.pop("schema") != HISTORY_SCHEMA:
             return None
         entry = HistoryEntry(**table)
-        usable = all(each["ratio"] > 0.0 for each in entry.timing.values())
-    except (ValueError, TypeError, KeyError, AttributeError):
+        usable = _is_whole(entry)
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
         return None
     return entry if usable else None
+
+
+def _is_whole(entry: HistoryEntry) -> bool:
+    """Whether everything in an entry is of its kind; raises for what is of no such kind at all."""
+    words = (entry.made, entry.machine, entry.revision or "", entry.against or "")
+    numbers = [value for value in entry.accuracy.values() if value is not None]
+    for each in entry.timing.values():
+        numbers += [each["ratio"], *(each.get("ci95") or ()), each.get("allowed") or 0.0]
+    return (
+        all(isinstance(word, str) for word in words)
+        and (entry.passed is None or isinstance(entry.passed, bool))
+        and all(isinstance(number, int | float) and math.isfinite(number) for number in numbers)
+        and all(each["ratio"] > 0.0 and len(each.get("ci95") or (0, 0)) == 2 for each in entry.timing.values())
+    )
 
 
 def _ends_with_newline(path: Path) -> bool:

@@ -57,5 +57,23 @@ def test_lines_of_something_else_are_counted(tmp_path: Path, line: str) -> None:
     assert read_history(path) == ([ENTRY], 1)
 
 
+@pytest.mark.parametrize(
+    "odd",
+    [
+        {"passed": -0.05}, {"made": 3}, {"machine": None}, {"against": ["5 mm"]},
+        {"accuracy": {"skin_mm": "/dev/zero"}},
+        {"accuracy": {"skin_mm": float("inf")}}, {"accuracy": 7}, {"timing": {"frame": {"ratio": "2"}}},
+        {"timing": {"frame": {"ratio": 2.0, "ci95": [1.0], "allowed": None}}},
+        {"timing": {"frame": {"ratio": 2.0, "ci95": 7, "allowed": None}}}, {"accuracy": {"skin_mm": 10**400}},
+    ],
+)  # fmt: skip
+def test_lines_whose_values_are_of_another_kind_are_counted(tmp_path: Path, odd: dict[str, object]) -> None:
+    path = tmp_path / "h.jsonl"
+    append(path, ENTRY)
+    with path.open("a") as stream:
+        stream.write(json.dumps({"schema": 1, **vars(ENTRY), **odd}) + "\n")
+    assert read_history(path) == ([ENTRY], 1)
+
+
 def test_it_stands_beside_the_baseline() -> None:
     assert history_path(Path("ci/b.json")) == Path("ci/b.history.jsonl")

@@ -1,15 +1,20 @@
-"""Modules come from the installation, not from files of the same names in the current folder.
+"""How a program of ours starts: with modules from the installation, names that are text, and streams that are there.
 
 `python -m` puts the current folder first on the path of modules, where a `fem.py` or `numpy.py` of the user's would
 come before ours. `leave_current_folder` puts it last: a user's own modules are still found, in the place of nothing.
-Nothing is imported here at the top that is not there since the start of Python.
+
+A program may be started with its standard input, output or error closed. The next file it opens then has the number of
+that stream, and what a library says there would stand in the file: `open_streams`. One that is full, or whose reader
+went away, is told by name: `end`. Nothing is imported here at the top that is not there since the start of Python.
 """
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 
+EXIT_UNSAID = 2
 NAMED = 5
 """Shadowing names that are told."""
 
@@ -48,7 +53,7 @@ def speak_utf8() -> None:
     """
     if os.name == "posix" and not sys.flags.utf8_mode and sys.getfilesystemencoding() != "utf-8":
         os.environ["PYTHONUTF8"] = "1"
-        try:  # noqa: SIM105 - nothing may be imported here
+        try:
             os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
         except OSError:
             pass
@@ -88,3 +93,77 @@ def _shadowing(here: str, others: list[str]) -> list[str]:
 def _is_there(spec: object) -> bool:
     """Whether a module was found that is more than a folder."""
     return getattr(spec, "origin", None) is not None
+
+
+class _Raw(io.FileIO):
+    """A standard stream that keeps the fault it met; one that is `deaf` goes on as if nothing had happened."""
+
+    def __init__(self, handle: int, *, deaf: bool) -> None:
+        super().__init__(handle, "w", closefd=False)
+        self.fault: OSError | None = None
+        self._deaf = deaf
+
+    def write(self, data: memoryview, /) -> int:  # type: ignore[override]
+        try:
+            return super().write(data)
+        except OSError as error:
+            self.fault = error
+            if self._deaf:
+                return len(data)
+            raise
+
+
+def open_streams() -> None:
+    """Open closed standard streams onto nothing; no command fails by words that standard error cannot take."""
+    for handle in range(3):
+        try:
+            os.fstat(handle)
+        except OSError:
+            _onto_nothing(handle)
+    if sys.stdin is None:
+        sys.stdin = open(0, encoding="utf-8", closefd=False)
+    sys.stdout = _wrapped(sys.stdout, _Raw(1, deaf=False))
+    sys.stderr = _wrapped(sys.stderr, _Raw(2, deaf=True), line_buffering=True)
+
+
+def _wrapped(old: object, raw: _Raw, *, line_buffering: bool = False) -> io.TextIOWrapper:
+    """A text stream as Python makes it, over `raw`."""
+    return io.TextIOWrapper(
+        io.BufferedWriter(raw),  # type: ignore[type-var]
+        encoding=getattr(old, "encoding", "utf-8"),
+        errors=getattr(old, "errors", "backslashreplace"),
+        line_buffering=line_buffering or raw.isatty(),
+        write_through=bool(getattr(old, "write_through", False)),
+    )
+
+
+def end(code: int) -> int:
+    """Pass on what is left for standard output, and give the exit code: 2, and why, where that cannot be done."""
+    known = unsaid() is not None
+    try:
+        sys.stdout.flush()
+    except (OSError, ValueError):  # the fault is kept, or it is closed
+        pass
+    fault = unsaid()
+    if fault is None:
+        return code
+    _onto_nothing(1)  # or Python would fail by it again at its very end
+    if not known or not code:
+        print(f"error: {fault}", file=sys.stderr)
+    return code or EXIT_UNSAID
+
+
+def unsaid() -> str | None:
+    """In words, what kept standard output from being written; None where nothing did."""
+    stream = getattr(sys.stdout, "wrapped", sys.stdout)  # the command-line library wraps a broken pipe
+    fault = getattr(getattr(getattr(stream, "buffer", None), "raw", None), "fault", None)
+    if fault is None:
+        return None
+    return f"standard output cannot be written: {fault.strerror}; results that are in their place stay there"
+
+
+def _onto_nothing(handle: int) -> None:
+    nothing = os.open(os.devnull, os.O_RDWR)
+    if nothing != handle:
+        os.dup2(nothing, handle)
+        os.close(nothing)

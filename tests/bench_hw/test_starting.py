@@ -10,7 +10,7 @@ import pytest
 UNSAID = "error: standard output cannot be written: {}; results that are in their place stay there\n"
 SAY = """
 import sys
-from bench_hw.streams import end, open_streams, unsaid
+from bench_hw.starting import end, open_streams, unsaid
 open_streams()
 file = open("result.csv", "w")
 print("to standard error", file=sys.stderr)
