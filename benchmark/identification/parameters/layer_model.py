@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmark.identification.parameters.presses.marker_rings import MarkerRows
 from benchmark.identification.sheet_model import Relaxation, relaxed
-from benchmark.identification.trial_data import TrialData, reduced, rows_of
+from benchmark.identification.trial_data import TrialData, group_bounds, reduced, rows_of
 from benchmark.identification.trial_features import ContactRange
 from benchmark.response.force_curve import Array
 from benchmark.response.noise import Whitener
@@ -100,9 +100,10 @@ class FitTrial:
     @staticmethod
     def of(trial: TrialData, press: int, touch: ContactRange, onset: float = 0.0) -> FitTrial:
         """A measured trial with rows averaged in groups."""
-        group = -(-trial.rows // MOST_ROWS)
-        starts = np.arange(0, trial.rows, group)
-        count = np.diff(np.append(starts, trial.rows)).astype(np.float64)
+        count = np.ones(trial.rows)
+        if trial.rows > MOST_ROWS:
+            starts, ends = group_bounds(trial.depth, MOST_ROWS)
+            count = (ends - starts).astype(np.float64)
         return FitTrial(reduced(trial, MOST_ROWS), count, press, touch, onset)
 
     def up_to(self, depth: float) -> FitTrial:

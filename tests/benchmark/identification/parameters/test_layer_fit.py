@@ -7,10 +7,13 @@ from benchmark.errors import InputError
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.identification.parameters.free_parameters import value_of
 from benchmark.identification.parameters.layer_fit import USUAL_SCATTER
+from benchmark.identification.parameters.layer_model import FitTrial
 from benchmark.identification.parameters.profile_likelihood import profile
 from benchmark.identification.parameters.session_problem import _specimens
 from benchmark.identification.sheet_model import Relaxation, relaxed
-from tests.benchmark.identification.parameters.conftest import MODULI, TISSUE, TOOLS, TRUTH
+from benchmark.identification.trial_data import TrialData, rows_of
+from benchmark.identification.trial_features import contact_range
+from tests.benchmark.identification.parameters.conftest import MODULI, PLAIN, TISSUE, TOOLS, TRUTH
 
 
 def errors(found):
@@ -91,3 +94,14 @@ def test_specimens_that_trials_are_of_are_told_by_a_pattern() -> None:
     for pattern, said in (("(", "no regular expression"), ("a", "a group"), ("(a)", "does not match")):
         with pytest.raises(InputError, match=said):
             _specimens(trials, wish.model_copy(update={"specimen_pattern": pattern}))
+
+
+def test_rows_of_a_trial_of_many_cycles_hold_as_many_samples_as_they_are_means_of() -> None:
+    """A stroke is followed by forty rows at least, so that of ten cycles some stand for all."""
+    time = np.linspace(0.0, 40.0, 1999)
+    depth = 1e-3 * (1.0 - np.cos(2.0 * np.pi * time / 4.0))
+    trial = TrialData("many", "one", time, depth, 1e3 * depth, PLAIN)
+    fitted = FitTrial.of(trial, 0, contact_range(trial.depth, trial.force))
+    assert fitted.count.size == fitted.data.rows
+    assert 0.2 * time.size < fitted.count.sum() < 0.5 * time.size
+    assert FitTrial.of(rows_of(trial, slice(0, 100)), 0, fitted.touch).count.tolist() == [1.0] * 100
