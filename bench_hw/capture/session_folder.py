@@ -9,6 +9,7 @@ import json
 import shutil
 import tempfile
 import tomllib
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -148,16 +149,26 @@ class SessionFolder:
 
     def _check_writable(self) -> None:
         try:
+            free = self._free_bytes()
+            if free < _LEAST_FREE:
+                raise InputError(
+                    f"{self.path}: {free / 1e6:.0f} MB free on that disk; allowed is {_LEAST_FREE / 1e6:.0f} MB or more"
+                )
+        except InputError:
+            if self._made:
+                with suppress(OSError):
+                    self.path.rmdir()
+            raise
+
+    def _free_bytes(self) -> int:
+        """Room on the folder's disk; it is made where it is missing, and a byte is written to see that it can be."""
+        try:
             self.path.mkdir(parents=True, exist_ok=True)
             with tempfile.TemporaryFile(dir=self.path) as probe:
                 probe.write(b"x")
-            free = shutil.disk_usage(self.path).free
+            return shutil.disk_usage(self.path).free
         except OSError as error:
             raise InputError(f"{self.path}: cannot be written ({error.strerror}); give another --out") from error
-        if free < _LEAST_FREE:
-            raise InputError(
-                f"{self.path}: {free / 1e6:.0f} MB free on that disk; allowed is {_LEAST_FREE / 1e6:.0f} MB or more"
-            )
 
 
 def _numbered(number: int) -> str:

@@ -1,6 +1,7 @@
 """`capture` on the command line."""
 
 import json
+import shutil
 import tomllib
 
 import pytest
@@ -162,6 +163,14 @@ def test_a_place_that_cannot_be_written_is_exit_2(run, quick, rig, tmp_path):
     ran = run("capture", quick, "--rig", rig(), "--out", tmp_path / "file" / "s", "--fast")
     assert ran.exit_code == 2
     assert "cannot be written" in ran.stderr
+
+
+def test_a_full_disk_leaves_no_empty_folder(run, quick, rig, tmp_path, monkeypatch):
+    monkeypatch.setattr("shutil.disk_usage", lambda _: shutil._ntuple_diskusage(1 << 40, 1 << 40, 0))
+    ran = run("capture", quick, "--rig", rig(), "--out", tmp_path / "s", "--fast")
+    assert ran.exit_code == 2
+    assert "0 MB free on that disk" in ran.stderr
+    assert not (tmp_path / "s").exists()
 
 
 def test_what_a_person_must_do_first_is_said(run, quick, rig, tmp_path):
