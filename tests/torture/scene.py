@@ -10,6 +10,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from bench_hw.storage.folder_lock import SIGN
 from tests.torture.commands import COMMANDS, Command, run
@@ -189,7 +190,7 @@ def _boards(folder: Path) -> None:
         )
         picture = cv2.GaussianBlur(cv2.resize(large, (640, 480), interpolation=cv2.INTER_AREA), (0, 0), 0.7)
         noisy = picture + draw.normal(0.0, 2.0, picture.shape)
-        cv2.imwrite(str(folder / f"view_{view:02d}.png"), np.clip(noisy, 0, 255).astype(np.uint8))
+        _write_picture(folder / f"view_{view:02d}.png", np.clip(noisy, 0, 255).astype(np.uint8))
 
 
 def _pictures(folder: Path) -> None:
@@ -200,7 +201,12 @@ def _pictures(folder: Path) -> None:
             for column in range(6):
                 place = (int(100 + 80 * column + frame), int(120 + 100 * row))
                 cv2.circle(picture, place, 12, 20, -1, cv2.LINE_AA)
-        cv2.imwrite(str(folder / f"frame_{frame:03d}.png"), picture)
+        _write_picture(folder / f"frame_{frame:03d}.png", picture)
+
+
+def _write_picture(path: Path, picture: NDArray[np.uint8]) -> None:
+    """Not by OpenCV itself, which a path of bytes that are no text crashes."""
+    path.write_bytes(cv2.imencode(path.suffix, picture)[1].tobytes())
 
 
 def contents(folder: Path, without: tuple[str, ...] = ()) -> dict[str, str]:

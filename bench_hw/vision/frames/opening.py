@@ -184,6 +184,10 @@ class VideoFrames:
         return (f"the video ends after {self._given} of the {self.expected} pictures it should have",)
 
     def _opened(self) -> cv2.VideoCapture:
+        if any(
+            "\ud800" <= letter <= "\udfff" for letter in str(self._path)
+        ):  # OpenCV would end the program by bytes that are no text
+            raise InputError(f"{self._path}: no film is read whose path has bytes that are no text; rename it")
         try:
             video = cv2.VideoCapture(str(self._path), cv2.CAP_FFMPEG)
         except cv2.error as error:

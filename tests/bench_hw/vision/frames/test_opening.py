@@ -1,5 +1,9 @@
 """Folders, patterns and single pictures."""
 
+import os
+import shutil
+import sys
+
 import cv2
 import numpy as np
 import pytest
@@ -95,6 +99,15 @@ def test_a_cut_video_gives_what_is_there_and_says_so(video):
     count = len(list(source.frames()))
     assert 0 < count < 30
     assert source.notes() == (f"the video ends after {count} of the 30 pictures it should have",)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names are text there")
+def test_a_video_whose_path_is_no_text_is_refused(tmp_path, video):
+    folder = tmp_path / os.fsdecode(b"caf\xe9")
+    folder.mkdir()
+    shutil.copy(video(pictures()), folder / "film.avi")
+    with pytest.raises(InputError, match="no text; rename it"):
+        VideoFrames(folder / "film.avi")
 
 
 def test_what_is_no_video_is_refused(tmp_path, video):
