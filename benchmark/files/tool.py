@@ -16,6 +16,8 @@ TOUCHING = ("rigid_frictionless", "rigid_frictional")
 """Contacts by real contact, which need a rounded edge in finite strain."""
 BETWEEN_PLATES = ("rigid_bonded", "rigid_frictionless")
 """What the faces of a cylinder do on its plates: stick, or slide without friction."""
+COVERING = 0.9
+"""Of a cylinder's radius, from which on a plate is taken to cover its face: widths are not known better."""
 
 
 class Tool(FileModel):
@@ -127,7 +129,7 @@ def check_hole(tool: Tool, support: Support) -> None:
 
 
 def _check_plate(tool: Tool, support: Support) -> None:
-    if tool.radius < (support.specimen_radius or 0.0):
+    if tool.radius < COVERING * (support.specimen_radius or 0.0):
         raise problem(
             f"{tool.radius * 1e3:g} mm does not cover the specimen between plates; allowed: from its radius of "
             f"{(support.specimen_radius or 0.0) * 1e3:g} mm (support.specimen_radius) on",

@@ -76,7 +76,7 @@ def _without_effects(scenario: Scenario) -> fem.Problem:
     return fem.Problem(
         layers=tuple(fem_layer(layer, options.kinematics) for layer in scenario.tissue.layers),
         tool=fem.Tool(
-            tool.radius,
+            max(tool.radius, scenario.support.specimen_radius or 0.0),
             tool.contact,
             tool.edge_radius,
             position,

@@ -88,7 +88,8 @@ def propose(folder: Path) -> Proposal:
     specimen, why = assumed_specimen([trial.table for trial in read.trials], told_heights(read.trials))
     named = _conditions(read.trials, kept=len({entry.condition for entry in file.trials}) > 1)
     tools = {tuple(sorted(tool.items())) for tool in told.values() if tool}
-    to_say = _to_say(tools, why)
+    held = _support_lines(resolved)
+    to_say = ("tool.contact",) if len(held) > 1 else _to_say(tools, why)
     head = [
         "# Proposed from the files of this folder. What only a person can say is marked SAY.",
         "schema = 1",
@@ -96,11 +97,11 @@ def propose(folder: Path) -> Proposal:
         f"specimen = {_text(SPECIMEN_FILE)}",
         "",
         "[tool]",
-        *_tool_lines(tools),
+        *([] if len(held) > 1 else _tool_lines(tools)),
         'contact = "rigid_bonded"  # SAY: rigid_bonded where the surface sticks, rigid_frictionless where it slides',
         "",
         "[support]",
-        *_support_lines(resolved),
+        *held,
     ]
     trials = [line for trial, condition in zip(read.trials, named, strict=True) for line in _entry(trial, condition)]
     body = f"# SAY: layers, thickness and modulus; until then: {why}\n{specimen.to_toml()}"

@@ -27,7 +27,7 @@ SetUp: TypeAlias = tuple[Tissue, Tool, Support]
 Values: TypeAlias = Mapping[str, float]
 
 STRESS = ("youngs_modulus", "c10", "c01", "c20", "c30", "mu", "k1")
-LENGTHS = ("radius", "hole_radius", "edge_radius")
+LENGTHS = ("radius", "hole_radius", "edge_radius", "specimen_radius")
 
 COMMON = "stiffness_factor"
 """Key of one factor on all stresses of all layers."""
@@ -193,7 +193,7 @@ def _no_key(key: str, tissue: Tissue) -> InputError:
     return InputError(
         f"--free {key}: this specimen and set-up have no such number; allowed: LAYER.youngs_modulus, LAYER.thickness, "
         f"LAYER.poisson_ratio, LAYER.relaxation, LAYER.hyperelastic.NAME for the layers {layers}; thickness, "
-        f"relaxation, tool.radius, support.hole_radius, and a law's constant of shape"
+        f"relaxation, tool.radius, support.hole_radius, support.specimen_radius, and a law's constant of shape"
     )
 
 
@@ -206,7 +206,7 @@ def with_values(setup: SetUp, values: Values, law: str | None = None) -> SetUp:
         tissue = with_law(tissue, law, values.get(LAW_SHAPES[law].key, LAW_SHAPES[law].start))
     constants = [_own_constants(layer, values) for layer in tissue.layers]
     changed: SetUp = (tissue.model_copy(update={"layers": tuple(constants)}), tool, support)
-    for key in (THICKNESS, RADIUS, "tool.edge_radius", "support.hole_radius"):
+    for key in (THICKNESS, RADIUS, "tool.edge_radius", "support.hole_radius", "support.specimen_radius"):
         if key in values:
             told = 1.0 if key == THICKNESS else value_of(key, changed)
             changed = changed_setup(*changed, key, values[key] / told - 1.0)

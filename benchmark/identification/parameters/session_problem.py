@@ -44,7 +44,13 @@ from benchmark.response.setup_change import RADIUS, THICKNESS
 
 MARGIN = 1.04
 """A press goes this much deeper than its trials do below where the first fit has them touch."""
-UNSTATED = {"tool.radius": 0.01, "support.hole_radius": 0.01, "thickness": 0.035, "youngs_modulus": 0.25}
+UNSTATED = {
+    "tool.radius": 0.01,
+    "support.hole_radius": 0.01,
+    "support.specimen_radius": 0.01,
+    "thickness": 0.035,
+    "youngs_modulus": 0.25,
+}
 """Relative standard uncertainty of what is told without one: what people know of a set-up.
 
 A tool's radius to 1 %, a thickness to 2 to 5 %, a layer's modulus to 20 to 50 %. First choice; `exact` takes it away.
@@ -294,7 +300,7 @@ def _unstated(key: str) -> float:
 def _tellable(setup: SetUp, free: set[str]) -> Iterator[str]:
     """Keys of a set-up that were told and move the force."""
     tissue, _, support = setup
-    yield RADIUS
+    yield "support.specimen_radius" if support.cylinder else RADIUS
     if support.kind == "hole":
         yield "support.hole_radius"
     for layer in tissue.layers:

@@ -44,6 +44,7 @@ def test_a_proposal_names_plates(tmp_path):
     text = propose(cylinder_workbook(tmp_path, "Druckversuch").parent).texts["session.toml"]
     assert 'kind = "plates"' in text
     assert 'specimen_radius = "10 mm"' in text
+    assert 'radius = "5 mm"' not in text
 
 
 @pytest.mark.parametrize("word", ["Druckversuch", "Zugversuch"])
