@@ -60,12 +60,26 @@ def test_more_or_fewer_functions_only_where_the_plate_is_asked_for() -> None:
     assert [warning.split(" is left out")[0] for warning in automatic.warnings] == ["wave.window", "wave.modes"]
 
 
-def test_a_law_that_a_sheet_does_not_have_it_says() -> None:
-    yeoh = {"silicone.hyperelastic": '{ law = "yeoh", c10 = "60 kPa", c20 = "1 kPa" }'}
-    result = pressed(load_scenario("phantom", {**SHORT, **yeoh}))
+YEOH = {"silicone.hyperelastic": '{ law = "yeoh", c10 = "60 kPa", c20 = "30 kPa" }'}
+AT_REST = {"silicone.youngs_modulus": "357.6 kPa"}
+PLATE = {"wave.model": "plate"}
+
+
+def test_a_law_that_the_plate_theory_does_not_have_it_says() -> None:
+    result = pressed(load_scenario("phantom", {**SHORT, **PLATE, **YEOH}))
     assert "its yeoh law" in " ".join(result.warnings)
-    plain = pressed(load_scenario("phantom", {**SHORT, "silicone.youngs_modulus": "357.6 kPa"}))
+    plain = pressed(load_scenario("phantom", {**SHORT, **PLATE, **AT_REST}))
     np.testing.assert_allclose(result.depth, plain.depth, rtol=1e-6)
+
+
+def test_the_layered_sheet_follows_a_law_as_the_fem_does() -> None:
+    few = {"load.observations": "4"}
+    scenario, plain = load_scenario("phantom", {**few, **YEOH}), load_scenario("phantom", {**few, **AT_REST})
+    fem, wave = pressed(scenario, "fem"), pressed(scenario)
+    assert wave.warnings == ()
+    stiffer = 1.0 - wave.depth.max() / pressed(plain).depth.max()
+    assert stiffer > 0.02
+    np.testing.assert_allclose(wave.depth.max(), fem.depth.max(), rtol=0.25 * stiffer)
 
 
 def test_layers_over_a_hole_that_relax_each_in_its_own_way_are_left_elastic_and_it_says_so() -> None:
