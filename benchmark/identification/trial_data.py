@@ -163,8 +163,11 @@ def turning_rows(depth: Array) -> IntArray:
 
 
 def _chosen_strokes(turns: IntArray, most: int) -> tuple[IntArray, IntArray]:
-    """First and last rows of `most` strokes: pairs of neighbours, loading and unloading, evenly over the record."""
+    """First and last rows of `most` strokes: pairs of neighbours, evenly over the record.
+
+    Each pair begins as the first one does, so that depths follow one another without a leap from pair to pair.
+    """
     strokes = len(turns) - 1
-    pairs = np.unique(np.round(np.linspace(0, strokes - 2, most // 2)).astype(np.int64))
+    pairs = 2 * np.unique(np.round(np.linspace(0, strokes // 2 - 1, most // 2)).astype(np.int64))
     chosen = np.unique(np.concatenate([pairs, pairs + 1]))
     return turns[chosen], turns[chosen + 1]

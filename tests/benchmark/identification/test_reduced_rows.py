@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmark.identification.trial_data import PER_STROKE, TrialData, group_bounds, reduced, turning_rows
+from benchmark.identification.trial_data import PER_STROKE, TrialData, group_bounds, reduced, rows_of, turning_rows
 from benchmark.identification.trial_fit import fit_trial
 from benchmark.response.force_curve import ForceCurve
 
@@ -49,6 +49,15 @@ def test_the_rows_of_a_reduced_trial_are_those_of_the_curve():
     trial = reduced(cycles(1_000_000, 500), 2000)
     assert (np.diff(trial.time) > 0.0).all()
     np.testing.assert_allclose(trial.force, 1.3 * CURVE(trial.depth - 1e-4), atol=0.004)
+
+
+@pytest.mark.parametrize("count", [60, 61, 500, 777])
+@pytest.mark.parametrize("first", [0, 300])
+def test_depths_follow_one_another_without_a_leap(count, first):
+    """A leap from a shallow row to the deepest one was taken for the instant of contact."""
+    whole = cycles(500_000, count)
+    trial = reduced(rows_of(whole, slice(first, None)), 2000)
+    assert np.abs(np.diff(trial.depth)).max() < 0.1 * DEPTH
 
 
 def test_many_cycles_tell_the_stiffness_that_was_put_in():
