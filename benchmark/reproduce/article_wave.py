@@ -1,6 +1,6 @@
 """The article's wave number by number: Table 1 with eqs. (5) and (6), which print the same, and eqs. (7) and (8).
 
-What it prints stands in `wavemodel.published.printed`.
+What it prints stands in `wavemodel.published.membrane`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ import numpy as np
 from benchmark.reproduce.evidence import Chain
 from benchmark.reproduce.items import SESSION, Item, compare
 from wavemodel import WaveError
-from wavemodel.published import PublishedWave, printed, table_one
+from wavemodel.published import PublishedWave, table_one
+from wavemodel.published import membrane as printed
 
 MODES = 15
 UNITS = ("mm/frame²", "mm/frame", "mm")

@@ -1,15 +1,30 @@
-"""The text files of the phantom session: what a fit reads, and the truth it does not."""
+"""The text files of the phantom session: what a fit reads, and the truth it does not, trial by trial."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from benchmark.sessions.phantom_sheet import RELAXATION, SPECIMEN, TRUE_FACTOR
 
 if TYPE_CHECKING:
     from bench_hw.simulated.specimen import MarkerGrid
-    from benchmark.sessions.phantom_trial import TrueTrial
+
+
+@dataclass(frozen=True)
+class TrueTrial:
+    """What is drawn for one trial: stiffness over the sheet's, contact (m), tool axis on the grid (m), seed."""
+
+    name: str
+    condition: str
+    protocol: str
+    gain: float
+    contact: float
+    axis: tuple[float, float]
+    seed: int
+    film: bool
+
 
 _HEAD = """\
 schema = 1

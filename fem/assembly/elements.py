@@ -105,11 +105,20 @@ class Elements:
         change = deformation.volume_change
         at_points = np.einsum("ie,iqe->qe", pressure, shapes) + self.point_modulus * change
         volume_change = np.einsum("iqe,qe->ie", shapes, weight * change)
-        mismatch = self.field_modulus * volume_change - pressure
+        mismatch = self.wanted_pressure(volume_change) - pressure
         coupling = self.geometry.coupling(deformation.cofactor * weight)
         stress = self.laws.stress_change(deformation) + at_points * deformation.cofactor
         force = self.geometry.forces(stress * weight) + np.einsum("nie,ie->ne", coupling, mismatch)
         return ElementState(deformation, pressure, at_points, coupling, mismatch, force)
+
+    def wanted_pressure(self, volume_change: FloatArray) -> FloatArray:
+        """Pressure coefficients (3, E) that the moments (3, E) of the volume change ask for."""
+        out: FloatArray = self.field_modulus * volume_change
+        return out
+
+    def pressure_slope(self, state: ElementState) -> FloatArray:  # noqa: ARG002 (another energy's has one)
+        """Derivative (E,) in Pa of the wanted pressure by the volume change."""
+        return self.field_modulus
 
     def stiffness(self, state: ElementState) -> FloatArray:
         """Packed element stiffness (entries, E) in N/m, the pressure condensed."""
@@ -119,12 +128,12 @@ class Elements:
         components.add_products(moduli, self.point_modulus * deformation.cofactor, deformation.cofactor)
         moduli *= self.geometry.weight
         packed = self.geometry.stiffness(moduli)
-        self._condense(packed, state.coupling)
+        self._condense(packed, state.coupling, self.pressure_slope(state))
         return packed
 
-    def _condense(self, packed: FloatArray, coupling: FloatArray) -> None:
-        """Add what the eliminated pressure does to the packed stiffness."""
-        (rows, columns), modulus = self.geometry.packed, self.field_modulus
+    def _condense(self, packed: FloatArray, coupling: FloatArray, modulus: FloatArray) -> None:
+        """Add what the eliminated pressure does to the packed stiffness, with its slope (E,) in Pa."""
+        rows, columns = self.geometry.packed
         for start in range(0, packed.shape[1], ELEMENTS_AT_ONCE):
             part = slice(start, start + ELEMENTS_AT_ONCE)
             b = coupling[..., part]
@@ -133,7 +142,7 @@ class Elements:
     def pressure_after(self, state: ElementState, du: FloatArray) -> FloatArray:
         """Pressure coefficients (3, E) after an increment du (18, E) of the nodal displacements."""
         change = np.einsum("nie,ne->ie", state.coupling, du)
-        out: FloatArray = state.pressure + state.mismatch + self.field_modulus * change
+        out: FloatArray = state.pressure + state.mismatch + self.pressure_slope(state) * change
         return out
 
     def linear_pressure(self, rest: ElementState, u: FloatArray) -> FloatArray:

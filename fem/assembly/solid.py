@@ -3,6 +3,7 @@
 - `hex27`: triquadratic, linear discontinuous pressure, 27 Gauss points (Q2/P1, inf-sup stable).
 - `hex20`: serendipity, 8 Gauss points, no pressure of its own (reduced integration; C3D20R of other programs).
 - `tet10`: quadratic, constant pressure, 4 Gauss points on straight sides.
+- `hex8`, `tet4`: linear, constant pressure, 8 Gauss points and 1: what other codes have, for comparison with them.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class SolidElement:
     Attributes
     ----------
     name
-        "hex27", "hex20" or "tet10".
+        "hex27", "hex20", "tet10", "hex8" or "tet4".
     shapes
         scikit-fem's element with the shape functions.
     quadrature_order
@@ -106,6 +107,8 @@ SOLID_ELEMENTS: Mapping[str, SolidElement] = MappingProxyType(
         "hex27": _element("hex27", skfem.ElementHex2(), 5, 4, 29, (*_HEX_CORNERS, *_HEX_EDGES, *_HEX_FACES), 0.5),
         "hex20": _element("hex20", skfem.ElementHexS2(), 3, 0, 25, (*_HEX_CORNERS, *_HEX_EDGES), 0.5),
         "tet10": _element("tet10", skfem.ElementTetP2(), 2, 1, 24, _TET, 0.25),
+        "hex8": _element("hex8", skfem.ElementHex1(), 3, 1, 12, _HEX_CORNERS, 0.5),
+        "tet4": _element("tet4", skfem.ElementTetP1(), 1, 1, 10, _TET[:4], 0.25),
     }
 )
 

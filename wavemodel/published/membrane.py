@@ -30,7 +30,45 @@ import numpy as np
 
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import WaveError
-from wavemodel.published import printed
+
+# What the paper prints (Table 1 and eqs. 5 to 8), lengths in mm as there.
+DEPTH_FACTOR = 14.3321
+"""d of eq. (4), mm."""
+SIDE = 23.6053
+"""a = b, mm."""
+SPEED_SQUARED = 85.56
+"""c^2, printed without unit; m2/s2."""
+SPEED = 9.2496
+"""c as printed; it is the root of 85.555 to 85.556, not of 85.56 (9.24986)."""
+FREQUENCY = 1.7409
+"""lambda_11 as printed: c in m/s over a side in mm, so that its unit is rad/ms."""
+COEFFICIENT = 39.2012
+"""B_11 as printed, mm."""
+
+
+@dataclass(frozen=True)
+class Parabola:
+    """second x^2 + first x + constant, x in mm.
+
+    Attributes
+    ----------
+    second, first, constant
+        In 1/mm2, 1/mm and without unit.
+    """
+
+    second: float
+    first: float
+    constant: float
+
+    def __call__(self, position: FloatArray) -> FloatArray:
+        """Value at positions in mm."""
+        return np.asarray((self.second * position + self.first) * position + self.constant)
+
+
+PARABOLA_X = Parabola(-8.393e-6, 0.002, 1.3322)
+"""O(x), eq. (5). It was fitted against frame numbers, with its vertex at frame 119, and is used as if x were mm."""
+PARABOLA_Y = Parabola(-8.1904e-6, 0.002, 0.9876)
+"""p(y), eq. (6), likewise with its vertex at 122."""
 
 VARIANTS = ("as_printed", "corrected")
 MILLI = 1e-3
@@ -65,7 +103,7 @@ class PublishedWave:
     @property
     def side(self) -> float:
         """Side a = b, m."""
-        return printed.SIDE * MILLI
+        return SIDE * MILLI
 
     @cached_property
     def order(self) -> FloatArray:
@@ -76,29 +114,25 @@ class PublishedWave:
     def frequency(self) -> FloatArray:
         """(N, N) lambda_mn, rad/s: with the printed c and side, whose mm the printed variant takes for metres."""
         squares = self.order**2
-        speed, side = (
-            (printed.SPEED, printed.SIDE)
-            if self.variant == "as_printed"
-            else (np.sqrt(printed.SPEED_SQUARED), self.side)
-        )
+        speed, side = (SPEED, SIDE) if self.variant == "as_printed" else (np.sqrt(SPEED_SQUARED), self.side)
         return np.asarray(speed * np.pi / side * np.sqrt(squares[:, None] + squares))
 
     @cached_property
     def coefficient(self) -> FloatArray:
         """(N, N) B_mn of eq. (3) with eqs. (4) to (6), m."""
         nodes, weights = _quadrature(self.modes)
-        sines = np.sin(np.outer(self.order * np.pi / printed.SIDE, nodes))
-        along_x, along_y = printed.PARABOLA_X(nodes) * weights, printed.PARABOLA_Y(nodes) * weights
+        sines = np.sin(np.outer(self.order * np.pi / SIDE, nodes))
+        along_x, along_y = PARABOLA_X(nodes) * weights, PARABOLA_Y(nodes) * weights
         if self.variant == "corrected":
             integral = np.outer(sines @ along_x, sines @ along_y)
         else:
             integral = (sines * along_x) @ sines.T * along_y.sum()
-        return np.asarray(4.0 * printed.DEPTH_FACTOR / printed.SIDE**2 * integral * MILLI)
+        return np.asarray(4.0 * DEPTH_FACTOR / SIDE**2 * integral * MILLI)
 
     def initial(self, x: FloatArray, y: FloatArray) -> FloatArray:
         """f(x, y) of eq. (4) at (P,) and (Q,) positions in m from the corner: (P, Q) in m."""
-        shape = np.outer(printed.PARABOLA_X(x / MILLI), printed.PARABOLA_Y(y / MILLI))
-        return np.asarray(printed.DEPTH_FACTOR * MILLI * shape)
+        shape = np.outer(PARABOLA_X(x / MILLI), PARABOLA_Y(y / MILLI))
+        return np.asarray(DEPTH_FACTOR * MILLI * shape)
 
     def deflection(self, x: FloatArray, y: FloatArray, time: float) -> FloatArray:
         """u(x, y, t) of eqs. (2) and (7), downwards.
@@ -162,7 +196,7 @@ class PublishedWave:
 def _quadrature(modes: int) -> tuple[FloatArray, FloatArray]:
     """Gauss points (mm) and weights on the side, exact to rounding for the sines of so many modes."""
     point, weight = np.polynomial.legendre.leggauss(32 + 4 * modes)
-    return 0.5 * printed.SIDE * (point + 1.0), 0.5 * printed.SIDE * weight
+    return 0.5 * SIDE * (point + 1.0), 0.5 * SIDE * weight
 
 
 @dataclass(frozen=True)
@@ -190,27 +224,27 @@ class Recomputed:
 
 def table_one() -> tuple[Recomputed, ...]:
     """Table 1 of the paper: c, lambda_11 and B_11."""
-    root = float(np.sqrt(printed.SPEED_SQUARED))
+    root = float(np.sqrt(SPEED_SQUARED))
     as_printed, corrected = PublishedWave("as_printed"), PublishedWave("corrected")
     by_equation = float(corrected.coefficient[0, 0]) / MILLI
     by_slip = float(as_printed.coefficient[0, 0]) / MILLI
     rows = (
         (
             "c, root of c^2 (eq. 1)",
-            printed.SPEED,
+            SPEED,
             root,
             "the printed c is the root of a c^2 of 85.555 to 85.556, which rounds to 85.56",
         ),
-        ("lambda_11 (eq. 3)", printed.FREQUENCY, float(as_printed.frequency[0, 0]), "c in m/s over a in mm: rad/ms"),
+        ("lambda_11 (eq. 3)", FREQUENCY, float(as_printed.frequency[0, 0]), "c in m/s over a in mm: rad/ms"),
         (
             "B_11 (eq. 3 with eqs. 4 to 6)",
-            printed.COEFFICIENT,
+            COEFFICIENT,
             by_equation,
             "the equations as they stand; the printed number follows if sin(n pi y / b) is written as sin(pi x / a)",
         ),
         (
             "B_11 with sin(n pi y / b) written as sin(pi x / a)",
-            printed.COEFFICIENT,
+            COEFFICIENT,
             by_slip,
             "4d/(ab) int int O(x) p(y) sin^2(pi x / a) dx dy gives the printed number",
         ),

@@ -6,6 +6,7 @@ import pytest
 import fem
 from fem.materials.components import AXISYMMETRIC, SOLID
 from fem.materials.deformation import Deformation
+from fem.materials.neo_hookean import CoupledNeoHookean
 
 NU = 0.49
 GROUNDS = {
@@ -171,3 +172,14 @@ def test_a_locked_chain_has_no_answer():
 def test_constants_outside_their_range_are_refused(make, match):
     with pytest.raises(fem.FemError, match=match):
         make()
+
+
+@pytest.mark.parametrize("components", [AXISYMMETRIC, SOLID])
+def test_the_coupled_law_derives_from_its_energy(components):
+    material = CoupledNeoHookean(9e4, 0.4)
+    H = gradients(components)
+    _, stress, tangent = evaluate(material, components, H)
+    slope = central(lambda at: evaluate(material, components, at)[0], H)
+    bend = central(lambda at: evaluate(material, components, at)[1], H)
+    np.testing.assert_allclose(stress, slope, atol=1e-8 * np.abs(stress).max())
+    np.testing.assert_allclose(tangent, bend, atol=1e-8 * np.abs(tangent).max())

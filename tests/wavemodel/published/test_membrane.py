@@ -7,7 +7,8 @@ from wavemodel.domains.rectangle import Rectangle
 from wavemodel.integrators.oscillators import oscillator_step
 from wavemodel.layered.stack.laminate import laminate
 from wavemodel.layered.stack.sublayers import consistent_mass, quadratic_stiffness
-from wavemodel.published import printed, table_one
+from wavemodel.published import membrane as printed
+from wavemodel.published import table_one
 
 
 def test_b_11_of_the_equations_and_of_the_slip():

@@ -1,0 +1,305 @@
+"""FEBio's input files (`.feb`, format 3.0 and 4.0) as bodies for our finite elements, as far as our laws go.
+
+Read are linear elements (hex8, tet4), neo-Hookean (coupled, as FEBio has it), Mooney-Rivlin and Ogden parts, held and
+prescribed displacements, nodal forces, linear constraints, and load curves at the end of the one step. What else acts
+in a file (rigid bodies, contact, pressure, other materials) is refused by its name, so that no case is solved by half.
+Units are the file's own. Written after FEBio's documentation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from xml.etree import ElementTree
+
+import numpy as np
+
+from benchmark.errors import InputError
+from fem import FemError, Material, MooneyRivlin, Ogden
+from fem.assembly.solid import SOLID_ELEMENTS
+from fem.materials.neo_hookean import CoupledNeoHookean
+from fem.verification.constrained_body import ConstrainedBody, Constraint
+
+AXES = "xyz"
+OGDEN_TERMS = 6
+IGNORED = frozenset(
+    {"Module", "Control", "Globals", "Material", "Mesh", "MeshDomains", "LoadData", "Output", "MeshData"}
+)
+"""Sections that do not act, or are read elsewhere."""
+COUPLED = frozenset({"neo-Hookean"})
+SUPPORTED_ELEMENTS = ("hex8", "tet4")
+
+
+@dataclass(frozen=True)
+class FebioCase:
+    """One case.
+
+    Attributes
+    ----------
+    name
+        The file's name without its ending.
+    body
+        The body under the load at the end.
+    steps
+        Load steps that the file asks for.
+    materials
+        Names of FEBio's laws in it.
+    """
+
+    name: str
+    body: ConstrainedBody
+    steps: int
+    materials: tuple[str, ...]
+
+    def solved(self) -> np.ndarray:
+        """Displacements (3, N) at the end.
+
+        Raises
+        ------
+        ArithmeticError
+            If no equilibrium is found.
+        """
+        return self.body.press(self.steps)
+
+    def norm(self) -> float:
+        """Norm of all displacements that are solved for, which FEBio's test suite compares."""
+        return float(np.linalg.norm(self.solved()[self.body.free]))
+
+
+def read_febio_case(path: Path) -> FebioCase:
+    """Read a file.
+
+    Raises
+    ------
+    InputError
+        What the file has that is damaged, or not covered.
+    """
+    reader = _Reader(path, _root(path))
+    with np.errstate(invalid="ignore"):
+        return reader.case()
+
+
+def _root(path: Path) -> ElementTree.Element:
+    try:
+        text = path.read_text(encoding="latin-1")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+    if "<!DOCTYPE" in text or "<!ENTITY" in text:
+        raise InputError(f"{path}: a document type or entities are not read in a FEBio file")
+    try:
+        root = ElementTree.fromstring(text.split("?>", 1)[-1] if text.lstrip().startswith("<?") else text)
+    except ElementTree.ParseError as error:
+        raise InputError(f"{path}: no XML: {error}") from error
+    if root.tag != "febio_spec" or root.get("version", "") not in ("3.0", "4.0"):
+        raise InputError(f"{path}: {root.tag} {root.get('version', '')}: must be febio_spec of version 3.0 or 4.0")
+    return root
+
+
+@dataclass(frozen=True)
+class _Reader:
+    """The sections of one file."""
+
+    path: Path
+    root: ElementTree.Element
+
+    def refuse(self, what: str) -> InputError:
+        return InputError(f"{self.path}: {what}")
+
+    def case(self) -> FebioCase:
+        for section in self.root:
+            if section.tag not in IGNORED | {"Boundary", "Loads", "Contact"} and len(section):
+                raise self.refuse(f"{section.tag}: this section is not read, so the case would not be the same")
+        numbers, nodes = self._nodes()
+        place = {number: k for k, number in enumerate(numbers)}
+        kind, elements, part, names = self._elements(place)
+        laws = [self._law(name) for name in names]
+        held, moved = np.zeros((3, len(nodes)), dtype=np.bool_), np.full((3, len(nodes)), np.nan)
+        for boundary in self._each("Boundary", "bc"):
+            self._support(boundary, place, held, moved)
+        force = np.zeros((3, len(nodes)))
+        for load in self._each("Loads", "*"):
+            self._force(load, place, force)
+        kinds = {name for name, _ in laws}
+        if kinds & COUPLED and kinds - COUPLED:
+            raise self.refuse("coupled and uncoupled materials in one body are not read")
+        body = ConstrainedBody(
+            nodes, elements, kind, part, tuple(law for _, law in laws), held, moved, force,
+            tuple(self._constraints(place)), logarithmic=not kinds & COUPLED,
+        )  # fmt: skip
+        return FebioCase(self.path.stem, body, self._steps(), tuple(sorted(kinds)))
+
+    def _each(self, section: str, tag: str) -> Iterator[ElementTree.Element]:
+        found = self.root.find(section)
+        yield from () if found is None else found.findall(tag)
+
+    def _number(self, text: str | None, what: str) -> float:
+        try:
+            value = float((text or "").strip())
+        except ValueError:
+            raise self.refuse(f"{what} = {text!r}: must be a number") from None
+        if not np.isfinite(value):
+            raise self.refuse(f"{what} = {text!r}: must be finite")
+        return value
+
+    def _row(self, text: str | None, what: str) -> list[float]:
+        return [self._number(word, what) for word in (text or "").split(",")]
+
+    def _place(self, number: float, place: dict[int, int], what: str) -> int:
+        if int(number) not in place:
+            raise self.refuse(f"{what}: there is no node {number:g}")
+        return place[int(number)]
+
+    def _nodes(self) -> tuple[list[int], np.ndarray]:
+        numbers, rows = [], []
+        for node in self.root.findall("Mesh/Nodes/node"):
+            numbers.append(int(self._number(node.get("id"), "node: id")))
+            rows.append(self._row(node.text, f"node {numbers[-1]}"))
+        if not rows or any(len(row) != 3 for row in rows) or len(set(numbers)) != len(numbers):
+            raise self.refuse("Mesh/Nodes: must list nodes with three coordinates, each once")
+        return numbers, np.array(rows)
+
+    def _elements(self, place: dict[int, int]) -> tuple[str, np.ndarray, np.ndarray, list[str]]:
+        """Kind, nodes (n, E) in scikit-fem's order, part (E,), and the material's name of each part."""
+        material = {one.get("name"): one.get("mat") or "" for one in self.root.findall("MeshDomains/SolidDomain")}
+        kinds: set[str] = set()
+        names: list[str] = []
+        rows, part = [], []
+        for group in self.root.findall("Mesh/Elements"):
+            kind, name = group.get("type", ""), group.get("name")
+            if kind not in SUPPORTED_ELEMENTS or name not in material:
+                raise self.refuse(
+                    f"Elements {name}: {kind} without a SolidDomain, or none of {', '.join(SUPPORTED_ELEMENTS)}"
+                )
+            kinds.add(kind)
+            for one in group.findall("elem"):
+                what = f"elem {one.get('id')}"
+                rows.append([self._place(number, place, what) for number in self._row(one.text, what)])
+                part.append(len(names))
+            names.append(material[name])
+        if len(kinds) != 1 or {len(row) for row in rows} != {len(SOLID_ELEMENTS[min(kinds)].vtk_order)}:
+            raise self.refuse("Mesh/Elements: must be elements of one kind, with as many nodes as it has")
+        kind, table = kinds.pop(), np.array(rows)
+        elements = np.empty_like(table.T)
+        elements[SOLID_ELEMENTS[kind].vtk_order] = table.T
+        return kind, elements, np.array(part), names
+
+    def _law(self, name: str) -> tuple[str, Material]:
+        found = [one for one in self.root.findall("Material/material") if one.get("name") == name]
+        if not found or found[0].get("type") not in LAWS:
+            kind = found[0].get("type") if found else "none"
+            raise self.refuse(f"material {name}: {kind} is not read; read are {', '.join(sorted(LAWS))}")
+        values = {one.tag: self._number(one.text, f"material {name}: {one.tag}") for one in found[0]}
+        kind = str(found[0].get("type"))
+        if values.get("pressure_model", 0.0) != 0.0:
+            raise self.refuse(f"material {name}: another pressure_model than FEBio's default is not read")
+        try:
+            return kind, LAWS[kind](values)
+        except KeyError as error:
+            raise self.refuse(f"material {name}: {error.args[0]} is missing") from None
+        except FemError as error:
+            raise self.refuse(f"material {name}: {error}") from error
+
+    def _set(self, name: str | None, place: dict[int, int]) -> list[int]:
+        """Places of the nodes of a set: `<n id=.../>` each, or numbers between commas."""
+        for one in self.root.findall("Mesh/NodeSet"):
+            if one.get("name") == name:
+                numbers = [self._number(n.get("id"), f"NodeSet {name}") for n in one.findall("n")]
+                listed = self._row(one.text, f"NodeSet {name}") if (one.text or "").strip() else []
+                return [self._place(number, place, f"NodeSet {name}") for number in (*numbers, *listed)]
+        raise self.refuse(f"there is no NodeSet {name}")
+
+    def _axes(self, text: str | None, what: str) -> list[int]:
+        words = [word.strip() for word in (text or "").split(",")]
+        if not set(words) <= set(AXES):
+            raise self.refuse(f"{what}: {text!r}: must be displacements, of {', '.join(AXES)}")
+        return [AXES.index(word) for word in words]
+
+    def _support(self, one: ElementTree.Element, place: dict[int, int], held: np.ndarray, moved: np.ndarray) -> None:
+        kind, what = one.get("type", ""), f"bc {one.get('name')}"
+        if kind == "linear constraint":
+            return
+        if kind not in ("fix", "zero displacement", "prescribe", "prescribed displacement"):
+            raise self.refuse(f"{what}: type {kind!r} is not read")
+        nodes = self._set(one.get("node_set"), place)
+        if kind == "fix":
+            held[np.ix_(self._axes(one.findtext("dofs"), what), nodes)] = True
+        elif kind == "zero displacement":
+            axes = [n for n, axis in enumerate(AXES) if (one.findtext(f"{axis}_dof") or "0").strip() == "1"]
+            held[np.ix_(axes, nodes)] = True
+        else:
+            amount = self._scaled(one.find("scale" if kind == "prescribe" else "value"), what)
+            moved[np.ix_(self._axes(one.findtext("dof"), what), nodes)] = amount
+
+    def _force(self, one: ElementTree.Element, place: dict[int, int], force: np.ndarray) -> None:
+        what = f"{one.tag} {one.get('name')}"
+        if one.tag != "nodal_load" or one.get("type") not in ("nodal_load", None):
+            raise self.refuse(f"{what}: type {one.get('type')!r} is not read")
+        nodes = self._set(one.get("node_set"), place)
+        force[np.ix_(self._axes(one.findtext("dof"), what), nodes)] += self._scaled(one.find("scale"), what)
+
+    def _scaled(self, one: ElementTree.Element | None, what: str) -> float:
+        """A value times its load curve at the end."""
+        if one is None:
+            raise self.refuse(f"{what}: no value")
+        value, curve = self._number(one.text, what), one.get("lc")
+        return value if curve is None else value * self._curve(curve)
+
+    def _curve(self, number: str) -> float:
+        for one in self.root.findall("LoadData/load_controller"):
+            if one.get("id") == number:
+                points = [
+                    self._row(p.text, f"load_controller {number}") for p in one.iter() if p.tag in ("point", "pt")
+                ]
+                if not points or any(len(point) != 2 for point in points):
+                    raise self.refuse(f"load_controller {number}: must have points of time and value")
+                time, value = np.array(sorted(points)).T
+                return float(np.interp(self._end(), time, value))
+        raise self.refuse(f"there is no load_controller {number}")
+
+    def _end(self) -> float:
+        return self._steps() * self._number(self.root.findtext("Control/step_size"), "Control: step_size")
+
+    def _steps(self) -> int:
+        return max(1, round(self._number(self.root.findtext("Control/time_steps"), "Control: time_steps")))
+
+    def _constraints(self, place: dict[int, int]) -> Iterator[Constraint]:
+        for one in self._each("Boundary", "bc"):
+            if one.get("type") == "linear constraint":
+                component, node, _ = self._term(one, place)
+                yield Constraint(component, node, tuple(self._term(child, place) for child in one.findall("child_dof")))
+        for contact in self._each("Contact", "*"):
+            raise self.refuse(f"contact of type {contact.get('type')!r} is not read")
+
+    def _term(self, one: ElementTree.Element, place: dict[int, int]) -> tuple[int, int, float]:
+        what = "linear constraint"
+        axis = self._axes(one.findtext("dof"), what)[0]
+        node = self._place(self._number(one.findtext("node"), what), place, what)
+        return axis, node, self._number(one.findtext("value") or "1", what)
+
+
+def _mooney_rivlin(values: Mapping[str, float]) -> Material:
+    return MooneyRivlin(values["c1"], values["c2"], _ratio(2.0 * (values["c1"] + values["c2"]), values["k"]))
+
+
+def _ogden(values: Mapping[str, float]) -> Material:
+    """FEBio's c / m^2 is our mu / alpha: mu = c / m."""
+    pairs = [(values.get(f"c{n}", 0.0), values.get(f"m{n}", 1.0)) for n in range(1, OGDEN_TERMS + 1)]
+    terms = tuple((c / m, m) for c, m in pairs if c != 0.0 and m != 0.0)
+    return Ogden(terms, _ratio(0.5 * sum(c for c, _ in pairs), values["k"]))
+
+
+def _ratio(shear: float, bulk: float) -> float:
+    """Poisson's ratio at rest."""
+    return (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear))
+
+
+LAWS: Mapping[str, Callable[[Mapping[str, float]], Material]] = MappingProxyType(
+    {
+        "neo-Hookean": lambda values: CoupledNeoHookean(values["E"], values["v"]),
+        "Mooney-Rivlin": _mooney_rivlin,
+        "Ogden": _ogden,
+    }
+)
+"""FEBio's laws by their names."""
