@@ -150,7 +150,7 @@ def findings(
     listener("verify", 0, 1, "")
     answer = _verified(searched, settings)
     selection = searched.selection
-    discovery = _discovery(session, calibrated, answer, known, settings, began)
+    discovery = _discovery(calibrated, answer, known, settings, began)
     return Findings(discovery, calibrated, selection, entries, answer.chosen)
 
 
@@ -260,7 +260,7 @@ def _verified(searched: _Searched, settings: Settings) -> _Answer:
 
 
 def _discovery(
-    session: Session, calibrated: Calibrated, answer: _Answer, known: Sequence[Effect], settings: Settings, began: float
+    calibrated: Calibrated, answer: _Answer, known: Sequence[Effect], settings: Settings, began: float
 ) -> Discovery:
     """The answer in plain results; `began` is when the clock started, s."""
     base, chosen, before = answer.base, answer.chosen, answer.before
@@ -288,7 +288,7 @@ def _discovery(
         remains=() if nothing else remains(chosen, answer.after, settings.level),
         warnings=(*problem.study.warnings, *calibrated.warnings, *exchangeable(before), *few, *large),
         traces=traces(base, answer.held),
-        conditions=session.conditions,
+        conditions=tuple(each.name for each in problem.study.conditions),
         channels=tuple(dict.fromkeys(problem.study.channels)),
         trials=tuple(trial.name for trial in problem.trials),
         seconds=time.perf_counter() - began,

@@ -13,7 +13,7 @@ from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.trials.cycles import by_cycles
 from benchmark.discovery.trials.marker_layout import Layout, layout
 from benchmark.discovery.trials.printed_grid import printed_grid, resting_places
-from benchmark.discovery.trials.protocols import most_odd, same_protocol, specimens
+from benchmark.discovery.trials.protocols import by_protocol, most_odd, specimens
 from benchmark.discovery.trials.rows import (
     RawTrial,
     acceleration,
@@ -49,19 +49,19 @@ def prepare(session: Session, rows: int) -> Study:
     ------
     InputError
         Fewer than three trials (or presses of one long record), more than single ones without motion or force, or
-        different protocols in a condition.
+        of a motion that no other has.
     """
     session, split = by_cycles(session)
     warnings = [*session.warnings, *split, *_few(session)]
     rows = min(rows, max(LEAST_IN_TRIAL, MOST_IN_ALL // len(session.trials)))
     raw = _usable(session, warnings)
     groups = [[r for r in raw if r.trial.condition == name] for name in session.conditions]
-    kept = [same_protocol(session.name, group, warnings) for group in groups if group]
+    kept = [each for group in groups if group for each in by_protocol(session.name, group, warnings)]
     camera, seen = session.camera, _seen(kept)
     grid = None if camera is None else _grid(camera, kept, seen, warnings)
-    order = {id(trial): number for number, trial in enumerate(session.trials)}
+    order = {trial.name: number for number, trial in enumerate(session.trials)}
     conditions = tuple(
-        _condition(session, group, grid, seen, np.array([order[id(r.trial)] for r in group]), rows) for group in kept
+        _condition(session, group, grid, seen, np.array([order[r.trial.name] for r in group]), rows) for group in kept
     )
     interval = float(np.median([np.median(np.diff(r.time)) for r in raw]))
     return Study(conditions, grid, camera.distance if camera else None, interval, tuple(warnings))

@@ -1,4 +1,4 @@
-"""Trials of one condition that share a motion: their segments made alike, odd ones set aside by name."""
+"""Trials of a condition by the motion they share: segments made alike, protocols taken apart, odd trials set aside."""
 
 from __future__ import annotations
 
@@ -15,10 +15,14 @@ from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.trials.rows import RawTrial
 from benchmark.discovery.trials.segments import Segment
 from benchmark.errors import InputError
+from benchmark.files.sessions.proposal import Motion, motion_of
 
 
-def same_protocol(name: str, group: Sequence[RawTrial], warnings: list[str]) -> list[RawTrial]:
-    """The trials of a condition with the motion of most, their segments alike; the others are set aside and named.
+def by_protocol(name: str, group: Sequence[RawTrial], warnings: list[str]) -> list[list[RawTrial]]:
+    """The trials of a condition by the motion they share, their segments alike; single odd ones are set aside.
+
+    Usually that is one list. Where a condition holds several protocols, each of at least two trials, each becomes a
+    condition of its own, named after the old one and its motion.
 
     Parameters
     ----------
@@ -27,13 +31,32 @@ def same_protocol(name: str, group: Sequence[RawTrial], warnings: list[str]) -> 
     group
         At least one trial, of one condition.
     warnings
-        Who was set aside is added here.
+        Who was set aside, and what was taken apart, is added here.
 
     Raises
     ------
     InputError
-        More than single trials have another motion, another speed, or another depth and force.
+        More than single trials have a motion that no other trial has.
     """
+    told = group[0].trial.condition
+    kept = _alike(group, most_odd(len(group)))
+    if kept:
+        _tell_left(told, group, kept, warnings)
+        return [kept]
+    apart = _apart(group)
+    if not apart:
+        raise InputError(
+            f"session {name}, condition {told}: trials of different protocols ({len(group)} trials; "
+            f"{_Extent.of(group)}); give each protocol, of at least two trials, a condition of its own."
+        )
+    parts = ", ".join(f"{each[0].trial.condition} ({len(each)} trials)" for each in apart)
+    warnings.append(f"condition {told}: its trials are of several protocols, and taken for {parts}")
+    _tell_left(told, group, [raw for each in apart for raw in each], warnings)
+    return apart
+
+
+def _alike(group: Sequence[RawTrial], most: float) -> list[RawTrial]:
+    """The trials with the motion of most, their segments made alike; none if more than `most` have another."""
     alike = _with_like_rests(group)
     usual = Counter(_kinds(raw) for raw in alike).most_common(1)[0][0]
     model = next(raw for raw in alike if _kinds(raw) == usual)
@@ -42,17 +65,35 @@ def same_protocol(name: str, group: Sequence[RawTrial], warnings: list[str]) -> 
     extent = _Extent.of(kept)
     if extent.wide:
         kept = [raw for raw, odd in zip(kept, extent.odd, strict=True) if not odd]
-    left = len(group) - len(kept)
-    if left > most_odd(len(group)) or _Extent.of(kept).wide:
-        raise InputError(
-            f"session {name}, condition {group[0].trial.condition}: trials of different protocols ({len(group)} "
-            f"trials; {extent}); give each protocol a condition of its own."
-        )
+    return [] if len(group) - len(kept) > most or _Extent.of(kept).wide else kept
+
+
+def _apart(group: Sequence[RawTrial]) -> list[list[RawTrial]]:
+    """Two or more trials a motion, each in a condition of its own; none where that leaves out more than single ones."""
+    motions: list[tuple[Motion, list[RawTrial]]] = []
+    for raw in group:
+        motion = motion_of(raw.trial.table)
+        mates = next((mates for other, mates in motions if other.alike(motion)), None)
+        if mates is None:
+            motions.append((motion, [raw]))
+        else:
+            mates.append(raw)
+    shared = [(motion, _alike(mates, 0.0)) for motion, mates in motions if len(mates) > 1]
+    kept = [(motion, mates) for motion, mates in shared if mates]
+    if len(group) - sum(len(mates) for _, mates in kept) > most_odd(len(group)):
+        return []
+    return [[_renamed(raw, motion.name) for raw in mates] for motion, mates in kept]
+
+
+def _renamed(raw: RawTrial, motion: str) -> RawTrial:
+    return replace(raw, trial=replace(raw.trial, condition=f"{raw.trial.condition}_{motion}"))
+
+
+def _tell_left(told: str, group: Sequence[RawTrial], kept: Sequence[RawTrial], warnings: list[str]) -> None:
+    names = {raw.trial.name for raw in kept}
+    left = [raw.trial.name for raw in group if raw.trial.name not in names]
     if left:
-        names = {raw.trial.name for raw in kept}
-        odd = ", ".join(raw.trial.name for raw in group if raw.trial.name not in names)
-        warnings.append(f"condition {group[0].trial.condition}: left out for another motion than the others': {odd}")
-    return kept
+        warnings.append(f"condition {told}: left out for another motion than the others': {', '.join(left)}")
 
 
 def most_odd(trials: int) -> float:

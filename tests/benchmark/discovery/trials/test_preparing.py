@@ -47,14 +47,6 @@ def test_a_tool_in_air_is_refused(tmp_path, quick_session):
         prepare(load_session(folder), 100)
 
 
-def test_two_protocols_in_one_condition_are_refused(tmp_path, quick_session):
-    folder = quick_session.write_session(tmp_path / "s", trials=3, speeds=(1e-3, 8e-3))
-    file = folder / "session.toml"
-    file.write_text(file.read_text().replace("speed 1", "same").replace("speed 8", "same"))
-    with pytest.raises(InputError, match="different protocols"):
-        prepare(load_session(folder), 100)
-
-
 def test_missing_rows_are_said(tmp_path, quick_session):
     folder = quick_session.write_session(tmp_path / "s", trials=3, speeds=(3e-3,))
     rewrite(folder, lambda table: np.delete(table, np.s_[60:80], axis=0))

@@ -72,9 +72,17 @@ def test_a_single_trial_of_another_speed_is_set_aside_by_name(session, speed) ->
     assert any("trial_03" in text for text in study.warnings)
 
 
-def test_two_protocols_of_like_number_are_refused(session) -> None:
-    with pytest.raises(InputError, match=r"different protocols \(6 trials; peak depth 3 to 3 mm, speed .* mm/s\)"):
-        prepare(session([press(3.0, speed=speed) for speed in (1.0, 9.0) * 3]), 100)
+def test_two_protocols_in_one_condition_are_taken_apart(session) -> None:
+    study = prepare(session([press(3.0, speed=speed, rate=200.0) for speed in (1.0, 9.0) * 3]), 100)
+    assert [each.name for each in study.conditions] == ["slow_1mm_s_to_3mm", "slow_9mm_s_to_3mm"]
+    assert [each.numbers.tolist() for each in study.conditions] == [[0, 2, 4], [1, 3, 5]]
+    assert any("several protocols" in text and "slow_9mm_s_to_3mm (3 trials)" in text for text in study.warnings)
+
+
+def test_trials_that_each_move_in_their_own_way_are_refused(session) -> None:
+    made = session([press(3.0, speed=speed) for speed in (1.0, 2.0, 4.0, 9.0, 0.5, 0.2)])
+    with pytest.raises(InputError, match=r"different protocols \(6 trials; peak depth 2.88 to 3 mm, speed .* mm/s\)"):
+        prepare(made, 100)
 
 
 @pytest.mark.parametrize(("column", "reason"), [(1, "no motion"), (2, "force_N does not change")])
