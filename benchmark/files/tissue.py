@@ -119,6 +119,10 @@ class PronyTerm(FileModel):
     tau: Duration
 
 
+ISOTROPIC = 1.0 / 3.0 - 1e-9
+"""Dispersion from which on fibres have no direction."""
+
+
 class Fibre(FileModel):
     """One fibre family of Holzapfel, Gasser and Ogden in the plane of the layer.
 
@@ -130,6 +134,11 @@ class Fibre(FileModel):
     k1: Pressure
     k2: Annotated[float, Number("above 0, at most 1e4", Bounds(0.0, 1e4, above=True))]
     dispersion: Annotated[float, Number("0 (aligned) to 1/3 (isotropic)", Bounds(0.0, 0.33333333333333337))] = 0.0
+
+    @property
+    def directed(self) -> bool:
+        """Whether the fibres have a direction in the plane, which breaks axial symmetry."""
+        return self.angle is not None and self.dispersion < ISOTROPIC
 
 
 def _require_stiffness(shear_modulus: float) -> None:

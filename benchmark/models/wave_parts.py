@@ -12,8 +12,6 @@ from benchmark.files import Scenario
 from benchmark.models.model_result import Array, Drive, Picture, UncoveredError, WaveChoices
 from wavemodel import DiscTool, Prony
 
-ISOTROPIC = 1.0 / 3.0 - 1e-9
-"""Dispersion from which on fibres have no direction."""
 VERTICES = 81
 REACH = 4.0
 """Pictures are squares of 81 x 81 vertices, four tool radii to each side of the axis, or to the model's border."""
@@ -124,7 +122,7 @@ def refuse_fibres(scenario: Scenario, *, finite: bool = True) -> None:
             raise UncoveredError(
                 f"the layer {layer.name} has fibres, which a wave of small strain or of the plate theory does not have"
             )
-        if layer.fibre.angle is not None and layer.fibre.dispersion < ISOTROPIC:
+        if layer.fibre.directed:
             raise UncoveredError(
                 f"the layer {layer.name} has fibres in one direction, which breaks the wave's axial symmetry: leave "
                 "the angle out (fibres spread evenly over the plane)"

@@ -1,24 +1,28 @@
 """Elastic tables by the wave models: the sheet over a hole, or bonded layers under a large press.
 
-Their force and face are explicit in depth, so that no steps are needed; setting one up takes long enough for one change
-of each parameter alone, so that derivatives are of first order.
+They follow the layers' laws. Their force and face are explicit in depth, so that no steps are needed; setting one up
+takes long enough for one change of each parameter alone, so that derivatives are of first order.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from benchmark.errors import InputError
 from benchmark.files import Support, Tissue, Tool
-from benchmark.models.model_result import LowerFace
+from benchmark.models.model_result import LowerFace, UncoveredError
 from benchmark.response.elastic_table import POINTS, ElasticTable, SeparableField, SetupDerivative
 from benchmark.response.force_curve import Array
 from benchmark.response.ramp import Ramp
 from benchmark.response.setup_change import CHOICES, RADIUS, changed_setup, natural_change, way_of
+
+if TYPE_CHECKING:
+    from wavemodel import PlateWave, WaveLayer
 
 LEVELS = 24
 RADII = 90
@@ -123,9 +127,9 @@ def _sheet_fields(
     from wavemodel import DiscTool, PlateSettings, PlateWave
 
     hole, settings = float(support.hole_radius or 0.0), PlateSettings(reach=float(grid[-1]))
-    wave = PlateWave(
-        _layers(tissue), DiscTool(tool.radius, _contact(tool)), "hole", hole, settings, clamp=support.clamp
-    )
+    layers = _layers(tissue)
+    wave = PlateWave(layers, DiscTool(tool.radius, _contact(tool)), "hole", hole, settings, clamp=support.clamp)
+    _require_laws(wave, layers)
     faces = np.array([wave.field(float(level), radii)[:, -1] for level in levels[1:]])
     faces = np.concatenate([np.zeros((1, *faces.shape[1:])), faces])
     return wave.force_of_depth(grid), faces[:, 0], faces[:, 1]
@@ -158,19 +162,38 @@ def _layered_force(tissue: Tissue, tool: Tool, grid: Array) -> Array:
     return np.asarray(linear * ratio)
 
 
-def _layers(tissue: Tissue) -> list[Any]:
-    from wavemodel import WaveLayer
+def _layers(tissue: Tissue) -> list[WaveLayer]:
+    """The layers with their laws; an endless one as thick as the wave needs it.
 
-    return [
-        WaveLayer(
-            one.name,
-            one.thickness if np.isfinite(one.thickness) else ENDLESS,
-            one.density,
-            one.youngs_modulus,
-            one.poisson_ratio,
+    Raises
+    ------
+    InputError
+        For fibres in one direction, which the wave does not have, or constants that a law does not take.
+    """
+    from benchmark.models.solver_layers import wave_layers
+
+    for one in tissue.layers:
+        if one.fibre is not None and one.fibre.directed:
+            raise InputError(
+                f"the wave does not cover {tissue.name!r}: the layer {one.name} has fibres in one direction; leave the "
+                "angle out (fibres spread evenly over the plane), or take the finite elements."
+            )
+    try:
+        layers = wave_layers(tissue.layers)
+    except UncoveredError as error:
+        raise InputError(f"the wave does not cover {tissue.name!r}: {error}.") from None
+    return [one if np.isfinite(one.thickness) else replace(one, thickness=ENDLESS) for one in layers]
+
+
+def _require_laws(wave: PlateWave, layers: Sequence[WaveLayer]) -> None:
+    """Refuse laws that the plate theory, which is left for this tool, would take for neo-Hookean."""
+    from wavemodel import NotCoveredError
+
+    if wave.tension != "layered" and any(layer.law is not None for layer in layers):
+        raise NotCoveredError(
+            f"under a tool with contact {wave.tool.contact!r} a sheet over a hole follows no law of its layers; under "
+            "uniform_pressure and rigid_bonded it does, and so do the finite elements"
         )
-        for one in tissue.layers
-    ]
 
 
 def _contact(tool: Tool) -> str:
