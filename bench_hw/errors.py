@@ -1,12 +1,15 @@
 """The errors of the bench: each knows the exit code of the command line it ends.
 
 What is wrong with a file or an argument is an `InputError` (exit 2); what a device did wrong is a
-`DeviceError` (exit 5). The text is one paragraph: what, where, which value, what is allowed.
+`DeviceError` (exit 5). The text is one paragraph: what, where, which value, what is allowed. A library that
+an installation may leave out is named with the extra that has it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 
 class BenchError(Exception):
@@ -90,3 +93,30 @@ class TableError(InputError):
 
 def _shortened(value: str, length: int = 40) -> str:
     return value if len(value) <= length else value[: length - 3] + "..."
+
+
+EXTRAS: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "cv2": ("pictures and films need OpenCV", "camera"),
+        "dask": ("a cluster needs Dask", "cluster"),
+        "distributed": ("a cluster needs Dask", "cluster"),
+        "pyvista": ("surfaces and solids need VTK, by PyVista", "solids"),
+        "pytetwild": ("a solid from a surface needs fTetWild, by pytetwild", "solids"),
+        "vtkmodules": ("surfaces and solids need VTK, by PyVista", "solids"),
+    }
+)
+"""For each module what needs it, and the extra of the package that has it."""
+
+
+def what_is_missing(error: BaseException) -> str | None:
+    """Say what needs the library that was not found, and how to get it; None where it is no optional one."""
+    if not isinstance(error, ModuleNotFoundError) or error.name is None:
+        return None
+    module = error.name.partition(".")[0]
+    return how_to_get(module) if module in EXTRAS else None
+
+
+def how_to_get(module: str) -> str:
+    """Say what needs a module of `EXTRAS`, and the command that installs it."""
+    need, extra = EXTRAS[module]
+    return f"{need}, which is not installed: pip install 'tissuebench[{extra}]' (or [all])"

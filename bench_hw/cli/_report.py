@@ -11,8 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
-from bench_hw.errors import BenchError
-from bench_hw.optional import what_is_missing
+from bench_hw.errors import BenchError, what_is_missing
 from bench_hw.starting import unsaid
 
 EXIT_MISSING = 2

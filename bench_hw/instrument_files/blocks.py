@@ -1,6 +1,6 @@
 """Cells to blocks: where the rows of numbers are, which row names their columns, which gives units, what stands above.
 
-A block is one table of a sheet. Which of its columns are time, depth and force is for `press_record`.
+A block is one table of a sheet. Which of its columns are time, depth and force is for `column_choice`.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ properties ("unit"), of names, or where the schema is of ROS or Foxglove geometr
 (N, m). Other encodings are refused: their numbers do not stand in the file by name.
 
 One topic's times are those of the table, the one with the force; what others hold is interpolated to them. What the
-columns mean is for `press_record`.
+columns mean is for `column_choice`.
 """
 
 from __future__ import annotations

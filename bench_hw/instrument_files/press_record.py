@@ -1,6 +1,6 @@
-"""A block of columns to the record of a press: which column is what, which way is pressing, where the tool touches.
+"""A block of columns to the record of a press: its rows and times, which way is pressing, where the tool touches.
 
-Everything that is decided here is said in `notes`; what two columns or two signs could be is asked for.
+Everything that is decided here is said in `notes`; what two signs could be is asked for.
 """
 
 from __future__ import annotations
@@ -14,20 +14,13 @@ import numpy as np
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.blocks import Block
-from bench_hw.instrument_files.told import AUTOMATIC, KEPT, ColumnSource, Told, asking, asking_key, parse_source
-from bench_hw.instrument_files.vocabulary import (
-    COMPRESSION,
-    DIMENSIONS,
-    TENSION,
-    role_of,
-    unit_scale,
-)
+from bench_hw.instrument_files.column_choice import Taken, header_line, takes
+from bench_hw.instrument_files.told import AUTOMATIC, KEPT, Told, asking, asking_key
+from bench_hw.instrument_files.vocabulary import COMPRESSION, TENSION
 from bench_hw.tables.columns import check_increasing, check_row_count
 from bench_hw.tables.measurement import TrialTable
 from bench_hw.tables.units import FloatArray
 
-TRAVEL: Final = ("depth", "displacement", "gap", "position")
-"""Quantities that say how far the tool went, the plainest first."""
 SURE: Final = 6.0
 """Of its noise, above which a force is one."""
 SMALL_TRAVEL: Final = 0.1
@@ -67,133 +60,6 @@ class PressRecord:
     kind: str = "press"
 
 
-@dataclass(frozen=True)
-class Taken:
-    """A column that is used: its number, the quantity it holds, its SI scale, its sign (0: found out), how it reads."""
-
-    column: int
-    role: str
-    scale: float
-    sign: int
-    shown: str
-
-
-def takes(block: Block, told: Told) -> dict[str, Taken]:
-    """Which columns of a block are time, travel and force (or strain and stress); what is not there is left out.
-
-    Raises
-    ------
-    TableError
-        A column that was named is missing, two could be meant, or a unit is missing.
-    """
-    found = {role: _told(block, role, parse_source(role, text)) for role, text in told.columns.items()}
-    kinds = {"depth": TRAVEL}
-    for role in ("time", "force", "depth", "gap"):
-        if role not in found and not (role == "time" and told.rate):
-            for kind in kinds.get(role, (role,)):
-                if (taken := _by_word(block, role, kind)) is not None:
-                    found[role] = taken
-                    break
-    if "force" not in found or "depth" not in found:
-        found |= {
-            role: taken for role in ("stress", "strain") if role not in found and (taken := _by_word(block, role, role))
-        }
-    return found
-
-
-def _told(block: Block, role: str, source: ColumnSource) -> Taken:
-    matching = [k for k, name in enumerate(block.names) if source.name in (name, block.headers[k])]
-    number = source.name.removeprefix("#")
-    if source.name.startswith("#") and number.isdecimal() and 0 < int(number) <= len(block.names):
-        matching = [int(number) - 1]
-    if len(matching) != 1:
-        problem = f"import.{role}: " + (
-            "no column is called so" if not matching else f"{len(matching)} columns are called so"
-        )
-        raise TableError(block.path, problem, f"one of {block.header}, by its name or its place #N", column=source.name)
-    unit = source.unit or block.units[matching[0]]
-    return _taken(block, role, role, matching[0], unit, source.sign)
-
-
-def _by_word(block: Block, role: str, kind: str) -> Taken | None:
-    """The column whose name plainly means a quantity; of some that do as plainly, those that say the same are one."""
-    candidates = []
-    for k, name in enumerate(block.names):
-        meaning = role_of(name)
-        dimension = _dimension(block.units[k])
-        if meaning is not None and meaning[0] == kind and (not block.units[k] or dimension in (DIMENSIONS[kind], None)):
-            candidates.append((meaning[1], k))
-    if not candidates:
-        return None
-    best = [k for rank, k in sorted(candidates) if rank == min(candidates)[0]]
-    first = best[0]
-    for other in best[1:]:
-        if not _same(block, first, other):
-            names = " and ".join(repr(_shown(block, k)) for k in (first, other))
-            example = f"#{first + 1}:{block.units[first] or _EXAMPLES[role]}"
-            problem = f"two columns could be the {role}: {names}"
-            raise TableError(block.path, problem, f"name one, {asking(role, example)}", row=_header_line(block))
-    return _taken(block, role, kind, first, block.units[first], 0)
-
-
-def _dimension(unit: str) -> str | None:
-    from bench_hw.instrument_files.vocabulary import UNITS, unit_of
-
-    known = unit_of(unit)
-    return None if known is None else UNITS[known][1]
-
-
-def _same(block: Block, first: int, other: int) -> bool:
-    """Whether two columns are the same measurement in two units: their numbers are proportional."""
-    rows = np.flatnonzero(~block.lacking(first) & ~block.lacking(other))
-    if len(rows) < 3:
-        return False
-    a, b = block.numbers(first, rows), block.numbers(other, rows)
-    spread = float(np.abs(a).max() * np.abs(b).max())
-    ratio = float(a @ b) / max(float(a @ a), 1e-300)
-    return bool(spread > 0.0 and np.allclose(b, ratio * a, rtol=0.0, atol=2e-3 * float(np.abs(b).max())))
-
-
-_EXAMPLES: Final = {"time": "s", "force": "N", "depth": "mm", "gap": "mm", "stress": "kPa", "strain": "%"}
-
-
-def _header_line(block: Block) -> int:
-    return max(int(block.lines[0]) - 1, 1)
-
-
-def _shown(block: Block, column: int) -> str:
-    unit = block.units[column]
-    return f"{block.names[column]} [{unit}]" if unit else block.names[column]
-
-
-def _taken(block: Block, role: str, kind: str, column: int, unit: str, sign: int) -> Taken:
-    example = f"{block.names[column] or f'#{column + 1}'}:{_EXAMPLES[role]}"
-    if not unit:
-        problem = f"the unit of the {kind} stands neither in its column's name nor in a line below it"
-        raise TableError(
-            block.path, problem, f"say it, {asking(role, example)}", row=_header_line(block), column=block.names[column]
-        )
-    scale = unit_scale(unit, DIMENSIONS[kind])
-    if scale is None:
-        problem = f"{unit!r} is no unit of the {kind}"
-        raise TableError(
-            block.path,
-            problem,
-            f"a unit of {kind}, {asking(role, example)}",
-            row=_header_line(block),
-            column=block.names[column],
-        )
-    named = block.names[column] or f"column #{column + 1}"
-    return Taken(column, kind, scale, sign, f"{named} [{unit}]")
-
-
-def is_record(block: Block, told: Told) -> bool:
-    """Whether a block can be a trial: by the words of its columns, or by what was told."""
-    words = {meaning[0] for name in block.names if (meaning := role_of(name)) is not None}
-    forced, moved = words & {"force", "stress"}, words & {*TRAVEL, "strain"}
-    return bool((forced or "force" in told.columns) and (moved or "depth" in told.columns))
-
-
 def record_of(block: Block, told: Told) -> PressRecord:
     """Read a block as a trial.
 
@@ -209,7 +75,7 @@ def record_of(block: Block, told: Told) -> PressRecord:
         found = _of_stress(block, found, told)
     if "time" not in found and not told.rate:
         allowed = f"a column of times, {asking('time', 'COLUMN:s')}; or rows per second, {asking_key('rate', '100 Hz')}"
-        raise TableError(block.path, f"no column is the time (it has {block.header})", allowed, row=_header_line(block))
+        raise TableError(block.path, f"no column is the time (it has {block.header})", allowed, row=header_line(block))
     rows = _rows(block, found, told, notes)
     check_row_count(block.path, len(rows))
     lines = block.lines[rows]
@@ -245,12 +111,12 @@ def _of_stress(block: Block, found: dict[str, Taken], told: Told) -> dict[str, T
         examples = {"height": "10 mm", "area": "314 mm^2"}
         allowed = " and ".join(asking_key(key, examples[key]) for key in missing)
         problem = f"stress and strain need the specimen's {' and '.join(missing)}, which no header line tells"
-        raise TableError(block.path, problem, allowed, row=_header_line(block))
+        raise TableError(block.path, problem, allowed, row=header_line(block))
     role = "force" if "force" not in found else "depth"
     example = "COLUMN:N" if role == "force" else "COLUMN:mm"
     problem = f"no column is the {'force' if role == 'force' else 'depth (or displacement, gap, position)'}"
     allowed = f"name it, {asking(role, example)}; the file has {block.header}"
-    raise TableError(block.path, problem, allowed, row=_header_line(block))
+    raise TableError(block.path, problem, allowed, row=header_line(block))
 
 
 def _rows(block: Block, found: Mapping[str, Taken], told: Told, notes: list[str]) -> np.ndarray:

@@ -12,8 +12,9 @@ import numpy as np
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.blocks import Block, blocks_of, joined, side_by_side
+from bench_hw.instrument_files.column_choice import is_record, takes
 from bench_hw.instrument_files.containers import OPENERS, ending_of, open_container
-from bench_hw.instrument_files.press_record import PressRecord, is_record, phases, record_of, takes
+from bench_hw.instrument_files.press_record import PressRecord, phases, record_of
 from bench_hw.instrument_files.text_sheet import text_sheet
 from bench_hw.instrument_files.told import Told
 from bench_hw.instrument_files.vocabulary import (

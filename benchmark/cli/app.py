@@ -119,7 +119,7 @@ def _report(error: Exception, *, debug: bool) -> int:
         return _fail(f"{error.format_message()} See python -m benchmark --help.", EXIT_USAGE)
     if isinstance(error, typer.Abort):
         return _fail("interrupted", EXIT_INTERRUPTED)
-    from bench_hw.optional import what_is_missing
+    from bench_hw.errors import what_is_missing
     from benchmark.errors import TissuebenchError
 
     if isinstance(error, TissuebenchError):

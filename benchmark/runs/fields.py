@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bench_hw.optional import how_to_get
+from bench_hw.errors import how_to_get
 from benchmark.models import FieldSnapshot, LastState
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from bench_hw.cli._report import report_unexpected
-from bench_hw.optional import EXTRAS, what_is_missing
+from bench_hw.errors import EXTRAS, what_is_missing
 
 PYPROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 DISTRIBUTIONS = {"cv2": "opencv-python-headless", "vtkmodules": "pyvista"}
