@@ -40,8 +40,11 @@ _WHOLE_SHARE = 0.98
 _LEARNING = 0.05
 _LAST_STEP = 3e-4
 """Where a Newton step from the linear guess stops: less than 1e-4 pixel is left of it."""
-_OTHER_LIGHT, _SURE = 0.02, 4.0
+_OTHER_LIGHT, _SURE = 0.02, 2.5
 """A change of the tilt of light beyond this share of the contrast, and so many standard deviations, is real."""
+_NEWS = 6.0
+"""A tilt of light so many standard deviations from the learned one is not of the same light: what was learned before
+counts no more. Set on rendered films of seeds 101 and 102, judged on others."""
 _SLACK, _MORE_SLACK, _MOST_SLACK = 0.06, 0.02, 0.3
 """How much an outline may change from one picture to the next, for each picture it is not seen, and at most: a sheet
 stretches by 5 % between two pictures of a webcam in a press of a third of a second."""
@@ -126,7 +129,7 @@ class MarkerEdges:
         self._grid_radius, self._spacing = grid.radius, grid.spacing
         self._basis = outline_basis(self._fan)
         self._outline = np.full((count, len(self._basis)), grid.radius)
-        self._tilt = np.zeros((count, 2))
+        self._tilt, self._lit = np.zeros((count, 2)), np.zeros(count)
         self._inverse = camera.undistorted(grid.centres)
         self._looks = 0
         self._slack, self._noise = np.full(count, _FIRST_SLACK), np.full(count, np.inf)
@@ -274,7 +277,14 @@ class MarkerEdges:
         new = ~np.isfinite(self._noise[chosen])
         self._noise[chosen[new]] = noise[new]
         self._noise[chosen] += weight * (noise - self._noise[chosen])
-        self._tilt[chosen] += weight * (look.edges.tilt[whole] - self._tilt[chosen])
+        self._learn_light(look.edges.tilt[whole], look.edges.tilt_std[whole], chosen)
+
+    def _learn_light(self, tilt: FloatArray, std: FloatArray, chosen: IntArray) -> None:
+        """Take the mean tilt of light since the light last changed, of some twenty pictures at most."""
+        change = tilt - self._tilt[chosen]
+        pictures = np.where((np.abs(change) > _NEWS * std[:, None]).any(axis=1), 1.0, self._lit[chosen] + 1.0)
+        self._lit[chosen] = pictures
+        self._tilt[chosen] += np.maximum(_LEARNING, 1.0 / pictures)[:, None] * change
 
 
 def _stated_error(look: Look) -> FloatArray:

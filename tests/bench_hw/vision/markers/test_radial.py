@@ -84,6 +84,19 @@ def test_a_shadow_does_not_shift_a_marker(set_up):
     assert not error[8] > 0.06
 
 
+def test_light_of_a_shadow_that_has_gone_is_soon_forgotten(set_up):
+    renderer, camera, grid, edges = set_up
+    clean, off = renderer.clean(), []
+    for _ in range(20):
+        edges.look(renderer.noisy(clean), grid.centres, EVERYONE)
+    for place in (-40.0, -20.0, 0.0, 20.0, 40.0, *([1000.0] * 5)):  # of its edge, from the ninth marker
+        shade = 0.55 + 0.45 / (1.0 + np.exp(-(np.arange(640) - grid.centres[8, 0] - place) / 12.0))
+        sighting = edges.look(renderer.noisy(clean * shade.astype(np.float32)), grid.centres, EVERYONE)
+        off.append(errors(sighting, camera, renderer)[8])
+    assert max(off[-5:]) < 0.04
+    assert np.mean(off[-5:]) < 0.03
+
+
 def test_markers_at_the_border_and_outside_are_not_seen(set_up, rendering):
     renderer, _, grid, edges = set_up
     grey = renderer.frame()
