@@ -6,6 +6,9 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
+from benchmark.models import ModelResult
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.deformation_section import bands_section, deformation_section
 from benchmark.runs.report.film_section import film_section
@@ -13,7 +16,7 @@ from benchmark.runs.report.scenario_section import method_section, scenario_sect
 from benchmark.runs.report.statistics_section import Columns, growth_section, statistics_section, validation_section
 from benchmark.runs.report.timing_section import timing_section
 from benchmark.runs.report.trials_section import TrialsPart, fit_section, measured_section, session_notices
-from benchmark.runs.report.values import pair_names, peak_errors, sentence, setup_words, speedup_words, times_words
+from benchmark.runs.report.values import MM, pair_names, peak_errors, sentence, setup_words, speedup_words, times_words
 from benchmark.runs.small_strain import NOTE
 from reports import Block, Download, Fact, KeyFigure, Notice, Page, Section, Verdict
 
@@ -173,9 +176,10 @@ def _facts(environment: Mapping[str, Any]) -> tuple[Fact, ...]:
 
 
 def _key_figures(record: RunRecord) -> tuple[KeyFigure, ...]:
-    """Deepest press of both models, the error between them, and the speed-up."""
+    """What the press asked of both models, the error between them, and the speed-up."""
+    by_depth = record.scenario.load.control == "depth"
     figures = [
-        KeyFigure(run.name, 1e3 * float(run.result.max_deformation()[0]), "mm", f"maximum of {record.layers[0]}")
+        _largest_force(run.name, run.result) if by_depth else _deepest(run.name, run.result, record.layers[0])
         for run in (record.pair.fem, record.pair.wave)
         if run.result is not None and run.result.time.size
     ]
@@ -189,6 +193,17 @@ def _key_figures(record: RunRecord) -> tuple[KeyFigure, ...]:
         note = f"of the load history alone; {times_words(ratio.with_setup)} × with set-up"
         figures.append(KeyFigure("speed-up", times_words(ratio.median), "×", note))
     return tuple(figures)
+
+
+def _deepest(name: str, result: ModelResult, layer: str) -> KeyFigure:
+    """Of a press by force: how deep it went."""
+    return KeyFigure(name, MM * float(result.max_deformation()[0]), "mm", f"maximum of {layer}")
+
+
+def _largest_force(name: str, result: ModelResult) -> KeyFigure:
+    """Of a press by depth: the force it took, pulling negative."""
+    step = int(np.abs(result.force).argmax())
+    return KeyFigure(name, float(result.force[step]), "N", f"largest force, at {MM * float(result.depth[step]):.4g} mm")
 
 
 def _notices(record: RunRecord, trials: TrialsPart | None) -> tuple[Notice, ...]:

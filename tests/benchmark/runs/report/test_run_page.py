@@ -9,7 +9,7 @@ from benchmark.cli.console import Console
 from benchmark.files import load_scenario
 from benchmark.runs.options import RunOptions
 from benchmark.runs.record import RunRecord, compare_layers
-from benchmark.runs.report.run_page import run_verdict
+from benchmark.runs.report.run_page import run_page, run_verdict
 from benchmark.runs.scenario_run import run_scenario
 
 QUICK = {"fem.mesh": "coarse", "load.observations": "20", "wave.large_press": "linear"}
@@ -49,3 +49,13 @@ def test_a_model_that_is_off_throughout_is_told_by_layers(finished: RunRecord) -
     verdict = run_verdict(_with_wave(finished, np.full(20, 1.1)))
     assert verdict.status == "finding"
     assert "is not shown in 3 of 3 layers" in verdict.headline
+
+
+def test_the_first_figures_of_a_press_by_depth_are_forces(finished: RunRecord) -> None:
+    environment = {"processor": "x", "usable_cores": 1, "made": "now", "seed": 0, "packages": {"tissuebench": "0"}}
+    load = finished.scenario.load.model_copy(update={"control": "depth", "peak": 2e-3})
+    by_depth = replace(finished, scenario=finished.scenario.model_copy(update={"load": load}))
+    asked = {way: run_page(one, environment, {}).key_figures[0] for way, one in (("F", finished), ("d", by_depth))}
+    assert asked["F"].unit == "mm"
+    assert (asked["d"].unit, asked["d"].value) == ("N", pytest.approx(5.0))
+    assert asked["d"].note.startswith("largest force, at ")
