@@ -9,12 +9,13 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from benchmark.errors import InputError
-from reports.manifest import foreign_files, refuse_foreign
+from reports.manifest import ForeignFilesError, foreign_files, refuse_foreign
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -49,6 +50,26 @@ def check_files(path: Path, files: Collection[str], *, resumed: bool, no: str) -
         refuse_foreign(path, f"--out {path}", files)
     except OSError as error:
         raise InputError(str(error)) from error
+
+
+@contextmanager
+def going_on(path: Path) -> Iterator[None]:
+    """Say of a disk that is full, and the like, that what is finished at `path` stays and the same command goes on.
+
+    Raises
+    ------
+    InputError
+        The file system refused.
+    """
+    try:
+        yield
+    except ForeignFilesError:
+        raise
+    except OSError as error:
+        raise InputError(
+            f"--out {path} cannot be written: {error.strerror or error}; what is finished stays there, and the same "
+            "command goes on from it"
+        ) from error
 
 
 def read_rows(path: Path, row_type: Callable[..., RowType]) -> Iterator[RowType]:

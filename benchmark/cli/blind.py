@@ -65,6 +65,7 @@ def blind(
     from benchmark.blind.suites import suite as cases_of
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
+    from benchmark.resumable import going_on
     from benchmark.runs.output.destination import claimed, fresh
 
     console = Console(quiet=quiet)
@@ -84,8 +85,9 @@ def blind(
             remark = "" if last is None else f"{last.truth or 'null'}: {last.verdict} {last.said}"
             advance("cases", done, total, remark)
 
-        judged = run_cases(names, discoverer, journal, scheduler or workers, on_case)
-        result = finish(folder, settings, judged)
+        with going_on(folder):
+            judged = run_cases(names, discoverer, journal, scheduler or workers, on_case)
+            result = finish(folder, settings, judged)
     if json:
         print_json({**result, "out": str(folder)})
     else:

@@ -31,6 +31,7 @@ from benchmark.response.fem_table import fem_or_wave_table, fem_table
 from benchmark.runs.options import Listener
 from benchmark.runs.output.destination import claimed, destination, file_name
 from benchmark.sessions import HIDDEN_EFFECT, SHIPPED
+from reports.result_folder import KeptElsewhereError
 
 
 @dataclass(frozen=True)
@@ -90,12 +91,21 @@ def answer(request: DiscoverRequest, listener: Listener) -> DiscoveryRecord:
 
 def put_down(record: DiscoveryRecord, out: Path | None) -> DiscoveryOutcome:
     """Write the result folder of an answer, by default results/NAME-DATE-TIME, and forget the fits kept for it."""
-    outcome = write_discovery(record, destination(out, f"{record.name}-discovery"))
+    try:
+        outcome = write_discovery(record, destination(out, f"{record.name}-discovery"))
+    except KeptElsewhereError:
+        _forget(record)
+        raise
+    _forget(record)
+    return outcome
+
+
+def _forget(record: DiscoveryRecord) -> None:
+    """Remove what was kept for an answer: the session that grew, and the fits."""
     if record.grown is not None:
         shutil.rmtree(record.grown, ignore_errors=True)
     if record.store is not None:
         forget(record.store)
-    return outcome
 
 
 def _of_runs(request: DiscoverRequest, effects: tuple[Effect, ...], listener: Listener) -> DiscoveryRecord:

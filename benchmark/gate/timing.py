@@ -18,8 +18,9 @@ SURE = 2.0
 USUAL_SCATTER, USUAL_ROUNDS = 0.03, 4
 """Scatter between processes (logarithm) on a shared machine: a few processes that agree by chance count as so many more
 of this scatter."""
-DECISIVE = 6
-"""Rounds before anything is called slower, as long as the gate file allows as many."""
+DECISIVE = 5
+"""Rounds before anything is called slower, as long as the gate file allows as many: from five on, the mean of the
+processes leaves the highest and the lowest out."""
 
 
 @dataclass(frozen=True)

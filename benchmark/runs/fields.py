@@ -10,6 +10,7 @@ import numpy as np
 
 from bench_hw.errors import how_to_get
 from benchmark.models import FieldSnapshot, LastState
+from reports import write_text
 
 
 def missing_vtk() -> str | None:
@@ -18,8 +19,9 @@ def missing_vtk() -> str | None:
 
 
 def save_grid(snapshot: FieldSnapshot, path: Path) -> None:
-    """Write a snapshot as VTU."""
+    """Write a snapshot as VTU, whole or not at all: VTK's own files are cut, or VTK crashes, where a disk is full."""
     import pyvista
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
     grid = pyvista.UnstructuredGrid(
         {snapshot.cell_type: np.asarray(snapshot.cells)}, np.asarray(snapshot.points, dtype=float)
@@ -28,7 +30,13 @@ def save_grid(snapshot: FieldSnapshot, path: Path) -> None:
         grid.point_data[name] = values
     for name, values in snapshot.cell_data.items():
         grid.cell_data[name] = values
-    grid.save(path)
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetInputData(grid)
+    writer.SetDataModeToBinary()
+    writer.WriteToOutputStringOn()
+    if not writer.Write():
+        raise OSError(f"{path.name}: VTK could not write the fields")
+    write_text(path, writer.GetOutputString())
 
 
 LAST = "last.vtu"

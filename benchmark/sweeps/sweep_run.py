@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError
+from benchmark.resumable import going_on
 from benchmark.runs.options import Advance, Listener
 from benchmark.runs.output.destination import check_ready, destination
 from benchmark.runs.output.document import describe_environment
@@ -58,15 +59,14 @@ def run_sweep(request: SweepRequest, listener: Listener) -> SweepOutcome:
     Raises
     ------
     InputError
-        A request that cannot be carried out, or a folder that is another's; nothing is computed then.
+        A request that cannot be carried out, or a folder that is another's; nothing is computed then. Or the file
+        system refuses; finished points are kept.
     ClusterError
         The cluster is not there or is gone; finished points are kept.
-    OSError
-        Where the file system refuses.
     """
     plan = _plan(request)
     path = _folder(request, plan)
-    with open_folder(path, plan) as folder:
+    with going_on(path), open_folder(path, plan) as folder:
         _finish(folder, plan, request, listener)
         rows = [folder.finished[point] for point in sorted(folder.finished)]
         say_failures(rows, plan, listener.say)

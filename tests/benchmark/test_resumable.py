@@ -1,11 +1,14 @@
 """The journal: what is whole in it is kept, wherever a crash cut it."""
 
+import errno
 from pathlib import Path
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmark.resumable import Journal, read_rows
+from benchmark.errors import InputError
+from benchmark.resumable import Journal, going_on, read_rows
 from benchmark.sweeps.point import PointResult, failed
 
 ROWS = [
@@ -53,3 +56,9 @@ def test_lines_of_something_else_are_passed_over(tmp_path: Path) -> None:
     path = written(tmp_path / "j")
     path.write_bytes(b'\x00\x00\n{"point": 9}\n[1]\n' + path.read_bytes())
     assert read(path) == {row.point: row for row in ROWS}
+
+
+def test_a_full_disk_says_what_stays_and_how_to_go_on(tmp_path: Path) -> None:
+    match = r"sweep cannot be written: No space left.*the same command goes on"
+    with pytest.raises(InputError, match=match), going_on(tmp_path / "sweep"):
+        raise OSError(errno.ENOSPC, "No space left on device")

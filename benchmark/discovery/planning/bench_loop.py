@@ -154,7 +154,11 @@ def session_copy(session: Path, folder: Path) -> Path:
         raise InputError(f"{session}: --bench needs a session.toml that says what was pressed with what")
     if folder.exists():
         shutil.rmtree(folder)
-    shutil.copytree(session, folder)
+    try:
+        shutil.copytree(session, folder)
+    except OSError:  # a part of a session is of no use
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
     return folder
 
 

@@ -8,7 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from benchmark.errors import InputError, InterruptedRunError, SolverError
-from reports.manifest import remove_known
+from reports.manifest import ForeignFilesError, remove_known
+from reports.result_folder import KeptElsewhereError
 
 KEPT = re.compile(r"(?:fem_steps\w*|fem_steps_edge_[0-9.e+-]+|fem_mesh)\.kept(?:\.[0-9]+\.part)?")
 """Names of the files in which the FEM keeps its steps and its mesh."""
@@ -18,12 +19,13 @@ KEPT = re.compile(r"(?:fem_steps\w*|fem_steps_edge_[0-9.e+-]+|fem_mesh)\.kept(?:
 def unfinished(folder: Path) -> Iterator[Path]:
     """Lend the hidden folder `.NAME.unfinished` beside a result to its run, and remove it when the result is written.
 
-    It is made only when a run is long enough to keep something. An interruption or a crash leaves it.
+    It is made only when a run is long enough to keep something. An interruption or a crash leaves it, and so does a
+    file system that takes the result nowhere; where the result is kept elsewhere, it goes.
 
     Raises
     ------
     InputError
-        There is something else of that name.
+        There is something else of that name, or the file system refused, with what to do.
     InterruptedRunError, SolverError
         An interruption or a crash that left something, with what to do.
     """
@@ -38,6 +40,15 @@ def unfinished(folder: Path) -> Iterator[Path]:
     except SolverError as error:
         if path.is_dir():
             raise SolverError(f"{error}; {_left(path, folder)}") from error
+        raise
+    except KeptElsewhereError:
+        remove_known(path, is_kept)
+        raise
+    except ForeignFilesError:
+        raise
+    except OSError as error:
+        if path.is_dir():
+            raise InputError(f"{folder} cannot be written: {error}; {_left(path, folder)}") from error
         raise
     remove_known(path, is_kept)
 

@@ -1,16 +1,24 @@
 """The folder beside a result in which a run keeps what it has so far."""
 
+import errno
 from pathlib import Path
 
 import pytest
 
 from benchmark.errors import InputError, InterruptedRunError, SolverError
 from benchmark.runs.output.unfinished import unfinished
+from reports.result_folder import KeptElsewhereError
 
 
 def begin(keep: Path) -> None:
     keep.mkdir()
     (keep / "fem_steps.kept").write_bytes(b"steps")
+
+
+def ended_by(error: BaseException, folder: Path) -> None:
+    with unfinished(folder) as keep:
+        begin(keep)
+        raise error
 
 
 def test_it_goes_when_the_run_is_finished(tmp_path: Path) -> None:
@@ -24,13 +32,20 @@ def test_it_goes_when_the_run_is_finished(tmp_path: Path) -> None:
 def test_it_stays_after_an_interruption_which_says_how_to_go_on(
     tmp_path: Path, kind: type[BaseException], told: type[Exception]
 ) -> None:
-    def broken() -> None:
-        with unfinished(tmp_path / "press") as keep:
-            begin(keep)
-            raise kind("it broke")
-
     with pytest.raises(told, match=r"the same command with --out .*press goes on from there"):
-        broken()
+        ended_by(kind("it broke"), tmp_path / "press")
+    assert [each.name for each in tmp_path.iterdir()] == [".press.unfinished"]
+
+
+def test_it_goes_where_the_result_is_kept_elsewhere(tmp_path: Path) -> None:
+    with pytest.raises(KeptElsewhereError, match="in /elsewhere"):
+        ended_by(KeptElsewhereError("the result is in /elsewhere"), tmp_path / "press")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_it_stays_where_a_full_disk_takes_no_result_which_says_how_to_go_on(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"No space.*; .*the same command"):
+        ended_by(OSError(errno.ENOSPC, "No space left on device"), tmp_path / "press")
     assert [each.name for each in tmp_path.iterdir()] == [".press.unfinished"]
 
 
