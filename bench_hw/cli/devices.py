@@ -21,7 +21,7 @@ def register(app: typer.Typer) -> None:
 def devices(
     rig: Annotated[str, typer.Option(help="Rig file or shipped rig: look for its devices and check each.")] = "",
     host: Annotated[str, typer.Option(help="Address of a Net F/T box.")] = "",
-    http_port: Annotated[int, typer.Option(help="HTTP port of that box.")] = 80,
+    http_port: Annotated[int, typer.Option(help="HTTP port of that box.", min=1, max=65_535)] = 80,
     as_json: Json = False,
     quiet: Quiet = False,
     debug: Debug = False,

@@ -29,8 +29,12 @@ def register(app: typer.Typer) -> None:
 
 
 def netft(
-    http_port: Annotated[int, typer.Option(help="Port of its web pages; 0 lets the system choose.")] = 0,
-    rdt_port: Annotated[int, typer.Option(help="UDP port of its stream; 0 lets the system choose.")] = 0,
+    http_port: Annotated[
+        int, typer.Option(help="Port of its web pages; 0 lets the system choose.", min=0, max=65_535)
+    ] = 0,
+    rdt_port: Annotated[
+        int, typer.Option(help="UDP port of its stream; 0 lets the system choose.", min=0, max=65_535)
+    ] = 0,
     rate_hz: Annotated[int, typer.Option(help="Records per second at power-on.", min=1, max=7000)] = 7000,
     loss: Loss = 0.0,
     drop: Drop = "",

@@ -93,7 +93,8 @@ def fetch(host: str, port: int, path: str, timeout: float) -> bytes:
             connection.request("GET", path)
             answer = connection.getresponse()
             page = answer.read(_LARGEST_PAGE + 1)
-    except (OSError, http.client.HTTPException, AttributeError) as error:  # the last: ended while it was read
+    except (OSError, http.client.HTTPException, AttributeError, UnicodeError) as error:
+        # AttributeError: ended while it was read; UnicodeError: a name that no network has
         reason = str(error) or type(error).__name__
         raise DeviceError(
             f"{where}: no answer ({reason}) within {timeout:g} s, or no whole one within {_PATIENCE * timeout:g} s; "
@@ -272,7 +273,7 @@ class RdtSocket:
             self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER)
             self._socket.connect((host, port))
             self._socket.setblocking(False)
-        except OSError as error:
+        except (OSError, UnicodeError) as error:
             self._socket.close()
             raise self._failed(error) from error
 
@@ -320,7 +321,7 @@ class RdtSocket:
         finally:
             self._socket.close()
 
-    def _failed(self, error: OSError) -> DeviceError:
+    def _failed(self, error: OSError | UnicodeError) -> DeviceError:
         if isinstance(error, ConnectionRefusedError):
             return DeviceError(f"force sensor at {self.where}: refuses datagrams; check rdt_port and power")
-        return DeviceError(f"force sensor at {self.where}: {error.strerror or error}")
+        return DeviceError(f"force sensor at {self.where}: {getattr(error, 'strerror', None) or error}")

@@ -27,13 +27,14 @@ Port = Annotated[int, Field(ge=1, le=65_535, strict=True)]
 Text = Annotated[str, Field(min_length=1, max_length=200)]
 
 
-def _address(text: str) -> str:
+def host_address(text: str) -> str:
+    """A name or an address of a host as it is; ValueError where it can be none."""
     if not text.isprintable() or any(sign.isspace() or sign in "/?#@\\" for sign in text):
         raise ValueError("allowed is the name or address of a host, without blanks and slashes")
     return text
 
 
-Host = Annotated[str, Field(min_length=1, max_length=253), AfterValidator(_address)]
+Host = Annotated[str, Field(min_length=1, max_length=253), AfterValidator(host_address)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Size = Annotated[int, Field(ge=16, le=10_000, strict=True)]
 Frames = Annotated[Frequency, Field(ge=0.1, le=1000.0)]

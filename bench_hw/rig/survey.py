@@ -11,9 +11,9 @@ from typing import Any
 
 from bench_hw.clock import MonotonicClock
 from bench_hw.devices import netft_network
-from bench_hw.errors import BenchError, DeviceError
+from bench_hw.errors import BenchError, DeviceError, InputError
 from bench_hw.rig import rig_file
-from bench_hw.rig.rig_file import LoadedRig
+from bench_hw.rig.rig_file import LoadedRig, host_address
 
 _QUICK = 0.5
 
@@ -122,9 +122,16 @@ _LOOK: dict[type, Callable[[Any, LoadedRig], str]] = {
 }
 
 
+def _host(text: str) -> str:
+    try:
+        return host_address(text)
+    except ValueError as error:
+        raise InputError(f"--host {text!r}: {error}") from None
+
+
 def _netft(host: str, http_port: int) -> Finding:
     try:
-        found = netft_network.read_configuration(host, http_port, _QUICK)
+        found = netft_network.read_configuration(_host(host), http_port, _QUICK)
     except DeviceError as error:
         return Finding("force", "netft", False, f"no Net F/T box at {host}", str(error))
     return Finding("force", "netft", True, f"{found.product}, serial {found.serial}, {found.rate} Hz at {host}")

@@ -44,17 +44,17 @@ PLACES = ("disks", "faults", "outside")
 def main() -> int:
     """Run the parts that were asked for; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m tests.torture", description=__doc__)
-    parser.add_argument("--minutes", type=float, default=20.0, help="for each part")
+    parser.add_argument("--minutes", type=float, default=8.0, help="for each part")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--moments", type=int, default=200, help="kills over all verbs")
-    parser.add_argument("--each", type=int, default=50, help="files of each kind")
+    parser.add_argument("--moments", type=int, default=45, help="kills over all verbs")
+    parser.add_argument("--each", type=int, default=10, help="files of each kind")
     parser.add_argument("--kinds", nargs="*", help="of the malformed files, those whose names begin so; all without")
     parser.add_argument("--only", nargs="*", choices=PARTS, default=PARTS)
     parser.add_argument(
         "--verbs", nargs="*", default=[each.verb for each in COMMANDS], help="of the kills and the surroundings"
     )
     parser.add_argument("--places", nargs="*", choices=PLACES, default=PLACES, help="kinds of surroundings")
-    parser.add_argument("--points", type=int, default=10, help="of a disk that fills")
+    parser.add_argument("--points", type=int, default=3, help="of a disk that fills")
     parser.add_argument("--log", type=Path, help="a file of what was tried, added to: a torture that stopped goes on")
     asked = parser.parse_args()
     journal = Journal(asked.log)

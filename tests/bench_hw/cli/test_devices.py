@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 
 def test_every_kind_is_listed(run):
     ran = run("devices", "--host", "127.0.0.1", "--http-port", 9, "--json")
@@ -37,3 +39,15 @@ def test_a_rig_with_a_missing_device_is_exit_5(run, tmp_path):
 
 def test_a_rig_file_that_is_wrong_is_exit_2(run, tmp_path):
     assert run("devices", "--rig", tmp_path / "gone.toml").exit_code == 2
+
+
+@pytest.mark.parametrize("host", ["1 .2.3.4", "a/b", "host\n"])
+def test_a_host_that_can_be_none_is_exit_2(run, host):
+    ran = run("devices", "--host", host)
+    assert ran.exit_code == 2
+    assert "allowed is the name or address of a host" in ran.stderr
+
+
+@pytest.mark.parametrize("host", ["..", "\u00fc" * 70])
+def test_a_host_that_no_network_has_is_missing(run, host):
+    assert "missing  force     netft" in run("devices", "--host", host).stdout
