@@ -11,16 +11,10 @@ from numpy.typing import NDArray
 from benchmark.identification.parameters.free_parameters import COMMON, RELAXATION, SHARE, Parameter
 from benchmark.identification.parameters.layer_model import Fading, FitTrial
 from benchmark.identification.parameters.presses.marker_rings import TRUST
-from benchmark.identification.parameters.presses.model_error import COUNT, ModelError, bend_of
+from benchmark.identification.parameters.presses.model_error import COUNT, ModelError, model_error
 from benchmark.identification.parameters.presses.press_surrogate import Forward, Press
 from benchmark.response.force_curve import Array
 
-MODEL_TRUST = 0.005
-"""Standard deviation of the model's own error in a press, in size and in slope over depth, as shares of the force.
-
-What finite-element codes and meshes that people use differ by on the same press: 0.4 to 0.8 % in size and 0.1 to 0.2 %
-in shape between meshes of another code, three layers under sharp tools; our own meshes differ by 0.1 to 0.2 %.
-"""
 WEAK = 2.0
 """Standard deviation of a free parameter's logarithm round its start (sevenfold): it stops what no data hold."""
 ERROR_LIMITS = (-0.1, 0.1)
@@ -43,7 +37,7 @@ class FitProblem:
         Law that all layers get; None keeps the specimen's own.
     forward : "fem" or "wave"
     trust : float
-        Standard deviation of the model's own error, a share of the force.
+        Least standard deviation of the model's own error in size and slope, a share of the force.
     discrepancy : float
         Standard deviation of a discrepancy over depth that was asked for, a share of the force; 0 for none.
     specimens : tuple of str
@@ -55,7 +49,7 @@ class FitProblem:
     parameters: tuple[Parameter, ...]
     law: str | None = None
     forward: Forward = "fem"
-    trust: float = MODEL_TRUST
+    trust: float = 0.0
     specimens: tuple[str, ...] = ()
     discrepancy: float = 0.0
 
@@ -67,7 +61,7 @@ class FitProblem:
     @cached_property
     def errors(self) -> tuple[ModelError, ...]:
         """How the model may be wrong in each press: what is asked for, and no less than what is known of it."""
-        return tuple(ModelError(self.trust, max(self.discrepancy, bend_of(one.mesh_error))) for one in self.presses)
+        return tuple(model_error(one.mesh_error, self.trust, self.discrepancy) for one in self.presses)
 
     @property
     def size(self) -> int:

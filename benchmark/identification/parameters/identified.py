@@ -267,7 +267,8 @@ def _model_error(press: Press, error: ModelError) -> dict[str, float | None]:
         "tool_radius_mm": MM * press.setup[1].radius,
         "depth_mm": MM * press.depth,
         "mesh_percent": None if press.mesh_error is None else 100.0 * press.mesh_error,
-        "size_percent": 100.0 * error.trust,
+        "size_percent": 100.0 * error.size,
+        "slope_percent": 100.0 * error.slope,
         "bend_percent": 100.0 * error.bend,
     }
 

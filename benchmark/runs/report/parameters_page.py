@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -154,7 +154,7 @@ def _fit(answer: Identified) -> Section:
         trials.append(BandedTrial(one.data.name, group, MM * one.data.depth, one.data.force, force, low, high))
     text = (
         f"Gains of the trials scatter by {100 * found.model.gain_deviation:.2g} %; the model is trusted to "
-        f"{100 * found.problem.trust:.2g} % of the force in each set-up, and to {_bends(found)} in bend over depth. "
+        f"{_shares(found, 'size')} of the force in each set-up, and to {_shares(found, 'bend')} in bend over depth. "
         f"{found.rounds} rounds of the model; in the "
         f"last one it differed from its surrogate by {100 * found.disagreement:.1g} % of the force."
     )
@@ -168,9 +168,9 @@ def _fit(answer: Identified) -> Section:
     return Section("Fitted against measured", [Paragraph(text), fitted_bands(trials, synthetic)])
 
 
-def _bends(found: LayerFit) -> str:
-    """How far the model's bend over depth is trusted in the presses, in words."""
-    shares = sorted(100.0 * one.bend for one in found.problem.errors)
+def _shares(found: LayerFit, name: Literal["size", "bend"]) -> str:
+    """How far the model is trusted in the presses, in words."""
+    shares = sorted(100.0 * float(getattr(one, name)) for one in found.problem.errors)
     return f"{shares[0]:.2g} %" if shares[-1] < 1.05 * shares[0] else f"{shares[0]:.2g} to {shares[-1]:.2g} %"
 
 

@@ -9,6 +9,7 @@ import fem
 from fem.setup.supports import SUPPORT_MODELS
 
 STACK = ((1.5e-3, 3.5e5), (2e-3, 1.8e5), (1.5e-3, 2.6e5))
+SKIN, MODULI = (0.5e-3, 1.8e-3, 9e-3), (6e5, 2e5, 4e4)
 HOLE = fem.Support("hole", 15e-3)
 
 
@@ -42,6 +43,23 @@ def test_large_strain_error_is_known_to_a_factor(contact, least, most, ramp):
     assert (found.quantity, found.load) == ("force", pytest.approx(3e-3))
     assert least < found.error / (solution.force[-1] - fine.force[-1]) < most
     assert abs(found.extrapolated / fine.force[-1] - 1.0) < 0.01
+
+
+def test_the_error_of_first_order_is_fit_to_correct_by(ramp):
+    """In a deep press of a sharp tool half to all of it is there by a mesh that is twice as fine; of the bound less."""
+    layers = tuple(
+        fem.Layer(f"{n}", h, 1000.0, fem.NeoHookean(E, 0.48)) for n, (h, E) in enumerate(zip(SKIN, MODULI, strict=True))
+    )
+    problem = fem.Problem(layers, fem.Tool(3e-3, "rigid_bonded"), fem.Support("bonded"), "finite")
+    load = ramp("depth", 2.4e-3, 6)
+    model, fine = fem.prepare(problem), fem.prepare(replace(problem, discretisation=fem.Discretisation("fine")))
+    solution = model.run(load)
+    force, finer = solution.force[-1], fine.run(load).force[-1]
+    limit = finer - (force - finer) / 3.0  # the edge's elements are a quarter as large: first order
+    bound, told = (fem.estimate_mesh_error(model, load, solution, first_order=each) for each in (False, True))
+    assert 0.5 < (force - limit) / told.error < 1.0
+    assert bound.error > 1.2 * told.error
+    assert told.order == 1.0
 
 
 def test_the_rim_of_a_hole_is_resolved_without_more_elements(monkeypatch, ramp):

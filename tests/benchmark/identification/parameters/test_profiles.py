@@ -45,7 +45,7 @@ def found(toy, monkeypatch):
         noisy = force * np.exp(SCATTER * generator.normal()) + SCATTER * force.max() * generator.normal(size=force.size)
         return replace(trial, data=replace(trial.data, force=noisy))
 
-    problem = replace(problem, trials=tuple(pressed(one) for one in problem.trials), trust=3e-3)
+    problem = replace(problem, trials=tuple(pressed(one) for one in problem.trials), trust=3e-3, discrepancy=2e-3)
     return fit_layers(begun(problem, np.zeros(TRIALS), np.zeros(TRIALS)))
 
 

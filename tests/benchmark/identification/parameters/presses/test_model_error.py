@@ -10,15 +10,18 @@ from benchmark.files.sessions.fit_table import FitTable
 from benchmark.identification.parameters.identifiability import directions, discrepancy_use
 from benchmark.identification.parameters.identified import identify
 from benchmark.identification.parameters.layer_fit import begun, fit_layers
+from benchmark.identification.parameters.presses import press_surrogate
 from benchmark.identification.parameters.presses.model_error import (
     COUNT,
     LENGTH,
     OTHER_CODE,
     PLAIN,
     SHARE_OF_MESH,
+    SHARE_TAKEN,
+    SIZE,
     ModelError,
-    bend_of,
     functions,
+    model_error,
 )
 from benchmark.identification.parameters.session_problem import assembled
 from tests.benchmark.identification.parameters.conftest import MODULI, TRUTH, zeros_of
@@ -28,7 +31,7 @@ BEND, ALLOWED = 0.02, 0.02
 
 def test_the_discrepancy_is_the_process_that_it_is_said_to_be() -> None:
     """Variance and correlation of the sum of its functions are those of a squared exponential."""
-    error = ModelError(0.005, 0.02)
+    error = ModelError(0.005, 0.005, 0.02)
     own = error.deviations[PLAIN:, None] * functions(101)[PLAIN:]
     covariance = own.T @ own
     assert covariance[50, 50] == pytest.approx(0.02**2, rel=0.02)
@@ -37,11 +40,35 @@ def test_the_discrepancy_is_the_process_that_it_is_said_to_be() -> None:
     assert error.deviations.size == COUNT == len(functions(5))
 
 
-def test_the_coarser_the_mesh_the_more_a_press_may_be_bent() -> None:
-    fine, coarse, untold = (bend_of(each) for each in (0.0, -0.012, None))
-    assert fine == OTHER_CODE
-    assert coarse == pytest.approx(np.hypot(OTHER_CODE, SHARE_OF_MESH * 0.012))
-    assert fine < untold < coarse
+def test_the_coarser_the_mesh_the_less_a_press_is_trusted() -> None:
+    fine, coarse, untold = (model_error(each) for each in (0.0, -0.012, None))
+    assert (fine.size, fine.slope, fine.bend) == (SIZE, OTHER_CODE, OTHER_CODE)
+    assert coarse.bend == coarse.slope == pytest.approx(np.hypot(OTHER_CODE, SHARE_OF_MESH * 0.012))
+    assert fine.bend < untold.bend < coarse.bend
+    assert fine.size < untold.size < coarse.size
+
+
+def test_what_is_asked_for_is_the_least_that_a_press_is_mistrusted() -> None:
+    asked = model_error(0.0, trust=0.003, discrepancy=0.02)
+    assert (asked.size, asked.slope, asked.bend) == (0.003, 0.003, 0.02)
+
+
+def test_the_estimated_error_of_the_mesh_is_taken_off_every_press(toy, monkeypatch) -> None:
+    """The toy's force is too large by the usual part of 2 % and says so: the fit finds what it finds without either."""
+    told, share = press_surrogate.differentiated_ramp, 1.0 - 0.02 * SHARE_TAKEN
+
+    def coarse(*args, judge_mesh=False):
+        ramp = told(*args, judge_mesh=judge_mesh)
+        by = {key: replace(one, force=one.force / share) for key, one in ramp.by.items()}
+        return replace(ramp, force=ramp.force / share, by=by, mesh_error=0.02 if judge_mesh else None)
+
+    values = []
+    for ramp in (told, coarse):
+        monkeypatch.setattr(press_surrogate, "differentiated_ramp", ramp)
+        problem = replace(toy(), trust=0.01, discrepancy=0.01)
+        found = fit_layers(begun(problem, np.zeros(len(problem.trials)), zeros_of(problem)))
+        values.append([found.value(k) for k in problem.free])
+    assert values[1] == pytest.approx(values[0], rel=1e-3)
 
 
 @pytest.fixture
