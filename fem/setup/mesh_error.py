@@ -79,9 +79,7 @@ class MeshError:
         return self.value - self.error
 
 
-def estimate_mesh_error(
-    model: Model, load: Load, solution: Solution, *, first_order: bool = False
-) -> MeshError | None:
+def estimate_mesh_error(model: Model, load: Load, solution: Solution, *, first_order: bool = False) -> MeshError | None:
     """Estimate the discretisation error of a run at its largest load.
 
     Parameters

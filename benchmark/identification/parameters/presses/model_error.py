@@ -1,9 +1,10 @@
 """The model's own error in a press: independent functions of depth, and the standard deviation of each.
 
-What is left when the error estimated for the mesh is taken off: size, slope over depth, and a bend: a Gaussian process over depth with mean zero (Kennedy and O'Hagan 2001,
-Journal of the Royal Statistical Society B 63:425), as a share of the force, in its Karhunen-Loeve functions. The bend
-is confounded with every parameter that bends the force over depth as it may: it widens intervals, and what it takes up
-is no finding about the specimen. Where one tool alone tells layers apart by that bend, intervals rest on its size.
+What is left when the usual part of the error estimated for the mesh is taken off: size, slope over depth, and a bend:
+a Gaussian process over depth with mean zero (Kennedy and O'Hagan 2001, Journal of the Royal Statistical Society B
+63:425), as a share of the force, in its Karhunen-Loeve functions. The bend is confounded with every parameter that
+bends the force over depth as it may: it widens intervals, and what it takes up is no finding about the specimen. Where
+one tool alone tells layers apart by that bend, intervals rest on its size.
 """
 
 from __future__ import annotations
@@ -67,8 +68,9 @@ class ModelError:
 
 
 def model_error(mesh_error: float | None, trust: float = 0.0, discrepancy: float = 0.0) -> ModelError:
-    """The error of a press whose mesh is estimated to be wrong by a share of the force, its usual part taken off; None: no estimate.
+    """The error of a press after the usual part of its mesh's is taken off.
 
+    `mesh_error` is what is estimated for the mesh, a share of the force; None: no estimate, and nothing taken off.
     Size and slope are no surer than `trust`, the bend no smaller than `discrepancy`, shares of the force.
     """
     mesh = MESH_UNTOLD if mesh_error is None else mesh_error
