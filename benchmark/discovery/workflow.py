@@ -35,7 +35,7 @@ from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.base.setup_priors import setup_entries, told_priors
 from benchmark.discovery.base.trial_bounds import large_remarks, trial_values
 from benchmark.discovery.criteria import Settings
-from benchmark.discovery.detection.cells import reachable
+from benchmark.discovery.detection.cells import channel_sizes, reachable, within_tolerance
 from benchmark.discovery.detection.contrasts import contrasts
 from benchmark.discovery.detection.disagreement import (
     Detection,
@@ -46,7 +46,6 @@ from benchmark.discovery.detection.disagreement import (
     strained,
 )
 from benchmark.discovery.detection.places import places
-from benchmark.discovery.detection.sizes import channel_sizes, within_tolerance
 from benchmark.discovery.discovery_result import Discovery
 from benchmark.discovery.evidence.gains import conditions, tissue_gain
 from benchmark.discovery.evidence.parameter_evidence import constant, undetermined, unsteady

@@ -195,6 +195,31 @@ def least_squares(
     return TrialsFit(model, at.vector, at.nuisance, value, blocks, precision, mean, columns, converged)
 
 
+def one_step(
+    model: Model, at: TrialsEvaluation, columns: TrialColumns, mean: Array, precision: Array
+) -> TrialsFit[Model]:
+    """The fit of a model that is taken as linear round a point, by its derivatives there; nuisances stay as they are.
+
+    Parameters
+    ----------
+    model
+        What is fitted.
+    at, columns
+        The point, and the derivatives.
+    mean, precision
+        (p,) of the priors on the vector.
+    """
+    blocks = _blocks(model, columns, at)
+    start = TrialsFit(model, at.vector, at.nuisance, 0.0, blocks, precision, mean, columns)
+    vector = start.without(np.zeros(len(blocks.slope), dtype=bool))
+    step = vector - at.vector
+    moved = np.einsum("rij,j->ri", blocks.matrix, step)
+    misfit = blocks.misfit - 2.0 * blocks.slope @ step + moved @ step
+    value = 0.5 * float(misfit.sum() + np.sum(precision * (vector - mean) ** 2))
+    there = Blocks(blocks.matrix, blocks.slope - moved, misfit, blocks.log_size)
+    return TrialsFit(model, vector, at.nuisance, value, there, precision, mean, columns)
+
+
 def _objective(model: TrialsModel, at: TrialsEvaluation, mean: Array, precision: Array) -> float:
     data = sum(float(r @ r) for r in at.residuals)
     prior = float(np.sum(at.nuisance**2 * model.trial_precision) + np.sum(precision * (at.vector - mean) ** 2))

@@ -69,21 +69,6 @@ def gain(fitted: Array, other: Array, groups: Array) -> Gain:
     return Gain(each, float(each.mean()), _error(each, groups), z)
 
 
-def won_by_sensor(fitted: Fit, other: Fit) -> Array:
-    """(2,) log density of the data that a fit wins over another in the force and in the markers, priors apart."""
-    before, after = _misfits(other), _misfits(fitted)
-    return np.asarray(0.5 * (before - after))
-
-
-def _misfits(fitted: Fit) -> Array:
-    """(2,) sums of squares of the white residuals in the force and in the markers."""
-    model, out = fitted.model, np.zeros(2)
-    for white in model.white.residuals(model.signals(fitted.vector, fitted.nuisance)):
-        rows = white.reshape(-1, len(model.problem.study.names))
-        out += np.array([float(np.sum(rows[:, 0] ** 2)), float(np.sum(rows[:, 1:] ** 2))])
-    return out
-
-
 def tissue_gain(fitted: Fit, own: Mapping[str, Gain]) -> float:
     """Held-out log density that a fit's effects of the tissue gain over all trials, each over the others.
 

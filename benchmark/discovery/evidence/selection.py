@@ -10,9 +10,10 @@ import numpy as np
 from scipy.stats import t as t_distribution
 
 from benchmark.discovery import criteria
+from benchmark.discovery.base.bent_form import bent
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.criteria import Settings
-from benchmark.discovery.detection.sizes import within_tolerance
+from benchmark.discovery.detection.cells import within_tolerance
 from benchmark.discovery.evidence.gains import (
     Gain,
     broad,
@@ -22,7 +23,6 @@ from benchmark.discovery.evidence.gains import (
     gain,
     held_out,
     held_out_conditions,
-    won_by_sensor,
 )
 from benchmark.discovery.evidence.parameter_evidence import determined, every_term_told, steady, told_parameters
 from benchmark.discovery.evidence.pool import Pool
@@ -152,26 +152,30 @@ def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
 
 
 def _evident(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:
-    """Whether a candidate has the evidence of trials, and beside others a strength and a gain worth naming."""
-    physics = [step for step in steps if setup_key(step.slug) is None]
-    worth = not physics or _worth(scored, physics[0])
+    """Whether a candidate has the evidence of trials, and beside others a strength, and a gain that is its own."""
     if steps and not determined(scored.fit, scored.fit.model.effects[-1]):
         return False
-    evident = scored.gain.z >= settings.accept_z or broad(scored.gain) > criteria.BROAD
-    return worth and evident and scored.delta_bic < criteria.ACCEPT_BIC
+    evident = _over_trials(scored.gain, settings) and scored.delta_bic < criteria.ACCEPT_BIC
+    return evident and (not steps or beats_bent(scored, settings))
 
 
-def _worth(scored: Scored, first: Scored) -> bool:
-    """Whether a further effect gains more than what the form of the first one misses.
+def _over_trials(gained: Gain, settings: Settings) -> bool:
+    return gained.z >= settings.accept_z or broad(gained) > criteria.BROAD
 
-    A form that shows in the force leaves its misfit there, and not in the markers: the first one's gain counts by its
-    shares of force and markers, the larger for 1, in the mean over where the further effect wins.
+
+def beats_bent(scored: Scored, settings: Settings) -> bool:
+    """Whether a further effect is more than what the forms of those before miss of the true ones.
+
+    It must have its evidence where those forms may be off, and must not foretell trials surely worse than they do by
+    being off without it. The forms of set-up entries are the finite elements' own.
     """
-    least = criteria.WORTH * first.gain.mean
-    if scored.gain.mean >= least:
+    forms = [slug for slug in scored.slugs[:-1] if setup_key(slug) is None]
+    if not forms:
         return True
-    own, its = (won_by_sensor(each.fit, each.under).clip(1e-9) for each in (scored, first))
-    return bool(scored.gain.mean >= least * float(own @ its / (own.sum() * its.max())))
+    groups, instead = conditions(scored.under), held_out(bent(scored.under, forms))
+    if not _over_trials(gain(held_out(bent(scored.fit, forms)), instead, groups), settings):
+        return False
+    return gain(held_out(scored.fit), instead, groups).z > -settings.lookalike_z
 
 
 def carries_over(scored: Scored) -> bool:

@@ -1,13 +1,25 @@
-"""The sign-flip test of whole trials keeps its level."""
+"""The sign-flip test of whole trials keeps its level; the size of a misfit is held against a stated tolerance."""
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.signal import lfilter
 
 from benchmark.discovery.criteria import Settings
-from benchmark.discovery.detection.cells import Cell, CellTable, flip_test, least_p, one_sided, reachable
+from benchmark.discovery.detection.cells import (
+    Cell,
+    CellTable,
+    channel_sizes,
+    flip_test,
+    least_p,
+    one_sided,
+    reachable,
+)
+from benchmark.discovery.discovery_result import PHASES
 
 TRIALS, CELLS = 8, 24
+LOAD, HOLD = PHASES.index("load"), PHASES.index("hold")
 
 
 def table(means):
@@ -120,3 +132,36 @@ def test_a_test_that_cannot_reach_its_level_is_known():
     assert able == [(6,), (3, 3), (4, 2), (2, 2, 2, 2), (12,), (13,)]
     assert not reachable(np.zeros(6, dtype=int), Settings(level=0.01))
     assert reachable(np.zeros(9, dtype=int), Settings(level=0.01))
+
+
+def fitted(*missed):
+    """Trials of one condition with a peak of 8 N whose force misses by `missed` in the hold, N; markers by 10 um."""
+    phase, rows = np.array([LOAD, LOAD, HOLD, HOLD]), 4
+    condition = SimpleNamespace(
+        phase=phase, cycle=np.ones(rows, dtype=int), part=np.zeros(rows, dtype=int), name="one",
+        signals=np.zeros((len(missed), rows, 2)), count=np.ones((len(missed), rows, 2)),
+        around=SimpleNamespace(peak_force=8.0),
+    )  # fmt: skip
+    trials = tuple(
+        SimpleNamespace(
+            condition=0,
+            signals=np.column_stack([np.where(phase == HOLD, force, 0.0), np.full(rows, 1e-5)]),
+            count=np.ones((rows, 2)),
+        )
+        for force in missed
+    )
+    study = SimpleNamespace(conditions=(condition,), channels=("force_z", "marker_x"))
+    problem = SimpleNamespace(study=study, trials=trials)
+    model = SimpleNamespace(problem=problem, signals=lambda vector, nuisance: [np.zeros((rows, 2))] * len(trials))
+    return SimpleNamespace(model=model, vector=None, nuisance=None)
+
+
+def test_two_newtons_of_eight_are_beyond_the_tolerance_whatever_their_signs():
+    shared, apart, small = fitted(2.0, 2.0, 2.0, 2.0), fitted(2.0, -2.0, 2.0, -2.0), fitted(0.1, 0.1, 0.1, 0.1)
+    for each in (shared, apart):
+        force, marker = channel_sizes(each, small)
+        assert (force.channel, force.before, force.after) == ("force_z", pytest.approx(2.0), pytest.approx(0.1))
+        assert force.tolerance == pytest.approx(0.16)  # 2 % of the peak force
+        assert force.within
+        assert (marker.after, marker.tolerance, marker.within) == (pytest.approx(1e-5), 5e-5, True)
+        assert not channel_sizes(small, each)[0].within

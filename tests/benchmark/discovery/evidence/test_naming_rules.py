@@ -83,26 +83,31 @@ def test_an_effect_needs_evidence_over_trials_and_bic(z, bic, each, expected):
     assert selection._evident(scored("a", 5.0, z, bic, each), [], SETTINGS) is expected
 
 
-@pytest.mark.parametrize(("mean", "expected"), [(2.0, True), (1.99, False)])
-def test_a_further_effect_must_gain_a_fifth_of_the_first(mean, expected, monkeypatch):
-    monkeypatch.setattr(selection, "won_by_sensor", lambda fit, under: np.array([80.0, 0.0]))
-    assert selection._evident(scored("b", mean), [scored("a", 10.0)], SETTINGS) is expected
-
-
 @pytest.mark.parametrize(
-    ("own", "least"),
+    ("before", "instead", "beside", "expected"),
     [
-        ((0.0, 12.0), 2.0 / 7.0),  # in the markers, where the first won a seventh of what it won in the force
-        ((12.0, 0.0), 2.0),
-        ((6.0, 6.0), 8.0 / 7.0),
-        ((-5.0, 12.0), 2.0 / 7.0),
+        ("a", 18.0, 24.0, True),
+        ("a", 20.5, 24.0, True),  # hardly worse than another form of the first one
+        ("a", 23.0, 29.0, False),  # surely worse
+        ("a", 18.0, 18.5, False),  # nothing is left for it beside another form
+        ("setup.top.thickness", 30.0, 30.0, True),  # whose form is the finite elements'
     ],
 )
-def test_a_weak_further_effect_counts_where_the_first_ones_form_could_not_leave_it(own, least, monkeypatch):
-    won = {"b": own, "a": (70.0, 10.0)}
-    monkeypatch.setattr(selection, "won_by_sensor", lambda fit, _: np.array(won[fit.model.effects[-1].slug]))
-    assert selection._evident(scored("b", 1.01 * least), [scored("a", 10.0)], SETTINGS)
-    assert not selection._evident(scored("b", 0.99 * least), [scored("a", 10.0)], SETTINGS)
+def test_a_further_effect_must_be_more_than_what_the_form_of_the_first_misses(
+    before, instead, beside, expected, monkeypatch, known_densities
+):
+    a, b = effect(before), effect("b")
+    under, made = fitted(a), fitted(a, b, density=20.0)
+    further = Scored(made, "b", Gain(np.full(8, 20.0), 20.0, 1.0, 9.0), None, -50.0, under)
+    scatter, asked = np.array([2.0, -2.0] * 4), []
+
+    def bent(fit, forms):
+        asked.append(forms)
+        return fitted(*fit.model.effects, density=beside if fit is made else instead + scatter)
+
+    monkeypatch.setattr(selection, "bent", bent)
+    assert selection._evident(further, [scored(before, 100.0)], SETTINGS) is expected
+    assert asked == ([] if "." in before else [["a"], ["a"]])
 
 
 @pytest.mark.parametrize(
@@ -133,6 +138,7 @@ def test_a_further_effect_that_does_not_carry_over_is_withheld(monkeypatch, know
     first = Scored(one, "a", Gain(np.full(8, 100.0), 100.0, 1.0, 9.0), None, -50.0, fitted())
     monkeypatch.setattr(selection, "usable", lambda base, effect: True)
     ranked = [Screened(each, 9.0, np.zeros((1, 8))) for each in (a, b)]
+    monkeypatch.setattr(selection, "beats_bent", lambda scored, settings: True)
     monkeypatch.setattr(
         selection, "screen", lambda fit, rest: tuple(r for r in ranked if r.effect in rest) if rest else ()
     )
@@ -421,5 +427,5 @@ def test_the_least_p_counts_how_many_were_tried():
 
 
 def test_the_rules_are_those_of_the_criteria():
-    assert (criteria.TIE, criteria.WORTH, criteria.CLOSE) == (0.03, 0.2, 0.1)
+    assert (criteria.TIE, criteria.FORM_OFF, criteria.CLOSE) == (0.03, 0.3, 0.1)
     assert (criteria.ACCEPT_BIC, criteria.RICHER_BIC, SETTINGS.accept_z, SETTINGS.lookalike_z) == (-4.0, -6.0, 3.0, 2.0)

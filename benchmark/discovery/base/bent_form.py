@@ -1,0 +1,118 @@
+"""A fit whose effects may have another form than the catalogue's: what they add may be off at each turn of the press.
+
+An effect of the catalogue resembles the true one, and what it misses has no known shape. So each condition's force, and
+the pattern that the effect makes in the markers, may be off by a share of the most that the effect adds there, with a
+value of its own at each turn of the press and half way to it, linear between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from benchmark.discovery import criteria
+from benchmark.discovery.base.effect_model import EffectModel, Fit
+from benchmark.discovery.trials.study import ConditionData
+from benchmark.response.force_curve import Array
+from benchmark.response.least_squares import one_step
+from benchmark.response.trials_model import TrialColumns
+
+LEAST_MOVED = 1e-9
+"""Standard deviations of noise: a sensor in which an effect adds less does not see it."""
+
+
+@dataclass(frozen=True, eq=False)
+class BentModel(EffectModel):
+    """A model with `bends` amplitudes of what its effects' forms miss, behind the base's nuisances in the vector."""
+
+    bends: int = 0
+
+    @property
+    def shape_count(self) -> int:
+        """Nuisances of the base and bends, which come first."""
+        return len(self.problem.shapes) + self.bends
+
+    @cached_property
+    def bounds(self) -> tuple[Array, Array]:
+        """Lower and upper bounds of the vector: none of a bend."""
+        low, high = EffectModel(self.problem, self.effects, self.pinned).bounds
+        return self.widened(low, -np.inf), self.widened(high, np.inf)
+
+    def widened(self, values: Array, bend: float) -> Array:
+        """Values (p - bends,) of a model without bends, with `bend` for each."""
+        return np.insert(values, [len(self.problem.shapes)] * self.bends, bend)
+
+
+def bent(fitted: Fit, slugs: Sequence[str]) -> Fit:
+    """The fit with some of its effects' forms free to be off by `FORM_OFF`, one step from where it is.
+
+    Parameters
+    ----------
+    fitted
+        To convergence.
+    slugs
+        The effects whose forms may be off.
+    """
+    before, first = fitted.model, fitted.model.shape_count
+    parts = [_bends(fitted, slug) for slug in slugs]
+    extra = [np.hstack(each) for each in zip(*parts, strict=True)]
+    model = BentModel(before.problem, before.effects, before.pinned, bends=extra[0].shape[1])
+    at = model.evaluated(model.widened(fitted.vector, 0.0), fitted.nuisance)
+    vector = [np.hstack([j[:, :first], e, j[:, first:]]) for j, e in zip(fitted.columns.vector, extra, strict=True)]
+    mean, precision = model.widened(fitted.prior_mean, 0.0), model.widened(fitted.precision, criteria.FORM_OFF**-2)
+    return one_step(model, at, TrialColumns(vector, fitted.columns.nuisance), mean, precision)
+
+
+def _bends(fitted: Fit, slug: str) -> list[Array]:
+    """White bends (N, b) of one effect in each trial: those of other conditions are zero."""
+    model, problem = fitted.model, fitted.model.problem
+    turns = [_between_turns(condition) for condition in problem.study.conditions]
+    ends = np.cumsum([0, *(len(problem.study.names[:2]) * len(each) for each in turns)])
+    out = []
+    for index, (trial, added) in enumerate(zip(problem.trials, _added(fitted, slug), strict=True)):
+        rows = np.zeros((added.size, ends[-1]))
+        patterns = _patterns(added, problem.noise.scale[index])
+        shapes = [share[:, None] * pattern for pattern in patterns for share in turns[trial.condition]]
+        first = ends[trial.condition]
+        for place, shape in enumerate(shapes, start=first):
+            rows[:, place] = model.white.flat(index, shape)
+        out.append(rows)
+    return out
+
+
+def _patterns(added: Array, scale: Array) -> list[Array]:
+    """(C,) by which a form may be off in force and, where there are any, markers: the most that the effect adds there.
+
+    How much of an effect shows in the force is a matter of its form, too: in units of the noise it may be off there by
+    as much as in the markers.
+    """
+    sizes = np.abs(added) / scale
+    force = np.zeros(scale.size)
+    force[0] = sizes.max() * scale[0]
+    if scale.size == 1:
+        return [force]
+    markers = added[int(np.argmax(sizes[:, 1:].max(axis=1)))].copy()
+    markers[0] = 0.0
+    return [force, markers if sizes[:, 1:].max() > LEAST_MOVED else np.zeros(scale.size)]
+
+
+def _added(fitted: Fit, slug: str) -> list[Array]:
+    """What an effect adds to the signals (n, C) of each trial."""
+    model = fitted.model
+    kept = [k for k, (of, _) in enumerate(model.parameters, start=model.shape_count) if of != slug]
+    less = EffectModel(model.problem, tuple(effect for effect in model.effects if effect.slug != slug))
+    vector = fitted.vector[[*range(model.shape_count), *kept]]
+    pairs = zip(model.signals(fitted.vector, fitted.nuisance), less.signals(vector, fitted.nuisance), strict=True)
+    return [whole - rest for whole, rest in pairs]
+
+
+def _between_turns(condition: ConditionData) -> Array:
+    """(k, n) weights of the rows by the turns of the press, and half way to them: 1 at one, linear to the next."""
+    parts = np.column_stack([condition.phase, condition.cycle, condition.part])
+    changes = np.flatnonzero((np.diff(parts, axis=0) != 0).any(axis=1)) + 1
+    rows = np.arange(len(parts))
+    knots = np.unique([0, *changes, rows[-1]])
+    return np.array([np.interp(rows, knots, each) for each in np.eye(knots.size)])

@@ -1,0 +1,60 @@
+"""What a wrong form of one effect leaves is no second effect; what another effect does is."""
+
+import numpy as np
+import pytest
+
+from benchmark.discovery import criteria
+from benchmark.discovery.base.bent_form import bent
+from benchmark.discovery.base.calibration import calibrate
+from benchmark.discovery.base.candidate_fit import fit_candidate
+from benchmark.discovery.criteria import Settings
+from benchmark.discovery.evidence.selection import beats_bent, score
+from benchmark.discovery.trials.preparing import prepare
+from benchmark.physics import catalogue
+from wavemodel import Prony
+from wavemodel.physics import Physics, QuasiStaticPress
+
+CATALOGUE = {effect.slug: effect for effect in catalogue()}
+
+
+def pulling(time, depth, elastic):
+    """Relaxation by 0.12 and 0.8 s of a body that goes on pulling in the air, as its memory says."""
+    since = time[:, None] - time[None, :]
+    memory = np.where(since >= 0.0, 0.12 * (1.0 - np.exp(-np.maximum(since, 0.0) / 0.8)), 0.0)
+    return elastic - memory @ np.diff(elastic, prepend=0.0)
+
+
+def relaxing_and_drifting(time, depth, elastic):
+    """The catalogue's relaxation, which lets go at no force, and a drift."""
+    order = np.argsort(depth)
+    press = QuasiStaticPress(
+        lambda wanted: np.interp(wanted, depth[order], elastic[order]), Physics(relaxation=Prony((0.12,), (0.8,)))
+    )
+    return press.force(time + 1e-3, depth) + 0.06 * elastic.max() * time / time.max()
+
+
+def beside_relaxation(session):
+    """A relaxation's fit, whether a drift beside it is more than another form of it, and what the drift gains."""
+    calibrated = calibrate(session, prepare(session, 40))
+    first = fit_candidate(calibrated.base, CATALOGUE["viscoelastic_relaxation"])
+    (drift,) = score(first, [fit_candidate(first, CATALOGUE["force_drift"])])
+    return first, drift
+
+
+def test_a_pull_in_the_air_that_the_form_of_a_relaxation_misses_is_no_drift(session_of, monkeypatch):
+    first, drift = beside_relaxation(session_of(force=pulling, noise=0.003))
+    assert drift.gain.z > 3.0
+    assert drift.gain.each.sum() > criteria.BROAD
+    assert not beats_bent(drift, Settings())
+    loose = bent(first, ["viscoelastic_relaxation"])
+    assert loose.objective < first.objective
+    assert loose.model.values(loose.vector).keys() == first.model.values(first.vector).keys()
+    low, high = loose.model.bounds
+    assert low.size == high.size == loose.vector.size == first.vector.size + loose.model.bends
+    monkeypatch.setattr(criteria, "FORM_OFF", 1e-9)
+    assert bent(first, ["viscoelastic_relaxation"]).objective == pytest.approx(first.objective, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_a_drift_beside_a_relaxation_is_one(session_of):
+    assert beats_bent(beside_relaxation(session_of(force=relaxing_and_drifting, noise=0.01))[1], Settings())
