@@ -224,10 +224,8 @@ FORM_OFF = 0.3
 """By how much the form of an accepted effect may be off at each turn of the press, as a share of the most that it adds
 (a standard deviation). A further effect must foretell trials better than the first one so bent.
 
-What other forms of one effect differ by: its parameters may differ by as much between conditions (`SAME_SHARE`). Set
-with three sessions by another code that had been looked at (a relaxation and two drainages whose tissue goes on pulling
-in the air: a drift or an adhesion that is not there gained 87, 66 and 62, the bent form 194, 75 and 101), and one pair
-of seed 9200 (30 against 8).
+What other forms of one effect differ by: its parameters may differ by as much between conditions (`SAME_SHARE`). Chosen
+on sessions that had been looked at (docs/blind.md, "False second effects").
 """
 CARRIED, ONE_ALONE = 0.3, 0.9
 """Share of its gain that a further effect must keep in conditions which its fit has not seen, unless one condition has
