@@ -25,7 +25,8 @@ Against = Annotated[
 Accept = Annotated[bool, typer.Option("--accept", help="Measure, print old -> new, and write the baseline.")]
 Gate = Annotated[Path | None, typer.Option("--gate", help="What is gated: a TOML file; by default the shipped one.")]
 History = Annotated[
-    Path | None, typer.Option("--history", help="File that each check is added to; by default beside the baseline.")
+    Path | None,
+    typer.Option("--history", help="File (or folder) that each check is added to; by default beside the baseline."),
 ]
 
 Junit = Annotated[Path | None, typer.Option("--junit", metavar="FILE", help="Write the verdict as JUnit XML, too.")]

@@ -3,7 +3,7 @@
     schema = 1
     name = "mine"
     [timing]
-    rounds = [4, 10]                  # fewest and most measured processes
+    rounds = [3, 10]                  # fewest and most measured processes
     blocks = 24                       # interleavings in each
     margin = "12 %"                   # slower than the stored baseline by more is a regression
     margin_against = "5 %"            # slower than a revision measured in the same minutes
@@ -67,7 +67,7 @@ class Timing(FileModel):
         The same where the baseline comes from another machine.
     """
 
-    rounds: tuple[Count, Count] = (4, 10)
+    rounds: tuple[Count, Count] = (3, 10)
     blocks: Count = 24
     margin: Margin = 0.12
     margin_against: Margin = 0.05

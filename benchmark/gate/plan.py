@@ -16,7 +16,7 @@ from benchmark.files.schema import validated
 from benchmark.files.shipped import find
 from benchmark.gate.baseline import DEFAULT
 from benchmark.gate.gate_file import GatedWork, GateFile, Timed, gate_path
-from benchmark.gate.history.history_file import history_path
+from benchmark.gate.history.history_file import IN_FOLDER, history_path
 from benchmark.sessions import SHIPPED
 
 
@@ -33,7 +33,7 @@ class CheckRequest:
     gate
         The gate file; None for the shipped one.
     history
-        The history file; None for the one beside the baseline.
+        The history file, or a folder for it; None for the one beside the baseline.
     out
         Folder of the report; None for `results/check-DATE-TIME`.
     seed
@@ -59,7 +59,9 @@ class CheckRequest:
     @property
     def history_path(self) -> Path:
         """Where the history is."""
-        return history_path(self.baseline_path) if self.history is None else self.history
+        if self.history is None:
+            return history_path(self.baseline_path)
+        return self.history / IN_FOLDER if self.history.is_dir() else self.history
 
 
 MEASURING = Path(__file__).parent / "measuring"

@@ -14,6 +14,8 @@ from typing import Any
 HISTORY_SCHEMA = 1
 HISTORY_SIGN = b'"revision"'
 """What tells it from files that nothing must be added to."""
+IN_FOLDER = "history.jsonl"
+"""Its name in a folder that is given for it."""
 
 
 @dataclass(frozen=True)

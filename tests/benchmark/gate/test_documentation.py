@@ -37,5 +37,5 @@ def test_what_it_says_of_the_rule_is_what_the_gate_does() -> None:
     assert f"more than {100 * timing.margin:g} % above" in PAGE
     assert f"beyond {100 * timing.other_machine_margin:g} %" in PAGE
     assert f"more than {100 * timing.margin_against:g} % above the other revision" in PAGE
-    assert timing.rounds == (4, 10)
-    assert "four at least, ten at most" in PAGE
+    assert timing.rounds == (3, 10)
+    assert "three at least, ten at most" in PAGE

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from benchmark.errors import InputError
-from benchmark.gate.plan import load_plan
+from benchmark.gate.plan import CheckRequest, load_plan
 from benchmark.sessions import SHIPPED
 
 
@@ -59,3 +59,10 @@ def test_another_revision_has_its_own_models_and_the_same_inputs(tiny_gate) -> N
     assert moved.cases[0]["scenario"] == plan.cases[0]["scenario"]
     assert moved.fingerprint == plan.fingerprint
     assert plan.moved(Path("/elsewhere"), Path("/there")) == plan
+
+
+def test_a_history_is_a_file_a_folder_or_beside_the_baseline(tmp_path: Path) -> None:
+    baseline = tmp_path / "b.json"
+    assert CheckRequest(baseline).history_path == tmp_path / "b.history.jsonl"
+    assert CheckRequest(baseline, history=tmp_path / "h").history_path == tmp_path / "h"
+    assert CheckRequest(baseline, history=tmp_path).history_path == tmp_path / "history.jsonl"
