@@ -5,6 +5,7 @@ What a page takes for granted (trials, a model, a filled-in table) is put there 
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from itertools import groupby
@@ -49,13 +50,27 @@ def run(command: Command, folder: Path) -> str:
     """What went wrong, or nothing."""
     make_way(command, folder)
     words = [IN_PLACE_OF.get(word, word) for word in command.arguments]
-    done = subprocess.run(
+    process = subprocess.Popen(
         [sys.executable, "-m", command.program, *words],
-        cwd=folder, env=_own(), stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=LONGEST_S,
+        cwd=folder, env=_own(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
     )  # fmt: skip
+    said = _end_where_it_serves(process) if words[0] == "press" and "--save" not in words else ""
+    said += process.communicate(timeout=LONGEST_S)[0]
     fill_in(folder)
     allowed = {0, FOUND_WORSE.get(words[0], 0)}
-    return "" if done.returncode in allowed else f"{command}\n  exit {done.returncode}: {done.stderr[-600:]}"
+    return "" if process.returncode in allowed else f"{command}\n  exit {process.returncode}: {said[-600:]}"
+
+
+def _end_where_it_serves(process: subprocess.Popen[str]) -> str:
+    """Press Ctrl-C once a page is served, as its reader does at last; what was said until then."""
+    assert process.stdout is not None, "it is a pipe"
+    said = ""
+    for line in process.stdout:
+        said += line
+        if "http://" in line:
+            process.send_signal(signal.SIGINT)
+            break
+    return said
 
 
 def make_way(command: Command, folder: Path) -> None:
