@@ -17,6 +17,8 @@ from fem.assembly.system import Evaluation, System
 SMALLEST_PART = 2.0**-8
 MOST_PARTS = 400
 MOST_CORRECTIONS = 60
+FIRST_TOLERANCE = 1e-2
+"""Unbalanced forces over the force with which equations whose limits are only guessed are solved."""
 
 Watch: TypeAlias = Callable[[System, State, float], None]
 """Told of each state of equilibrium with the equations that it fits and its time in s, also between two steps."""
@@ -223,16 +225,22 @@ class Stepper:
             yield self._known.predict(value, LOWEST_ORDER)
 
     def _settle(self, guess: State, value: float, system: System) -> tuple[NewtonResult, System]:
-        """Newton's result from a guess and equations to begin with, and the equations that fit it."""
-        iterations = 0
+        """Newton's result from a guess and equations to begin with, and the equations that fit it.
+
+        Equations that do not fit yet are not solved to the last digit: each round begins with a tolerance a tenth of
+        that of the round before, and what fits is solved, and judged, with the tolerance that is wanted.
+        """
+        iterations, wanted = 0, self._settings.tolerance
+        tolerance = max(wanted, FIRST_TOLERANCE) if system.follows_pressure else wanted
         for _ in range(MOST_CORRECTIONS):
-            ahead = replace(self._problem, system=system)
-            result = solve_newton(ahead, guess, self._control, value, self._force_scale, self._settings)
+            ahead, settings = replace(self._problem, system=system), replace(self._settings, tolerance=tolerance)
+            result = solve_newton(ahead, guess, self._control, value, self._force_scale, settings)
             iterations += result.iterations
             other = system.corrected(result.state.y, result.state.force) if result.success else None
-            if other is None:
+            if other is None and (tolerance <= wanted or not result.success):
                 return replace(result, iterations=iterations), system
-            system, guess = other, result.state
+            tolerance = max(wanted, 0.1 * tolerance) if other is not None else wanted
+            system, guess = other or system, result.state
         return NewtonResult(guess, iterations, f"friction does not settle in {MOST_CORRECTIONS} rounds"), system
 
     def _accept(self, state: State, value: float, time: float, system: System) -> None:

@@ -65,6 +65,11 @@ class EquationItem(ABC):
     def accepted(self, y: FloatArray) -> Self:
         """The item after a step that ends at unknowns y (n,)."""
 
+    @property
+    def follows_pressure(self) -> bool:
+        """Whether limits are guessed and corrected, round after round, until they fit the pressure."""
+        return False
+
     def corrected(self, y: FloatArray, press: float) -> Self | None:
         """The item that fits a state in equilibrium at y (n,) under a press in N; None if this one does."""
         del y, press

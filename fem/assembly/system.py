@@ -66,6 +66,11 @@ class System:
         """Whether the forces have kinks; see :class:`fem.assembly.item.EquationItem`."""
         return any(item.kinked for item in self.items)
 
+    @property
+    def follows_pressure(self) -> bool:
+        """Whether an item has limits that are guessed; see :class:`fem.assembly.item.EquationItem`."""
+        return any(item.follows_pressure for item in self.items)
+
     def element_displacement(self, y: FloatArray) -> FloatArray:
         """Nodal displacements of each element (18, E) in m at the unknowns y (n,)."""
         u = self.scatter.gather(y)

@@ -192,6 +192,11 @@ class ToolContact(EquationItem):
         pressed, peak = self.pressed or touch.press > 0.0, max(self.peak, touch.press)
         return replace(self, friction=friction, pressed=pressed, peak=peak)
 
+    @property
+    def follows_pressure(self) -> bool:
+        """Coulomb's limits do."""
+        return self.punch.friction > 0.0
+
     def corrected(self, y: FloatArray, press: float) -> ToolContact | None:
         """The contact that fits a state with a press in N, where this one does not; None where it does.
 
