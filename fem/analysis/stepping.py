@@ -231,7 +231,8 @@ class Stepper:
         that of the round before, and what fits is solved, and judged, with the tolerance that is wanted.
         """
         iterations, wanted = 0, self._settings.tolerance
-        tolerance = max(wanted, FIRST_TOLERANCE) if system.follows_pressure else wanted
+        onwards = abs(value) >= abs(self._value)  # on the way back nodes let go one by one
+        tolerance = max(wanted, FIRST_TOLERANCE) if system.follows_pressure and onwards else wanted
         for _ in range(MOST_CORRECTIONS):
             ahead, settings = replace(self._problem, system=system), replace(self._settings, tolerance=tolerance)
             result = solve_newton(ahead, guess, self._control, value, self._force_scale, settings)
