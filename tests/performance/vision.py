@@ -26,6 +26,8 @@ from bench_hw.vision.markers import detect_grid
 from bench_hw.vision.tracking import METHODS, TrackOrder, track
 
 PERIOD = 120
+LOSSLESS = {"FFV1": "FFV1", "PNG pictures": "MPNG", "HuffYUV": "HFYU", "grey levels as they are": "Y800"}
+"""Ways to keep a film without loss, by OpenCV's code of four letters; HuffYUV has colours only."""
 LENS = (0.07, -0.48, -0.01, -0.01, 0.0)
 Pictures = list[NDArray[np.uint8]]
 
@@ -45,8 +47,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for method in METHODS:
         _in_memory(method, pictures, camera)
     with tempfile.TemporaryDirectory() as folder:
-        _from_file(Path(folder), pictures, camera, 20 * 30)
-        _from_file(Path(folder), pictures, camera, round(minutes * 60 * 30))
+        for kind in LOSSLESS:
+            _from_file(Path(folder), pictures, camera, 20 * 30, kind)
+        _from_file(Path(folder), pictures, camera, round(minutes * 60 * 30), "FFV1")
     return 0
 
 
@@ -78,17 +81,18 @@ def _in_memory(method: str, pictures: Pictures, camera: Camera) -> None:
                 tracker.step(picture)
 
 
-def _from_file(folder: Path, pictures: Pictures, camera: Camera, frames: int) -> None:
+def _from_file(folder: Path, pictures: Pictures, camera: Camera, frames: int, kind: str) -> None:
     """Write a lossless video and track it, start-up included."""
     import cv2
 
-    size = (pictures[0].shape[1], pictures[0].shape[0])
+    size, coloured = (pictures[0].shape[1], pictures[0].shape[0]), kind == "HuffYUV"
     path, camera_path = folder / "film.avi", write_camera(folder / "camera.toml", camera)
-    writer = cv2.VideoWriter(str(path), cv2.CAP_FFMPEG, cv2.VideoWriter.fourcc(*"FFV1"), 30.0, size, False)
+    writer = cv2.VideoWriter(str(path), cv2.CAP_FFMPEG, cv2.VideoWriter.fourcc(*LOSSLESS[kind]), 30.0, size, coloured)
     for number in range(frames):
-        writer.write(pictures[number % len(pictures)])
+        picture = pictures[number % len(pictures)]
+        writer.write(cv2.cvtColor(picture, cv2.COLOR_GRAY2BGR) if coloured else picture)
     writer.release()
-    with _measured(f"subpixel, lossless file (FFV1) of {frames / 30.0:.0f} s", frames):
+    with _measured(f"subpixel, lossless file ({kind}) of {frames / 30.0:.0f} s", frames):
         track(TrackOrder(str(path), camera_path, folder / "markers.csv"))
 
 
