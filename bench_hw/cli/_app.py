@@ -10,6 +10,7 @@ import importlib
 import pkgutil
 import sys
 from pathlib import Path
+from typing import Annotated
 
 import typer
 
@@ -33,7 +34,19 @@ def make_app() -> typer.Typer:
     return application
 
 
-def _bench() -> None:
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"tissuebench {version('tissuebench')}")
+        raise typer.Exit
+
+
+def _bench(
+    version: Annotated[
+        bool, typer.Option("--version", help="Print the version and leave.", callback=_show_version, is_eager=True)
+    ] = False,
+) -> None:
     """Measure with the bench, look at what was measured, save it, take it elsewhere."""
 
 

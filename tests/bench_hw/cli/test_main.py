@@ -1,6 +1,7 @@
 """The command line as a whole: its help, its start, its last resort."""
 
 import json
+import re
 import subprocess
 import sys
 
@@ -15,6 +16,10 @@ VERBS = ("inspect", "recover", "export", "import")
 def bench(*arguments: str) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "bench_hw", *arguments]
     return subprocess.run(command, capture_output=True, text=True, timeout=60)
+
+
+def test_it_says_its_version():
+    assert re.fullmatch(r"tissuebench \d+\.\d+\.\d+\n", bench("--version").stdout)
 
 
 def test_help_lists_the_verbs_and_loads_nothing_heavy():
