@@ -117,19 +117,20 @@ def told_parameters(fitted: Fit, effect: Effect) -> int:
 def undetermined(fitted: Fit) -> tuple[str, ...]:
     """Effects of a fit of which the data tell neither the strength nor what they add to the force.
 
-    With a modulus that nobody knows a strength may be any large number, while its product with the modulus is known.
+    With a modulus that nobody knows a strength may be any large number, while its product with the modulus is known;
+    a softening whose width is open may be weak and wide or strong and narrow, and take the same off the force.
     """
     effects = fitted.model.effects
     return tuple(each.slug for each in effects if not determined(fitted, each) and not adds_force(fitted, each))
 
 
 def adds_force(fitted: Fit, effect: Effect) -> bool:
-    """Whether what an effect adds to the largest force surely differs from none, by Wald's statistic.
+    """Whether what an effect adds to the force where that is most surely differs from none, by Wald's statistic.
 
-    Shares are no such strengths, since one at its bound is another form's, nor are logarithmic ones: they have no none.
+    A share at its bound is no such strength, since it is another form's, nor are logarithmic ones: they have no none.
     """
     grown = strengths(fitted, effect)
-    if any(each.parameter.logarithmic or each.parameter.high <= 1.0 for each in grown):
+    if any(each.parameter.logarithmic or (each.parameter.high <= 1.0 and not each.free) for each in grown):
         return False
     amount = _added_force(fitted, grown, fitted.vector)
     slopes = np.zeros(fitted.vector.size)
@@ -145,12 +146,13 @@ def adds_force(fitted: Fit, effect: Effect) -> bool:
 
 
 def _added_force(fitted: Fit, grown: Sequence[_Strength], vector: Array) -> float:
-    """What strengths add to the largest force at a vector (p,), as a share of it, in the mean of the trials."""
+    """The most that strengths add to the force at a vector (p,), over its peak, in the mean of the trials."""
     none = vector.copy()
     for each in grown:
         none[each.place] = max(each.parameter.low, 0.0)
     pairs = zip(*(fitted.model.signals(at, fitted.nuisance) for at in (none, vector)), strict=True)
-    return float(np.mean([1.0 - np.max(rest[:, 0]) / max(float(np.max(whole[:, 0])), 1e-300) for rest, whole in pairs]))
+    most = [np.abs(whole - rest)[:, 0].max() / max(float(whole[:, 0].max()), 1e-300) for rest, whole in pairs]
+    return float(np.mean(most))
 
 
 def every_term_told(fitted: Fit) -> bool:

@@ -397,6 +397,22 @@ def test_a_strength_is_told_by_what_it_adds_to_the_force(growth, linear, told):
     assert undetermined(made) == (() if told else ("one",))
 
 
+WIDTH = EffectParameter("width", "", (1.0,), 0.0, 5.0, False, "how far it reaches")
+
+
+@pytest.mark.parametrize(("trade", "told"), [(-0.99, True), (0.0, False)])
+def test_a_share_that_trades_with_a_width_is_told_by_what_both_take_off_the_force(trade, told):
+    one = SimpleNamespace(slug="one", amplitude="share", amplitudes=())
+    made = Told((0.1, 2.0), (0.06**2, 1.2**2), SHARE, WIDTH)
+    made.covariance[0, 1] = made.covariance[1, 0] = trade * 0.06 * 1.2
+    made.nuisance, made.model.effects = None, (one,)
+    made.model.bounds = (np.zeros(2), np.array([0.95, 5.0]))
+    depth = np.linspace(0.0, 1.0, 5)
+    made.model.signals = lambda vector, _: [(depth * (1.0 - vector[0] * vector[1] * (1.0 - depth)))[:, None]] * 3
+    assert not determined(made, one)
+    assert undetermined(made) == (() if told else ("one",))
+
+
 def test_a_share_at_its_bound_is_not_told_by_what_it_adds():
     one = SimpleNamespace(slug="one", amplitude="share", amplitudes=())
     made = Told((0.95,), (1e-6,), SHARE)
