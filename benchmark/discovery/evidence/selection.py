@@ -166,16 +166,19 @@ def _over_trials(gained: Gain, settings: Settings) -> bool:
 def beats_bent(scored: Scored, settings: Settings) -> bool:
     """Whether a further effect is more than what the forms of those before miss of the true ones.
 
-    It must have its evidence where those forms may be off, and must not foretell trials surely worse than they do by
-    being off without it. The forms of set-up entries are the finite elements' own.
+    It must have its evidence where those forms may be off; that must be most of what it gains where they may not, or it
+    must not foretell trials surely worse than they do by being off without it. The forms of set-up entries are the
+    finite elements' own.
     """
     forms = [slug for slug in scored.slugs[:-1] if setup_key(slug) is None]
     if not forms:
         return True
     groups, instead = conditions(scored.under), held_out(bent(scored.under, forms))
-    if not _over_trials(gain(held_out(bent(scored.fit, forms)), instead, groups), settings):
+    beside = gain(held_out(bent(scored.fit, forms)), instead, groups)
+    if not _over_trials(beside, settings):
         return False
-    return gain(held_out(scored.fit), instead, groups).z > -settings.lookalike_z
+    own = beside.mean > criteria.OWN * scored.gain.mean
+    return own or gain(held_out(scored.fit), instead, groups).z > -settings.lookalike_z
 
 
 def carries_over(scored: Scored) -> bool:
