@@ -5,7 +5,7 @@ from dataclasses import replace
 from wavemodel.errors import NotCoveredError, WaveError
 from wavemodel.integrators.viscoelastic import Damping, Prony
 from wavemodel.layered.finite_strain.correction import FiniteStrainLaw, finite_strain_law
-from wavemodel.layered.finite_strain.equilibrium import ModalEquilibrium, press_path
+from wavemodel.layered.finite_strain.equilibrium import SPACING, ModalEquilibrium, press_path
 from wavemodel.layered.finite_strain.modal_body import StackBody, disc_modes, thickness_of
 from wavemodel.layered.finite_strain.tool_contact import BondedContact, PressureContact, ToolContact
 from wavemodel.layered.layer_relaxation import shared
@@ -30,6 +30,9 @@ VERIFIED = 0.3
 within 1.1 % and the profiles within 1.1 % of peak at every load; under a bonded rigid tool within 1.7 % and 2.7 %. A
 radius of 1 mm presses up to 4.4 % off."""
 FEWEST_LEVELS = 4
+DEEPEST_START = 10.0
+"""Radii of the tool that the path's first step, a share of the height, may press: with 50 no step that a path allows
+finds an equilibrium, after a minute."""
 
 
 def options_of(physics: Physics | None, series: tuple[Prony, ...], damping: Damping, integrator: str) -> Physics | None:
@@ -137,12 +140,14 @@ def correction(press: Press, tool: DiscTool, *, deep: bool = False) -> FiniteStr
             f"the large-press correction does not cover tool contact {tool.contact!r}: 'uniform_pressure' and "
             "'rigid_bonded' are covered"
         )
+    height = press.stack.height
+    if SPACING * height > DEEPEST_START * tool.radius:
+        raise WaveError("large press: the tool is too small beside the stack for a path to its heights")
     border = BORDER * press.field.domain.width
     resolution = SHARPER if tool.rigid and any(press.stack.laws) else RESOLUTION
     limit = min(resolution / tool.radius, 3.1 * MOST_MODES / border)
     body = StackBody(disc_modes(border, limit), thickness_of(press.stack))
     equilibrium = ModalEquilibrium(body, contact_of(press, body))
-    height = press.stack.height
     path = press_path(equilibrium, height, (DEEP if deep else REACH) * height)
     if path.force.size < FEWEST_LEVELS:
         raise WaveError("large press: no equilibrium was found beyond a small load")

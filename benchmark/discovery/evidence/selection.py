@@ -56,7 +56,8 @@ class Selection:
     `candidates` are those fitted, round by round, the best of a round first; `screened` all effects by what one step
     gains. `lookalikes`, `rivals` and `own` are by the slug of a chosen effect: who does as well in its place, their
     fits, and what it gains itself over the others. `withheld` are further effects with all the evidence but that they
-    do not carry over: the catalogue has something like what is left, and it is not named.
+    do not carry over, or may be another form of those before: the catalogue has something like what is left, and it is
+    not named.
     """
 
     base: Fit
@@ -90,7 +91,7 @@ def select(
         scored = score(current, work.fits(f"round {number}", [(current, s.effect) for s in promising]))
         rounds.append(_enriched(current, scored, work))
         evident = [s for s in rounds[-1] if _evident(s, steps, settings)]
-        accepted = [s for s in evident if not steps or carries_over(s)]
+        accepted = [s for s in evident if not steps or (carries_over(s) and beats_bent(s, settings))]
         if not accepted:
             withheld = tuple(s.slug for s in evident)
             break
@@ -152,11 +153,10 @@ def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
 
 
 def _evident(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:
-    """Whether a candidate has the evidence of trials, and beside others a strength, and a gain that is its own."""
+    """Whether a candidate has the evidence of trials, and beside others a strength."""
     if steps and not determined(scored.fit, scored.fit.model.effects[-1]):
         return False
-    evident = _over_trials(scored.gain, settings) and scored.delta_bic < criteria.ACCEPT_BIC
-    return evident and (not steps or beats_bent(scored, settings))
+    return _over_trials(scored.gain, settings) and scored.delta_bic < criteria.ACCEPT_BIC
 
 
 def _over_trials(gained: Gain, settings: Settings) -> bool:

@@ -71,6 +71,13 @@ def test_where_its_path_ends_it_goes_on_along_the_tangent_and_says_so(skin):
         wave.run("depth", np.array([1.0]), np.array([1.01 * height]))
 
 
+def test_a_tool_far_smaller_than_the_stack_has_no_path_and_none_is_looked_for(skin):
+    small = DiscTool(1e-3 * sum(layer.thickness for layer in skin()))
+    assert LayeredWave(skin(), small).law.large is None
+    with pytest.raises(WaveError, match="too small beside the stack"):
+        LayeredWave(skin(), small, large_press="corrected")
+
+
 def test_the_linear_wave_is_far_off_where_the_correction_is_not(stored):
     """What is corrected: about a quarter of the deflection at a depth of 0.3 heights."""
     press = stored["presses"][0]

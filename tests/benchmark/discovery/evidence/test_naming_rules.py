@@ -89,6 +89,7 @@ def test_an_effect_needs_evidence_over_trials_and_bic(z, bic, each, expected):
         ("a", 18.0, 24.0, True),
         ("a", 20.5, 24.0, True),  # hardly worse than another form of the first one
         ("a", 23.0, 29.0, False),  # surely worse
+        ("a", 23.0, 34.0, True),  # but most of what it gains is its own
         ("a", 18.0, 18.5, False),  # nothing is left for it beside another form
         ("setup.top.thickness", 30.0, 30.0, True),  # whose form is the finite elements'
     ],
@@ -106,7 +107,7 @@ def test_a_further_effect_must_be_more_than_what_the_form_of_the_first_misses(
         return fitted(*fit.model.effects, density=beside if fit is made else instead + scatter)
 
     monkeypatch.setattr(selection, "bent", bent)
-    assert selection._evident(further, [scored(before, 100.0)], SETTINGS) is expected
+    assert selection.beats_bent(further, SETTINGS) is expected
     assert asked == ([] if "." in before else [["a"], ["a"]])
 
 
