@@ -227,7 +227,7 @@ FORM_OFF = 0.3
 What other forms of one effect differ by: its parameters may differ by as much between conditions (`SAME_SHARE`). Chosen
 on sessions that had been looked at (docs/blind.md, "False second effects").
 """
-OWN = 0.5
+MOSTLY_OWN = 0.5
 """Share of its gain that a further effect keeps beside forms that are bent, from which it is its own: most of it. Set
 with one pair by another code (a slip beside a relaxation: 201 of 196, where the bend alone gains 272)."""
 CARRIED, ONE_ALONE = 0.3, 0.9

@@ -177,7 +177,7 @@ def beats_bent(scored: Scored, settings: Settings) -> bool:
     beside = gain(held_out(bent(scored.fit, forms)), instead, groups)
     if not _over_trials(beside, settings):
         return False
-    own = beside.mean > criteria.OWN * scored.gain.mean
+    own = beside.mean > criteria.MOSTLY_OWN * scored.gain.mean
     return own or gain(held_out(scored.fit), instead, groups).z > -settings.lookalike_z
 
 

@@ -216,6 +216,7 @@ def test_accepting_says_old_and_new(tiny_gate, request_of, tmp_path: Path) -> No
 
 
 def test_a_folder_in_the_place_of_the_history_is_refused_before_anything(tiny_gate, request_of, tmp_path: Path) -> None:
+    (tmp_path / "history.jsonl").mkdir()
     with pytest.raises(InputError, match="folder"):
         check(request_of(tiny_gate(), history=tmp_path), Said())
 

@@ -367,6 +367,7 @@ def test_a_running_capture_is_shown_with_its_pictures_and_leads_the_tool(browser
                 writer.write_frame(FrameRecord(10 + n / 1000, n // 40, picture, "png"))
         writer._chunks.flush()
         until(page, "press.state.live.pictures > 0")
+        until(page, "(press.advance(0.02), document.getElementById('live-dropped').textContent === '1')")
         page.evaluate("for (let n = 0; n < 5; n++) press.advance(0.02)")
         texts = [
             page.locator(f"#live-{name}").text_content() for name in ("force", "depth", "lost", "dropped", "markers")
