@@ -9,22 +9,39 @@ from typing import Any
 import numpy as np
 
 from bench_hw.vision.displacement import fit_circles, largest_sample, moving_average
-from benchmark.comparison import describe_equivalence, describe_t_test
+from benchmark.comparison import TwoSampleT, describe_equivalence, describe_t_test
+from benchmark.reproduce import article_statistics as printed
 from benchmark.reproduce.article_statistics import surface_test
+from benchmark.reproduce.article_wave import EQUATIONS
 from benchmark.reproduce.evidence import Chain, Evidence
 from benchmark.reproduce.items import NO_BREAK, Item, by_basis, headline, numbers
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.deformation_section import layer_deformations
 from benchmark.runs.report.published_section import LABELS, published_animation
 from benchmark.runs.report.statistics_section import normal_fits
-from reports import Block, Download, Fact, Figure, Notice, Page, Paragraph, Section, Subsection, Table, Verdict
+from reports import (
+    Block,
+    Download,
+    Fact,
+    Figure,
+    Notice,
+    Page,
+    Paragraph,
+    Section,
+    Subsection,
+    Table,
+    Verdict,
+)
+from reports.blocks import Column
 from reports.figures.markers import Ring, circle_radius, marker_circle, marker_motion
+from reports.formatting import format_number
 
 ITEMS = "tables/items.csv"
 SAME = "as above"
 AGREES = (
     "A number agrees if the recomputed one rounds to it at its last printed digit, every input taken as it is printed. "
-    'Where the rounding of the inputs alone explains a difference, the reason says so. The column "from" names what a '
+    '"Input rounding" stands where it does not, but the rounding of the printed inputs alone leaves room for it; "no" '
+    'where it leaves none. The column "from" names what a '
     "value was recomputed from: print, the article's other numbers; session, the shipped synthetic trials; 5 N run, "
     "FEM and wave model run here."
 )
@@ -102,6 +119,9 @@ def reproduce_page(items: Sequence[Item], evidence: Evidence, environment: Mappi
 
 def _part(title: str, items: Sequence[Item], evidence: Evidence) -> list[Block]:
     blocks: list[Block] = [Paragraph(AGREES)] if title == next(iter(GROUPS)) else []
+    blocks += EQUATIONS.get(title, ())
+    if title == "Table 2":
+        blocks.append(_as_printed(surface_test(evidence.table_2)))
     blocks.append(_table(title, items))
     if title == "Table 2":
         blocks += _tests(evidence)
@@ -116,8 +136,31 @@ def _table(title: str, items: Sequence[Item]) -> Table:
         name = item.item.removeprefix("Table 1: ").removeprefix("Table 2: ")
         reason = SAME if item.reason == before else item.reason
         before = item.reason
-        rows.append((name, *numbers(item), item.unit, item.agrees, item.basis.replace(" ", NO_BREAK), reason))
+        rows.append((name, *numbers(item), item.unit, item.verdict, item.basis.replace(" ", NO_BREAK), reason))
     return Table(f"{title} of the article, printed and recomputed", columns, rows, folded=False)
+
+
+def _as_printed(test: TwoSampleT) -> Table:
+    """Table 2 in the article's layout, with the same test of the models run here beside it."""
+    both = (Column("FEA", "printed", 6), Column("Wave Equation", "printed", 6))
+    here = (Column("FEA", "here", 6), Column("Wave Equation", "here", 6))
+    fem, wave = test.fem, test.wave
+    rows = [
+        ("Mean", printed.MEAN_FEM, printed.MEAN_WAVE, fem.mean, wave.mean),
+        ("Variance", printed.VARIANCE_FEM, printed.VARIANCE_WAVE, fem.variance, wave.variance),
+        ("Observations", printed.OBSERVATIONS, printed.OBSERVATIONS, float(fem.observations), float(wave.observations)),
+        ("Hypothesized Mean Difference", printed.HYPOTHESISED_DIFFERENCE, None, 0.0, None),
+        ("P(T<=t) two-tail", printed.P_VALUE, None, test.p_value, None),
+        ("t Stat", printed.T, None, test.t, None),
+        ("t Critical two-tail", printed.T_CRITICAL, None, test.t_critical, None),
+    ]
+    caption = "Table 2 in the article's layout (mm): as printed, and from the two models run here, the wave predicting"
+    return Table(caption, ("Table 2", *both, *here), [_row_of_texts(row) for row in rows], folded=False)
+
+
+def _row_of_texts(row: tuple[str, *tuple[float | None, ...]]) -> tuple[str | None, ...]:
+    """Numbers as they are printed: each row of the article has its own digits."""
+    return row[0], *(None if each is None else format_number(each, 6, trim=True) for each in row[1:])
 
 
 def _tests(evidence: Evidence) -> list[Block]:

@@ -11,7 +11,7 @@ import scipy
 from benchmark.comparison import TwoSampleT, pooled_t_test
 from benchmark.models import Array
 from benchmark.reproduce.evidence import Evidence
-from benchmark.reproduce.items import RUN, SESSION, Item, compare
+from benchmark.reproduce.items import RUN, SESSION, Item, compare, rounding_span
 from benchmark.runs.record import RunRecord
 from wavemodel import PublishedWave
 
@@ -120,8 +120,8 @@ def observation_items() -> list[Item]:
 def test_numbers() -> list[Item]:
     """The test's numbers, each from the other printed ones."""
     error = np.sqrt((VARIANCE_FEM + VARIANCE_WAVE) / OBSERVATIONS)
-    difference = MEAN_FEM - MEAN_WAVE
     needed = T * error
+    span = rounding_span(_t_of_print, MEAN_FEM, MEAN_WAVE, VARIANCE_FEM, VARIANCE_WAVE)
     why_t = (
         f"with the printed variances; the printed t needs a difference of means of {1e5 * needed:.3f} × 10⁻⁵ mm, "
         "inside the rounding of the means (0 to 2 × 10⁻⁵ mm)"
@@ -143,9 +143,19 @@ def test_numbers() -> list[Item]:
             scipy.stats.t.isf(0.5 * P_VALUE, DEGREES),
             f"from the printed p, with {DEGREES} degrees of freedom",
         ),
-        compare("Table 2: t Stat, from the printed means", T, difference / error, why_t),
+        compare(
+            "Table 2: t Stat, from the printed means",
+            T,
+            _t_of_print(MEAN_FEM, MEAN_WAVE, VARIANCE_FEM, VARIANCE_WAVE),
+            why_t,
+            span=span,
+        ),
         compare("Table 2: t Critical two-tail", T_CRITICAL, critical, f"at 5 % and {DEGREES} degrees of freedom"),
     ]
+
+
+def _t_of_print(mean_fem: float, mean_wave: float, variance_fem: float, variance_wave: float) -> float:
+    return float((mean_fem - mean_wave) / np.sqrt((variance_fem + variance_wave) / OBSERVATIONS))
 
 
 def _predicted(test: TwoSampleT) -> list[Item]:

@@ -5,12 +5,14 @@ What it prints stands in `wavemodel.published.membrane`.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from benchmark.reproduce.evidence import Chain
-from benchmark.reproduce.items import SESSION, Item, compare
+from benchmark.reproduce.items import SESSION, Item, compare, rounding_span
+from reports import Equation
 from wavemodel import WaveError
 from wavemodel.published import PublishedWave, table_one
 from wavemodel.published import membrane as printed
@@ -21,8 +23,77 @@ POWERS = ("coefficient of x²", "coefficient of x", "constant")
 MILLI = 1e-3
 PRESS_MM = 2.0
 """Section 3.3.3: the tool is "approximately 0.002m below the starting point"."""
-ROUNDING = 0.5e-4
-"""Half of the last digit of the printed lambda."""
+
+
+def _typed(text: str) -> str:
+    """Letters, digits and signs as MathML, one element each; a number stays whole."""
+    kinds = {"n": r"[0-9.]+", "i": r"[a-zA-Zα-ω]", "o": r"[^0-9.a-zA-Zα-ω]"}
+    parts = re.finditer("|".join(f"(?P<{kind}>{pattern})" for kind, pattern in kinds.items()), text.replace(" ", ""))
+    return "".join(f"<m{part.lastgroup}>{part[0]}</m{part.lastgroup}>" for part in parts)
+
+
+def _over(top: str, under: str) -> str:
+    return f"<mfrac><mrow>{top}</mrow><mrow>{under}</mrow></mfrac>"
+
+
+def _sine(letters: str, under: str) -> str:
+    return f"<mtext>\N{THIN SPACE}</mtext><mi>sin</mi>{_over(_typed(letters), _typed(under))}"
+
+
+def _raised(base: str, power: str) -> str:
+    return f"<msup><mrow>{_typed(base)}</mrow><mrow>{_typed(power)}</mrow></msup>"
+
+
+def _lowered(base: str) -> str:
+    return f"<msub>{_typed(base)}<mrow>{_typed('mn')}</mrow></msub>"
+
+
+def _integral(end: str) -> str:
+    return f"<munderover><mo>∫</mo><mn>0</mn><mi>{end}</mi></munderover>"
+
+
+def _parabola_typed(name: str, axis: str, size: str, constant: str) -> str:
+    return (
+        f"{_typed(f'{name}({axis})=−{size}·')}{_raised('10', '−6')}{_raised(axis, '2')}"
+        f"{_typed(f'+0.002{axis}+{constant}')}"
+    )
+
+
+_FREQUENCY = (
+    f"{_lowered('λ')}{_typed('=cπ')}<msqrt><mrow>{_over(_raised('m', '2'), _raised('a', '2'))}<mo>+</mo>"
+    f"{_over(_raised('n', '2'), _raised('b', '2'))}</mrow></msqrt>"
+)
+EQUATIONS = {
+    "Table 1 and equations (5) and (6)": (
+        Equation(
+            f"{_lowered('B')}<mo>=</mo>{_over(_typed('4'), _typed('ab'))}{_integral('b')}{_integral('a')}"
+            f"{_typed('f(x,y)')}{_sine('mπx', 'a')}{_sine('nπy', 'b')}"
+            f"<mtext>\N{THIN SPACE}</mtext>{_typed('dxdy,')}{_FREQUENCY}",
+            "B_mn = 4/(ab) int_0^b int_0^a f(x, y) sin(m pi x / a) sin(n pi y / b) dx dy, "
+            "lambda_mn = c pi sqrt(m^2/a^2 + n^2/b^2)",
+            "(3)",
+        ),
+        Equation(_typed("f(x,y)=dO(x)p(y)"), "f(x, y) = d O(x) p(y)", "(4)"),
+        Equation(_parabola_typed("O", "x", "8.393", "1.3322"), "O(x) = -8.393e-6 x^2 + 0.002 x + 1.3322", "(5)"),
+        Equation(_parabola_typed("p", "y", "8.1904", "0.9876"), "p(y) = -8.1904e-6 y^2 + 0.002 y + 0.9876", "(6)"),
+    ),
+    "Equations (7) and (8)": (
+        Equation(
+            f"{_typed('u(x,y)=−39.2012')}<mi>cos</mi>{_typed('(1.7409t)')}{_sine('πx', '23.6053')}"
+            f"{_sine('πy', '23.6053')}",
+            "u(x, y) = -39.2012 cos(1.7409 t) sin(pi x / 23.6053) sin(pi y / 23.6053)",
+            "(7)",
+        ),
+        Equation(
+            f"{_typed('t=')}{_over(_typed('1'), _lowered('λ'))}<msup><mi>cos</mi><mrow>{_typed('−1')}</mrow></msup>"
+            f"{_over('<mtext>collision depth</mtext>', _typed('β'))}{_typed(',β=')}{_sine('πx', 'a')}"
+            f"{_sine('πy', 'a')}",
+            "t = acos(collision depth / beta) / lambda_mn, beta = sin(pi x / a) sin(pi y / a)",
+            "(8)",
+        ),
+    ),
+}
+"""The article's equations as it prints them, by the section of the page."""
 
 
 def table_one_items(chain: Chain) -> tuple[Item, ...]:
@@ -101,15 +172,24 @@ def _side(name: str, chain: Chain) -> Item:
     return compare(f"Table 1: {name}", printed.SIDE, chain.variables.get(f"published.{name}"), reason, "mm", SESSION)
 
 
-def side_of_frequency(frequency: float = printed.FREQUENCY) -> float:
-    """Return a = b in mm that gives lambda_11, the printed one, with the printed c."""
-    return float(printed.SPEED * np.pi * np.sqrt(2.0) / frequency)
+def side_of_frequency(frequency: float = printed.FREQUENCY, speed: float = printed.SPEED) -> float:
+    """Return a = b in mm that gives lambda_11 with c, the printed ones."""
+    return float(speed * np.pi * np.sqrt(2.0) / frequency)
 
 
 def _wave() -> Sequence[Item]:
     units: Mapping[float, str] = {printed.SPEED: "m/s", printed.FREQUENCY: "1/ms", printed.COEFFICIENT: "mm"}
+    spans = {printed.SPEED: rounding_span(np.sqrt, printed.SPEED_SQUARED)}
     return [
-        compare(f"Table 1: {row.item}", row.printed, row.value, row.reason, units[row.printed]) for row in table_one()
+        compare(
+            f"Table 1: {row.item}",
+            row.printed,
+            row.value,
+            row.reason,
+            units[row.printed],
+            span=spans.get(row.printed),
+        )
+        for row in table_one()
     ]
 
 
@@ -128,11 +208,8 @@ def _equation_7() -> list[Item]:
     as_printed, corrected = PublishedWave("as_printed"), PublishedWave("corrected")
     amplitude = float(corrected.coefficient[0, 0]) / MILLI
     frequency = float(as_printed.frequency[0, 0])
-    side, low, high = (side_of_frequency(printed.FREQUENCY + shift) for shift in (0.0, ROUNDING, -ROUNDING))
-    why_side = (
-        f"from the printed c and lambda; the rounding of lambda leaves {low:.4f} to {high:.4f} mm, which holds the "
-        "printed side"
-    )
+    side, (low, high) = side_of_frequency(), rounding_span(side_of_frequency, printed.FREQUENCY, printed.SPEED)
+    why_side = f"from the printed c and lambda; their rounding leaves {low:.4f} to {high:.4f} mm"
     middle = np.array([0.5 * as_printed.side])
     deep = float(as_printed.deflection(middle, middle, 0.0)[0, 0]) / MILLI
     return [
@@ -151,7 +228,10 @@ def _equation_7() -> list[Item]:
             "mm",
         ),
         compare("Eq. (7): factor of t", printed.FREQUENCY, frequency, "c in m/s over a in mm", "1/ms"),
-        *(compare(f"Eq. (7): side under {axis}", printed.SIDE, side, why_side, "mm") for axis in ("x", "y")),
+        *(
+            compare(f"Eq. (7): side under {axis}", printed.SIDE, side, why_side, "mm", span=(low, high))
+            for axis in ("x", "y")
+        ),
         compare(
             "Eq. (7): depth in the middle at t = 0, against the press of section 3.3.3",
             PRESS_MM,

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,8 @@ SCHEMA = 1
 ROUND_OFF = 1e-12
 NO_BREAK = "\N{NO-BREAK SPACE}"
 HEADINGS = ("item", "printed", "recomputed", "agrees")
+BY_ROUNDING = "input rounding"
+"""Instead of "no", where the printed inputs' own rounding leaves room for the printed number."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,8 @@ class Item:
         As the article has it; "" for none.
     basis
         What it was recomputed from, one of `BASES`.
+    span
+        The lowest and highest value that the rounding of the printed inputs leaves; None where there are none.
     """
 
     item: str
@@ -53,6 +58,16 @@ class Item:
     reason: str
     unit: str
     basis: str
+    span: tuple[float, float] | None = None
+
+    @property
+    def verdict(self) -> str:
+        """Yes, no, or that the rounding of the inputs alone explains the difference."""
+        if self.agrees or self.span is None:
+            return "yes" if self.agrees else "no"
+        half = half_last_digit(self.printed)
+        inside = self.span[0] <= self.printed + half and self.span[1] >= self.printed - half
+        return BY_ROUNDING if inside else "no"
 
     @property
     def difference(self) -> float | None:
@@ -71,12 +86,28 @@ class Item:
 
 
 def compare(
-    item: str, printed: float, recomputed: float | None, reason: str, unit: str = "", basis: str = PRINT
+    item: str,
+    printed: float,
+    recomputed: float | None,
+    reason: str,
+    unit: str = "",
+    basis: str = PRINT,
+    span: tuple[float, float] | None = None,
 ) -> Item:
     """Return the item of a printed number; a value that is not finite counts as none."""
     value = None if recomputed is None or not np.isfinite(recomputed) else float(recomputed)
     agrees = value is not None and abs(value - printed) <= half_last_digit(printed)
-    return Item(item, printed, value, agrees, reason, unit, basis)
+    return Item(item, printed, value, agrees, reason, unit, basis, span)
+
+
+def rounding_span(function: Callable[..., float], *printed: float) -> tuple[float, float]:
+    """The lowest and highest value of a function of printed numbers, each anywhere within its rounding.
+
+    The function must be monotone in each of them: it is taken at their ends.
+    """
+    ends = [(each - half_last_digit(each), each + half_last_digit(each)) for each in printed]
+    values = [float(function(*corner)) for corner in product(*ends)]
+    return min(values), max(values)
 
 
 def half_last_digit(printed: float) -> float:
@@ -92,14 +123,16 @@ def document(items: Sequence[Item]) -> dict[str, Any]:
 
 def columns(items: Sequence[Item]) -> dict[str, list[Any]]:
     """Return the columns of `items.csv`."""
-    names = ("item", "printed", "recomputed", "difference", "unit", "agrees", "basis", "reason")
+    names = ("item", "printed", "recomputed", "difference", "unit", "agrees", "verdict", "basis", "reason")
     return {name: [getattr(item, name) for item in items] for name in names}
 
 
 def headline(items: Sequence[Item]) -> str:
     """Return the outcome in one sentence."""
     agreeing = sum(item.agrees for item in items)
-    return f"{agreeing} of {len(items)} recomputed values round to the printed number"
+    rounded = sum(item.verdict == BY_ROUNDING for item in items)
+    more = f"; the rounding of the inputs explains {rounded} more" if rounded else ""
+    return f"{agreeing} of {len(items)} recomputed values round to the printed number{more}"
 
 
 def by_basis(items: Sequence[Item]) -> list[str]:
@@ -113,7 +146,7 @@ def by_basis(items: Sequence[Item]) -> list[str]:
 
 def text_table(items: Sequence[Item]) -> str:
     """Return an aligned table, a line an item."""
-    rows = [HEADINGS, *((item.item, *numbers(item)[:2], "yes" if item.agrees else "no") for item in items)]
+    rows = [HEADINGS, *((item.item, *numbers(item)[:2], item.verdict) for item in items)]
     widths = [max(len(row[place]) for row in rows) for place in range(len(HEADINGS))]
     return "\n".join(f"{row[0]:<{widths[0]}}  {row[1]:>{widths[1]}}  {row[2]:>{widths[2]}}  {row[3]}" for row in rows)
 

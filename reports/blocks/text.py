@@ -60,6 +60,43 @@ class Paragraph(Block):
     text: str
 
 
+MATHML = frozenset({"math", "mfrac", "mi", "mn", "mo", "mrow", "msqrt", "msub", "msup", "mtext", "munderover"})
+"""The elements an equation may have (MathML Core); attributes are not allowed."""
+
+
+@dataclass(frozen=True)
+class Equation(Block):
+    """An equation on a line of its own.
+
+    Attributes
+    ----------
+    mathml
+        What stands inside its `math` element, as presentation MathML without attributes.
+    words
+        The same as plain text, for who does not see it.
+    number
+        Its number, such as "(3)".
+    """
+
+    template: ClassVar[str] = "equation"
+    mathml: str
+    words: str
+    number: str = ""
+
+    def __post_init__(self) -> None:
+        from defusedxml import ElementTree
+
+        try:
+            found = list(ElementTree.fromstring(f"<math>{self.mathml}</math>").iter())
+        except ElementTree.ParseError as error:
+            raise ValueError(f"Equation {self.number} is no well-formed MathML: {error}") from None
+        for element in found:
+            if element.tag not in MATHML or element.attrib:
+                raise ValueError(
+                    f"Equation {self.number} has <{element.tag}>; allowed without attributes: {sorted(MATHML)}"
+                )
+
+
 @dataclass(frozen=True)
 class Bullets(Block):
     """A list of short texts."""

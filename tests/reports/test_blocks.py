@@ -5,7 +5,20 @@ import dataclasses
 
 import pytest
 
-from reports import Column, Download, Figure, Notice, Page, Panel, Picture, Section, Table, Verdict, render_page
+from reports import (
+    Column,
+    Download,
+    Equation,
+    Figure,
+    Notice,
+    Page,
+    Panel,
+    Picture,
+    Section,
+    Table,
+    Verdict,
+    render_page,
+)
 from reports.blocks import NOTICES, VERDICTS
 
 
@@ -61,3 +74,16 @@ def test_a_picture_is_part_of_the_page():
     page = render_page(Page(title="t", verdict=Verdict("good", "fine"), sections=[Section("S", [figure])]))
     assert f'src="data:image/png;base64,{base64.b64encode(PNG).decode()}"' in page
     assert 'alt="a &#34;pressed&#34; &lt;body&gt;"' in page
+
+
+def test_an_equation_is_typeset_with_its_words_and_number():
+    equation = Equation("<mi>F</mi><mo>=</mo><mi>k</mi><mi>x</mi>", "F = k x", "(1)")
+    html = render_page(Page("p", Verdict("good", "x"), [Section("s", [equation])]))
+    assert '<math display="block" aria-label="F = k x"><mi>F</mi>' in html
+    assert '<span class="label">(1)</span>' in html
+
+
+@pytest.mark.parametrize("content", ["<mi>F", "<script>1</script>", '<mi onclick="x">F</mi>', "<mtext><img/></mtext>"])
+def test_an_equation_holds_nothing_but_presentation(content):
+    with pytest.raises(ValueError, match="Equation"):
+        Equation(content, "F")

@@ -53,6 +53,38 @@ def test_the_page_says_what_is_synthetic_and_what_circular(folder) -> None:
         assert f"Figure {number} of the article" in html
 
 
+def test_the_page_has_the_equations_and_table_2_as_the_article_does(folder) -> None:
+    html = (folder / "report.html").read_text()
+    for number in ("(3)", "(4)", "(5)", "(6)", "(7)", "(8)"):
+        assert f'<span class="label">{number}</span>' in html
+    assert html.count("<math ") == 6
+    layout = html[html.index("layout (mm)") :].split("</table>")[0]
+    rows = [
+        "Mean",
+        "Variance",
+        "Observations",
+        "Hypothesized Mean Difference",
+        "P(T&lt;=t) two-tail",
+        "t Stat",
+        "t Critical",
+    ]
+    places = [layout.index(f">{row}") for row in rows]
+    assert places == sorted(places)
+    for text in ("0.05508", "0.05509", "0.997171", "1.97202"):
+        assert text in layout
+
+
+def test_no_is_parted_from_what_the_inputs_rounding_explains(folder) -> None:
+    table = pd.read_csv(folder / "tables/items.csv").set_index("item")
+    assert table.loc["Table 2: t Stat, from the printed means", "verdict"] == "input rounding"
+    assert table.loc["Eq. (7): side under x", "verdict"] == "input rounding"
+    assert table.loc["Table 1: d", "verdict"] == "no"
+    assert (table["agrees"] == (table["verdict"] == "yes")).all()
+    html = (folder / "report.html").read_text()
+    assert html.count(">input rounding<") == 4
+    assert "the rounding of the inputs explains 4 more" in html
+
+
 def test_an_earlier_result_is_replaced_and_json_is_one_object(folder, evidence, monkeypatch, capfd) -> None:
     monkeypatch.setattr(reproduction, "gather", lambda _: evidence)
     monkeypatch.setattr(article_page, "redrawn", lambda _: {})

@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from benchmark.reproduce.items import compare, half_last_digit
+from benchmark.reproduce.items import compare, half_last_digit, headline, rounding_span
 
 
 @pytest.mark.parametrize(
@@ -25,3 +25,18 @@ def test_no_value_agrees_with_nothing(value: float | None) -> None:
     item = compare("x", 0.0, value, "none")
     assert (item.recomputed, item.difference, item.agrees) == (None, None, False)
     assert item.to_dict() == {"item": "x", "printed": 0.0, "recomputed": None, "agrees": False, "reason": "none"}
+
+
+def test_the_span_is_what_the_printed_inputs_leave() -> None:
+    assert rounding_span(lambda a, b: a / b, 2.0, 4.0) == pytest.approx((1.95 / 4.05, 2.05 / 3.95))
+
+
+@pytest.mark.parametrize(
+    ("span", "verdict"),
+    [((1.0, 1.20), "input rounding"), ((1.0, 1.24), "input rounding"), ((1.0, 1.14), "no"), (None, "no")],
+)
+def test_a_difference_is_explained_where_the_span_reaches_the_printed_number(span, verdict) -> None:
+    item = compare("x", 1.2, 1.1, "", span=span)
+    assert item.verdict == verdict
+    assert ("explains 1 more" in headline([item])) == (verdict != "no")
+    assert compare("x", 1.2, 1.21, "", span=span).verdict == "yes"
