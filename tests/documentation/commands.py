@@ -1,7 +1,9 @@
-"""The commands that README and docs tell a reader to type, in the order of each page."""
+"""The commands and the Python that README and docs tell a reader to type, in the order of each page."""
 
+import ast
 import re
 import shlex
+import textwrap
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,6 +22,27 @@ class Command:
 
     def __str__(self) -> str:
         return f"{self.page}:{self.line} {self.program} {shlex.join(self.arguments)}"
+
+
+def snippets() -> list[tuple[str, int, str]]:
+    """Page, line and text of every block that is Python and calls something, as it is pasted; none with TOML in it."""
+    return [found for page in PAGES for found in _snippets(page)]
+
+
+def _snippets(page: Path) -> list[tuple[str, int, str]]:
+    text = page.read_text(encoding="utf-8")
+    found = []
+    for match in re.finditer(
+        r"(?:^    [^\n]*\n(?:[ ]*\n(?=    ))?)+|^```python\n.*?^```$", text, re.MULTILINE | re.DOTALL
+    ):
+        block = textwrap.dedent(match[0]).strip().removeprefix("```python").removesuffix("```")
+        try:
+            calls = any(isinstance(node, ast.Call) for node in ast.walk(ast.parse(block)))
+        except SyntaxError:
+            continue
+        if calls and not re.search(r"^\[\w+\]$", block, re.MULTILINE):
+            found.append((page.name, text[: match.start()].count("\n") + 1, block))
+    return found
 
 
 def documented() -> list[Command]:
