@@ -1,9 +1,9 @@
-"""Recordings in MCAP that other programs wrote, of JSON messages: their topics as columns on one clock.
+"""Recordings in MCAP that other programs wrote: their topics as columns on one clock.
 
-A number in a message is a column, by the last parts of its place (`wrench.force.z` is `force.z`); lists of numbers
-beside a list of names, as joints have, are named by those (`actuator position`). Units are those of the schema's
-properties ("unit"), of names, or where the schema is of ROS or Foxglove geometry those that its description states
-(N, m). Other encodings are refused: their numbers do not stand in the file by name.
+Messages are JSON, or with the libraries of the extra `instruments` those of ROS 2 (CDR) and protobuf. A number in a
+message is a column, by the last parts of its place (`wrench.force.z` is `force.z`); lists of numbers beside a list of
+names, as joints have, are named by those (`actuator position`). Units are those of a JSON schema's properties ("unit"),
+of names, or where the schema is of ROS or Foxglove geometry those that its description states (N, m).
 
 One topic's times are those of the table, the one with the force; what others hold is interpolated to them. What the
 columns mean is for `column_choice`.
@@ -11,10 +11,11 @@ columns mean is for `column_choice`.
 
 from __future__ import annotations
 
+import importlib
 import json
 import re
 import struct
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -30,12 +31,17 @@ from bench_hw.trial_file.mcap_output import PROFILE
 from bench_hw.trial_file.mcap_records import MAGIC
 
 Array = NDArray[np.float64]
+Decoder = Callable[[bytes], object]
 NANOSECONDS: Final = 1e-9
 LEAST_MESSAGES: Final = 2
 GEOMETRY: Final = re.compile(r"(geometry_msgs|foxglove)\b.*")
 STATED: Final = {"force": "N", "torque": "N m", "position": "m", "translation": "m"}
 """Units that these schemas' own descriptions state, by a part of a number's place."""
 STAMPS: Final = ("stamp", "timestamp")
+DECODERS: Final = {"cdr": "mcap_ros2.decoder", "protobuf": "mcap_protobuf.decoder"}
+"""What decodes the messages of an encoding that is not JSON, by the schema in the file; of the extra `instruments`."""
+LONGEST_LIST: Final = 64
+"""A longer list is a picture or a scan, none of whose numbers is a column."""
 
 
 @dataclass
@@ -82,7 +88,7 @@ def topic_blocks(path: Path) -> list[Block]:
     Raises
     ------
     TableError
-        No topic has JSON messages with numbers, or topics that belong together do not overlap in time.
+        No topic has messages with numbers that can be read, or topics that belong together do not overlap in time.
     """
     if not is_foreign(path):
         problem = "this is a recording of bench_hw capture, or one without a whole head"
@@ -94,9 +100,10 @@ def topic_blocks(path: Path) -> list[Block]:
         listed = ", ".join(f"{name} ({encoding})" for name, encoding in sorted(others.items())) or "no messages"
         raise TableError(
             path,
-            f"no topic of this recording has JSON messages with numbers; it has {listed}",
-            "a recording by `bench_hw capture`, JSON messages, or an export of the topics as csv with columns of time, "
-            'force and depth, named by --set import.force="COLUMN:N" and --set import.depth="COLUMN:mm"',
+            f"no topic of this recording has messages with numbers that can be read; it has {listed}",
+            "a recording by `bench_hw capture`, messages in JSON, ROS 2's CDR or protobuf (pip install "
+            "'tissuebench[instruments]'), or an export of the topics as csv with columns of time, force and depth, "
+            'named by --set import.force="COLUMN:N" and --set import.depth="COLUMN:mm"',
         )
     forced = [topic for topic in topics if topic.roles() & {"force", "stress"}]
     base = max(forced or topics, key=lambda topic: len(topic.rows))
@@ -105,24 +112,82 @@ def topic_blocks(path: Path) -> list[Block]:
 
 
 def _read(path: Path) -> tuple[list[Topic], dict[str, str]]:
-    """The topics with JSON messages, and the encodings of the others."""
+    """The topics whose messages can be read, and why the others cannot."""
     from mcap.reader import make_reader
 
     topics: dict[str, Topic] = {}
     others: dict[str, str] = {}
+    decoders: dict[str, Decoder] = {}
     with open_regular(path, DOCUMENT) as stream:
         for schema, channel, message in make_reader(stream).iter_messages():
-            if channel.message_encoding.lower() != "json":
-                others[channel.topic] = channel.message_encoding or "no encoding named"
+            name = channel.topic
+            if name in others:
                 continue
-            content = json.loads(message.data)
-            topic = topics.get(channel.topic)
-            if topic is None:
-                topic = topics[channel.topic] = Topic(channel.topic, _units(schema, content))
-            topic.logged.append(NANOSECONDS * message.log_time)
-            topic.stamped.append(_stamp(content))
-            topic.rows.append(dict(_numbers(content)))
+            try:
+                if name not in decoders:
+                    decoders[name] = _decoder(schema, channel.message_encoding)
+                content = decoders[name](message.data)
+            except UnreadableTopicError as error:
+                if name in topics:
+                    problem = f"message {len(topics[name].rows) + 1} of {name} cannot be read ({error})"
+                    raise TableError(path, problem, "a whole recording, or an export of its topics as csv") from error
+                others[name] = str(error)
+                continue
+            if name not in topics:
+                topics[name] = Topic(name, _units(schema, content))
+            topics[name].logged.append(NANOSECONDS * message.log_time)
+            topics[name].stamped.append(_stamp(content))
+            topics[name].rows.append(dict(_numbers(content)))
     return list(topics.values()), others
+
+
+class UnreadableTopicError(ValueError):
+    """The messages of a topic cannot be read; the text says why."""
+
+
+def _decoder(schema: Any, encoding: str) -> Decoder:
+    """What turns the bytes of a topic's messages into a table of names; `UnreadableTopicError` where nothing does."""
+    if encoding.lower() == "json":
+        return json.loads
+    if encoding.lower() not in DECODERS:
+        raise UnreadableTopicError(encoding or "no encoding named")
+    try:
+        factory = importlib.import_module(DECODERS[encoding.lower()]).DecoderFactory()
+    except ImportError as error:
+        raise UnreadableTopicError(f"{encoding}, whose library is not installed") from error
+    decode = _guarded(factory.decoder_for, encoding, "its schema")(encoding.lower(), schema)
+    if decode is None:
+        raise UnreadableTopicError(f"{encoding} with no schema that its library reads")
+    read = _guarded(decode, encoding, "a message")
+    return lambda data: _plain(read(data))
+
+
+def _guarded(call: Callable[..., Any], encoding: str, what: str) -> Callable[..., Any]:
+    """A call of a library that says what it could not read: the libraries raise anything."""
+
+    def guarded(*arguments: object) -> Any:
+        try:
+            return call(*arguments)
+        except Exception as error:
+            raise UnreadableTopicError(f"{encoding}, {type(error).__name__} in {what}") from error
+
+    return guarded
+
+
+def _plain(value: Any) -> object:
+    """A decoded message as tables, lists and numbers; without bytes, and without messages that are not there."""
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    if isinstance(value, bytes | bytearray | memoryview):
+        return None
+    if hasattr(value, "DESCRIPTOR"):  # protobuf: a number that is nought does not stand in the bytes
+        fields = [field for field in value.DESCRIPTOR.fields if not field.has_presence or value.HasField(field.name)]
+        return {field.name: _plain(getattr(value, field.name)) for field in fields}
+    if hasattr(value, "__slots__"):
+        return {name: _plain(getattr(value, name)) for name in value.__slots__}
+    if hasattr(value, "items"):
+        return {str(key): _plain(inner) for key, inner in value.items()}
+    return [_plain(each) for each in value] if len(value) <= LONGEST_LIST else None
 
 
 def _numbers(value: object, place: str = "") -> Iterator[tuple[str, float]]:
@@ -141,7 +206,7 @@ def _numbers(value: object, place: str = "") -> Iterator[tuple[str, float]]:
                     yield from _numbers(each, _within(place, f"{name} {key}"))
             else:
                 yield from _numbers(inner, _within(place, key))
-    elif isinstance(value, list):
+    elif isinstance(value, list) and len(value) <= LONGEST_LIST:
         for number, each in enumerate(value):
             yield from _numbers(each, f"{place}[{number}]")
 
@@ -156,9 +221,9 @@ def _stamp(content: object) -> float | None:
         return None
     owners = [owner for owner in (content, content.get("header")) if isinstance(owner, dict)]
     for stamp in (owner.get(key) for owner in owners for key in STAMPS):
-        if isinstance(stamp, dict) and isinstance(stamp.get("sec"), int):
-            fraction: Any = stamp.get("nanosec", stamp.get("nsec", 0))
-            return float(stamp["sec"]) + NANOSECONDS * float(fraction)
+        if isinstance(stamp, dict) and isinstance(seconds := stamp.get("sec", stamp.get("seconds")), int):
+            fraction: Any = next((stamp[key] for key in ("nanosec", "nsec", "nanos") if key in stamp), 0)
+            return float(seconds) + NANOSECONDS * float(fraction)
     return None
 
 

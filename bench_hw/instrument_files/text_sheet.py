@@ -33,6 +33,8 @@ _BOMS: Final = (
     (codecs.BOM_UTF16_LE, "utf-16"),
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
+NANOSCOPE: Final = re.compile(rb"\\\*(?:Force )?[Ff]ile list")
+"""How the header of Bruker's NanoScope begins, before counts of its own."""
 _BYTE_ENCODINGS: Final = ("gb18030", "shift_jis", "cp1250", "cp1252")
 _NUMBER: Final = {
     ".": re.compile(r"[+-]?(?:\d{1,3}(?:,\d{3})+|\d+)?(?:\.\d*)?(?:[eE][+-]?\d+)?", re.ASCII),
@@ -136,10 +138,14 @@ def _decoded(path: Path, raw: bytes, told: str) -> tuple[str, str]:
         if raw.startswith(mark):
             return _strict(path, raw, encoding, allowed).removeprefix("\ufeff"), encoding.removesuffix("-sig")
     head = raw[:4000]
-    if head.count(0) > len(head) // 4:
+    if NANOSCOPE.match(head):
+        allowed = "its export as text by NanoScope Analysis, with times or --set import.rate; or Bruker's .jpk-force"
+        raise TableError(path, "this is a Bruker NanoScope file, which is not read", allowed)
+    even, odd = head[::2].count(0), head[1::2].count(0)
+    if max(even, odd) > len(head) // 4 and min(even, odd) <= len(head) // 100:  # letters of two bytes, one of them 0
         return _strict(path, raw, "utf-16-be" if head[:2].startswith(b"\0") else "utf-16-le", allowed), "utf-16"
     if b"\0" in head:
-        raise TableError(path, "this is no text and no format that is known", "a format that docs/files.md lists")
+        raise TableError(path, "this is no text and no format that is known", "a format that docs/own-trials.md lists")
     try:
         return raw.decode("utf-8"), "utf-8"
     except UnicodeDecodeError:

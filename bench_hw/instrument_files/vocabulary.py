@@ -96,7 +96,7 @@ _WORDS: Final[tuple[tuple[str, int, str], ...]] = (
     ("displacement", 0, r"displacement|disp|extension|travel|distance|stroke|standardweg|weg|verfahrweg|d[eé]placement|desplazamiento|przemieszczenie|wyd(?:ł|l)u(?:ż|z)enie|course|位移|行程|変位|ストローク"),  # noqa: E501
     ("displacement", 1, _QUALIFIED + r"(?:displacement|disp|extension|travel|distance|stroke|deflection)|traversenweg|verformung|deformation|stauchung|变形|横梁位移"),  # noqa: E501
     ("displacement", 2, r"crosshead|traverse(?: abs)?|piezo|" + _QUALIFIED + r"(?:displacement|disp|extension) \d+"),
-    ("gap", 0, r"gap|tool gap|spalt|size|plate (?:separation|distance)|werkzeugabstand|abstand"),
+    ("gap", 0, r"gap|tool gap|spalt(?:ma(?:ß|ss)|h[oö]he|weite|breite)?|(?:current )?size|plate (?:separation|distance)|werkzeugabstand|abstand|entrefer|间隙|隙间"),  # noqa: E501
     ("position", 0, _QUALIFIED + r"(?:position|pos)|height|z|h[oö]he|position z|z position|tip position"),
     ("position", 1, r"height measured|z sensor|" + _QUALIFIED + r"(?:position|pos) \d+"),
     ("stress", 0, _QUALIFIED + r"stress|(?:druck|zug)?spannung|contrainte|napr(?:ęż|ez)enie|(?:压缩|拉伸)?应力"),
@@ -133,8 +133,8 @@ _HEIGHT = r"height|thickness|h[oö]he|dicke|[eé]paisseur|espesor|高度|厚度"
 FACTS: Final = {
     "tool_diameter": re.compile(rf"(?:{_TOOL}) ?(?:{_DIAMETER})|(?:{_DIAMETER}) (?:of )?(?:{_TOOL})"),
     "tool_radius": re.compile(rf"(?:{_TOOL}) ?(?:radius|rayon|半径)"),
-    "height": re.compile(rf"(?:(?:initial|{_SPECIMEN}) ?)?(?:{_HEIGHT})|h ?0|d ?0|gauge length|anvil height"),
-    "specimen_diameter": re.compile(rf"(?:{_SPECIMEN}) ?(?:{_DIAMETER})|{_DIAMETER}"),
+    "height": re.compile(rf"(?:(?:initial|{_SPECIMEN}) ?)?(?:{_HEIGHT})|h ?0|gauge length|anvil height"),
+    "specimen_diameter": re.compile(rf"(?:{_SPECIMEN}) ?(?:{_DIAMETER})|{_DIAMETER}|d ?0"),
     "area": re.compile(r"area|cross section(?:al)? area|querschnitt(?:sfl[aä]che)?|a ?0|s ?0|面积"),
     "spring_constant": re.compile(r"k|spring constant|cantilever stiffness|cantilever k"),
 }  # fmt: skip

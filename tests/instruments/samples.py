@@ -5,6 +5,8 @@ falls to 70 % in the hold, with 2 mN of noise. Each writer returns the file; `de
 find, press positive and from the first touch.
 """
 
+import json
+import struct
 import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -412,19 +414,28 @@ def recording(
     path: Path, topics: dict[str, tuple[str, dict, list[tuple[float, dict]]]], encoding: str = "json"
 ) -> Path:
     """A recording by the `mcap` library's writer: by topic its schema's name and contents, times in s and messages."""
-    import json
+    written = {
+        topic: (name, json.dumps(schema).encode(), [(t, json.dumps(each).encode()) for t, each in messages])
+        for topic, (name, schema, messages) in topics.items()
+    }
+    return encoded(path, written, encoding, "jsonschema" if any(schema for _, schema, _ in topics.values()) else "")
 
+
+def encoded(
+    path: Path, topics: dict[str, tuple[str, bytes, list[tuple[float, bytes]]]], encoding: str, schema_encoding: str
+) -> Path:
+    """A recording of messages as they stand in the file: by topic its schema's name and text, times in s and bytes."""
     from mcap.writer import Writer
 
     with path.open("wb") as stream:
         writer = Writer(stream)
         writer.start(profile="", library="another program")
         for topic, (name, schema, messages) in topics.items():
-            kind = writer.register_schema(name, "jsonschema" if schema else "", json.dumps(schema).encode())
+            kind = writer.register_schema(name, schema_encoding, schema)
             channel = writer.register_channel(topic, encoding, kind)
             for time, message in messages:
                 instant = round(1e9 * time)
-                writer.add_message(channel, instant, json.dumps(message).encode(), instant)
+                writer.add_message(channel, instant, message, instant)
         writer.finish()
     return path
 
@@ -453,6 +464,87 @@ def robot_mcap(folder: Path) -> Path:
     schema = {"type": "object", "properties": {"probe": {"properties": {"position": {"type": "number", "unit": "mm"}}}}}
     topics = {"/ft": ("geometry_msgs/WrenchStamped", {}, wrenches), "/stage": ("stage/Place", schema, places)}
     return recording(folder / "robot.mcap", topics)
+
+
+WRENCH = """std_msgs/Header header
+geometry_msgs/Wrench wrench
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: geometry_msgs/Wrench
+geometry_msgs/Vector3 force
+geometry_msgs/Vector3 torque
+================================================================================
+MSG: geometry_msgs/Vector3
+float64 x
+float64 y
+float64 z
+"""
+POSE = """std_msgs/Header header
+geometry_msgs/Pose pose
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: geometry_msgs/Pose
+geometry_msgs/Point position
+geometry_msgs/Quaternion orientation
+================================================================================
+MSG: geometry_msgs/Point
+float64 x
+float64 y
+float64 z
+================================================================================
+MSG: geometry_msgs/Quaternion
+float64 x
+float64 y
+float64 z
+float64 w
+"""
+
+
+def cdr(time: float, *numbers: float) -> bytes:
+    """A stamped message of ROS 2 in CDR, little endian: a head of 4 bytes, stamp, "ft" with its nought, float64."""
+    head = struct.pack("<IiI", 0x00000100, int(time), round(1e9 * (time % 1.0))) + struct.pack("<I", 3) + b"ft\0"
+    return head + bytes(-(len(head) - 4) % 8) + struct.pack(f"<{len(numbers)}d", *numbers)
+
+
+def ros2_mcap(folder: Path) -> Path:
+    """A bag of ROS 2: wrench in N and pose in m in CDR at different rates, and a topic whose texts cannot be read."""
+    one, epoch = press(), 1_700_000_000.0
+    time, place = epoch + one.time, 0.3 - 1e-3 * one.depth
+    wrenches = [(t + 0.004, cdr(t, 0.1, 0.2, -f, 0.0, 0.0, 0.0)) for t, f in zip(time, one.force, strict=True)]
+    poses = [(t + 0.001, cdr(t, 0.4, 0.1, z, 0, 0, 0, 1)) for t, z in zip(time[::2], place[::2], strict=True)]
+    topics = {
+        "/ft": ("geometry_msgs/msg/WrenchStamped", WRENCH.encode(), wrenches),
+        "/tool_pose": ("geometry_msgs/msg/PoseStamped", POSE.encode(), poses),
+        "/chatter": ("std_msgs/msg/String", b"wstring data\n", [(epoch, struct.pack("<II", 0x100, 0))]),
+    }
+    return encoded(folder / "bag_0.mcap", topics, "cdr", "ros2msg")
+
+
+def protobuf_mcap(folder: Path) -> Path:
+    """A stage's recording in protobuf, units in the names; a number that is nought is not in the bytes."""
+    from google.protobuf.descriptor_pb2 import FieldDescriptorProto, FileDescriptorSet
+
+    one, epoch = press(), 1_700_000_000.0
+    files = FileDescriptorSet()
+    file = files.file.add(name="rig.proto", package="rig", syntax="proto3")
+    kind = file.message_type.add(name="Sample")
+    for number, name in enumerate(("force_N", "depth_mm", "state"), start=1):
+        kind.field.add(name=name, number=number, type=FieldDescriptorProto.TYPE_DOUBLE, label=1)
+
+    def sample(force: float, depth: float) -> bytes:
+        return b"".join(struct.pack("<Bd", 8 * k + 1, value) for k, value in ((1, force), (2, depth)) if value)
+
+    messages = [
+        (epoch + t, sample(f, d)) for t, f, d in zip(one.time, np.clip(one.force, 0.0, None), one.depth, strict=True)
+    ]
+    topics = {"/rig": ("rig.Sample", files.SerializeToString(), messages)}
+    return encoded(folder / "rig.mcap", topics, "protobuf", "protobuf")
 
 
 @dataclass(frozen=True)
@@ -486,6 +578,8 @@ SAMPLES = {
     "parquet": Sample(parquet),
     "chinese": Sample(chinese),
     "robot_mcap": Sample(robot_mcap),
+    "ros2_mcap": Sample(ros2_mcap, "mcap_ros2"),
+    "protobuf_mcap": Sample(protobuf_mcap, "mcap_protobuf"),
 }
 
 

@@ -136,6 +136,12 @@ def broken(path, data):
 
 BINARIES = {
     "a pipe of zeros": ("a.csv", b"\0\1\2\3" * 50, "no text and no format"),
+    "a force curve of NanoScope": (
+        "a.spm",
+        b"\\*Force file list\r\n\\Version: 0x09300201\r\n\x1a".ljust(8000, b"\0"),
+        "Bruker NanoScope.*export as text",
+    ),
+    "noughts that are no letters": ("a.dat", b"log\r\n" + b"\0" * 5000, "no text and no format"),
     "utf-16 cut in a letter": ("a.csv", table().encode("utf-16")[:201], "breaks off"),
     "a workbook that is text": ("a.xlsx", table().encode(), "no whole Excel workbook"),
     "an empty workbook": ("a.xlsx", b"", "no whole Excel workbook"),

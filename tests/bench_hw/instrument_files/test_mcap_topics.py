@@ -5,8 +5,8 @@ import pytest
 
 from bench_hw.errors import InputError
 from bench_hw.instrument_files import Told, preview, read_instrument_file
-from bench_hw.instrument_files.mcap_topics import is_foreign
-from tests.instruments.samples import press, recording, robot_mcap
+from bench_hw.instrument_files.mcap_topics import is_foreign, topic_blocks
+from tests.instruments.samples import WRENCH, cdr, encoded, press, recording, robot_mcap
 
 ONE = press()
 
@@ -65,8 +65,8 @@ def damaged(path):
 @pytest.mark.parametrize(
     ("write", "message"),
     [
-        (lambda path: one_topic(path, rig(), encoding="cdr"), r"/rig \(cdr\).*JSON messages.*import\.force"),
-        (lambda path: one_topic(path, rig(), encoding="protobuf"), r"/rig \(protobuf\)"),
+        (lambda path: one_topic(path, rig(), encoding="cdr"), r"/rig \(cdr.*instruments.*import\.force"),
+        (lambda path: one_topic(path, rig(), encoding="protobuf"), r"/rig \(protobuf"),
         (lambda path: one_topic(path, rig(force="load")), r"unit of the force.*import\.force"),
         (lambda path: one_topic(path, rig(force="voltage")), r"no column is the force.*import\.force"),
         (lambda path: one_topic(path, [{"state": "ok"}] * len(ONE.time)), "no topic"),
@@ -82,6 +82,22 @@ def test_what_cannot_be_read_is_refused_with_the_way_out(write, message, tmp_pat
         read_instrument_file(path)
     assert "\n" not in str(refusal.value)
     assert str(path) in str(refusal.value)
+
+
+def test_a_message_that_breaks_off_is_named(tmp_path):
+    pytest.importorskip("mcap_ros2", reason="needs the extra `instruments`")
+    messages = [(5.0 + 0.1 * k, cdr(5.0 + 0.1 * k, *range(6))) for k in range(40)]
+    messages[30] = (messages[30][0], messages[30][1][:40])
+    topics = {"/ft": ("geometry_msgs/msg/WrenchStamped", WRENCH.encode(), messages)}
+    path = encoded(tmp_path / "bag.mcap", topics, "cdr", "ros2msg")
+    with pytest.raises(InputError, match=r"message 31 of /ft cannot be read \(cdr"):
+        read_instrument_file(path)
+
+
+def test_a_picture_beside_the_force_gives_no_columns(tmp_path):
+    messages = [{**each, "data": [7] * 900} for each in rig()]
+    (block,) = topic_blocks(one_topic(tmp_path / "a.mcap", messages))
+    assert block.names == ("time", "force", "depth")
 
 
 @pytest.mark.parametrize("head", [b"", b"\x89MCAP0\r\n", b"no recording at all, but text"])

@@ -122,6 +122,28 @@ def test_german_and_polish_words_are_known(head, encoding, between, sign, kind, 
         assert not any("first touch" in note for note in record.notes)
 
 
+def test_h0_is_a_height_and_d0_a_diameter(tmp_path):
+    one = press()
+    columns = zip(one.time, one.depth, one.force, strict=True)
+    sheets = {
+        "Results": [["", "Fmax", "h0", "d0"], ["", "N", "mm", "mm"], ["Specimen 1", 8.4, 12.0, 20.0]],
+        "Specimen 1": [["Test time", "Deformation", "Standard force"], ["s", "mm", "N"], *map(list, columns)],
+    }
+    header = read_instrument_file(samples.workbook(tmp_path / "results.xlsx", sheets)).header
+    assert header.height == pytest.approx(12e-3)
+    assert header.area == pytest.approx(np.pi * 10e-3**2)
+
+
+def test_a_gap_that_falls_is_a_depth(tmp_path):
+    one = press()
+    lines = samples.rows(one.time, 12.0 - one.depth, -1e3 * one.force, digits=(3, 5, 3), sign=",", between=";")
+    path = tmp_path / "gap.csv"
+    path.write_bytes("\r\n".join(["Zeit [s];Spaltmaß [mm];Kraft [mN]", *lines]).encode("utf-16-le"))
+    (record,) = read_instrument_file(path).records
+    assert record.table.depth.max() == pytest.approx(2e-3, rel=0.02)
+    assert record.table.force.max() == pytest.approx(one.force.max(), rel=1e-3)
+
+
 def test_the_number_of_a_column_is_no_unit():
     assert label_and_unit("Dehnung 1") == ("Dehnung 1", "")
     assert label_and_unit("Strain (1)") == ("Strain", "1")
