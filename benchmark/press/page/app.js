@@ -277,16 +277,17 @@
   function chart(id, x, y, unit) {
     const target = get(id), scale = Math.min(devicePixelRatio || 1, 2), wide = target.clientWidth, high = target.clientHeight;
     if (target.width !== Math.round(wide * scale)) { target.width = Math.round(wide * scale); target.height = Math.round(high * scale); }
-    const context = plain(target), left = 26, bottom = 15, top = 6;
+    const context = plain(target), bottom = 15, top = 6, ticks = [0, 0.5, 1].map((part) => `${+(part * y).toPrecision(2)}`);
+    context.font = state.font ??= `10px ${getComputedStyle(document.body).fontFamily}`;
+    const left = 8 + Math.max(18, ...ticks.map((text) => context.measureText(text).width));
     context.setTransform(scale, 0, 0, scale, 0, 0);
     context.clearRect(0, 0, wide, high);
     const px = (v) => left + ((v - x[0]) / (x[1] - x[0])) * (wide - left - 4), py = (v) => high - bottom - (v / y) * (high - bottom - top);
     context.strokeStyle = shade("grid"); context.fillStyle = shade("muted"); context.lineWidth = 1;
-    context.font = state.font ??= `10px ${getComputedStyle(document.body).fontFamily}`;
-    for (const part of [0, 0.5, 1]) {
-      context.beginPath(); context.moveTo(left, py(part * y)); context.lineTo(wide - 4, py(part * y)); context.stroke();
-      context.textAlign = "right"; context.fillText(`${+(part * y).toPrecision(2)}`, left - 4, py(part * y) + 3);
-    }
+    ticks.forEach((text, k) => {
+      context.beginPath(); context.moveTo(left, py(0.5 * k * y)); context.lineTo(wide - 4, py(0.5 * k * y)); context.stroke();
+      context.textAlign = "right"; context.fillText(text, left - 4, py(0.5 * k * y) + 3);
+    });
     context.textAlign = "right"; context.fillText(unit, wide - 4, high - 3);
     const line = (points, colour, width = 1.8) => {
       context.beginPath();
