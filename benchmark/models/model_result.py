@@ -241,10 +241,10 @@ class ModelResult:
         return self.failure is None
 
     def max_deformation(self) -> Array:
-        """(L,) m: of each layer, the deflection of largest magnitude over the history, signed; NaN without a step."""
+        """(L,) m: of each layer, the deflection of largest magnitude over the history, signed; NaN if none."""
         if not self.top_deflection.size:
             return np.full(len(self.layers), np.nan)
-        rows = np.abs(self.top_deflection).argmax(axis=0)
+        rows = np.nan_to_num(np.abs(self.top_deflection), nan=-1.0).argmax(axis=0)
         return np.asarray(self.top_deflection[rows, np.arange(len(self.layers))])
 
 

@@ -1,7 +1,7 @@
 """A user's own FEA as a table: its rows, and the deflections that it has at a scenario's steps.
 
 Rows are either those of the scenario's steps (column `step`), or of an FEA's own output, which is then interpolated
-over its time, or over its load where it has no time.
+over its time, or over its load where it has no time; one row a layer is the peak load alone.
 """
 
 from __future__ import annotations
@@ -112,6 +112,8 @@ def history(rows: ReferenceRows, drive: Drive, names: tuple[str, ...]) -> Refere
     InputError
         Steps, times or loads that are not the scenario's, a table that ends before it, or one without any of them.
     """
+    if rows.line.size == len(names) and drive.time.size > 1:
+        return _peak_alone(rows, drive, names)
     if "step" in rows.columns:
         return _by_step(rows, drive, names)
     over = "time_s" if "time_s" in rows.columns else LOADS[drive.control][0]
@@ -121,6 +123,28 @@ def history(rows: ReferenceRows, drive: Drive, names: tuple[str, ...]) -> Refere
             "rises); the values are taken at the scenario's steps by it"
         )
     return _interpolated(rows, drive, names, over)
+
+
+def _peak_alone(rows: ReferenceRows, drive: Drive, names: tuple[str, ...]) -> ReferenceHistory:
+    """The one row of each layer at the largest load; the other steps have no deflection (NaN)."""
+    peak, (column, size) = int(np.abs(drive.value).argmax()), LOADS[drive.control]
+    expected = {"step": (peak + 1.0, 0.0), column: (drive.value[peak] / size, SAME_LOAD)}
+    for name, (value, share) in expected.items():
+        found = rows.columns.get(name, np.full(len(names), value))
+        apart = np.abs(found - value) > share * abs(value)
+        if apart.any():
+            raise InputError(
+                f"{rows.where(int(apart.argmax()), name)}: {found[apart][0]:.6g}, with one row a layer; that is the "
+                f"peak load alone, allowed: {value:.6g}, to {100 * share:g} %. Other steps need a row of their own"
+            )
+    top = np.full((drive.time.size, len(names)), np.nan)
+    top[peak] = [1e-3 * float(rows.columns["fem_mm"][rows.of_layer(name)][0]) for name in names]
+    force = drive.value
+    if drive.control == "depth":
+        if "force_N" not in rows.columns:
+            raise InputError(f"{rows.path}: the column force_N is missing; under depth control it is the answer")
+        force = np.where(np.arange(force.size) == peak, rows.columns["force_N"][rows.of_layer(names[0])][0], np.nan)
+    return ReferenceHistory(top, force, "the peak load alone, one row a layer: nothing at the other steps")
 
 
 def _by_step(rows: ReferenceRows, drive: Drive, names: tuple[str, ...]) -> ReferenceHistory:

@@ -65,6 +65,38 @@ def test_a_curve_over_force_alone_will_do(tmp_path: Path) -> None:
     assert "nothing that depends on time" in found.notes["its steps"]
 
 
+def peak_alone(**columns) -> pd.DataFrame:
+    return pd.DataFrame({"layer": LAYERS, "fem_mm": [law(2.0, number) for number in range(len(LAYERS))], **columns})
+
+
+@pytest.mark.parametrize("columns", [{}, {"force_N": 2.0}, {"step": 20}, {"step": 20, "time_s": 5.0, "force_N": 2.0}])
+def test_one_row_a_layer_is_the_peak_load_and_nothing_else(columns, tmp_path: Path) -> None:
+    found = read(peak_alone(**columns), tmp_path)
+    peak = int(DRIVE.value.argmax())
+    np.testing.assert_allclose(found.top_deflection[peak], EXPECTED[peak])
+    assert np.isnan(np.delete(found.top_deflection, peak, axis=0)).all()
+    np.testing.assert_allclose(found.max_deformation(), EXPECTED[peak])
+    assert "the peak load alone" in found.notes["its steps"]
+
+
+@pytest.mark.parametrize(
+    ("columns", "word"), [({"force_N": 1.0}, "force_N: 1, with one row"), ({"step": 3}, "step: 3")]
+)
+def test_one_row_of_another_load_is_refused(columns, word, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=word):
+        read(peak_alone(**columns), tmp_path)
+
+
+def test_the_peak_alone_under_depth_control_has_its_force(tmp_path: Path) -> None:
+    scenario = load_scenario("skin-5N", {"load.observations": "10", "load.control": "depth", "load.peak": "2 mm"})
+    peak = int(scenario_drive(scenario).value.argmax())
+    found = read(peak_alone(depth_mm=2.0, force_N=1.5), tmp_path, scenario)
+    assert found.force[peak] == 1.5
+    assert np.isnan(np.delete(found.force, peak)).all()
+    with pytest.raises(InputError, match="force_N is missing"):
+        read(peak_alone(depth_mm=2.0), tmp_path, scenario)
+
+
 def test_a_depth_history_takes_the_forces_from_the_table(tmp_path: Path) -> None:
     scenario = load_scenario("skin-5N", {"load.observations": "9", "load.control": "depth", "load.peak": "2 mm"})
     depth = np.linspace(0.0, 2.0, 80)
