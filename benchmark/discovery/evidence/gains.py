@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +25,23 @@ class Gain:
     mean: float
     error: float
     z: float
+
+
+@dataclass(frozen=True, eq=False)
+class Scored:
+    """A candidate with its evidence against the model `under` it, to which it adds."""
+
+    fit: Fit
+    slug: str
+    gain: Gain
+    transfer: Gain | None
+    delta_bic: float
+    under: Fit
+
+    @property
+    def slugs(self) -> tuple[str, ...]:
+        """Effects of the candidate."""
+        return tuple(effect.slug for effect in self.fit.model.effects)
 
 
 def conditions(fitted: Fit) -> Array:
@@ -123,3 +140,17 @@ def informed(fitted: Fit) -> float:
 def delta_bic(fitted: Fit, other: Fit, samples: float) -> float:
     """BIC of a model less another's: negative speaks for it."""
     return 2.0 * (fitted.objective - other.objective) + (informed(fitted) - informed(other)) * float(np.log(samples))
+
+
+def score(current: Fit, fits: Sequence[Fit]) -> list[Scored]:
+    """Candidates by their held-out gain over `current`, best first."""
+    groups = conditions(current)
+    before, samples = held_out(current), effective_size(current)
+    several = np.unique(groups).size > 1
+    before_conditions = held_out_conditions(current) if several else None
+    out = []
+    for made in fits:
+        transfer = gain(held_out_conditions(made), before_conditions, groups) if before_conditions is not None else None
+        slug, bic = made.model.effects[-1].slug, delta_bic(made, current, samples)
+        out.append(Scored(made, slug, gain(held_out(made), before, groups), transfer, bic, current))
+    return sorted(out, key=lambda each: -each.gain.mean)

@@ -14,15 +14,15 @@ from benchmark.discovery.base.bent_form import bent
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.cells import within_tolerance
+from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.evidence.gains import (
     Gain,
+    Scored,
     broad,
     conditions,
-    delta_bic,
-    effective_size,
     gain,
     held_out,
-    held_out_conditions,
+    score,
 )
 from benchmark.discovery.evidence.parameter_evidence import determined, every_term_told, steady, told_parameters
 from benchmark.discovery.evidence.pool import Pool
@@ -30,23 +30,6 @@ from benchmark.discovery.evidence.shortlist import Screened, screen
 from benchmark.discovery.evidence.showing import missing
 from benchmark.physics import Effect
 from benchmark.physics.setup_entry import setup_key
-
-
-@dataclass(frozen=True, eq=False)
-class Scored:
-    """A candidate with its evidence against the model `under` it, to which it adds."""
-
-    fit: Fit
-    slug: str
-    gain: Gain
-    transfer: Gain | None
-    delta_bic: float
-    under: Fit
-
-    @property
-    def slugs(self) -> tuple[str, ...]:
-        """Effects of the candidate."""
-        return tuple(effect.slug for effect in self.fit.model.effects)
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +74,7 @@ def select(
         scored = score(current, work.fits(f"round {number}", [(current, s.effect) for s in promising]))
         rounds.append(_enriched(current, scored, work))
         evident = [s for s in rounds[-1] if _evident(s, steps, settings)]
-        accepted = [s for s in evident if not steps or (carries_over(s) and beats_bent(s, settings))]
+        accepted = further(current, evident, settings) if steps else evident
         if not accepted:
             withheld = tuple(s.slug for s in evident)
             break
@@ -125,20 +108,6 @@ def usable(base: Fit, effect: Effect) -> bool:
     return not missing(base.model.problem.study, effect)
 
 
-def score(current: Fit, fits: Sequence[Fit]) -> list[Scored]:
-    """Candidates by their held-out gain over `current`, best first."""
-    groups = conditions(current)
-    before, samples = held_out(current), effective_size(current)
-    several = np.unique(groups).size > 1
-    before_conditions = held_out_conditions(current) if several else None
-    out = []
-    for made in fits:
-        transfer = gain(held_out_conditions(made), before_conditions, groups) if before_conditions is not None else None
-        slug, bic = made.model.effects[-1].slug, delta_bic(made, current, samples)
-        out.append(Scored(made, slug, gain(held_out(made), before, groups), transfer, bic, current))
-    return sorted(out, key=lambda each: -each.gain.mean)
-
-
 def _promising(ranked: Sequence[Screened], count: int) -> list[Screened]:
     top = ranked[0].won if ranked else 0.0
     return [s for k, s in enumerate(ranked[:count]) if k < 2 or s.won > criteria.PROMISING * top]
@@ -163,17 +132,33 @@ def _over_trials(gained: Gain, settings: Settings) -> bool:
     return gained.z >= settings.accept_z or broad(gained) > criteria.BROAD
 
 
-def beats_bent(scored: Scored, settings: Settings) -> bool:
+def further(current: Fit, evident: Sequence[Scored], settings: Settings) -> list[Scored]:
+    """Those of a round's candidates that carry over and are more than what the forms of the effects before miss.
+
+    What those forms miss at most is worked out once.
+    """
+    carried, forms = [s for s in evident if carries_over(s)], _own_forms(current)
+    instead = held_out(bent(current, forms)) if carried and forms else None
+    return [s for s in carried if beats_bent(s, settings, instead)]
+
+
+def _own_forms(fitted: Fit) -> list[str]:
+    """Slugs of the effects that have a form of their own; that of a set-up entry is the finite elements'."""
+    return [effect.slug for effect in fitted.model.effects if setup_key(effect.slug) is None]
+
+
+def beats_bent(scored: Scored, settings: Settings, instead: Array | None = None) -> bool:
     """Whether a further effect is more than what the forms of those before miss of the true ones.
 
     It must have its evidence where those forms may be off; that must be most of what it gains where they may not, or it
-    must not foretell trials surely worse than they do by being off without it. The forms of set-up entries are the
-    finite elements' own.
+    must not foretell trials surely worse than they do by being off without it (`instead` (R,), where it is known).
     """
-    forms = [slug for slug in scored.slugs[:-1] if setup_key(slug) is None]
+    forms = _own_forms(scored.under)
     if not forms:
         return True
-    groups, instead = conditions(scored.under), held_out(bent(scored.under, forms))
+    if instead is None:
+        instead = held_out(bent(scored.under, forms))
+    groups = conditions(scored.under)
     beside = gain(held_out(bent(scored.fit, forms)), instead, groups)
     if not _over_trials(beside, settings):
         return False

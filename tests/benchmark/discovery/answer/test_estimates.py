@@ -7,8 +7,8 @@ import pytest
 
 from benchmark.discovery.answer import estimates
 from benchmark.discovery.discovery_result import Estimate
-from benchmark.discovery.evidence.gains import Gain
-from benchmark.discovery.evidence.selection import Scored, Selection
+from benchmark.discovery.evidence.gains import Gain, Scored
+from benchmark.discovery.evidence.selection import Selection
 from benchmark.discovery.evidence.shortlist import Screened
 from benchmark.physics import EffectParameter
 

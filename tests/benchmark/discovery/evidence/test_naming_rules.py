@@ -9,7 +9,7 @@ import pytest
 from benchmark.discovery import criteria
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence import selection
-from benchmark.discovery.evidence.gains import Gain
+from benchmark.discovery.evidence.gains import Gain, Scored
 from benchmark.discovery.evidence.parameter_evidence import (
     adds_force,
     by_condition,
@@ -19,7 +19,6 @@ from benchmark.discovery.evidence.parameter_evidence import (
     undetermined,
     unsteady,
 )
-from benchmark.discovery.evidence.selection import Scored
 from benchmark.discovery.evidence.shortlist import Screened
 from benchmark.physics.description import EffectParameter
 
@@ -99,16 +98,17 @@ def test_a_further_effect_must_be_more_than_what_the_form_of_the_first_misses(
 ):
     a, b = effect(before), effect("b")
     under, made = fitted(a), fitted(a, b, density=20.0)
-    further = Scored(made, "b", Gain(np.full(8, 20.0), 20.0, 1.0, 9.0), None, -50.0, under)
+    more = Scored(made, "b", Gain(np.full(8, 20.0), 20.0, 1.0, 9.0), None, -50.0, under)
     scatter, asked = np.array([2.0, -2.0] * 4), []
 
     def bent(fit, forms):
-        asked.append(forms)
+        asked.append((fit, forms))
         return fitted(*fit.model.effects, density=beside if fit is made else instead + scatter)
 
     monkeypatch.setattr(selection, "bent", bent)
-    assert selection.beats_bent(further, SETTINGS) is expected
-    assert asked == ([] if "." in before else [["a"], ["a"]])
+    assert selection.further(under, [more, more], SETTINGS) == ([more, more] if expected else [])
+    once_a_round = [(under, ["a"]), (made, ["a"]), (made, ["a"])]
+    assert asked == ([] if "." in before else once_a_round)
 
 
 @pytest.mark.parametrize(
@@ -139,7 +139,8 @@ def test_a_further_effect_that_does_not_carry_over_is_withheld(monkeypatch, know
     first = Scored(one, "a", Gain(np.full(8, 100.0), 100.0, 1.0, 9.0), None, -50.0, fitted())
     monkeypatch.setattr(selection, "usable", lambda base, effect: True)
     ranked = [Screened(each, 9.0, np.zeros((1, 8))) for each in (a, b)]
-    monkeypatch.setattr(selection, "beats_bent", lambda scored, settings: True)
+    monkeypatch.setattr(selection, "beats_bent", lambda scored, settings, instead: True)
+    monkeypatch.setattr(selection, "bent", lambda fit, forms: fit)
     monkeypatch.setattr(
         selection, "screen", lambda fit, rest: tuple(r for r in ranked if r.effect in rest) if rest else ()
     )
