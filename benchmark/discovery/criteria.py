@@ -212,8 +212,6 @@ SHOWN = 4.0
 
 # ---- search: which effect ------------------------------------------------------------------------------------------
 
-SURE = 15.0
-"""Effects are searched for, whatever the test says, where one step gains so much log density. Development seeds."""
 MOST_TRIALS = 30
 """Trials on which candidates are compared, spread evenly over conditions and their order. Cost."""
 REFINED, REFINED_LATER = 7, 5

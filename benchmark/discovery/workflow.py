@@ -51,7 +51,7 @@ from benchmark.discovery.evidence.gains import conditions, tissue_gain
 from benchmark.discovery.evidence.parameter_evidence import constant, undetermined, unsteady
 from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fingerprint, own_code, pool, silent
 from benchmark.discovery.evidence.selection import Selection, first_gain, select, usable
-from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, remark, screen
+from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, promising, remark, screen
 from benchmark.discovery.evidence.showing import not_shown
 from benchmark.discovery.evidence.told_setup import on_told, setup_first, stands, taken_up
 from benchmark.discovery.trials.preparing import prepare
@@ -202,7 +202,7 @@ def _searched(base: Fit, known: Sequence[Effect], settings: Settings, work: Pool
     before = detect(base, settings, np.vstack([one.along for one in screened]))
     some = on_some(base, compared(base))
     able = reachable(conditions(base), settings)
-    searched = known if able and (before.p < settings.level or screened[0].won > criteria.SURE) else ()
+    searched = known if able and (before.p < settings.level or promising(base, screened)) else ()
     selection = select(some, searched, settings, work, screened if some is base else ())
     return selection, replace(before, p=min(before.p, combined(1.0, 1.0, first_gain(selection))))
 

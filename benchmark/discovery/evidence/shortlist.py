@@ -12,6 +12,7 @@ from benchmark.discovery.base.candidate_fit import screened
 from benchmark.discovery.base.effect_model import EffectModel, Fit, fit, settled
 from benchmark.discovery.base.trials_problem import only
 from benchmark.discovery.discovery_result import Array
+from benchmark.discovery.evidence.gains import effective_size
 from benchmark.physics import Effect
 
 
@@ -35,6 +36,16 @@ def screen(current: Fit, effects: Sequence[Effect]) -> tuple[Screened, ...]:
         ranked = screened(current, model, effect)
         out.append(Screened(effect, ranked[0].won, np.array([start.along for start in ranked])))
     return tuple(sorted(out, key=lambda each: -each.won))
+
+
+def promising(base: Fit, ranked: Sequence[Screened]) -> bool:
+    """Whether one step towards some effect gains what BIC asks of one more parameter, so that it may be accepted.
+
+    Then effects are looked for though the test of the base's residuals is silent: what unseen trials gain has a share
+    of the level of its own.
+    """
+    asked = 0.5 * (float(np.log(effective_size(base))) - criteria.ACCEPT_BIC)
+    return any(each.won > asked for each in ranked[:1])
 
 
 def compared(base: Fit, most: int = criteria.MOST_TRIALS) -> list[int]:

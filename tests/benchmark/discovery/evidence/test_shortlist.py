@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from benchmark.discovery import criteria
 from benchmark.discovery.base.calibration import calibrate
-from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, remark
+from benchmark.discovery.evidence.gains import effective_size
+from benchmark.discovery.evidence.shortlist import Screened, compared, on_all, on_some, promising, remark
 from benchmark.discovery.trials.preparing import prepare
 
 
@@ -33,3 +35,15 @@ def test_a_fit_to_some_knows_those_alone(base):
     assert np.isfinite(some.objective)
     assert on_all(base, some) is base
     assert "6 of them" in remark(6, 10)[0]
+
+
+def test_what_one_step_must_gain_is_what_bic_asks_of_a_parameter(base):
+    asked = 0.5 * (np.log(effective_size(base)) - criteria.ACCEPT_BIC)
+    assert 3.0 < asked < 10.0
+
+    def ranked(*won):
+        return tuple(Screened(None, each, np.zeros((1, 10))) for each in won)
+
+    assert promising(base, ranked(1.001 * asked, 0.1))
+    assert not promising(base, ranked(0.999 * asked, 0.1))
+    assert not promising(base, ())
