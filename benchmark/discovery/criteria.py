@@ -123,6 +123,9 @@ beside stated uncertainties of the set-up has not been measured. Tilt (slopes of
 plane: a degree) and lens (a calibration's residual at the outermost marker) are first choices, of what people set up by
 eye and of reprojection errors of half a pixel.
 """
+LENS_FORM = 0.1
+"""Of a lens's standard deviation, to which a grid at rest may tell it: what a lens does beyond the cube of the radius.
+First choice."""
 SETUP_PRIOR = {
     "tool.radius": 0.058,
     "support.hole_radius": 0.01,

@@ -115,6 +115,7 @@ class EffectModel:
     def prior(self, start: Array) -> tuple[Array, Array]:
         """Mean and precision (p,) of the priors; logarithmic parameters round their start."""
         mean, precision = np.zeros(self.size), np.zeros(self.size)
+        mean[: self.shape_count] = [self.problem.shape_means.get(name, 0.0) for name in self.problem.shapes]
         precision[: self.shape_count] = np.array(list(self.problem.shape_priors.values())) ** -2.0
         for k, (_, parameter) in enumerate(self.parameters, start=self.shape_count):
             if parameter.logarithmic:

@@ -16,7 +16,7 @@ from benchmark.response.elastic_table import ElasticTable
 from benchmark.response.force_curve import Array
 from benchmark.response.noise import Whitener, whitener
 
-GRID_SCALE = "grid_scale"
+GRID_SCALE, LENS = "grid_scale", "lens"
 MARKER_SHAPES = ("width", "marker_exponent", "marker_size", "tilt_x", "tilt_y", "lens")
 FOLLOWED = ("modulus", "exponent", "width")
 OWN = ("gain", "zero", "shift", "height", "thickness")
@@ -118,8 +118,18 @@ class TrialsProblem:
         layout = self.study.layout
         moving = layout is not None and any(table.outward is not None for table in self.tables)
         forms = {k: size for k, size in criteria.SHAPE_PRIOR.items() if moving or k not in MARKER_SHAPES}
+        if layout is not None and LENS in forms:
+            forms[LENS] = layout.lens_within(forms[LENS])[1]
         printed = {GRID_SCALE: layout.scale_error} if layout is not None and layout.scale_error > 0.0 else {}
         return {"modulus": forms.pop("modulus"), **self.setup, **forms, **printed}
+
+    @property
+    def shape_means(self) -> Mapping[str, float]:
+        """Where the base's nuisances lie by what was told or seen at rest; those that are not named at zero."""
+        layout = self.study.layout
+        if layout is None or LENS not in self.shape_priors:
+            return {}
+        return {LENS: layout.lens_within(criteria.SHAPE_PRIOR[LENS])[0]}
 
     @property
     def zeros(self) -> tuple[str, ...]:

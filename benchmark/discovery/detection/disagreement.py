@@ -61,7 +61,7 @@ def strained(fitted: Fit, form: float = 0.0) -> float:
     density it bends to what the forms of effects miss, and says nothing of the set-up.
     """
     free = [k for k, name in enumerate(fitted.model.problem.shapes) if name != "modulus"]
-    z = np.abs(fitted.vector[free]) * np.sqrt(fitted.precision[free])
+    z = np.abs(fitted.vector[free] - fitted.prior_mean[free]) * np.sqrt(fitted.precision[free])
     if 0.5 * float(z @ z) < form:
         return 1.0
     return float(min(1.0, len(free) * 2.0 * norm.sf(z.max())))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import Array
 from benchmark.files import Camera
 
@@ -34,6 +35,8 @@ class Layout:
         Where the camera sees the grid's centre, m.
     scale_error : float
         Standard error of the grid's scale; 0 where the grid is trusted.
+    lens, lens_error : float
+        Radial distortion that the grid shows at rest, relative at the outermost marker, and its standard error.
     """
 
     rest: Array
@@ -43,11 +46,18 @@ class Layout:
     zeros: tuple[str, ...]
     origin: Array
     scale_error: float = 0.0
+    lens: float = 0.0
+    lens_error: float = np.inf
 
     @property
     def scale_pattern(self) -> Array:
         """(signals,) m by which a grid of twice the size differs."""
         return np.asarray(np.tensordot(self.rest, self.weights, axes=([0, 1], [1, 2])))
+
+    def lens_within(self, usual: float) -> tuple[float, float]:
+        """Mean and standard deviation of the lens's distortion, which is `usual` where no grid shows it."""
+        weight = usual**2 / (usual**2 + self.lens_error**2)
+        return weight * self.lens, usual * max(float(np.sqrt(1.0 - weight)), criteria.LENS_FORM)
 
     def seen_scale(self, printed: float, lens: float) -> float:
         """Relative scale of the grid in the picture: as it is printed, and as radial distortion widens it.

@@ -97,7 +97,12 @@ def _grid(
     positions = np.array([r.markers for group in groups for r in group if r.markers is not None][:1])
     nominal = resting_grid(camera, positions)[seen]
     printed = printed_grid(camera, nominal, resting_places([raw for group in groups for raw in group], seen))
-    plain = replace(layout(nominal, camera.marker_spacing), scale_error=printed.scale_error)
+    plain = replace(
+        layout(nominal, camera.marker_spacing),
+        scale_error=printed.scale_error,
+        lens=printed.lens,
+        lens_error=printed.lens_error,
+    )
     if printed.exact:
         return plain
     warnings.append(printed.remark)

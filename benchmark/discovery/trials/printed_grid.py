@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,8 @@ from benchmark.files import Camera
 FAR = 4.5
 """A marker farther off the others' grid than so many standard deviations says nothing of scale and scatter."""
 ROUNDS = 5
+DISTORTED = 1e-6
+"""Of a grid's size: markers on one ring differ by less, and show no distortion beside their scale."""
 PLANE_FREEDOM = 6
 """Degrees of freedom that a plane not quite parallel to the camera's must leave to be fitted."""
 
@@ -36,6 +38,8 @@ class PrintedGrid:
     scale, scale_error : float
         Of the measured grid relative to the nominal one, and its standard error from the print; 1 and 0 where the
         nominal grid is trusted.
+    lens, lens_error : float
+        Radial distortion at rest, relative at the outermost marker, and its standard error from print and tracking.
     """
 
     places: Array
@@ -43,6 +47,8 @@ class PrintedGrid:
     scatter: float
     scale: float
     scale_error: float
+    lens: float = 0.0
+    lens_error: float = np.inf
 
     @property
     def exact(self) -> bool:
@@ -93,12 +99,32 @@ def printed_grid(camera: Camera, nominal: Array, rests: Array) -> PrintedGrid:
     if camera.print_scatter is not None:
         scatter = camera.print_scatter
     elif variance <= tracking * f_distribution.ppf(criteria.PRINT_LEVEL, freedom, known):
-        return plain
+        lens, lens_error = _distortion(nominal, mean, usual, tracking)
+        return replace(plain, lens=lens, lens_error=lens_error)
     else:
         scatter = float(np.sqrt(variance - tracking))
     centred = nominal[usual] - nominal[usual].mean(axis=0)
     error = float(np.hypot(scatter / np.sqrt(np.sum(centred**2)), stated))
-    return PrintedGrid((mean - origin) / scale, origin, scatter, scale, error)
+    lens, lens_error = _distortion(nominal, mean, usual, tracking + scatter**2)
+    return PrintedGrid((mean - origin) / scale, origin, scatter, scale, error, lens, lens_error)
+
+
+def _distortion(nominal: Array, mean: Array, usual: NDArray[np.bool_], variance: float) -> tuple[float, float]:
+    """Radial distortion of the grid (m, 2) at rest, relative at the outermost marker, and its standard error.
+
+    It is what grows with the cube of the radius beside a turn, a translation and a scale; places have the `variance`
+    along one axis.
+    """
+    square = np.sum(nominal**2, axis=1)
+    turned = np.column_stack([-nominal[:, 1], nominal[:, 0]])
+    moves = [*(np.tile(axis, (len(nominal), 1)) for axis in np.eye(2)), nominal, turned]
+    similar = np.column_stack([move[usual].ravel() for move in moves])
+    cubic = (nominal * (square / max(float(square.max()), 1e-300))[:, None])[usual].ravel()
+    cubic = cubic - similar @ np.linalg.lstsq(similar, cubic, rcond=None)[0]
+    size = float(cubic @ cubic)
+    if size <= DISTORTED**2 * float(square[usual].sum()):
+        return 0.0, np.inf
+    return float(cubic @ mean[usual].ravel()) / size, float(np.sqrt(variance / size))
 
 
 def _similar(nominal: Array, mean: Array, usual: NDArray[np.bool_]) -> tuple[float, Array, Array]:

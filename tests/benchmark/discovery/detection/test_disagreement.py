@@ -33,16 +33,18 @@ def test_three_tests_of_chance_keep_the_level():
     assert np.mean([combined(*each) < 0.05 for each in drawn]) == pytest.approx(0.05, abs=0.01)
 
 
-def bent(*vector):
+def bent(*vector, told=(0.0, 0.0, 0.0)):
     names = ("modulus", "tool.radius", "exponent")
     model = SimpleNamespace(problem=SimpleNamespace(shapes=names))
-    return SimpleNamespace(model=model, vector=np.array(vector), precision=np.array([0.1, 400.0, 1e4]))
+    precision = np.array([0.1, 400.0, 1e4])
+    return SimpleNamespace(model=model, vector=np.array(vector), prior_mean=np.array(told), precision=precision)
 
 
 def test_a_base_is_strained_by_its_priors_and_the_modulus_is_free():
     assert strained(bent(9.0, 0.0, 0.0)) == 1.0
     assert strained(bent(0.0, 0.1, 0.0)) == pytest.approx(2 * 2 * 0.02275, rel=1e-3)  # two of its deviations, two asked
     assert strained(bent(0.0, 0.0, -0.05)) < 1e-5
+    assert strained(bent(0.0, 0.1, -0.05, told=(0.0, 0.1, -0.05))) == 1.0  # where it was told to be
 
 
 def table(means, groups=None):

@@ -1,14 +1,18 @@
 """Markers as people make them: each from its own resting place, the scale judged against the print."""
 
 import re
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from benchmark.blind.cases import CaseName
 from benchmark.blind.session_files import case
-from benchmark.discovery import Settings, discover
-from benchmark.discovery.trials.marker_layout import grid
+from benchmark.discovery import Settings, criteria, discover
+from benchmark.discovery.base.effect_model import EffectModel
+from benchmark.discovery.base.trials_problem import TrialsProblem
+from benchmark.discovery.trials.marker_layout import grid, layout
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.discovery.trials.printed_grid import printed_grid
 from benchmark.files import Camera
@@ -74,6 +78,41 @@ def test_what_is_stated_is_used():
     assert (trusted.exact, trusted.scale_error) == (True, 0.003)
 
 
+def distorted(places, lens):
+    """Places (..., m, 2) seen through a lens that moves the outermost ones by a share of their radius."""
+    square = np.sum(places**2, axis=-1, keepdims=True)
+    return places * (1.0 + lens * square / np.sum(NOMINAL**2, axis=1).max())
+
+
+def test_a_grid_at_rest_tells_the_lens():
+    rng = np.random.default_rng(7)
+    found = [printed_grid(CAMERA, NOMINAL, distorted(rests(rng, turn=0.02), 0.008)) for _ in range(200)]
+    off = [(each.lens - 0.008) / each.lens_error for each in found]
+    assert np.mean([each.lens_error for each in found]) == pytest.approx(0.0042, rel=0.05)
+    assert np.std(off) == pytest.approx(1.0, abs=0.15)
+    assert np.mean(off) == pytest.approx(0.0, abs=0.25)
+    exact = printed_grid(CAMERA, NOMINAL, rests(rng, scatter=0.0))
+    assert exact.exact
+    assert abs(exact.lens) < 4.0 * exact.lens_error < 2e-4
+
+
+def test_markers_on_one_ring_tell_no_lens():
+    angle = np.linspace(0.0, 2.0 * np.pi, 8, endpoint=False)
+    ring = 6e-3 * np.column_stack([np.cos(angle), np.sin(angle)])
+    places = ring + np.random.default_rng(8).normal(0.0, SCATTER, ring.shape)
+    found = printed_grid(CAMERA, ring, np.tile(places, (3, 1, 1)))
+    assert (found.lens, found.lens_error) == (0.0, np.inf)
+
+
+def test_what_the_grid_tells_of_the_lens_is_weighed_with_what_calibrations_leave():
+    plain = layout(NOMINAL, CAMERA.marker_spacing)
+    assert plain.lens_within(0.005) == (0.0, 0.005)
+    mean, left = replace(plain, lens=0.008, lens_error=0.005).lens_within(0.005)
+    assert (mean, left) == pytest.approx((0.004, 0.005 / np.sqrt(2.0)))
+    mean, left = replace(plain, lens=0.008, lens_error=1e-6).lens_within(0.005)
+    assert (mean, left) == pytest.approx((0.008, criteria.LENS_FORM * 0.005))
+
+
 @pytest.fixture(scope="module")
 def sheet(tmp_path_factory):
     """A sheet without any effect, its markers printed 0.06 mm off."""
@@ -107,6 +146,24 @@ def test_a_scale_error_beyond_the_print_is_named(sheet, tmp_path):
     answer = discover(changed(sheet, tmp_path / "s", lambda n, x, y: (1.02 * x, 1.02 * y)), settings=QUICK)
     assert answer.effects[0].slug == "marker_scale_error"
     assert answer.effects[0].parameters[0].value == pytest.approx(0.02, abs=0.004)
+
+
+def test_the_base_begins_with_the_lens_that_the_resting_grid_shows(sheet, tmp_path):
+    far = 1e3 * np.sqrt(np.sum(NOMINAL**2, axis=1).max())
+    bent = changed(
+        sheet, tmp_path / "s", lambda n, x, y: tuple(v * (1.0 + 0.02 * (x * x + y * y) / far**2) for v in (x, y))
+    )
+    for session, least, most in ((load_session(sheet), -0.008, 0.008), (bent, 0.004, 0.02)):
+        study = prepare(session, 100)
+        problem = TrialsProblem(study, (SimpleNamespace(outward=True),), None, None, ())
+        assert least < problem.shape_means["lens"] < most
+        assert 0.002 < problem.shape_priors["lens"] < 0.004  # 0.005 without the grid
+        mean, precision = EffectModel(problem, ()).prior(np.zeros(len(problem.shapes)))
+        place = problem.shapes.index("lens")
+        assert (mean[place], precision[place] ** -0.5) == pytest.approx(
+            (problem.shape_means["lens"], problem.shape_priors["lens"])
+        )
+        assert np.count_nonzero(mean) == 1
 
 
 def test_an_offset_of_one_marker_is_no_signal(sheet, tmp_path):
