@@ -81,7 +81,7 @@ def select(
         steps.append(_simplest(accepted, effects))
         current = steps[-1].fit
     current = _pruned(base, current, settings, work)
-    current = _told(base, _swapped(base, current, rounds, work), work)
+    current = _told(base, _swapped(base, current, rounds, settings, work), work)
     places = [_in_place(base, current, effect, rounds, settings, work) for effect in current.model.effects]
     tried = tuple(scored for each in rounds for scored in each)
     lookalikes = {slug: tuple(fit.model.effects[-1].slug for fit in fits) for slug, fits, _ in places}
@@ -235,8 +235,11 @@ def _told(base: Fit, current: Fit, work: Pool) -> Fit:
     return current
 
 
-def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], work: Pool) -> Fit:
-    """With two effects or more, put the best rivals in the place of each and keep what gains more than a tie."""
+def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], settings: Settings, work: Pool) -> Fit:
+    """With two effects or more, put the best rivals in the place of each and keep what gains more than a tie.
+
+    What comes in is a further effect beside the others, and must be more than another form of them, too.
+    """
     if len(current.model.effects) < 2 or not rounds:
         return current
     taken = {effect.slug for effect in current.model.effects}
@@ -246,9 +249,10 @@ def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], work: 
     for effect in current.model.effects:
         others = [other for other in current.model.effects if other is not effect]
         under = rebuilt(base, others, work, "swaps")
-        for made in work.fits("swaps", [(under, rival) for rival in rivals]):
-            if float(held_out(made).sum()) > density:
-                best, density = made, float(held_out(made).sum())
+        for scored in score(under, work.fits("swaps", [(under, rival) for rival in rivals])):
+            gained = float(held_out(scored.fit).sum())
+            if gained > density and carries_over(scored) and beats_bent(scored, settings):
+                best, density = scored.fit, gained
     return best
 
 

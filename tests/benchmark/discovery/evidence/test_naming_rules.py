@@ -269,15 +269,37 @@ def test_an_effect_that_another_makes_needless_is_dropped(known_densities):
     assert selection._pruned(fitted(), both, SETTINGS, Work(worse)) is both
 
 
+@pytest.fixture
+def swap(monkeypatch, known_densities):
+    """Whether a rival of this density (trial by trial) comes in beside b, if what it must pass lets it."""
+
+    def made(density, **passes):
+        a, b, rival = effect("a"), effect("b"), effect("rival")
+        both, other = fitted(a, b, density=10.0), fitted(b, rival, density=density)
+        work = Work(fitted(a), fitted(b), other, fitted(a, rival, density=1.0))
+        rounds = [[scored("a", 8.0), scored("rival", 7.0)]]
+        rounds[0][1].fit.model.effects[-1].slug = "rival"
+        monkeypatch.setattr(
+            selection,
+            "score",
+            lambda under, fits: [replace(scored("rival", 1.0), fit=fit, under=under) for fit in fits],
+        )
+        monkeypatch.setattr(selection, "carries_over", lambda each: passes.get("carries", True))
+        monkeypatch.setattr(selection, "beats_bent", lambda each, settings: passes.get("beats", True))
+        return selection._swapped(fitted(), both, rounds, SETTINGS, work) is other
+
+    return made
+
+
 @pytest.mark.parametrize(("density", "swapped"), [(10.31, True), (10.29, False)])
-def test_a_swap_must_gain_more_than_a_tie(known_densities, density, swapped):
-    a, b, rival = effect("a"), effect("b"), effect("rival")
-    both = fitted(a, b, density=10.0)
-    other = fitted(b, rival, density=density)
-    work = Work(fitted(a), fitted(b), other, fitted(a, rival, density=1.0))
-    rounds = [[scored("a", 8.0), scored("rival", 7.0)]]
-    rounds[0][1].fit.model.effects[-1].slug = "rival"
-    assert (selection._swapped(fitted(), both, rounds, work) is other) is swapped
+def test_a_swap_must_gain_more_than_a_tie(swap, density, swapped):
+    assert swap(density) is swapped
+
+
+@pytest.mark.parametrize("rule", ["carries", "beats"])
+def test_what_would_be_withheld_does_not_come_in_by_a_swap(swap, rule):
+    assert swap(20.0)
+    assert not swap(20.0, **{rule: False})
 
 
 class Linear:
