@@ -62,6 +62,23 @@ def test_the_error_of_first_order_is_fit_to_correct_by(ramp):
     assert told.order == 1.0
 
 
+def test_without_room_for_a_fan_the_error_to_correct_by_is_no_bound(ramp):
+    """Under a first layer that is thin beside the tool; taken as first order the whole would be too large."""
+    layers = tuple(
+        fem.Layer(f"{n}", h, 1000.0, fem.NeoHookean(E, 0.48))
+        for n, (h, E) in enumerate(zip((0.1e-3, 1.5e-3, 10e-3), (1.5e6, 0.96e6, 47.8e3), strict=True))
+    )
+    problem = fem.Problem(layers, fem.Tool(8e-3, "rigid_bonded"), fem.Support("bonded"), "finite")
+    load = ramp("depth", 2e-3, 4)
+    model, fine = fem.prepare(problem), fem.prepare(replace(problem, discretisation=fem.Discretisation("fine")))
+    solution = model.run(load)
+    force, finer = solution.force[-1], fine.run(load).force[-1]
+    limit = finer - (force - finer) / 3.0  # second order
+    bound, told = (fem.estimate_mesh_error(model, load, solution, first_order=each) for each in (False, True))
+    assert 0.5 < (force - limit) / told.error < 1.0
+    assert bound.error > 2.0 * told.error
+
+
 def test_the_rim_of_a_hole_is_resolved_without_more_elements(monkeypatch, ramp):
     load, kind = ramp("force", 1.0, 1), SUPPORT_MODELS["hole"]
     shipped, fine = (
