@@ -17,9 +17,12 @@ from fem.assembly.system import Evaluation, System
 SMALLEST_PART = 2.0**-8
 MOST_PARTS = 400
 MOST_CORRECTIONS = 60
+MOST_HALVINGS = 40
+"""Of the depth with which a tool first touches where its force leads nowhere."""
 FIRST_TOLERANCE = 1e-2
 """Unbalanced forces over the force with which equations whose limits are only guessed are solved."""
 
+Control: TypeAlias = Literal["force", "depth"]
 Watch: TypeAlias = Callable[[System, State, float], None]
 """Told of each state of equilibrium with the equations that it fits and its time in s, also between two steps."""
 
@@ -123,7 +126,7 @@ class Stepper:
     def __init__(
         self,
         problem: Equilibrium,
-        control: Literal["force", "depth"],
+        control: Control,
         force_scale: float,
         settings: NewtonSettings,
         start: State | None = None,
@@ -131,7 +134,7 @@ class Stepper:
         watch: Watch | None = None,
     ) -> None:
         self._problem = problem
-        self._control: Literal["force", "depth"] = control
+        self._control: Control = control
         self._force_scale = force_scale
         self._settings = settings
         self._watch = watch
@@ -191,15 +194,37 @@ class Stepper:
                 part *= 0.5
                 cuts += 1
                 if part <= SMALLEST_PART:
+                    if self._touched_by_depth(target, duration):
+                        further = self.advance(target, time)
+                        return replace(further, iterations=further.iterations + iterations, cuts=further.cuts + cuts)
                     return Advance(self._state, self._value, iterations, cuts, result.reason, self._time)
         reason = f"more than {MOST_PARTS} parts of one step"
         return Advance(self._state, self._value, iterations, cuts, reason, self._time)
+
+    def _touched_by_depth(self, target: float, duration: float) -> bool:
+        """Make the first state of a press by force one by depth, with less than the force; whether there is one.
+
+        A tool that touches by a point meets so little that by its force Newton's first correction goes far too deep.
+        """
+        if self._control == "depth" or len(self._times) > 1 or target <= 0.0:
+            return False
+        problem, start = self._problem, self._state
+        problem.solver.factorise(problem.system.tangent(at_rest(problem)))
+        depth = target * problem.depth(problem.solver.solve(problem.unit_load[:, None])[:, 0])
+        for _ in range(MOST_HALVINGS):
+            depth *= 0.5
+            found, system = self._settle(start, depth, problem.system, "depth")
+            if found.success and 0.0 < found.state.force < target:
+                share = found.state.force / target
+                self._accept(found.state, found.state.force, self._time + share * duration, system)
+                return True
+        return False
 
     def _solve(self, value: float, time: float) -> tuple[NewtonResult, System]:
         """Newton's result at a load value and a time, and the equations that fit it."""
         iterations = 0
         for guess, begun in self._beginnings(value, time):
-            result, system = self._settle(guess, value, begun)
+            result, system = self._settle(guess, value, begun, self._control)
             iterations += result.iterations
             if result.success:
                 break
@@ -224,7 +249,7 @@ class Stepper:
         if len(self._times) > LOWEST_ORDER + 1:
             yield self._known.predict(value, LOWEST_ORDER)
 
-    def _settle(self, guess: State, value: float, system: System) -> tuple[NewtonResult, System]:
+    def _settle(self, guess: State, value: float, system: System, control: Control) -> tuple[NewtonResult, System]:
         """Newton's result from a guess and equations to begin with, and the equations that fit it.
 
         Equations that do not fit yet are not solved to the last digit: each round begins with a tolerance a tenth of
@@ -235,7 +260,7 @@ class Stepper:
         tolerance = max(wanted, FIRST_TOLERANCE) if system.follows_pressure and onwards else wanted
         for _ in range(MOST_CORRECTIONS):
             ahead, settings = replace(self._problem, system=system), replace(self._settings, tolerance=tolerance)
-            result = solve_newton(ahead, guess, self._control, value, self._force_scale, settings)
+            result = solve_newton(ahead, guess, control, value, self._force_scale, settings)
             iterations += result.iterations
             other = system.corrected(result.state.y, result.state.force) if result.success else None
             if other is None and (tolerance <= wanted or not result.success):

@@ -21,7 +21,6 @@ from fem.setup.tool_faces import disc_load, top_areas, under_tool
 REACH = 1.5  # radius in tool radii up to which nodes may touch the punch
 EDGE_ELEMENTS = 5.0  # elements over the edge radius where it begins and ends
 FINEST_EDGE = 1.0 / 200.0  # element size at a very sharp edge, in tool radii
-SPHERE = 1.0 / 200.0  # element size under the tip of a sphere, in tool radii
 
 
 @dataclass(frozen=True)
@@ -75,6 +74,8 @@ class Resolution:
 
 
 SMALL_STRAIN = Resolution(edge=1.0 / 200.0, under=1.0 / 3.0)
+SPHERE = Resolution(edge=1.0 / 200.0, under=1.0 / 20.0, gather=(0.0,), growth=0.2)
+"""A sphere: fine wherever the border of the touch may be, since the force jumps as nodes come into touch one by one."""
 SLIDING_PLATE = Resolution(edge=1.0 / 20.0, under=1.0 / 6.0)  # no edge is stuck
 
 
@@ -184,7 +185,7 @@ class RoundedPunch:
         tool = problem.tool
         share = (tool.edge_radius or tool.radius) / tool.radius
         if share >= 1.0:
-            return Resolution(edge=SPHERE, under=1.0 / 6.0, gather=(0.0,))
+            return SPHERE
         edge = max(share / EDGE_ELEMENTS, FINEST_EDGE)
         return Resolution(edge=edge, under=1.0 / 6.0, gather=(1.0 - share, 1.0))
 

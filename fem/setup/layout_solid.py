@@ -31,7 +31,7 @@ PIECES = {"coarse": 2, "default": 2, "fine": 3}
 DENSITY = {"coarse": 0.7, "default": 1.0, "fine": 1.5}
 TIED = Resolution(edge=0.04, under=1.0, growth=0.7)
 FINEST_EDGE, COARSEST_EDGE = 0.01, 0.05  # element size at the edge of a tool that touches, in tool radii
-UNDER = 1.0 / 12.0  # largest element under a tool that touches, in tool radii
+UNDER, GROWTH = 1.0 / 12.0, 0.45  # largest element under a tool that touches, in tool radii, and growth from the edge
 VERTICAL_GROWTH = 0.7
 INNER_SQUARE = 0.45  # half side over the radius of the innermost circle that is asked for
 THICKEST_RING = 1.4  # radius of the first circle over the half side, at least
@@ -64,7 +64,7 @@ def _resolution(problem: Problem) -> Resolution:
     if not problem.touches:
         return TIED
     wanted = CONTACT_MODELS[tool.contact].resolution(problem)
-    return replace(wanted, edge=min(max(wanted.edge, FINEST_EDGE), COARSEST_EDGE), under=UNDER)
+    return replace(wanted, edge=min(max(wanted.edge, FINEST_EDGE), COARSEST_EDGE), under=UNDER, growth=GROWTH)
 
 
 def _grid(problem: Problem, extent: Extent, resolution: Resolution, density: float) -> DiscGrid:

@@ -1,5 +1,6 @@
 import dataclasses
 
+import numpy as np
 import pytest
 
 import fem
@@ -59,3 +60,18 @@ def test_a_prediction_of_high_order_that_fails_is_followed_by_a_plain_one(proble
     monkeypatch.setattr(KnownStates, "predict", predict)
     advance = stepper.advance(1.0)
     assert (advance.value, advance.cuts, advance.reason) == (1.0, 0, "")
+
+
+@pytest.mark.parametrize(("contact", "friction"), [("rigid_frictionless", None), ("rigid_frictional", 0.3)])
+def test_a_sphere_meets_soft_tissue_by_its_force_as_by_its_depth(contact, friction):
+    """Its tip alone touches at rest, where Newton's first correction of any force goes far too deep."""
+    soft = (fem.Layer("gel", 12e-3, 1000.0, fem.NeoHookean(20e3, 0.45)),)
+    tool = fem.Tool(5e-3, contact, 5e-3, friction_coefficient=friction)
+    coarse = fem.Discretisation("coarse")
+    model = fem.prepare(fem.Problem(soft, tool, fem.Support("bonded"), discretisation=coarse))
+    pressed = model.run(fem.Load("force", np.array([0.5, 1.0]), np.array([0.1, 0.2])))
+    assert pressed.complete
+    parts = np.linspace(0.1, 1.0, 10)
+    lowered = model.run(fem.Load("depth", parts, parts * pressed.depth[-1]))
+    assert lowered.complete
+    assert lowered.force[-1] == pytest.approx(0.2, rel=1e-6 if friction is None else 1e-2)
