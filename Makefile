@@ -6,7 +6,7 @@ RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
 BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-tracking bench-gate bench-sweep bench-discovery bench-effects bench-derivatives bench-haptic bench-press bench-fit
-.PHONY: help run test test-slow test-torture $(BENCHES) lint types imports check docs lock clean
+.PHONY: help run test test-slow test-torture $(BENCHES) lint types imports check docs pictures lock clean
 
 help:
 	@echo "make run              phantom trials, the 5 N skin press, and a hidden effect found: three reports"
@@ -15,6 +15,7 @@ help:
 	@echo "make test-torture     kills, malformed files and bad surroundings, each with a table (25 minutes at most)"
 	@echo "make check            lint, types and import rules"
 	@echo "make docs             the documentation as a site in build/site"
+	@echo "make pictures         the pictures of the documentation anew, from examples/ (minutes)"
 	@echo "make bench-wave       microseconds a frame of the wave beside its rivals, each with its error"
 	@echo "make bench-accuracy   the wave's errors against the finite elements, small and finite strain"
 	@echo "make bench-peers      the same problems through FElupe and CalculiX, where they are installed"
@@ -71,6 +72,12 @@ check: lint types imports
 docs: $(DEV_STAMP)
 	$(PY) -m benchmark.files.reference > docs/reference-files.md
 	$(PY) -m mkdocs build --quiet
+
+pictures: $(RUN_STAMP)
+	mkdir -p build/pictures
+	MPLBACKEND=Agg $(PY) examples/theory_figures.py docs/pictures
+	set -e; for script in examples/gallery/*.py; do (cd build/pictures && MPLBACKEND=Agg ../../$(PY) ../../$$script); done
+	cp build/pictures/*.png docs/pictures
 
 bench-wave: $(RUN_STAMP)
 	$(PY) -m tests.performance.wave

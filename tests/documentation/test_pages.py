@@ -1,5 +1,6 @@
 """The documentation's pages, links and ready files belong together."""
 
+import ast
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,6 +23,36 @@ def test_links_lead_to_pages_of_the_navigation(page: Path) -> None:
     listed = (ROOT / "mkdocs.yml").read_text()
     for target in re.findall(r"\]\(([^)#:]+\.md)(?:#[\w-]+)?\)", page.read_text()):
         assert target in listed, f"{page.name} links to {target}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_pictures_are_there_with_words_and_small(page: Path) -> None:
+    for words, target in re.findall(r"!\[([^\]]*)\]\(([^)]+)\)", page.read_text()):
+        picture = DOCS / target
+        assert len(words) > 10, f"{page.name}: {target} says nothing to who cannot see it"
+        assert picture.read_bytes()[:4] == b"\x89PNG"
+        assert picture.stat().st_size < 100_000
+
+
+def test_every_picture_is_one_that_a_script_of_ours_makes_and_a_page_shows() -> None:
+    shown = "".join(page.read_text() for page in PAGES)
+    scripts = "".join(path.read_text() for path in (ROOT / "examples" / "gallery").glob("*.py"))
+    scripts += (ROOT / "examples" / "theory_figures.py").read_text()
+    for picture in (DOCS / "pictures").glob("*"):
+        assert f"](pictures/{picture.name})" in shown
+        assert f'"{picture.name}"' in scripts or f'"{picture.stem.removeprefix("theory-")}": ' in scripts
+
+
+def test_the_theory_has_its_derivation_and_every_figure_of_its_script() -> None:
+    text = (DOCS / "theory.md").read_text()
+    tree = ast.parse((ROOT / "examples" / "theory_figures.py").read_text())
+    (figures,) = (
+        node.value for node in tree.body if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "FIGURES"
+    )
+    assert isinstance(figures, ast.Dict)
+    for key in figures.keys:
+        assert isinstance(key, ast.Constant)
+        assert f"pictures/theory-{key.value}.png" in text
 
 
 @pytest.mark.parametrize("name", ["github-gate.yml", "gitlab-gate.yml"])
