@@ -3,18 +3,21 @@
 import os
 import sys
 
-from bench_hw.starting import end, leave_current_folder, open_streams, speak_utf8, tell
+from bench_hw.starting import end, interrupted, leave_current_folder, open_streams, speak_utf8, tell
 
 
-def start() -> None:
+def start() -> int:
     """Run the command line with modules from the installation alone; see `bench_hw.starting`."""
-    open_streams()
-    speak_utf8()
-    tell(leave_current_folder(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), sys.argv)
-    from bench_hw.cli import main
+    try:
+        open_streams()
+        speak_utf8()
+        tell(leave_current_folder(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), sys.argv)
+        from bench_hw.cli import main
 
-    sys.exit(end(main()))
+        return end(main())
+    except KeyboardInterrupt:  # while modules are imported, before the verbs or after them
+        return interrupted()
 
 
 if __name__ == "__main__":
-    start()
+    sys.exit(start())

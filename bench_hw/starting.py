@@ -5,16 +5,19 @@ come before ours. `leave_current_folder` puts it last: a user's own modules are 
 
 A program may be started with its standard input, output or error closed. The next file it opens then has the number of
 that stream, and what a library says there would stand in the file: `open_streams`. One that is full, or whose reader
-went away, is told by name: `end`. Nothing is imported here at the top that is not there since the start of Python.
+went away, is told by name: `end`. Ctrl-C before the verb or after it ends the program in one line. Nothing is imported
+here at the top that is not there since the start of Python.
 """
 
 from __future__ import annotations
 
+import _signal
 import io
 import os
 import sys
 
 EXIT_UNSAID = 2
+EXIT_INTERRUPTED = 130
 NAMED = 5
 """Shadowing names that are told."""
 
@@ -145,12 +148,20 @@ def end(code: int) -> int:
     except (OSError, ValueError):  # the fault is kept, or it is closed
         pass
     fault = unsaid()
+    _signal.signal(_signal.SIGINT, _signal.SIG_DFL)  # no traceback out of what Python does at its end
     if fault is None:
         return code
     _onto_nothing(1)  # or Python would fail by it again at its very end
     if not known or not code:
         print(f"error: {fault}", file=sys.stderr)
     return code or EXIT_UNSAID
+
+
+def interrupted() -> int:
+    """Say in one line that Ctrl-C ended the program where no verb was at work, and give the exit code."""
+    _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
+    print("error: interrupted", file=sys.stderr)
+    return EXIT_INTERRUPTED
 
 
 def unsaid() -> str | None:

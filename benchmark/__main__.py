@@ -6,6 +6,15 @@ import sys
 
 def start() -> int:
     """Run the command line with modules from the installation alone; see `bench_hw.starting`."""
+    try:
+        return _start()
+    except KeyboardInterrupt:  # while modules are imported, before the verbs or after them
+        from bench_hw.starting import interrupted
+
+        return interrupted()
+
+
+def _start() -> int:
     root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     sys.path.insert(0, root)
     from bench_hw.starting import end, leave_current_folder, open_streams, speak_utf8, tell

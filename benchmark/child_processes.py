@@ -10,6 +10,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from multiprocessing import resource_tracker
+from multiprocessing.context import SpawnContext, SpawnProcess
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import NoReturn
@@ -55,16 +56,48 @@ def start_child(process: BaseProcess) -> None:
 
     A terminal sends it to all processes; one that is still importing would put a traceback between our words.
     """
-    with single_threaded_children():
-        if not hasattr(signal, "pthread_sigmask"):
-            process.start()
-            return
-        resource_tracker.ensure_running()  # begun with the process, it would let the process hear again what is blocked
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # children begin with what is blocked here
-        try:
-            process.start()
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    with single_threaded_children(), _deaf_at_first():
+        process.start()
+
+
+@contextmanager
+def _deaf_at_first() -> Iterator[None]:
+    """Processes started inside begin with Ctrl-C blocked."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    resource_tracker.ensure_running()  # begun with the process, it would let the process hear again what is blocked
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # children begin with what is blocked here
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+class _PoolProcess(SpawnProcess):
+    """A process of a pool, which starts it when work comes."""
+
+    def start(self) -> None:
+        """Start it deaf to Ctrl-C; `begin_in_pool` lets it hear again."""
+        with _deaf_at_first():
+            super().start()
+
+
+class PoolContext(SpawnContext):
+    """What a `ProcessPoolExecutor` takes its processes from; its `initializer` must call `begin_in_pool`."""
+
+    Process = _PoolProcess  # type: ignore[assignment]
+
+
+def begin_in_pool() -> None:
+    """In a pool's process: end with the parent, and by Ctrl-C without a word, while importing as well as at work.
+
+    Python would end each process with a traceback of its own, between the words of the parent.
+    """
+    end_with_parent()
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
 
 
 _really_exit = os._exit

@@ -6,7 +6,6 @@ Each case is in a folder that lasts as long as its discovery; several run at a t
 from __future__ import annotations
 
 import importlib
-import multiprocessing
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -18,7 +17,7 @@ from typing import Any, Protocol, cast
 from benchmark.blind.cases import CaseName
 from benchmark.blind.scoring.judging import IMPOSSIBLE, Judged, failed, judge, unanswered
 from benchmark.blind.session_files import case
-from benchmark.child_processes import end_with_parent, single_threaded_children
+from benchmark.child_processes import PoolContext, begin_in_pool, single_threaded_children
 from benchmark.discovery.discovery_result import Discovery
 from benchmark.errors import InputError
 from benchmark.files.sessions.trials import Session
@@ -134,9 +133,8 @@ def _work(waiting: Sequence[CaseName], discoverer: str, workers: int | str) -> I
     if workers == 1 or not waiting:
         yield from (_in_process(name, discoverer) for name in waiting)
         return
-    context = multiprocessing.get_context("spawn")
     size = min(workers, len(waiting))
-    with single_threaded_children(), ProcessPoolExecutor(size, context, initializer=end_with_parent) as pool:
+    with single_threaded_children(), ProcessPoolExecutor(size, PoolContext(), initializer=begin_in_pool) as pool:
         futures = [pool.submit(_in_process, name, discoverer) for name in waiting]
         try:
             for future in as_completed(futures):

@@ -66,3 +66,45 @@ def test_a_reader_that_went_away_is_told_and_no_fault_of_the_program(words):
     ran = subprocess.run([sys.executable, "-m", *words], stdout=writer, stderr=subprocess.PIPE, text=True)
     os.close(writer)
     assert (ran.returncode, ran.stderr) == (2, UNSAID.format("Broken pipe"))
+
+
+INTERRUPTED = """
+import os, signal, sys
+class Interrupted:
+    def find_spec(self, name, *rest):
+        if name == {name!r}:
+            sys.meta_path.remove(self)
+            os.kill(os.getpid(), signal.SIGINT)
+signal.signal(signal.SIGINT, signal.default_int_handler)
+sys.meta_path.insert(0, Interrupted())
+from {package}.__main__ import start
+sys.exit(start())
+"""
+AT_THE_END = """
+import atexit, os, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+atexit.register(os.kill, os.getpid(), signal.SIGINT)
+sys.argv = ["program", "--version"]
+from {package}.__main__ import start
+sys.exit(start())
+"""
+
+
+def ended(program):
+    ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    return ran.returncode, ran.stderr
+
+
+@pytest.mark.parametrize("name", ["{}.cli", "bench_hw.starting", "typer"])
+@pytest.mark.parametrize("package", ["benchmark", "bench_hw"])
+def test_ctrl_c_while_modules_are_imported_is_one_line(package, name):
+    if (package, name) == ("bench_hw", "bench_hw.starting"):
+        pytest.skip("imported before its first line")
+    code, err = ended(INTERRUPTED.format(package=package, name=name.format(package)))
+    assert (code, err) == (130, "error: interrupted\n")
+
+
+@pytest.mark.parametrize("package", ["benchmark", "bench_hw"])
+def test_ctrl_c_while_python_ends_brings_no_traceback(package):
+    code, err = ended(AT_THE_END.format(package=package))
+    assert (code, err) == (-2, "")

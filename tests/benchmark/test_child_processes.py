@@ -12,12 +12,11 @@ import pytest
 from benchmark.child_processes import THREAD_VARIABLES, single_threaded_children, start_child
 
 PARENT = """
-import multiprocessing, sys, time
+import sys, time
 from concurrent.futures import ProcessPoolExecutor
-from benchmark.child_processes import end_with_parent
+from benchmark.child_processes import PoolContext, begin_in_pool
 if __name__ == "__main__":
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(1, context, initializer=end_with_parent) as pool:
+    with ProcessPoolExecutor(1, PoolContext(), initializer=begin_in_pool) as pool:
         pool.submit(int, 3).result()
         print("ready", flush=True)
         time.sleep(60)
@@ -46,6 +45,36 @@ def test_children_get_one_thread_and_the_parent_keeps_its_own(monkeypatch: pytes
         assert {os.environ[name] for name in THREAD_VARIABLES} == {"1"}
     assert os.environ["OMP_NUM_THREADS"] == "7"
     assert "MKL_NUM_THREADS" not in os.environ
+
+
+IN_A_POOL = """
+import os, signal
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from benchmark.child_processes import PoolContext, begin_in_pool
+class Early:  # an interruption while the process still imports what it is to do
+    def __reduce__(self):
+        return os.kill, (0, signal.SIGINT)
+def begin(_):
+    begin_in_pool()
+if __name__ == "__main__":
+    signal.signal(signal.SIGINT, lambda *_: None)
+    os.setpgid(0, 0)
+    for early in (False, True):
+        rest = (begin, (Early(),)) if early else (begin_in_pool, ())
+        with ProcessPoolExecutor(1, PoolContext(), initializer=rest[0], initargs=rest[1]) as pool:
+            try:
+                pool.submit(os.kill, 0, signal.SIGINT).result()
+            except BrokenProcessPool:
+                print("ended")
+"""
+
+
+def test_processes_of_a_pool_end_by_an_interruption_without_a_word(tmp_path) -> None:
+    script = tmp_path / "parent.py"
+    script.write_text(IN_A_POOL)
+    ran = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=60)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (0, "ended\nended\n", "")
 
 
 FIRST = """

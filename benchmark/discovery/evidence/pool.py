@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hashlib
 import io
-import multiprocessing
 import re
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
@@ -21,7 +20,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from benchmark.child_processes import end_with_parent, single_threaded_children
+from benchmark.child_processes import PoolContext, begin_in_pool, single_threaded_children
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.base.effect_model import EffectModel, Fit
 from benchmark.physics import Effect, load_effects
@@ -155,16 +154,15 @@ def pool(workers: int, store: Path | None, key: str, own: Sequence[Effect], list
         yield Pool(None, store, key, listener)
         return
     files = tuple(dict.fromkeys(effect.origin for effect in own if effect.origin))
-    context = multiprocessing.get_context("spawn")
     with (
         single_threaded_children(),
-        ProcessPoolExecutor(workers, context, initializer=_prepare, initargs=(files,)) as executor,
+        ProcessPoolExecutor(workers, PoolContext(), initializer=_prepare, initargs=(files,)) as executor,
     ):
         yield Pool(executor, store, key, listener)
 
 
 def _prepare(files: Sequence[str]) -> None:
-    end_with_parent()
+    begin_in_pool()
     for file in files:
         load_effects(file)
 
