@@ -103,7 +103,7 @@ COMMANDS = (
                                    "--markdown", "p.md", *OUT), "p", ("p.xml", "p.md", "p.jsonl"), share=0.5),
     Command("check --accept", "benchmark", (*CHECK, "--baseline", "p.json", "--accept"), "p.json",
             ("p.history.jsonl",), share=0.5),
-    Command("blind", "benchmark", ("blind", "--cases", "null", "--most", "1", "--workers", "1", *OUT),
+    Command("blind", "benchmark", ("blind", "--cases", "null", "--most", "1", *OUT),
             share=0.5),
     Command("reproduce", "benchmark", ("reproduce", *OUT), share=0.5),
 )  # fmt: skip
@@ -129,17 +129,19 @@ def is_plain(text: str) -> bool:
     return "Traceback" not in text and len(errors) <= 1
 
 
-def run(command: Command, folder: Path, *, kill: tuple[float, int] | None = None, before: str = "") -> Ended:
+def run(
+    command: Command, folder: Path, *, kill: tuple[float, int] | None = None, before: str = "", anew: bool = False
+) -> Ended:
     """Run a command in a fork of this process, which has imported the libraries; `kill` is (seconds, signal).
 
-    `before` is Python that the child runs first: faults of disk and memory are put in by it. A child that takes longer
-    than `LONGEST` counts as hanging.
+    `before` is Python that the child runs first: faults of disk and memory are put in by it. With `anew` the child is
+    what a person starts, `python -m`. A child that takes longer than `LONGEST` counts as hanging.
     """
     err = folder.parent / f"{folder.name}.stderr"
     started = time.monotonic()
     child = os.fork()
     if child == 0:
-        _child(command, folder, err, before)
+        _child(command, folder, err, before, anew)
     with suppress(OSError):  # the child does the same: whoever comes first
         os.setpgid(child, child)
     code = _wait(child, started, kill)
@@ -161,7 +163,7 @@ def _wait(child: int, started: float, kill: tuple[float, int] | None) -> int:
     return 999
 
 
-def _child(command: Command, folder: Path, err: Path, before: str) -> None:
+def _child(command: Command, folder: Path, err: Path, before: str, anew: bool) -> None:
     """Never returns."""
     os.setpgid(0, 0)
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -170,6 +172,8 @@ def _child(command: Command, folder: Path, err: Path, before: str) -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
     code = 70
     try:
+        if anew:
+            os.execv(sys.executable, [sys.executable, "-m", command.module, *_words(command)])
         if before:
             exec(before, {})
         open_streams()
@@ -191,8 +195,12 @@ def _main(command: Command) -> int:
         return main(list(command.words))
     from bench_hw.cli import main as bench
 
-    sys.argv = ["torture", *(word for each in command.words for word in _expanded(each))]
+    sys.argv = ["torture", *_words(command)]
     return bench()
+
+
+def _words(command: Command) -> list[str]:
+    return [word for each in command.words for word in _expanded(each)]
 
 
 def _expanded(word: str) -> list[str]:
