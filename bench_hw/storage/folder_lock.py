@@ -1,14 +1,17 @@
 """One program at work in a folder: a lock beside it, `.NAME.lock`, that ends with the process, however that ends.
 
 The lock is the system's on an open file, so that a kill releases it; the file says who holds it. One that a dead
-process left is taken over by the next and removed at its end.
+process left is taken over by the next and removed at its end. So are folders for temporary files (`scratch`).
 """
 
 from __future__ import annotations
 
 import os
+import secrets
+import shutil
 import socket
 import sys
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from datetime import datetime
@@ -16,6 +19,7 @@ from pathlib import Path
 
 SIGN = "tissuebench: "
 """Beginning of a lock's text; another file of that name is left alone."""
+SCRATCH = "tissuebench-scratch-"
 _LONGEST = 400
 
 
@@ -64,6 +68,30 @@ def locked(folder: Path, doing: str) -> Iterator[None]:
         for each in made:
             with suppress(OSError):
                 each.rmdir()
+
+
+@contextmanager
+def scratch() -> Iterator[Path]:
+    """An empty folder for temporary files, where the system has those; what killed programs left there goes first.
+
+    Raises
+    ------
+    OSError
+        It cannot be made.
+    """
+    parent = Path(tempfile.gettempdir())
+    for lock in parent.glob(f".{SCRATCH}*.lock"):
+        if is_free(lock):
+            shutil.rmtree(parent / lock.stem.removeprefix("."), ignore_errors=True)
+            with suppress(OSError):
+                lock.unlink()
+    folder = parent / f"{SCRATCH}{secrets.token_hex(8)}"
+    with locked(folder, "temporary files"):
+        try:
+            folder.mkdir(mode=0o700)
+            yield folder
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def is_free(path: Path) -> bool:

@@ -6,7 +6,6 @@ Each case is in a folder that lasts as long as its discovery; several run at a t
 from __future__ import annotations
 
 import importlib
-import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -14,6 +13,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any, Protocol, cast
 
+from bench_hw.storage.folder_lock import scratch
 from benchmark.blind.cases import CaseName
 from benchmark.blind.scoring.judging import IMPOSSIBLE, Judged, failed, judge, unanswered
 from benchmark.blind.session_files import case
@@ -78,9 +78,9 @@ def run_case(name: CaseName, discover: Discoverer) -> Judged:
     """
     from benchmark.files.sessions.session_loading import load_session
 
-    with tempfile.TemporaryDirectory(prefix="blind-") as parent:
+    with scratch() as parent:
         try:
-            folder, made = case(name, Path(parent))
+            folder, made = case(name, parent)
         except ValueError as error:
             return unanswered(name, IMPOSSIBLE, str(error))
         started = time.perf_counter()

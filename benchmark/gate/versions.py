@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
-import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from bench_hw.storage.folder_lock import scratch
 from benchmark.errors import InputError
 from benchmark.gate.baseline import Machine, StoredValue
 from benchmark.gate.plan import GatePlan
@@ -53,27 +54,28 @@ def commit_of(repository: Path, revision: str) -> str:
 
 @contextmanager
 def checked_out(repository: Path, commit: str) -> Iterator[Path]:
-    """Yield a temporary folder with the files of a commit: a git worktree, removed on leaving.
+    """Yield a temporary folder with the files of a commit, removed on leaving; the repository stays as it is.
 
     Raises
     ------
     InputError
         Git cannot make it.
     """
-    with tempfile.TemporaryDirectory(prefix="tissuebench-") as parent:
-        tree = Path(parent).resolve() / "tree"
-        no_hooks = ("-c", "core.hooksPath=/dev/null")
-        _git(repository, *no_hooks, "worktree", "add", "--quiet", "--detach", "--force", str(tree), commit)
-        try:
-            yield tree
-        finally:
-            _git(repository, "worktree", "remove", "--force", str(tree))
+    with scratch() as parent:
+        tree, index = parent.resolve() / "tree", parent.resolve() / "index"
+        tree.mkdir()
+        plainly = ("-c", "core.hooksPath=/dev/null", "-c", "core.sparseCheckout=false")
+        _git(repository, *plainly, "read-tree", commit, index=index)
+        _git(repository, "checkout-index", "--all", f"--prefix={tree}/", index=index)
+        yield tree
 
 
-def _git(folder: Path, *arguments: str) -> str:
-    """What a git command prints; InputError where it fails."""
+def _git(folder: Path, *arguments: str, index: Path | None = None) -> str:
+    """What a git command prints, with an index of its own where one is given; InputError where it fails."""
+    own = {} if index is None else {"GIT_INDEX_FILE": str(index)}
+    command = ["git", "-C", str(folder), *arguments]
     try:
-        done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True, check=False)
+        done = subprocess.run(command, env={**os.environ, **own}, capture_output=True, text=True, check=False)
     except OSError as error:
         raise InputError(f"git cannot be run ({error.strerror or error}); --against needs it") from None
     if done.returncode:

@@ -62,6 +62,9 @@ def main() -> int:
     folder = Path(tempfile.mkdtemp(prefix="torture-"))
     try:
         scene = make_scene(folder / "scene")
+        scratch = folder / "temporary"
+        scratch.mkdir()
+        os.environ["TMPDIR"] = tempfile.tempdir = str(scratch)
         complete_scene(scene, [each.verb for each in COMMANDS] if "inputs" in asked.only else asked.verbs)
         failures = [_part(name, scene, asked, journal) for name in asked.only]
     finally:

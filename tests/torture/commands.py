@@ -138,10 +138,13 @@ def run(
     what a person starts, `python -m`. A child that takes longer than `LONGEST` counts as hanging.
     """
     err = folder.parent / f"{folder.name}.stderr"
+    err.write_text("")
     started = time.monotonic()
+    heard = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # until the child can say what it met
     child = os.fork()
     if child == 0:
         _child(command, folder, err, before, anew)
+    signal.pthread_sigmask(signal.SIG_SETMASK, heard)
     with suppress(OSError):  # the child does the same: whoever comes first
         os.setpgid(child, child)
     code = _wait(child, started, kill)
@@ -172,6 +175,7 @@ def _child(command: Command, folder: Path, err: Path, before: str, anew: bool) -
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
     code = 70
     try:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
         if anew:
             os.execv(sys.executable, [sys.executable, "-m", command.module, *_words(command)])
         if before:

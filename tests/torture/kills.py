@@ -6,6 +6,7 @@ import random
 import shutil
 import signal
 import sys
+import tempfile
 import time
 from collections import defaultdict
 from dataclasses import dataclass
@@ -81,7 +82,7 @@ def _moment(scene: Path, command: Command, usual: Usual, seed: int, journal: Jou
     anew = index % ANEW == ANEW // 2
     how, after = SIGNALS[draw.randrange(2)], draw.uniform(0.02, 1.0) * (usual.seconds + STARTING * anew)
     clear(scene, command)
-    before = contents(scene, command.outs)
+    before = {**contents(scene, command.outs), **_temporary()}
     _begin(scene, command)
     killed = run(command, scene, kill=(after, how), anew=anew)
     failures = _ending(command, killed, how, anew)
@@ -133,9 +134,14 @@ def _not_whole(scene: Path, command: Command, usual: Usual) -> list[str]:
     return [f"not whole in its place: {', '.join(torn)}"] if torn else []
 
 
+def _temporary() -> dict[str, str]:
+    """What lies where the system has temporary files, by its whole path."""
+    return {str(path): "temporary" for path in Path(tempfile.gettempdir()).iterdir()}
+
+
 def _beside(scene: Path, command: Command, before: dict[str, str]) -> list[str]:
     """What changed or was left beside the result; it is taken away, so that the next moment begins clean."""
-    left = contents(scene, command.outs)
+    left = {**contents(scene, command.outs), **_temporary()}
     changed = sorted(name for name in {*before, *left} if before.get(name) != left.get(name))
     for name in set(left) - set(before):
         place = scene / name

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
+import secrets
 import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -100,7 +100,8 @@ def overlay_video(path: Path | None, rate: float | None, size: tuple[int, int]) 
     if path.suffix.lower() != ".avi":
         raise InputError(f"{path}: an overlay is Motion JPEG; allowed: a name that ends in .avi")
     path.parent.mkdir(parents=True, exist_ok=True)
-    folder = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
+    folder = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")  # where a kill leaves it, `clean` knows it
+    folder.mkdir()
     try:
         video = OverlayVideo(folder / path.name, rate or _USUAL_RATE, size)
         try:

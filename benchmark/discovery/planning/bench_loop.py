@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 import shutil
-import tempfile
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -26,6 +25,7 @@ from bench_hw.errors import BenchError
 from bench_hw.motion.protocol_file import load_protocol
 from bench_hw.rig.opening import specimen_of
 from bench_hw.rig.rig_file import LoadedRig, load_rig
+from bench_hw.storage.folder_lock import scratch
 from bench_hw.trial_file import read_trial_mcap
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit
@@ -98,8 +98,8 @@ class BenchWork:
         InputError
             The bench cannot do it.
         """
-        with tempfile.TemporaryDirectory() as scratch:
-            protocol = Path(scratch) / "next_experiment.toml"
+        with scratch() as folder:
+            protocol = folder / "next_experiment.toml"
             write_text(protocol, proposal.toml)
             loaded = load_protocol(protocol)
             specimen = specimen_of(self.rig)
@@ -107,7 +107,7 @@ class BenchWork:
             order = CaptureOrder(
                 loaded,
                 self.rig,
-                Path(scratch) / "session",
+                folder / "session",
                 trials,
                 condition=proposal.choice,
                 fast=self.rig.rig.all_simulated,

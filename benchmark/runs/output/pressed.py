@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from bench_hw.storage.folder_lock import scratch
 from benchmark.files import Scenario
 from benchmark.models.model_result import FieldSnapshot
 from benchmark.runs.fields import missing_vtk, save_grid
@@ -48,8 +48,8 @@ def draw_pressed(snapshot: FieldSnapshot, axis: tuple[float, float], reach: floa
     missing = missing_vtk()
     if missing is not None:
         return Drawn(b"", missing)
-    with tempfile.TemporaryDirectory() as name:
-        vtu, png = Path(name) / "pressed.vtu", Path(name) / "pressed.png"
+    with scratch() as folder:
+        vtu, png = folder / "pressed.vtu", folder / "pressed.png"
         save_grid(snapshot, vtu)
         place = [repr(value) for value in (*axis, reach)]
         command = [sys.executable, "-P", str(DRAWING), str(vtu), str(png), *place]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench_hw.errors import BenchError, TrialFileError
+from bench_hw.storage.folder_lock import scratch
 from bench_hw.tables import MarkerTable
 from bench_hw.vision.camera.camera_file import read_camera
 from bench_hw.vision.camera.pinhole import Camera, distance_of
@@ -182,8 +182,8 @@ def _track(session: Session, trial: Trial, pictures: Path, layout: Layout, liste
         keep_film(key, film)
     else:
         listener.say(f"{trial.name}: the same pictures were tracked before, their tracks are taken")
-    with tempfile.TemporaryDirectory() as scratch:
-        table = Path(scratch) / "markers.csv"
+    with scratch() as folder:
+        table = folder / "markers.csv"
         table.write_bytes(film.table)
         markers = replace(read_markers(table), source=str(pictures))
     tracked = Tracked(trial.name, film.table, film.still, film.frames, film.missing_percent)
@@ -194,8 +194,8 @@ def _tracked_now(trial: Trial, pictures: Path, camera: Path, layout: Layout, lis
     """Track the pictures of a trial in a folder that is gone afterwards."""
     from bench_hw.vision.tracking.film import TrackOrder, track
 
-    with tempfile.TemporaryDirectory() as scratch, listener.progress(f"{trial.name}: tracking the markers") as advance:
-        out, still = Path(scratch) / "markers.csv", Path(scratch) / "still.png"
+    with scratch() as folder, listener.progress(f"{trial.name}: tracking the markers") as advance:
+        out, still = folder / "markers.csv", folder / "still.png"
         order = TrackOrder(str(pictures), camera, out, layout=layout, still=still)
         try:
             outcome = track(order, lambda done, total: advance("tracking", done, total or done, f"picture {done}"))

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from bench_hw.storage.folder_lock import SIGN, FolderInUseError, is_free, lock_path, locked
+from bench_hw.storage.folder_lock import SIGN, FolderInUseError, is_free, lock_path, locked, scratch
 
 HOLD = """
 import sys, time
@@ -59,3 +59,24 @@ def test_a_file_of_theirs_with_the_lock_s_name_is_left_as_it_is(tmp_path):
         locked(tmp_path / "result", "fit").__enter__()
     assert lock_path(tmp_path / "result").read_text() == "my notes"
     assert not is_free(lock_path(tmp_path / "result"))
+
+
+SCRATCH = """
+import os, signal
+from bench_hw.storage.folder_lock import scratch
+with scratch() as folder:
+    (folder / "half").write_text("half")
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_a_killed_programs_temporary_files_go_with_the_next_and_those_of_a_living_one_stay(tmp_path, monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    subprocess.run([sys.executable, "-c", SCRATCH], env={**os.environ, "TMPDIR": str(tmp_path)}, check=False)
+    assert len(list(tmp_path.iterdir())) == 2
+    with scratch() as first:
+        (first / "mine").write_text("mine")
+        with scratch() as second:
+            assert (first / "mine").read_text() == "mine"
+            assert sorted(tmp_path.iterdir()) == sorted([first, second, lock_path(first), lock_path(second)])
+    assert not list(tmp_path.iterdir())

@@ -30,13 +30,16 @@ def repository(tmp_path: Path) -> Path:
 
 def test_a_revision_is_checked_out_beside_the_work_in_progress(repository: Path) -> None:
     (repository / "model.py").write_text("third, not committed")
+    git(repository, "status")  # which renews the index
+    before = {path: path.read_bytes() for path in (repository / ".git").rglob("*") if path.is_file()}
     commit = commit_of(repository, "HEAD~1")
     with checked_out(repository, commit) as tree:
         assert (tree / "model.py").read_text() == "first"
-        assert len(git(repository, "worktree", "list").splitlines()) == 2
+        assert len(git(repository, "worktree", "list").splitlines()) == 1  # none that a kill could leave behind
     assert not tree.exists()
     assert len(git(repository, "worktree", "list").splitlines()) == 1
     assert (repository / "model.py").read_text() == "third, not committed"
+    assert {path: path.read_bytes() for path in (repository / ".git").rglob("*") if path.is_file()} == before
 
 
 def test_it_is_removed_after_an_error_too(repository: Path) -> None:
@@ -47,12 +50,15 @@ def test_it_is_removed_after_an_error_too(repository: Path) -> None:
 
 
 def test_hooks_of_the_repository_do_not_run(repository: Path) -> None:
-    hook = repository / ".git" / "hooks" / "post-checkout"
-    hook.parent.mkdir(exist_ok=True)
-    hook.write_text("#!/bin/sh\ntouch hooked\n")
-    hook.chmod(0o755)
+    for name in ("post-checkout", "post-index-change"):
+        hook = repository / ".git" / "hooks" / name
+        hook.parent.mkdir(exist_ok=True)
+        hook.write_text(f"#!/bin/sh\ntouch '{repository}/hooked'\n")
+        hook.chmod(0o755)
     with checked_out(repository, "HEAD") as tree:
+        assert (tree / "model.py").exists()
         assert not (tree / "hooked").exists()
+        assert not (repository / "hooked").exists()
 
 
 @pytest.mark.parametrize("revision", ["no-such-branch", "--help", "HEAD~7", ""])
