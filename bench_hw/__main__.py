@@ -3,12 +3,13 @@
 import os
 import sys
 
-from bench_hw.starting import end, interrupted, leave_current_folder, open_streams, speak_utf8, tell
+from bench_hw.starting import end, interrupted, keep_interruptions, leave_current_folder, open_streams, speak_utf8, tell
 
 
 def start() -> int:
     """Run the command line with modules from the installation alone; see `bench_hw.starting`."""
     try:
+        keep_interruptions()
         open_streams()
         speak_utf8()
         tell(leave_current_folder(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), sys.argv)

@@ -12,12 +12,16 @@ here at the top that is not there since the start of Python.
 from __future__ import annotations
 
 import _signal
+import _thread
 import io
 import os
 import sys
+import time
 
 EXIT_UNSAID = 2
 EXIT_INTERRUPTED = 130
+PAUSE = 0.02
+"""Before an interruption comes once more, s."""
 NAMED = 5
 """Shadowing names that are told."""
 
@@ -162,6 +166,24 @@ def interrupted() -> int:
     _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
     print("error: interrupted", file=sys.stderr)
     return EXIT_INTERRUPTED
+
+
+def keep_interruptions() -> None:
+    """Let Ctrl-C end the program where it met code that passes over every error, as a library's callback may."""
+    before = sys.unraisablehook
+
+    def hook(unraisable: sys.UnraisableHookArgs, /) -> None:
+        if unraisable.exc_type is KeyboardInterrupt:
+            _thread.start_new_thread(_interrupt_again, ())
+        else:
+            before(unraisable)
+
+    sys.unraisablehook = hook
+
+
+def _interrupt_again() -> None:
+    time.sleep(PAUSE)  # until that code is left
+    _thread.interrupt_main()
 
 
 def unsaid() -> str | None:

@@ -108,3 +108,29 @@ def test_ctrl_c_while_modules_are_imported_is_one_line(package, name):
 def test_ctrl_c_while_python_ends_brings_no_traceback(package):
     code, err = ended(AT_THE_END.format(package=package))
     assert (code, err) == (-2, "")
+
+
+SWALLOWED = """
+import os, signal, sys
+class Deaf:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGINT)
+class Finder:
+    def find_spec(self, name, *rest):
+        if name == "typer":
+            sys.meta_path.remove(self)
+            Deaf()
+signal.signal(signal.SIGINT, signal.default_int_handler)
+sys.meta_path.insert(0, Finder())
+sys.argv = ["program", "--version"]
+from {package}.__main__ import start
+sys.exit(start())
+"""
+
+
+@pytest.mark.parametrize("package", ["benchmark", "bench_hw"])
+def test_ctrl_c_that_other_code_passes_over_ends_the_program(package):
+    code, err = ended(SWALLOWED.format(package=package))
+    assert code == 130
+    assert err.startswith("error: interrupted")
+    assert err.count("\n") == 1

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from bench_hw.starting import end, open_streams
+from bench_hw.starting import end, keep_interruptions, open_streams
 from reports.manifest import MANIFEST
 
 LONGEST = 900.0
@@ -180,6 +180,7 @@ def _child(command: Command, folder: Path, err: Path, before: str, anew: bool) -
             os.execv(sys.executable, [sys.executable, "-m", command.module, *_words(command)])
         if before:
             exec(before, {})
+        keep_interruptions()
         open_streams()
         code = end(_main(command))
     except SystemExit as asked:

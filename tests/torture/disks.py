@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from tests.torture.commands import CONTRACT, Command, differences, is_plain, run
+from tests.torture.commands import COMMANDS, CONTRACT, Command, differences, is_plain, run
 from tests.torture.kills import clear, result
 from tests.torture.scene import contents
 
@@ -68,14 +68,42 @@ class Environment:
 
 
 def usual_result(scene: Path, command: Command) -> dict[str, Any]:
+    """What comes of a command that nothing disturbs."""
     clear(scene, command)
     run(command, scene)
     return result(scene, command)
 
 
-def full_disks(scene: Path, command: Command, until: float, points: int) -> Environment:
-    """A command on a disk that is full after so many equal parts of what it writes, from none on."""
-    found, small, kept = Environment(), scene / "small", scene / "kept"
+def torture(scene: Path, until: float, verbs: list[str], points: int) -> dict[str, Environment]:
+    """Each command on disks that are full after so many equal parts of what it writes, from none on.
+
+    Every command has its first point before any has its second, so that those which the time cuts off are points.
+    """
+    found: dict[str, Environment] = {}
+    filled: dict[str, _Disk] = {}
+    for point in sorted(range(points), key=lambda each: (each * 7 % points, each)):  # far from one another
+        for command in (each for each in COMMANDS if each.verb in verbs and each.verb != "clean"):
+            if time.monotonic() > until:
+                return found
+            if command.verb not in filled:
+                filled[command.verb], found[command.verb] = _disk(scene, command), Environment()
+            _at(scene, filled[command.verb], points, point, found[command.verb])
+            print(f"  {command.verb}, {point}: {found[command.verb].codes}", file=sys.stderr, flush=True)
+    return found
+
+
+@dataclass(frozen=True)
+class _Disk:
+    """A command that writes into the folder of the disk, what comes of it otherwise, and the pages that it needs."""
+
+    verb: str
+    inside: Command
+    usual: dict[str, Any]
+    need: int
+
+
+def _disk(scene: Path, command: Command) -> _Disk:
+    small = scene / "small"
     moved = {out: f"small/{out}" for out in command.outs}
     words = tuple(moved.get(word, "small/p" if word == "p" else word) for word in command.words)
     inside = replace(command, words=words, out=moved[command.out], more=tuple(moved[out] for out in command.more))
@@ -83,24 +111,37 @@ def full_disks(scene: Path, command: Command, until: float, points: int) -> Envi
     usual = usual_result(scene, inside)
     need = sum(_pages(scene / out) for out in inside.outs)
     shutil.rmtree(small)
-    for point in range(points):
-        if time.monotonic() > until or command.verb == "clean":
-            break
-        small.mkdir()
-        kept.mkdir()
-        before = contents(scene, ("small", "kept"))
-        size = max(1, point * need // points) * PAGE
-        mounted = need >= points and _mount(small, size)
-        fault = ROOM + HERE.format(place=str(kept)) + ("" if mounted else FULL.format(at=point))
-        ended = run(inside, scene, before=fault)
-        _judge_full(found, inside, scene, usual, ended.code, ended.err, f"{command.verb}, point {point}")
-        if mounted:
-            subprocess.run(["umount", str(small)], check=True)
-        if contents(scene, ("small", "kept")) != before:
-            found.fail(f"{command.verb}, point {point}: something beside it changed")
-        for place in (small, kept):
-            shutil.rmtree(place)
-    return found
+    return _Disk(command.verb, inside, usual, need)
+
+
+def _at(scene: Path, disk: _Disk, points: int, point: int, found: Environment) -> None:
+    """One point."""
+    small, kept, what = scene / "small", scene / "kept", f"{disk.verb}, point {point}"
+    small.mkdir()
+    kept.mkdir()
+    before = contents(scene, ("small", "kept"))
+    mounted = disk.need >= points and _mount(small, max(1, point * disk.need // points) * PAGE)
+    fault = ROOM + HERE.format(place=str(kept)) + ("" if mounted else FULL.format(at=point))
+    ended = run(disk.inside, scene, before=fault)
+    _judge_full(found, disk.inside, scene, disk.usual, ended.code, ended.err, what)
+    if mounted:
+        subprocess.run(["umount", str(small)], check=True)
+    if contents(scene, ("small", "kept")) != before:
+        found.fail(f"{what}: something beside it changed")
+    for place in (small, kept):
+        shutil.rmtree(place)
+
+
+def rows(found: dict[str, Environment]) -> list[tuple[str, ...]]:
+    """The table by verb."""
+    body = [
+        (verb, str(each.tries), *(str(sum(c[code] for c in each.codes.values())) for code in (0, 2)),
+         str(sum(n for c in each.codes.values() for code, n in c.items() if code not in (0, 2))),
+         str(len(each.failures)))
+        for verb, each in found.items()
+    ]  # fmt: skip
+    totals = [str(sum(int(row[k]) for row in body)) for k in range(1, 6)]
+    return [("verb", "points", "exit 0", "exit 2", "other", "failures"), *body, ("all", *totals)]
 
 
 def _judge_full(

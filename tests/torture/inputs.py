@@ -167,17 +167,20 @@ class Kind:
 
 
 def torture(folder: Path, until: float, seed: int, each: int, names: tuple[str, ...] = ("",)) -> dict[str, Count]:
-    """Give `each` changed files of the kinds that begin with `names` to what reads them, until the time is over."""
+    """Give `each` changed files of the kinds that begin with `names` to what reads them.
+
+    Each kind has its part of the time that is left.
+    """
     from tests.torture.kinds import kinds
 
     counts: dict[str, Count] = {}
-    for kind in kinds(folder):
-        if kind.name.startswith(names) and time.monotonic() < until:
-            counts[kind.name] = Count()
-            _try(kind, folder, counts[kind.name], until, seed, each)
-            for text in counts[kind.name].failures:
-                print(f"{kind.name}: {text}", file=sys.stderr, flush=True)
-            print(f"  {' | '.join(_row(kind.name, counts[kind.name]))}", file=sys.stderr, flush=True)
+    asked = [kind for kind in kinds(folder) if kind.name.startswith(names)]
+    for waiting, kind in zip(range(len(asked), 0, -1), asked, strict=True):
+        count, now = counts.setdefault(kind.name, Count()), time.monotonic()
+        _try(kind, folder, count, now + (until - now) / waiting, seed, each)
+        for text in count.failures:
+            print(f"{kind.name}: {text}", file=sys.stderr, flush=True)
+        print(f"  {' | '.join(_row(kind.name, count))}", file=sys.stderr, flush=True)
     return counts
 
 

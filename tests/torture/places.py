@@ -1,4 +1,4 @@
-"""Odd places and bad surroundings: disks full at one point or another, folders that cannot be written, names."""
+"""Odd places and bad surroundings: folders that cannot be written, names, limits, clocks, streams, two at once."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
 from tests.torture.commands import COMMANDS, CONTRACT, Command, differences, run
-from tests.torture.disks import Environment, full_disks, usual_result
+from tests.torture.disks import Environment, usual_result
 from tests.torture.kills import clear, result
 from tests.torture.scene import contents, make_scene
 
@@ -59,43 +60,32 @@ threading._start_new_thread = threading._start_joinable_thread = none
 """
 CHEAP = ("tissues new", "reference new", "import", "export", "recover", "session new", "assess", "dossier", "track",
          "fit")  # fmt: skip
-"""Verbs that are put into the surroundings other than full disks."""
+"""Verbs that are put into the surroundings."""
 
 
-def torture(scene: Path, until: float, verbs: list[str], parts: list[str], points: int) -> dict[str, Environment]:
-    """Try the commands in every surrounding, until the time is over; `parts` are disks, faults and outside."""
+def torture(scene: Path, until: float, verbs: list[str], parts: list[str]) -> tuple[dict[str, Environment], list[str]]:
+    """Try the commands in surroundings until the time is over; `parts` are faults and outside. What was tried, and all.
+
+    The kinds take turns, so that the time cuts off some of each.
+    """
     found: dict[str, Environment] = {}
-    commands = [each for each in COMMANDS if each.verb in verbs]
-    several = [each for each in commands if each.verb in CHEAP]
-    trials: dict[str, Callable[[], Environment]] = {}
+    commands = [each for each in COMMANDS if each.verb in verbs and each.verb in CHEAP]
+    trials: list[dict[str, Callable[[], Environment]]] = []
     if "faults" in parts:
         usual: dict[str, dict[str, Any]] = {}
-        trials |= {
-            name: lambda fault=fault: _faulty(scene, several, fault, usual)  # type: ignore[misc]
+        trials.append({
+            name: lambda fault=fault: _faulty(scene, commands, fault, usual)  # type: ignore[misc]
             for name, fault in _faults().items()
-        }
+        })  # fmt: skip
     if "outside" in parts:
-        trials |= {**_together(scene), **_outside(scene)}
-    if "disks" in parts:
-        trials |= {f"a disk that fills, {points} points": lambda: _all_disks(scene, commands, until, points)}
-    for name, trial in trials.items():
+        trials.append({**_together(scene), **_outside(scene)})
+    pairs = [pair for turn in zip_longest(*(each.items() for each in trials)) for pair in turn if pair is not None]
+    for name, trial in pairs:
         if time.monotonic() < until:
             print(name, file=sys.stderr, flush=True)
             found[name] = trial()
             print("  " + " | ".join(_row(name, found[name])), file=sys.stderr, flush=True)
-    return {name: each for name, each in found.items() if each.tries}
-
-
-def _all_disks(scene: Path, commands: list[Command], until: float, points: int) -> Environment:
-    """The cheap commands first."""
-    found = Environment()
-    for command in sorted(commands, key=lambda each: -each.share):
-        if time.monotonic() < until:
-            one = full_disks(scene, command, until, points)
-            found.codes |= one.codes
-            found.failures += one.failures
-            print(f"  {command.verb}: {dict(one.codes.get(command.verb, {}))}", file=sys.stderr, flush=True)
-    return found
+    return {name: each for name, each in found.items() if each.tries}, [name for name, _ in pairs]
 
 
 def _faults() -> dict[str, str]:
