@@ -11,7 +11,7 @@ here at the top that is not there since the start of Python.
 
 from __future__ import annotations
 
-import _signal
+import _signal  # type: ignore[import-not-found]
 import _thread
 import io
 import os

@@ -86,7 +86,7 @@ class _PoolProcess(SpawnProcess):
 class PoolContext(SpawnContext):
     """What a `ProcessPoolExecutor` takes its processes from; its `initializer` must call `begin_in_pool`."""
 
-    Process = _PoolProcess  # type: ignore[assignment]
+    Process = _PoolProcess
 
 
 def begin_in_pool() -> None:
