@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 
 What = Annotated[
     str | None,
-    typer.Argument(help="A scenario or tissue (name or TOML file), a model file, or a result of run or discover."),
+    typer.Argument(
+        help="A scenario or tissue (name or TOML file), a model file, a result of run or discover, or a session folder."
+    ),
 ]
 Save = Annotated[
     Path | None,

@@ -74,7 +74,8 @@ def _resolved(request: PressRequest) -> tuple[list[Scenario], RepairedModel | No
     if what is not None and what.is_dir():
         inside = [what / name for name in ("scenario.toml", "model.toml") if (what / name).is_file()]
         if not inside:
-            raise InputError(f"{what} is no result of run or discover: it has no scenario.toml and no model.toml")
+            repair = None if request.model is None else load_repair(request.model)
+            return _varied(_of_session(what, request.settings), request), repair
         what = inside[0]
     if what is not None and what.suffix == ".toml" and "effects" in _keys(what):
         if request.model is not None:
@@ -103,6 +104,8 @@ def _scenario(what: Path | None, request: PressRequest) -> Scenario:
     is_tissue = name in shipped_tissues() or (what.suffix == ".toml" and "layers" in _keys(what))
     if is_tissue:
         return load_scenario(DEFAULT, {"tissue": name, **request.settings})
+    if name in shipped_sessions() and name not in shipped_scenarios():
+        return _of_session(shipped_sessions()[name], request.settings)
     if what.suffix != ".toml" and name not in shipped_scenarios():
         known = ", ".join((*shipped_scenarios(), *shipped_tissues()))
         raise InputError(
@@ -113,11 +116,37 @@ def _scenario(what: Path | None, request: PressRequest) -> Scenario:
 
 
 def _base_of(repair: RepairedModel, request: PressRequest) -> Scenario:
-    """What a model file was found on: the shipped session it names, else its tissue under the default tool."""
+    """What a model file was found on: the shipped session it names, else its tissue under the default tool.
+
+    Raises
+    ------
+    InputError
+        Neither ships: the session or the tissue is to be named beside the file.
+    """
     session = shipped_sessions().get(str(repair.evidence.get("session", repair.tissue)))
-    if session is None:
-        return load_scenario(DEFAULT, {"tissue": repair.tissue, **request.settings})
-    read = load_session(session)
+    if session is not None:
+        return _of_session(session, request.settings)
+    if repair.tissue not in shipped_tissues():
+        raise InputError(
+            f"{request.what}: the tissue of this model, {repair.tissue!r}, does not ship; allowed: the session that it "
+            "was found on, or a tissue's TOML file, with the model beside it: press SESSION --model model.toml"
+        )
+    return load_scenario(DEFAULT, {"tissue": repair.tissue, **request.settings})
+
+
+def _of_session(path: Path, settings: Mapping[str, str]) -> Scenario:
+    """The specimen, tool and support of a session, pressed as deep as its trials.
+
+    Raises
+    ------
+    InputError
+        The folder holds no result and no session.
+    """
+    try:
+        read = load_session(path, settings)
+    except InputError as error:
+        results = "no result of run or discover (no scenario.toml and no model.toml), and no session of trials"
+        raise InputError(f"{path} is {results}: {error}") from error
     deepest = max(float(trial.table.depth.max()) for trial in read.trials)
     load = Load(control="depth", peak=deepest, shape="ramp", duration=1.0, observations=1)
     return read.scenario(read.specimen, read.tool, read.support, load)

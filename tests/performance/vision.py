@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from bench_hw.simulated.picture import CameraModel, Painter
 from bench_hw.simulated.specimen import pressed_sheet
+from bench_hw.trial_file import FrameRecord, TrialHeader, open_trial
 from bench_hw.vision.camera.camera_file import write_camera
 from bench_hw.vision.camera.pinhole import Camera, Plane
 from bench_hw.vision.markers import detect_grid
@@ -47,6 +48,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for method in METHODS:
         _in_memory(method, pictures, camera)
     with tempfile.TemporaryDirectory() as folder:
+        for kind in ("jpeg", "png"):
+            _from_trial(Path(folder), pictures, camera, 20 * 30, kind)
         for kind in LOSSLESS:
             _from_file(Path(folder), pictures, camera, 20 * 30, kind)
         _from_file(Path(folder), pictures, camera, round(minutes * 60 * 30), "FFV1")
@@ -93,6 +96,22 @@ def _from_file(folder: Path, pictures: Pictures, camera: Camera, frames: int, ki
         writer.write(cv2.cvtColor(picture, cv2.COLOR_GRAY2BGR) if coloured else picture)
     writer.release()
     with _measured(f"subpixel, lossless file ({kind}) of {frames / 30.0:.0f} s", frames):
+        track(TrackOrder(str(path), camera_path, folder / "markers.csv"))
+
+
+def _from_trial(folder: Path, pictures: Pictures, camera: Camera, frames: int, kind: str) -> None:
+    """Write the pictures as `capture` keeps them, as the camera sends them, and track the trial, start-up included."""
+    import cv2
+
+    ending, quality = (".jpg", [cv2.IMWRITE_JPEG_QUALITY, 95]) if kind == "jpeg" else (".png", [])
+    encoded = [cv2.imencode(ending, picture, quality)[1].tobytes() for picture in pictures]
+    path, camera_path = folder / f"{kind}.mcap", write_camera(folder / "camera.toml", camera)
+    header = TrialHeader("trial", "2024-05-06T07:08:09+00:00", 10.0, "-z", "press", synthetic=True)
+    with open_trial(path, header, background=False) as writer:
+        for number in range(frames):
+            writer.write_frame(FrameRecord(10.0 + number / 30.0, number, encoded[number % len(encoded)], kind))
+    size = path.stat().st_size / frames / 1e3
+    with _measured(f"subpixel, a trial of capture ({kind}, {size:.0f} kB a picture) of {frames / 30.0:.0f} s", frames):
         track(TrackOrder(str(path), camera_path, folder / "markers.csv"))
 
 

@@ -12,6 +12,7 @@ from benchmark.errors import InputError
 from benchmark.press.press_page import SIGN, PressRequest, render_press_page, specimens
 from benchmark.runs.options import Listener
 from benchmark.runs.output.destination import check_file
+from tests.instruments.samples import press
 
 COARSE = {"fem.mesh": "coarse", "wave.large_press": "linear"}
 STIFFENING = """schema = 1
@@ -61,7 +62,7 @@ def test_an_unknown_word_is_refused_with_what_ships():
 
 
 def test_a_folder_that_is_no_result_is_refused(tmp_path):
-    with pytest.raises(InputError, match=r"no scenario\.toml"):
+    with pytest.raises(InputError, match=r"no scenario\.toml.*no session"):
         tissues(what=str(tmp_path))
 
 
@@ -75,6 +76,29 @@ def test_a_model_file_stands_beside_the_model_as_it_was(tmp_path):
     share = one.wave.depth[-1] / one.scenario.tissue.thickness
     expected = one.wave.force[-1] * (1.0 + 0.7 * share + 6.3 * share**2)
     assert one.after.force[-1] == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_shipped_session_is_pressed_by_its_name():
+    [one] = specimens(PressRequest("gel_pad", settings=COARSE), Silent())
+    assert one.scenario.tool.radius == pytest.approx(5e-3)
+
+
+def test_a_model_of_a_lab_s_own_session_is_pressed_beside_that_session(tmp_path):
+    session = tmp_path / "days"
+    session.mkdir()
+    one = press(peak=1.5)
+    rows = zip(one.time, one.depth + 0.5, one.force, strict=True)
+    lines = [",".join(f"{cell:.6f}" for cell in row) for row in rows]
+    (session / "gel_1.csv").write_text("\n".join(["time_s,depth_mm,force_N", *lines]))
+    (tmp_path / "model.toml").write_text(re.sub(r"coefficient.*", _friction(), STIFFENING).format(tissue="my_gel"))
+    with pytest.raises(InputError, match=r"'my_gel', does not ship.*press SESSION --model model\.toml"):
+        tissues(what=str(tmp_path / "model.toml"))
+    settings = {**COARSE, "tool.radius": "4 mm"}
+    request = PressRequest(str(session), settings=settings, model=tmp_path / "model.toml")
+    [pressed] = specimens(request, Silent())
+    assert pressed.scenario.tool.radius == pytest.approx(4e-3)
+    assert pressed.wave.deepest >= 1.5e-3
+    assert pressed.effects == ("strain_stiffening", "viscoelastic_relaxation")
 
 
 def _friction():
