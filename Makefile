@@ -12,7 +12,7 @@ help:
 	@echo "make run              phantom trials, the 5 N skin press, and a hidden effect found: three reports"
 	@echo "make test             the tests (under 10 minutes on 2 cores)"
 	@echo "make test-slow        the long checks"
-	@echo "make test-torture     kills, malformed files and bad surroundings, each with a table (25 minutes at most)"
+	@echo "make test-torture     kills, malformed files, full disks, bad surroundings, a table of each (25 minutes at most)"
 	@echo "make check            lint, types and import rules"
 	@echo "make docs             the documentation as a site in build/site"
 	@echo "make pictures         the pictures of the documentation anew, from examples/ (minutes)"
