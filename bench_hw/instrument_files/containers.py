@@ -7,6 +7,7 @@ again; one that is not installed is named.
 from __future__ import annotations
 
 import importlib
+import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from datetime import datetime, time, timedelta
 from pathlib import Path
@@ -209,7 +210,12 @@ def _parameter(table: Mapping[str, Any]) -> Iterator[HeaderFact]:
 @_opens("TDMS file", ".tdms")
 def _tdms(path: Path) -> list[Block]:
     """Each group's channels of its commonest length, with the units and the time track that the channels carry."""
-    tdms = _library(path, "nptdms", "npTDMS", "instruments").TdmsFile.read(str(path))
+    library = _library(path, "nptdms", "npTDMS", "instruments")
+    importlib.import_module("nptdms.log").log_manager.set_level(logging.ERROR)  # it would write beside the refusal
+    tdms = library.TdmsFile.read(str(path))
+    if tdms.file_status.incomplete_final_segment:
+        allowed = "a whole TDMS file; or an export of it as text (csv, txt)"
+        raise TableError(path, "this is no whole TDMS file: it breaks off in its last segment", allowed)
     facts = _properties(tdms.properties)
     blocks = []
     for group in tdms.groups():

@@ -53,7 +53,7 @@ def session_table(path: Path) -> tuple[dict[str, Any], Source]:
         return _made(path.stem, [entry]), Source(str(path), "", path.parent)
     try:
         if not path.is_dir():
-            raise InputError(f"{path}: there is no such session folder{_shipped(path)}.")
+            raise InputError(f"{path}: there is no such session folder or file{_shipped(path)}.")
         if (path / SESSION_FILE).exists():
             return read_file(path / SESSION_FILE, "session")
         name = path.resolve().name or "session"

@@ -166,6 +166,13 @@ def test_a_workbook_cut_in_half_is_refused(tmp_path):
     refused(broken(tmp_path / "cut.xlsx", whole[: len(whole) // 2]), "no whole Excel workbook|is not installed")
 
 
+@pytest.mark.parametrize("share", [0.5, 0.9])
+def test_a_tdms_file_that_breaks_off_is_refused(tmp_path, share):
+    pytest.importorskip("nptdms", reason="needs npTDMS to write the file")
+    whole = samples.tdms(tmp_path).read_bytes()
+    refused(broken(tmp_path / "cut.tdms", whole[: int(share * len(whole))]), "no whole TDMS file: it breaks off")
+
+
 def test_a_workbook_without_a_record_lists_what_it_has(tmp_path):
     pytest.importorskip("python_calamine")
     sheets = {"Results": [["Probe", "h0"], ["", "mm"], ["A", 12.0], ["B", 12.5]]}

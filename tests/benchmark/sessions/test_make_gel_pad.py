@@ -58,7 +58,7 @@ def test_a_bare_name_means_the_shipped_session_unless_a_folder_is_called_so(tmp_
     assert load_session(bare).name == HIDDEN_EFFECT
     bare.mkdir()
     assert session_folder(bare) == bare
-    with pytest.raises(InputError, match=r"no such session folder, and the shipped ones are gel_pad, phantom"):
+    with pytest.raises(InputError, match=r"no such session folder or file, and the shipped ones are gel_pad, phantom"):
         load_session("nowhere")
 
 
