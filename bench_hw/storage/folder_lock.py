@@ -56,7 +56,11 @@ def locked(folder: Path, doing: str) -> Iterator[None]:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OSError(f"{folder} cannot be written: {error.strerror}") from error
+        file = next((each for each in path.parents if each.exists() and not each.is_dir()), None)
+        reason = error.strerror if file is None else f"{file} is a file where a folder is needed"
+        problem = OSError(f"{folder} cannot be written: {reason}")
+        problem.strerror = reason
+        raise problem from error
     handle = _taken(path, folder)
     try:
         _say(handle, f"{doing}, process {os.getpid()} on {socket.gethostname()} since {datetime.now():%H:%M:%S}")

@@ -80,3 +80,11 @@ def test_a_killed_programs_temporary_files_go_with_the_next_and_those_of_a_livin
             assert (first / "mine").read_text() == "mine"
             assert sorted(tmp_path.iterdir()) == sorted([first, second, lock_path(first), lock_path(second)])
     assert not list(tmp_path.iterdir())
+
+
+def test_a_file_where_a_folder_is_needed_is_named(tmp_path):
+    (tmp_path / "file").write_text("mine")
+    said = r"cannot be written: .*file is a file where a folder is needed$"
+    with pytest.raises(OSError, match=said) as caught, locked(tmp_path / "file" / "p", "fit"):
+        pass
+    assert caught.value.strerror == f"{tmp_path / 'file'} is a file where a folder is needed"
