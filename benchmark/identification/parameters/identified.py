@@ -137,8 +137,8 @@ class Identified:
         index, own = self.found.problem.free[place], self.profiles[place]
         parameter, at = self.found.problem.parameters[index], float(self.found.vector[index])
         ends = own.determined(at)
-        identifiable = ends and largest <= LARGEST_ERROR
-        quoted = ends and (identifiable or parameter.prior is not None)
+        identifiable = ends and largest <= LARGEST_ERROR and self.found.settled
+        quoted = ends and self.found.settled and (identifiable or parameter.prior is not None)
         values = sorted(parameter.scale * parameter.value(each) for each in (own.low, own.high)) if quoted else ()
         low, high = values if values else (None, None)
         prior = None if parameter.prior is None else f"{_prior(parameter)}; {parameter.prior.source}"
@@ -147,6 +147,8 @@ class Identified:
         return Estimate(self.names[place], value, low, high, parameter.unit, identifiable, prior, reason)
 
     def _reason(self, place: int, largest: float) -> str:
+        if not self.found.settled:
+            return self._unsettled
         deviation = float(errors_alone(self.found.fit, self.found.problem.free)[place])
         if self.others and largest <= LARGEST_ERROR:
             return "two or more answers away from each other follow the trials equally well"
@@ -196,14 +198,17 @@ class Identified:
         use = discrepancy_use(self.found)
         said += [] if use is None else [use.text]
         said += [f"another answer follows the trials as well: {self._values(one)}" for one in self.others]
-        if not self.found.settled:
-            said.append(
-                f"the fit did not settle in {self.found.rounds} rounds: model and surrogate still differ by "
-                f"{100 * self.found.disagreement:.2g} % of the force"
-            )
+        said += [] if self.found.settled else [self._unsettled]
         if self.found.problem.freedom < 1:
             said.append("no set-up was pressed twice: the scatter of trials is assumed (1.5 %), not measured")
         return tuple(said)
+
+    @property
+    def _unsettled(self) -> str:
+        return (
+            f"the fit did not settle in {self.found.rounds} rounds: model and surrogate still differ by "
+            f"{100 * self.found.disagreement:.2g} % of the force"
+        )
 
     def _values(self, answer: LayerFit) -> str:
         """The free parameters of an answer in words."""

@@ -80,6 +80,18 @@ def test_away_from_the_fold_the_same_trials_determine_it(folded) -> None:
     assert estimate.low * 1e3 < 3.0 * TOLD * np.exp(0.9) < estimate.high * 1e3
 
 
+def test_what_a_fit_ends_with_that_did_not_settle_is_not_determined(folded) -> None:
+    """Its intervals are those of a surrogate that the model does not follow."""
+    told = answer(folded(0.9))
+    loose = replace(told, found=replace(told.found, disagreement=5e-3))
+    (estimate,) = loose.estimates
+    assert not estimate.identifiable
+    assert (estimate.low, estimate.high) == (None, None)
+    assert "did not settle" in estimate.reason
+    assert "differ by 0.5 % of the force" in estimate.reason
+    assert sum("did not settle" in one for one in loose.warnings) == 2  # of the value, and of the fit
+
+
 def test_only_points_within_the_region_count() -> None:
     errors = np.array([[9.0, 9.0], [0.1, 0.2], [0.3, 0.1], [9.0, 9.0]])
     one = Profile(np.arange(4.0), np.array([9.0, 0.0, 3.0, 9.0]), errors, 0.5, 2.5, 2.0)
