@@ -23,6 +23,7 @@ from benchmark.discovery.answer.gap import (
     HeldOut,
     closed_overall,
     gaps,
+    grows,
     held_out_residuals,
     share_left,
     traces,
@@ -263,7 +264,8 @@ def _discovery(
 ) -> Discovery:
     """The answer in plain results; `began` is when the clock started, s."""
     base, chosen, before = answer.base, answer.chosen, answer.before
-    facts = _facts(answer, known, settings)
+    gap = gaps(base, answer.held, settings)
+    facts = replace(_facts(answer, known, settings), grows=grows(gap))
     word = verdict(facts)
     untested = not facts.enough
     nothing = word in ("cannot_tell", "no_discrepancy")
@@ -280,7 +282,7 @@ def _discovery(
         if untested
         else places(base, *((base, base) if nothing else (answer.plain, chosen)), before, settings),
         contrasts=contrasts(base, before, settings),
-        gap=gaps(base, answer.held, settings),
+        gap=gap,
         smallest_visible={} if untested else smallest_visible(base, before),
         candidates=candidates(answer.selection, closed),
         base=base_estimates(chosen),

@@ -5,6 +5,7 @@ The replicates' pure error is the floor.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -117,6 +118,12 @@ def gaps(base: Fit, held: HeldOut, settings: Settings) -> tuple[ChannelGap, ...]
         interval = None if closed is None else _interval((before, after, floor), draws)
         out.append(ChannelGap(channel, one, two, float(np.sqrt(floor.mean())), closed, interval, held.kind))
     return tuple(out)
+
+
+def grows(channels: Sequence[ChannelGap]) -> bool:
+    """Whether the gap surely grows in some channel and surely shrinks in none: the effects predict nothing."""
+    known = [each.ci95 for each in channels if each.ci95 is not None]
+    return any(high < 0.0 for _, high in known) and not any(low > 0.0 for low, _ in known)
 
 
 def _interval(squares: tuple[Array, Array, Array], draws: list[Array]) -> tuple[float, float] | None:

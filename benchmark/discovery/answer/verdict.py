@@ -42,6 +42,8 @@ class Facts:
         Whether the model with the effects misses by no more than the stated tolerance.
     worse : tuple of str
         Held-out conditions that the effects predict worse than the base.
+    grows : bool
+        Whether the held-out gap surely grows in some channel and surely shrinks in none.
     conditions : int
     undetermined : tuple of str
         Accepted effects whose strength the data do not tell.
@@ -62,6 +64,7 @@ class Facts:
     level: float
     within: bool = True
     worse: tuple[str, ...] = ()
+    grows: bool = False
     conditions: int = 2
     undetermined: tuple[str, ...] = ()
     unsteady: tuple[str, ...] = ()
@@ -82,7 +85,7 @@ class Facts:
     @property
     def predicts(self) -> bool:
         """Whether the effects predict some of what was held out better than the base does."""
-        return len(self.worse) < self.conditions
+        return len(self.worse) < self.conditions and not self.grows
 
 
 def verdict(facts: Facts) -> str:

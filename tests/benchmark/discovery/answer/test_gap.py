@@ -22,6 +22,7 @@ from benchmark.discovery.answer.gap import (
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.criteria import Settings
+from benchmark.discovery.discovery_result import ChannelGap
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
 
@@ -141,6 +142,21 @@ def test_channels_count_together_in_units_of_their_noise(monkeypatch):
     after = np.full((2, 4, 2), 1.0) * [1.0, 3e-6]
     floors(monkeypatch, np.full((2, 4, 2), 1.0) * [1.0, 1e-6])
     assert closed_overall(measured(before, (0, 0)), held(before, after)) == pytest.approx(0.5, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("intervals", "expected"),
+    [
+        ([None, (-0.15, -0.01)], True),
+        ([(-0.1, 0.1), (-0.15, -0.01)], True),
+        ([(0.6, 0.8), (-0.15, -0.01)], False),  # another channel shrinks
+        ([(-0.1, 0.1), None], False),  # not surely
+        ([None, None], False),  # nothing to close
+    ],
+)
+def test_effects_predict_nothing_where_a_gap_surely_grows_and_none_shrinks(intervals, expected):
+    channels = [ChannelGap(str(n), 1.0, 1.0, 1.0, None, each, "condition") for n, each in enumerate(intervals)]
+    assert module.grows(channels) is expected
 
 
 def test_a_condition_held_out_is_predicted_by_the_others_and_a_trial_by_its_mates(monkeypatch):

@@ -95,6 +95,7 @@ CHOICES = {
     "transfers": (True, False, None),
     "within": (True, False),
     "worse": ((), ("fast",), ("slow", "fast")),
+    "grows": (False, True),
     "undetermined": ((), ("viscoelastic_relaxation",)),
     "p_strained": (1.0, 1e-4),
     "unsteady": ((), ("force_drift",)),
@@ -123,6 +124,12 @@ def test_what_misses_by_more_than_the_tolerance_is_never_called_agreement():
     assert verdict(large) == "cannot_tell"
     assert "more than the stated tolerance" in statement("cannot_tell", large)
     assert "too few" not in statement("cannot_tell", large)
+
+
+def test_an_effect_with_which_no_gap_shrinks_and_one_grows_is_no_answer():
+    found = facts(grows=True)
+    assert verdict(found) == "outside_catalogue"
+    assert "predicts unseen data worse" in statement("outside_catalogue", found)
 
 
 def test_a_held_out_condition_predicted_worse_forbids_a_name_and_all_of_them_an_effect():
