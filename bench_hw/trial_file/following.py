@@ -90,21 +90,22 @@ class TrialFollower:
     Parameters
     ----------
     place : pathlib.Path
-        A session's folder, whose newest unfinished trial is followed, one after the other; or one trial,
-        `NAME.mcap` or `NAME.mcap.part`.
+        A session's folder, whose newest unfinished trial is followed, one after the other, also one that a capture is
+        still to make; or one trial, `NAME.mcap` or `NAME.mcap.part`.
 
     Raises
     ------
     TrialFileError
-        There is no such folder, and the file is no trial's.
+        There is no such folder and none to make it in, or the file is no trial's.
     """
 
     def __init__(self, place: Path) -> None:
         self.place = place
         named = place.name.removesuffix(PART)
-        if not place.is_dir() and not (named.endswith(SUFFIX) and place.parent.is_dir()):
-            problem = "no such folder and no trial; allowed: a session's folder, or its NAME.mcap.part"
-            raise TrialFileError(place, problem)
+        to_come = place.parent.is_dir() and (named.endswith(SUFFIX) or not (place.exists() or place.suffix))
+        if not place.is_dir() and not to_come:
+            allowed = "a session's folder, also one that capture is to make in a folder there is, or its NAME.mcap.part"
+            raise TrialFileError(place, f"no such folder and no trial; allowed: {allowed}")
         self._file: BinaryIO | None = None
         self._path = place
         self._done: set[int] = set()
@@ -158,7 +159,7 @@ class TrialFollower:
     def _unfinished(self) -> Path | None:
         if not self.place.is_dir():
             part = self.place if self.place.name.endswith(PART) else self.place.with_name(self.place.name + PART)
-            return part if part.is_file() else None
+            return part if part.name.endswith(SUFFIX + PART) and part.is_file() else None
         parts = [path for path in self.place.glob("*" + SUFFIX + PART) if path.is_file()]
         return max(parts, key=lambda path: path.name, default=None)
 

@@ -19,6 +19,19 @@ from reports import Column, Download, Page, Section, Table, Verdict, write_csv, 
 LEVEL = 0.05
 FEWEST = 2
 """Attempts of a group that a test needs."""
+READ = {
+    "time_s": ("time", "s", -1),
+    "path_length_mm": ("path length", "mm", -1),
+    "economy_of_motion": ("economy of motion", "", 1),
+    "log_dimensionless_jerk": ("log dimensionless jerk", "", 1),
+    "spectral_arc_length": ("spectral arc length", "", 1),
+    "motion_frequency_hz": ("95 % motion frequency", "Hz", -1),
+    "tremor_um": ("tremor", "µm", -1),
+    "depth_error_mm": ("depth error", "mm", -1),
+    "force_error_N": ("force error", "N", -1),
+    "bimanual_correlation": ("bimanual correlation", "", 1),
+}
+"""Each measure in words, its unit, and whether more (1) or less (-1) of it is the better attempt by its source."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +63,10 @@ class MeasureTest:
         """Whether the groups differ at 5 % after adjustment."""
         return self.adjusted < LEVEL
 
+    def better(self, groups: Sequence[str]) -> str:
+        """The group that does better by this measure."""
+        return groups[int(self.test.difference * READ[self.measure][2] > 0.0)]
+
 
 @dataclass(frozen=True)
 class Assessment:
@@ -78,7 +95,7 @@ class Assessment:
             "difference": [one.test.difference for one in self.tests],
             "ci95_low": [one.test.ci95_low for one in self.tests],
             "ci95_high": [one.test.ci95_high for one in self.tests],
-            "t": [one.test.t for one in self.tests],
+            "t": [-one.test.t for one in self.tests],
             "p": [one.test.p_value for one in self.tests],
             "p_holm": [one.adjusted for one in self.tests],
             "power_large_effect": [one.power for one in self.tests],
@@ -91,10 +108,14 @@ class Assessment:
         count = f"{len(self.attempts)} attempt{'s' * (len(self.attempts) != 1)}"
         if not self.tests:
             return f"{count} measured; groups are compared where two folders with two attempts each are given."
-        found = [one.measure for one in self.tests if one.differs]
+        found = [one for one in self.tests if one.differs]
         if not found:
             return f"{count}: no measure tells {' from '.join(self.groups)}, which does not show that they are alike."
-        return f"{count}: {', '.join(found)} tell{'s' * (len(found) == 1)} {' from '.join(self.groups)}."
+        number = f"{len(found)} of {len(self.tests)} measures tell{'s' * (len(found) == 1)}"
+        better = [(one.better(self.groups), READ[one.measure][0]) for one in found]
+        told = [(group, [words for side, words in better if side == group]) for group in self.groups]
+        sides = [f"{group} does better in {', '.join(names)}" for group, names in told if names]
+        return f"{count}: {number} {' from '.join(self.groups)}; {'; '.join(sides)}."
 
 
 def assess(records: Sequence[Path]) -> Assessment:
@@ -192,15 +213,47 @@ def _page(found: Assessment) -> Page:
         f"Welch's t-test for each measure, p adjusted by Holm for {len(found.tests)} tests; a measure that does not "
         f"differ is no evidence of equal skill.",
         f"Against a large effect ({LARGE_EFFECT:g} standard deviations) these groups give a power of "
-        f"{min((one.power for one in found.tests), default=0.0):.2f} at least.",
+        f"{min((one.power for one in found.tests), default=0.0):.2f} at least; a difference of "
+        f"{max((one.detectable for one in found.tests), default=0.0):.2g} standard deviations is found four times in "
+        "five.",
     ]
-    sections = [Section("Attempts", (_table("What each attempt measured", found.columns(), "attempts.csv"),))]
+    sections = [Section("Attempts", (_attempts_table(found),))]
     if found.tests:
-        title = " against ".join(found.groups)
-        sections.insert(0, Section("Groups", (_table(title, found.tests_columns(), "skill.csv"),)))
+        sections.insert(0, Section("Groups", (_groups_table(found),)))
     return Page("How it was pressed", Verdict(status, found.headline, points if found.tests else ()), sections)
 
 
-def _table(caption: str, columns: dict[str, list[Any]], file: str) -> Table:
-    heads = [Column(name.replace("_", " "), digits=3) for name in columns]
-    return Table(caption, heads, list(zip(*columns.values(), strict=True)), Download(file))
+def _attempts_table(found: Assessment) -> Table:
+    """What each attempt measured, without the measures that none has."""
+    every = found.columns()
+    columns = {name: every[name] for name in every if name not in READ or np.isfinite(every[name]).any()}
+    heads = [Column(*READ.get(name, (name, ""))[:2], digits=3) for name in columns]
+    rows = list(zip(*columns.values(), strict=True))
+    return Table("What each attempt measured", heads, rows, Download("attempts.csv"))
+
+
+def _groups_table(found: Assessment) -> Table:
+    heads = [
+        Column("measure"),
+        Column("better is"),
+        *(Column(f"{group}, mean", digits=3) for group in found.groups),
+        Column("difference", digits=3),
+        Column("95 % interval"),
+        Column("p by Holm", digits=2),
+        Column("better"),
+    ]
+    rows = [
+        (
+            f"{words}, {unit}" if unit else words,
+            "more" if way > 0 else "less",
+            one.test.fem.mean,
+            one.test.wave.mean,
+            one.test.difference,
+            f"{one.test.ci95_low:.3g} to {one.test.ci95_high:.3g}".replace("-", "−"),
+            one.adjusted,
+            one.better(found.groups) if one.differs else "not told",
+        )
+        for one in found.tests
+        for words, unit, way in (READ[one.measure],)
+    ]
+    return Table(" against ".join(found.groups), heads, rows, Download("skill.csv"))

@@ -10,6 +10,7 @@ from __future__ import annotations
 import asyncio
 import base64
 import os
+import time
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -30,6 +31,8 @@ LOOK_PERIOD = 0.1
 """Time between two looks at the file, s."""
 MOST_SAMPLES = 20
 """Force samples sent for one look: a trace on a screen shows no more."""
+SILENT = 2.0
+"""s without anything new, after which a page is told: a recording writes five times a second."""
 _PICTURES = 31
 
 
@@ -53,27 +56,31 @@ class LiveCapture:
     force_lost: int = 0
     dropped: int = 0
     doing: str = ""
+    faults: list[str] = field(default_factory=list)
     last_force: ForceRecord | None = None
     last_frame: FrameRecord | None = None
     frame_times: deque[float] = field(default_factory=lambda: deque(maxlen=_PICTURES))
 
     def __post_init__(self) -> None:
         self.follower = TrialFollower(self.place)
-        self._trial = ""
+        self._trial, self._synthetic, self._seconds, self._heard = "", False, 0.0, time.monotonic()
 
     def look(self) -> dict[str, Any]:
-        """What is new since the last look, as JSON values; {"waiting": where} while no trial is recorded."""
+        """What is new since the last look, as JSON values; between trials {"waiting": where} and how the last ended."""
         try:
             news = self.follower.look()
         except BenchError as error:
             return {"error": str(error)}
         if news is None:
-            return {"waiting": str(self.place)}
+            return {"waiting": str(self.place), **({"last": self._last()} if self._trial else {})}
         if news.name != self._trial:
             self._trial, self.force_lost, self.dropped, self.doing = news.name, 0, 0, ""
             self.last_force = self.last_frame = None
+            self._seconds, self._heard = 0.0, time.monotonic()
+            self.faults.clear()
             self.frame_times.clear()
         self._count(news)
+        silent = time.monotonic() - self._heard
         return {
             "trial": news.name,
             **_about(news.header),
@@ -82,11 +89,27 @@ class LiveCapture:
             "force_lost": self.force_lost,
             "camera": self._camera(news),
             "doing": self.doing,
-            "faults": [f"{event.kind}: {event.message}" for event in news.events if event.level == "fault"],
+            "faults": list(self.faults),
+            "silent_s": silent if silent > SILENT and not news.ended else 0.0,
             "ended": news.ended,
         }
 
+    def _last(self) -> dict[str, Any]:
+        """The trial that has ended, with its length in s and its faults."""
+        return {
+            "trial": self._trial,
+            "synthetic": self._synthetic,
+            "seconds": self._seconds,
+            "faults": list(self.faults),
+        }
+
     def _count(self, news: TrialNews) -> None:
+        if news.force or news.depth or news.frames or news.events:
+            self._heard = time.monotonic()
+        self._synthetic = news.header is not None and news.header.synthetic
+        if news.force:
+            self._seconds = news.force[-1].time
+        self.faults += [f"{event.kind}: {event.message}" for event in news.events if event.level == "fault"]
         for record in news.force:
             if self.last_force is not None:
                 self.force_lost += max(0, record.rdt_sequence - self.last_force.rdt_sequence - 1)

@@ -144,7 +144,7 @@
     renderer.clear();
     const low = Scene.rgb(shade("fem")), high = Scene.rgb(shade("wave")), beside = state.bench.tissues.published;
     const layers = state.specimen.layers, hole = state.specimen.support === "hole", total = mm(layers.reduce((sum, layer) => sum + layer.thickness_m, 0));
-    Object.assign(camera, { target: [mm(CENTRE) + (beside || canvas.clientWidth < 480 ? 0 : 3.5), mm(CENTRE) * 1.15, beside ? -14 : 0.05 * total], size: mm(SIDE) });
+    Object.assign(camera, { target: [mm(CENTRE) + (beside ? -2.5 : canvas.clientWidth < 480 ? 0 : 2.2), mm(CENTRE) * 1.15, beside ? -7 : 0.05 * total], size: (beside ? 1.08 : 1) * mm(SIDE) });
     renderer.begin(camera, 0, beside ? 0.5 : 1, low, high);
     const lift = (GAP * value("peel")) / 100, size = P * Q, count = layers.length;
     let depth = 0;
@@ -508,7 +508,7 @@
 
   // ---- begin
   data.specimens.forEach((one, k) => {
-    const tool = `${+(2e3 * one.wave.tool_radius_m).toPrecision(3)} mm ${one.contact.replaceAll("_", " ")}`;
+    const tool = `${+(2e3 * one.wave.tool_radius_m).toPrecision(3)} mm tool, ${one.contact.replaceAll("_", " ")}`;
     get("specimen").add(new Option(`${one.tissue.replaceAll("_", " ")}, ${tool}`, k));
   });
   choose(0);

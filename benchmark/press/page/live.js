@@ -5,6 +5,9 @@
   const { state } = press, KEPT = 12, CENTRE = 24.5e-3, get = (id) => document.getElementById(id);
   const film = get("film"), picture = film.getContext("2d");
   const live = (state.live = { force: [], depth: [], shift: null, trial: "", newest: 0, pictures: 0, news: null, drawing: false });
+  state.demo = false;  // on this page the bench alone presses
+  state.bench.lift(0);
+  const shown = (number) => (Math.abs(number) < 0.005 ? 0 : number).toFixed(2);
   const shade = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
 
   // Where in the list of [time, value] an instant falls, interpolated; null outside.
@@ -24,22 +27,34 @@
 
   function heard(news) {
     live.news = news;
-    if (news.error || news.waiting) return say(news.error ?? "Waiting for a capture", news.error ? "" : news.waiting);
+    if (news.error) return say(news.error, "", true);
+    if (news.waiting) return waiting(news);
     if (news.trial !== live.trial) Object.assign(live, { trial: news.trial, force: [], depth: [], shift: null, newest: 0 });
     const last = news.force.at(-1);
     if (last) {
       live.newest = last[0];
       const lag = state.bench.time - live.newest;
       live.shift = live.shift === null || Math.abs(lag - live.shift) > 1 ? lag : Math.max(lag, live.shift - 0.02 * (live.shift - lag));
-      get("live-force").textContent = last[1].toFixed(2);
+      get("live-force").textContent = shown(last[1]);
     }
     arrived(live.force, news.force);
     arrived(live.depth, news.depth);
-    if (news.depth.length) get("live-depth").textContent = (1e3 * news.depth.at(-1)[1]).toFixed(2);
+    if (news.depth.length) get("live-depth").textContent = shown(1e3 * news.depth.at(-1)[1]);
     if (news.force_lost !== undefined) get("live-lost").textContent = news.force_lost;
     if (news.camera) seen(news.camera);
-    const doing = news.faults?.length ? news.faults.at(-1) : news.ended ? "ended" : news.doing;
-    return say(`${news.trial}${news.synthetic ? " (simulated)" : ""}`, `${live.newest.toFixed(1)} s, ${doing}`, news.faults?.length);
+    const silent = news.silent_s ? `nothing new for ${news.silent_s.toFixed(0)} s: the recording has stopped, or nothing reaches its file` : "";
+    const doing = news.faults.length ? news.faults.at(-1) : news.ended ? "ended" : silent || news.doing || "begins";
+    return say(title(news), `${live.newest.toFixed(1)} s, ${doing}`, news.faults.length || silent);
+  }
+
+  const title = ({ trial, synthetic }) => `${trial.replace(/\.mcap$/, "")}${synthetic ? " (simulated)" : ""}`;
+
+  // Between two trials: how the last one ended stays.
+  function waiting({ waiting: where, last }) {
+    get("live-rate").textContent = "–";
+    if (!last) return say("Waiting for a capture", where);
+    const end = last.faults.length ? `stopped by ${last.faults.at(-1)}` : "ended";
+    return say(title(last), `${last.seconds.toFixed(1)} s, ${end}. Waiting for the next trial in ${where}`, last.faults.length);
   }
 
   function say(head, rest, bad) {

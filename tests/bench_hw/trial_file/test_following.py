@@ -108,7 +108,18 @@ def test_a_watcher_that_comes_late_begins_near_the_end(begin, tmp_path, monkeypa
     assert news.force[-1].rdt_sequence == 449
 
 
-@pytest.mark.parametrize("name", ["missing/", "film.avi"])
+@pytest.mark.parametrize("name", ["missing/session", "film.avi", "there.txt"])
 def test_what_cannot_be_watched_is_refused(tmp_path, name):
+    (tmp_path / "there.txt").touch()
     with pytest.raises(TrialFileError, match="no such folder and no trial"):
         TrialFollower(tmp_path / name)
+
+
+def test_a_session_that_capture_is_still_to_make_is_waited_for(tmp_path):
+    follower = TrialFollower(tmp_path / "session")
+    assert follower.look() is None
+    (tmp_path / "session").mkdir()
+    header = TrialHeader("trial_001", "2024-05-06T07:08:09+00:00", 10.0, "-z", "press")
+    with open_trial(tmp_path / "session" / "trial_001.mcap", header, background=False) as writer:
+        record(writer, 0, 100)
+        assert len(follower.look().force) == 100

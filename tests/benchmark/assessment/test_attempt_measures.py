@@ -1,9 +1,12 @@
 """Measures of motion against cases worked by hand, and against figures of the authors of two of them."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from benchmark.assessment.attempt_measures import (
+    Attempt,
     bimanual_correlation,
     economy_of_motion,
     log_dimensionless_jerk,
@@ -103,3 +106,25 @@ def test_hands_together_by_hand():
 def test_accuracy_by_hand():
     assert root_mean_square(np.array([3.0, -4.0])) == pytest.approx(np.sqrt(12.5), **EXACT)
     assert np.isnan(root_mean_square(np.empty(0)))
+
+
+def test_an_attempt_by_hand():
+    """A tool straight to two targets: 40 mm across, 2.5 mm down, up, 30 mm along, 2.8 mm down; 51 samples each way."""
+    ways = [(0, 0, 0), (40, 0, 0), (40, 0, 2.5), (40, 0, 0), (40, 30, 0), (40, 30, 2.8)]
+    share = np.linspace(0.0, 1.0, 52)[1:, None]
+    pieces = [1e-3 * (np.array(a) + share * np.subtract(b, a)) for a, b in pairwise(ways)]
+    position = np.vstack([np.zeros((1, 3)), *pieces])
+    force = np.where(position[:, 1] < 1e-3, 1.0, 2.0) * (position[:, 2] > 0.0)
+    target = 1e-3 * np.array([[41.0, 0.0, 2.0], [40.0, 29.0, 3.0]])
+    wanted = np.array([1.2, 1.9])
+    time = 0.01 * np.arange(len(position))
+    found = Attempt("one", "", time, {0: position}, {0: force}, target, wanted).measures()
+    assert found["time_s"] == pytest.approx(2.55, **EXACT)
+    assert found["path_length_mm"] == pytest.approx(40.0 + 2.5 + 2.5 + 30.0 + 2.8, **EXACT)
+    straight = np.sqrt(41.0**2 + 2.0**2) + np.sqrt(1.0 + 29.0**2 + 1.0)
+    assert found["economy_of_motion"] == pytest.approx(straight / 77.8, **EXACT)
+    assert found["depth_error_mm"] == pytest.approx(np.sqrt((0.5**2 + 0.2**2) / 2.0), **EXACT)
+    assert found["force_error_N"] == pytest.approx(np.sqrt((0.2**2 + 0.1**2) / 2.0), **EXACT)
+    both = Attempt("two", "", time, {0: position, 1: position}, {0: force, 1: force}, target, wanted).measures()
+    assert both["path_length_mm"] == pytest.approx(2.0 * 77.8, **EXACT)
+    assert both["bimanual_correlation"] == pytest.approx(1.0, **EXACT)

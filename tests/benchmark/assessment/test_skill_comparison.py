@@ -81,7 +81,15 @@ def test_shaken_attempts_are_told_from_smooth_ones(groups):
         assert tests[measure].differs, measure
     assert tests["tremor_um"].test.fem.mean < tests["tremor_um"].test.wave.mean
     assert all(one.adjusted >= one.test.p_value for one in found.tests)
-    assert "expert from novice" in found.headline
+    assert "expert from novice; expert does better in" in found.headline
+    row = found.tests_columns()
+    assert all(t * difference > 0.0 for t, difference in zip(row["t"], row["difference"], strict=True))
+
+
+def test_the_better_group_is_named_by_what_the_measure_means(groups):
+    tests = {one.measure: one for one in assess([groups / "novice", groups / "expert"]).tests}
+    for measure in ("time_s", "tremor_um", "economy_of_motion", "log_dimensionless_jerk"):
+        assert tests[measure].better(("novice", "expert")) == "expert"
 
 
 def test_one_group_in_two_halves_is_not_told_apart_nor_called_alike(groups, tmp_path):

@@ -81,6 +81,36 @@ def test_without_a_capture_it_waits(tmp_path):
     assert LiveCapture(tmp_path).look() == {"waiting": str(tmp_path)}
 
 
+def test_how_a_trial_ended_stays_while_the_next_is_awaited(writer, tmp_path):
+    live = LiveCapture(tmp_path)
+    record(writer, 0.5)
+    writer.write_event(EventRecord(10.6, "force_limit", "6.1 N; allowed are 6 N", "fault"))
+    writer._chunks.flush()
+    fault = ["force_limit: 6.1 N; allowed are 6 N"]
+    assert [live.look()["faults"], live.look()["faults"]] == [
+        fault,
+        fault,
+    ]  # for a page that missed the first
+    writer.close()
+    while "last" not in (news := live.look()):
+        assert news["trial"] == "trial_001.mcap"
+    last = {"trial": "trial_001.mcap", "synthetic": True, "seconds": pytest.approx(0.499), "faults": fault}
+    assert news == {"waiting": str(tmp_path), "last": last}
+
+
+def test_a_recording_that_falls_silent_is_told(writer, tmp_path, monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr("benchmark.press.live_capture.time.monotonic", lambda: now[0])
+    live = LiveCapture(tmp_path)
+    record(writer, 0.1)
+    silent = []
+    for gone in (0.0, 1.0, 6.0):
+        now[0] += gone
+        silent.append(live.look()["silent_s"])
+    record(writer, 0.1)
+    assert [*silent, live.look()["silent_s"]] == [0.0, 0.0, 7.0, 0.0]
+
+
 async def line(port, token=TOKEN, origin=None):
     headers = {"Origin": origin or f"http://127.0.0.1:{port}"}
     return await websocket_connect(HTTPRequest(f"ws://127.0.0.1:{port}/{token}/live", headers=headers))

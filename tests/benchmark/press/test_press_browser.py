@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from bench_hw.trial_file import DepthRecord, ForceRecord, FrameRecord, TrialHeader, open_trial
+from bench_hw.trial_file.records import EventRecord
 from benchmark.assessment.attempt_measures import read_attempt
 from benchmark.press.live_capture import LiveCapture, LiveLine, tell
 from benchmark.press.press_page import render_press_page
@@ -268,6 +269,30 @@ def test_the_published_animation_stands_beside(page):
     assert deep == pytest.approx(39.2e-3, rel=0.01)
 
 
+PLACES = """() => {
+  const { camera, state, data } = press, view = document.getElementById("view").getBoundingClientRect();
+  const wide = view.width / 2, side = 49, radius = 1e3 * data.specimens[0].wave.tool_radius_m, corners = [];
+  for (const x of [0, side]) for (const y of [side / 2, side]) for (const z of [0, -12]) corners.push([x, y, z]);
+  const at = (point) => camera.project(point, wide / view.height);
+  const [, top] = at([side / 2, side / 2 + radius, 20]);
+  return {
+    across: corners.map((point) => at(point)[0]), tool: view.top + 0.5 * (1 - top) * view.height,
+    figures: document.querySelector(".reading").getBoundingClientRect().bottom,
+  };
+}"""
+
+
+@pytest.mark.parametrize(("width", "height"), [(390, 844), (1280, 800)])
+def test_beside_the_animation_block_and_tool_keep_to_their_half_and_off_the_figures(page, width, height):
+    page.set_viewport_size({"width": width, "height": height})
+    page.evaluate("document.getElementById('beside').click(); press.tick(performance.now())")
+    found = page.evaluate(PLACES)
+    page.evaluate("document.getElementById('beside').click()")
+    page.set_viewport_size({"width": 900, "height": 700})
+    assert max(map(abs, found["across"])) < 0.97
+    assert found["tool"] > found["figures"]
+
+
 @pytest.mark.parametrize("width", [390, 1280])
 def test_it_never_scrolls_sideways(page, width):
     page.set_viewport_size({"width": width, "height": 800})
@@ -352,6 +377,7 @@ def test_a_running_capture_is_shown_with_its_pictures_and_leads_the_tool(browser
     page.goto(bench)
     page.evaluate("press.state.manual = true")
     until(page, "document.getElementById('live-trial').textContent === 'Waiting for a capture'")
+    assert page.evaluate("(press.advance(0.02), press.state.bench.busy)") == 0  # nothing but the bench presses here
     grey = np.full((240, 320), 220, np.uint8)
     for k in range(18):
         cv2.circle(grey, (60 + 40 * (k % 6), 80 + 40 * (k // 6)), 9, 30, -1, cv2.LINE_AA)
@@ -375,9 +401,14 @@ def test_a_running_capture_is_shown_with_its_pictures_and_leads_the_tool(browser
         led = tool(page)
         measured = page.evaluate("press.state.live.trace().at(-1)")
         lit = page.evaluate("[...document.getElementById('film').getContext('2d').getImageData(5, 5, 1, 1).data]")
+        writer.write_event(EventRecord(12.0, "force_limit", "6.1 N; allowed are 6 N", "fault"))
+    until(page, "document.getElementById('live-doing').textContent.includes('Waiting for the next trial')")
+    stopped = page.locator("#live").inner_text()
     page.context.close()
     assert texts == ["0.63", "1.00", "2", "1", "18 markers"]
     assert (led["phase"], led["depth"]) == ("pressed", pytest.approx(1e-3))
     assert measured[1] == 0.625
     assert lit == [220, 220, 220, 255]
+    assert "trial_001 (simulated)" in stopped
+    assert "stopped by force_limit: 6.1 N; allowed are 6 N" in stopped
     assert said == []
