@@ -105,7 +105,7 @@
       state.live?.lead();
       bench.step(dt, chosen("drive"), rate());
     }
-    const trace = { time: bench.time };
+    const trace = { time: bench.time, led: state.live?.led ?? null };
     for (const name of ["wave", "fem", "after"]) trace[name] = bench.tissues[name]?.force.reduce((sum, force) => sum + force, 0);
     state.traces.push(trace);
     while (state.traces[0].time < bench.time - SECONDS) state.traces.shift();
@@ -302,11 +302,14 @@
   const LINES = [["after", "incomplete"], ["fem", "fem"], ["wave", "wave"]];
   const ladder = (most) => [1, 2, 5, 10].map((step) => step * 10 ** Math.floor(Math.log10(Math.max(most, 1e-3)))).find((step) => step >= most);
 
+  // Where a moment stands on the trace: one that the bench led, at the bench's own time, as its measured force does.
+  const instant = ({ time, led }) => (led === null ? time : led + state.live.shift);
+
   function trace() {
     const { traces, bench } = state, measured = state.live?.trace() ?? [];
     const most = Math.max(0.05, ...traces.flatMap((one) => LINES.map(([name]) => one[name] ?? 0)), ...measured.map(([, force]) => force));
     const { line, dot } = chart("trace", [bench.time - SECONDS, bench.time], ladder(most), "10 s");
-    for (const [name, colour] of LINES) if (bench.tissues[name]) line(traces.map((one) => [one.time, one[name]]), colour, name === "fem" ? 3.2 : 1.6);
+    for (const [name, colour] of LINES) if (bench.tissues[name]) line(traces.map((one) => [instant(one), one[name]]), colour, name === "fem" ? 3.2 : 1.6);
     if (measured.length) line(measured.filter(([time]) => time > bench.time - SECONDS), "measured", 1.4);
     for (const [at, force] of state.asked?.points ?? []) if (at > bench.time - SECONDS) dot(at, force, "fem");
   }
@@ -515,6 +518,6 @@
   if (data.specimens[0].after) { get("state").hidden = false; }
   state.bench.put(0, CENTRE, CENTRE, goal());
   if (calm) state.bench.hands[0].at = goal();
-  window.press = { state, data, choose, restart, advance, computed, tick, place, Wave, camera, grid };
+  window.press = { state, data, choose, restart, advance, computed, tick, place, instant, Wave, camera, grid };
   requestAnimationFrame(tick);
 })();

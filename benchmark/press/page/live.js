@@ -29,7 +29,10 @@
     live.news = news;
     if (news.error) return say(news.error, "", true);
     if (news.waiting) return waiting(news);
-    if (news.trial !== live.trial) Object.assign(live, { trial: news.trial, force: [], depth: [], shift: null, newest: 0 });
+    if (news.trial !== live.trial) {
+      for (const one of state.traces) Object.assign(one, { time: press.instant(one), led: null });
+      Object.assign(live, { trial: news.trial, force: [], depth: [], shift: null, newest: 0 });
+    }
     const last = news.force.at(-1);
     if (last) {
       live.newest = last[0];
@@ -53,7 +56,7 @@
   function waiting({ waiting: where, last }) {
     get("live-rate").textContent = "–";
     if (!last) return say("Waiting for a capture", where);
-    const end = last.faults.length ? `stopped by ${last.faults.at(-1)}` : "ended";
+    const end = last.faults.length ? `ended (${last.faults.at(-1)})` : "ended";
     return say(title(last), `${last.seconds.toFixed(1)} s, ${end}. Waiting for the next trial in ${where}`, last.faults.length);
   }
 
@@ -93,8 +96,9 @@
 
   // Once a frame: the tool goes where the bench's tool was a moment ago.
   live.lead = () => {
-    if (!get("led").checked || live.shift === null) return;
-    const depth = at(live.depth, state.bench.time - live.shift), hand = state.bench.hands[0];
+    live.led = get("led").checked && live.shift !== null ? Math.min(state.bench.time - live.shift, live.newest) : null;  // the bench's time; null where the tool is loose
+    if (live.led === null) return;
+    const depth = at(live.depth, live.led), hand = state.bench.hands[0];
     state.demo = false;
     if (depth === null || depth <= 0) { if (hand.on) state.bench.lift(0); return; }
     state.bench.put(0, CENTRE, CENTRE, depth);

@@ -362,6 +362,13 @@ def bench(page_document, tmp_path):
     yield from serving(html, lambda _: {}, {"live": LiveLine}, lambda served: tell(served, live, priority=0))
 
 
+STANDS = """() => {
+  const { live, traces } = press.state, one = traces.at(-1);
+  live.shift += 0.5;  // as where news comes late
+  return [press.instant(one), live.trace().length, one.led + live.shift, one.time];
+}"""
+
+
 def until(page, condition):
     for _ in range(200):
         if page.evaluate(condition):
@@ -399,6 +406,7 @@ def test_a_running_capture_is_shown_with_its_pictures_and_leads_the_tool(browser
             page.locator(f"#live-{name}").text_content() for name in ("force", "depth", "lost", "dropped", "markers")
         ]
         led = tool(page)
+        stands = page.evaluate(STANDS)
         measured = page.evaluate("press.state.live.trace().at(-1)")
         lit = page.evaluate("[...document.getElementById('film').getContext('2d').getImageData(5, 5, 1, 1).data]")
         writer.write_event(EventRecord(12.0, "force_limit", "6.1 N; allowed are 6 N", "fault"))
@@ -408,7 +416,8 @@ def test_a_running_capture_is_shown_with_its_pictures_and_leads_the_tool(browser
     assert texts == ["0.63", "1.00", "2", "1", "18 markers"]
     assert (led["phase"], led["depth"]) == ("pressed", pytest.approx(1e-3))
     assert measured[1] == 0.625
+    assert stands[0] == pytest.approx(stands[2]) != stands[3]  # the wave's force moves with the measured
     assert lit == [220, 220, 220, 255]
     assert "trial_001 (simulated)" in stopped
-    assert "stopped by force_limit: 6.1 N; allowed are 6 N" in stopped
+    assert "ended (force_limit: 6.1 N; allowed are 6 N)" in stopped
     assert said == []
