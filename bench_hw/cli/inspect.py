@@ -1,4 +1,4 @@
-"""`inspect`: how good a recording is."""
+"""`inspect` and `recover`: how good a recording is, and what is whole of one that is not."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ if TYPE_CHECKING:
 
 
 def register(app: typer.Typer) -> None:
-    """Add the verb."""
+    """Add the verbs."""
     app.command("inspect")(inspect)
+    app.command("recover")(recover)
 
 
 def inspect(
@@ -40,6 +41,32 @@ def inspect(
             print_json(inspection.to_dict())
         elif not quiet:
             print(_text(inspection))
+
+
+def recover(
+    file: Annotated[Path, typer.Argument(help="A trial: cut, damaged, or still named NAME.mcap.part.")],
+    out: Annotated[Path, typer.Option(help="The new trial, NEW.mcap; must not exist.")],
+    as_json: Json = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Save what is whole in a cut or damaged trial into a new file; the original is only read.
+
+    Every message keeps its bytes, its times and its place; chunks after a damaged one are kept. Exit 0 where
+    something was kept; exit 2 and no file where nothing was.
+    """
+    with reporting(debug):
+        from bench_hw.trial_file.recovery import recover_trial
+
+        recovery = recover_trial(file, out)
+        if as_json:
+            print_json(recovery.to_dict())
+        elif not quiet:
+            kept = ", ".join(f"{count} {name}" for name, count in recovery.kept.items())
+            print(f"{recovery.out}: kept {kept}")
+            print("whole, nothing is lost" if recovery.whole else f"lost: {recovery.lost_bytes} bytes")
+            if recovery.reason:
+                print(f"found: {recovery.reason}")
 
 
 def _text(inspection: Inspection) -> str:

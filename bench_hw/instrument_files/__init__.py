@@ -4,6 +4,7 @@ What a file says is recognised and told; what it leaves open is asked for by the
 silently. The bench's own tables (`bench_hw.tables`) are read strictly and elsewhere.
 """
 
+from bench_hw.instrument_files.containers import ending_of
 from bench_hw.instrument_files.press_record import PressRecord
 from bench_hw.instrument_files.reading import (
     ENDINGS,
@@ -23,6 +24,7 @@ __all__ = [
     "PressRecord",
     "Reading",
     "Told",
+    "ending_of",
     "is_plain_trial",
     "preview",
     "read_instrument_file",

@@ -5,7 +5,7 @@ A block is one table of a sheet. Which of its columns are time, depth and force 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -105,6 +105,18 @@ def blocks_of(path: Path, sheet: Sheet) -> list[Block]:
         found.append(_block(path, sheet, above, first, last))
         above = last
     return found
+
+
+def block_of_arrays(
+    path: Path, name: str, columns: Mapping[str, np.ndarray], units: Mapping[str, str], facts: Sequence[HeaderFact] = ()
+) -> Block:
+    """A block of columns that are numbers already, all of one length; a unit in the name counts where none is given."""
+    split = [label_and_unit(each) for each in columns]
+    said = [units.get(each, "") or unit for each, (_, unit) in zip(columns, split, strict=True)]
+    names = [each if units.get(each) else label for each, (label, _) in zip(columns, split, strict=True)]
+    arrays = tuple(np.asarray(values, dtype=np.float64).ravel() for values in columns.values())
+    lines = np.arange(1, len(arrays[0]) + 1)
+    return Block(path, name, tuple(names), tuple(said), tuple(columns), arrays, lines, facts=tuple(facts), spoken=name)
 
 
 def _is_data(row: Sequence[Cell], decimal: str) -> bool:

@@ -72,7 +72,7 @@ def _by_word(block: Block, role: str, kind: str) -> Taken | None:
     """The column whose name plainly means a quantity; of some that do as plainly, those that say the same are one."""
     candidates = []
     for k, name in enumerate(block.names):
-        meaning = role_of(name)
+        meaning = role_of(name, block.units[k])
         dimension = _dimension(block.units[k])
         if meaning is not None and meaning[0] == kind and (not block.units[k] or dimension in (DIMENSIONS[kind], None)):
             candidates.append((meaning[1], k))

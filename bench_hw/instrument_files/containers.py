@@ -1,4 +1,4 @@
-"""Binary files of instruments to blocks: workbooks, testXpert archives, TDMS, atomic-force curves, MATLAB, Parquet.
+"""Binary files of instruments to blocks: workbooks, testXpert archives, TDMS, force curves, MATLAB, Parquet.
 
 Each format is a function from a path to blocks, registered by the endings it has. What a library does is not written
 again; one that is not installed is named.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 import logging
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from datetime import datetime, time, timedelta
 from pathlib import Path
@@ -16,7 +17,7 @@ from typing import Any, Final
 import numpy as np
 
 from bench_hw.errors import TableError
-from bench_hw.instrument_files.blocks import Block, blocks_of, header_facts
+from bench_hw.instrument_files.blocks import Block, block_of_arrays, blocks_of, header_facts
 from bench_hw.instrument_files.text_sheet import Cell, Sheet
 from bench_hw.instrument_files.vocabulary import HeaderFact, label_and_unit, unit_of
 from bench_hw.storage.regular_file import DOCUMENT, open_regular
@@ -35,8 +36,12 @@ def _opens(what: str, *endings: str) -> Callable[[Opener], Opener]:
 
 
 def ending_of(path: Path) -> str:
-    """The ending that `OPENERS` knows a file by (`.jpk-force`), in lower case; its suffix otherwise."""
-    return path.suffix.lower()
+    """The ending that `OPENERS` knows a file by (`.jpk-force`), in lower case; its suffix otherwise.
+
+    NanoScope numbers its curves in the place of an ending (`gel.000`).
+    """
+    ending = path.suffix.lower()
+    return ".spm" if re.fullmatch(r"\.\d{3}", ending) else ending
 
 
 def open_container(path: Path) -> list[Block]:
@@ -116,18 +121,6 @@ def _cell(cell: object) -> Cell:
     if isinstance(cell, time):
         return 3600.0 * cell.hour + 60.0 * cell.minute + cell.second + 1e-6 * cell.microsecond
     return str(cell).strip()
-
-
-def block_of_arrays(
-    path: Path, name: str, columns: Mapping[str, np.ndarray], units: Mapping[str, str], facts: Sequence[HeaderFact] = ()
-) -> Block:
-    """A block of columns that are numbers already, all of one length; a unit in the name counts where none is given."""
-    split = [label_and_unit(each) for each in columns]
-    said = [units.get(each, "") or unit for each, (_, unit) in zip(columns, split, strict=True)]
-    names = [each if units.get(each) else label for each, (label, _) in zip(columns, split, strict=True)]
-    arrays = tuple(np.asarray(values, dtype=np.float64).ravel() for values in columns.values())
-    lines = np.arange(1, len(arrays[0]) + 1)
-    return Block(path, name, tuple(names), tuple(said), tuple(columns), arrays, lines, facts=tuple(facts), spoken=name)
 
 
 @_opens("testXpert file", ".zs2", ".zp2")
@@ -243,6 +236,7 @@ def _atomic_force(path: Path) -> list[Block]:
     """Each curve of approach, pause and retract: force and the tip's depth, which is the height less the bending."""
     _library(path, "afmformats", "afmformats", "instruments")
     load = importlib.import_module("afmformats").load_data
+    logging.getLogger("afmformats").setLevel(logging.CRITICAL)  # it would write a traceback beside the refusal
     blocks = []
     for number, curve in enumerate(load(path), start=1):
         columns = {name: np.asarray(curve[name], dtype=float) for name in curve.columns if name != "segment"}
@@ -267,6 +261,14 @@ def _with_tip(path: Path, columns: dict[str, np.ndarray], metadata: Any) -> dict
         allowed = "a calibrated curve (N/m in its header)"
         raise TableError(path, "the cantilever's spring constant is not in the file", allowed)
     return {**columns, "tip position": height + columns["force"] / float(metadata["spring constant"])}
+
+
+@_opens("NanoScope force curve", ".spm")
+def _nanoscope(path: Path) -> list[Block]:
+    """Its approach and retract."""
+    from bench_hw.instrument_files.nanoscope import nanoscope_blocks
+
+    return nanoscope_blocks(path)
 
 
 @_opens("MATLAB file", ".mat")

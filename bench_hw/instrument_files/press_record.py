@@ -94,29 +94,34 @@ def record_of(block: Block, told: Told) -> PressRecord:
 
 
 def _kind(block: Block, found: Mapping[str, Taken], told: Told) -> str:
-    """What the words of the file call the test, where it has stress and strain or a cross-section and no tool."""
+    """What the words of the file call the test, where it has stress or strain, or a cross-section and no tool."""
     pulled, pressed = TENSION.search(block.spoken), COMPRESSION.search(block.spoken)
     of_faces = told.area is not None and not told.tool and (pulled or pressed)
-    if "stress" not in found and not of_faces:
+    if not {"stress", "strain"} & found.keys() and not of_faces:
         return "press"
     return "tension" if pulled and not pressed else "compression"
 
 
 def _of_stress(block: Block, found: dict[str, Taken], told: Told) -> dict[str, Taken]:
-    """Columns of stress and strain in the place of force and depth, where height and area are known."""
-    if "stress" in found and "strain" in found:
-        missing = [key for key, value in (("height", told.height), ("area", told.area)) if value is None]
-        if not missing:
-            return {role: taken for role, taken in found.items() if role not in ("force", "depth")}
+    """Stress in the place of a force that is missing, strain in that of a depth, where area and height are known."""
+    faces = {"force": "stress", "depth": "strain"}
+    lacking = [role for role in faces if role not in found]
+    for role in lacking:
+        if faces[role] not in found:
+            example = "COLUMN:N" if role == "force" else "COLUMN:mm"
+            problem = f"no column is the {'force' if role == 'force' else 'depth (or displacement, gap, position)'}"
+            allowed = f"name it, {asking(role, example)}; the file has {block.header}"
+            raise TableError(block.path, problem, allowed, row=header_line(block))
+    names = " and ".join(faces[role] for role in reversed(lacking))
+    needed = {"height": told.height, "area": told.area} if "depth" in lacking else {"area": told.area}
+    missing = [key for key, value in needed.items() if value is None]
+    if missing:
         examples = {"height": "10 mm", "area": "314 mm^2"}
         allowed = " and ".join(asking_key(key, examples[key]) for key in missing)
-        problem = f"stress and strain need the specimen's {' and '.join(missing)}, which no header line tells"
-        raise TableError(block.path, problem, allowed, row=header_line(block))
-    role = "force" if "force" not in found else "depth"
-    example = "COLUMN:N" if role == "force" else "COLUMN:mm"
-    problem = f"no column is the {'force' if role == 'force' else 'depth (or displacement, gap, position)'}"
-    allowed = f"name it, {asking(role, example)}; the file has {block.header}"
-    raise TableError(block.path, problem, allowed, row=header_line(block))
+        problem = f"{names} need{'s' if len(lacking) == 1 else ''} the specimen's {' and '.join(missing)}"
+        raise TableError(block.path, f"{problem}, which no header line tells", allowed, row=header_line(block))
+    spare = {faces[role] for role in faces if role not in lacking}
+    return {role: taken for role, taken in found.items() if role not in spare}
 
 
 def _rows(block: Block, found: Mapping[str, Taken], told: Told, notes: list[str]) -> np.ndarray:
@@ -167,12 +172,10 @@ def _times(path: Path, time: FloatArray, lines: np.ndarray, notes: list[str]) ->
 def _si_press(
     found: Mapping[str, Taken], values: Mapping[str, FloatArray], told: Told
 ) -> tuple[FloatArray, FloatArray]:
-    """Travel (n,) m and force (n,) N with the file's signs; of stress and strain those of the specimen's faces."""
-    if "stress" in found:
-        assert told.height is not None
-        assert told.area is not None
-        return values["strain"] * told.height, values["stress"] * told.area
-    return values["depth"], values["force"]
+    """Travel (n,) m and force (n,) N with the file's signs; of strain and stress those of the specimen's faces."""
+    travel = values["depth"] if "depth" in found else values["strain"] * (told.height or 0.0)
+    force = values["force"] if "force" in found else values["stress"] * (told.area or 0.0)
+    return travel, force
 
 
 def _pressing(
@@ -199,7 +202,7 @@ def _pressing(
     extra = {"gap": values["gap"]} if "gap" in values else {"gap": travel} if moved.role == "gap" else {}
     units = dict.fromkeys(extra, "mm")
     table = TrialTable(time, depth, force, extra, str(block.path), units)
-    return _from_touch(table, moved.role, told, notes)
+    return _from_touch(table, moved.role, way_d, told, notes)
 
 
 def _force_sign(block: Block, taken: Taken, force: FloatArray) -> int:
@@ -233,7 +236,7 @@ def _travel_sign(block: Block, taken: Taken, travel: FloatArray, force: FloatArr
     return 1 if moved > 0.0 else -1
 
 
-def _from_touch(table: TrialTable, role: str, told: Told, notes: list[str]) -> TrialTable:
+def _from_touch(table: TrialTable, role: str, way: int, told: Told, notes: list[str]) -> TrialTable:
     """Depth and force counted from the first touch, where the record begins in air and the zero is not there yet."""
     if told.touch != AUTOMATIC:
         return table
@@ -245,7 +248,7 @@ def _from_touch(table: TrialTable, role: str, told: Told, notes: list[str]) -> T
     if abs(at) > OWN_ZERO * span or absolute:
         where = "the first touch" if in_air else "the first row, which touches already"
         at = at if in_air else float(table.depth[0])
-        notes.append(f"depth is counted from {where}, at {1e3 * at:.4g} mm of the file")
+        notes.append(f"depth is counted from {where}, at {1e3 * way * at:.4g} mm of the file")
         table = replace(table, depth=table.depth - at)
     peak = float(table.force.max())
     if in_air and abs(level) > 0.02 * max(peak - level, 1e-12):

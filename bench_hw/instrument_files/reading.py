@@ -30,7 +30,7 @@ from bench_hw.instrument_files.vocabulary import (
 )
 from bench_hw.tables.columns import MINIMUM_ROWS
 
-TEXT_ENDINGS: Final = (".csv", ".txt", ".tsv", ".tab", ".dat", ".asc")
+TEXT_ENDINGS: Final = (".csv", ".txt", ".tsv", ".tab", ".dat", ".asc", ".tra")
 ENDINGS: Final = (*TEXT_ENDINGS, *OPENERS)
 """Of the files that this reads."""
 FACT_LIMITS: Final = {"tool_radius": (1e-9, 1.0), "height": (1e-7, 1.0), "area": (1e-14, 1.0)}
@@ -100,7 +100,7 @@ def read_instrument_file(path: Path | str, told: Told | None = None) -> Instrume
     Parameters
     ----------
     path : path-like
-        Text (csv, txt, tsv, tab, dat, asc) of any layout, or one of the containers in `OPENERS`.
+        Text (csv, txt, tsv, tab, dat, asc, tra) of any layout, or one of the containers in `OPENERS`.
     told : Told, optional
         What the file does not say itself.
 
@@ -191,7 +191,7 @@ def _column(block: Block, roles: Sequence[str]) -> tuple[int, float] | None:
     """The first column that means one of some quantities in a unit of its own, and the unit's SI value."""
     for role in roles:
         for column, (name, unit) in enumerate(zip(block.names, block.units, strict=True)):
-            meaning = role_of(name)
+            meaning = role_of(name, unit)
             scale = unit_scale(unit, DIMENSIONS[role]) if unit and meaning is not None and meaning[0] == role else None
             if scale is not None:
                 return column, scale

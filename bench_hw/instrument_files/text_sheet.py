@@ -139,8 +139,8 @@ def _decoded(path: Path, raw: bytes, told: str) -> tuple[str, str]:
             return _strict(path, raw, encoding, allowed).removeprefix("\ufeff"), encoding.removesuffix("-sig")
     head = raw[:4000]
     if NANOSCOPE.match(head):
-        allowed = "its export as text by NanoScope Analysis, with times or --set import.rate; or Bruker's .jpk-force"
-        raise TableError(path, "this is a Bruker NanoScope file, which is not read", allowed)
+        allowed = "the name it was saved under, NAME.spm or NAME.000, by which it is read"
+        raise TableError(path, f"this is a Bruker NanoScope file with the ending {path.suffix!r}", allowed)
     even, odd = head[::2].count(0), head[1::2].count(0)
     if max(even, odd) > len(head) // 4 and min(even, odd) <= len(head) // 100:  # letters of two bytes, one of them 0
         return _strict(path, raw, "utf-16-be" if head[:2].startswith(b"\0") else "utf-16-le", allowed), "utf-16"

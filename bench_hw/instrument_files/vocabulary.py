@@ -1,7 +1,7 @@
 """The words of instruments: which quantity a column's name means, in which unit, and what a header line tells.
 
-Words are those that the makers' software writes in English, German, French, Spanish, Chinese and Japanese. A name that
-is not here is no guess: it is asked for.
+Words are those that the makers' software writes in English, German, French, Spanish, Italian, Portuguese, Polish,
+Turkish, Chinese and Japanese. A name that is not here is no guess: it is asked for.
 """
 
 from __future__ import annotations
@@ -36,6 +36,8 @@ UNITS: Final[dict[str, tuple[float, str]]] = {
 }  # fmt: skip
 """SI value and dimension of a unit as instruments write it; a gram in a column of forces is a gram-force."""
 
+RELATIVE: Final = frozenset({"%", "mm/mm", "m/m"})
+"""Units of a strain that no displacement has."""
 _BY_FOLDED: Final = {unit.casefold(): unit for unit in reversed(UNITS)}
 _CLASHING: Final = {"mn", "pa", "mpa", "m", "h", "s", "g", "c"}
 """Folded spellings that mean two things (mN and MN): only the exact one counts, but for those below."""
@@ -73,7 +75,7 @@ def label_and_unit(header: str) -> tuple[str, str]:
     for pattern in (_BRACKETS, _AFTER):
         found = pattern.fullmatch(header.strip())
         if found and found["label"] and (unit := unit_of(found["unit"])) is not None:
-            if pattern is _AFTER and found["unit"].isdigit():
+            if pattern is _AFTER and found["unit"].strip("()[]").isdigit():
                 break  # the first of several, `Dehnung 1`
             return found["label"].strip(), unit
     return header.strip(), ""
@@ -85,23 +87,23 @@ DIMENSIONS: Final = {
 }  # fmt: skip
 """What each quantity is measured in."""
 
-_QUALIFIED = r"(?:(?:axial|normal|vertical|compressive|compression|tensile|standard|test|primary|measured|tip|net|machine|digital|corrected|probe|actuator|tool|indenter|crosshead) )?"  # noqa: E501
+_QUALIFIED = r"(?:(?:ch|engineering|eng|nominal|running|axial|normal|vertical|compressive|compression|tensile|standard|test|primary|measured|tip|net|machine|digital|corrected|probe|actuator|tool|indenter|crosshead) )?"  # noqa: E501
 _WORDS: Final[tuple[tuple[str, int, str], ...]] = (
-    ("time", 0, r"time|(?:test|elapsed|total|running|run) time|zeit|pr(?:ü|ue|u)fzeit|testzeit|laufzeit|temps|tiempo|tempo|czas|godzina|时间|測試時間|测试时间|試験時間|時間|t"),  # noqa: E501
+    ("time", 0, r"time|(?:test|elapsed|total|running|run) time|zeit|pr(?:ü|ue|u)fzeit|testzeit|laufzeit|temps|tiempo|tempo|czas|godzina|zaman|时间|測試時間|测试时间|試験時間|経過時間|時間|t"),  # noqa: E501
     ("time", 1, r"time(?: ?stamp)?(?: \d+)?|series time|scan time|zeit \d+"),
-    ("force", 0, r"force|load|(?:force|f) ?z|f ?n|f|kraft|standardkraft|pr(?:ü|ue|u)fkraft|normalkraft|druckkraft|last|si(?:ł|l)a|obci(?:ąż|az)enie|fuerza|carga|charge|effort|forza|力|载荷|负荷|试验力|荷重|試験力"),  # noqa: E501
-    ("force", 1, _QUALIFIED + r"(?:force|load)(?: z)?|load ?cell|kraft z"),
+    ("force", 0, r"force|load|(?:force|f) ?z|f ?n|f|kraft|standardkraft|pr(?:ü|ue|u)fkraft|normalkraft|druckkraft|last|si(?:ł|l)a|obci(?:ąż|az)enie|fuerza|carga|charge|effort|forza|kuvvet|y[uü]k|力|载荷|负荷|试验力|荷重|試験力"),  # noqa: E501
+    ("force", 1, _QUALIFIED + r"(?:force|load)(?: (?:z|sensor))?|load ?cell|kraft(?: ?sensor| z| f)"),
     ("force", 2, _QUALIFIED + r"(?:force|load|load ?cell|kraft) \d+"),
     ("depth", 0, r"depth|indentation(?: depth)?|penetration(?: depth)?|eindring(?:tiefe|weg|ung)|profondeur|profundidad|压入深度|压痕深度|押込み深さ"),  # noqa: E501
-    ("displacement", 0, r"displacement|disp|extension|travel|distance|stroke|standardweg|weg|verfahrweg|d[eé]placement|desplazamiento|przemieszczenie|wyd(?:ł|l)u(?:ż|z)enie|course|位移|行程|変位|ストローク"),  # noqa: E501
-    ("displacement", 1, _QUALIFIED + r"(?:displacement|disp|extension|travel|distance|stroke|deflection)|traversenweg|verformung|deformation|stauchung|变形|横梁位移"),  # noqa: E501
-    ("displacement", 2, r"crosshead|traverse(?: abs)?|piezo|" + _QUALIFIED + r"(?:displacement|disp|extension) \d+"),
+    ("displacement", 0, r"displacement|disp|extension|travel|distance|stroke|standardweg|weg|verfahrweg|d[eé]placement|desplazamiento|przemieszczenie|wyd(?:ł|l)u(?:ż|z)enie|course|allongement|uzama|deplasman|spostamento|corsa|deslocamento|curso|位移|行程|変位|ストローク|つかみ具間変位|伸び"),  # noqa: E501
+    ("displacement", 1, _QUALIFIED + r"(?:displacement|disp|extension|travel|distance|stroke|deflection|elongation|separation)|grip(?: to grip)? separation|traversenweg|verformung|deformation|stauchung|nutzweg|absolutweg|wegaufnehmer|变形|横梁位移"),  # noqa: E501
+    ("displacement", 2, r"(?:absolute )?crosshead(?: travel)?|traverse(?:nweg)?(?: abs(?:olut)?)?|piezo|" + _QUALIFIED + r"(?:displacement|disp|extension) \d+"),  # noqa: E501
     ("gap", 0, r"gap|tool gap|spalt(?:ma(?:ß|ss)|h[oö]he|weite|breite)?|(?:current )?size|plate (?:separation|distance)|werkzeugabstand|abstand|entrefer|间隙|隙间"),  # noqa: E501
     ("position", 0, _QUALIFIED + r"(?:position|pos)|height|z|h[oö]he|position z|z position|tip position"),
     ("position", 1, r"height measured|z sensor|" + _QUALIFIED + r"(?:position|pos) \d+"),
-    ("stress", 0, _QUALIFIED + r"stress|(?:druck|zug)?spannung|contrainte|napr(?:ęż|ez)enie|(?:压缩|拉伸)?应力"),
-    ("strain", 0, _QUALIFIED + r"strain|dehnung|d[eé]formation relative|(?:压缩|拉伸)?应变(?: 位移)?"),
-    ("strain", 1, _QUALIFIED + r"strain \d+|dehnung \d+|odkszta(?:ł|l)cenie(?: \d+)?"),
+    ("stress", 0, _QUALIFIED + r"stress|(?:druck|zug|nenn)?spannung|contrainte|esfuerzo|gerilme|napr(?:ęż|ez)enie|(?:压缩|拉伸)?应力|応力"),  # noqa: E501
+    ("strain", 0, _QUALIFIED + r"strain(?: (?:extension|displacement|crosshead))?|dehnung|d[eé]formation relative|% uzama|birim uzama|(?:压缩|拉伸)?应变(?: 位移)?|歪み?|ひずみ"),  # noqa: E501
+    ("strain", 1, _QUALIFIED + r"strain(?: strain)? \d+|extensometer strain|dehnung \d+|(?:nominelle |nenn|gesamt)(?:stauchung|dehnung)|odkszta(?:ł|l)cenie(?: \d+)?"),  # noqa: E501
 )  # fmt: skip
 _PATTERNS: Final = tuple((role, rank, re.compile(words)) for role, rank, words in _WORDS)
 
@@ -111,10 +113,16 @@ def plain(label: str) -> str:
     return re.sub(r"[\s_\-.()\[\]:]+", " ", label).strip().casefold()
 
 
-def role_of(label: str) -> tuple[str, int] | None:
-    """The quantity that a column's label means and how plainly (0 best); None where no word is known."""
+def role_of(label: str, unit: str = "") -> tuple[str, int] | None:
+    """The quantity that a column's label means and how plainly (0 best); None where no word is known.
+
+    A displacement in per cent is a strain: testXpert writes `Stauchung`, and `Standardweg` too, in either.
+    """
     bare = plain(label)
-    return next(((role, rank) for role, rank, pattern in _PATTERNS if pattern.fullmatch(bare)), None)
+    role, rank = next(((role, rank) for role, rank, pattern in _PATTERNS if pattern.fullmatch(bare)), ("", 0))
+    if role == "displacement" and unit in RELATIVE:
+        return "strain", rank
+    return (role, rank) if role else None
 
 
 @dataclass(frozen=True)
@@ -151,7 +159,8 @@ TA_PROBE = re.compile(
 """A probe's catalogue line, `P/10 10mm DIA CYLINDER ALUMINIUM`: its diameter."""
 SPHERE = re.compile(r"\b(?:ball|spher\w*|bead|kugel)\b", re.IGNORECASE)
 TENSION = re.compile(
-    r"\b(?:tensile|tension|zug(?:versuch|spannung)?|rozci(?:ą|a)gani\w*|traction)\b|拉伸", re.IGNORECASE
+    r"\b(?:tensile|tension|elongation|dehnung|zug(?:versuch|spannung)?|rozci(?:ą|a)gani\w*|traction)\b|拉伸",
+    re.IGNORECASE,
 )
 COMPRESSION = re.compile(
     r"\b(?:compressive|compression|druck(?:versuch|spannung)?|stauch\w*|(?:ś|s)ciskani\w*)\b|压缩", re.IGNORECASE

@@ -331,6 +331,37 @@ def _jpk_segment(count: int, duration: float, style: str, stiffness: float) -> s
     return "\n".join(lines) + "\n"
 
 
+def nanoscope(folder: Path) -> Path:
+    """NanoScope's curve: counts behind a header, both ways from where the tip touches, a ramp in volts, no times."""
+    one = press(hold=0.0)
+    force, stiffness, bend, stage = 1e-9 * one.force, 0.05, 50e-9, 20e-9
+    half = int(np.argmax(one.depth)) + 1
+    grid = np.linspace(-5e-7, 2e-6, half)
+    ways = [
+        np.interp(grid, 1e-6 * one.depth[part][::step], force[part][::step])
+        for part, step in ((slice(0, half), 1), (slice(half - 1, None), -1))
+    ]
+    ramp = grid + ways[0] / stiffness  # the stage goes on by what the cantilever bends
+    even = ramp[0] + np.arange(half) * (ramp[-1] - ramp[0]) / (half - 1)
+    counts = [
+        np.round(np.interp(even, grid + way / stiffness, way)[::-1] / stiffness / bend / 0.000375) for way in ways
+    ]
+    volts = (ramp[-1] - ramp[0]) * half / (half - 1) / stage
+    lines = [
+        "*Force file list", "Version: 0x08150300", "*Scanner list", "@Sens. Zsens: V 20.00000 nm/V", "*Ciao scan list",
+        "@Sens. DeflSens: V 50.00000 nm/V", "Samps/line: 256", "*Ciao force list", "Scan rate: 0.2",
+        f"Samps/line: {half} {half}", f"@4:Ramp size Zsweep: V [Sens. Zsens] (0.006713 V/LSB) {volts:.6f} V",
+        "*Ciao force image list", "Data offset: 4096", f"Data length: {4 * half}", "Bytes/pixel: 2",
+        f"Samps/line: {half} {half}", f"Spring Constant: {stiffness}",
+        '@4:Image Data: S [DeflectionError] "Deflection Error"',
+        "@4:Z scale: V [Sens. DeflSens] (0.0003750000 V/LSB) 2.5 V", "*File list end",
+    ]  # fmt: skip
+    head = "".join(f"\\{line}\r\n" for line in lines).encode("latin-1") + b"\x1a"
+    path = folder / "gel.003"
+    path.write_bytes(head.ljust(4096, b"\0") + np.concatenate(counts).astype("<i2").tobytes())
+    return path
+
+
 def tdms(folder: Path) -> Path:
     """A TDMS group: units as properties, no column of times but the waveform's step."""
     from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
@@ -572,6 +603,7 @@ SAMPLES = {
     "electroforce": Sample(electroforce),
     "chiaro": Sample(chiaro, depth=2e-6, force=0.8485e-6, radius=25e-6),
     "jpk": Sample(jpk, "afmformats", depth=2e-6, force=8.485e-9),
+    "nanoscope": Sample(nanoscope, depth=2e-6, force=8.485e-9),
     "tdms": Sample(tdms, "nptdms", depth=2e-6, force=0.8485e-6, radius=25e-6),
     "matlab": Sample(matlab, radius=5e-3),
     "matlab_73": Sample(matlab_73, "h5py", 2),

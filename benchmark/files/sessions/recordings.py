@@ -16,7 +16,15 @@ from typing import Any, Final
 import numpy as np
 
 from bench_hw.errors import BenchError
-from bench_hw.instrument_files import ENDINGS, NoNumbersError, Reading, is_plain_trial, preview, read_instrument_file
+from bench_hw.instrument_files import (
+    ENDINGS,
+    NoNumbersError,
+    Reading,
+    ending_of,
+    is_plain_trial,
+    preview,
+    read_instrument_file,
+)
 from bench_hw.instrument_files.mcap_topics import is_foreign
 from bench_hw.tables import TrialTable
 from benchmark.errors import InputError
@@ -73,7 +81,7 @@ def is_instruments(path: Path) -> bool:
     """Whether a file is to be read as another instrument wrote it, not as the bench's own."""
     if path.suffix.lower() == ".mcap":
         return is_foreign(path)
-    return path.suffix.lower() in ENDINGS and not (path.suffix.lower() == ".csv" and is_plain_trial(path))
+    return ending_of(path) in ENDINGS and not (path.suffix.lower() == ".csv" and is_plain_trial(path))
 
 
 def read_recordings(file: SessionFile, paths: Sequence[Path], *, listed: bool) -> Recordings:

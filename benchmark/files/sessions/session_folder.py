@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from bench_hw.instrument_files import ENDINGS
+from bench_hw.instrument_files import ENDINGS, ending_of
 from benchmark.errors import InputError
 from benchmark.files.loading import read_file
 from benchmark.files.schema import SCHEMA
@@ -45,7 +45,7 @@ def session_table(path: Path) -> tuple[dict[str, Any], Source]:
     if is_file(path):
         if path.name == SESSION_FILE:
             return read_file(path, "session")
-        if path.suffix.lower() not in TRIAL_SUFFIXES:
+        if ending_of(path) not in TRIAL_SUFFIXES:
             raise InputError(f"{path}: this is no trial; allowed: a session's folder, its session.toml, {_ENDINGS}.")
         if _of_trial(path):
             raise InputError(f"{path}: by its name this holds marker tracks; allowed: the trial, or its folder.")
@@ -137,7 +137,7 @@ def _entries(folder: Path, name: str) -> list[dict[str, str]]:
 
 def _trial_files(folder: Path) -> list[dict[str, str]]:
     """The names of each trial's `file`, and of its `markers` where it has any."""
-    files = (file for file in folder.iterdir() if file.suffix.lower() in TRIAL_SUFFIXES and not file.is_dir())
+    files = (file for file in folder.iterdir() if ending_of(file) in TRIAL_SUFFIXES and not file.is_dir())
     shown = sorted((file for file in files if not file.name.startswith(".")), key=_natural)
     markers = {_of_trial(file): file.name for file in shown if _of_trial(file)}
     trials = [file for file in shown if not _of_trial(file)]

@@ -103,6 +103,14 @@ TEXTS = {
     "stress without area": (
         columns(T, D, F, head="Time (s),Strain (%),Stress (kPa)", digits=(3, 5, 6)), r"height and area.*import\.height",
     ),
+    "strain without height": (
+        columns(T, D, F, head="Time (s),Strain (%),Force (N)", digits=(3, 5, 6)),
+        r"strain needs the specimen's height and area.*import\.height",
+    ),
+    "stress over displacement without area": (
+        columns(T, D, F, head="Time (s),Distance (mm),Stress (kPa)", digits=(3, 5, 6)),
+        r"stress needs the specimen's area.*import\.area",
+    ),
     "stress with height alone": (
         columns(T, D, F, head="Time (s),Strain (%),Stress (kPa)", digits=(3, 5, 6)), r"area.*import\.area", {"height": 0.01},
     ),
@@ -136,10 +144,15 @@ def broken(path, data):
 
 BINARIES = {
     "a pipe of zeros": ("a.csv", b"\0\1\2\3" * 50, "no text and no format"),
-    "a force curve of NanoScope": (
+    "a NanoScope file without a curve": (
         "a.spm",
+        b"\\*File list\r\n\\Version: 0x09300201\r\n\\*File list end\r\n\x1a".ljust(8000, b"\0"),
+        "holds no force curve",
+    ),
+    "a NanoScope file under another name": (
+        "a.dat",
         b"\\*Force file list\r\n\\Version: 0x09300201\r\n\x1a".ljust(8000, b"\0"),
-        "Bruker NanoScope.*export as text",
+        "Bruker NanoScope.*ending '.dat'.*NAME.spm",
     ),
     "noughts that are no letters": ("a.dat", b"log\r\n" + b"\0" * 5000, "no text and no format"),
     "utf-16 cut in a letter": ("a.csv", table().encode("utf-16")[:201], "breaks off"),
@@ -171,6 +184,30 @@ def test_a_tdms_file_that_breaks_off_is_refused(tmp_path, share):
     pytest.importorskip("nptdms", reason="needs npTDMS to write the file")
     whole = samples.tdms(tmp_path).read_bytes()
     refused(broken(tmp_path / "cut.tdms", whole[: int(share * len(whole))]), "no whole TDMS file: it breaks off")
+
+
+CURVES = {
+    "breaks off": (lambda raw: raw[:4200], "in a file of 4200 bytes"),
+    "has a map": (
+        lambda raw: raw.replace(b"\\*Ciao force list", b"\\*Ciao image list\r\n\\*Ciao force list"),
+        "a map of force",
+    ),
+    "has no spring constant": (lambda raw: raw.replace(b"Spring Constant", b"Spring Konstante"), "spring constant"),
+    "has no deflection": (lambda raw: raw.replace(b"Deflection", b"Friction"), "no channel is the deflection"),
+    "has no scale": (lambda raw: raw.replace(b" (0.0003750000 V/LSB)", b""), "'@Z scale' says"),
+    "has a scale of other counts": (lambda raw: raw.replace(b"0.0003750000", b"37.500000000"), "more than 100 V"),
+    "has no sensitivity": (lambda raw: raw.replace(b"@Sens. DeflSens", b"@Sens. Other"), "'@Sens. DeflSens' says ''"),
+    "has strange units": (lambda raw: raw.replace(b"50.00000 nm/V", b"50.00000 kg/V"), "has the unit 'kg/V'"),
+}
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_a_force_curve_that_cannot_be_read_says_why(tmp_path, name):
+    change, reason = CURVES[name]
+    raw = samples.nanoscope(tmp_path).read_bytes()
+    head, data = raw[:4096].rstrip(b"\0"), raw[4096:]
+    whole = (change(head) if name != "breaks off" else head).ljust(4096, b"\0") + data
+    refused(broken(tmp_path / "bad.000", change(whole) if name == "breaks off" else whole), reason)
 
 
 def test_a_workbook_without_a_record_lists_what_it_has(tmp_path):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench_hw.instrument_files import Told, preview, read_instrument_file
-from bench_hw.instrument_files.vocabulary import label_and_unit
+from bench_hw.instrument_files.vocabulary import label_and_unit, role_of
 from tests.instruments import samples
 from tests.instruments.samples import SAMPLES, press
 
@@ -147,3 +147,104 @@ def test_a_gap_that_falls_is_a_depth(tmp_path):
 def test_the_number_of_a_column_is_no_unit():
     assert label_and_unit("Dehnung 1") == ("Dehnung 1", "")
     assert label_and_unit("Strain (1)") == ("Strain", "1")
+
+
+@pytest.mark.parametrize(
+    ("header", "role"),
+    [
+        ("Compressive strain (Extension)", "strain"),
+        ("Tensile strain (Strain 1)", "strain"),
+        ("Engineering stress (MPa)", "stress"),
+        ("Nominelle Stauchung [%]", "strain"),
+        ("Stauchung [%]", "strain"),
+        ("Stauchung [mm]", "displacement"),
+        ("Standardweg [%]", "strain"),
+        ("Traversenweg absolut [mm]", "displacement"),
+        ("Grip to grip separation [mm]", "displacement"),
+        ("Elongation (mm)", "displacement"),
+        ("Kuvvet (N)", "force"),
+        ("Uzama (mm)", "displacement"),
+        ("Gerilme (N/mm2)", "stress"),
+        ("経過時間", "time"),
+        ("つかみ具間変位", "displacement"),
+        ("応力", "stress"),
+        ("Spostamento [mm]", "displacement"),
+        ("Allongement", "displacement"),
+    ],
+)
+def test_names_that_makers_write_are_known(header, role):
+    meaning = role_of(*label_and_unit(header))
+    assert meaning is not None
+    assert meaning[0] == role
+
+
+FACES = "h0;12;mm\nd0;20;mm\n\n"
+
+
+@pytest.mark.parametrize(
+    ("head", "units", "kind", "depth", "force"),
+    [
+        ("Prüfzeit;Dehnung;Standardkraft", "s;%;N", "tension", 0.12 * 2.5e-3, 8.485),
+        ("Prüfzeit;Stauchung;Druckspannung", "s;%;kPa", "compression", 0.12 * 2.0e-3, 8.485e3 * np.pi * 1e-4),
+        ("Test time;Displacement;Compressive stress", "s;mm;kPa", "compression", 2e-3, 8.485e3 * np.pi * 1e-4),
+    ],
+)
+def test_force_over_strain_and_stress_over_displacement_are_of_a_block(head, units, kind, depth, force, tmp_path):
+    one = press()
+    lines = samples.rows(one.time, one.depth + 0.5, one.force, digits=(3, 5, 6), between=";")
+    path = tmp_path / "block.csv"
+    path.write_text("\n".join([FACES + head, units, *lines]))
+    (record,) = read_instrument_file(path).records
+    assert record.kind == kind
+    assert record.table.depth.max() == pytest.approx(depth, rel=0.02)
+    assert record.table.force.max() == pytest.approx(force, rel=0.01)
+
+
+def test_where_the_tool_touches_is_told_as_the_file_counts_it(tmp_path):
+    one = press()
+    lines = samples.rows(one.time, 12.0 - one.depth, one.force, digits=(3, 5, 6))
+    path = tmp_path / "gap.csv"
+    path.write_text("\n".join(["Time (s),Gap (mm),Force (N)", *lines]))
+    (record,) = read_instrument_file(path).records
+    assert "depth is counted from the first touch, at 12 mm of the file" in record.notes
+
+
+def test_a_tra_file_is_a_trial_of_its_folder(tmp_path):
+    from benchmark.files.sessions.session_folder import TRIAL_SUFFIXES
+
+    path = samples.zwick_text(tmp_path).rename(tmp_path / "Probe1.TRA")
+    assert path.suffix.lower() in TRIAL_SUFFIXES
+    assert len(read_instrument_file(path).records) == 1
+
+
+def test_a_force_curve_by_its_height_sensor_and_from_the_far_end(tmp_path):
+    raw = samples.nanoscope(tmp_path).read_bytes()
+    (one,) = read_instrument_file(tmp_path / "gel.003").records
+    head, counts = raw[:4096].rstrip(b"\0"), np.frombuffer(raw[4096:], "<i2")
+    half = counts.size // 2
+    bend = counts * 0.000375 * 50e-9
+    stage = np.tile(np.interp(np.arange(half), [0, half - 1], [2.6e-6, 0.0]), 2)
+    turned = [np.concatenate([each[:half][::-1], each[half:][::-1]]) for each in (bend, stage)]
+    data = [
+        np.round(each / 0.000375 / metres).astype("<i2").tobytes()
+        for each, metres in zip(turned, (50e-9, 400e-9), strict=True)
+    ]
+    image = head[head.index(b"\\*Ciao force image list") : head.index(b"\\*File list end")]
+    second = image.replace(b"DeflSens", b"ZsensSens").replace(b"Deflection Error", b"Height Sensor")
+    second = second.replace(b"Data offset: 4096", b"Data offset: %d" % (4096 + len(data[0])))
+    head = head.replace(b"\\*File list end", second + b"\\*File list end")
+    head = head.replace(b"\\*Ciao force list", b"\\@Sens. ZsensSens: V 400.00000 nm/V\r\n\\*Ciao force list")
+    path = tmp_path / "sensor.spm"
+    path.write_bytes(head.ljust(4096, b"\0") + b"".join(data))
+    (other,) = read_instrument_file(path).records
+    assert other.table.force.max() == pytest.approx(one.table.force.max(), rel=1e-9)
+    assert other.table.time[-1] == pytest.approx(one.table.time[-1])
+    assert np.ptp(other.table.depth) == pytest.approx(2.6e-6 - np.ptp(bend), rel=1e-3)
+
+
+def test_numbered_curves_are_trials_of_their_folder(tmp_path):
+    from benchmark.files.sessions.session_folder import _trial_files
+
+    raw = samples.nanoscope(tmp_path).read_bytes()
+    (tmp_path / "gel.004").write_bytes(raw)
+    assert [each["file"] for each in _trial_files(tmp_path)] == ["gel.003", "gel.004"]
