@@ -104,7 +104,7 @@ def fit_trials(
     for line in session.shown:
         listener.say(line)
     base = base_curves(session, _depths(session), listener)
-    listener.say(f"{session.name}: fitting {len(session.trials)} trials")
+    listener.say(f"{session.name}: fitting {len(session.trials)} trial{'s' * (len(session.trials) != 1)}")
     try:
         trials = tuple(_trial_data(trial, base.curves[trial.tool, trial.support]) for trial in session.trials)
         if repair is not None:
@@ -121,7 +121,9 @@ def _with_films(found: FittedSession, films: Films, listener: Listener) -> Fitte
     session, camera = found.session, found.session.camera
     if camera is None or not films.films:
         return replace(found, warnings=(*found.warnings, *films.warnings))
-    listener.say(f"{session.name}: fitting force and markers of {len(films.films)} trials together")
+    listener.say(
+        f"{session.name}: fitting force and markers of {len(films.films)} trial{'s' * (len(films.films) != 1)} together"
+    )
     motions = motions_of(films.films, camera)
     models, said = session_sheets(session, _depths(session), films.view, listener)
     starts = {trial.key: trial for trial in found.fit.trials}

@@ -85,7 +85,7 @@ def propose(folder: Path) -> Proposal:
     read = read_recordings(file, paths, listed=False)
     resolved, _ = with_headers(file, read.trials)
     told = {name: keys.tool for name, keys in resolved.conditions.items()} or {"": resolved.tool}
-    specimen, why = assumed_specimen([trial.table for trial in read.trials], told_heights(read.trials))
+    specimen, why = assumed_specimen([trial.table for trial in read.trials], *told_heights(file, read.trials))
     named = _conditions(read.trials, kept=len({entry.condition for entry in file.trials}) > 1)
     tools = {tuple(sorted(tool.items())) for tool in told.values() if tool}
     held = _support_lines(resolved)

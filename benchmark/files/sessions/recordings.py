@@ -239,9 +239,12 @@ def _tool(condition: str, trials: Sequence[Recording]) -> dict[str, str]:
     return {"radius": text, "edge_radius": text, "contact": "rigid_frictionless"} if ball else {"radius": text}
 
 
-def told_heights(trials: Sequence[Recording]) -> list[float]:
-    """Heights of specimens (m) that headers tell of."""
-    return [trial.header.height for trial in trials if trial.header.height is not None]
+def told_heights(file: SessionFile, trials: Sequence[Recording]) -> tuple[list[float], str]:
+    """Heights of specimens (m) that the session tells of, or else the files' headers, and where they stand."""
+    if file.import_.height is not None:
+        return [file.import_.height], "import.height"
+    heights = [trial.header.height for trial in trials if trial.header.height is not None]
+    return heights, "median height in the files' headers"
 
 
 def recorded_names(trials: Sequence[Recording], names: Sequence[str]) -> list[str]:

@@ -211,7 +211,7 @@ def _specimen(
             path = own = inside(source.folder, file.specimen, source.place(("specimen",), "specimen"))
         table, where = read_file(path, "tissue")
     else:
-        tissue, assumed = assumed_specimen([trial.table for trial in trials], told_heights(trials))
+        tissue, assumed = assumed_specimen([trial.table for trial in trials], *told_heights(file, trials))
         table, where = tissue.to_table(), Source("assumed specimen")
     for key in overrides:
         _check_key(key, table)
@@ -248,7 +248,7 @@ ASSUMED_POISSON_RATIO: Final = 0.49
 ASSUMED_DENSITY: Final = 1000.0
 
 
-def assumed_specimen(tables: Sequence[TrialTable], told: Sequence[float] = ()) -> tuple[Tissue, str]:
+def assumed_specimen(tables: Sequence[TrialTable], told: Sequence[float] = (), told_by: str = "") -> tuple[Tissue, str]:
     """One layer of soft tissue as thick as the gap between tool and base at zero depth.
 
     Parameters
@@ -256,7 +256,9 @@ def assumed_specimen(tables: Sequence[TrialTable], told: Sequence[float] = ()) -
     tables : sequence of TrialTable
         The session's trials; those with a `gap` column give the thickness, its median over trials.
     told : sequence of float
-        Heights (m) that headers of the files tell of; they count before the gaps.
+        Heights (m) that the session or the files' headers tell of; they count before the gaps.
+    told_by : str
+        Where they stand.
 
     Returns
     -------
@@ -275,20 +277,20 @@ def assumed_specimen(tables: Sequence[TrialTable], told: Sequence[float] = ()) -
         poisson_ratio=ASSUMED_POISSON_RATIO,
     )
     how = (
-        f"{_from_where(told)}, trials: {len(gaps)}, {1e3 * min(gaps):.3g} to {1e3 * max(gaps):.3g} mm"
+        told_by
+        if told
+        else "median gap_mm at zero depth"
         if gaps
-        else "no trial has a usable gap_mm"
+        else "no file tells its height, and no trial has a usable gap_mm"
     )
+    if len(gaps) > 1 or (gaps and not told):
+        how += f", trials: {len(gaps)}, {1e3 * min(gaps):.3g} to {1e3 * max(gaps):.3g} mm"
     warning = (
         f"the specimen is not given: assumed one layer of {1e3 * thickness:.4g} mm ({how}), "
         f"Poisson ratio {ASSUMED_POISSON_RATIO:g}, density {ASSUMED_DENSITY:g} kg/m^3, "
         f"Young's modulus {ASSUMED_YOUNGS_MODULUS / 1e3:g} kPa before any fit"
     )
     return Tissue(name="assumed specimen", citation="assumed, see warnings", layers=(layer,)), warning
-
-
-def _from_where(told: Sequence[float]) -> str:
-    return "median height in the files' headers" if told else "median gap_mm at zero depth"
 
 
 def _gap_at_zero_depth(table: TrialTable) -> float | None:

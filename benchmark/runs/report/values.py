@@ -83,9 +83,18 @@ def fit_headline(fit: SessionFit) -> str:
     """Return the fit in one sentence."""
     found, count = fit.stiffness, len(fit.trials)
     rms = float(np.median([trial.residual_percent for trial in fit.trials]))
+    moduli = [each for each in fit.parameters if each.name.endswith(".youngs_modulus") and each.value is not None]
+    what = (
+        f"the specimen is {found.value:.4g} times as stiff as told (95 % {found.ci95_low:.4g} to {found.ci95_high:.4g})"
+    )
+    if len(moduli) == 1 and moduli[0].ci95_low is not None and moduli[0].ci95_high is not None:
+        (one,) = moduli
+        what = (
+            f"Young's modulus is {one.value:.4g} {one.unit} (95 % {one.ci95_low:.4g} to {one.ci95_high:.4g}), "
+            f"{found.value:.4g} times the value before the fit"
+        )
     return (
-        f"fitted to {count} trial{'s' if count > 1 else ''}: the specimen is {found.value:.4g} times as stiff as its "
-        f"file says (95 % {found.ci95_low:.4g} to {found.ci95_high:.4g}); the elastic law leaves {rms:.2g} % of the "
+        f"fitted to {count} trial{'s' if count > 1 else ''}: {what}; the elastic law leaves {rms:.2g} % of the "
         "peak force (median over trials of the root mean square)"
     )
 
@@ -99,8 +108,8 @@ def sheet_headline(sheet: SheetFit) -> str:
     """Return the fit of force and markers in one sentence."""
     found = sheet.stiffness
     text = (
-        f"force and markers of {found.trials} trials together: the specimen is {found.value:.4g} times as stiff as its "
-        f"file says (95 % {found.low:.4g} to {found.high:.4g})"
+        f"force and markers of {found.trials} trials together: the specimen is {found.value:.4g} times as stiff as "
+        f"told (95 % {found.low:.4g} to {found.high:.4g})"
     )
     if sheet.relaxation.share > 0.0 and sheet.share is not None:
         text += (

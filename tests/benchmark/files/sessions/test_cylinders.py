@@ -53,3 +53,20 @@ def test_the_modulus_that_was_put_in_is_fitted(word, tmp_path):
     found = fit_trials(cylinder_workbook(tmp_path, word), None, told, SilentListener(), films=False)
     assert 20e3 * found.stiffness_factor == pytest.approx(50e3, rel=2e-3)
     assert np.median([trial.residual_percent for trial in found.fit.trials]) < 0.2
+
+
+@pytest.mark.parametrize("columns", [("Compressive strain (Extension)", "(%)"), ("Compressive extension", "(mm)")])
+def test_the_height_that_is_told_is_the_specimens(columns, tmp_path):
+    """Strain is the displacement over this height, so that the layer that is fitted must have it."""
+    strain = np.interp(np.arange(100), [0, 10, 60, 99], [0.0, 0.0, 0.2, 0.0])
+    travel = 100.0 * strain if "%" in columns[1] else 12.0 * strain
+    rows = (
+        f"{0.1 * k:.1f},{each:.5f},{50.0 * share:.5f}"
+        for k, (each, share) in enumerate(zip(travel, strain, strict=True))
+    )
+    head = [f"Time,{columns[0]},Compressive stress", f"(s),{columns[1]},(kPa)"]
+    (tmp_path / "block.csv").write_text("\n".join([*head, *rows]))
+    session = load_session(tmp_path / "block.csv", {"import.height": "12 mm", "import.area": "314 mm^2"})
+    assert session.specimen.thickness == pytest.approx(12e-3)
+    assert session.trials[0].table.depth.max() == pytest.approx(2.4e-3, rel=0.01)
+    assert any("12 mm (import.height)" in warning for warning in session.warnings)
