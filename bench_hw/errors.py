@@ -7,6 +7,8 @@ an installation may leave out is named with the extra that has it.
 
 from __future__ import annotations
 
+import os
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -106,6 +108,20 @@ EXTRAS: Mapping[str, tuple[str, str]] = MappingProxyType(
     }
 )
 """For each module what needs it, and the extra of the package that has it."""
+
+
+_BESIDE = re.compile(r"\.(.+?)(?:\.[0-9a-f]{8}\.(?:part|tmp)|\.lock)")
+"""What is written first in the place of NAME, and its lock."""
+
+
+def system_words(error: OSError) -> str:
+    """What the system refused, without its number; the file is named as a person did, not by its part or its lock."""
+    said = error.strerror or str(error)
+    if not error.strerror or not isinstance(error.filename, str | bytes):
+        return said
+    path = Path(os.fsdecode(error.filename))
+    beside = _BESIDE.fullmatch(path.name)
+    return f"{path.with_name(beside[1]) if beside else path}: {said}"
 
 
 def what_is_missing(error: BaseException) -> str | None:

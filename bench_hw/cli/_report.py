@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
-from bench_hw.errors import BenchError, what_is_missing
+from bench_hw.errors import BenchError, system_words, what_is_missing
 from bench_hw.starting import unsaid
 
 EXIT_MISSING = 2
@@ -48,9 +48,9 @@ def reporting(debug: bool = False) -> Iterator[None]:
 
 def say_error(error: BaseException) -> None:
     """Print an error, and what was noted on it, as one paragraph on standard error."""
-    unheard = unsaid() if isinstance(error, OSError) else None
+    said = unsaid() or system_words(error) if isinstance(error, OSError) else str(error)
     plain = "there is too little memory for this" if isinstance(error, MemoryError) else type(error).__name__
-    parts = [unheard or str(error) or plain, *getattr(error, "__notes__", [])]
+    parts = [said or plain, *getattr(error, "__notes__", [])]
     print("error: " + " ".join("; ".join(parts).split()), file=sys.stderr)
 
 

@@ -125,7 +125,7 @@ def export_trial(path: Path | str, out: Path | str, options: ExportOptions | Non
                 for name, file in parquet.items():
                     _write_parquet(together.enter_context(replacing(file)), tables[name])
     except OSError as error:
-        raise TrialFileError(out, f"the folder cannot be written ({error})") from error
+        raise TrialFileError(out, f"the folder cannot be written ({error.strerror or error})") from error
     return Export(
         files=(*files.values(), *parquet.values()),
         rows={name: len(columns["time_s"]) for name, columns in tables.items()},

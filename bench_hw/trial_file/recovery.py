@@ -84,7 +84,7 @@ def recover_trial(path: Path | str, out: Path | str) -> RecoveryOutcome:
             _copy(scan, temporary, reason)
         sync_folder(out.parent)
     except OSError as error:
-        raise TrialFileError(out, f"the recovered trial cannot be written ({error})") from error
+        raise TrialFileError(out, f"the recovered trial cannot be written ({error.strerror or error})") from error
     return RecoveryOutcome(out, scan.whole, reason, kept, scan.lost_bytes)
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from bench_hw.errors import TrialFileError
+from bench_hw.errors import TrialFileError, system_words
 from bench_hw.trial_file.encoding import CHANNELS, Record, encode, nanoseconds
 from bench_hw.trial_file.mcap_output import ChunkedWriter, NewFile, Syncer, sync_folder
 from bench_hw.trial_file.metadata import TRIAL, header_entries
@@ -231,8 +231,9 @@ class McapTrialWriter:
             raise self._refusal(error) from error
 
     def _refusal(self, error: Exception) -> TrialFileError:
+        said = system_words(error) if isinstance(error, OSError) else error
         problem = (
-            f"the trial cannot be written ({error}); what was written until then is kept in this file, "
+            f"the trial cannot be written ({said}); what was written until then is kept in this file, "
             "make room or give another folder, and use `recover` on it"
         )
         return TrialFileError(self._file.path, problem)

@@ -119,13 +119,13 @@ def _report(error: Exception, *, debug: bool) -> int:
         return _fail(f"{error.format_message()} See python -m benchmark --help.", EXIT_USAGE)
     if isinstance(error, typer.Abort):
         return _fail("interrupted", EXIT_INTERRUPTED)
-    from bench_hw.errors import what_is_missing
+    from bench_hw.errors import system_words, what_is_missing
     from benchmark.errors import TissuebenchError
 
     if isinstance(error, TissuebenchError):
         return _fail(str(error), error.exit_code)
     if isinstance(error, OSError):
-        return _fail(unsaid() or str(error), EXIT_USAGE)
+        return _fail(unsaid() or system_words(error), EXIT_USAGE)
     if isinstance(error, MemoryError):
         return _fail(f"{TOO_LITTLE}; {error}" if str(error) else TOO_LITTLE, EXIT_USAGE)
     missing = what_is_missing(error)

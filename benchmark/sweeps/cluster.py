@@ -21,6 +21,8 @@ Job = TypeVar("Job")
 Row = TypeVar("Row")
 PATIENCE = 10.0
 """Seconds for the scheduler to answer."""
+CERTIFICATE = ", and its certificate in DASK_DISTRIBUTED__COMM__TLS__CA_FILE, ...__CLIENT__CERT and ...__CLIENT__KEY"
+"""What `tls://` needs beside an address."""
 
 
 def work_on_cluster(tasks: Sequence[Task], address: str, say: Callable[[str], None]) -> Iterator[PointResult]:
@@ -104,6 +106,7 @@ def _connected(address: str) -> Iterator[Any]:
             raise ClusterError(
                 f"--scheduler {address}: no Dask scheduler answers there within {PATIENCE:g} s "
                 f"({type(error).__name__}); allowed: its address, such as tcp://127.0.0.1:8786"
+                f"{CERTIFICATE if address.startswith('tls:') else ''}"
             ) from None
         yield client
     finally:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from bench_hw.cli._report import report_unexpected
-from bench_hw.errors import EXTRAS, what_is_missing
+from bench_hw.errors import EXTRAS, system_words, what_is_missing
 
 PYPROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 DISTRIBUTIONS = {"cv2": "opencv-python-headless", "vtkmodules": "pyvista"}
@@ -35,3 +35,24 @@ def test_any_other_missing_module_is_a_fault(capsys) -> None:
     assert what_is_missing(ModuleNotFoundError("No module named 'fem.gone'", name="fem.gone")) is None
     assert report_unexpected(ModuleNotFoundError("gone", name="gone"), debug=False) == 70
     assert what_is_missing(ValueError()) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("trials/.p.csv.000024c5.part", "trials/p.csv: Permission denied"),
+        ("trials/.p.csv.000024c5.tmp", "trials/p.csv: Permission denied"),
+        ("/d/.p.lock", "/d/p: Permission denied"),
+        (b"/d/.p.lock", "/d/p: Permission denied"),
+        (".bashrc", ".bashrc: Permission denied"),
+        ("data.part", "data.part: Permission denied"),
+        ("..", "..: Permission denied"),
+        (None, "Permission denied"),
+    ],
+)
+def test_a_refusal_of_the_system_names_the_file_as_a_person_did(name, said: str) -> None:
+    assert system_words(PermissionError(13, "Permission denied", name)) == said
+
+
+def test_an_error_without_the_systems_words_keeps_its_own() -> None:
+    assert system_words(OSError("the cable is out")) == "the cable is out"

@@ -109,13 +109,10 @@ def session(what: What, folder: Folder, json: Json = False, debug: Debug = False
     must say is marked SAY in the files. Files that are there are never replaced.
     """
     from benchmark.cli.show import print_json
-    from benchmark.files.sessions.proposal import propose
-    from reports.atomic import write_text
+    from benchmark.files.sessions.proposal import propose, write_proposal
 
     found = propose(folder)
-    written = [folder / name for name in found.texts]
-    for path, text in zip(written, found.texts.values(), strict=True):
-        write_text(path, text)
+    written = write_proposal(folder, found)
     if json:
         print_json({"schema": 1, "files": [str(path) for path in written], "to_say": list(found.to_say)})
     else:

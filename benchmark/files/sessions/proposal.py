@@ -20,6 +20,7 @@ from benchmark.files.sessions.description import SessionFile
 from benchmark.files.sessions.recordings import Recording, read_recordings, told_heights, with_headers
 from benchmark.files.sessions.session_folder import SESSION_FILE, inside, session_table
 from benchmark.files.sessions.session_loading import assumed_specimen
+from benchmark.files.sources import is_file
 
 ALIKE = 0.1
 """Of their mean, within which speeds, depths and holds are of one protocol; labs set them to round numbers."""
@@ -74,11 +75,10 @@ def propose(folder: Path) -> Proposal:
     Raises
     ------
     InputError
-        There is a session.toml or a specimen.toml already, or a trial cannot be read.
+        There is a session.toml already, or a specimen.toml other than the proposed one, which a kill may have left; or
+        a trial cannot be read.
     """
-    for name in (SESSION_FILE, SPECIMEN_FILE):
-        if (folder / name).exists():
-            raise InputError(f"{folder / name} is there already and is left as it is; take it away for a new proposal.")
+    _refuse_existing(folder / SESSION_FILE)
     table, source = session_table(folder)
     file = validated(SessionFile, table, source)
     paths = [inside(source.folder, entry.file, entry.file) for entry in file.trials]
@@ -105,7 +105,44 @@ def propose(folder: Path) -> Proposal:
     ]
     trials = [line for trial, condition in zip(read.trials, named, strict=True) for line in _entry(trial, condition)]
     body = f"# SAY: layers, thickness and modulus; until then: {why}\n{specimen.to_toml()}"
+    if not _holds(folder / SPECIMEN_FILE, body):
+        _refuse_existing(folder / SPECIMEN_FILE)
     return Proposal({SPECIMEN_FILE: body, SESSION_FILE: "\n".join([*head, *trials]) + "\n"}, to_say)
+
+
+def write_proposal(folder: Path, proposal: Proposal) -> list[Path]:
+    """Write the files of a proposal, both or none, the one last by which the folder becomes a session.
+
+    Raises
+    ------
+    InputError
+        One cannot be written.
+    """
+    from reports.atomic import write_text
+
+    new = {folder / name: text for name, text in proposal.texts.items() if not _holds(folder / name, text)}
+    written: list[Path] = []
+    try:
+        for path, text in new.items():
+            written.append(path)
+            write_text(path, text)
+    except BaseException as error:
+        for path in written:
+            path.unlink(missing_ok=True)
+        if isinstance(error, OSError):
+            raise InputError(f"{written[-1]} cannot be written: {error.strerror or error}") from error
+        raise
+    return [folder / name for name in proposal.texts]
+
+
+def _holds(path: Path, text: str) -> bool:
+    """Whether a file is there with this text and no other."""
+    return is_file(path) and path.stat().st_size == len(text.encode()) and path.read_text("utf-8") == text
+
+
+def _refuse_existing(path: Path) -> None:
+    if path.exists() or path.is_symlink():
+        raise InputError(f"{path} is there already and is left as it is; take it away for a new proposal.")
 
 
 def _conditions(trials: Sequence[Recording], *, kept: bool) -> list[str]:

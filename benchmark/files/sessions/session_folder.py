@@ -53,7 +53,9 @@ def session_table(path: Path) -> tuple[dict[str, Any], Source]:
         return _made(path.stem, [entry]), Source(str(path), "", path.parent)
     try:
         if not path.is_dir():
-            raise InputError(f"{path}: there is no such session folder or file{_shipped(path)}.")
+            missing = f"there is no such session folder or file{_shipped(path)}"
+            other = "this is a pipe or a device; allowed: a session's folder or file"
+            raise InputError(f"{path}: {other if path.exists() else missing}.")
         if (path / SESSION_FILE).exists():
             return read_file(path / SESSION_FILE, "session")
         name = path.resolve().name or "session"

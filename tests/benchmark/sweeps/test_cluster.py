@@ -20,6 +20,8 @@ pytestmark = pytest.mark.slow
 
 LIMIT = 900.0
 """Seconds before a test gives up: no machine that does its work is so slow. What has ended is noticed at once."""
+NO_PAGE = ("--no-dashboard", "--dashboard-address", "127.0.0.1:0")
+"""Without the second a small web server listens on every address."""
 
 
 def wait_until(condition: Callable[[], bool], process: subprocess.Popen) -> None:
@@ -46,7 +48,7 @@ class Cluster:
             client.wait_for_workers(2, timeout=LIMIT)
 
     def _start(self, what: str, *arguments: str) -> subprocess.Popen:
-        command = [sys.executable, "-m", "dask", what, *arguments, "--host", "127.0.0.1", "--no-dashboard"]
+        command = [sys.executable, "-m", "dask", what, *arguments, "--host", "127.0.0.1", *NO_PAGE]
         log = self._stack.enter_context((self._folder / f"{what}.log").open("ab"))
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
         process = subprocess.Popen(command, stderr=log, stdout=log, env=environment)
@@ -160,3 +162,8 @@ def points_in(out: Path) -> list[int]:
 def test_where_nobody_answers_the_address_is_named(tasks) -> None:
     with pytest.raises(ClusterError, match=r"127\.0\.0\.1:9: no Dask scheduler"):
         next(work_on_cluster(tasks, "tcp://127.0.0.1:9", silent))
+
+
+def test_without_a_certificate_tls_is_refused_with_where_it_belongs(tasks) -> None:
+    with pytest.raises(ClusterError, match=r"tls://127\.0\.0\.1:9: no Dask .* certificate in DASK_.*TLS__CA_FILE"):
+        next(work_on_cluster(tasks, "tls://127.0.0.1:9", silent))

@@ -1,10 +1,13 @@
 """What `session new` proposes: conditions by motion, tool and thickness from the files, and what a person must say."""
 
+import os
+from pathlib import Path
+
 import pytest
 
 from benchmark.errors import InputError
 from benchmark.files import load_session
-from benchmark.files.sessions.proposal import motion_of, propose
+from benchmark.files.sessions.proposal import SPECIMEN_FILE, motion_of, propose, write_proposal
 from tests.instruments import samples
 
 
@@ -65,5 +68,35 @@ def test_tests_of_one_file_are_named_one_by_one(tmp_path):
 
 def test_nothing_is_replaced(folder):
     (folder / "session.toml").write_text("schema = 1\n")
+    with pytest.raises(InputError, match="left as it is"):
+        propose(folder)
+
+
+def test_a_specimen_that_a_kill_left_is_taken_and_another_one_is_not(folder):
+    proposal = propose(folder)
+    (folder / SPECIMEN_FILE).write_text(proposal.texts[SPECIMEN_FILE], encoding="utf-8")
+    assert propose(folder) == proposal
+    (folder / SPECIMEN_FILE).write_text("# mine\n")
+    with pytest.raises(InputError, match=r"specimen\.toml is there already and is left as it is"):
+        propose(folder)
+
+
+def test_where_the_second_file_cannot_be_written_neither_is_there(folder, monkeypatch):
+    proposal, before = propose(folder), sorted(os.listdir(folder))
+    replace = Path.replace
+
+    def refused(path, target):
+        if target.name == "session.toml":
+            raise OSError(28, "No space left on device")
+        return replace(path, target)
+
+    monkeypatch.setattr(Path, "replace", refused)
+    with pytest.raises(InputError, match=r"session\.toml cannot be written: No space left on device"):
+        write_proposal(folder, proposal)
+    assert sorted(os.listdir(folder)) == before
+
+
+def test_a_link_to_nothing_is_not_replaced(folder):
+    (folder / "session.toml").symlink_to(folder / "nothing.toml")
     with pytest.raises(InputError, match="left as it is"):
         propose(folder)

@@ -70,6 +70,13 @@ def test_what_is_no_session_is_refused(tmp_path, name):
         session_table(tmp_path / name)
 
 
+def test_a_pipe_or_a_device_is_said_to_be_one(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", Path(os.devnull)):
+        with pytest.raises(InputError, match=r"this is a pipe or a device; allowed: a session's folder or file"):
+            session_table(path)
+
+
 def test_files_inside_are_found(session_folder, write_trial):
     write_trial(session_folder / "sub" / "three.csv")
     for name in ("one.csv", "sub/three.csv", "./one.csv", "sub/../one.csv"):
