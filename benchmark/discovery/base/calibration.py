@@ -39,7 +39,7 @@ def calibrate(session: Session, study: Study, table_of: TableOf | None = None) -
     tables = _tables(session, study, table_of or fem_or_wave_table(session, table_keys(session)))
     setup = {key: size for key, size in setup.items() if any(key in table.by for table in tables)}
     problem = TrialsProblem(study, tables, _first_noise(study), _wide(study), trial_refs(study), setup=setup)
-    vector, state = _first_guess(problem)
+    vector, state = first_guess(problem)
     model = EffectModel(problem, ())
     start = fit(model, vector, state, most=6)
     problem, warnings = _estimated(start)
@@ -95,8 +95,8 @@ def _wide(study: Study) -> TrialPrior:
     return replace(WIDE, zero=0.5 * peak, shift=max(0.02, 2.0 * interval), offset=WIDE.offset)
 
 
-def _first_guess(problem: TrialsProblem) -> tuple[Array, Array]:
-    """Modulus and gains by the ratio of peaks."""
+def first_guess(problem: TrialsProblem) -> tuple[Array, Array]:
+    """Vector (p,) and nuisances (R, q) to begin with: modulus and gains by the ratio of peaks."""
     model = EffectModel(problem, ())
     vector = np.zeros(model.size)
     state = np.zeros((len(problem.trials), nuisance_count(problem)))

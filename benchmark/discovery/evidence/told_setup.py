@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from benchmark.discovery import criteria
+from benchmark.discovery.base.calibration import first_guess
 from benchmark.discovery.base.effect_model import EffectModel, Fit, fit
 from benchmark.discovery.base.setup_priors import is_setup
 from benchmark.discovery.evidence.gains import broad, held_out
@@ -26,14 +27,17 @@ SHOWN_MOVE = 0.5
 def on_told(moving: Fit, told: Mapping[str, float]) -> Fit:
     """The base of a fit with the set-up as told: only the keys of `told` may be others, by their standard deviations.
 
-    The fit itself where it moves no more than that.
+    The fit itself where it moves no more than that. A set-up that went far has taken the other nuisances with it to
+    where no step leads back, so that it is fitted from the first guess, too, and the better fit is taken.
     """
     problem = moving.model.problem
     if set(problem.setup) <= set(told):
         return moving
     fixed = replace(problem, setup={key: size for key, size in told.items() if key in problem.setup})
     kept = [k for k, name in enumerate(problem.shapes) if not is_setup(name) or name in fixed.setup]
-    return fit(EffectModel(fixed, ()), moving.vector[kept], moving.nuisance, most=8)
+    model = EffectModel(fixed, ())
+    starts = ((moving.vector[kept], moving.nuisance), first_guess(fixed))
+    return min((fit(model, *start, most=8) for start in starts), key=lambda each: each.objective)
 
 
 def stands(chosen: Fit, told: Fit, moving: Fit, work: Pool) -> bool:

@@ -47,6 +47,15 @@ def test_a_set_up_as_told_moves_in_the_tool_alone_and_in_what_is_stated(relaxing
     assert stands(told, told, moving, ALONE)
 
 
+def test_a_set_up_that_went_far_does_not_take_the_one_that_was_told_with_it(relaxing):
+    session, moving = relaxing
+    near = on_told(moving, told_priors(session))
+    far = moving.vector.copy()
+    far[list(moving.model.problem.shapes).index("modulus")] = -3.0
+    gone = on_told(replace(moving, vector=far), told_priors(session))
+    assert gone.objective == pytest.approx(near.objective, rel=1e-3)
+
+
 def test_an_effect_stands_and_what_a_base_may_be_off_by_anyway_does_not(relaxing):
     session, moving = relaxing
     told = on_told(moving, told_priors(session))
