@@ -64,4 +64,4 @@ def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     )
 
 
-EFFECT = Effect(DESCRIPTION, "friction_force", body=_body, starts=_starts)
+EFFECT = Effect(DESCRIPTION, "friction_force", body=_body, starts=_starts, amplitudes=("friction_share",))
