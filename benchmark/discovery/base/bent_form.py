@@ -69,12 +69,13 @@ def bent(fitted: Fit, slugs: Sequence[str]) -> Fit:
 def _bends(fitted: Fit, slug: str) -> list[Array]:
     """White bends (N, b) of one effect in each trial: those of other conditions are zero."""
     model, problem = fitted.model, fitted.model.problem
+    felt = any(e.slug == slug and e.description.acts_on != "observation" for e in model.effects)
     turns = [_between_turns(condition) for condition in problem.study.conditions]
     ends = np.cumsum([0, *(len(problem.study.names[:2]) * len(each) for each in turns)])
     out = []
     for index, (trial, added) in enumerate(zip(problem.trials, _added(fitted, slug), strict=True)):
         rows = np.zeros((added.size, ends[-1]))
-        patterns = _patterns(added, problem.noise.scale[index])
+        patterns = _patterns(added, problem.noise.scale[index], felt)
         shapes = [share[:, None] * pattern for pattern in patterns for share in turns[trial.condition]]
         first = ends[trial.condition]
         for place, shape in enumerate(shapes, start=first):
@@ -83,15 +84,15 @@ def _bends(fitted: Fit, slug: str) -> list[Array]:
     return out
 
 
-def _patterns(added: Array, scale: Array) -> list[Array]:
+def _patterns(added: Array, scale: Array, felt: bool) -> list[Array]:
     """(C,) by which a form may be off in force and, where there are any, markers: the most that the effect adds there.
 
-    How much of an effect shows in the force is a matter of its form, too: in units of the noise it may be off there by
-    as much as in the markers.
+    How much of an effect of the press is `felt` in the force is a matter of its form, too: in units of the noise it may
+    be off there by as much as in the markers. What a camera sees wrongly is never in the force.
     """
     sizes = np.abs(added) / scale
     force = np.zeros(scale.size)
-    force[0] = sizes.max() * scale[0]
+    force[0] = (sizes.max() if felt else sizes[:, 0].max()) * scale[0]
     if scale.size == 1:
         return [force]
     markers = added[int(np.argmax(sizes[:, 1:].max(axis=1)))].copy()

@@ -1,5 +1,8 @@
 """What a wrong form of one effect leaves is no second effect and no unknown cause; what another effect does is one."""
 
+from dataclasses import replace
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -8,13 +11,18 @@ from benchmark.discovery.answer.gap import share_left, unbent
 from benchmark.discovery.base.bent_form import bent
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
+from benchmark.discovery.base.effect_model import EffectModel, fit
 from benchmark.discovery.evidence.selection import beats_bent, score
 from benchmark.discovery.trials.preparing import prepare
+from benchmark.files import load_session
 from benchmark.physics import catalogue
+from benchmark.response.wave_table import wave_table
+from benchmark.sessions import SHIPPED
 from wavemodel import Prony
 from wavemodel.physics import Physics, QuasiStaticPress
 
 CATALOGUE = {effect.slug: effect for effect in catalogue()}
+STRONG = {"perspective": {"nearness": 7.0}, "anisotropy": {"log_ratio": 0.3}}
 
 
 def pulling(time, depth, elastic):
@@ -55,6 +63,22 @@ def test_a_pull_in_the_air_that_the_form_of_a_relaxation_misses_is_no_drift(sess
     assert bent(first, ["viscoelastic_relaxation"]).objective == pytest.approx(first.objective, rel=1e-3)
 
 
+@pytest.mark.parametrize(("slug", "felt"), [("perspective", False), ("anisotropy", True)])
+def test_what_a_camera_sees_wrongly_is_never_off_in_the_force(slug, felt):
+    session = load_session(SHIPPED / "phantom")
+    filmed = tuple(trial for trial in session.trials if trial.markers is not None)[:4]
+    some = replace(session, trials=filmed)
+    base = calibrate(some, prepare(some, 40), partial(wave_table, keys=("tool.radius",))).base
+    model = EffectModel(base.model.problem, (CATALOGUE[slug],))
+    seen = fit(model, model.vector(base.vector, {slug: STRONG[slug]}), base.nuisance, most=0)
+    loose = bent(seen, [slug])
+    first = len(base.model.problem.shapes)
+    signals = len(base.model.problem.study.names)
+    forces = [rows[::signals, first : first + loose.model.bends] for rows in loose.columns.vector]
+    assert any(each.any() for each in forces) == felt
+    assert any(rows[:, first : first + loose.model.bends].any() for rows in loose.columns.vector)
+
+
 def answered(session):
     """The whole answer, with relaxation and drift as all there is to choose from."""
     entries = {"setup.tool.radius", "setup.layer.thickness"}
@@ -68,8 +92,8 @@ def slugs(found):
 
 def test_what_may_be_the_first_effects_form_is_withheld_and_is_no_unknown_cause(session_of):
     found = answered(session_of(force=pulling, noise=0.003, trials=8, speeds=(6e-3,)))
-    assert slugs(found) == ["viscoelastic_relaxation"]
-    assert found.selection.withheld == ("force_drift",)
+    (first,) = slugs(found)  # both lack so much of the form that which of them is nearer is a tie
+    assert {first, *found.selection.withheld} == {"viscoelastic_relaxation", "force_drift"}
     left = share_left(unbent(found.selection.base, found.chosen), found.chosen)
     assert left > criteria.OUTSIDE  # which alone would say that the cause is unknown
     assert found.discovery.verdict not in ("outside_catalogue", "named", "no_discrepancy")
