@@ -24,7 +24,14 @@ from benchmark.discovery.evidence.gains import (
     held_out,
     score,
 )
-from benchmark.discovery.evidence.parameter_evidence import determined, every_term_told, steady, told_parameters
+from benchmark.discovery.evidence.parameter_evidence import (
+    determined,
+    every_term_told,
+    steady,
+    strength_told,
+    told_parameters,
+    undetermined,
+)
 from benchmark.discovery.evidence.pool import Pool
 from benchmark.discovery.evidence.shortlist import Screened, screen
 from benchmark.discovery.evidence.showing import missing
@@ -123,7 +130,7 @@ def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
 
 def _evident(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:
     """Whether a candidate has the evidence of trials, and beside others a strength."""
-    if steps and not determined(scored.fit, scored.fit.model.effects[-1]):
+    if steps and not strength_told(scored.fit, scored.fit.model.effects[-1]):
         return False
     return _over_trials(scored.gain, settings) and scored.delta_bic < criteria.ACCEPT_BIC
 
@@ -229,7 +236,7 @@ def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> Fit:
 def _told(base: Fit, current: Fit, work: Pool) -> Fit:
     """Go back a step while the data do not tell the strength of every effect beside the others."""
     while len(current.model.effects) > 1:
-        if all(determined(current, effect) for effect in current.model.effects):
+        if not undetermined(current):
             return current
         current = rebuilt(base, current.model.effects[:-1], work, "backward")
     return current

@@ -15,6 +15,7 @@ from benchmark.discovery.evidence.parameter_evidence import (
     by_condition,
     constant,
     determined,
+    strength_told,
     told_parameters,
     undetermined,
     unsteady,
@@ -44,9 +45,18 @@ def scored(slug, mean, z=9.0, bic=-50.0, each=None, **changes):
     return Scored(made, slug, Gain(values, mean, 1.0, z), None, bic, fitted())
 
 
+def known_where(monkeypatch, rule):
+    """Strengths are known where a rule of fit and effect says so."""
+    monkeypatch.setattr(selection, "determined", rule)
+    monkeypatch.setattr(selection, "strength_told", rule)
+    monkeypatch.setattr(
+        selection, "undetermined", lambda fit: tuple(e.slug for e in fit.model.effects if not rule(fit, e))
+    )
+
+
 @pytest.fixture(autouse=True)
 def all_determined(monkeypatch):
-    monkeypatch.setattr(selection, "determined", lambda fit, effect, names=(): "vague" not in effect.slug)
+    known_where(monkeypatch, lambda fit, effect, names=(): "vague" not in effect.slug)
     monkeypatch.setattr(selection, "told_parameters", lambda fit, effect: len(effect.names))
 
 
@@ -253,9 +263,7 @@ def test_a_further_effect_of_unknown_strength_is_dropped():
 
 def test_the_last_effect_goes_where_it_makes_an_earlier_one_unknown(monkeypatch):
     first, second, third = effect("first"), effect("second"), effect("third")
-    monkeypatch.setattr(
-        selection, "determined", lambda fit, each, names=(): each is not second or third not in fit.model.effects
-    )
+    known_where(monkeypatch, lambda fit, each, names=(): each is not second or third not in fit.model.effects)
     three, two, one = fitted(first, second, third), fitted(first, second), fitted(first)
     assert selection._told(fitted(), three, Work(one, two)) is two
 
@@ -434,6 +442,7 @@ def test_a_share_that_trades_with_a_width_is_told_by_what_both_take_off_the_forc
     depth = np.linspace(0.0, 1.0, 5)
     made.model.signals = lambda vector, _: [(depth * (1.0 - vector[0] * vector[1] * (1.0 - depth)))[:, None]] * 3
     assert not determined(made, one)
+    assert strength_told(made, one) is told
     assert undetermined(made) == (() if told else ("one",))
 
 
