@@ -13,6 +13,7 @@ from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.discovery_result import Array, ConditionEstimate, Estimate
 from benchmark.discovery.evidence.gains import conditions
 from benchmark.physics import Effect, EffectParameter
+from benchmark.physics.setup_entry import setup_key
 from benchmark.response.least_squares import scaled_inverse
 
 
@@ -115,17 +116,21 @@ def told_parameters(fitted: Fit, effect: Effect) -> int:
 
 
 def undetermined(fitted: Fit) -> tuple[str, ...]:
-    """Effects of a fit whose strength the data do not tell; see `strength_told`."""
-    return tuple(each.slug for each in fitted.model.effects if not strength_told(fitted, each))
-
-
-def strength_told(fitted: Fit, effect: Effect) -> bool:
-    """Whether the data tell how strong an effect is, or what it adds to the force.
+    """Effects of a fit of which the data tell neither the strength nor what they add to the force.
 
     With a modulus that nobody knows a strength may be any large number, while its product with the modulus is known;
     a softening whose width is open may be weak and wide or strong and narrow, and take the same off the force.
     """
-    return determined(fitted, effect) or adds_force(fitted, effect)
+    effects = fitted.model.effects
+    return tuple(each.slug for each in effects if not determined(fitted, each) and not adds_force(fitted, each))
+
+
+def strength_told(fitted: Fit, effect: Effect) -> bool:
+    """Whether an effect is strong enough to stand beside others: determined by itself or by what it adds to the force.
+
+    A set-up entry has one number alone, which must be told.
+    """
+    return determined(fitted, effect) or (setup_key(effect.slug) is None and adds_force(fitted, effect))
 
 
 def adds_force(fitted: Fit, effect: Effect) -> bool:

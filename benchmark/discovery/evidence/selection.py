@@ -30,7 +30,6 @@ from benchmark.discovery.evidence.parameter_evidence import (
     steady,
     strength_told,
     told_parameters,
-    undetermined,
 )
 from benchmark.discovery.evidence.pool import Pool
 from benchmark.discovery.evidence.shortlist import Screened, screen
@@ -236,7 +235,7 @@ def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> Fit:
 def _told(base: Fit, current: Fit, work: Pool) -> Fit:
     """Go back a step while the data do not tell the strength of every effect beside the others."""
     while len(current.model.effects) > 1:
-        if not undetermined(current):
+        if all(strength_told(current, effect) for effect in current.model.effects):
             return current
         current = rebuilt(base, current.model.effects[:-1], work, "backward")
     return current

@@ -8,7 +8,7 @@ import pytest
 
 from benchmark.discovery import criteria
 from benchmark.discovery.criteria import Settings
-from benchmark.discovery.evidence import selection
+from benchmark.discovery.evidence import parameter_evidence, selection
 from benchmark.discovery.evidence.gains import Gain, Scored
 from benchmark.discovery.evidence.parameter_evidence import (
     adds_force,
@@ -49,9 +49,6 @@ def known_where(monkeypatch, rule):
     """Strengths are known where a rule of fit and effect says so."""
     monkeypatch.setattr(selection, "determined", rule)
     monkeypatch.setattr(selection, "strength_told", rule)
-    monkeypatch.setattr(
-        selection, "undetermined", lambda fit: tuple(e.slug for e in fit.model.effects if not rule(fit, e))
-    )
 
 
 @pytest.fixture(autouse=True)
@@ -444,6 +441,13 @@ def test_a_share_that_trades_with_a_width_is_told_by_what_both_take_off_the_forc
     assert not determined(made, one)
     assert strength_told(made, one) is told
     assert undetermined(made) == (() if told else ("one",))
+
+
+@pytest.mark.parametrize(("slug", "told"), [("stress_softening", True), ("setup.tool.contact", False)])
+def test_what_a_set_up_entry_adds_does_not_tell_its_number(slug, told, monkeypatch):
+    monkeypatch.setattr(parameter_evidence, "determined", lambda fit, effect: False)
+    monkeypatch.setattr(parameter_evidence, "adds_force", lambda fit, effect: True)
+    assert strength_told(fitted(), SimpleNamespace(slug=slug)) is told
 
 
 def test_a_share_at_its_bound_is_not_told_by_what_it_adds():
