@@ -20,8 +20,8 @@ def write_csv(path: StrPath, columns: Mapping[str, Sequence[Any] | Any]) -> Path
     """Write columns of equal length to a CSV file, whole or not at all.
 
     Numbers are written with the shortest text that reads back to the same double, up to 17 digits.
-    None and NaN become empty cells, booleans `true` and `false`. Text that a spreadsheet would take for a formula gets
-    an apostrophe before it; `read_cell` takes it off.
+    None and NaN become empty cells, booleans `true` and `false`. Text that a spreadsheet would take for a formula, in a
+    column's name too, gets an apostrophe before it; `read_cell` takes it off.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def csv_text(columns: Mapping[str, Sequence[Any] | Any], where: str = "table") -
     lines: list[str] = []
     # The writer quotes a lone carriage return only if its own line ends hold one.
     writer = csv.writer(cast(Any, SimpleNamespace(write=lines.append)), lineterminator="\r\n")
-    writer.writerow(cells)
+    writer.writerow([_cell(name, where) for name in cells])
     writer.writerows(zip(*cells.values(), strict=True))
     return "".join(line.removesuffix("\r\n") + "\n" for line in lines)
 

@@ -26,7 +26,7 @@ def number(cell):
 def test_what_is_written_reads_back_to_the_same_doubles(tmp_path_factory, values, names):
     path = write_csv(tmp_path_factory.mktemp("t") / "a.csv", {names[0]: values, names[1]: range(len(values))})
     header, *rows = read(path)
-    assert header == names
+    assert [read_cell(name) for name in header] == names
     wanted = [math.nan if value is None else float(value) for value in values]
     assert np.array_equal([number(row[0]) for row in rows], wanted, equal_nan=True)
     assert [int(row[1]) for row in rows] == list(range(len(values)))
@@ -79,9 +79,9 @@ def test_a_written_table_is_the_path_given(tmp_path):
 
 @pytest.mark.parametrize("text", ["=1+1", "+cmd|' /C calc'!A0", "-2+3", "@SUM(A1)", "\t=1", "'=1"])
 def test_no_spreadsheet_runs_a_text(tmp_path, text):
-    path = write_csv(tmp_path / "a.csv", {"layer": [text], "n": [-1.5]})
-    ((_, _), (cell, number)) = read(path)
-    assert cell == f"'{text}"
+    path = write_csv(tmp_path / "a.csv", {text: [text], "n": [-1.5]})
+    ((name, _), (cell, number)) = read(path)
+    assert name == cell == f"'{text}"
     assert read_cell(cell) == text
     assert number == "-1.5"
 

@@ -87,7 +87,7 @@ class SavedTables:
         head, *body = rows or [[]]
         if not head or any(len(row) != len(head) for row in body):
             raise InputError(f"{path}: its rows are not all as long as its first one")
-        return Table(path, {name: [read_cell(row[place]) for row in body] for place, name in enumerate(head)})
+        return Table(path, {read_cell(name): [read_cell(row[k]) for row in body] for k, name in enumerate(head)})
 
     def texts(self) -> dict[str, str]:
         """The text of every table by file name."""
