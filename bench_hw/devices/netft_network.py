@@ -87,7 +87,7 @@ def fetch(host: str, port: int, path: str, timeout: float) -> bytes:
         each piece of the answer, and `_PATIENCE` times as long for the whole.
     """
     where = f"force sensor at http://{host}:{port}{path}"
-    connection = http.client.HTTPConnection(host, port, timeout=timeout)
+    connection = _Connection(host, port, timeout=timeout)
     try:
         with _ended_after(connection, _PATIENCE * timeout):
             connection.request("GET", path)
@@ -109,8 +109,18 @@ def fetch(host: str, port: int, path: str, timeout: float) -> bytes:
     return page
 
 
+class _Connection(http.client.HTTPConnection):
+    """Keeps its socket as `opened`: its own `sock` is let go once an answer has begun that ends with the connection."""
+
+    opened: socket.socket | None = None
+
+    def connect(self) -> None:
+        super().connect()
+        self.opened = self.sock
+
+
 @contextmanager
-def _ended_after(connection: http.client.HTTPConnection, seconds: float) -> Iterator[None]:
+def _ended_after(connection: _Connection, seconds: float) -> Iterator[None]:
     """Shut a connection down after a time: one byte a second would otherwise keep it open for ever.
 
     Raises
@@ -122,10 +132,9 @@ def _ended_after(connection: http.client.HTTPConnection, seconds: float) -> Iter
 
     def end() -> None:
         over.set()
-        opened = connection.sock
-        if opened is not None:
+        if connection.opened is not None:
             with suppress(OSError):
-                opened.shutdown(socket.SHUT_RDWR)
+                connection.opened.shutdown(socket.SHUT_RDWR)
 
     timer = threading.Timer(seconds, end)
     timer.daemon = True

@@ -119,10 +119,10 @@ def _report(error: Exception, *, debug: bool) -> int:
         return _fail(f"{error.format_message()} See python -m benchmark --help.", EXIT_USAGE)
     if isinstance(error, typer.Abort):
         return _fail("interrupted", EXIT_INTERRUPTED)
-    from bench_hw.errors import system_words, what_is_missing
+    from bench_hw.errors import BenchError, system_words, what_is_missing
     from benchmark.errors import TissuebenchError
 
-    if isinstance(error, TissuebenchError):
+    if isinstance(error, TissuebenchError | BenchError):
         return _fail(str(error), error.exit_code)
     if isinstance(error, OSError):
         return _fail(unsaid() or system_words(error), EXIT_USAGE)

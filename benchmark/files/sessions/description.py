@@ -12,12 +12,14 @@ from bench_hw.configuration import parse_quantity
 from bench_hw.instrument_files.told import Told
 from bench_hw.tables.units import parse_rate
 from benchmark.errors import InputError
-from benchmark.files.quantities import Bounds, Length, Margin, Number
+from benchmark.files.quantities import Bounds, Length, Margin, Number, problem
 from benchmark.files.schema import FileModel, Name, Schema, nearest, validated
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.files.sources import Source
 from benchmark.files.tool import TOUCHING, Support, Tool, check_hole
 
+LEAST_MARKERS, MOST_MARKERS = 4, 2500
+"""Of a grid: fewer tell no plane, more the tracker does not take."""
 GridSize = Annotated[int, Number("1 to 1000 (a whole number)", Bounds(1, 1000), whole=True)]
 MarkerNumber = Annotated[int, Number("0 to 1000000 (a whole number)", Bounds(0, 1_000_000), whole=True)]
 Keys = Mapping[str, Any]
@@ -141,6 +143,16 @@ class Camera(FileModel):
     print_scatter: Length | None = None
     scale_uncertainty: Margin | None = None
     clock: Literal["shared", "press"] = "shared"
+
+    @model_validator(mode="after")
+    def _is_a_grid(self) -> Self:
+        count = self.marker_rows * self.marker_columns
+        if not LEAST_MARKERS <= count <= MOST_MARKERS:
+            allowed = f"{LEAST_MARKERS} to {MOST_MARKERS} markers in all"
+            raise problem(
+                f"{self.marker_rows} rows of {self.marker_columns} are {count}; allowed: {allowed}", key="marker_rows"
+            )
+        return self
 
 
 class ConditionKeys(FileModel):

@@ -111,10 +111,13 @@ def test_nobody_there_is_one_clear_error(ear):
         fetch("127.0.0.1", ear.port, "/", 1.0)
 
 
-def test_a_box_that_drips_is_given_up_after_a_total_time(tcp_server):
+@pytest.mark.parametrize(
+    "head", [b"HTTP/1.1 200 OK\r\nContent-Length: 1000\r\n\r\n", b"HTTP/1.0 200 OK\r\n\r\n", b"HTTP/1.1 200 OK\r\nX: "]
+)
+def test_a_box_that_drips_is_given_up_after_a_total_time(tcp_server, head):
     def drip(client):
         client.recv(4096)
-        client.sendall(b"HTTP/1.1 200 OK\r\nContent-Length: 1000\r\n\r\n")
+        client.sendall(head)
         for _ in range(200):  # each byte within the time-out of a piece
             client.sendall(b"x")
             time.sleep(0.05)

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from benchmark.child_processes import forbid_ending
+from bench_hw.errors import DeviceError, InputError
 from benchmark.cli import app
 
 HEAVY = ("numpy", "scipy", "pandas", "pint", "pydantic", "skfem", "matplotlib", "pyvista", "statsmodels")
@@ -44,6 +45,18 @@ def test_a_fault_of_the_program_is_no_user_error(benchmark_cli, monkeypatch: pyt
     called = benchmark_cli("tissues")
     assert called.code == app.EXIT_BUG
     assert "ZeroDivisionError" in called.err
+
+
+@pytest.mark.parametrize(("error", "code"), [(InputError("a grid of 1 x 1"), 2), (DeviceError("no box"), 5)])
+def test_what_the_bench_refuses_is_no_fault_of_the_program(
+    benchmark_cli, monkeypatch: pytest.MonkeyPatch, error: Exception, code: int
+) -> None:
+    def refused(**_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(app, "app", refused)
+    called = benchmark_cli("tissues")
+    assert (called.code, called.err) == (code, f"error: {error}\n")
 
 
 @pytest.mark.parametrize("word", ["os._exit(0)", "sys.exit(0)"])

@@ -1,6 +1,7 @@
 import pytest
 
 from bench_hw.capture import session_keys
+from bench_hw.vision.markers.grid import Layout
 from benchmark.errors import InputError
 from benchmark.files.schema import known_keys, validated
 from benchmark.files.sessions.description import (
@@ -40,6 +41,20 @@ def test_how_well_markers_were_made():
     grid = {"marker_rows": 3, "marker_columns": 6, "marker_spacing": "8 mm"}
     camera = read(camera={**grid, "print_scatter": "0.1 mm", "scale_uncertainty": "0.3 %"}).camera
     assert (camera.print_scatter, camera.scale_uncertainty) == (1e-4, 0.003)
+
+
+@pytest.mark.parametrize(
+    ("rows", "columns", "allowed"),
+    [(1, 1, False), (1, 3, False), (1, 4, True), (2500, 1, False), (50, 50, True), (51, 50, False)],
+)
+def test_a_grid_has_as_many_markers_as_can_be_tracked(rows, columns, allowed):
+    camera = {"marker_rows": rows, "marker_columns": columns, "marker_spacing": "8 mm"}
+    if allowed:
+        read(camera=camera)
+        assert Layout(rows, columns).count == rows * columns
+    else:
+        with pytest.raises(InputError, match=r"marker_rows: .*allowed"):
+            read(camera=camera)
 
 
 @pytest.mark.parametrize(
