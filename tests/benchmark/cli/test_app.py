@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from benchmark.child_processes import forbid_ending
 from bench_hw.errors import DeviceError, InputError
+from benchmark.child_processes import forbid_ending
 from benchmark.cli import app
 
 HEAVY = ("numpy", "scipy", "pandas", "pint", "pydantic", "skfem", "matplotlib", "pyvista", "statsmodels")

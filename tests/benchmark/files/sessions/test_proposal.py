@@ -1,6 +1,5 @@
 """What `session new` proposes: conditions by motion, tool and thickness from the files, and what a person must say."""
 
-import os
 from pathlib import Path
 
 import pytest
@@ -82,7 +81,7 @@ def test_a_specimen_that_a_kill_left_is_taken_and_another_one_is_not(folder):
 
 
 def test_where_the_second_file_cannot_be_written_neither_is_there(folder, monkeypatch):
-    proposal, before = propose(folder), sorted(os.listdir(folder))
+    proposal, before = propose(folder), sorted(folder.iterdir())
     replace = Path.replace
 
     def refused(path, target):
@@ -93,7 +92,7 @@ def test_where_the_second_file_cannot_be_written_neither_is_there(folder, monkey
     monkeypatch.setattr(Path, "replace", refused)
     with pytest.raises(InputError, match=r"session\.toml cannot be written: No space left on device"):
         write_proposal(folder, proposal)
-    assert sorted(os.listdir(folder)) == before
+    assert sorted(folder.iterdir()) == before
 
 
 def test_a_link_to_nothing_is_not_replaced(folder):
