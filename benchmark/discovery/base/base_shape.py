@@ -128,21 +128,22 @@ class ShapedTable:
         if spread.dent is not None:
             moved = moved + spread.dent[0][:, None] / np.maximum(radius, spread.dent[1])
         sunk = self._over_radius(self.sink, read, over_depth)
-        return self._in_picture(rest, moved[..., None] * along, sunk), sunk
+        return self._in_picture(rest, [rest[:, k] + moved * along[:, k] for k in (0, 1)], sunk), sunk
 
-    def _in_picture(self, rest: Array, moved: Array, sunk: Array) -> Array:
-        """Positions (n, m, 2) of markers that moved (n, m, 2) and sank (n, m), by a camera that is not quite told.
+    def _in_picture(self, rest: Array, there: list[Array], sunk: Array) -> Array:
+        """Positions (n, m, 2) of markers at x and y (n, m) that sank (n, m), by a camera that is not quite told.
 
         Markers are followed from where they rest in the picture, which holds what the camera does to the grid.
         """
         shape = self.shape
         if shape.tilt_x or shape.tilt_y:
-            moved = moved + sunk[..., None] * np.array([shape.tilt_x, shape.tilt_y])
+            there = [each + slope * sunk for each, slope in zip(there, (shape.tilt_x, shape.tilt_y), strict=True)]
         if shape.lens:
-            there, near = rest + moved, _squared(rest)
-            bent = there * _squared(there)[..., None] - rest * near[..., None]
-            moved = moved + shape.lens / max(float(near.max()), 1e-12) * bent
-        return np.asarray(rest + moved)
+            x, y = there
+            near, far = np.sum(rest**2, axis=1), x**2 + y**2
+            size = shape.lens / max(float(near.max()), 1e-12)
+            there = [each + size * (each * far - rest[:, k] * near) for k, each in enumerate(there)]
+        return np.stack(there, axis=-1)
 
     def _over_depth(self, depth: Array) -> tuple[NDArray[np.int64], Array, Array]:
         """Where depths (n,), mirrored above the surface, lie in the table: a row, its weight, the next one's."""
@@ -168,8 +169,3 @@ class ShapedTable:
     def _kept(self) -> dict[tuple[int, bytes], Array]:
         """Fields (k, m) over the table's depths at radii that were asked for."""
         return {}
-
-
-def _squared(places: Array) -> Array:
-    """Squared distances (...) of places (..., 2) from the axis; sums over so short an axis are slow."""
-    return np.asarray(places[..., 0] ** 2 + places[..., 1] ** 2)
