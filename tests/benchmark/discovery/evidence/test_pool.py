@@ -14,8 +14,8 @@ from benchmark.discovery.evidence.selection import select
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
 
-SETTINGS = Settings(rows=60, workers=1, bootstraps=20, most_effects=2, accept_z=0.5)
-TRIED = ("viscous_damping", "dry_friction", "machine_compliance", "tool_inertia", "viscoelastic_relaxation")
+SETTINGS = Settings(rows=40, workers=1, bootstraps=20, most_effects=2, accept_z=0.5)
+TRIED = ("viscous_damping", "machine_compliance", "viscoelastic_relaxation")
 
 
 def damped(time, depth, elastic):
@@ -26,7 +26,7 @@ def damped(time, depth, elastic):
 def base(tmp_path_factory, quick_session):
     from benchmark.files import load_session
 
-    folder = quick_session.write_session(tmp_path_factory.mktemp("pool") / "s", trials=4, noise=0.003, force=damped)
+    folder = quick_session.write_session(tmp_path_factory.mktemp("pool") / "s", trials=3, noise=0.003, force=damped)
     session = load_session(folder)
     return calibrate(session, prepare(session, SETTINGS.rows)).base
 

@@ -10,7 +10,7 @@ from benchmark.discovery.evidence.selection import select
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
 
-SETTINGS = Settings(rows=70, workers=1, bootstraps=50)
+SETTINGS = Settings(rows=45, workers=1, bootstraps=50)
 SOME = tuple(
     effect
     for effect in catalogue()
