@@ -1,10 +1,14 @@
 """What all tests share: drawn examples are the same on every run and never timed, and nothing is kept for later.
 
+`undrawn` is for tests that read the words or tables beside figures: each figure is still painted, with all that may
+fail there, and only its layout and its SVG are left out, which have tests of their own in tests/reports.
+
 `pytest --hypothesis-profile=search` draws new examples on each run; `--hypothesis-seed` draws those of one run again.
 """
 
 import os
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 settings.register_profile(
@@ -13,3 +17,11 @@ settings.register_profile(
 settings.register_profile("search", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("same_each_run")
 os.environ["TISSUEBENCH_CACHE"] = ""
+
+BLANK = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"/>'
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Figures of pages are painted, and blank."""
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda _, stream, **__: stream.write(BLANK))

@@ -26,7 +26,7 @@ def force_record(number: int, time: float, press: float, status: int = 0) -> For
     return ForceRecord(time, sequence, 7 * sequence % 2**32, status, force, torque, counts)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def header() -> TrialHeader:
     return TrialHeader(
         name="trial_001",
@@ -42,7 +42,7 @@ def header() -> TrialHeader:
     )
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def make_records() -> Callable[..., list[Record]]:
     def make(seconds: float, force_rate: float = 1000, depth_rate: float = 100, fps: float = 30) -> list[Record]:
         """A press to 2 mm and 4 N at half time and back; pictures of random bytes."""
@@ -65,16 +65,18 @@ def make_records() -> Callable[..., list[Record]]:
     return make
 
 
-@pytest.fixture
-def record(header: TrialHeader, tmp_path: Path) -> Callable[..., Path]:
-    def write(records: Iterable[Record], name: str = "trial_001.mcap", background: bool = False) -> Path:
-        methods = {
-            ForceRecord: "write_force",
-            DepthRecord: "write_depth",
-            FrameRecord: "write_frame",
-            EventRecord: "write_event",
-        }
-        with open_trial(tmp_path / name, header, background) as writer:
+@pytest.fixture(scope="session")
+def write_records(header: TrialHeader) -> Callable[..., Path]:
+    """Write a trial of these records to a path."""
+    methods = {
+        ForceRecord: "write_force",
+        DepthRecord: "write_depth",
+        FrameRecord: "write_frame",
+        EventRecord: "write_event",
+    }
+
+    def write(path: Path, records: Iterable[Record], background: bool = False) -> Path:
+        with open_trial(path, header, background) as writer:
             for item in records:
                 getattr(writer, methods[type(item)])(item)
         return writer.path
@@ -83,5 +85,20 @@ def record(header: TrialHeader, tmp_path: Path) -> Callable[..., Path]:
 
 
 @pytest.fixture
-def three_seconds(make_records, record) -> Path:
-    return record(make_records(3.0))
+def record(write_records, tmp_path: Path) -> Callable[..., Path]:
+    def write(records: Iterable[Record], name: str = "trial_001.mcap", background: bool = False) -> Path:
+        return write_records(tmp_path / name, records, background)
+
+    return write
+
+
+@pytest.fixture(scope="session")
+def three_seconds_once(make_records, write_records, tmp_path_factory) -> bytes:
+    return write_records(tmp_path_factory.mktemp("trial") / "trial_001.mcap", make_records(3.0)).read_bytes()
+
+
+@pytest.fixture
+def three_seconds(three_seconds_once: bytes, tmp_path: Path) -> Path:
+    path = tmp_path / "trial_001.mcap"
+    path.write_bytes(three_seconds_once)
+    return path

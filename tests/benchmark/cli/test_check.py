@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from benchmark.cli.app import main
+
 MODEL = """\
 import numpy as np
 
@@ -57,13 +59,36 @@ references = ["dense"]
 """
 
 
+BASELINE = "tissuebench-baseline.json"
+
+
+def write_gate(folder: Path) -> None:
+    for name, text in {"gate.toml": GATE, "press.toml": SCENARIO, "my_model.py": MODEL}.items():
+        (folder / name).write_text(text)
+
+
 @pytest.fixture
 def call(benchmark_cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """`check` with a tiny gate, in a folder of its own."""
-    for name, text in {"gate.toml": GATE, "press.toml": SCENARIO, "my_model.py": MODEL}.items():
-        (tmp_path / name).write_text(text)
+    write_gate(tmp_path)
     monkeypatch.chdir(tmp_path)
     return lambda *arguments: benchmark_cli("check", "--gate", "gate.toml", *arguments)
+
+
+@pytest.fixture(scope="module")
+def accepted(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The baseline that `check --accept` writes, measured once."""
+    folder = tmp_path_factory.mktemp("accepted")
+    write_gate(folder)
+    files = ("--gate", str(folder / "gate.toml"), "--baseline", str(folder / BASELINE))
+    assert main(["check", *files, "--accept", "--quiet"]) == 0
+    return (folder / BASELINE).read_text()
+
+
+@pytest.fixture
+def baseline(accepted: str, call) -> None:
+    """It stands in the folder."""
+    Path(BASELINE).write_text(accepted)
 
 
 def change(path: str, table_change: Callable[[dict], None]) -> None:
@@ -99,8 +124,7 @@ def test_accept_then_check(call) -> None:
     assert "checks" not in checked.err
 
 
-def test_a_deflection_off_by_one_per_cent_is_exit_one(call) -> None:
-    call("--accept", "--quiet")
+def test_a_deflection_off_by_one_per_cent_is_exit_one(call, baseline) -> None:
     change("tissuebench-baseline.json", lambda table: table["timing"]["spring.history"].update(ratios=[1e9]))
     Path("my_model.py").write_text(MODEL.replace("1e-3", "1.01e-3"))
     called = call("--json", "--quiet", "--out", "out", "--junit", "ci/check.xml", "--markdown", "ci/check.md")
@@ -116,8 +140,7 @@ def test_a_deflection_off_by_one_per_cent_is_exit_one(call) -> None:
     assert "spring.max_deformation_mm.skin: baseline 5 mm, now 5.05 mm, allowed a difference of 0.005" in text
 
 
-def test_slower_is_exit_one(call) -> None:
-    call("--accept", "--quiet")
+def test_slower_is_exit_one(call, baseline) -> None:
     change("tissuebench-baseline.json", lambda table: table["timing"]["spring.history"].update(ratios=[1e-9]))
     change("tissuebench-baseline.json", lambda table: table["machine"].update(processor="another"))
     called = call()
@@ -146,8 +169,7 @@ def test_files_of_somebody_elses_are_not_replaced(call) -> None:
         assert Path("mine").read_text() == '{"a": 1}\n'
 
 
-def test_another_schema_is_exit_three_and_a_broken_file_exit_two(call) -> None:
-    call("--accept", "--quiet")
+def test_another_schema_is_exit_three_and_a_broken_file_exit_two(call, baseline) -> None:
     change("tissuebench-baseline.json", lambda table: table.update(schema=2))
     assert call("--quiet").code == 3
     Path("tissuebench-baseline.json").write_text("{")

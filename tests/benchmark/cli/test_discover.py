@@ -24,6 +24,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_run_ends_in_stiffening_and_the_model_file_repairs_it(benchmark_cli, finished: Path, tmp_path: Path) -> None:
     called = benchmark_cli("discover", finished, "--out", tmp_path / "d", "--json", "--quiet")
     assert called.code == 0, called.err

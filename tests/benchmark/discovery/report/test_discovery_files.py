@@ -73,6 +73,7 @@ def test_the_folder_holds_everything(record, tmp_path: Path) -> None:
         "tables/where.csv", "tables/contrasts.csv", "tables/candidates.csv", "tables/gap.csv", "tables/parameters.csv",
     }  # fmt: skip
     assert outcome.headline == record.found.statement
+    assert (outcome.folder / "report.html").read_text().count("<path") > 50
     gap = pd.read_csv(outcome.folder / "tables/gap.csv").set_index("channel")
     assert gap.loc["force_z", "closed"] == 0.99
     assert gap.loc["marker_radial", "unit"] == "mm"
@@ -80,6 +81,7 @@ def test_the_folder_holds_everything(record, tmp_path: Path) -> None:
     assert list(parameters.part) == ["base", "base", "viscoelastic_relaxation", "viscoelastic_relaxation"]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_only_what_is_named_goes_into_the_model(record, empty, tmp_path: Path) -> None:
     write_discovery(record, tmp_path / "named")
     model = read_model(tmp_path / "named/model.toml", record.cards)
@@ -92,6 +94,7 @@ def test_only_what_is_named_goes_into_the_model(record, empty, tmp_path: Path) -
         assert read_model(tmp_path / name / "model.toml", record.cards).effects == ()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_tables_without_a_row_keep_their_columns(empty, tmp_path: Path) -> None:
     write_discovery(empty, tmp_path / "new")
     where = pd.read_csv(tmp_path / "new/tables/where.csv")
@@ -109,6 +112,7 @@ def test_a_failure_leaves_nothing(record, tmp_path: Path, monkeypatch: pytest.Mo
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_unknown_floor_is_null_in_every_file(record, tmp_path: Path) -> None:
     gap = tuple(replace(each, noise_floor=None) for each in record.found.gap)
     made = write_discovery(replace(record, found=replace(record.found, gap=gap)), tmp_path / "new")
@@ -117,6 +121,7 @@ def test_an_unknown_floor_is_null_in_every_file(record, tmp_path: Path) -> None:
     assert "noise_floor" not in read_model(tmp_path / "new/model.toml", record.cards).evidence["gap"]["force_z"]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_signs_sizes_and_rivals_stand_in_the_files(record, tmp_path: Path) -> None:
     where = (replace(record.found.where[3], size=-8.8e-5, residual=3.4e-5),)
     rival = LookAlike("poroelastic_drainage", (Estimate("drainage_share", 0.4, "", (0.3, 0.5)),), 0.06, 7.0)

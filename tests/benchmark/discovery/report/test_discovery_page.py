@@ -11,6 +11,7 @@ from benchmark.discovery.report.discovery_record import NextExperiment
 from benchmark.discovery.report.effect_sections import next_section
 from reports import render_page
 
+pytestmark = pytest.mark.usefixtures("undrawn")  # test_discovery_files draws the page once
 ENVIRONMENT = {"made": "today", "packages": {"tissuebench": "0"}}
 
 

@@ -51,6 +51,7 @@ def test_a_model_that_is_off_throughout_is_told_by_layers(finished: RunRecord) -
     assert "is not shown in 3 of 3 layers" in verdict.headline
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_first_figures_of_a_press_by_depth_are_forces(finished: RunRecord) -> None:
     environment = {"processor": "x", "usable_cores": 1, "made": "now", "seed": 0, "packages": {"tissuebench": "0"}}
     load = finished.scenario.load.model_copy(update={"control": "depth", "peak": 2e-3})
