@@ -160,7 +160,8 @@ def extended_folder(path: StrPath, growing: Collection[str] | None = None) -> It
     """Add files to a result folder that is ours or new, replacing those of the same names there.
 
     The context manager yields a folder to fill, whose files are then put into `path` one by one. What they will be is
-    said in the manifest first, so that after a kill each file is known, old or new.
+    said in the manifest first, so that after a kill each file is known, old or new. What killed ones left beside `path`
+    is removed.
 
     Parameters
     ----------
@@ -175,6 +176,7 @@ def extended_folder(path: StrPath, growing: Collection[str] | None = None) -> It
         A file of one of these names is not ours, or was changed. Others beside them stay.
     """
     target = Path(path).resolve()
+    remove_dead_builds(target)
     with building(target) as temporary:
         yield temporary
         read_back(temporary)

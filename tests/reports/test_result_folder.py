@@ -375,3 +375,13 @@ def test_what_was_left_of_building_a_result_goes_with_the_next(tmp_path):
     with whole_folder(tmp_path / "result") as new:
         (new / "whole").write_text("2")
     assert [path.name for path in tmp_path.iterdir()] == ["result"]
+
+
+def test_adding_to_a_result_removes_what_killed_ones_left_beside_it(tmp_path):
+    dead = tmp_path / ".result.0123abcd.part"
+    dead.mkdir()
+    (dead / "manifest.json").write_text('{"schema": 1, "program": "tissuebench", "files": {}}')
+    (dead / "half").write_text("1")
+    with extended_folder(tmp_path / "result") as new:
+        (new / "table.csv").write_text("a\n1\n")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["result"]

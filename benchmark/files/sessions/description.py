@@ -148,10 +148,8 @@ class Camera(FileModel):
     def _is_a_grid(self) -> Self:
         count = self.marker_rows * self.marker_columns
         if not LEAST_MARKERS <= count <= MOST_MARKERS:
-            allowed = f"{LEAST_MARKERS} to {MOST_MARKERS} markers in all"
-            raise problem(
-                f"{self.marker_rows} rows of {self.marker_columns} are {count}; allowed: {allowed}", key="marker_rows"
-            )
+            allowed = f"{LEAST_MARKERS} to {MOST_MARKERS} in all"
+            raise problem(f"{self.marker_rows} x {self.marker_columns} markers; allowed: {allowed}", key="marker_rows")
         return self
 
 
