@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from benchmark.errors import InputError, InterruptedRunError, SolverError
-from reports.manifest import ForeignFilesError, remove_known
+from reports.manifest import ForeignFilesError, remove_empty, remove_known
 from reports.result_folder import KeptElsewhereError
 
 KEPT = re.compile(r"(?:fem_steps\w*|fem_steps_edge_[0-9.e+-]+|fem_mesh)\.kept(?:\.[0-9]+\.part)?")
@@ -19,8 +19,8 @@ KEPT = re.compile(r"(?:fem_steps\w*|fem_steps_edge_[0-9.e+-]+|fem_mesh)\.kept(?:
 def unfinished(folder: Path) -> Iterator[Path]:
     """Lend the hidden folder `.NAME.unfinished` beside a result to its run, and remove it when the result is written.
 
-    It is made only when a run is long enough to keep something. An interruption or a crash leaves it, and so does a
-    file system that takes the result nowhere; where the result is kept elsewhere, it goes.
+    It is made only when a run is long enough to keep something. An interruption or a crash leaves what is in it, and so
+    does a file system that takes the result nowhere; where the result is kept elsewhere, it goes.
 
     Raises
     ------
@@ -34,11 +34,11 @@ def unfinished(folder: Path) -> Iterator[Path]:
     try:
         yield path
     except KeyboardInterrupt:
-        if path.is_dir():
+        if _holds_work(path):
             raise InterruptedRunError(f"interrupted; {_left(path, folder)}") from None
         raise
     except SolverError as error:
-        if path.is_dir():
+        if _holds_work(path):
             raise SolverError(f"{error}; {_left(path, folder)}") from error
         raise
     except KeptElsewhereError:
@@ -47,9 +47,11 @@ def unfinished(folder: Path) -> Iterator[Path]:
     except ForeignFilesError:
         raise
     except OSError as error:
-        if path.is_dir():
-            raise InputError(f"{folder} cannot be written: {error}; {_left(path, folder)}") from error
+        if _holds_work(path):
+            raise InputError(f"{folder} cannot be written: {error.strerror or error}; {_left(path, folder)}") from error
         raise
+    finally:
+        remove_empty({path, *path.rglob("*")})
     remove_known(path, is_kept)
 
 
@@ -65,6 +67,11 @@ def _refuse_other(path: Path) -> None:
         raise InputError(
             f"{path} is where an unfinished run is kept, but holds something else; move it, or give another --out"
         )
+
+
+def _holds_work(path: Path) -> bool:
+    """Whether anything was kept; a folder may have been made before an input was refused."""
+    return any(each.is_file() for each in path.rglob("*"))
 
 
 def _left(path: Path, folder: Path) -> str:

@@ -61,3 +61,17 @@ def test_something_else_of_that_name_is_refused_and_kept(tmp_path: Path) -> None
     with pytest.raises(InputError, match="holds something else"), unfinished(tmp_path / "press"):
         pass
     assert (taken / "thesis.tex").read_text() == "years of work"
+
+
+def ended_with_nothing_kept(error: BaseException, folder: Path) -> None:
+    with unfinished(folder) as keep:
+        (keep / "ecoflex").mkdir(parents=True)
+        raise error
+
+
+@pytest.mark.parametrize("kind", [InputError, SolverError, OSError, KeyboardInterrupt])
+def test_an_empty_one_goes_and_promises_nothing(tmp_path: Path, kind: type[BaseException]) -> None:
+    with pytest.raises(kind) as caught:
+        ended_with_nothing_kept(kind("it broke"), tmp_path / "press")
+    assert list(tmp_path.iterdir()) == []
+    assert "goes on from there" not in str(caught.value)
