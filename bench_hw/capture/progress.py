@@ -59,7 +59,7 @@ class CaptureState:
         """Say it in one line."""
         film = "" if self.camera is None else f"camera {self.camera:.1f}/s dropped {self.dropped}  "
         return (
-            f"trial {self.trial}/{self.trials} {self.elapsed:.1f}/{self.planned:.0f} s  "
+            f"trial {self.trial}/{self.trials} {self.elapsed:.1f}/{self.planned:.1f} s  "
             f"depth {self.depth * 1e3:+.3f} mm  force {self.press:+.3f} N  {film}lost {self.lost}  {self.doing}"
         )
 
@@ -124,7 +124,7 @@ class PlainLines:
 
 
 class TerminalLine:
-    """One line on a terminal redrawn eight times a second by rich's thread.
+    """One line on a terminal, two where it is narrow, redrawn eight times a second by rich's thread.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ class TerminalLine:
     def _draw(self) -> RenderableType:
         from rich.text import Text
 
-        return Text(self._snapshot.line() if self._snapshot.trials else "", no_wrap=True, overflow="ellipsis")
+        return Text(self._snapshot.line() if self._snapshot.trials else "")
 
 
 def choose_progress(quiet: bool) -> ProgressDisplay:

@@ -34,10 +34,13 @@ STANDS = 3.0
 def count_of(depth: Array) -> float | None:
     """The count in m of depths (n,) m; None where they do not come in counts, or in such that do not matter.
 
-    In counts are distances that are whole, changes of mostly one at a time, and more rows that repeat than that change.
+    In counts are distances that are whole, changes of mostly one at a time, and more rows that repeat than that change,
+    while the tool moves, too: a tool that goes by one and the same way a row and then stands has no counts.
     """
     changes = np.flatnonzero(np.diff(depth))
     if len(changes) < LEAST_CHANGES or len(changes) > (1.0 - LEAST_REPEATS) * (changes[-1] - changes[0] + 1):
+        return None
+    if np.median(np.diff(changes)) < 2.0:
         return None
     steps = np.diff(np.unique(np.round(depth, DECIMALS)))
     counts = np.round(steps / steps.min())

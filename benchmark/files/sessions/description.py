@@ -181,8 +181,11 @@ _ASSUMED: Final[Mapping[str, str]] = {"radius": "5 mm", "contact": "rigid_bonded
 ASSUMED_EDGE = 0.1
 """Edge radius over tool radius of a touching tool whose edge no one measured: finite strain needs a rounded one."""
 _WHY: Final[Mapping[str, str]] = {
-    "radius": "the tool's radius is not given: assumed 5 mm",
-    "contact": "the tool's contact is not given: assumed rigid_bonded (a rigid tool to which the surface sticks)",
+    "radius": "the tool's radius is not given: assumed 5 mm (--set tool.radius=...)",
+    "contact": (
+        "the tool's contact is not given: assumed rigid_bonded, a rigid tool to which the surface sticks "
+        "(--set tool.contact=rigid_frictionless where it slides)"
+    ),
 }
 
 
@@ -244,7 +247,9 @@ def assumptions(file: SessionFile, conditions: Mapping[str, Setup]) -> list[str]
         for edge in sorted(edges)
     ]
     if any("kind" not in support for _, support in tools):
-        said.append("the support is not given: assumed bonded")
+        said.append(
+            "the support is not given: assumed bonded to a rigid base (--set support.kind=hole, half_space, plates)"
+        )
     return said
 
 

@@ -288,7 +288,8 @@ def assumed_specimen(tables: Sequence[TrialTable], told: Sequence[float] = (), t
     warning = (
         f"the specimen is not given: assumed one layer of {1e3 * thickness:.4g} mm ({how}), "
         f"Poisson ratio {ASSUMED_POISSON_RATIO:g}, density {ASSUMED_DENSITY:g} kg/m^3, "
-        f"Young's modulus {ASSUMED_YOUNGS_MODULUS / 1e3:g} kPa before any fit"
+        f"Young's modulus {ASSUMED_YOUNGS_MODULUS / 1e3:g} kPa before any fit (--specimen FILE, or "
+        "--set specimen.thickness=...)"
     )
     return Tissue(name="assumed specimen", citation="assumed, see warnings", layers=(layer,)), warning
 

@@ -41,6 +41,16 @@ def test_a_live_line_is_drawn_from_the_last_snapshot(monkeypatch, capsys):
     assert "fault (force_limit): [too] much" in capsys.readouterr().err
 
 
+def test_a_narrow_terminal_shows_what_was_lost():
+    from rich.console import Console
+
+    console = Console(file=io.StringIO(), width=80)
+    progress = TerminalLine(console)
+    progress.update(CaptureState(1, 1, "1 of 1: rest", 2.0, 3.0, camera=30.0, lost=17))
+    console.print(progress._draw())
+    assert "lost 17" in " ".join(console.file.getvalue().split())
+
+
 def test_the_choice_suits_the_place(monkeypatch):
     assert isinstance(choose_progress(quiet=True), Silent)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: False, raising=False)

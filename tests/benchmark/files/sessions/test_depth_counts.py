@@ -71,6 +71,11 @@ def test_what_does_not_come_in_counts(depth: np.ndarray) -> None:
     assert count_of(depth) is None
 
 
+def test_even_steps_and_a_long_hold_are_no_counts() -> None:
+    way = np.concatenate([np.linspace(0.0, 2e-3, 101), np.full(1000, 2e-3), np.linspace(2e-3, 0.0, 101)])
+    assert count_of(np.round(way, 7)) is None
+
+
 def test_only_trials_in_counts_are_changed_and_it_is_said() -> None:
     plain = TrialTable(TIME, _motion(), np.zeros(len(TIME)))
     counted = TrialTable(TIME, _read(_motion()), np.zeros(len(TIME)))

@@ -45,6 +45,8 @@ def test_plain_files(tmp_path, write_trial):
     assert session.specimen.thickness == 8e-3
     assert len(session.warnings) == 4
     assert any("the specimen is not given" in warning for warning in session.warnings)
+    said = " ".join(session.warnings)
+    assert all(f"--set {key}=" in said for key in ("tool.radius", "tool.contact", "support.kind", "specimen.thickness"))
 
 
 def test_plain_files_without_a_gap(tmp_path, write_trial):
