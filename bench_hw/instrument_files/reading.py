@@ -146,6 +146,10 @@ def _records(path: Path, blocks: Sequence[Block], told: Told) -> tuple[list[Pres
     )
     records = [record_of(_with_all_words(part), known) for part in trials]
     taken = {part.name for part in trials}
+    if (
+        len(records) == 1 and records[0].name.isdigit()
+    ):  # the number of a table among the file's own, which names nothing
+        records = [replace(records[0], name="")]
     aside = [
         f"{part.name!r} holds no record of a press and is left aside"
         for part in parts

@@ -35,7 +35,7 @@ def _one_sided(record: RunRecord, fit: str | None) -> Verdict:
     """A model has no values: nothing to compare it with, but the trials may still have told something."""
     missing = [run for run in (record.pair.fem, record.pair.wave) if run.result is None]
     names = " and ".join(run.name for run in missing)
-    nothing = f"Nothing to compare the models by: {names} without values here"
+    nothing = f"No comparison of the models: the {names} has no values here"
     points = [f"{nothing}, because {run.declined}" for run in missing]
     if fit is None:
         return Verdict("finding", f"{nothing}.", [str(run.declined) for run in missing])

@@ -156,7 +156,7 @@ def test_a_terminal_shows_one_line_that_is_drawn_again(folder, tmp_path):
     text = shown.getvalue()
     assert text.count("\n") == 1  # the line is left standing at the end
     last = text.rsplit("\x1b[2K", 1)[-1]
-    assert re.search(r"trial 1/1 \d\.\d/\d s  depth [+-]\d\.\d{3} mm  force [+-]\d\.\d{3} N", last)
+    assert re.search(r"trial 1/1 \d\.\d/\d\.\d s  depth [+-]\d\.\d{3} mm  force [+-]\d\.\d{3} N", last)
     assert re.search(r"camera \d\d\.\d/s dropped [1-9]\d*  lost [1-9]", last)
 
 

@@ -248,3 +248,8 @@ def test_numbered_curves_are_trials_of_their_folder(tmp_path):
     raw = samples.nanoscope(tmp_path).read_bytes()
     (tmp_path / "gel.004").write_bytes(raw)
     assert [each["file"] for each in _trial_files(tmp_path)] == ["gel.003", "gel.004"]
+
+
+def test_the_one_trial_of_a_report_has_no_number(tmp_path):
+    (record,) = read_instrument_file(samples.bluehill_report(tmp_path)).records
+    assert record.name == ""
