@@ -114,7 +114,7 @@ def test_markers_need_a_camera(session_folder, change):
     session = load_session(session_folder)
     assert session.trials[0].markers is None
     assert any("[camera] does not give their layout" in warning for warning in session.warnings)
-    grid = {"camera.marker_rows": "1", "camera.marker_columns": "3", "camera.marker_spacing": "1 mm"}
+    grid = {"camera.marker_rows": "2", "camera.marker_columns": "2", "camera.marker_spacing": "1 mm"}
     session = load_session(session_folder, grid)
     assert session.trials[0].markers.marker.max() == 2
     assert session.trials[1].markers is None
@@ -205,7 +205,7 @@ def test_one_bad_trial_refuses_the_session(session_folder, write_trial):
 
 
 def test_a_missing_camera_file_is_refused(session_folder):
-    grid = {"camera.marker_rows": "1", "camera.marker_columns": "3", "camera.marker_spacing": "1 mm"}
+    grid = {"camera.marker_rows": "2", "camera.marker_columns": "2", "camera.marker_spacing": "1 mm"}
     assert "there is no file 'camera.toml'" in refusal(session_folder, {**grid, "camera.file": "camera.toml"})
 
 
