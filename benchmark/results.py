@@ -73,23 +73,23 @@ class RunResult:
     def summary(self) -> str:
         """Largest deflection by layer and model, and the error between them."""
         peaks = self.to_frame().groupby("layer", sort=False)[["fem_mm", "wave_mm"]].max()
-        lines = [f"{self.record.name}: largest deflection, FEM and wave model"]
-        for layer, (fem, wave) in peaks.iterrows():
-            error = (
-                f"{100.0 * (wave / fem - 1.0):+.2f} %" if np.isfinite([fem, wave]).all() and fem else "no comparison"
-            )
-            lines.append(f"  {layer}: {fem:.4g} mm, {wave:.4g} mm ({error})")
+        fem, wave = self.record.pair.fem.name, self.record.pair.wave.name
+        lines = [f"{self.record.name}: largest deflection, {fem} and {wave}"]
+        for layer, (first, second) in peaks.iterrows():
+            compared = np.isfinite([first, second]).all() and first
+            error = f"{100.0 * (second / first - 1.0):+.2f} %" if compared else "no comparison"
+            lines.append(f"  {layer}: {first:.4g} mm, {second:.4g} mm ({error})")
         return "\n".join([*lines, *(f"  warning: {each}" for each in self.warnings)])
 
     def plot(self) -> Figure:
-        """Deflection over force, FEM and wave model, a panel a layer."""
+        """Deflection over force, FEM and wave model or what stands in their places, a panel a layer."""
         frame = self.to_frame()
         layers = list(dict.fromkeys(frame["layer"]))
 
         def panel(axes: Axes, k: int) -> None:
             rows = frame[frame["layer"] == layers[k]]
-            axes.plot(rows["force_N"], rows["fem_mm"], label="FEM")
-            axes.plot(rows["force_N"], rows["wave_mm"], "--", label="wave model")
+            axes.plot(rows["force_N"], rows["fem_mm"], label=self.record.pair.fem.name)
+            axes.plot(rows["force_N"], rows["wave_mm"], "--", label=self.record.pair.wave.name)
             axes.set(title=layers[k], xlabel="force (N)", ylabel="deflection (mm)")
 
         return _panels(len(layers), panel)
@@ -299,14 +299,18 @@ class ComparisonResult:
         return f"{', '.join(self.record.runs)}\n{lines}"
 
     def plot(self) -> Figure:
-        """Largest deflection of each layer by run, FEM and wave model."""
-        frame = self.to_frame()
+        """Largest deflection of each layer by run, FEM and wave model or what stands in their places."""
+        frame, pairs = self.to_frame(), [run.record.pair for run in self.record.runs.values()]
+
+        def names(place: str) -> dict[str, None]:
+            return dict.fromkeys(getattr(pair, place).name for pair in pairs)
+
         layers = list(dict.fromkeys(frame["layer"]))
 
         def panel(axes: Axes, k: int) -> None:
             rows = frame[frame["layer"] == layers[k]]
-            axes.plot(rows["run"], rows["fem_mm"], "o", label="FEM")
-            axes.plot(rows["run"], rows["wave_mm"], "s", label="wave model")
+            axes.plot(rows["run"], rows["fem_mm"], "o", label=", ".join(names("fem")))
+            axes.plot(rows["run"], rows["wave_mm"], "s", label=", ".join(names("wave")))
             axes.set(title=layers[k], ylabel="largest deflection (mm)")
 
         return _panels(len(layers), panel)

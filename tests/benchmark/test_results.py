@@ -1,0 +1,39 @@
+"""What the verbs answer in a script calls models by what stands there."""
+
+from dataclasses import replace
+
+import pytest
+
+from benchmark.cli.console import Console
+from benchmark.files import load_scenario
+from benchmark.results import RunResult
+from benchmark.runs.options import RunOptions
+from benchmark.runs.scenario_run import run_scenario
+
+QUICK = {"fem.mesh": "coarse", "load.observations": "10", "wave.large_press": "linear"}
+
+
+@pytest.fixture(scope="module")
+def record():
+    return run_scenario(load_scenario("skin-5N", QUICK), RunOptions(repeats=1), Console(quiet=True))
+
+
+def labels(result):
+    return result.plot().axes[0].get_legend_handles_labels()[1]
+
+
+def test_a_run_has_the_harness_s_own_models_by_their_names(record):
+    result = RunResult(record)
+    assert labels(result) == ["FEM", "wave model"]
+    assert "largest deflection, FEM and wave model" in result.summary()
+
+
+def test_a_user_s_own_fea_and_model_are_called_so(record):
+    pair = replace(
+        record.pair,
+        fem=replace(record.pair.fem, own="FEA of mine.csv"),
+        wave=replace(record.pair.wave, own="springs"),
+    )
+    result = RunResult(replace(record, pair=pair))
+    assert labels(result) == ["FEA of mine.csv", "springs"]
+    assert "largest deflection, FEA of mine.csv and springs" in result.summary()
