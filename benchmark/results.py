@@ -309,8 +309,8 @@ class ComparisonResult:
 
         def panel(axes: Axes, k: int) -> None:
             rows = frame[frame["layer"] == layers[k]]
-            axes.plot(rows["run"], rows["fem_mm"], "o", label=", ".join(names("fem")))
-            axes.plot(rows["run"], rows["wave_mm"], "s", label=", ".join(names("wave")))
+            axes.plot(rows["run"], rows["fem_max_mm"], "o", label=", ".join(names("fem")))
+            axes.plot(rows["run"], rows["wave_max_mm"], "s", label=", ".join(names("wave")))
             axes.set(title=layers[k], ylabel="largest deflection (mm)")
 
         return _panels(len(layers), panel)

@@ -23,7 +23,7 @@ def register(app: typer.Typer) -> None:
 
 def capture(
     protocol: Annotated[str, typer.Argument(help="Protocol of motion: a path or a shipped name.")],
-    rig: Annotated[str, typer.Option(help="Rig file, or the shipped rig `simulated`.")] = "",
+    rig: Annotated[str, typer.Option(help="Rig file, or a shipped rig: `simulated`, `simulated_phantom`.")] = "",
     out: Annotated[Path | None, typer.Option(help="Folder of the session; must be new or empty.")] = None,
     trials: Annotated[int, typer.Option(help="How many trials to record.")] = 1,
     fast: Annotated[bool, typer.Option("--fast", help="Simulated time; for simulated devices only.")] = False,

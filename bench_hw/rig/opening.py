@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from bench_hw.simulated.replayed_trial import Replay
     from bench_hw.simulated.specimen import Specimen
     from bench_hw.simulated.twins import Twins
-    from bench_hw.simulated.virtual_specimen import VirtualSpecimen
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,8 +224,8 @@ def _check_calibration(loaded: LoadedRig) -> None:
         raise DeviceError(f"{where}: made for pictures of {size} pixels; the rig asks for {list(camera.size)}")
 
 
-def specimen_of(loaded: LoadedRig) -> VirtualSpecimen | None:
-    """The virtual specimen that a simulated rig names; None without.
+def specimen_of(loaded: LoadedRig) -> Specimen | None:
+    """The specimen that a simulated rig names, a file of its own or the table of a shipped sheet; None without.
 
     Raises
     ------
@@ -236,7 +235,14 @@ def specimen_of(loaded: LoadedRig) -> VirtualSpecimen | None:
     from bench_hw.simulated.virtual_specimen import read_specimen
 
     name = loaded.rig.simulation.specimen
-    return None if name is None else read_specimen(loaded.resolve(name))
+    if name is None:
+        return None
+    path = loaded.resolve(name)
+    if path.suffix or path.is_file():
+        return read_specimen(path)
+    from bench_hw.simulated.tabulated import TabulatedSpecimen, read_sheet
+
+    return TabulatedSpecimen(read_sheet(name))
 
 
 def _twins(rig: rig_file.Rig, clock: Clock, specimen: Specimen | None, seed: int | None) -> Twins:

@@ -196,7 +196,7 @@ class ScheduledFault(StrictModel):
 
 
 class Simulation(StrictModel):
-    """What is common to the simulated devices; `specimen` is a file of `bench_hw.simulated.virtual_specimen`."""
+    """What is common to the simulated devices; `specimen` is a file of `simulated.virtual_specimen`, or `phantom`."""
 
     seed: Annotated[int, Field(ge=0, strict=True)] = 0
     contact: Annotated[Length, Field(ge=0.0)] = 5e-3

@@ -43,6 +43,8 @@ class SheetTable:
         m.
     source : str
         Who computed it.
+    tissue : str
+        The shipped tissue that it is of, whose stiffness need not be the sheet's; "" where none is known.
     """
 
     depth: FloatArray
@@ -53,6 +55,7 @@ class SheetTable:
     hole_radius: float
     tool_radius: float
     source: str
+    tissue: str = ""
 
 
 @dataclass(slots=True)
@@ -107,9 +110,9 @@ class TabulatedSpecimen:
         force[:, 2] = np.maximum(self._press(time, pressed, start), 0.0) * (pressed[start:] > 0.0)
         return Response(force, self._markers(pressed[start:]))
 
-    def session_keys(self) -> dict[str, dict[str, object]]:
-        """What a session file says of this specimen: tool, support and markers."""
-        return {
+    def session_keys(self) -> dict[str, object]:
+        """What a session file says of this specimen: tissue where it is known, tool, support and markers."""
+        return ({"specimen": self.table.tissue} if self.table.tissue else {}) | {
             "tool": {"radius": f"{self.table.tool_radius * 1e3:g} mm", "contact": "rigid_bonded"},
             "support": {"kind": "hole", "hole_radius": f"{self.table.hole_radius * 1e3:g} mm"},
             "camera": {
@@ -165,6 +168,7 @@ def write_sheet(path: Path, table: SheetTable) -> Path:
         "schema": SCHEMA,
         "synthetic": True,
         "source": table.source,
+        "tissue": table.tissue,
         "units": "SI",
         "hole_radius": table.hole_radius,
         "tool_radius": table.tool_radius,
@@ -192,6 +196,7 @@ def read_sheet(name_or_path: str | Path) -> SheetTable:
             hole_radius=float(content["hole_radius"]),
             tool_radius=float(content["tool_radius"]),
             source=str(content["source"]),
+            tissue=str(content.get("tissue", "")),
             **arrays,
         )
     except OSError:

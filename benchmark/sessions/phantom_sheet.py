@@ -53,4 +53,5 @@ def hidden_sheet() -> SheetTable:
         hole_radius=float(SUPPORT.hole_radius or 0.0),
         tool_radius=TOOL.radius,
         source=SOURCE,
+        tissue=SPECIMEN,
     )

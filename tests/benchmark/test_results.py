@@ -9,6 +9,7 @@ from benchmark.files import load_scenario
 from benchmark.results import RunResult
 from benchmark.runs.options import RunOptions
 from benchmark.runs.scenario_run import run_scenario
+from benchmark.scripting import compare
 
 QUICK = {"fem.mesh": "coarse", "load.observations": "10", "wave.large_press": "linear"}
 
@@ -37,3 +38,14 @@ def test_a_user_s_own_fea_and_model_are_called_so(record):
     result = RunResult(replace(record, pair=pair))
     assert labels(result) == ["FEA of mine.csv", "springs"]
     assert "largest deflection, FEA of mine.csv and springs" in result.summary()
+
+
+def test_runs_side_by_side_are_drawn_by_layer(record, tmp_path):
+    own = replace(record, pair=replace(record.pair, fem=replace(record.pair.fem, own="FEA of mine.csv")))
+    for name, each in (("first", record), ("second", own)):
+        RunResult(each).report(tmp_path / name)
+    axes = compare(tmp_path / "first", tmp_path / "second").plot().axes
+    labels = axes[0].get_legend_handles_labels()[1]
+    assert [each.get_title() for each in axes[: len(record.layers)]] == list(record.layers)
+    assert labels == ["FEM, FEA of mine.csv", "wave model"]
+    assert axes[0].lines[0].get_ydata() == pytest.approx(2 * [1e3 * record.pair.fem.result.max_deformation()[0]])

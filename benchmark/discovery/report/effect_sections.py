@@ -85,6 +85,10 @@ def effects_section(record: DiscoveryRecord) -> Section:
     return Section(title, blocks)
 
 
+OF_A_RUN = "of the likelihood among the candidates; one run has no noise, so nothing is tested"
+"""What the weight of an effect found in a run is, where a session's answer has a confidence."""
+
+
 def _effect(effect: NamedEffect, record: DiscoveryRecord) -> list[Block]:
     card = record.cards.get(effect.slug)
     facts = _confidence(effect, record)
@@ -102,16 +106,13 @@ def _effect(effect: NamedEffect, record: DiscoveryRecord) -> list[Block]:
 
 
 def _confidence(effect: NamedEffect, record: DiscoveryRecord) -> list[Fact]:
-    """How often such an answer was right; nothing for an entry that is not named."""
+    """How often such an answer was right; of a run its weight; nothing for an entry that is not named."""
     if not record.named:
         return []
     told = f"{format_number(100 * effect.confidence, 2, trim=True)} %"
-    return [
-        Fact(
-            "Confidence",
-            told if record.source == "run" else f"{told}: so often was such an answer right in blind trials",
-        )
-    ]
+    if record.source == "run":
+        return [Fact("Weight", f"{told} {OF_A_RUN}")]
+    return [Fact("Confidence", f"{told}: so often was such an answer right in blind trials")]
 
 
 def _constancy(effect: NamedEffect, record: DiscoveryRecord) -> str:

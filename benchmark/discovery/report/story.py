@@ -7,7 +7,7 @@ import numpy as np
 from benchmark.discovery.discovery_result import Candidate, ChannelGap, Place, Trace, channel_unit
 from benchmark.discovery.report.disagreement_sections import representative, traced
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
-from benchmark.discovery.report.effect_sections import ADVICE
+from benchmark.discovery.report.effect_sections import ADVICE, OF_A_RUN
 from benchmark.discovery.report.words import channel_name, effect_name, phase_name, probability, sized
 from reports import Story, StoryStep
 from reports.figures import repaired
@@ -93,6 +93,8 @@ def _rival(record: DiscoveryRecord) -> str:
     """How sure, against the best candidate that is not part of the answer."""
     answer = {effect.slug for effect in record.found.effects}
     share = format_number(100.0 * record.found.effects[0].confidence, 3, trim=True)
+    if record.source == "run":
+        return f"{share} % {OF_A_RUN}."
     first = next((each for each in record.found.candidates if set(each.slugs) <= answer), None)
     second = next((each for each in record.found.candidates if not set(each.slugs) <= answer), None)
     if first is None or second is None or not first.gain > 0.0:

@@ -3,7 +3,9 @@
 import pytest
 
 from bench_hw.errors import InputError
+from bench_hw.rig.opening import specimen_of
 from bench_hw.rig.rig_file import load_rig, shipped_rigs, simulated_rig
+from bench_hw.simulated.tabulated import read_sheet
 
 FORCE = '[force]\nkind = "netft"\nhost = "192.0.2.10"\n'
 ACTUATOR = '[actuator]\nkind = "lac"\nstroke = "50 mm"\n'
@@ -102,3 +104,14 @@ def test_changes_to_the_shipped_rig_are_checked_and_stand_in_its_text():
 def test_an_unknown_name_lists_the_shipped_ones():
     with pytest.raises(InputError, match=r"rig 'simulatd'.*simulated"):
         load_rig("simulatd")
+
+
+def test_the_rig_of_the_demonstration_says_what_is_pressed() -> None:
+    loaded = load_rig("simulated_phantom")
+    keys = specimen_of(loaded).session_keys()
+    assert keys["specimen"] == "rtv3498_sheet"
+    assert keys["tool"] == {"radius": "5 mm", "contact": "rigid_bonded"}
+    deepest = loaded.rig.safety.travel[1] - loaded.rig.actuator.contact
+    assert deepest <= read_sheet("phantom").depth[-1]
+    plain = load_rig("simulated").rig
+    assert (plain.force, plain.camera, plain.actuator) == (loaded.rig.force, loaded.rig.camera, loaded.rig.actuator)

@@ -20,3 +20,10 @@ def test_more_or_less_is_what_was_measured_not_what_the_effects_add(record) -> N
     told = story(replace(record, found=replace(record.found, where=(place,))))
     assert told.steps[0].answer.endswith("(9.0 %), less than simulated")
     assert "−0.20 N" in told.steps[0].answer
+
+
+def test_a_run_has_a_weight_and_no_confidence(record) -> None:
+    of_run, of_session = (story(replace(record, source=source)).steps[1].detail for source in ("run", "session"))
+    assert "Confidence" in of_session
+    assert "Confidence" not in of_run
+    assert "of the likelihood among the candidates; one run has no noise, so nothing is tested" in of_run
