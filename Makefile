@@ -76,6 +76,7 @@ docs: $(DEV_STAMP)
 pictures: $(RUN_STAMP)
 	mkdir -p build/pictures
 	MPLBACKEND=Agg $(PY) examples/theory_figures.py docs/pictures
+	MPLBACKEND=Agg $(PY) examples/video_figures.py docs/pictures
 	set -e; for script in examples/gallery/*.py; do (cd build/pictures && MPLBACKEND=Agg ../../$(PY) ../../$$script); done
 	cp build/pictures/*.png docs/pictures
 

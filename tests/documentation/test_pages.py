@@ -37,7 +37,7 @@ def test_pictures_are_there_with_words_and_small(page: Path) -> None:
 def test_every_picture_is_one_that_a_script_of_ours_makes_and_a_page_shows() -> None:
     shown = "".join(page.read_text() for page in PAGES)
     scripts = "".join(path.read_text() for path in (ROOT / "examples" / "gallery").glob("*.py"))
-    scripts += (ROOT / "examples" / "theory_figures.py").read_text()
+    scripts += "".join(path.read_text() for path in (ROOT / "examples").glob("*_figures.py"))
     for picture in (DOCS / "pictures").glob("*"):
         assert f"](pictures/{picture.name})" in shown
         assert f'"{picture.name}"' in scripts or f'"{picture.stem.removeprefix("theory-")}": ' in scripts
