@@ -17,7 +17,9 @@ from bench_hw.rig.rig_file import LoadedRig
 if TYPE_CHECKING:
     from bench_hw.simulated.replayed_trial import Replay
     from bench_hw.simulated.specimen import Specimen
+    from bench_hw.simulated.tabulated import TabulatedSpecimen
     from bench_hw.simulated.twins import Twins
+    from bench_hw.simulated.virtual_specimen import VirtualSpecimen
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +63,7 @@ def open_bench(loaded: LoadedRig, clock: Clock, *, specimen: Specimen | None = N
     """
     rig = loaded.rig
     _check_calibration(loaded)
-    twins = _twins(rig, clock, specimen or specimen_of(loaded), seed) if rig.simulated else None
+    twins = _twins(rig, clock, specimen or specimen_of(loaded) or sheet_of(loaded), seed) if rig.simulated else None
     context = Opening(loaded, clock, twins, _replay(loaded, clock))
     camera = None if rig.camera is None else open_camera(rig.camera, context)
     return Bench(
@@ -224,8 +226,24 @@ def _check_calibration(loaded: LoadedRig) -> None:
         raise DeviceError(f"{where}: made for pictures of {size} pixels; the rig asks for {list(camera.size)}")
 
 
-def specimen_of(loaded: LoadedRig) -> Specimen | None:
-    """The specimen that a simulated rig names, a file of its own or the table of a shipped sheet; None without.
+def sheet_of(loaded: LoadedRig) -> TabulatedSpecimen | None:
+    """The shipped sheet that a simulated rig names, as `phantom`; None where it names a file of its own, or nothing.
+
+    Raises
+    ------
+    InputError
+        None of that name ships.
+    """
+    from bench_hw.simulated.tabulated import TabulatedSpecimen, read_sheet
+
+    name = loaded.rig.simulation.specimen
+    if name is None or _is_file(loaded, name):
+        return None
+    return TabulatedSpecimen(read_sheet(name))
+
+
+def specimen_of(loaded: LoadedRig) -> VirtualSpecimen | None:
+    """The virtual specimen whose file a simulated rig names; None without.
 
     Raises
     ------
@@ -235,14 +253,11 @@ def specimen_of(loaded: LoadedRig) -> Specimen | None:
     from bench_hw.simulated.virtual_specimen import read_specimen
 
     name = loaded.rig.simulation.specimen
-    if name is None:
-        return None
-    path = loaded.resolve(name)
-    if path.suffix or path.is_file():
-        return read_specimen(path)
-    from bench_hw.simulated.tabulated import TabulatedSpecimen, read_sheet
+    return None if name is None or not _is_file(loaded, name) else read_specimen(loaded.resolve(name))
 
-    return TabulatedSpecimen(read_sheet(name))
+
+def _is_file(loaded: LoadedRig, name: str) -> bool:
+    return bool(loaded.resolve(name).suffix) or loaded.resolve(name).is_file()
 
 
 def _twins(rig: rig_file.Rig, clock: Clock, specimen: Specimen | None, seed: int | None) -> Twins:

@@ -23,7 +23,7 @@ from bench_hw.capture.progress import Silent
 from bench_hw.capture.session import capture
 from bench_hw.errors import BenchError
 from bench_hw.motion.protocol_file import load_protocol
-from bench_hw.rig.opening import specimen_of
+from bench_hw.rig.opening import sheet_of, specimen_of
 from bench_hw.rig.rig_file import LoadedRig, load_rig
 from bench_hw.storage.folder_lock import scratch
 from bench_hw.trial_file import read_trial_mcap
@@ -84,8 +84,9 @@ class BenchWork:
 
     def allowed(self, done: set[str]) -> Allowed:
         """What the bench can do."""
-        specimen = specimen_of(self.rig)
+        specimen, sheet = specimen_of(self.rig), sheet_of(self.rig)
         radii = None if specimen is None else tuple(1e-3 * tool.radius_mm for tool in specimen.file.tools)
+        radii = radii if sheet is None else (sheet.table.tool_radius,)
         return Allowed(self.rig.rig.safety.force_limit, frozenset(done), radii)
 
     def record(self, proposal: NextExperiment, trials: int, number: int) -> tuple[Path, ...]:

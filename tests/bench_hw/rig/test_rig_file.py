@@ -3,7 +3,7 @@
 import pytest
 
 from bench_hw.errors import InputError
-from bench_hw.rig.opening import specimen_of
+from bench_hw.rig.opening import sheet_of, specimen_of
 from bench_hw.rig.rig_file import load_rig, shipped_rigs, simulated_rig
 from bench_hw.simulated.tabulated import read_sheet
 
@@ -108,7 +108,8 @@ def test_an_unknown_name_lists_the_shipped_ones():
 
 def test_the_rig_of_the_demonstration_says_what_is_pressed() -> None:
     loaded = load_rig("simulated_phantom")
-    keys = specimen_of(loaded).session_keys()
+    assert specimen_of(loaded) is None
+    keys = sheet_of(loaded).session_keys()
     assert keys["specimen"] == "rtv3498_sheet"
     assert keys["tool"] == {"radius": "5 mm", "contact": "rigid_bonded"}
     deepest = loaded.rig.safety.travel[1] - loaded.rig.actuator.contact
