@@ -73,12 +73,11 @@ def whole_folder(path: StrPath) -> Iterator[Path]:
 def write_whole(path: StrPath, fill: Callable[[Path], None]) -> None:
     """Let `fill` write a result folder at `path`, as `whole_folder`; where that cannot be, keep it elsewhere.
 
-    What took hours to compute is not lost to a disk that has filled up, or a share that went away, in the meantime.
+    What took hours to compute is not lost to a disk that has filled up, a share that went away, or something that came
+    into its place in the meantime.
 
     Raises
     ------
-    ForeignFilesError, FileExistsError
-        As `whole_folder`; nothing is kept then.
     KeptElsewhereError
         The result is complete, but in another place, which the message names.
     OSError
@@ -87,8 +86,13 @@ def write_whole(path: StrPath, fill: Callable[[Path], None]) -> None:
     try:
         with whole_folder(path) as new:
             fill(new)
-    except (ForeignFilesError, FileExistsError, KeptElsewhereError):
+    except KeptElsewhereError:
         raise
+    except (ForeignFilesError, FileExistsError) as error:
+        beside = _free(Path(path).resolve())
+        with whole_folder(beside) as new:
+            fill(new)
+        raise KeptElsewhereError(f"{error}; the new result is kept in {beside}") from error
     except OSError as error:
         kept = _kept_elsewhere(Path(path).resolve(), fill)
         if kept is None:

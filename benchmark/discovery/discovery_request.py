@@ -92,7 +92,7 @@ def answer(request: DiscoverRequest, listener: Listener) -> DiscoveryRecord:
 def put_down(record: DiscoveryRecord, out: Path | None) -> DiscoveryOutcome:
     """Write the result folder of an answer, by default results/NAME-DATE-TIME, and forget the fits kept for it."""
     try:
-        outcome = write_discovery(record, destination(out, f"{record.name}-discovery"))
+        outcome = write_discovery(record, out or destination(None, f"{record.name}-discovery"))
     except KeptElsewhereError:
         _forget(record)
         raise

@@ -186,7 +186,7 @@ def fit_to_folder(request: FitRequest, out: Path | None, listener: Listener) -> 
     with claimed(out, "fit"):
         destination(out, "", inputs)
         record = carry_out_fit(request, listener)
-        return write_fit(record, destination(out, f"{record.found.session.name}-fit"))
+        return write_fit(record, out or destination(None, f"{record.found.session.name}-fit"))
 
 
 def write_fit(record: FitRecord, folder: Path) -> FitOutcome:

@@ -385,3 +385,18 @@ def test_adding_to_a_result_removes_what_killed_ones_left_beside_it(tmp_path):
     with extended_folder(tmp_path / "result") as new:
         (new / "table.csv").write_text("a\n1\n")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["result"]
+
+
+@pytest.mark.parametrize("with_notes", [True, False])
+def test_what_came_into_its_place_meanwhile_stays_and_the_result_lies_beside(tmp_path, with_notes):
+    place = tmp_path / "result"
+    if with_notes:
+        place.mkdir()
+        (place / "notes").write_text("mine")
+    else:
+        place.write_text("mine")
+    with pytest.raises(KeptElsewhereError, match=r"the new result is kept in .*result-2"):
+        write_whole(place, lambda new: (new / "table.csv").write_text("a\n1\n"))
+    assert (place / "notes" if with_notes else place).read_text() == "mine"
+    assert sorted(path.name for path in (tmp_path / "result-2").iterdir()) == ["manifest.json", "table.csv"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["result", "result-2"]
