@@ -162,7 +162,7 @@ def test_a_place_that_cannot_be_written_is_exit_2(run, quick, rig, tmp_path):
     (tmp_path / "file").write_text("")
     ran = run("capture", quick, "--rig", rig(), "--out", tmp_path / "file" / "s", "--fast")
     assert ran.exit_code == 2
-    assert "cannot be written" in ran.stderr
+    assert f"{tmp_path / 'file'} is a file where a folder is needed" in ran.stderr
 
 
 def test_a_full_disk_leaves_no_empty_folder(run, quick, rig, tmp_path, monkeypatch):
