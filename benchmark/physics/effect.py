@@ -163,6 +163,25 @@ class FemTerm:
 
 
 @dataclass(frozen=True)
+class TableTerm:
+    """How the finite elements' table of a set-up carries an effect, in place of `body` and `lower_face`.
+
+    Attributes
+    ----------
+    key : str
+        Of the table's `added`.
+    amount : str
+        The parameter that is the amount of it, SI.
+    part : str
+        The parameter that is the part of it that the lower face shows.
+    """
+
+    key: str
+    amount: str
+    part: str
+
+
+@dataclass(frozen=True)
 class Effect:
     """An entry of the catalogue; every place is optional.
 
@@ -188,6 +207,8 @@ class Effect:
         File of an own effect.
     fem : FemTerm or None
         How the FEM carries it by itself.
+    in_table : TableTerm or None
+        How a table of the finite elements carries it, where that is known.
     native_in_wave : tuple of str
         Parameters and options that the wave of a scenario has in its own equations, not on top of its elastic law.
     """
@@ -205,6 +226,7 @@ class Effect:
     amplitudes: tuple[str, ...] = ()
     fem: FemTerm | None = None
     native_in_wave: tuple[str, ...] = ()
+    in_table: TableTerm | None = None
 
     @property
     def slug(self) -> str:

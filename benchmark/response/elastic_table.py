@@ -27,6 +27,10 @@ MOST_GROWN = 5.0
 """Largest change of the logarithm of a force that is believed."""
 ROUND_OFF = 1e-5
 """Terms of a basis below this share of the first are left out."""
+ALIKE = 0.01
+"""Fields below this share of the first are taken for as large, where a basis is chosen: their unit may be small."""
+LEAST = 1e-300
+NONE: Mapping[str, float] = {}
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,9 +64,14 @@ class SeparableField:
 
     @staticmethod
     def on_one_basis(fields: Sequence[SeparableField]) -> tuple[SeparableField, ...]:
-        """The same fields on shapes (c, q) that all share, so that their sums have no more terms than one of them."""
+        """The same fields on shapes (c, q) that all share, so that their sums have no more terms than one of them.
+
+        What is left out of a field is small beside the first one, and beside the field itself where that is small.
+        """
         sizes = [np.linalg.qr(field.amplitudes.T, mode="r") @ field.shapes for field in fields]
-        _, values, basis = np.linalg.svd(np.concatenate(sizes), full_matrices=False)
+        largest = float(np.linalg.norm(sizes[0]))
+        grown = [each * max(1.0, ALIKE * largest / max(float(np.linalg.norm(each)), LEAST)) for each in sizes]
+        _, values, basis = np.linalg.svd(np.concatenate(grown), full_matrices=False)
         shapes = np.ascontiguousarray(basis[values > ROUND_OFF * values[0]])
         return tuple(SeparableField(shapes @ field.shapes.T @ field.amplitudes, shapes) for field in fields)
 
@@ -104,6 +113,9 @@ class ElasticTable:
         Motion of the lower face away from the axis and along the press.
     by : mapping of key to SetupDerivative
         Parameters act each by itself: there are no mixed terms.
+    added : mapping of key to SetupDerivative
+        What one unit of something that the set-up as told has none of adds (SI, first order): a tension before the
+        press by its `physics.pretension`.
     note : str
         What a reader must know of it.
     """
@@ -114,6 +126,7 @@ class ElasticTable:
     outward: SeparableField | None = None
     sink: SeparableField | None = None
     by: Mapping[str, SetupDerivative] = field(default_factory=dict)
+    added: Mapping[str, SetupDerivative] = field(default_factory=dict)
     note: str = ""
 
     def force_with(self, changes: Mapping[str, float]) -> Array:
@@ -133,35 +146,49 @@ class ElasticTable:
         )
         return np.asarray(self.force * np.exp(np.clip(grown, -MOST_GROWN, MOST_GROWN)))
 
+    def force_added(self, amounts: Mapping[str, float]) -> Array:
+        """(k,) N that amounts of what the set-up as told has none of add."""
+        parts = (amount * self.added[key].force[0] for key, amount in amounts.items())
+        return np.asarray(sum(parts, start=np.zeros_like(self.force)))
+
     @cached_property
     def _log_orders(self) -> dict[str, Array]:
         """Orders (o, k) of the logarithm of the force by the way of each parameter; 0 where there is no force."""
         return {key: _of_logarithm(self.force, each.force, is_absolute(key)) for key, each in self.by.items()}
 
-    def outward_with(self, changes: Mapping[str, float]) -> SeparableField | None:
-        """The outward motion with parameters changed, as `force_with`, linear or of second order in the way."""
+    def outward_with(self, changes: Mapping[str, float], amounts: Mapping[str, float] = NONE) -> SeparableField | None:
+        """The outward motion with parameters changed, as `force_with`, linear or of second order in the way.
+
+        `amounts` are of what the set-up as told has none of, linear.
+        """
         parts = [part for key, change in self._known(changes) for part in _moved(self.by[key].outward, key, change)]
+        parts += [(amount, part) for key, amount in amounts.items() for part in self.added[key].outward]
         return None if self.outward is None else self.outward.plus(parts)
 
-    def sink_with(self, changes: Mapping[str, float]) -> SeparableField | None:
+    def sink_with(self, changes: Mapping[str, float], amounts: Mapping[str, float] = NONE) -> SeparableField | None:
         """The sinking with parameters changed, as `outward_with`."""
         parts = [part for key, change in self._known(changes) for part in _moved(self.by[key].sink, key, change)]
+        parts += [(amount, part) for key, amount in amounts.items() for part in self.added[key].sink]
         return self.sink if self.sink is None or not parts else self.sink.plus(parts)
 
     def compact(self) -> ElasticTable:
         """The same table with the fields of each kind on one basis."""
         if self.outward is None or self.sink is None:
             return self
-        out = SeparableField.on_one_basis([self.outward, *(f for each in self.by.values() for f in each.outward)])
-        sunk = SeparableField.on_one_basis([self.sink, *(f for each in self.by.values() for f in each.sink)])
+        parts = [*self.by.values(), *self.added.values()]
+        out = SeparableField.on_one_basis([self.outward, *(f for each in parts for f in each.outward)])
+        sunk = SeparableField.on_one_basis([self.sink, *(f for each in parts for f in each.sink)])
         outs, sinks = iter(out[1:]), iter(sunk[1:])
-        by = {
-            key: SetupDerivative(
-                each.force, tuple(islice(outs, len(each.outward))), tuple(islice(sinks, len(each.sink)))
-            )
-            for key, each in self.by.items()
-        }
-        return replace(self, outward=out[0], sink=sunk[0], by=by)
+        by, added = (
+            {
+                key: SetupDerivative(
+                    each.force, tuple(islice(outs, len(each.outward))), tuple(islice(sinks, len(each.sink)))
+                )
+                for key, each in kind.items()
+            }
+            for kind in (self.by, self.added)
+        )
+        return replace(self, outward=out[0], sink=sunk[0], by=by, added=added)
 
     def _known(self, changes: Mapping[str, float]) -> list[tuple[str, float]]:
         return [(key, change) for key, change in changes.items() if key in self.by]

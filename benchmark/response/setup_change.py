@@ -34,6 +34,8 @@ constants of its own that is its modulus."""
 ABSOLUTE = ("poisson_ratio", "c01", "c20", "c30")
 """Last parts of the keys of layers whose changes are amounts in SI units."""
 CLAMP, CONTACT = "support.clamp", "tool.contact"
+PRETENSION = "physics.pretension"
+"""Key of the in-plane stress of all layers before the press, Pa."""
 CHOICES = (CLAMP, CONTACT)
 """Keys that have no number: a set-up is as told, or the other way."""
 

@@ -27,6 +27,8 @@ class Shape:
         Natural logarithm of the common factor on the moduli.
     setup : mapping of str to float
         Relative changes of set-up parameters by their keys, as in `--set`.
+    added : mapping of str to (float, float)
+        Amounts of what the table's `added` has by their keys, SI, and the part of each that the lower face shows.
     exponent : float
         Change of the force's exponent.
     bend, turn : float
@@ -43,6 +45,7 @@ class Shape:
 
     modulus: float = 0.0
     setup: Mapping[str, float] = field(default_factory=dict)
+    added: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     exponent: float = 0.0
     bend: float = 0.0
     turn: float = 0.0
@@ -80,7 +83,8 @@ class ShapedTable:
         second, third = 6 * inside**2 - 6 * inside + 1, 20 * inside**3 - 30 * inside**2 + 12 * inside - 1
         force = self.table.force_with(shape.setup)
         bent = force * (1.0 + shape.bend * second + shape.turn * third) * np.maximum(x, 1e-4) ** shape.exponent
-        return np.asarray(np.exp(shape.modulus) * np.maximum(bent, 0.0))
+        more = self.table.force_added({key: amount for key, (amount, _) in shape.added.items()})
+        return np.asarray(np.exp(shape.modulus) * np.maximum(bent, 0.0) + more)
 
     def thicker(self, share: float) -> ShapedTable:
         """Of a specimen whose layers are all thicker by a share."""
@@ -104,12 +108,18 @@ class ShapedTable:
     @cached_property
     def outward(self) -> SeparableField | None:
         """The outward motion of the lower face with this set-up."""
-        return self.table.outward_with(self.shape.setup)
+        return self.table.outward_with(self.shape.setup, self._shown)
 
     @cached_property
     def sink(self) -> SeparableField | None:
         """Its sinking with this set-up."""
-        return self.table.sink_with(self.shape.setup)
+        return self.table.sink_with(self.shape.setup, self._shown)
+
+    @property
+    def _shown(self) -> dict[str, float]:
+        """Amounts that the fields show: a stress moves the less, the stiffer the specimen."""
+        shape = self.shape
+        return {key: part * amount * np.exp(-shape.modulus) for key, (amount, part) in shape.added.items()}
 
     def lower_face(self, spread: LowerFaceMotion, rest: Array) -> tuple[Array, Array]:
         """Positions (n, m, 2) and sinking (n, m) of markers at rest positions (m, 2), m."""

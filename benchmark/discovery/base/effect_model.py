@@ -17,7 +17,7 @@ from benchmark.discovery.base.trial_bounds import trial_bounds
 from benchmark.discovery.base.trials_problem import OWN, TrialsProblem
 from benchmark.discovery.trials.marker_layout import PLACED
 from benchmark.physics import Effect, EffectParameter, Readings, catalogue
-from benchmark.physics.effect import Values
+from benchmark.physics.effect import TableTerm, Values
 from benchmark.physics.setup_entry import setup_key
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import Search, TrialsFit, least_squares
@@ -79,8 +79,15 @@ class EffectModel:
     def pipelines(self) -> tuple[TrialPipeline, ...]:
         """The way of a trial in each condition."""
         study = self.problem.study
-        chosen = ordered(self.effects, catalogue())
+        own = [replace(e, body=None, lower_face=None) if e.slug in self.tabled else e for e in self.effects]
+        chosen = ordered(own, catalogue())
         return tuple(TrialPipeline(condition.around, chosen, study.distance) for condition in study.conditions)
+
+    @cached_property
+    def tabled(self) -> dict[str, TableTerm]:
+        """Terms of the effects that all tables carry, by their slugs."""
+        terms = {effect.slug: effect.in_table for effect in self.effects if effect.in_table is not None}
+        return {slug: term for slug, term in terms.items() if all(term.key in t.added for t in self.problem.tables)}
 
     @cached_property
     def white(self) -> White:
@@ -138,7 +145,9 @@ class EffectModel:
             if key is not None:
                 values[key] = values.get(key, 0.0) + float(vector[k])
         forms = {name: value for name, value in values.items() if not is_setup(name)}
-        return Shape(setup=shares(values), **forms)
+        own = self.values(vector) if self.tabled else {}
+        added = {t.key: (own[slug][t.amount], own[slug][t.part]) for slug, t in self.tabled.items()}
+        return Shape(setup=shares(values), added=added, **forms)
 
     def values(self, vector: Array) -> dict[str, dict[str, float]]:
         """Values of each effect's parameters, in SI."""

@@ -18,6 +18,7 @@ from benchmark.physics.effect import (
     LowerFaceMotion,
     NotInFemError,
     PressHistory,
+    TableTerm,
     TrialContext,
     Values,
 )
@@ -31,7 +32,8 @@ DESCRIPTION = EffectDescription(
     acts_on="body",
     sentence="The specimen was under tension before the press, which adds a stiffness that is there from the start.",
     equation="F = f(d) + k d; over a hole k = 2 pi S t / ln(R / a) (membrane), on a base k = (S / d) dF/dS "
-    "of the layers; of its share of F a part q moves the lower face by t d / (2 r ln(R / a))",
+    "of the layers; of its share of F a part q moves the lower face by t d / (2 r ln(R / a)). Over a hole that finite "
+    "elements cover, discovery takes force and face from their own press under S",
     source="Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, chapter 13; M. A. Biot, Mechanics of "
     "Incremental Deformations",
     parameters=(
@@ -43,7 +45,7 @@ DESCRIPTION = EffectDescription(
             "in-plane tensile stress S of all layers before the press",
             option=Option(0.0, 1e12),
         ),
-        linear("field", "", 0.0, 1.0, "part q of the tension's share that shows in the lower face: 1 for a membrane"),
+        linear("field", "", 0.0, 1.0, "part q of what the tension moves that shows in the lower face"),
     ),
     in_wave="in the plane of every layer or of the sheet; a finite-strain wave on a base as the stiffness k on top",
     in_fem="in-plane stress of all layers before the press, in axial symmetry and blocks",
@@ -138,4 +140,5 @@ EFFECT = Effect(
     starts=_starts,
     fem=FemTerm(("pretension",), _in_fem),
     native_in_wave=("pretension",),
+    in_table=TableTerm("physics.pretension", "pretension", "field"),
 )

@@ -41,3 +41,19 @@ def test_a_field_of_second_order_follows_a_logarithm() -> None:
     assert outward is not None
     assert outward.table == pytest.approx((1.0 + 0.3 * np.log(1.25)) * field(1.0).table, rel=1e-12)
     assert found.sink_with({"dermis.youngs_modulus": 0.25}) is found.sink
+
+
+def test_what_the_set_up_as_told_has_none_of_adds_in_proportion_and_stays_on_one_basis() -> None:
+    radius = np.array([0.0, 1e-3, 2e-3, 3e-3])
+    out, sunk = (SeparableField(DEPTH[None], row[None]) for row in (radius, 3e-3 - radius))
+    more = SeparableField(1e-3 * DEPTH[None] ** 2, radius[None] ** 2)  # small by its unit
+    added = {"physics.pretension": SetupDerivative((2.0 * FORCE)[None], (more,), (out,))}
+    found = ElasticTable(DEPTH, FORCE, radius, out, sunk, added=added).compact()
+    amounts = {"physics.pretension": 300.0}
+    assert found.force_added(amounts) == pytest.approx(600.0 * FORCE, rel=1e-12)
+    assert found.force_added({}) == pytest.approx(0.0 * FORCE, abs=0.0)
+    outward, sink = found.outward_with({}, amounts), found.sink_with({}, amounts)
+    assert outward is not None
+    assert sink is not None
+    np.testing.assert_allclose(outward.table, out.table + 300.0 * more.table, atol=1e-9 * out.table.max())
+    np.testing.assert_allclose(sink.table, sunk.table + 300.0 * out.table, atol=1e-9 * sunk.table.max())

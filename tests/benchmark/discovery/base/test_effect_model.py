@@ -6,11 +6,13 @@ from functools import partial
 import numpy as np
 import pytest
 
+from benchmark.discovery.base.base_shape import ShapedTable
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.effect_model import EffectModel
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import load_session
 from benchmark.physics import catalogue
+from benchmark.response.elastic_table import SeparableField, SetupDerivative
 from benchmark.response.wave_table import wave_table
 from benchmark.sessions import SHIPPED
 
@@ -44,6 +46,34 @@ def test_an_effect_grows_from_nothing_by_its_strengths_alone(base, effect):
     shown = [np.abs(a - b).max(axis=0) / s for a, b, s in zip(with_start, plain, scale, strict=True)]
     assert np.max(added) < 1e-9
     assert np.max(shown) > 1e-3
+
+
+def test_a_tension_that_the_table_carries_is_the_tables_not_the_catalogues(base):
+    problem, effect = base.model.problem, catalogue_entry("pretension")
+    tables = []
+    for table in problem.tables:
+        more = SetupDerivative(1e-6 * table.force[None], (scaled(table.outward),), (scaled(table.sink),))
+        tables.append(replace(table, added={"physics.pretension": more}))
+    model = EffectModel(replace(problem, tables=tuple(tables)), (effect,))
+    stress, part = 5e4, 0.4
+    vector = model.vector(base.vector, {"pretension": {"pretension": stress, "field": part}})
+    shape = replace(base.model.shape(base.vector), added={"physics.pretension": (stress, part)})
+    assert model.shape(vector) == shape
+    stiffer, plain = (ShapedTable(tables[0], each, 4e-3) for each in (shape, replace(shape, added={})))
+    assert stiffer.forces - plain.forces == pytest.approx(0.05 * tables[0].force)  # whatever the specimen's modulus
+    moved = 0.02 * np.exp(-shape.modulus) * tables[0].outward.table
+    assert stiffer.outward.table - plain.outward.table == pytest.approx(moved, abs=1e-6 * moved.max())
+    signals = model.signals(vector, base.nuisance)
+    assert np.max(np.abs(signals[0] - base.model.signals(base.vector, base.nuisance)[0])) > 0.0
+    assert model.pipelines[0].effects[0].body is None
+
+
+def catalogue_entry(slug):
+    return next(effect for effect in catalogue() if effect.slug == slug)
+
+
+def scaled(field):
+    return SeparableField(1e-6 * field.amplitudes, field.shapes)
 
 
 def _starts(base, effect):
