@@ -143,10 +143,7 @@ class FitResult:
 
     def summary(self) -> str:
         """The parameters, a line each."""
-        rows = self.to_frame().itertuples()
-        lines = [
-            f"  {row.name}: {row.value:.5g} {row.unit} (95 % {row.ci95_low:.5g} to {row.ci95_high:.5g})" for row in rows
-        ]
+        lines = [f"  {row.text}" for row in self.record.rows]
         name = self.record.found.session.name
         return "\n".join([f"{name}: {self.record.headline}", *lines, *(f"  warning: {each}" for each in self.warnings)])
 

@@ -153,7 +153,7 @@ def _of_sweep(result: ResultFolder) -> Iterator[Evidence]:
 
 
 def _of_fit(result: ResultFolder) -> Iterator[Evidence]:
-    found = result.document["parameters"]
+    found = _of_parameters(result.document["parameters"])
     limits = (SYNTHETIC,) if result.document["session"]["synthetic"] else ()
     told = [f"{key} {_with_interval(entry)}" for key, entry in found.items() if entry["identifiable"]]
     if told:
@@ -162,6 +162,24 @@ def _of_fit(result: ResultFolder) -> Iterator[Evidence]:
     if lost := [key for key, entry in found.items() if not entry["identifiable"]]:
         says = f"Not determined by these trials: {', '.join(lost)}."
         yield Evidence("input_uncertainty", says, result.file(result.name), (*limits, AGAINST))
+
+
+STIFFNESS: Final = ("stiffness_factor", "youngs_modulus")
+RELAXATION: Final = ("g_1", "tau_1")
+"""Ends of the names that say something of the tissue, where a fit has one factor for all layers."""
+
+
+def _of_parameters(found: Mapping[str, Any] | list[dict[str, Any]]) -> Mapping[str, Any]:
+    """What a fit found of the tissue, by key: of free parameters, or of the one factor with its list of rows.
+
+    The latter looks for a relaxation wherever it can, so one that is not found is no lack.
+    """
+    if isinstance(found, Mapping):
+        return found
+    wanted = {True: STIFFNESS + RELAXATION, False: STIFFNESS}
+    rows = [row for row in found if row["name"].split(".")[-1] in wanted[row["identifiable"]]]
+    ends = [None if row["ci95_low"] is None else [row["ci95_low"], row["ci95_high"]] for row in rows]
+    return {row["name"]: row | {"ci95": both} for row, both in zip(rows, ends, strict=True)}
 
 
 def _with_interval(entry: Mapping[str, Any]) -> str:

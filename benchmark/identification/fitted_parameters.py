@@ -1,4 +1,8 @@
-"""The fitted and the fixed parameters of a specimen, their intervals, and whether the data can tell them."""
+"""The fitted and the fixed parameters of a specimen, their intervals, and whether the data can tell them.
+
+What the data cannot tell has no interval: the scatter of a value between trials says nothing of how well it is known.
+Only a prior that a person stated gives one, and is then named.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +43,24 @@ class LayerLike(Protocol):
 
 @dataclass(frozen=True)
 class FittedParameter:
-    """One row of `fitted_parameters.csv`; the value is in `unit`, None where there is none."""
+    """One row of `fitted_parameters.csv`; the value is in `unit`, None where there is none.
+
+    Attributes
+    ----------
+    ci95_low, ci95_high : float or None
+        None for what the data do not identify, unless a prior gives the interval.
+    identifiable : bool
+        Whether the data tell the value, without a prior.
+    source : str
+        How it was found, and why it is not identified where it is not.
+    prior : str or None
+        What was stated beforehand and its source.
+
+    Raises
+    ------
+    ValueError
+        An interval of what neither data nor prior tell.
+    """
 
     name: str
     value: float | None
@@ -48,6 +69,24 @@ class FittedParameter:
     ci95_high: float | None
     identifiable: bool
     source: str
+    prior: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.ci95_low is not None and not self.identifiable and self.prior is None:
+            raise ValueError(f"{self.name} is not identified and has no prior: it has no interval either")
+
+    @property
+    def text(self) -> str:
+        """Name, value, and its interval or why there is none."""
+        value = "no value" if self.value is None else f"{self.value:.5g} {self.unit}".strip()
+        if self.ci95_low is None or self.ci95_high is None:
+            return f"{self.name}: {value} ({self.source})"
+        rests = "" if self.identifiable else ", on its prior alone"
+        return f"{self.name}: {value} (95 % {self.ci95_low:.5g} to {self.ci95_high:.5g}{rests})"
+
+    def unidentified(self, source: str) -> FittedParameter:
+        """The same value without an interval, and why: `source` follows what is said of it."""
+        return replace(self, ci95_low=None, ci95_high=None, identifiable=False, source=f"{self.source}{source}")
 
     def to_dict(self) -> dict[str, Any]:
         """Fields by name."""
@@ -81,25 +120,25 @@ def fitted_parameters(
     onset = _summary("contact_onset", "mm", [1e3 * t.onset for t in trials], 1e3 * trials[0].onset_stderr)
     zero = _summary("force_zero", "N", [t.zero for t in trials], trials[0].zero_stderr)
     if 2 * bound > len(trials):
-        source = f"{onset.source}; {bound} of {len(trials)} lie at an end of the range the data allow"
-        onset = replace(onset, identifiable=False, source=source)
+        onset = onset.unidentified(f"; {bound} of {len(trials)} lie at an end of the range the data allow")
     return (*rows, onset, zero)
 
 
 def _modulus(layer: LayerLike, pooled: PooledStiffness, layers: int) -> FittedParameter:
-    if layers == 1:
-        given = "given tool, support, thickness and Poisson's ratio"
-    else:
-        given = "a force-depth curve gives one stiffness, not several: the ratios of the layers are the file's"
     kilopascal = 1e-3 * layer.youngs_modulus
-    return FittedParameter(
+    row = FittedParameter(
         f"{layer.name}.youngs_modulus",
         pooled.value * kilopascal,
         "kPa",
         pooled.ci95_low * kilopascal,
         pooled.ci95_high * kilopascal,
-        layers == 1,
-        f"stiffness_factor x {kilopascal:.6g} kPa of the specimen; {given}",
+        True,
+        f"stiffness_factor x {kilopascal:.6g} kPa of the specimen",
+    )
+    if layers == 1:
+        return replace(row, source=f"{row.source}; {GIVEN}")
+    return row.unidentified(
+        "; a force-depth curve gives one stiffness, not several: the ratios of the layers are the file's"
     )
 
 
@@ -123,6 +162,7 @@ def _summary(name: str, unit: str, values: list[float], stderr: float) -> Fitted
     return FittedParameter(name, mean, unit, mean - half, mean + half, True, source)
 
 
+GIVEN = "given tool, support, thickness and Poisson's ratio"
 CLEAR = 0.9
 """Correlation of stiffness and thickness from which their pair is said not to be told apart."""
 PAIR = "log_stiffness, log_thickness"
@@ -151,8 +191,10 @@ def sheet_parameters(
 
 
 def _row(name: str, unit: str, pooled: Pooled, identifiable: bool, source: str, scale: float = 1.0) -> FittedParameter:
-    low, high = (scale * end if np.isfinite(end) else None for end in (pooled.low, pooled.high))
-    return FittedParameter(name, scale * pooled.value, unit, low, high, identifiable, source)
+    """Without an interval, and not identifiable, where the ends are not finite."""
+    known = identifiable and bool(np.isfinite([pooled.low, pooled.high]).all())
+    low, high = (scale * pooled.low, scale * pooled.high) if known else (None, None)
+    return FittedParameter(name, scale * pooled.value, unit, low, high, known, source)
 
 
 def _trials(pooled: Pooled) -> str:
@@ -161,7 +203,7 @@ def _trials(pooled: Pooled) -> str:
 
 def _modulus_sheet_parameters(name: str, layer: LayerLike, sheet: SheetFit, layers: int) -> FittedParameter:
     kilopascal = 1e-3 * layer.youngs_modulus
-    given = "given tool, support, thickness and Poisson's ratio"
+    given = GIVEN
     if layers > 1:
         given = "one stiffness for all layers: their ratios are the file's; a press of each layer alone would tell"
     source = f"stiffness_factor x {kilopascal:.6g} kPa of the specimen; {given}"
@@ -175,10 +217,11 @@ def _relaxation(sheet: SheetFit) -> list[FittedParameter]:
         empty = FittedParameter("relaxation.g_1", None, "", None, None, False, missing)
         return [empty, replace(empty, name="relaxation.tau_1", unit="s")]
     seen = sheet.share.low > 0.0
+    most = f" (at most {sheet.share.high:.2g}, 95 %)" if np.isfinite(sheet.share.high) else ""
     source = f"of {_trials(sheet.share)} with a hold; " + (
         "a clock of the force that is 2 ms off the depth's moves the time by a tenth"
         if seen
-        else "not to be told from none: a longer hold, or trials of more speeds, would tell"
+        else f"not to be told from none{most}: a longer hold, or trials of more speeds, would tell"
     )
     return [
         _row("relaxation.g_1", "", sheet.share, seen, source),
@@ -221,5 +264,5 @@ def _nuisances(trials: Sequence[SheetTrial]) -> list[FittedParameter]:
         ("tool_axis_y", [1e3 * trial.state.axis[1] for trial in trials], "axis_y"),
     ):
         pooled = pool_values(values, trials[0].stderr.get(key, np.inf))
-        rows.append(_row(name, "mm", pooled, bool(np.isfinite(pooled.low)), source))
+        rows.append(_row(name, "mm", pooled, True, source))
     return rows

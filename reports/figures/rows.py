@@ -36,7 +36,9 @@ class ParameterRow:
 
     @property
     def interval(self) -> tuple[float, float] | None:
-        """Both ends of the interval, None unless both are finite."""
+        """Both ends of the interval, None unless both are finite and the data identify the value."""
+        if not self.identifiable:
+            return None
         ends = (np.nan if self.low is None else self.low, np.nan if self.high is None else self.high)
         return (float(ends[0]), float(ends[1])) if np.isfinite(ends).all() else None
 

@@ -33,6 +33,7 @@ from benchmark.identification.parameters.presses.press_surrogate import Press
 from benchmark.identification.parameters.profile_likelihood import Profile, largest_errors, verified_profiles
 
 NOT_DETERMINED = "not determined"
+PRIOR_ALONE = "on its prior alone"
 
 
 @dataclass(frozen=True)
@@ -64,13 +65,30 @@ class Estimate:
     reason: str
 
     @property
+    def standing(self) -> str:
+        """Whether it is determined, by what: yes, on its prior alone, or not."""
+        return "yes" if self.identifiable else NOT_DETERMINED if self.low is None else PRIOR_ALONE
+
+    @property
+    def warning(self) -> str:
+        """Why the trials do not determine it, and what its interval rests on where it has one."""
+        return f"{self.key} {'is' if self.low is None else 'rests'} {self.standing}: {self.reason}"
+
+    @property
     def text(self) -> str:
         """Key, value and interval, or that there is none."""
         unit = f" {self.unit}" if self.unit else ""
         if not self.identifiable and self.low is None:
             return f"{self.key} {NOT_DETERMINED}"
-        rests = "" if self.identifiable else ", on its prior alone"
+        rests = "" if self.identifiable else f", {PRIOR_ALONE}"
         return f"{self.key} {self.value:.4g}{unit} (95 % {self.low:.4g} to {self.high:.4g}{rests})"
+
+    @property
+    def source(self) -> str:
+        """Of the interval, or why there is none."""
+        if self.identifiable:
+            return "profile likelihood"
+        return self.reason if self.low is None else f"{PRIOR_ALONE} ({self.prior}): {self.reason}"
 
     def to_dict(self) -> dict[str, Any]:
         """Entry of `fit.json`."""
@@ -194,7 +212,7 @@ class Identified:
     def warnings(self) -> tuple[str, ...]:
         """What a reader must know before a figure is quoted."""
         said = [*self.remarks, *([] if self.found.spread is None else [self.found.spread.text])]
-        said += [f"{one.key} is {NOT_DETERMINED}: {one.reason}" for one in self.undetermined]
+        said += [one.warning for one in self.undetermined]
         use = discrepancy_use(self.found)
         said += [] if use is None else [use.text]
         said += [f"another answer follows the trials as well: {self._values(one)}" for one in self.others]
@@ -219,9 +237,7 @@ class Identified:
     def rows(self) -> tuple[FittedParameter, ...]:
         """Rows of `fitted_parameters.csv`: free parameters, then what was told with an uncertainty."""
         free = [
-            FittedParameter(
-                one.key, one.value, one.unit, one.low, one.high, one.identifiable, one.reason or "profile likelihood"
-            )
+            FittedParameter(one.key, one.value, one.unit, one.low, one.high, one.identifiable, one.source, one.prior)
             for one in self.estimates
         ]
         told = [self._told_row(k, one) for k, one in enumerate(self.found.problem.parameters) if one.told]
@@ -233,7 +249,8 @@ class Identified:
         low, high = sorted(one.scale * one.value(at + sign * half) for sign in (-1.0, 1.0))
         source = "told" if one.prior is None else one.prior.source
         value = one.scale * self.found.value(index)
-        return FittedParameter(one.key, value, one.unit, low, high, False, f"{source}; moved along, not identified")
+        said = f"{source}; told, moved along by the fit"
+        return FittedParameter(one.key, value, one.unit, low, high, False, said, source)
 
     def to_dict(self) -> dict[str, Any]:
         """What `fit.json` gains."""

@@ -96,7 +96,7 @@ def provenance(answer: Identified) -> str:
     sessions = dict.fromkeys(press.session for press in problem.presses)
     kinds = {one: ", synthetic" if one.synthetic else "" for one in sessions}
     sources = ", ".join(f"{one.name} ({one.fingerprint[:16]}{kind})" for one, kind in kinds.items())
-    unknown = [one.key for one in answer.estimates if not one.identifiable]
+    unknown = [one.key for one in answer.estimates if one.standing == NOT_DETERMINED]
     said = f" {NOT_DETERMINED}: {', '.join(unknown)}." if unknown else ""
     return (
         f"Identified with the {problem.forward} model from {len(problem.trials)} trials of {sources}. "

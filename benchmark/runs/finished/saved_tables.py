@@ -151,8 +151,10 @@ def _predictions(table: Table) -> tuple[TrialPrediction, ...]:
 
 def _parameters(table: Table) -> tuple[FittedParameter, ...]:
     numbers = [[None if np.isnan(value) else float(value) for value in table.numbers(name)] for name in NUMBERS]
-    words = [table.words(name) for name in ("name", "unit", "identifiable", "source")]
+    words = [table.words(name) for name in ("name", "unit", "source")]
+    known = [word == "true" for word in table.words("identifiable")]
+    ends = [ends if told else (None, None) for told, *ends in zip(known, *numbers[1:], strict=True)]  # as once written
     return tuple(
-        FittedParameter(name, value, unit, low, high, told == "true", source)
-        for name, unit, told, source, value, low, high in zip(*words, *numbers, strict=True)
+        FittedParameter(name, value, unit, low, high, told, source)
+        for name, unit, source, value, told, (low, high) in zip(*words, numbers[0], known, ends, strict=True)
     )

@@ -12,7 +12,7 @@ from benchmark.experiments.parameters_answer import ParametersAnswer
 from benchmark.files import Session
 from benchmark.identification.parameters.held_out import prediction_bands
 from benchmark.identification.parameters.identifiability import KNOWN, LARGEST_ERROR, Direction, correlation_words
-from benchmark.identification.parameters.identified import NOT_DETERMINED, Identified
+from benchmark.identification.parameters.identified import Identified
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.posterior import Posterior
 from benchmark.models import Array
@@ -62,7 +62,7 @@ def _values(answer: Identified) -> Section:
             one.unit,
             one.low,
             one.high,
-            "yes" if one.identifiable else NOT_DETERMINED,
+            one.standing,
             one.prior or "the trials alone",
         )
         for one in answer.estimates

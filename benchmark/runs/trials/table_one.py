@@ -17,6 +17,7 @@ from benchmark.runs.trials.film_tables import Motion
 
 OURS = "Table 1 with dimensions that are right, mean over {} trials of condition {}"
 THEIRS = "Table 1 in the article's own way, units mixed as there, mean over {} trials of condition {}"
+CANCEL = ": markers on opposite sides cancel in the averages"
 
 Values = dict[str, tuple[float, str]]
 
@@ -64,9 +65,9 @@ def _rows(values: Sequence[Mapping[str, tuple[float, str]]], source: str, condit
             rows.append(FittedParameter(name, single, unit, None, None, False, f"{said}; a single value"))
             continue
         mean, half, _ = mean_interval(each)
+        row = FittedParameter(name, mean, unit, mean - half, mean + half, True, said)
         clear = abs(mean) > half
-        note = "" if clear else "; cannot be told from 0: markers on opposite sides cancel in the averages"
-        rows.append(FittedParameter(name, mean, unit, mean - half, mean + half, clear, said + note))
+        rows.append(row if clear else row.unidentified(f"; cannot be told from 0 (+/- {half:.2g}, 95 %){CANCEL}"))
     return rows
 
 

@@ -105,6 +105,7 @@ def test_several_layers_are_not_told_apart(benchmark_cli, tmp_path: Path) -> Non
     moduli = parameters[parameters.index.str.endswith("youngs_modulus")]
     assert len(moduli) == 3
     assert not moduli.identifiable.any()
+    assert moduli[["ci95_low", "ci95_high"]].isna().all(axis=None)
     assert moduli.source.str.contains("one stiffness, not several").all()
 
 

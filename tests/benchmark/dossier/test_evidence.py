@@ -87,6 +87,17 @@ def test_a_parameter_that_is_not_determined_is_told_as_such(tmp_path) -> None:
     assert told[1] == ("Not determined by these trials: skin.youngs_modulus.", (AGAINST,))
 
 
+def test_a_fit_of_one_factor_is_told_without_what_it_only_carries_along(tmp_path) -> None:
+    row = {"unit": "", "ci95_low": 0.9, "ci95_high": 1.1, "value": 1.0, "identifiable": True}
+    empty = {"ci95_low": None, "ci95_high": None, "identifiable": False, "unit": "kPa"}
+    rows = [row | {"name": "stiffness_factor"}, row | empty | {"name": "fat.youngs_modulus"}]
+    rows += [row | empty | {"name": "fat.thickness"}, row | {"name": "contact_onset"}]
+    document = {"schema": 1, "session": {"synthetic": False}, "trials": [1, 2], "parameters": rows}
+    told = answers(result(tmp_path / "f", {"fit.json": document}))["input_uncertainty"]
+    assert told[0][0] == "From 2 trials: stiffness_factor 1 [0.9, 1.1]."
+    assert told[1][0] == "Not determined by these trials: fat.youngs_modulus."
+
+
 @pytest.mark.parametrize(
     ("verdict", "limits"), [("named", ()), ("partly_explained", (AGAINST,)), ("cannot_tell", (AGAINST,))]
 )

@@ -1,7 +1,10 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from benchmark.identification import fit_session, parameter_columns
+from benchmark.identification import FittedParameter, fit_session, parameter_columns
+from benchmark.identification.fitted_parameters import fitted_parameters
 
 
 @pytest.fixture
@@ -31,6 +34,7 @@ def test_several_layers_cannot_be_told_apart(by_name, skin):
         assert not modulus.identifiable
         assert "one stiffness, not several" in modulus.source
         assert modulus.value == pytest.approx(kilopascal * fit.stiffness_factor)
+        assert (modulus.ci95_low, modulus.ci95_high) == (None, None)
     assert rows["stiffness_factor"].identifiable
 
 
@@ -50,6 +54,23 @@ def test_onset_and_zero_are_means_over_trials(by_name, silicone):
     assert rows["force_zero"].value == pytest.approx(np.mean([trial.zero for trial in fit.trials]))
     assert rows["force_zero"].unit == "N"
     assert rows["contact_onset"].identifiable
+
+
+def test_what_lies_at_a_bound_has_no_interval(by_name, silicone):
+    fit, rows = by_name([silicone])
+    bound = [replace(trial, onset_range=(trial.onset, 1.0)) for trial in fit.trials]
+    onset = next(row for row in fitted_parameters(fit.stiffness, bound, [silicone]) if row.name == "contact_onset")
+    assert onset.value == rows["contact_onset"].value
+    assert (onset.ci95_low, onset.ci95_high, onset.identifiable) == (None, None, False)
+    assert onset.source.endswith("; 4 of 4 lie at an end of the range the data allow")
+
+
+def test_an_interval_of_what_is_not_identified_needs_a_prior():
+    with pytest.raises(ValueError, match=r"fat\.youngs_modulus is not identified and has no prior"):
+        FittedParameter("fat.youngs_modulus", 62.3, "kPa", 61.3, 63.3, False, "one stiffness")
+    told = FittedParameter("fat.youngs_modulus", 62.3, "kPa", 61.3, 63.3, False, "weak", "60 kPa +/- 1 %; a paper")
+    assert told.text == "fat.youngs_modulus: 62.3 kPa (95 % 61.3 to 63.3, on its prior alone)"
+    assert told.unidentified("; lost").text == "fat.youngs_modulus: 62.3 kPa (weak; lost)"
 
 
 def test_a_single_trial_has_intervals_too(by_name, silicone):

@@ -14,6 +14,7 @@ from bench_hw.simulated.tabulated import TabulatedSpecimen, read_sheet
 from benchmark.files import load_session
 from benchmark.identification import Film, TrialData, filmed_trial, fit_session, fit_sheet
 from benchmark.identification.fitted_parameters import sheet_parameters
+from benchmark.identification.sheet_session import Pooled
 from benchmark.response import CameraView
 from benchmark.runs.options import Listener
 from benchmark.runs.trials.session_tables import base_curves, session_sheets
@@ -109,6 +110,8 @@ def test_thickness_and_stiffness_are_not_told_apart_by_force_alone(small, model)
     rows = {row.name: row for row in sheet_parameters(fit, model[0], alone.parameters)}
     assert not rows["thickness_factor"].identifiable
     assert "gauge of the thickness" in rows["thickness_factor"].source
+    for name in ("thickness_factor", "stiffness_factor.thickness_free"):
+        assert rows[name].ci95_low is None
     assert rows["silicone.youngs_modulus"].identifiable
     assert rows["silicone.youngs_modulus"].value == pytest.approx(400.0 * fit.stiffness.value)
 
@@ -120,6 +123,22 @@ def test_an_elastic_sheet_without_a_hold_has_no_relaxation_and_says_what_would_t
     rows = {row.name: row for row in sheet_parameters(fit, model[0], alone.parameters)}
     assert rows["relaxation.g_1"].value is None
     assert "hold" in rows["relaxation.g_1"].source
+
+
+def test_a_relaxation_that_may_be_none_has_no_interval_but_a_most(small, model) -> None:
+    alone, fit = small
+    unsure = replace(fit, share=Pooled(0.01, -0.02, 0.04, 3), tau=Pooled(1.0, 0.1, 9.0, 3))
+    rows = {row.name: row for row in sheet_parameters(unsure, model[0], alone.parameters)}
+    for name in ("relaxation.g_1", "relaxation.tau_1"):
+        assert (rows[name].ci95_low, rows[name].identifiable) == (None, False)
+        assert "not to be told from none (at most 0.04, 95 %)" in rows[name].source
+
+
+def test_a_single_trial_without_standard_errors_identifies_nothing(small, model) -> None:
+    alone, fit = small
+    lone = replace(fit, stiffness=Pooled(1.0, 0.0, np.inf, 1))
+    factor = next(iter(sheet_parameters(lone, model[0], alone.parameters)))
+    assert (factor.ci95_low, factor.ci95_high, factor.identifiable) == (None, None, False)
 
 
 def test_a_film_outside_the_trials_time_is_left_out(model) -> None:

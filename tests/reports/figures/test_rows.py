@@ -29,6 +29,13 @@ def test_what_is_not_identifiable_is_said(texts):
     assert "does not identify" in figure.caption
 
 
+def test_what_is_not_identifiable_is_drawn_without_an_interval(texts):
+    row = ParameterRow("e_2", 62.3, "kPa", 61.3, 63.3, identifiable=False)
+    found = texts(fitted_parameters([row]).panels[0].svg)
+    assert "62.3 kPa" in found
+    assert not any("61.3" in text for text in found)
+
+
 @pytest.mark.parametrize("ends", [(None, None), (1.0, None), (float("nan"), 2.0), (-np.inf, np.inf)])
 def test_half_an_interval_is_none(ends):
     assert ParameterRow("a", 1.5, "", *ends).interval is None

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmark.identification.parameters.identifiability import LARGEST_ERROR, directions, errors_alone
-from benchmark.identification.parameters.identified import NOT_DETERMINED, identify
+from benchmark.identification.parameters.identified import NOT_DETERMINED, Estimate, identify
 from benchmark.identification.parameters.law_shapes import shear_modulus
 from benchmark.identification.parameters.layer_fit import begun, fit_layers
 from benchmark.identification.parameters.presses import press_surrogate
@@ -90,6 +90,20 @@ def test_what_a_fit_ends_with_that_did_not_settle_is_not_determined(folded) -> N
     assert "did not settle" in estimate.reason
     assert "differ by 0.5 % of the force" in estimate.reason
     assert sum("did not settle" in one for one in loose.warnings) == 2  # of the value, and of the fit
+
+
+def test_an_interval_that_rests_on_a_prior_is_not_called_not_determined() -> None:
+    told = Estimate(
+        "fat.thickness", 5.0, 4.0, 6.0, "mm", False, "5 mm +/- 10 %; a ruler", "the trials tell nothing of it"
+    )
+    assert told.standing == "on its prior alone"
+    assert told.warning == "fat.thickness rests on its prior alone: the trials tell nothing of it"
+    assert told.text == "fat.thickness 5 mm (95 % 4 to 6, on its prior alone)"
+    assert told.source == "on its prior alone (5 mm +/- 10 %; a ruler): the trials tell nothing of it"
+    lost = replace(told, low=None, high=None)
+    assert lost.standing == NOT_DETERMINED
+    assert lost.warning == "fat.thickness is not determined: the trials tell nothing of it"
+    assert lost.text == "fat.thickness not determined"
 
 
 def test_only_points_within_the_region_count() -> None:

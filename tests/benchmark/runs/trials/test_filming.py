@@ -85,6 +85,9 @@ def test_pictures_in_a_trial_are_tracked_and_tables_are_read(session) -> None:
     rows = {row.name: row for row in table_one(loaded, motions, {})}
     assert 18.0 < rows["published.a"].value < 20.0
     assert "sound.a" not in rows
+    for row in rows.values():
+        assert (row.ci95_low is not None) == row.identifiable
+    assert "cannot be told from 0 (+/- " in rows["published.O_0"].source
 
 
 def test_a_filmed_trial_gets_its_markers_and_a_table_stays(session) -> None:
