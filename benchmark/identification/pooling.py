@@ -99,7 +99,7 @@ def mean_interval(values: Sequence[float] | Array) -> tuple[float, float, float]
     """Return mean, half-width of its 95 % t interval, standard deviation (n - 1) of two values or more."""
     sample = np.asarray(values, dtype=float)
     mean = math.fsum(sample) / len(sample)
-    std = float(np.std(sample, ddof=1))
+    std = math.sqrt(math.fsum((sample - mean) ** 2) / (len(sample) - 1))  # in any order the same, as the mean is
     half = float(scipy.stats.t.ppf(0.975, len(sample) - 1)) * std / math.sqrt(len(sample))
     return mean, half, std
 
