@@ -97,9 +97,10 @@ def _effect(effect: _Effect, place: int, known: Mapping[str, EffectDescription],
 def _value(given: _Parameter | str, parameter: EffectParameter, at: KeyPath, source: Source) -> Value:
     texts = _Parameter(value=given) if isinstance(given, str) else given
     value = _number(texts.value, parameter, at, source)
-    if not parameter.low <= value <= parameter.high:
-        low, unit = shown(parameter.low, parameter.unit)
-        high, _ = shown(parameter.high, parameter.unit)
+    least, most = parameter.allowed
+    if not least <= value <= most:
+        low, unit = shown(least, parameter.unit)
+        high, _ = shown(most, parameter.unit)
         raise _wrong(
             source, at, f"{texts.value!r} is outside what is allowed: {f'{low:g} to {high:g} {unit}'.rstrip()}"
         )

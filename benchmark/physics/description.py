@@ -67,6 +67,8 @@ class EffectParameter:
         How a scenario states it; None where it tells of markers or rate alone.
     formerly : str
         Name of the same quantity in older model files; "" without.
+    stated : (float, float) or None
+        Bounds of what a model file may state, where a fit searches less; see `allowed`.
     """
 
     name: str
@@ -78,6 +80,12 @@ class EffectParameter:
     meaning: str
     option: Option | None = None
     formerly: str = ""
+    stated: tuple[float, float] | None = None
+
+    @property
+    def allowed(self) -> tuple[float, float]:
+        """Bounds of what a model file may state."""
+        return self.stated or (self.low, self.high)
 
     @property
     def key(self) -> str | None:
@@ -146,9 +154,10 @@ def linear(
     *start: float,
     option: Option | None = None,
     formerly: str = "",
+    stated: tuple[float, float] | None = None,
 ) -> EffectParameter:
     """A parameter fitted as it is; without a start it begins where it does nothing, at zero or its lower bound."""
-    return EffectParameter(name, unit, start or (max(low, 0.0),), low, high, False, meaning, option, formerly)
+    return EffectParameter(name, unit, start or (max(low, 0.0),), low, high, False, meaning, option, formerly, stated)
 
 
 def logarithmic(

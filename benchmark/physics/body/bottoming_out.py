@@ -33,7 +33,7 @@ DESCRIPTION = EffectDescription(
             option=Option(0.0, 1e8, above=True, default=1e6),
             formerly="stiffness",
         ),
-        linear("power", "", 1.0, 1.5, "power p: 1 for a flat floor, 3/2 for a domed one"),
+        linear("power", "", 1.0, 1.5, "power p: 1 for a flat floor, 3/2 for a domed one", stated=(1.0, 3.0)),
     ),
     in_wave="on top of its elastic law",
     in_fem="quasi-linear: on top of its elastic answer, in `run --model` only",

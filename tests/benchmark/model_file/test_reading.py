@@ -48,6 +48,16 @@ def test_units_are_read_and_a_value_may_stand_alone(tmp_path: Path) -> None:
     assert effect.parameters["g_1"].ci95 is None
 
 
+def test_a_file_may_state_more_than_a_fit_searches(tmp_path: Path) -> None:
+    floor = HEAD + '[[effects]]\nname = "bottoming_out"\n[effects.parameters]\nfloor_depth = "3 mm"\n'
+    floor += 'floor_stiffness = "1 N/mm"\npower = "{}"\n'
+    (effect,) = read_model(_written(tmp_path, floor.format(2)), KNOWN).effects
+    assert effect.values()["power"] == 2.0
+    assert KNOWN["bottoming_out"].parameters[-1].high == 1.5
+    with pytest.raises(InputError, match="allowed: 1 to 3"):
+        read_model(_written(tmp_path, floor.format(3.5)), KNOWN)
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
