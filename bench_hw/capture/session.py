@@ -125,6 +125,8 @@ class _Session:
 
     def _record(self, number: int, zero: float) -> TrialOutcome:
         protocol = self._order.protocol.protocol
+        if self._bench.twins is not None:
+            self._bench.twins.lay_anew()
         self._bench.zero_force()
         name = self._folder.next_trial()
         header = self._header(name, zero)

@@ -1,6 +1,7 @@
 """`HttpCamera`: a camera that streams MJPEG over HTTP; its JPEG bytes are passed on as they come.
 
-A frame is stamped when its last byte has been read. Where the stream numbers its frames (`X-Frame` in a part's
+A frame is stamped when its last byte has been read or, where the stream runs on the bench's own clock, as its part says
+(`X-Timestamp`, s). Where the stream numbers its frames (`X-Frame` in a part's
 header), dropped frames are known for certain; see `grabbing` for the others. `MultipartParser` cuts the stream and
 knows no sockets.
 """
@@ -23,6 +24,7 @@ _LARGEST_PART = 32 * 1024 * 1024
 _LARGEST_HEAD = 16 * 1024
 _CHUNK = 1 << 18
 _MOST_CHUNKS = 64
+_SECONDS = re.compile(r"\d{1,12}(\.\d{1,9})?")
 
 
 class StreamError(ValueError):
@@ -117,10 +119,20 @@ class HttpCamera(Connection):
         The bench's clock.
     timeout : float
         Longest wait for the connection and its header, s.
+    same_clock : bool
+        Whether the stream's `X-Timestamp` is on this clock, as a simulated camera's is; another machine's is not.
     """
 
-    def __init__(self, url: str, *, rate: float = 30.0, clock: Clock | None = None, timeout: float = 2.0) -> None:
-        self._url, self._rate, self._timeout = url, rate, timeout
+    def __init__(
+        self,
+        url: str,
+        *,
+        rate: float = 30.0,
+        clock: Clock | None = None,
+        timeout: float = 2.0,
+        same_clock: bool = False,
+    ) -> None:
+        self._url, self._rate, self._timeout, self._same_clock = url, rate, timeout, same_clock
         self._clock = clock or MonotonicClock()
         self._socket: socket.socket | None = None
         self._parser = MultipartParser("")
@@ -258,7 +270,15 @@ class HttpCamera(Connection):
             parts = self._parser.feed(data)
         except StreamError as error:
             raise DeviceError(f"camera at {self._url}: {error}") from error
-        return [self._counter.frame(now, part.body, "jpeg", _sequence(part.header.get("x-frame"))) for part in parts]
+        return [
+            self._counter.frame(self._taken(part, now), part.body, "jpeg", _sequence(part.header.get("x-frame")))
+            for part in parts
+        ]
+
+    def _taken(self, part: Part, now: float) -> float:
+        """When a frame was taken, as far as can be told at `now`, s."""
+        text = part.header.get("x-timestamp", "") if self._same_clock else ""
+        return min(float(text), now) if _SECONDS.fullmatch(text) else now
 
     def _lost(self, error: OSError) -> DeviceError:
         return DeviceError(f"camera at {self._url}: {error.strerror or error}; check address, cable and power")

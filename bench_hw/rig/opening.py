@@ -179,7 +179,7 @@ def _(device: rig_file.SimulatedCameraConfig, context: Opening) -> protocols.Cam
 
     server = context.switched_on().camera
     assert server is not None
-    return HttpCamera(server.url, rate=device.rate, clock=context.clock)
+    return HttpCamera(server.url, rate=device.rate, clock=context.clock, same_clock=True)
 
 
 @open_force.register
@@ -234,12 +234,12 @@ def sheet_of(loaded: LoadedRig) -> TabulatedSpecimen | None:
     InputError
         None of that name ships.
     """
-    from bench_hw.simulated.tabulated import TabulatedSpecimen, read_sheet
+    from bench_hw.simulated.tabulated import Scatter, TabulatedSpecimen, read_sheet
 
     name = loaded.rig.simulation.specimen
     if name is None or _is_file(loaded, name):
         return None
-    return TabulatedSpecimen(read_sheet(name))
+    return TabulatedSpecimen(read_sheet(name), scatter=Scatter())
 
 
 def specimen_of(loaded: LoadedRig) -> VirtualSpecimen | None:

@@ -1,7 +1,8 @@
 """`CameraServer`: a simulated webcam as an HTTP MJPEG stream on loopback, or as picture files.
 
 A picture is taken for each instant of the frame timing and sent to every client; a client that does not read
-fast enough loses its connection. Each part says its number in `X-Frame`.
+fast enough loses its connection. Each part says its number in `X-Frame` and when
+it was taken, by the server's clock, in `X-Timestamp` (s).
 """
 
 from __future__ import annotations
@@ -114,7 +115,7 @@ class CameraServer:
             if self._number in self._settings.drop or self._rng.random() < self._settings.loss:
                 self.dropped += 1
             elif self._clients:
-                self._send(self._frame(taken_at), self._number)
+                self._send(self._frame(taken_at), taken_at)
 
     def freeze(self, frozen: bool = True) -> None:
         """Repeat the last picture byte for byte, or take new ones again."""
@@ -151,9 +152,9 @@ class CameraServer:
             self._last = encode(self._picture(now), self._settings.quality)
         return self._last
 
-    def _send(self, data: bytes, number: int) -> None:
-        head = f"--{BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(data)}\r\nX-Frame: {number}\r\n\r\n"
-        part = head.encode("ascii") + data + b"\r\n"
+    def _send(self, data: bytes, taken_at: float) -> None:
+        about = f"Content-Length: {len(data)}\r\nX-Frame: {self._number}\r\nX-Timestamp: {taken_at:.9f}"
+        part = f"--{BOUNDARY}\r\nContent-Type: image/jpeg\r\n{about}\r\n\r\n".encode("ascii") + data + b"\r\n"
         with self._lock:
             for client in tuple(self._clients):
                 try:

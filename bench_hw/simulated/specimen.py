@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +56,15 @@ class Specimen(Protocol):
         Response
             For n - start rows.
         """
+        ...
+
+
+@runtime_checkable
+class LaidAnew(Protocol):
+    """A specimen that does not lie twice alike."""
+
+    def laid_anew(self, rng: np.random.Generator) -> tuple[Specimen, float]:
+        """The specimen for the next press, and how far its surface is from the usual place, m."""
         ...
 
 

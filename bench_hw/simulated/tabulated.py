@@ -58,6 +58,25 @@ class SheetTable:
     tissue: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class Scatter:
+    """What differs from press to press of one sheet on a bench: standard deviations, assumed.
+
+    The sheet stays clamped where it is, so the tool comes down on the same point of it unless `axis` says otherwise.
+
+    Parameters
+    ----------
+    gain : float
+        Of the logarithm of the stiffness.
+    contact, axis : float
+        Of the place where the tool meets the sheet, and of the tool axis in x and in y, m.
+    """
+
+    gain: float = 0.02
+    contact: float = 5e-5
+    axis: float = 0.0
+
+
 @dataclass(slots=True)
 class _Memory:
     """What is not worked out twice: where the relaxation of the newest row stands, and the face at the markers."""
@@ -66,6 +85,7 @@ class _Memory:
     elastic: float = 0.0
     lags: tuple[float, ...] = ()
     face: Callable[[FloatArray], FloatArray] | None = None
+    force: Callable[[FloatArray], FloatArray] | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -84,6 +104,8 @@ class TabulatedSpecimen:
         Where the tool axis meets the marker grid, from the grid's centre, m.
     grid : MarkerGrid
         Where the markers are at rest.
+    scatter : Scatter or None
+        What is drawn anew for every press; None for the same sheet in the same place each time.
     """
 
     table: SheetTable
@@ -91,6 +113,7 @@ class TabulatedSpecimen:
     gain: float = 1.0
     axis: tuple[float, float] = (0.0, 0.0)
     grid: MarkerGrid = _GRID
+    scatter: Scatter | None = None
     _memory: _Memory = field(default_factory=_Memory)
 
     def __call__(self, time: FloatArray, depth: FloatArray, start: int) -> Response:
@@ -110,6 +133,15 @@ class TabulatedSpecimen:
         force[:, 2] = np.maximum(self._press(time, pressed, start), 0.0) * (pressed[start:] > 0.0)
         return Response(force, self._markers(pressed[start:]))
 
+    def laid_anew(self, rng: np.random.Generator) -> tuple[TabulatedSpecimen, float]:
+        """The sheet as it lies for one more press, and how far that is above or below its usual place, m."""
+        if self.scatter is None:
+            return self, 0.0
+        gain, contact, *axis = rng.standard_normal(4)
+        x, y = (middle + self.scatter.axis * off for middle, off in zip(self.axis, axis, strict=True))
+        drawn = self.gain * float(np.exp(self.scatter.gain * gain))
+        return TabulatedSpecimen(self.table, self.relaxation, drawn, (x, y), self.grid), self.scatter.contact * contact
+
     def session_keys(self) -> dict[str, object]:
         """What a session file says of this specimen: tissue where it is known, tool, support and markers."""
         return ({"specimen": self.table.tissue} if self.table.tissue else {}) | {
@@ -125,7 +157,7 @@ class TabulatedSpecimen:
     def _press(self, time: FloatArray, pressed: FloatArray, start: int) -> FloatArray:
         goes_on = start > 0 and self._memory.time == time[start - 1]
         known, first = (self._memory, start) if goes_on else (_Memory(), 0)
-        elastic = self.gain * np.interp(pressed[first:], self.table.depth, self.table.force)
+        elastic = self.gain * self._elastic(pressed[first:])
         total, ends = elastic, []
         step = float(time[1] - time[0]) if len(time) > 1 else 1e-3
         rises = np.diff(elastic, prepend=known.elastic)
@@ -138,6 +170,12 @@ class TabulatedSpecimen:
             self._memory.time, self._memory.elastic = float(time[-1]), float(elastic[-1])
             self._memory.lags = tuple(ends)
         return np.asarray(total[start - first :])
+
+    def _elastic(self, pressed: FloatArray) -> FloatArray:
+        """Force of the fresh sheet at depths (n,) by a cubic spline, as its face: a chord lies above the curve."""
+        if self._memory.force is None:
+            self._memory.force = CubicSpline(self.table.depth, self.table.force)
+        return np.asarray(self._memory.force(pressed))
 
     def _markers(self, pressed: FloatArray) -> FloatArray:
         rest = self.grid.positions()

@@ -15,7 +15,7 @@ from bench_hw.simulated.camera_server import CameraServer, CameraSettings
 from bench_hw.simulated.lac_board import LacBoard, LacUsbBackend
 from bench_hw.simulated.netft_box import BoxSettings, NetFTBox
 from bench_hw.simulated.picture import CameraModel, Painter
-from bench_hw.simulated.specimen import Specimen
+from bench_hw.simulated.specimen import LaidAnew, Specimen
 from bench_hw.simulated.virtual_bench import ActuatorMotion, VirtualBench
 
 _FAULT_TICK = 1e-3
@@ -45,6 +45,8 @@ class Twins:
         The physics under the tool.
     board, usb : LacBoard and LacUsbBackend
         The actuator's board and its USB plug.
+    rng : numpy.random.Generator
+        Of what differs from press to press.
     box : NetFTBox or None
         The force box.
     camera : CameraServer or None
@@ -56,6 +58,7 @@ class Twins:
     bench: VirtualBench
     board: LacBoard
     usb: LacUsbBackend
+    rng: np.random.Generator
     box: NetFTBox | None = None
     camera: CameraServer | None = None
     _cancels: list[Cancel] = field(default_factory=list)
@@ -86,6 +89,12 @@ class Twins:
         begin()
         if duration < FOR_EVER:
             self._cancels.append(self._at(duration, end))
+
+    def lay_anew(self) -> None:
+        """Lay the specimen for the next press, the tool in the air: one that scatters is drawn, others stay."""
+        if isinstance(self.settings.specimen, LaidAnew):
+            specimen, off = self.settings.specimen.laid_anew(self.rng)
+            self.bench.lay(specimen, self.settings.contact + off)
 
     def catch_up(self) -> None:
         """Let the box do now what is due: a busy machine may have left its thread waiting, a real box never waits."""
@@ -183,13 +192,13 @@ def switch_on(settings: TwinSettings, clock: Clock) -> Twins:
     InputError
         The camera's distortion folds over inside the picture.
     """
-    of_box, of_camera, of_noise = np.random.default_rng(settings.seed).spawn(3)
+    of_box, of_camera, of_noise, of_specimen = np.random.default_rng(settings.seed).spawn(4)
     painter = None if settings.camera is None else _painter(settings.picture, of_noise)
     bench = VirtualBench(
         settings.specimen, ActuatorMotion(settings.stroke), contact=settings.contact, start=clock.now()
     )
     board = LacBoard(bench, clock, settings.max_speed)
-    twins = Twins(clock, settings, bench, board, LacUsbBackend(board))
+    twins = Twins(clock, settings, bench, board, LacUsbBackend(board), of_specimen)
     if settings.box is not None:
         twins.box = NetFTBox(bench.force_at, clock, settings.box, of_box)
     if settings.camera is not None and painter is not None:

@@ -112,6 +112,11 @@ class VirtualBench:
         self._depth[0] = motion.position - contact
         self._respond(0)
 
+    def lay(self, specimen: Specimen, contact: float) -> None:
+        """Put a specimen under the tool, which is in the air, with its surface at `contact`, m."""
+        with self.lock:
+            self._specimen, self._contact = specimen, contact
+
     def advance(self, now: float) -> None:
         """Move the bench on to the reading `now`; earlier readings change nothing."""
         with self.lock:

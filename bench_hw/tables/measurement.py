@@ -44,6 +44,8 @@ class TrialTable:
     extra_units : Mapping[str, str]
         The unit each extra column had in its file and gets again when written (`{"gap": "mm"}`); an extra
         without an entry has no unit.
+    readings : tuple of ndarray (m,), or None
+        Times (s) and depths (m) as the actuator reported them, where `depth` is interpolated between these; else None.
     """
 
     time: FloatArray
@@ -52,6 +54,7 @@ class TrialTable:
     extra: Mapping[str, FloatArray] = field(default_factory=dict)
     source: str = ""
     extra_units: Mapping[str, str] = field(default_factory=dict)
+    readings: tuple[FloatArray, FloatArray] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -257,6 +257,7 @@ def trial_rows(contents: TrialContents, press_axis: PressAxis | None = None) -> 
         extra=dict(zip(names, components, strict=True)),
         source=str(contents.scan.path),
         extra_units={name: "N" if name.startswith("force") else "Nm" for name in names},
+        readings=_readings(contents.depth),
     )
 
 
@@ -281,10 +282,15 @@ def _and_later(good: NDArray[np.bool_], time: FloatArray) -> NDArray[np.bool_]:
     return kept
 
 
+def _readings(depth: DepthColumns) -> tuple[FloatArray, FloatArray]:
+    """Times and depths of the usable readings."""
+    good = _and_later(np.isfinite(depth.depth), depth.time)
+    return depth.time[good], depth.depth[good]
+
+
 def _depth_at(depth: DepthColumns, time: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
     """Interpolate depth; the second array says where there are neighbours to do so between."""
-    good = _and_later(np.isfinite(depth.depth), depth.time)
-    at, value = depth.time[good], depth.depth[good]
+    at, value = _readings(depth)
     if len(at) < 2:
         return np.full(len(time), np.nan), np.zeros(len(time), dtype=bool)
     after = np.clip(np.searchsorted(at, time, side="left"), 1, len(at) - 1)

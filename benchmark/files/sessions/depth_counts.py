@@ -2,7 +2,8 @@
 
 A reading is a whole count for as long as the tool is within it, up to half a count off. The instants at which it
 changes are known to a row, and there the depth is known, too: on the boundary of two counts. Between these instants the
-tool moves evenly, or stands where it entered the count, as a drive does that stops by its own reading.
+tool moves evenly, or stands where it entered the count, as a drive does that stops by its own reading. A native trial
+has its counts in the actuator's readings: its rows are the force's, and lie between them.
 """
 
 from __future__ import annotations
@@ -50,8 +51,8 @@ def count_of(depth: Array) -> float | None:
     return count if whole.all() and single and count >= LEAST_SHARE * float(np.ptp(depth)) else None
 
 
-def between_counts(time: Array, depth: Array, count: float) -> Array:
-    """Depth (n,) m at times (n,) s of readings (n,) m in whole counts (m)."""
+def between_counts(time: Array, depth: Array, count: float, at_times: Array | None = None) -> Array:
+    """Depth, m, at `at_times` (s, by default the readings'), of readings (n,) m in whole counts (m) at times (n,) s."""
     at = np.flatnonzero(np.diff(depth))
     when, where = 0.5 * (time[at] + time[at + 1]), 0.5 * (depth[at] + depth[at + 1])
     onward = np.sign(depth[at + 1] - depth[at])
@@ -67,15 +68,16 @@ def between_counts(time: Array, depth: Array, count: float) -> Array:
             known.append((when[k + 1] - after, where[k]))
     known.append((when[-1], where[-1]))
     instants, places = np.array(sorted(known)).T
-    return np.asarray(np.interp(time, instants, places))
+    return np.asarray(np.interp(time if at_times is None else at_times, instants, places))
 
 
 def even_depths(tables: Sequence[TrialTable]) -> tuple[list[TrialTable], list[str]]:
     """Trials with their depth read between counts where it comes in counts, and a remark that says so."""
-    counts = [count_of(table.depth) for table in tables]
+    readings = [(table.time, table.depth) if table.readings is None else table.readings for table in tables]
+    counts = [count_of(depth) for _, depth in readings]
     read = [
-        table if count is None else replace(table, depth=between_counts(table.time, table.depth, count))
-        for table, count in zip(tables, counts, strict=True)
+        replace(table, depth=between_counts(*own, count, table.time), readings=None) if count else table
+        for table, own, count in zip(tables, readings, counts, strict=True)
     ]
     known = [count for count in counts if count is not None]
     if not known:

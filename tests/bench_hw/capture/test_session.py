@@ -3,6 +3,7 @@
 import json
 import tomllib
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -153,6 +154,28 @@ def test_a_specimen_of_ones_own(record):
 
     trial = read_trial_mcap(record(specimen=spring).trials[0])
     assert trial.force.max() == pytest.approx(1500.0 * trial.depth.max(), rel=0.05)
+
+
+def test_a_specimen_that_scatters_lies_anew_for_every_trial(record):
+    class Shifting:
+        laid: ClassVar[list[float]] = []
+
+        def __call__(self, time, depth, start):
+            force = np.zeros((len(depth) - start, 3))
+            force[:, 2] = 1500.0 * np.maximum(depth[start:], 0.0)
+            return Response(force, np.zeros((len(depth) - start, 1, 3)))
+
+        def laid_anew(self, rng):
+            self.laid.append(2e-4 * rng.standard_normal())
+            return self, self.laid[-1]
+
+    touches = []
+    for path in record(specimen=Shifting(), trials=3).trials:
+        trial = read_trial_mcap(path)
+        rising = slice(0, int(np.argmax(trial.force)))
+        touches.append(np.interp(0.5, trial.force[rising], trial.depth[rising]) - 0.5 / 1500.0)
+    assert touches == pytest.approx(Shifting.laid, abs=3e-5)
+    assert np.ptp(touches) > 1e-4
 
 
 @pytest.mark.parametrize(("bias", "in_air"), [(True, 0.0), (False, 0.03)])

@@ -95,6 +95,23 @@ def test_frames_come_at_their_rate_as_jpeg(make_server, clock):
     assert np.diff([frame.time for frame in frames]) == pytest.approx(np.full(len(frames) - 1, 1 / 30), abs=3e-3)
 
 
+def test_a_stream_on_the_same_clock_is_stamped_when_its_pictures_are_taken(make_server, clock):
+    server = make_server(rate=30.0)
+    with HttpCamera(server.url, rate=30.0, clock=clock, same_clock=True) as camera:
+        camera.start()
+        times = np.array([frame.time for frame in collect(camera, clock, 1.0)])
+    assert np.diff(times) == pytest.approx(1 / 30, abs=2e-9)
+    assert 30.0 * times == pytest.approx(np.round(30.0 * times), abs=1e-6)
+
+
+@pytest.mark.parametrize("text", ["", "-1", "nan", "1e3", "0x10", "9" * 13, "99999"])
+def test_a_time_that_is_none_or_still_to_come_is_not_taken(clock, text):
+    camera = HttpCamera("http://127.0.0.1:1/", clock=clock, same_clock=True)
+    camera._parser = MultipartParser("frame")
+    data = b"--frame\r\nContent-Length: 1\r\nX-Timestamp: " + text.encode() + b"\r\n\r\nx\r\n"
+    assert [frame.time for frame in camera._frames(data)] == [clock.now()]
+
+
 def test_dropped_frames_are_known_by_their_numbers(make_server, clock):
     server = make_server(rate=50.0, drop=frozenset([10, 11, 20]))
     with HttpCamera(server.url, rate=50.0, clock=clock) as camera:

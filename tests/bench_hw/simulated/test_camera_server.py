@@ -81,6 +81,12 @@ def test_dropped_frames_leave_a_gap_in_the_numbers(stream, clock):
     assert server.dropped == 2
 
 
+def test_each_part_says_when_it_was_taken(stream, clock):
+    _, client, _ = stream(rate=40.0)
+    clock.sleep(0.06)
+    assert [b"X-Timestamp: %s\r\n" % at in drain(client) for at in (b"0.025000000",)] == [True]
+
+
 def test_a_frozen_camera_repeats_its_bytes(stream, clock):
     server, client, _ = stream(rate=50.0)
     clock.sleep(0.021)

@@ -1,8 +1,10 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from bench_hw.errors import InputError
-from bench_hw.simulated.tabulated import SheetTable, TabulatedSpecimen, read_sheet, write_sheet
+from bench_hw.simulated.tabulated import Scatter, SheetTable, TabulatedSpecimen, read_sheet, write_sheet
 
 DEPTH, RADIUS = np.linspace(0.0, 5e-3, 11), np.linspace(0.0, 30e-3, 16)
 TABLE = SheetTable(
@@ -44,6 +46,24 @@ def test_markers_move_with_the_face_around_the_tool_axis() -> None:
     np.testing.assert_allclose(markers[:, :2] - rest, 1.8e-3 * arm, atol=1e-9)
     radius = np.hypot(*arm.T)
     np.testing.assert_allclose(markers[:, 2], 1.8e-3 * (1.0 - (radius / 30e-3) ** 2), atol=1e-9)
+
+
+def test_force_follows_the_curve_between_the_tables_depths() -> None:
+    curved = replace(TABLE, force=200.0 * DEPTH + 4e4 * DEPTH**2)
+    force = TabulatedSpecimen(curved)(TIME, PRESSED, 0).force[:, 2]
+    pressed = np.maximum(PRESSED, 0.0)
+    np.testing.assert_allclose(force, 200.0 * pressed + 4e4 * pressed**2, atol=1e-12)
+
+
+def test_a_sheet_that_scatters_is_laid_anew_and_another_is_not() -> None:
+    plain = TabulatedSpecimen(TABLE, gain=1.5)
+    assert plain.laid_anew(np.random.default_rng(1)) == (plain, 0.0)
+    rng, sheet = np.random.default_rng(1), replace(plain, scatter=Scatter(0.02, 5e-5, 3e-4))
+    laid = [sheet.laid_anew(rng) for _ in range(400)]
+    assert np.std([np.log(each.gain / 1.5) for each, _ in laid]) == pytest.approx(0.02, rel=0.1)
+    assert np.std([off for _, off in laid]) == pytest.approx(5e-5, rel=0.1)
+    assert np.std([each.axis for each, _ in laid], axis=0) == pytest.approx(3e-4, rel=0.1)
+    assert np.mean([off for _, off in laid]) == pytest.approx(0.0, abs=1e-5)
 
 
 def test_a_depth_beyond_the_table_is_refused() -> None:

@@ -38,6 +38,20 @@ def test_a_quick_turn_goes_beyond_the_boundary() -> None:
     assert np.abs(found - true)[50:-50].max() < 0.25 * COUNT
 
 
+def test_counts_of_slower_readings_are_found_behind_the_rows_of_the_force() -> None:
+    true, rows = _motion(), np.arange(0.5, 11.0, 1e-3)
+    read = _read(true)
+    joined = np.interp(rows, TIME, read)
+    assert count_of(joined) is None
+    table = TrialTable(rows, joined, np.zeros(len(rows)), readings=(TIME, read))
+    (found,), said = even_depths([table])
+    assert "comes in counts of 0.0488 mm" in said[0]
+    assert found.readings is None
+    pressed = (rows > 1.1) & (rows < 10.5)
+    left = np.interp(rows, TIME, true)
+    assert np.abs(found.depth - left)[pressed].max() < 0.25 * COUNT < 0.4 * COUNT < np.abs(joined - left)[pressed].max()
+
+
 @given(st.floats(0.2e-3, 3e-3), st.floats(-2e-3, 0.0))
 def test_no_row_is_further_than_a_count_from_its_reading(speed: float, start: float) -> None:
     read = _read(_motion(speed, start))
