@@ -11,21 +11,35 @@ Describe a :class:`Problem`, :func:`prepare` it once, run load histories on the 
     solution.depth                       # m, also force, reaction, top_deflection, profile(...), fields(...)
 
 SI units; a press and its deflection are positive into the tissue. The package knows nothing of files,
-reports or other models.
+reports or other models. Names are loaded when first used.
 """
 
-from fem.errors import CheckpointError, FemError, NotDifferentiableError
-from fem.load import Load
-from fem.materials import Fibre, FibreReinforced, Gent, LinearElastic, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
-from fem.materials.prony import PronyTerm
-from fem.mesh.surface.surface_file import read_surface
-from fem.problem.parts import Discretisation, Layer, Support, Tool
-from fem.problem.problem import Problem
-from fem.results.solution import Failure, Resumed, Solution, StepReport
-from fem.sensitivity.differentiate import differentiate
-from fem.sensitivity.problem_change import DifferentiatedSolution, ProblemChange, SolutionDerivative
-from fem.setup.mesh_error import MeshError, estimate_mesh_error
-from fem.setup.prepare import prepare
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fem.errors import CheckpointError, FemError, NotDifferentiableError
+    from fem.load import Load
+    from fem.materials import (
+        Fibre,
+        FibreReinforced,
+        Gent,
+        LinearElastic,
+        Material,
+        MooneyRivlin,
+        NeoHookean,
+        Ogden,
+        Yeoh,
+    )
+    from fem.materials.prony import PronyTerm
+    from fem.mesh.surface.surface_file import read_surface
+    from fem.problem.parts import Discretisation, Layer, Support, Tool
+    from fem.problem.problem import Problem
+    from fem.results.solution import Failure, Resumed, Solution, StepReport
+    from fem.sensitivity.differentiate import differentiate
+    from fem.sensitivity.problem_change import DifferentiatedSolution, ProblemChange, SolutionDerivative
+    from fem.setup.mesh_error import MeshError, estimate_mesh_error
+    from fem.setup.prepare import prepare
 
 __all__ = [
     "CheckpointError",
@@ -60,3 +74,29 @@ __all__ = [
     "prepare",
     "read_surface",
 ]
+
+_HOMES = {
+    "errors": "CheckpointError FemError NotDifferentiableError",
+    "load": "Load",
+    "materials": "Fibre FibreReinforced Gent LinearElastic Material MooneyRivlin NeoHookean Ogden Yeoh",
+    "materials.prony": "PronyTerm",
+    "mesh.surface.surface_file": "read_surface",
+    "problem.parts": "Discretisation Layer Support Tool",
+    "problem.problem": "Problem",
+    "results.solution": "Failure Resumed Solution StepReport",
+    "sensitivity.differentiate": "differentiate",
+    "sensitivity.problem_change": "DifferentiatedSolution ProblemChange SolutionDerivative",
+    "setup.mesh_error": "MeshError estimate_mesh_error",
+    "setup.prepare": "prepare",
+}
+
+
+def __getattr__(name: str) -> object:
+    for home, names in _HOMES.items():
+        if name in names.split():
+            return getattr(import_module(f"fem.{home}"), name)
+    raise AttributeError(f"module 'fem' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])
