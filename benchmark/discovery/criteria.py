@@ -281,6 +281,10 @@ is no evidence for one. First choice; what it is for is a session by others (pre
 """
 NEAREST = 3
 """Rivals of each round that are tried in the place of one of several effects. Cost."""
+BEGINS = 0.5
+"""Share of the first effect's gain from which on another one may begin a pair in its place: a first choice."""
+OTHER_PAIRS = 2
+"""Such pairs that are fitted."""
 LEAST_ERROR = 0.02
 """A gain's standard error is at least this share of the gain: trials alike to the last digit do not make z endless."""
 SAME_ERRORS = 3.0

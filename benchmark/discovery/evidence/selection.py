@@ -242,9 +242,10 @@ def _told(base: Fit, current: Fit, work: Pool) -> Fit:
 
 
 def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], settings: Settings, work: Pool) -> Fit:
-    """With two effects or more, put the best rivals in the place of each and keep what gains more than a tie.
+    """With two effects or more, put others in their place and keep what gains more than a tie.
 
-    What comes in is a further effect beside the others, and must be more than another form of them, too.
+    The best rivals in the place of each, and pairs of their own. What comes in is a further effect beside the others,
+    and must be more than another form of them, too.
     """
     if len(current.model.effects) < 2 or not rounds:
         return current
@@ -252,14 +253,31 @@ def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], settin
     rivals = [s.fit.model.effects[-1] for s in rounds[0] if s.slug not in taken][:2]
     best, density = current, float(held_out(current).sum())
     density += criteria.TIE * max(density - float(held_out(base).sum()), 0.0)
-    for effect in current.model.effects:
-        others = [other for other in current.model.effects if other is not effect]
-        under = rebuilt(base, others, work, "swaps")
-        for scored in score(under, work.fits("swaps", [(under, rival) for rival in rivals])):
+    rests = [[other for other in current.model.effects if other is not effect] for effect in current.model.effects]
+    swaps = [(rebuilt(base, rest, work, "swaps"), rivals) for rest in rests]
+    for under, incoming in [*swaps, *_other_pairs(base, current, rounds)]:
+        for scored in score(under, work.fits("swaps", [(under, rival) for rival in incoming])):
             gained = float(held_out(scored.fit).sum())
             if gained > density and carries_over(scored) and beats_bent(scored, settings):
                 best, density = scored.fit, gained
     return best
+
+
+def _other_pairs(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]]) -> list[tuple[Fit, list[Effect]]]:
+    """The pairs that promise most by one step, each as the fit of its first effect and the second.
+
+    Where two causes act at once, the effect that is taken first may be one that stands for both, beside which neither
+    shows. So the search begins again with each that did nearly as well in its place.
+    """
+    begun, top = rounds[0][0].gain.mean, current.model.effects[0].slug
+    starts = [s for s in rounds[0] if s.slug != top and s.gain.mean > criteria.BEGINS * begun][: criteria.NEAREST]
+    known = {s.slug: s.fit.model.effects[-1] for each in rounds[:2] for s in each}
+    pairs: list[tuple[float, Fit, Effect]] = []
+    for start in starts:
+        seconds = screen(start.fit, [effect for slug, effect in known.items() if slug not in (start.slug, top)])
+        pairs += [(base.objective - start.fit.objective + s.won, start.fit, s.effect) for s in seconds[:1]]
+    pairs.sort(key=lambda pair: -pair[0])
+    return [(fit, [effect]) for _, fit, effect in pairs[: criteria.OTHER_PAIRS]]
 
 
 def _in_place(

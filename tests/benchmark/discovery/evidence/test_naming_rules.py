@@ -1,5 +1,6 @@
 """Which candidates are accepted, which are equals, look-alikes or needless: each rule on numbers that decide it."""
 
+from collections import defaultdict
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -305,6 +306,39 @@ def test_a_swap_must_gain_more_than_a_tie(swap, density, swapped):
 def test_what_would_be_withheld_does_not_come_in_by_a_swap(swap, rule):
     assert swap(20.0)
     assert not swap(20.0, **{rule: False})
+
+
+def test_a_pair_may_begin_with_what_did_nearly_as_well_first(monkeypatch, known_densities):
+    names = ("both", "one", "poor", "other", "rest")
+    found = {name: effect(name) for name in names}
+    gains = {"both": 10.0, "one": 9.0, "poor": 4.0}
+    rounds = [[scored(name, gained) for name, gained in gains.items()], [scored("other", 1.0), scored("rest", 1.0)]]
+    for each in (*rounds[0], *rounds[1]):
+        object.__setattr__(each, "fit", fitted(found[each.slug], density=5.0, objective=100.0))
+    begun = []
+
+    def one_step(fit, effects):
+        begun.append(fit.model.effects[0].slug)
+        return tuple(SimpleNamespace(effect=each, won={"other": 30.0}.get(each.slug, 1.0)) for each in effects[::-1])
+
+    monkeypatch.setattr(selection, "screen", lambda fit, effects: tuple(sorted(one_step(fit, effects), key=_won)))
+    base, current = fitted(objective=200.0), fitted(found["both"], found["rest"], density=10.0)
+    ((under, incoming),) = selection._other_pairs(base, current, rounds)
+    assert begun == ["one"]  # the one taken is not begun with again, nor one that gains less than half
+    assert (under.model.effects, incoming) == ((found["one"],), [found["other"]])
+    monkeypatch.setattr(selection, "carries_over", lambda each: True)
+    monkeypatch.setattr(selection, "beats_bent", lambda each, settings: True)
+    monkeypatch.setattr(
+        selection, "score", lambda under, fits: [replace(scored("x", 1.0), fit=fit, under=under) for fit in fits]
+    )
+    better = fitted(found["one"], found["other"], density=12.0)
+    work = Work()
+    work.by_slugs = defaultdict(lambda: fitted(found["rest"], density=1.0), {("one", "other"): better})
+    assert selection._swapped(base, current, rounds, SETTINGS, work) is better
+
+
+def _won(screened):
+    return -screened.won
 
 
 class Linear:
