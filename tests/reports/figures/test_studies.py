@@ -1,5 +1,7 @@
 """Lines of several runs over each other."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -17,6 +19,15 @@ def test_a_panel_a_layer_and_every_run_by_name() -> None:
         assert "a, FEM" in panel.svg
         assert "b, FEM" in panel.svg
         assert "a, FEM 2.000; b, FEM without values" in panel.alt
+
+
+def test_lines_that_lie_on_each_other_show_each_by_its_width(lines) -> None:
+    same = {f"{run}, {model}": (X, X) for run in "ab" for model in ("FEM", "wave")}
+    (panel,) = overlay({"skin": same}, "time (s)", "deflection (mm)", "caption", "title").panels
+    strokes = re.findall(r"stroke: var\(--(\w+),[^\"]*stroke-width: ([\d.]+)", panel.svg)
+    drawn = [(of, float(width)) for of, width in strokes if of in ("fem", "wave", "incomplete", "good")][:4]
+    assert [of for of, _ in drawn] == ["fem", "incomplete", "wave", "good"]  # both FEM under both waves
+    assert [width for _, width in drawn] == sorted({width for _, width in drawn}, reverse=True)
 
 
 def test_looks_differ_in_more_than_colour() -> None:
