@@ -19,6 +19,9 @@ from bench_hw.simulated.specimen import LaidAnew, Specimen
 from bench_hw.simulated.virtual_bench import ActuatorMotion, VirtualBench
 
 _FAULT_TICK = 1e-3
+_DEAD_TIME = 0.02
+"""Longest time a drive takes to leave rest, s, where presses differ: two readings at 100 Hz. Without it the tool
+crosses its counts at the same moments between readings in every trial, and their error does not average out."""
 FOR_EVER = 1e9
 
 
@@ -94,7 +97,7 @@ class Twins:
         """Lay the specimen for the next press, the tool in the air: one that scatters is drawn, others stay."""
         if isinstance(self.settings.specimen, LaidAnew):
             specimen, off = self.settings.specimen.laid_anew(self.rng)
-            self.bench.lay(specimen, self.settings.contact + off)
+            self.bench.lay(specimen, self.settings.contact + off, _DEAD_TIME * self.rng.random())
 
     def catch_up(self) -> None:
         """Let the box do now what is due: a busy machine may have left its thread waiting, a real box never waits."""

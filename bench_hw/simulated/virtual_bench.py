@@ -40,6 +40,10 @@ class ActuatorMotion:
         It stands while its reading is this close to the target, m.
     resolution : float
         One count of its reading, m; 0 reads exactly.
+    dead_time : float
+        How long it takes to leave rest, s.
+    waited : float
+        Of that, what is over, s.
     """
 
     stroke: float
@@ -50,10 +54,15 @@ class ActuatorMotion:
     speed: float = 0.020
     dead_band: float = 0.0
     resolution: float = 0.0
+    dead_time: float = 0.0
+    waited: float = 0.0
 
     def step(self, duration: float) -> None:
         """Move on by `duration` seconds."""
         wanted = self._wanted_velocity()
+        self.waited = self.waited + duration if wanted and not self.velocity else 0.0
+        if 0.0 < self.waited <= self.dead_time:
+            return
         change = self.acceleration * duration
         self.velocity += min(max(wanted - self.velocity, -change), change)
         self.position += self.velocity * duration
@@ -112,10 +121,11 @@ class VirtualBench:
         self._depth[0] = motion.position - contact
         self._respond(0)
 
-    def lay(self, specimen: Specimen, contact: float) -> None:
-        """Put a specimen under the tool, which is in the air, with its surface at `contact`, m."""
+    def lay(self, specimen: Specimen, contact: float, dead_time: float = 0.0) -> None:
+        """Put a specimen under the tool, in the air, its surface at `contact` (m); the drive leaves rest late (s)."""
         with self.lock:
             self._specimen, self._contact = specimen, contact
+            self.motion.dead_time = dead_time
 
     def advance(self, now: float) -> None:
         """Move the bench on to the reading `now`; earlier readings change nothing."""

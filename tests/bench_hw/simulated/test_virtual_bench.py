@@ -36,6 +36,15 @@ def test_it_stops_inside_its_dead_band_short_of_the_target():
     assert rows[-1, 1] == 0.0
 
 
+def test_it_takes_its_dead_time_to_leave_rest_and_none_to_go_on():
+    prompt, late = (ActuatorMotion(stroke=0.05, target=0.01, speed=0.002, dead_time=wait) for wait in (0.0, 0.0155))
+    at_once, later = run(prompt, 1.0), run(late, 1.0)
+    assert later[:15, 0] == pytest.approx(0.0)
+    assert later[15:, 0] == pytest.approx(at_once[:-15, 0])
+    prompt.target = late.target = 0.02
+    assert np.diff(run(late, 0.1)[:, 0]) == pytest.approx(np.diff(run(prompt, 0.1)[:, 0]))
+
+
 @given(st.lists(st.floats(-0.01, 0.06), min_size=1, max_size=8), st.floats(1e-4, 0.02))
 def test_it_never_leaves_its_stroke_or_breaks_its_speed(targets, speed):
     motion = ActuatorMotion(stroke=0.05, speed=speed)
