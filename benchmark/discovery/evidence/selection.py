@@ -244,22 +244,32 @@ def _told(base: Fit, current: Fit, work: Pool) -> Fit:
 def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], settings: Settings, work: Pool) -> Fit:
     """With two effects or more, put others in their place and keep what gains more than a tie.
 
-    The best rivals in the place of each, and pairs of their own. What comes in is a further effect beside the others,
-    and must be more than another form of them, too.
+    The best rivals in the place of each, and pairs of their own; in the place of a set-up entry alone, pairs with
+    another one, where trials say so. What comes in is a further effect beside the others, and must be more than another
+    form of them, too.
     """
-    if len(current.model.effects) < 2 or not rounds:
+    chosen = current.model.effects
+    alone = len(chosen) == 1 and setup_key(chosen[0].slug) is not None
+    if not rounds or not (alone or len(chosen) > 1):
         return current
-    taken = {effect.slug for effect in current.model.effects}
-    rivals = [s.fit.model.effects[-1] for s in rounds[0] if s.slug not in taken][:2]
-    best, density = current, float(held_out(current).sum())
-    density += criteria.TIE * max(density - float(held_out(base).sum()), 0.0)
-    rests = [[other for other in current.model.effects if other is not effect] for effect in current.model.effects]
-    swaps = [(rebuilt(base, rest, work, "swaps"), rivals) for rest in rests]
-    for under, incoming in [*swaps, *_other_pairs(base, current, rounds)]:
+    swaps = _other_pairs(base, current, rounds)
+    if alone:
+        swaps = [(under, second) for under, second in swaps if setup_key(under.model.effects[0].slug) is not None]
+    else:
+        taken = {effect.slug for effect in chosen}
+        rivals = [s.fit.model.effects[-1] for s in rounds[0] if s.slug not in taken][:2]
+        rests = [[other for other in chosen if other is not effect] for effect in chosen]
+        swaps = [*((rebuilt(base, rest, work, "swaps"), rivals) for rest in rests), *swaps]
+    now, groups = held_out(current), conditions(current)
+    best, density = current, float(now.sum())
+    density += criteria.TIE * max(density - float(held_out(base).sum()), 0.0) * (not alone)
+    for under, incoming in swaps:
         for scored in score(under, work.fits("swaps", [(under, rival) for rival in incoming])):
-            gained = float(held_out(scored.fit).sum())
-            if gained > density and carries_over(scored) and beats_bent(scored, settings):
-                best, density = scored.fit, gained
+            then = held_out(scored.fit)
+            if float(then.sum()) <= density or not (carries_over(scored) and beats_bent(scored, settings)):
+                continue
+            if not alone or _over_trials(gain(then, now, groups), settings):
+                best, density = scored.fit, float(then.sum())
     return best
 
 

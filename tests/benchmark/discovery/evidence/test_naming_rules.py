@@ -337,6 +337,32 @@ def test_a_pair_may_begin_with_what_did_nearly_as_well_first(monkeypatch, known_
     assert selection._swapped(base, current, rounds, SETTINGS, work) is better
 
 
+@pytest.mark.parametrize(
+    ("top", "start", "density", "expected"),
+    [
+        ("setup.hole", "setup.clamp", 14.0, True),
+        ("setup.hole", "setup.clamp", 10.0, False),  # no better, trial by trial
+        ("setup.hole", "effect", 14.0, False),  # a pair without an entry of the set-up
+        ("effect", "setup.clamp", 14.0, False),  # an effect alone stays, whose form is not the true one
+    ],
+)
+def test_a_pair_takes_the_place_of_a_set_up_entry_alone(top, start, density, expected, monkeypatch, known_densities):
+    one, other, second = effect(top), effect(start), effect("second")
+    rounds = [[scored(top, 10.0), scored(start, 9.0), scored("second", 1.0)]]
+    for each, whole in zip(rounds[0], (one, other, second), strict=True):
+        object.__setattr__(each, "fit", fitted(whole, density=9.0))
+    monkeypatch.setattr(
+        selection, "screen", lambda fit, effects: tuple(SimpleNamespace(effect=e, won=9.0) for e in effects)
+    )
+    monkeypatch.setattr(selection, "score", lambda under, fits: [replace(scored("x", 1.0), fit=f) for f in fits])
+    monkeypatch.setattr(selection, "carries_over", lambda each: True)
+    monkeypatch.setattr(selection, "beats_bent", lambda each, settings: True)
+    current, pair = fitted(one, density=10.0), fitted(other, second, density=density)
+    found = selection._swapped(fitted(), current, rounds, SETTINGS, Work(pair))
+    assert (found is pair) is expected
+    assert expected or found is current
+
+
 def _won(screened):
     return -screened.won
 
