@@ -16,6 +16,7 @@ import numpy as np
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import EffectModel, Fit
 from benchmark.discovery.trials.study import ConditionData
+from benchmark.physics import Effect
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import one_step
 from benchmark.response.trials_model import TrialColumns
@@ -57,7 +58,7 @@ def bent(fitted: Fit, slugs: Sequence[str]) -> Fit:
         The effects whose forms may be off.
     """
     before, first = fitted.model, fitted.model.shape_count
-    parts = [_bends(fitted, slug) for slug in slugs]
+    parts = [_bends(fitted, effect) for effect in before.effects if effect.slug in slugs]
     extra = [np.hstack(each) for each in zip(*parts, strict=True)]
     model = BentModel(before.problem, before.effects, before.pinned, bends=extra[0].shape[1])
     at = model.evaluated(model.widened(fitted.vector, 0.0), fitted.nuisance)
@@ -66,14 +67,14 @@ def bent(fitted: Fit, slugs: Sequence[str]) -> Fit:
     return one_step(model, at, TrialColumns(vector, fitted.columns.nuisance), mean, precision)
 
 
-def _bends(fitted: Fit, slug: str) -> list[Array]:
+def _bends(fitted: Fit, effect: Effect) -> list[Array]:
     """White bends (N, b) of one effect in each trial: those of other conditions are zero."""
     model, problem = fitted.model, fitted.model.problem
-    felt = any(e.slug == slug and e.description.acts_on != "observation" for e in model.effects)
+    felt = effect.description.acts_on != "observation"
     turns = [_between_turns(condition) for condition in problem.study.conditions]
     ends = np.cumsum([0, *(len(problem.study.names[:2]) * len(each) for each in turns)])
     out = []
-    for index, (trial, added) in enumerate(zip(problem.trials, _added(fitted, slug), strict=True)):
+    for index, (trial, added) in enumerate(zip(problem.trials, _added(fitted, effect.slug), strict=True)):
         rows = np.zeros((added.size, ends[-1]))
         patterns = _patterns(added, problem.noise.scale[index], felt)
         shapes = [share[:, None] * pattern for pattern in patterns for share in turns[trial.condition]]
