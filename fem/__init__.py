@@ -94,7 +94,7 @@ _HOMES = {
 def __getattr__(name: str) -> object:
     for home, names in _HOMES.items():
         if name in names.split():
-            return getattr(import_module(f"fem.{home}"), name)
+            return globals().setdefault(name, getattr(import_module(f"fem.{home}"), name))
     raise AttributeError(f"module 'fem' has no attribute {name!r}")
 
 

@@ -15,6 +15,11 @@ def test_every_public_name_is_there():
         _ = fem.nothing
 
 
+def test_a_name_is_looked_up_once():
+    found = fem.Problem
+    assert vars(fem)["Problem"] is found
+
+
 def test_importing_it_loads_neither_numpy_nor_scipy():
     code = "import sys, fem; print({'numpy', 'scipy'} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -252,17 +252,16 @@ def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], settin
     alone = len(chosen) == 1 and setup_key(chosen[0].slug) is not None
     if not rounds or not (alone or len(chosen) > 1):
         return current
-    swaps = _other_pairs(base, current, rounds)
-    if alone:
-        swaps = [(under, second) for under, second in swaps if setup_key(under.model.effects[0].slug) is not None]
-    else:
+    swaps = _other_pairs(base, current, rounds, setup_alone=alone)
+    if not alone:
         taken = {effect.slug for effect in chosen}
         rivals = [s.fit.model.effects[-1] for s in rounds[0] if s.slug not in taken][:2]
         rests = [[other for other in chosen if other is not effect] for effect in chosen]
         swaps = [*((rebuilt(base, rest, work, "swaps"), rivals) for rest in rests), *swaps]
     now, groups = held_out(current), conditions(current)
     best, density = current, float(now.sum())
-    density += criteria.TIE * max(density - float(held_out(base).sum()), 0.0) * (not alone)
+    if not alone:
+        density += criteria.TIE * max(density - float(held_out(base).sum()), 0.0)
     for under, incoming in swaps:
         for scored in score(under, work.fits("swaps", [(under, rival) for rival in incoming])):
             then = held_out(scored.fit)
@@ -273,14 +272,18 @@ def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], settin
     return best
 
 
-def _other_pairs(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]]) -> list[tuple[Fit, list[Effect]]]:
+def _other_pairs(
+    base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], *, setup_alone: bool
+) -> list[tuple[Fit, list[Effect]]]:
     """The pairs that promise most by one step, each as the fit of its first effect and the second.
 
     Where two causes act at once, the effect that is taken first may be one that stands for both, beside which neither
-    shows. So the search begins again with each that did nearly as well in its place.
+    shows. So the search begins again with each that did nearly as well in its place, or with each set-up entry of these
+    where `setup_alone`.
     """
-    begun, top = rounds[0][0].gain.mean, current.model.effects[0].slug
-    starts = [s for s in rounds[0] if s.slug != top and s.gain.mean > criteria.BEGINS * begun][: criteria.NEAREST]
+    begun, top = criteria.BEGINS * rounds[0][0].gain.mean, current.model.effects[0].slug
+    near = [s for s in rounds[0] if s.slug != top and s.gain.mean > begun]
+    starts = [s for s in near if not setup_alone or setup_key(s.slug) is not None][: criteria.NEAREST]
     known = {s.slug: s.fit.model.effects[-1] for each in rounds[:2] for s in each}
     pairs: list[tuple[float, Fit, Effect]] = []
     for start in starts:

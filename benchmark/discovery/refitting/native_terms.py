@@ -18,9 +18,10 @@ from benchmark.physics import Effect, EffectParameter
 from benchmark.physics.description import EffectDescription, linear
 from benchmark.physics.effect import Values
 from benchmark.physics.setup_entry import PREFIX
+from benchmark.response.setup_change import PRETENSION as STRESS
 
-C20, C30, STRESS = "law.c20", "law.c30", "physics.pretension"
-"""Keys of the numbers in a table."""
+C20, C30 = "law.c20", "law.c30"
+"""Keys of the numbers in a table, beside the stress's."""
 MOST_GROWN = 2.0
 """A round may change a number by this share of its value, or by `LEAST_STEP` where that is more: derivatives serve no
 farther."""

@@ -323,7 +323,7 @@ def test_a_pair_may_begin_with_what_did_nearly_as_well_first(monkeypatch, known_
 
     monkeypatch.setattr(selection, "screen", lambda fit, effects: tuple(sorted(one_step(fit, effects), key=_won)))
     base, current = fitted(objective=200.0), fitted(found["both"], found["rest"], density=10.0)
-    ((under, incoming),) = selection._other_pairs(base, current, rounds)
+    ((under, incoming),) = selection._other_pairs(base, current, rounds, setup_alone=False)
     assert begun == ["one"]  # the one taken is not begun with again, nor one that gains less than half
     assert (under.model.effects, incoming) == ((found["one"],), [found["other"]])
     monkeypatch.setattr(selection, "carries_over", lambda each: True)
@@ -361,6 +361,24 @@ def test_a_pair_takes_the_place_of_a_set_up_entry_alone(top, start, density, exp
     found = selection._swapped(fitted(), current, rounds, SETTINGS, Work(pair))
     assert (found is pair) is expected
     assert expected or found is current
+
+
+def test_set_up_entries_are_looked_for_beyond_better_effects(monkeypatch):
+    names = ("setup.hole", "a", "b", "c", "d", "setup.clamp")
+    rounds = [[scored(name, 10.0 - number) for number, name in enumerate(names[:5])]]
+    rounds[0].append(scored("setup.clamp", 5.5))
+    for each in rounds[0]:
+        object.__setattr__(each, "fit", fitted(effect(each.slug)))
+    monkeypatch.setattr(selection, "screen", lambda fit, effects: (SimpleNamespace(effect=effects[0], won=1.0),))
+    current = fitted(effect("setup.hole"))
+    begun = {
+        alone: [
+            under.model.effects[0].slug
+            for under, _ in selection._other_pairs(fitted(), current, rounds, setup_alone=alone)
+        ]
+        for alone in (True, False)
+    }
+    assert begun == {True: ["setup.clamp"], False: ["a", "b"]}
 
 
 def _won(screened):
