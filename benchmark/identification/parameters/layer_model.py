@@ -34,6 +34,10 @@ RING_ZERO = 1.0
 TOUCH_STEP, COORDINATE_STEP = 1e-3, 1e-4
 """Steps of differences: mm, and of a time constant's logarithm."""
 MOST_ROWS = 250
+EASED = 2.0
+"""Noise of the force over which it begins, at most, on either side of the touch."""
+LEAST_EASED = 1e-12
+"""m."""
 
 
 class ForceTable(Protocol):
@@ -105,6 +109,23 @@ class FitTrial:
             starts, ends = group_bounds(trial.depth, MOST_ROWS)
             count = (ends - starts).astype(np.float64)
         return FitTrial(reduced(trial, MOST_ROWS), count, press, touch, onset)
+
+    @cached_property
+    def gaps(self) -> Array:
+        """(n,) m: how far a row's neighbours are in depth, the mean of both."""
+        steps = np.abs(np.diff(self.data.depth))
+        return np.convolve(np.concatenate([steps[:1], steps, steps[-1:]]), (0.5, 0.5), mode="valid")
+
+    def below(self, touch: float, noise: float) -> Array:
+        """(n,) m below the depth at touch (mm): from one row to the next, or what `noise` (N) hides, it begins evenly.
+
+        With a sharp beginning the slope of the likelihood jumps where a row comes into touch. A fit of ten trials then
+        ends in the next corner, by up to 3 in -2 log likelihood above the best, and a profile rises too early.
+        """
+        depth = self.data.depth - touch / MM
+        hidden = EASED * noise * float(np.ptp(self.data.depth)) / max(float(np.ptp(self.data.force)), 1e-300)
+        over = np.maximum(np.minimum(self.gaps, hidden), LEAST_EASED)
+        return np.where(np.abs(depth) < over, (depth + over) ** 2 / (4.0 * over), np.maximum(depth, 0.0))
 
     def up_to(self, depth: float) -> FitTrial:
         """The trial without the rows that are deeper than `depth` (m) below where it touches."""
@@ -243,19 +264,25 @@ class LayerModel:
         rings = [one.rings_at(at.vector) for one in self.surrogates] if self.rings else []
         out = []
         for k, own in enumerate(at.nuisance):
-            step = np.zeros(own.size)
-            step[TOUCH] = TOUCH_STEP
-            by_touch = (self._force(k, at.vector, own + step, grids) - self._force(k, at.vector, own - step, grids)) / (
-                2.0 * TOUCH_STEP
-            )
-            pressing = at.signals[k] - own[ZERO]
-            none = np.zeros((pressing.size, self.rings))
-            force = self._whitened(k, np.column_stack([by_touch, np.ones_like(pressing), pressing, none]))
-            out.append(np.vstack([force, self._film_columns(k, own, step, rings)]))
+            plain = self._force_columns(k, at.vector, own, grids)
+            force = self._whitened(k, np.column_stack([plain, np.zeros((len(plain), self.rings))]))
+            out.append(np.vstack([force, self._film_columns(k, own, rings)]))
         return out
 
-    def _film_columns(self, k: int, own: Array, step: Array, grids: Sequence[Array]) -> Array:
+    def force_columns(self, vector: Array, nuisance: Array) -> list[Array]:
+        """(n, 3) derivatives of each trial's force by touch, zero and gain: N/mm, 1 and N."""
+        grids = [one.force_at(vector) for one in self.surrogates]
+        return [self._force_columns(k, vector, own, grids) for k, own in enumerate(nuisance)]
+
+    def _force_columns(self, k: int, vector: Array, own: Array, grids: Sequence[Array]) -> Array:
+        step = _touch_step(own)
+        more, less = (self._force(k, vector, own + sign * step, grids) for sign in (1.0, -1.0))
+        pressing = self._force(k, vector, own, grids) - own[ZERO]
+        return np.column_stack([(more - less) / (2.0 * TOUCH_STEP), np.ones_like(pressing), pressing])
+
+    def _film_columns(self, k: int, own: Array, grids: Sequence[Array]) -> Array:
         """(f s, q) white derivatives of one trial's rings by its nuisances; no rows without a film."""
+        step = _touch_step(own)
         more, less = (self._moved(k, own + sign * step, grids) if grids else None for sign in (1.0, -1.0))
         if more is None or less is None or (noise := self.film_noise[k]) is None:
             return np.zeros((0, own.size))
@@ -284,7 +311,7 @@ class LayerModel:
 
     def _force(self, k: int, vector: Array, own: Array, grids: Sequence[Array]) -> Array:
         trial = self.trials[k]
-        depth = trial.data.depth - own[TOUCH] / MM
+        depth = trial.below(float(own[TOUCH]), float(self.noise[k]))
         elastic = self.surrogates[trial.press].curve(grids[trial.press], depth)
         faded = self._faded(trial, vector, depth, elastic)
         pressing = np.where(depth > 0.0, np.maximum(faded, 0.0), 0.0)
@@ -312,7 +339,7 @@ class LayerModel:
         """(n, p) white derivatives of one trial's force by the coordinates."""
         trial, own, vector = self.trials[k], at.nuisance[k], at.vector
         table, grid, by = self.surrogates[trial.press], grids[trial.press], shares[trial.press]
-        depth, gain = trial.data.depth - own[TOUCH] / MM, np.exp(own[GAIN])
+        depth, gain = trial.below(float(own[TOUCH]), float(self.noise[k])), np.exp(own[GAIN])
         out = np.zeros((trial.data.rows, vector.size))
         pressing = at.signals[k] > own[ZERO]
         acting = np.flatnonzero(by.any(axis=1))
@@ -330,3 +357,10 @@ class LayerModel:
         step[index] = COORDINATE_STEP
         more, less = (self._force(k, vector + sign * step, own, grids) for sign in (1.0, -1.0))
         return np.asarray((more - less) / (2.0 * COORDINATE_STEP))
+
+
+def _touch_step(own: Array) -> Array:
+    """(q,) a step of the depth at touch alone."""
+    step = np.zeros(own.size)
+    step[TOUCH] = TOUCH_STEP
+    return step

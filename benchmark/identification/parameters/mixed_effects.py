@@ -17,7 +17,7 @@ import scipy
 from benchmark.identification.parameters.layer_model import GAIN, FilmNoise, LayerModel
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import TrialsFit
-from benchmark.response.noise import fit_memory, scales, whitener
+from benchmark.response.noise import restricted_noise, whitener
 
 RATIOS = np.concatenate([[0.0], np.geomspace(1e-3, 1e4, 281)])
 """Variance between over variance within that are tried."""
@@ -134,9 +134,9 @@ def renoised(fit: TrialsFit[LayerModel], freedom: int) -> tuple[LayerModel, floa
     predicted = model.predicted(fit.vector, fit.nuisance)
     errors = [one.data.force - force for one, force in zip(model.trials, predicted, strict=True)]
     counts = [one.count for one in model.trials]
-    memory = fit_memory(errors, counts)
+    memory, deviations = restricted_noise(errors, counts, model.force_columns(fit.vector, fit.nuisance))
     white = tuple(whitener(count, memory) for count in counts)
-    noise = np.maximum(scales(errors, counts, memory), 1e-9)
+    noise = np.where(np.isnan(deviations), model.noise, np.maximum(deviations, 1e-9))
     scatter = model.gain_deviation if freedom < 1 else _scatter(fit, freedom)
     films = _film_noise(model, fit.vector, fit.nuisance)
     return replace(model, white=white, noise=noise, gain_deviation=scatter, film_noise=films), memory
@@ -155,11 +155,11 @@ def _film_noise(model: LayerModel, vector: Array, nuisance: Array) -> tuple[Film
     ]
     if not films:
         return model.film_noise
-    memory = fit_memory([ring for one, _ in films for ring in one.T], [count for one, count in films for _ in one.T])
-    found = iter(
-        FilmNoise(whitener(count, memory), np.maximum(scales(one.T, [count] * one.shape[1], memory), LEAST_FILM_NOISE))
-        for one, count in films
-    )
+    rings = [ring for one, _ in films for ring in one.T]
+    counts = [count for one, count in films for _ in one.T]
+    memory, deviations = restricted_noise(rings, counts, [np.ones((ring.size, 1)) for ring in rings])
+    deviations = np.fmax(deviations, LEAST_FILM_NOISE).reshape(len(films), -1)
+    found = iter(FilmNoise(whitener(films[k][1], memory), each) for k, each in enumerate(deviations))
     return tuple(None if one is None else next(found) for one in left)
 
 

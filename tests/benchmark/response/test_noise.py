@@ -3,7 +3,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from benchmark.response.noise import effective_rows, fit_memory, lag_one, scales, whitened, whitener
+from benchmark.response.noise import effective_rows, fit_memory, lag_one, restricted_noise, scales, whitened, whitener
 
 
 def remembered(rng, trials, size, memory):
@@ -49,6 +49,48 @@ def test_the_memory_and_the_scale_are_found():
     counts = np.ones((6, 400))
     assert fit_memory(errors, counts) == 0.85
     assert scales(errors, counts, 0.85) == pytest.approx(np.full(6, 0.02), rel=0.12)
+
+
+def press_columns(rows):
+    """A contact's force by touch, zero and gain."""
+    below = np.maximum(np.linspace(-0.3, 1.0, rows), 0.0)
+    return np.column_stack([below > 0.0, np.ones(rows), below**1.3])
+
+
+@pytest.mark.parametrize("memory", [0.3, 0.8, 0.95])
+def test_what_a_fit_takes_along_does_not_shorten_the_memory(memory):
+    columns, counts, found = press_columns(250), [np.ones(250)] * 10, []
+    for seed in range(20):
+        errors = 0.02 * remembered(np.random.default_rng([5, seed]), 10, 250, memory)
+        left = errors - (columns @ np.linalg.lstsq(columns, errors.T, rcond=None)[0]).T
+        found.append(restricted_noise(left, counts, [columns] * 10))
+    told, deviations = np.mean([one for one, _ in found]), np.mean([one for _, one in found])
+    assert told == pytest.approx(memory, abs=0.015)
+    assert deviations * np.sqrt(1.0 - told**2) == pytest.approx(0.02 * np.sqrt(1.0 - memory**2), rel=0.03)
+
+
+def test_it_is_the_restricted_likelihood_of_patterson_and_thompson():
+    columns, rows = press_columns(60), 60
+    error = remembered(np.random.default_rng(8), 1, rows, 0.6)[0]
+
+    def dense(memory):
+        inverse = np.linalg.inv(memory ** np.abs(np.subtract.outer(np.arange(rows), np.arange(rows))))
+        inner = columns.T @ inverse @ columns
+        left = error - columns @ np.linalg.solve(inner, columns.T @ inverse @ error)
+        free = rows - columns.shape[1]
+        return free * np.log(left @ inverse @ left) - np.linalg.slogdet(inverse)[1] + np.linalg.slogdet(inner)[1]
+
+    tried = np.linspace(0.01, 0.99, 981)
+    best = tried[np.argmin([dense(each) for each in tried])]
+    assert restricted_noise([error], [np.ones(rows)], [columns])[0] == pytest.approx(best, abs=3e-3)
+
+
+def test_trials_with_no_more_rows_than_columns_have_no_noise_of_their_own():
+    rng, counts = np.random.default_rng(9), [np.ones(3), np.ones(120), np.zeros(50)]
+    errors = [remembered(rng, 1, one.size, 0.5)[0] for one in counts]
+    memory, deviations = restricted_noise(errors, counts, [press_columns(one.size) for one in counts])
+    assert np.isfinite(deviations).tolist() == [False, True, False]
+    assert 0.0 <= memory < 0.99
 
 
 def test_a_row_without_a_sample_weighs_nothing():

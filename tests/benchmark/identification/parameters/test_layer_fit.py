@@ -1,19 +1,22 @@
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from benchmark.errors import InputError
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.identification.parameters.free_parameters import value_of
-from benchmark.identification.parameters.layer_fit import USUAL_SCATTER
+from benchmark.identification.parameters.layer_fit import SEARCH, USUAL_SCATTER, begun, fit_layers
 from benchmark.identification.parameters.layer_model import FitTrial
 from benchmark.identification.parameters.profile_likelihood import profile
 from benchmark.identification.parameters.session_problem import _specimens
 from benchmark.identification.sheet_model import Relaxation, relaxed
 from benchmark.identification.trial_data import TrialData, rows_of
 from benchmark.identification.trial_features import contact_range
-from tests.benchmark.identification.parameters.conftest import MODULI, PLAIN, TISSUE, TOOLS, TRUTH
+from benchmark.response.least_squares import least_squares
+from tests.benchmark.identification.parameters.conftest import MODULI, PLAIN, TISSUE, TOOLS, TRUTH, zeros_of
 
 
 def errors(found):
@@ -33,6 +36,24 @@ def test_two_tools_tell_three_moduli(toy_fit) -> None:
 def test_moduli_come_out_of_trials_with_hardly_any_noise(toy_fit) -> None:
     found = toy_fit(noise=1e-4, gain=0.0)
     assert [found.value(k) for k in range(3)] == pytest.approx(list(TRUTH.values()), rel=1e-2)
+
+
+def test_a_fit_ends_at_the_same_answer_wherever_it_takes_the_touch_to_be(toy) -> None:
+    """A sharp beginning of the force leaves a corner of the likelihood at each row, and fits end in the next one."""
+    generator, noise = np.random.default_rng(6), 0.01
+
+    def remembering(trial):
+        shocks = noise * 0.6 * np.ptp(trial.data.force) * generator.normal(size=trial.data.rows)
+        return replace(trial, data=replace(trial.data, force=trial.data.force + lfilter([1.0], [1.0, -0.8], shocks)))
+
+    problem = toy(noise=0.0)
+    problem = replace(problem, trials=tuple(map(remembering, problem.trials)))
+    found = fit_layers(begun(problem, np.zeros(10), zeros_of(problem)))
+    ends = []
+    for touch in (-0.04, -0.02, 0.0, 0.02, 0.04):
+        start = found.fit.nuisance + np.array([touch, 0.0, 0.0])
+        ends.append(2.0 * least_squares(found.model, found.vector, start, search=SEARCH).objective)
+    assert np.ptp(ends) < 0.1
 
 
 def test_the_scatter_of_trials_is_told_from_their_noise(toy_fit) -> None:
