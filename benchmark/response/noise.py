@@ -158,7 +158,7 @@ class _Left:
 
     @property
     def _freedom(self) -> int:
-        return self.error.size - self.basis.shape[1]
+        return int(self.error.size - self.basis.shape[1])
 
     def _white(self, memory: float) -> tuple[float, Array, Array]:
         """Mean square per degree of freedom, the sizes (r,) of the fitted directions, and the whitener's scales."""
