@@ -19,6 +19,8 @@ _FETCH = re.compile(r"url\(\s*(?!['\"]?#)|@import|javascript:", re.IGNORECASE)
 _COLOUR = re.compile(r"#[0-9a-fA-F]{6}\b")
 _FAMILY = re.compile(r"font-family:[^;]*;?\s*")
 _DECIMAL = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
+WIDE = 480.0
+"""A drawing wider than this in CSS pixels scrolls on a phone, where its labels would be too small to read."""
 _ROUNDED = ("d", "x", "y", "width", "height", "points")
 
 
@@ -82,6 +84,8 @@ def embed(svg: str, prefix: str, title: str, description: str) -> str:
         element.text = text
         root.insert(position, element)
     root.set("role", "img")
+    if float(root.get("viewBox", "0 0 0 0").split()[2]) > WIDE:
+        root.set("class", "wide")
     root.set("aria-labelledby", f"{names['title']} {names['desc']}")
     return serialise(root)
 

@@ -23,6 +23,12 @@ def test_an_embedded_picture_has_words_and_ids_of_its_own():
     assert {item.get("id") for item in root.iter() if item.get("id")} >= {"f1-m1", "f1-p1"}
 
 
+@pytest.mark.parametrize(("width", "expected"), [(340, None), (480, None), (610, "wide")])
+def test_a_wide_picture_is_marked_so_that_a_phone_scrolls_it(width, expected):
+    root = ElementTree.fromstring(embed(f'<svg viewBox="0 0 {width} 300"/>', "f1-", "", ""))
+    assert root.get("class") == expected
+
+
 def test_an_embedded_picture_names_no_address():
     assert "http" not in embed(SVG, "f1-", "", "")
 
