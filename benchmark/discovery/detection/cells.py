@@ -39,12 +39,15 @@ class CellTable:
         Condition of each trial; None: all in one.
     matched : (M, R) or None
         Further numbers a trial that share in the test, from one side: the residual along each effect's direction.
+    least : (K,) or None
+        Size up to which the mean of a cell is no disagreement; None: 0.
     """
 
     cells: tuple[Cell, ...]
     means: Array
     groups: np.ndarray | None = None
     matched: Array | None = None
+    least: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,15 +135,19 @@ def flip_test(table: CellTable, flips: int, seed: int) -> FlipTest:
 
     The statistic is the root of the sum over conditions of squared t, signed by the sum of the means, with the variance
     within conditions, shrunk to the median of like cells. Its largest value over all cells (and matched numbers) is
-    compared with those after flipping the signs of whole trials, which under no disagreement changes nothing.
+    compared with those after flipping the signs of whole trials, which under no disagreement changes nothing. What a
+    cell must exceed is taken from its own mean, not from the flipped ones, so that the level holds.
     """
     means = table.means if table.matched is None else np.vstack([table.means, table.matched])
     kinds = [(cell.signal, min(cell.rows), len(cell.rows)) for cell in table.cells]
     kinds += [(-1, 0, 0)] * (len(means) - len(kinds))
     groups = np.zeros(means.shape[1], dtype=int) if table.groups is None else table.groups
     sided = np.arange(len(means)) >= len(table.cells)
-    t, error, p, flipped = _flipped(means, np.array(kinds), sided, groups, (flips, seed))
     size = len(table.cells)
+    least = np.zeros(len(means))
+    if table.least is not None:
+        least[:size] = table.least
+    t, error, p, flipped = _flipped(means, np.array(kinds), sided, groups, (flips, seed), least)
     critical = float(np.quantile(_largest(flipped, sided), 0.95, method="higher"))
     return FlipTest(t[:size], p[:size], critical, error[:size], float(p.min()))
 
@@ -167,16 +174,17 @@ def least_p(groups: np.ndarray, settings: Settings) -> float:
 def one_sided(rows: Array, groups: np.ndarray, flips: int, seed: int) -> Array:
     """(K,) family-wise p that numbers (K, R), one a trial, lie above zero in the mean."""
     kinds = np.tile([-1, 0, 0], (len(rows), 1))
-    return _flipped(rows, kinds, np.ones(len(rows), dtype=bool), groups, (flips, seed))[2]
+    return _flipped(rows, kinds, np.ones(len(rows), dtype=bool), groups, (flips, seed), np.zeros(len(rows)))[2]
 
 
 def _flipped(
-    means: Array, kinds: Array, sided: np.ndarray, groups: np.ndarray, draw: tuple[int, int]
+    means: Array, kinds: Array, sided: np.ndarray, groups: np.ndarray, draw: tuple[int, int], least: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """t, standard error and family-wise p (K,) of means (K, R), and the statistics of each flip (S, K)."""
+    """Of means (K, R): t beyond `least`, standard error and family-wise p, (K,) each, and the statistics (S, K) of flips."""
     count = means.shape[1]
     weights, signs = _members(groups), _signs(count, *draw)
     t, error = (column[0] for column in _statistics(means, kinds, np.ones((1, count)), weights))
+    t = np.sign(t) * np.maximum(np.abs(t) - least / np.maximum(error, 1e-300), 0.0)
     flipped = _statistics(means, kinds, signs, weights)[0]
     shown = np.where(sided, t, np.abs(t))
     above = _largest(flipped, sided)[:, None] >= shown[None] - 1e-9
@@ -232,17 +240,15 @@ def channel_sizes(before: Fit, after: Fit) -> tuple[ChannelSize, ...]:
     It is the root mean square over trials of the mean residual in a cell, so that what trials miss in unlike ways
     counts as what they share does; the cell in which it is largest stands for the channel.
     """
-    peak = max(condition.around.peak_force for condition in before.model.problem.study.conditions)
-    old, new = _misses(before), _misses(after)
-    return tuple(
-        ChannelSize(
-            channel,
-            old[channel],
-            new[channel],
-            criteria.TOLERANCE_FORCE * peak if channel.startswith("force") else criteria.TOLERANCE_MARKERS,
-        )
-        for channel in old
-    )
+    old, new, tolerance = _misses(before), _misses(after), tolerances(before.model.problem)
+    return tuple(ChannelSize(channel, old[channel], new[channel], tolerance[channel]) for channel in old)
+
+
+def tolerances(problem: TrialsProblem) -> dict[str, float]:
+    """The stated tolerance of each channel, N or m."""
+    force = criteria.TOLERANCE_FORCE * max(condition.around.peak_force for condition in problem.study.conditions)
+    channels = dict.fromkeys(problem.study.channels)
+    return {name: force if name.startswith("force") else criteria.TOLERANCE_MARKERS for name in channels}
 
 
 def within_tolerance(fitted: Fit) -> bool:

@@ -18,6 +18,7 @@ from benchmark.discovery.detection.cells import (
     cells_of,
     flip_test,
     projected_residuals,
+    tolerances,
 )
 from benchmark.discovery.discovery_result import Array
 
@@ -71,7 +72,9 @@ def _tested(
     fitted: Fit, settings: Settings, full: Fit | None = None, matched: Array | None = None
 ) -> tuple[CellTable, FlipTest]:
     problem = (full or fitted).model.problem
-    table = replace(cell_means(problem, projected_residuals(fitted), cells_of(problem)), matched=matched)
+    table, tolerance = cell_means(problem, projected_residuals(fitted), cells_of(problem)), tolerances(problem)
+    least = criteria.TOO_SMALL * np.array([tolerance[problem.study.channels[cell.signal]] for cell in table.cells])
+    table = replace(table, matched=matched, least=least)
     return table, flip_test(table, settings.flips, settings.seed)
 
 
@@ -121,8 +124,9 @@ def smallest_visible(fitted: Fit, detection: Detection) -> dict[str, float]:
     """For each channel the smallest mean residual that would have been flagged, N or m."""
     channels = fitted.model.problem.study.channels
     out: dict[str, float] = {}
+    least = detection.table.least
     for k, cell in enumerate(detection.table.cells):
-        size = float(detection.test.critical * detection.test.error[k])
+        size = float(detection.test.critical * detection.test.error[k]) + (0.0 if least is None else float(least[k]))
         channel = channels[cell.signal]
         out[channel] = min(out.get(channel, np.inf), size)
     return out

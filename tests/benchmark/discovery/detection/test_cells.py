@@ -1,5 +1,6 @@
 """The sign-flip test of whole trials keeps its level; the size of a misfit is held against a stated tolerance."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -82,6 +83,20 @@ def test_a_shift_in_one_cell_is_found_there():
     test = flip_test(table(means), 0, 0)
     assert test.p_any < 0.05
     assert np.argmin(test.p) == 7
+
+
+def test_a_shift_that_is_too_small_to_matter_is_none():
+    means = null_means(np.random.default_rng(5))
+    means[7] += 8.0
+    plain = flip_test(table(means), 0, 0)
+    size = abs(plain.t[7]) * plain.error[7]
+    assert size == pytest.approx(abs(means[7].mean()))
+    found = {
+        share: flip_test(replace(table(means), least=np.full(CELLS, share * size)), 0, 0) for share in (0.0, 0.5, 1.01)
+    }
+    assert found[0.0].p_any == plain.p_any < 0.05
+    assert found[0.5].t[7] == pytest.approx(0.5 * plain.t[7])
+    assert (found[1.01].t[7], found[1.01].p_any) == (0.0, 1.0)
 
 
 def test_few_trials_cannot_reach_the_level():

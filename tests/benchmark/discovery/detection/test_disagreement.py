@@ -77,7 +77,8 @@ def test_the_smallest_visible_disagreement_is_that_of_a_channels_best_cell():
     rows = {0: np.ones(4, dtype=bool)}
     cells = tuple(Cell(1, 1, 0, signal, rows) for signal in (0, 0, 1, 2))
     test = FlipTest(np.zeros(4), np.ones(4), 3.0, np.array([0.1, 0.05, 2e-6, 1e-6]), 1.0)
-    made = Detection(CellTable(cells, np.zeros((4, 6))), test, 1.0, 1.0, np.zeros(4))
+    least = np.array([0.0, 0.0, 5e-6, 1e-6])
+    made = Detection(CellTable(cells, np.zeros((4, 6)), least=least), test, 1.0, 1.0, np.zeros(4))
     study = SimpleNamespace(channels=("force_z", "marker_radial", "marker_radial"))
     fit = SimpleNamespace(model=SimpleNamespace(problem=SimpleNamespace(study=study)))
-    assert smallest_visible(fit, made) == pytest.approx({"force_z": 0.15, "marker_radial": 3e-6})
+    assert smallest_visible(fit, made) == pytest.approx({"force_z": 0.15, "marker_radial": 4e-6})
