@@ -180,7 +180,7 @@ def one_sided(rows: Array, groups: np.ndarray, flips: int, seed: int) -> Array:
 def _flipped(
     means: Array, kinds: Array, sided: np.ndarray, groups: np.ndarray, draw: tuple[int, int], least: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Of means (K, R): t beyond `least`, standard error and family-wise p, (K,) each, and the statistics (S, K) of flips."""
+    """Of means (K, R): t beyond `least`, standard error, family-wise p, (K,) each, and statistics (S, K) of flips."""
     count = means.shape[1]
     weights, signs = _members(groups), _signs(count, *draw)
     t, error = (column[0] for column in _statistics(means, kinds, np.ones((1, count)), weights))
