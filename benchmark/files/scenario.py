@@ -199,7 +199,10 @@ def scenario_notes(scenario: Scenario) -> tuple[str, ...]:
 
 
 def _undetermined(key: str, tissue: str) -> str:
-    return f"{key} is quoted but not determined: the trials behind {tissue} do not tell it, and any result rests on it"
+    return (
+        f"{key} is quoted but not determined: the trials behind {tissue} do not tell it, any result rests on it, and "
+        "no band includes it"
+    )
 
 
 def _law_apart(layer: Layer) -> str | None:

@@ -25,7 +25,7 @@ from benchmark.identification.parameters.identifiability import (
     discrepancy_use,
     errors_alone,
 )
-from benchmark.identification.parameters.layer_fit import LayerFit
+from benchmark.identification.parameters.layer_fit import AGREES, LayerFit
 from benchmark.identification.parameters.layer_model import MM
 from benchmark.identification.parameters.presses.marker_rings import TRUST
 from benchmark.identification.parameters.presses.model_error import ModelError
@@ -166,7 +166,7 @@ class Identified:
 
     def _reason(self, place: int, largest: float) -> str:
         if not self.found.settled:
-            return self._unsettled
+            return "the fit did not settle, so that its values are no answer"
         deviation = float(errors_alone(self.found.fit, self.found.problem.free)[place])
         if self.others and largest <= LARGEST_ERROR:
             return "two or more answers away from each other follow the trials equally well"
@@ -224,8 +224,10 @@ class Identified:
     @property
     def _unsettled(self) -> str:
         return (
-            f"the fit did not settle in {self.found.rounds} rounds: model and surrogate still differ by "
-            f"{100 * self.found.disagreement:.2g} % of the force"
+            f"the fit did not settle in {self.found.rounds} rounds: pressed with the values where it stopped, the "
+            f"model's force still differs by {100 * self.found.disagreement:.2g} % from the one that they were fitted "
+            f"with (allowed {100 * AGREES:.2g} %). What may help: fewer free keys, told values nearer to the "
+            "specimen's (--set), [fit.bounds], or trials that press less deep"
         )
 
     def _values(self, answer: LayerFit) -> str:

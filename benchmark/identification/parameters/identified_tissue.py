@@ -1,4 +1,7 @@
-"""The tissue file of what was identified: values, their standard uncertainties, and where they come from."""
+"""The tissue file of what was identified: values, their standard uncertainties, and where they come from.
+
+A value that is not determined stands without one: the curvature where a fit ended says nothing of it.
+"""
 
 from __future__ import annotations
 
@@ -26,17 +29,24 @@ def identified_tissue(answer: Identified, specimen: int = 0) -> Tissue:
     problem = found.problem
     press = next(one for one in problem.presses if one.specimen == specimen)
     free = {k: one for k, one in enumerate(problem.parameters) if press.has(one) and not one.told}
+    lost = {k for k, one in zip(problem.free, answer.estimates, strict=True) if one.standing == NOT_DETERMINED}
+    sure = {k: one for k, one in free.items() if k not in lost}
     values = {one.key: found.value(k) for k, one in free.items() if not one.fading}
     tissue = with_values(press.setup, values, problem.law)[0]
     fading = {one.key: found.value(k) for k, one in free.items() if one.fading}
     told = press.session.specimen
     layers = tuple(
         _with_relaxation(layer, fading).keeping_uncertainties(
-            dict(told.layer(layer.name).own_uncertainties) | _shares(answer, free, layer.name)
+            {
+                key: share
+                for key, share in told.layer(layer.name).own_uncertainties.items()
+                if f"{layer.name}.{key}" not in values
+            }
+            | _shares(answer, sure, layer.name)
         )
         for layer in tissue.layers
     )
-    own = {one.key: k for k, one in free.items() if one.key.rpartition(".")[2] in STATED}
+    own = {one.key: k for k, one in sure.items() if one.key.rpartition(".")[2] in STATED}
     unknown = tuple(one.key.split(" [")[0] for one in answer.estimates if not one.identifiable)
     unknown = tuple(key for key in unknown if key.partition(".")[0] in tissue.layer_names)
     changes = {
@@ -74,7 +84,7 @@ def _with_relaxation(layer: Layer, fading: dict[str, float]) -> Layer:
 
 
 def _shares(answer: Identified, free: dict[int, Parameter], layer: str) -> dict[str, float]:
-    """Relative standard uncertainties of a layer's free values."""
+    """Relative standard uncertainties of a layer's free values that stand with one."""
     covariance, out = answer.found.fit.covariance, {}
     for k, one in free.items():
         name, _, key = one.key.rpartition(".")

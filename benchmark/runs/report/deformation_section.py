@@ -169,12 +169,14 @@ def bands_section(record: RunRecord, bands: ParameterBands) -> Section:
         )
     pairs = zip(bands.keys, bands.shares, strict=True)
     told = ", ".join(f"{key} {100 * share:.3g} %" for key, share in pairs)
+    lost = [key for key in record.scenario.tissue.not_determined or () if key not in bands.keys]
+    left = f" Left out as not determined, so that the bands are too narrow: {', '.join(lost)}." if lost else ""
     correlated = " and their correlations" if record.scenario.tissue.correlations else ", taken as independent"
     blocks.append(
         Notice(
             "finding",
             f"Standard uncertainties ({told}){correlated}, propagated to first order: finite elements by {bands.by}, "
-            "wave by central differences. Both models move together: their difference is surer than either.",
+            f"wave by central differences. Both models move together: their difference is surer than either.{left}",
         )
     )
     return Section("What the parameters leave", blocks)
