@@ -17,6 +17,7 @@ Vary = Annotated[
         help='What varies: a list, tool.radius="2 mm,5 mm", or a range, dermis.youngs_modulus="50 kPa:500 kPa:10:log".',
     ),
 ]
+Tissue = Annotated[str | None, typer.Option("--tissue", help="Another tissue for the scenario: a name or a TOML file.")]
 Sample = Annotated[
     Literal["lhs", "sobol"] | None,
     typer.Option("--sample", help="Draw points: a Latin hypercube or a Sobol sequence; without, every combination."),
@@ -37,6 +38,7 @@ def register(app: typer.Typer) -> None:
 def sweep(
     scenario: Scenario,
     vary: Vary,
+    tissue: Tissue = None,
     sample: Sample = None,
     points: Points = None,
     sensitivity: Sensitivity = False,
@@ -62,7 +64,7 @@ def sweep(
     request = SweepRequest(
         scenario=scenario,
         vary=tuple(vary),
-        settings=parse_settings(settings),
+        settings=parse_settings(settings) | ({} if tissue is None else {"tissue": tissue}),
         sample=sample,
         points=points,
         sensitivity=sensitivity,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
@@ -66,7 +66,14 @@ def tissue_from_table(table: Mapping[str, Any], source: Source, overrides: Overr
     """A tissue from the table of a file, after overrides; raises like `load_tissue`."""
     paths = {key: _tissue_path(key, table) for key in overrides}
     changed, traced = put_in(table, source, paths, overrides)
-    return validated(Tissue, changed, traced)
+    return _telling(validated(Tissue, changed, traced), overrides)
+
+
+def _telling(tissue: Tissue, told: Iterable[str]) -> Tissue:
+    """The tissue without what is told by these keys among what its trials do not determine."""
+    keys = {key.removeprefix("tissue.") for key in told}
+    left = tuple(key for key in tissue.not_determined or () if key not in keys)
+    return tissue.model_copy(update={"not_determined": left or None})
 
 
 def load_scenario(name_or_path: str | Path, overrides: Overrides = _NO_OVERRIDES) -> Scenario:
@@ -115,7 +122,7 @@ def scenario_from_table(table: Mapping[str, Any], source: Source, overrides: Ove
     changed, traced = put_in(table, source, in_scenario, overrides)
     _find_from_here(changed, in_scenario.values())
     if isinstance(tissue, Mapping):
-        tissue = validated(Tissue, *put_in(tissue, tissue_source, in_tissue, overrides))
+        tissue = _telling(validated(Tissue, *put_in(tissue, tissue_source, in_tissue, overrides)), in_tissue)
     if tissue is not None:
         changed["tissue"] = tissue
     return validated(Scenario, changed, traced)

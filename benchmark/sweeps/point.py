@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmark.errors import TissuebenchError
-from benchmark.files import Scenario
+from benchmark.files import Scenario, scenario_notes
 from benchmark.models import Keeping, ModelResult, UncoveredError, prepare, scenario_drive
 from benchmark.runs.output.unfinished import is_kept
 from benchmark.side_by_side.parameter_bands import parameter_bands
@@ -80,6 +80,7 @@ def evaluate(task: Task) -> PointResult:
     warnings = [*(warning for answer in answers.values() for warning in answer.warnings), *unknown]
     if all(result is None for result in results.values()) and not faults:
         faults = warnings
+    warnings = [*scenario_notes(task.scenario), *warnings]
     return PointResult(
         point=task.point,
         status=FAILED if faults else OK,

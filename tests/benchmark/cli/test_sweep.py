@@ -41,6 +41,13 @@ def test_a_grid_leaves_a_row_a_point_and_a_report(benchmark_cli, tmp_path: Path)
     assert "https://" not in page
 
 
+def test_another_tissue_is_the_one_that_is_swept(benchmark_cli, tmp_path: Path) -> None:
+    vary = ("--vary", "dermis.youngs_modulus=100 kPa,200 kPa")
+    called = benchmark_cli("sweep", "skin-5N", "--tissue", tmp_path / "none.toml", *vary, "--out", tmp_path / "s")
+    assert called.code == 2
+    assert "none.toml" in called.err
+
+
 @pytest.mark.slow
 def test_a_point_is_the_run_of_its_values(benchmark_cli, tmp_path: Path) -> None:
     vary = ("--vary", "dermis.youngs_modulus=100 kPa,200 kPa")

@@ -45,6 +45,13 @@ def test_what_is_not_determined_is_said_of_every_scenario_that_quotes_it(tmp_pat
     assert any(note.startswith("a.youngs_modulus is quoted but not determined") for note in scenario_notes(scenario))
 
 
+def test_a_value_that_is_told_instead_is_no_longer_one_that_trials_do_not_determine(tmp_path) -> None:
+    changed = {"tissue": str(written(tmp_path)), "a.youngs_modulus": "80 kPa"}
+    assert not any("not determined" in note for note in scenario_notes(load_scenario("skin-5N", changed)))
+    assert load_tissue(str(written(tmp_path)), overrides={"a.youngs_modulus": "80 kPa"}).not_determined is None
+    assert load_tissue(str(written(tmp_path)), overrides={"b.youngs_modulus": "80 kPa"}).not_determined is not None
+
+
 @pytest.mark.parametrize(("unknown", "value"), [("c.youngs_modulus", 0.1), ("a.youngs_modulus", 1.5)])
 def test_other_layers_and_impossible_correlations_are_refused(unknown: str, value: float, tmp_path) -> None:
     with pytest.raises(InputError, match=r"tissue\.toml"):

@@ -46,6 +46,13 @@ def test_under_depth_control_the_force_is_the_result() -> None:
     assert row.values["error_percent"] == pytest.approx(100 * (forces[1] / forces[0] - 1))
 
 
+def test_a_point_says_that_it_rests_on_a_value_that_no_trial_determines(scenario: Scenario) -> None:
+    key = f"{scenario.tissue.layer_names[0]}.youngs_modulus"
+    tissue = scenario.tissue.model_copy(update={"not_determined": (key,)})
+    row = evaluate(Task(1, scenario.model_copy(update={"tissue": tissue})))
+    assert f"{key} is quoted but not determined" in (row.warnings or "")
+
+
 def test_a_model_that_does_not_cover_the_point_leaves_its_columns_out() -> None:
     row = evaluate(Task(1, load_scenario("skin-5N", {**SMALL, "support.kind": "half_space"})))
     assert row.status == OK
