@@ -41,6 +41,8 @@ class Shape:
         Slopes of the lower face against the camera's plane: what sinks by w moves by slope times w in the picture.
     lens : float
         What the camera's radial distortion leaves, relative at the outermost marker (k1 times its radius squared).
+    centre_x, centre_y : float
+        Where the tool's axis meets the grid, from its centre, relative to the outermost marker's distance.
     """
 
     modulus: float = 0.0
@@ -56,6 +58,8 @@ class Shape:
     tilt_x: float = 0.0
     tilt_y: float = 0.0
     lens: float = 0.0
+    centre_x: float = 0.0
+    centre_y: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +130,7 @@ class ShapedTable:
         rows, count = spread.depth.size, len(rest)
         if self.outward is None or self.sink is None:
             return np.broadcast_to(rest, (rows, count, 2)).copy(), np.zeros((rows, count))
-        x, y = (rest - np.asarray(spread.centre)).T
+        x, y = (rest - np.asarray(spread.centre) - self._centre(rest)).T
         root = np.sqrt(spread.ratio)
         radius = np.sqrt(x**2 / root + y**2 * root)
         read = radius / (1.0 + self.shape.width)
@@ -139,6 +143,11 @@ class ShapedTable:
             moved = moved + spread.dent[0][:, None] / np.maximum(radius, spread.dent[1])
         sunk = self._over_radius(self.sink, read, over_depth)
         return self._in_picture(rest, [rest[:, k] + moved * along[:, k] for k in (0, 1)], sunk), sunk
+
+    def _centre(self, rest: Array) -> Array:
+        """(2,) m at which the axis lies from the centre of markers at rest positions (m, 2)."""
+        size = float(np.sqrt(np.sum(rest**2, axis=1).max()))
+        return size * np.array([self.shape.centre_x, self.shape.centre_y])
 
     def _in_picture(self, rest: Array, there: list[Array], sunk: Array) -> Array:
         """Positions (n, m, 2) of markers at x and y (n, m) that sank (n, m), by a camera that is not quite told.

@@ -246,7 +246,7 @@ def _spreads(fitted: Fit, scale: Array) -> TrialPrior:
         gain=max(_spread(state[:, 0]), 3e-3),
         zero=max(_size(state[:, 1]), 0.2 * noise, 1e-9),
         shift=max(_size(state[:, 2]), 0.05 * fitted.model.problem.study.raw_interval, 1e-4),
-        height=max(_spread(state[:, 3]), criteria.LEAST_HEIGHT * deepest),
+        height=max(_size(state[:, 3]), criteria.LEAST_HEIGHT * deepest),
         offset=max(offset, 0.3 * floor, 1e-9),
         rest=max(rest, 0.3 * floor, 1e-9),
         thickness=thickness_spread(fitted),

@@ -45,14 +45,15 @@ def touch_range(problem: TrialsProblem, trial: TrialRef, noise: float) -> tuple[
     """Between which depths, m, a tool touches: not beyond the row in which the force has risen over its noise.
 
     Where depth is counted from a touch that a force told, the tool had touched before: by the same depth and a share of
-    the press.
+    the press, or the share of its peak that the force has reached before the touch, where that is more.
     """
     resting, force, depth = _resting(problem, trial), trial.signals[:, 0], trial.motion.depth
-    rest = float(np.median(force[resting])) if resting.any() else float(force[:2].min())
+    rest, most = float(np.median(force[resting])) if resting.any() else float(force[:2].min()), float(depth.max())
     risen = np.flatnonzero((force > rest + criteria.RISEN * noise) & (depth > 0.0))
-    least = criteria.LEAST_TOUCH * float(depth.max())
-    reach = max(float(depth[risen[0]]) if risen.size else float(depth.max()), least)
-    return -reach - criteria.EARLY_TOUCH * float(depth.max()), reach
+    reach = max(float(depth[risen[0]]) if risen.size else most, criteria.LEAST_TOUCH * most)
+    before = float(force[resting].max()) + criteria.OVER_NOISE * noise - rest if resting.any() else 0.0
+    early = max(criteria.EARLY_TOUCH, before / max(float(force.max()) - rest, 1e-300))
+    return -reach - early * most, reach
 
 
 def _resting(problem: TrialsProblem, trial: TrialRef) -> Array:

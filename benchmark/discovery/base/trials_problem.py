@@ -16,7 +16,7 @@ from benchmark.response.elastic_table import ElasticTable
 from benchmark.response.force_curve import Array
 from benchmark.response.noise import Whitener, whitener
 
-GRID_SCALE, LENS = "grid_scale", "lens"
+GRID_SCALE, LENS, CENTRE = "grid_scale", "lens", ("centre_x", "centre_y")
 MARKER_SHAPES = ("width", "marker_exponent", "marker_size", "tilt_x", "tilt_y", "lens")
 FOLLOWED = ("modulus", "exponent", "width")
 OWN = ("gain", "zero", "shift", "height", "thickness")
@@ -121,6 +121,8 @@ class TrialsProblem:
         if layout is not None and LENS in forms:
             forms[LENS] = layout.lens_within(forms[LENS])[1]
         printed = {GRID_SCALE: layout.scale_error} if layout is not None and layout.scale_error > 0.0 else {}
+        if layout is not None and moving and layout.centre_error > 0.0:
+            printed |= dict.fromkeys(CENTRE, layout.centre_error)
         return {"modulus": forms.pop("modulus"), **self.setup, **forms, **printed}
 
     @property

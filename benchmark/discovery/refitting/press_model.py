@@ -29,7 +29,7 @@ from benchmark.response.pipeline import FIRST_STEP, ForceAlone, TrialPipeline, p
 from benchmark.response.ramp import Setup
 from benchmark.response.setup_change import CHOICES
 
-FREE = ("modulus", "grid_scale", "tilt_x", "tilt_y", "lens")
+FREE = ("modulus", "grid_scale", "tilt_x", "tilt_y", "lens", "centre_x", "centre_y")
 """Nuisances of the base that a set-up or a camera has; its bends are none. Keys of the set-up are free, too."""
 MEMORY = "viscoelastic_relaxation"
 PRESS_ROWS = 80

@@ -37,6 +37,8 @@ class Layout:
         Standard error of the grid's scale; 0 where the grid is trusted.
     lens, lens_error : float
         Radial distortion that the grid shows at rest, relative at the outermost marker, and its standard error.
+    centre_error : float
+        Standard error of the grid's centre along each axis, relative to the outermost marker's distance from it.
     """
 
     rest: Array
@@ -48,6 +50,7 @@ class Layout:
     scale_error: float = 0.0
     lens: float = 0.0
     lens_error: float = np.inf
+    centre_error: float = 0.0
 
     @property
     def scale_pattern(self) -> Array:

@@ -106,7 +106,8 @@ def _grid(
     if printed.exact:
         return plain
     warnings.append(printed.remark)
-    return replace(plain, rest=printed.places, origin=printed.origin, zeros=plain.names)
+    off = printed.centre_error / float(np.sqrt(np.sum(printed.places**2, axis=1).max()))
+    return replace(plain, rest=printed.places, origin=printed.origin, zeros=plain.names, centre_error=off)
 
 
 def _usable(session: Session, warnings: list[str]) -> list[RawTrial]:

@@ -40,6 +40,8 @@ class PrintedGrid:
         nominal grid is trusted.
     lens, lens_error : float
         Radial distortion at rest, relative at the outermost marker, and its standard error from print and tracking.
+    centre_error : float
+        Standard error of the grid's centre from the print along x and along y, m; 0 where the nominal grid is trusted.
     """
 
     places: Array
@@ -49,6 +51,7 @@ class PrintedGrid:
     scale_error: float
     lens: float = 0.0
     lens_error: float = np.inf
+    centre_error: float = 0.0
 
     @property
     def exact(self) -> bool:
@@ -106,7 +109,8 @@ def printed_grid(camera: Camera, nominal: Array, rests: Array) -> PrintedGrid:
     centred = nominal[usual] - nominal[usual].mean(axis=0)
     error = float(np.hypot(scatter / np.sqrt(np.sum(centred**2)), stated))
     lens, lens_error = _distortion(nominal, mean, usual, tracking + scatter**2)
-    return PrintedGrid((mean - origin) / scale, origin, scatter, scale, error, lens, lens_error)
+    middle = scatter / np.sqrt(usual.sum())
+    return PrintedGrid((mean - origin) / scale, origin, scatter, scale, error, lens, lens_error, float(middle))
 
 
 def _distortion(nominal: Array, mean: Array, usual: NDArray[np.bool_], variance: float) -> tuple[float, float]:

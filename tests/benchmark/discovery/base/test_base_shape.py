@@ -35,6 +35,16 @@ def test_a_tilted_camera_sees_what_sinks_move_sideways(told: ShapedTable) -> Non
     np.testing.assert_allclose((seen - plain)[..., 1], -0.01 * sunk, atol=1e-15)
 
 
+def test_an_axis_beside_the_grid_moves_markers_as_if_the_grid_lay_beside_it(told: ShapedTable) -> None:
+    reach = np.sqrt(np.max(np.sum(REST**2, axis=1)))
+    off = np.array([1e-3, -0.5e-3])
+    seen, sunk = _seen(told, centre_x=off[0] / reach, centre_y=off[1] / reach)
+    spread = LowerFaceMotion(np.array([0.0, 1e-3, 3e-3]), np.ones(3))
+    there, as_deep = told.lower_face(spread, REST - off)
+    np.testing.assert_allclose(seen, there + off, atol=1e-15)
+    np.testing.assert_allclose(sunk, as_deep, atol=1e-15)
+
+
 def test_a_lens_distorts_what_moves_and_leaves_the_picture_at_rest(told: ShapedTable) -> None:
     plain, _ = _seen(told)
     seen, _ = _seen(told, lens=0.01)

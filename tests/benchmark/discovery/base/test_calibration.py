@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmark.discovery.base.calibration import calibrate
+from benchmark.discovery.base.calibration import _spreads, calibrate
+from benchmark.discovery.base.trials_problem import OWN
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import load_session
 from benchmark.response.wave_table import wave_table
@@ -33,6 +34,10 @@ def test_the_depth_at_touch_is_each_trials_own(session_of, quick_session):
 def test_trials_that_touch_alike_have_little_of_it(session_of):
     found, _ = _noise(session_of(trials=6))
     assert found.problem.prior.height < 0.1 * TOUCH
+    late = found.base.nuisance.copy()
+    late[:, OWN.index("height")] -= 2.0 * TOUCH  # a rig that finds the touch by a force finds all of them late
+    shared = _spreads(replace(found.base, nuisance=late), found.problem.noise.scale)
+    assert shared.height == pytest.approx(2.0 * TOUCH, rel=0.1)
 
 
 def test_a_trial_that_was_not_filmed_counts_with_its_force_alone():

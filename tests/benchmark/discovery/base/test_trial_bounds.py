@@ -45,6 +45,20 @@ def test_a_tool_touches_no_deeper_than_where_the_force_has_risen(problem):
     assert touch_range(problem, later, noise)[1] > high + 0.5e-3
 
 
+def test_a_force_in_air_says_how_far_before_its_zero_a_tool_had_touched(problem):
+    trial, noise = problem.trials[0], float(problem.noise.scale[0, 0])
+    peak, most = float(np.ptp(trial.signals[:, 0])), float(trial.motion.depth.max())
+    low, high = touch_range(problem, trial, noise)
+    pressed = trial.signals.copy()
+    last = np.flatnonzero(
+        (trial.motion.depth <= 0.0) & (trial.motion.time < trial.motion.time[trial.motion.depth.argmax()])
+    )
+    pressed[last[-1], 0] += 0.2 * peak
+    early, _ = touch_range(problem, replace(trial, signals=pressed), noise)
+    assert low == pytest.approx(-high - criteria.EARLY_TOUCH * most)
+    assert -high - 0.3 * most < early < -high - 0.18 * most
+
+
 def test_a_clock_that_is_far_too_late_is_followed_to_its_bound_and_said(problem):
     slow = [replace(t, motion=replace(t.motion, time=t.motion.time), signals=_later(t)) for t in problem.trials]
     late = replace(problem, trials=tuple(slow))

@@ -40,6 +40,8 @@ def test_scatter_scale_and_places_are_found():
     assert np.mean(off) == pytest.approx(0.0, abs=0.25)
     middle = np.mean([each.origin for each in found], axis=0)
     assert middle == pytest.approx([2e-3, -1e-3], abs=4 * SCATTER / np.sqrt(18 * 200))
+    off = [(each.origin - [2e-3, -1e-3]) / each.centre_error for each in found]
+    assert np.std(off) == pytest.approx(1.0, abs=0.1)
     assert "markers scatter by 0.0" in found[0].remark
 
 
@@ -49,6 +51,7 @@ def test_a_grid_within_tracking_is_trusted():
     assert np.mean(exact) > 0.97
     found = printed_grid(CAMERA, NOMINAL, rests(rng, scatter=0.0))
     assert (found.places is NOMINAL, found.scale_error, found.remark) == (True, 0.0, "")
+    assert found.centre_error == 0.0
 
 
 def test_a_plane_not_quite_parallel_is_no_scatter():
@@ -164,6 +167,9 @@ def test_the_base_begins_with_the_lens_that_the_resting_grid_shows(sheet, tmp_pa
             (problem.shape_means["lens"], problem.shape_priors["lens"])
         )
         assert np.count_nonzero(mean) == 1
+        off = study.layout.centre_error * np.sqrt(np.sum(study.layout.rest**2, axis=1).max())
+        assert off == pytest.approx(0.06e-3 / np.sqrt(18), rel=0.4)
+        assert problem.shape_priors["centre_x"] == problem.shape_priors["centre_y"] == study.layout.centre_error
 
 
 def test_an_offset_of_one_marker_is_no_signal(sheet, tmp_path):
