@@ -80,8 +80,8 @@ def same_again(usual: Usual) -> Experiment:
     return Experiment("same again", "Press as before.", _press(usual.depth, usual.speed, usual.hold))
 
 
-def menu(usual: Usual) -> tuple[Experiment, ...]:
-    """What can be done with the tool in place, each with one thing changed."""
+def menu(usual: Usual, *, deeper: bool = True) -> tuple[Experiment, ...]:
+    """What can be done with the tool in place, each with one thing changed; `deeper` is one of them."""
     depth, speed, hold = usual.depth, usual.speed, usual.hold
     deep = max(min(DEEPER * depth, SHARE * usual.thickness), depth)
     fast, slow = min(5.0 * speed, FASTEST), max(0.1 * speed, SLOWEST)
@@ -96,7 +96,7 @@ def menu(usual: Usual) -> tuple[Experiment, ...]:
             (*_press(depth, speed, hold), _wait("rest", LONG), *_press(depth, speed, hold)[1:]),
         ),
     ]
-    if deep > 1.05 * depth:
+    if deeper and deep > 1.05 * depth:
         entries.insert(1, Experiment("deeper", f"Press to {1e3 * deep:.3g} mm.", _press(deep, speed, hold)))
     return tuple(entries)
 

@@ -148,9 +148,13 @@ def _tools(presses: Sequence[Press]) -> Iterator[tuple[Press, Tool, str]]:
 
 
 def _entries(answer: Identified, press: Press, tool: Tool, prefix: str) -> Iterator[Experiment]:
-    """The menu under one tool; another tool is something that a person must put in first."""
+    """The menu under one tool; another tool is something that a person must put in first.
+
+    A smaller tool than any before presses no deeper: the same depth is more of its radii already, and beyond two of
+    them the finite elements at its edge waver by more than a fit settles to.
+    """
     usual = _usual(answer, press)
-    for one in (same_again(usual), *menu(usual)):
+    for one in (same_again(usual), *menu(usual, deeper=tool.radius >= press.setup[1].radius)):
         if prefix:
             words = f"Put in a tool of {MM * tool.radius:.2g} mm radius. {one.words}"
             setup = {"tool_radius": f"{MM * tool.radius:.2g} mm"}

@@ -24,6 +24,12 @@ def test_another_tool_tells_what_one_tool_leaves_open(design) -> None:
     assert (design.best_a.errors <= design.errors_now + 1e-9).all()
 
 
+def test_a_smaller_tool_is_pressed_no_deeper(design) -> None:
+    names = {(one.tool.radius, one.experiment.name.rpartition(", ")[2]) for one in design.proposals}
+    assert {(5e-3, "deeper"), (2e-3, "deeper"), (0.8e-3, "faster")} <= names
+    assert (0.8e-3, "deeper") not in names
+
+
 def test_more_of_the_same_never_tells_less(design) -> None:
     same = next(one for one in design.proposals if one.experiment.name == "same again")
     assert same.determinant > 0.0
