@@ -16,7 +16,7 @@ from benchmark.discovery.base.effect_model import EffectModel, Fit, White, settl
 from benchmark.discovery.base.trials_problem import TrialsProblem, followed, only, replicates
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.discovery_result import Array, ChannelGap, Trace
-from benchmark.discovery.evidence.gains import conditions
+from benchmark.discovery.evidence.gains import conditions, delta_bic, effective_size
 from benchmark.response.least_squares import Search, least_squares
 
 DECIMALS = 6
@@ -58,30 +58,40 @@ def held_out_residuals(base: Fit, chosen: Fit) -> HeldOut:
     else:
         turn = np.arange(groups.size) % min(FOLDS, groups.size)
         parts, kind = [turn == k for k in np.unique(turn)], "trial"
-    before = _residuals(base, parts)
-    after = before if chosen is base else _residuals(chosen, parts)
-    return HeldOut(before, after, kind)
+    known = [_without(base, left) for left in parts]
+    before = _residuals(base, parts, known)
+    if chosen is base:
+        return HeldOut(before, before, kind)
+    tried = [_without(chosen, left) for left in parts]
+    return HeldOut(before, _residuals(chosen, parts, [_told(*fits) for fits in zip(known, tried, strict=True)]), kind)
 
 
-def _residuals(fitted: Fit, parts: list[np.ndarray]) -> list[Array]:
+def _residuals(fitted: Fit, parts: list[np.ndarray], known: list[Fit]) -> list[Array]:
     """Each part's trials alone are simulated with what the others gave."""
     problem = fitted.model.problem
     out: list[Array] = [np.zeros(0)] * len(problem.trials)
-    for left in parts:
-        vector = _without(fitted, left)
+    for left, others in zip(parts, known, strict=True):
         mine = np.flatnonzero(left)
-        model = replace(fitted.model, problem=only(problem, mine.tolist()))
-        state = settled(model, vector, fitted.nuisance[mine])
-        for index, signal in zip(mine, model.signals(vector, state), strict=True):
+        model = replace(others.model, problem=only(problem, mine.tolist()))
+        state = settled(model, others.vector, fitted.nuisance[mine])
+        for index, signal in zip(mine, model.signals(others.vector, state), strict=True):
             out[index] = problem.trials[index].signals - signal
     return out
 
 
-def _without(fitted: Fit, left: np.ndarray) -> Array:
-    """The vector fitted to the other trials (mask (R,) of those left out), until it has converged."""
+def _without(fitted: Fit, left: np.ndarray) -> Fit:
+    """The fit to the other trials (mask (R,) of those left out), until it has converged."""
     kept = np.flatnonzero(~left)
     model = replace(fitted.model, problem=only(fitted.model.problem, kept.tolist()))
-    return least_squares(model, fitted.vector, fitted.nuisance[kept], search=CONVERGED).vector
+    return least_squares(model, fitted.vector, fitted.nuisance[kept], search=CONVERGED)
+
+
+def _told(base: Fit, chosen: Fit) -> Fit:
+    """Of two fits to the same trials the one that these would give: effects only where their BIC would be accepted.
+
+    The limit of a sensor that none of them reaches would foretell a deeper press by any number.
+    """
+    return chosen if delta_bic(chosen, base, effective_size(base)) < criteria.ACCEPT_BIC else base
 
 
 def floors(base: Fit) -> list[Array]:

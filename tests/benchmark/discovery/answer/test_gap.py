@@ -161,7 +161,8 @@ def test_effects_predict_nothing_where_a_gap_surely_grows_and_none_shrinks(inter
 
 def test_a_condition_held_out_is_predicted_by_the_others_and_a_trial_by_its_mates(monkeypatch):
     asked = []
-    monkeypatch.setattr(module, "_residuals", lambda fit, parts: asked.append(np.array(parts)) or [])
+    monkeypatch.setattr(module, "_without", lambda fit, left: None)
+    monkeypatch.setattr(module, "_residuals", lambda fit, parts, known: asked.append(np.array(parts)) or [])
     two, one, many = (measured(np.zeros((len(c), 4, 1)), c) for c in ((0, 0, 1), (0, 0, 0), (0,) * 7))
     assert held_out_residuals(two, two).kind == "condition"
     assert held_out_residuals(one, one).kind == "trial"
@@ -170,6 +171,18 @@ def test_a_condition_held_out_is_predicted_by_the_others_and_a_trial_by_its_mate
     np.testing.assert_array_equal(conditions, [[True, True, False], [False, False, True]])
     np.testing.assert_array_equal(trials, np.eye(3, dtype=bool))
     assert (fifths.shape, fifths.sum(axis=0).tolist()) == ((5, 7), [1] * 7)
+
+
+def test_what_the_other_trials_do_not_show_foretells_nothing(monkeypatch):
+    base, chosen = (measured(np.zeros((4, 4, 1)), (0, 0, 1, 1)) for _ in range(2))
+    said = {True: -5.0, False: -3.0}  # BIC of the trials of the first condition, and of the second
+    monkeypatch.setattr(module, "_without", lambda fit, left: SimpleNamespace(of=fit, first=not left[0]))
+    monkeypatch.setattr(module, "effective_size", lambda fit: 100.0)
+    monkeypatch.setattr(module, "delta_bic", lambda made, other, samples: said[made.first])
+    used = []
+    monkeypatch.setattr(module, "_residuals", lambda fit, parts, known: used.append([each.of for each in known]) or [])
+    held_out_residuals(base, chosen)
+    assert [[each is chosen for each in part] for part in used] == [[False, False], [False, True]]
 
 
 def test_curves_are_measured_less_residual_and_empty_where_nothing_was_seen(monkeypatch):
