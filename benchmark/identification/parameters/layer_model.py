@@ -34,6 +34,8 @@ RING_ZERO = 1.0
 TOUCH_STEP, COORDINATE_STEP = 1e-3, 1e-4
 """Steps of differences: mm, and of a time constant's logarithm."""
 MOST_ROWS = 250
+MOST_GAIN = 5.0
+"""Logarithm: trials of one set-up differ by a factor of up to ten; what stands at a bound holds the others fast."""
 EASED = 2.0
 """Noise of the force over which it begins, at most, on either side of the touch."""
 LEAST_EASED = 1e-12
@@ -209,11 +211,11 @@ class LayerModel:
 
     @cached_property
     def trial_bounds(self) -> tuple[Array, Array]:
-        """Where each trial may touch, mm; zero and gain are free."""
+        """Where each trial may touch, mm; the zero is free, and so is the gain but for what is out of reach."""
         ranges = [(MM * one.touch.low, MM * one.touch.high) for one in self.trials]
         free = [np.inf] * self.rings
-        low = np.array([[low, -np.inf, -1.0, *(-each for each in free)] for low, _ in ranges])
-        high = np.array([[high, np.inf, 1.0, *free] for _, high in ranges])
+        low = np.array([[low, -np.inf, -MOST_GAIN, *(-each for each in free)] for low, _ in ranges])
+        high = np.array([[high, np.inf, MOST_GAIN, *free] for _, high in ranges])
         return low, high
 
     def prior(self, start: Array) -> tuple[Array, Array]:  # noqa: ARG002 - priors do not follow the start

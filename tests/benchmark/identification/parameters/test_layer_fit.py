@@ -62,6 +62,15 @@ def test_the_scatter_of_trials_is_told_from_their_noise(toy_fit) -> None:
     assert 0.03 < wild < 0.08
 
 
+def test_trials_that_differ_by_far_leave_what_they_have_in_common_as_unsure(toy_fit) -> None:
+    """Gains that stood at a bound of a factor of e held the common factor fast, whatever the trials scattered."""
+    found = toy_fit(keys=("stiffness_factor",), tools=(0,), trials=9, gain=1.0)
+    gains = found.fit.nuisance[:, 2]
+    assert np.abs(gains).max() > 1.05
+    own = profile(found, 0)
+    assert 0.5 * (own.high - own.low) == pytest.approx(2.31 * gains.std(ddof=1) / 3.0, rel=0.15)
+
+
 def test_a_layer_that_fades_takes_its_share_of_the_force_along(toy_fit) -> None:
     share, tau = 0.4, 2.0
 
