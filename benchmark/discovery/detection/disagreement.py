@@ -28,7 +28,7 @@ class Detection:
     """Cells and their test, on the fit that used the clean cells.
 
     `p` is of anything before that refit, matched directions and the base's strain included, `p_cells` that of the cells
-    alone.
+    alone by what they exceed the smallest size by, as are `table` and `test`: what is smaller is an effect or nothing.
     """
 
     table: CellTable
@@ -40,14 +40,15 @@ class Detection:
 
 def detect(fitted: Fit, settings: Settings, matched: Array | None = None) -> Detection:
     """Test the residuals of a fit; `matched` (M, R) are further numbers a trial that share in the test."""
-    first = _tested(fitted, settings, matched=matched)
-    cells_only = flip_test(replace(first[0], matched=None), settings.flips, settings.seed)
-    flagged = cells_only.p < settings.level
-    last = (replace(first[0], matched=None), cells_only)
+    plain = _table(fitted)
+    cells_only, large = _tested(plain, settings), _tested(_large(fitted, plain), settings)
+    flagged = cells_only[1].p < settings.level
+    last = large
     if flagged.any() and flagged.mean() < criteria.MOST_FLAGGED:
-        last = _tested(_refitted(fitted, first[0], flagged), settings, full=fitted)
-    p = combined(first[1].p_any, strained(fitted))
-    return Detection(*last, p=p, p_cells=cells_only.p_any, trend=_trend(fitted, first[0]))
+        last = _tested(_large(fitted, _table(_refitted(fitted, plain, flagged), full=fitted)), settings)
+    anything = cells_only if matched is None else _tested(replace(plain, matched=matched), settings)
+    p = combined(anything[1].p_any, strained(fitted))
+    return Detection(*last, p=p, p_cells=large[1].p_any, trend=_trend(fitted, plain))
 
 
 def combined(*values: float) -> float:
@@ -68,13 +69,20 @@ def strained(fitted: Fit, form: float = 0.0) -> float:
     return float(min(1.0, len(free) * 2.0 * norm.sf(z.max())))
 
 
-def _tested(
-    fitted: Fit, settings: Settings, full: Fit | None = None, matched: Array | None = None
-) -> tuple[CellTable, FlipTest]:
+def _table(fitted: Fit, full: Fit | None = None) -> CellTable:
     problem = (full or fitted).model.problem
-    table, tolerance = cell_means(problem, projected_residuals(fitted), cells_of(problem)), tolerances(problem)
-    least = criteria.TOO_SMALL * np.array([tolerance[problem.study.channels[cell.signal]] for cell in table.cells])
-    table = replace(table, matched=matched, least=least)
+    return cell_means(problem, projected_residuals(fitted), cells_of(problem))
+
+
+def _large(fitted: Fit, table: CellTable) -> CellTable:
+    """The table of which only what is no longer small counts."""
+    problem = fitted.model.problem
+    tolerance = tolerances(problem)
+    least = [criteria.TOO_SMALL * tolerance[problem.study.channels[cell.signal]] for cell in table.cells]
+    return replace(table, least=np.array(least))
+
+
+def _tested(table: CellTable, settings: Settings) -> tuple[CellTable, FlipTest]:
     return table, flip_test(table, settings.flips, settings.seed)
 
 
