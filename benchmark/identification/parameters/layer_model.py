@@ -35,7 +35,7 @@ TOUCH_STEP, COORDINATE_STEP = 1e-3, 1e-4
 """Steps of differences: mm, and of a time constant's logarithm."""
 MOST_ROWS = 250
 MOST_GAIN = 5.0
-"""Logarithm: trials of one set-up differ by a factor of up to ten; what stands at a bound holds the others fast."""
+"""Logarithm, far beyond the factor of ten by which trials of one set-up differ: one at a bound would hold the rest."""
 EASED = 2.0
 """Noise of the force over which it begins, at most, on either side of the touch."""
 LEAST_EASED = 1e-12
