@@ -9,7 +9,7 @@ from pydantic import Field
 
 from benchmark.files.schema import FileModel, Name
 
-Law = Literal["neo_hookean", "mooney_rivlin", "yeoh", "gent", "ogden"]
+Law = Literal["neo_hookean", "mooney_rivlin", "yeoh", "gent", "ogden", "fibres"]
 
 
 class PriorEntry(FileModel):

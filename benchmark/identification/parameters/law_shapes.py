@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from benchmark.errors import InputError
 from benchmark.files import Tissue
-from benchmark.files.tissue import Gent, Hyperelastic, Layer, MooneyRivlin, NeoHookean, Ogden, OgdenTerm, Yeoh
+from benchmark.files.tissue import Fibre, Gent, Hyperelastic, Layer, MooneyRivlin, NeoHookean, Ogden, OgdenTerm, Yeoh
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,8 @@ class LawShape:
         G the shear modulus at rest, Pa.
     words : str
         What the constant is.
+    fibre : (G, s) to fibre family, or None
+        What the law adds to each layer; without one a layer keeps the fibres that it has.
     """
 
     key: str
@@ -35,6 +37,7 @@ class LawShape:
     high: float
     built: Callable[[float, float], Hyperelastic]
     words: str
+    fibre: Callable[[float, float], Fibre] | None = None
 
 
 def _mooney_rivlin(shear: float, ratio: float) -> Hyperelastic:
@@ -58,14 +61,29 @@ def _neo_hookean(shear: float, unused: float) -> Hyperelastic:  # noqa: ARG001 -
     return NeoHookean(c10=0.5 * shear)
 
 
+def _spread_fibres(shear: float, ratio: float) -> Fibre:
+    """Evenly over the plane of the layer; at rest they add no stiffness."""
+    return Fibre(k1=0.5 * ratio * shear, k2=1.0)
+
+
 LAW_SHAPES: Mapping[str, LawShape] = {
     "neo_hookean": LawShape("", 1.0, 1.0, 1.0, _neo_hookean, ""),
     "mooney_rivlin": LawShape("law.c01_over_c10", 0.3, 0.003, 30.0, _mooney_rivlin, "c01 over c10"),
     "yeoh": LawShape("law.c20_over_c10", 0.1, 1e-3, 10.0, _yeoh, "c20 over c10"),
     "gent": LawShape("law.jm", 3.0, 0.3, 300.0, _gent, "the strain measure jm at which the law locks"),
     "ogden": LawShape("law.alpha", 4.0, 0.5, 40.0, _ogden, "the power alpha of the stretches"),
+    "fibres": LawShape(
+        "law.k1_over_c10",
+        1.0,
+        0.01,
+        100.0,
+        _neo_hookean,
+        "k1 of the fibres over c10 of what they lie in",
+        _spread_fibres,
+    ),
 }
-"""Laws by the names of tissue files; an Ogden law of one term."""
+"""Laws by the names of tissue files; an Ogden law of one term; `fibres`: a family of Holzapfel, Gasser and Ogden with
+k2 = 1 that spreads evenly over the plane, in a neo-Hookean solid."""
 
 
 def law_shape(name: str) -> LawShape:
@@ -85,7 +103,9 @@ def shear_modulus(layer: Layer) -> float:
 def with_law(tissue: Tissue, name: str, shape: float) -> Tissue:
     """The tissue with one law in all layers, each with the shear modulus at rest that it had."""
     law = law_shape(name)
-    layers = tuple(
-        one.model_copy(update={"hyperelastic": law.built(shear_modulus(one), shape)}) for one in tissue.layers
-    )
-    return tissue.model_copy(update={"layers": layers})
+    layers = []
+    for one in tissue.layers:
+        shear = shear_modulus(one)
+        fibre = one.fibre if law.fibre is None else law.fibre(shear, shape)
+        layers.append(one.model_copy(update={"hyperelastic": law.built(shear, shape), "fibre": fibre}))
+    return tissue.model_copy(update={"layers": tuple(layers)})

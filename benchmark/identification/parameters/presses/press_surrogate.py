@@ -239,5 +239,5 @@ def _shape_chain(layer: str, shape: float, setup: SetUp) -> dict[str, float]:
         case "mooney_rivlin":
             c01 = value_of(f"{own}.c01", setup)
             return {f"{own}.c10": -shape / (1.0 + shape), f"{own}.c01": c01 / (1.0 + shape)}
-        case _:
-            return {}
+        case _:  # neo-Hookean has none: the constant is that of the fibres in it
+            return {f"{layer}.fibre.k1": 1.0}

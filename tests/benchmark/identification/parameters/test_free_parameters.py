@@ -1,15 +1,19 @@
 import math
+from typing import get_args
 
 import pytest
 
 from benchmark.errors import InputError
 from benchmark.files import Support, Tool, load_tissue
+from benchmark.files.sessions.fit_table import Law
 from benchmark.identification.parameters.free_parameters import (
     parameters_of,
     value_of,
     with_values,
 )
 from benchmark.identification.parameters.law_shapes import LAW_SHAPES, shear_modulus, with_law
+from benchmark.identification.parameters.presses.press_surrogate import _shape_chain
+from benchmark.response.setup_change import is_absolute
 
 SETUP = (load_tissue("skin_forearm"), Tool(radius=5e-3), Support())
 
@@ -19,6 +23,35 @@ def test_a_law_keeps_each_layers_shear_modulus_at_rest(law) -> None:
     changed = with_law(SETUP[0], law, LAW_SHAPES[law].start)
     before = [shear_modulus(one) for one in SETUP[0].layers]
     assert [one.hyperelastic.shear_modulus for one in changed.layers] == pytest.approx(before)
+
+
+def constant(layer, key) -> float:
+    """A constant of a layer by its key."""
+    found = layer.model_dump()
+    for part in key.split(".")[1:]:
+        found = found[int(part) if part.isdigit() else part]
+    return found
+
+
+@pytest.mark.parametrize("law", [name for name, one in LAW_SHAPES.items() if one.key])
+def test_a_constant_of_shape_is_differentiated_by_the_constants_that_it_changes(law) -> None:
+    shape, step = LAW_SHAPES[law].start, 1e-6
+    before, after = (with_values(SETUP, {LAW_SHAPES[law].key: s}, law) for s in (shape, shape * (1.0 + step)))
+    chain = _shape_chain("dermis", shape, before)
+    assert chain
+    for key, weight in chain.items():
+        old, new = (constant(each[0].layer("dermis"), key) for each in (before, after))
+        assert (new - old) / step / (1.0 if is_absolute(key) else old) == pytest.approx(weight, rel=1e-4)
+
+
+def test_fibres_follow_their_layers_modulus_and_stay_under_another_law() -> None:
+    values = {"law.k1_over_c10": 3.0, "dermis.youngs_modulus": 2.0 * value_of("dermis.youngs_modulus", SETUP)}
+    dermis = with_values(SETUP, values, "fibres")[0].layer("dermis")
+    assert dermis.hyperelastic.law == "neo_hookean"
+    assert dermis.fibre.k1 == pytest.approx(3.0 * dermis.hyperelastic.c10)
+    assert dermis.hyperelastic.shear_modulus == pytest.approx(2.0 * shear_modulus(SETUP[0].layer("dermis")))
+    fibrous = SETUP[0].with_layer("dermis", fibre={"k1": 1e4, "k2": 2.0})
+    assert with_law(fibrous, "yeoh", 0.1).layer("dermis").fibre == fibrous.layer("dermis").fibre
 
 
 def test_a_modulus_takes_the_laws_stresses_along_except_those_with_a_value_of_their_own() -> None:
@@ -56,3 +89,7 @@ def test_relaxation_is_a_share_and_a_time() -> None:
 def test_what_is_no_positive_number_is_refused_with_what_is_allowed(key) -> None:
     with pytest.raises(InputError, match="allowed"):
         parameters_of(key, SETUP, None)
+
+
+def test_a_session_may_ask_for_every_law() -> None:
+    assert get_args(Law) == tuple(LAW_SHAPES)
