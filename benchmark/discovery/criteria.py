@@ -310,7 +310,8 @@ TOLERANCE_MARKERS = 5e-5
 """m: a model that misses a marker combination by more is never called good. First choice, stated beforehand."""
 TOO_SMALL = 0.02
 """Share of the tolerance up to which a mean is no disagreement, however sure: 0.04 % of the peak force, about what load
-cells are linear to, and 1 um, which no film holds straight. Stated beforehand."""
+cells are linear to, and 1 um, which no film holds straight. First choice; that there is one came of the bench's
+demonstration, where 0.02 um were sure."""
 SAME_HEIGHT = 0.005
 """Relative difference of measured heights up to which trials are of one specimen. First choice: the touch is found to
 less, another specimen differs by more."""

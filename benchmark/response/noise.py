@@ -120,14 +120,16 @@ def restricted_noise(errors: Sequence[Array], counts: Sequence[Array], columns: 
     """
     kept = [_Left.of(*each) for each in zip(errors, counts, columns, strict=True)]
     told = [one for one in kept if one is not None]
+    if not told:
+        return 0.0, np.full(len(kept), np.nan)
 
     def criterion(memory: float) -> float:
         return sum(one.criterion(memory) for one in told)
 
-    best = min(range(len(MEMORIES)), key=lambda k: criterion(MEMORIES[k])) if told else 0
+    best = min(range(len(MEMORIES)), key=lambda k: criterion(MEMORIES[k]))
     ends = MEMORIES[max(best - 1, 0)], MEMORIES[min(best + 1, len(MEMORIES) - 1)]
-    search = minimize_scalar(criterion, bounds=ends, method="bounded", options={"xatol": RESOLVED}) if told else None
-    memory = 0.0 if search is None else min((MEMORIES[best], float(search.x)), key=criterion)
+    between = minimize_scalar(criterion, bounds=ends, method="bounded", options={"xatol": RESOLVED}).x
+    memory = min((MEMORIES[best], float(between)), key=criterion)
     return memory, np.array([np.nan if one is None else one.scale(memory) for one in kept])
 
 

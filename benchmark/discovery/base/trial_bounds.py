@@ -48,11 +48,12 @@ def touch_range(problem: TrialsProblem, trial: TrialRef, noise: float) -> tuple[
     the press, or the share of its peak that the force has reached before the touch, where that is more.
     """
     resting, force, depth = _resting(problem, trial), trial.signals[:, 0], trial.motion.depth
-    rest, most = float(np.median(force[resting])) if resting.any() else float(force[:2].min()), float(depth.max())
+    rest = float(np.median(force[resting])) if resting.any() else float(force[:2].min())
+    highest = zero_range(problem, trial, noise)[1] if resting.any() else rest
+    most = float(depth.max())
     risen = np.flatnonzero((force > rest + criteria.RISEN * noise) & (depth > 0.0))
     reach = max(float(depth[risen[0]]) if risen.size else most, criteria.LEAST_TOUCH * most)
-    before = float(force[resting].max()) + criteria.OVER_NOISE * noise - rest if resting.any() else 0.0
-    early = max(criteria.EARLY_TOUCH, before / max(float(force.max()) - rest, 1e-300))
+    early = max(criteria.EARLY_TOUCH, (highest - rest) / max(float(force.max()) - rest, 1e-300))
     return -reach - early * most, reach
 
 

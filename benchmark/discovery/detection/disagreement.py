@@ -41,14 +41,15 @@ class Detection:
 def detect(fitted: Fit, settings: Settings, matched: Array | None = None) -> Detection:
     """Test the residuals of a fit; `matched` (M, R) are further numbers a trial that share in the test."""
     plain = _table(fitted)
-    cells_only, large = _tested(plain, settings), _tested(_large(fitted, plain), settings)
-    flagged = cells_only[1].p < settings.level
-    last = large
+    large = _large(fitted, plain)
+    of_any_size, test = _tested(plain, settings), _tested(large, settings)
+    p_cells, flagged = test.p_any, of_any_size.p < settings.level
     if flagged.any() and flagged.mean() < criteria.MOST_FLAGGED:
-        last = _tested(_large(fitted, _table(_refitted(fitted, plain, flagged), full=fitted)), settings)
-    anything = cells_only if matched is None else _tested(replace(plain, matched=matched), settings)
-    p = combined(anything[1].p_any, strained(fitted))
-    return Detection(*last, p=p, p_cells=large[1].p_any, trend=_trend(fitted, plain))
+        large = _large(fitted, _table(_refitted(fitted, plain, flagged), full=fitted))
+        test = _tested(large, settings)
+    anything = of_any_size if matched is None else _tested(replace(plain, matched=matched), settings)
+    p = combined(anything.p_any, strained(fitted))
+    return Detection(large, test, p=p, p_cells=p_cells, trend=_trend(fitted, plain))
 
 
 def combined(*values: float) -> float:
@@ -82,8 +83,8 @@ def _large(fitted: Fit, table: CellTable) -> CellTable:
     return replace(table, least=np.array(least))
 
 
-def _tested(table: CellTable, settings: Settings) -> tuple[CellTable, FlipTest]:
-    return table, flip_test(table, settings.flips, settings.seed)
+def _tested(table: CellTable, settings: Settings) -> FlipTest:
+    return flip_test(table, settings.flips, settings.seed)
 
 
 def _refitted(fitted: Fit, table: CellTable, flagged: NDArray[np.bool_]) -> Fit:

@@ -8,9 +8,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmark.discovery import criteria
+from benchmark.discovery.base.calibration import calibrate
+from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection import disagreement
 from benchmark.discovery.detection.cells import Cell, CellTable, FlipTest
-from benchmark.discovery.detection.disagreement import Detection, combined, exchangeable, smallest_visible, strained
+from benchmark.discovery.detection.disagreement import (
+    Detection,
+    combined,
+    detect,
+    exchangeable,
+    smallest_visible,
+    strained,
+)
+from benchmark.discovery.trials.preparing import prepare
 
 PROBABILITY = st.floats(0.0, 1.0)
 
@@ -71,6 +81,15 @@ def test_trials_that_change_in_order_are_told_of(t, told):
     made = Detection(table([np.zeros(4)]), None, 1.0, 1.0, np.array([0.0, t]))
     assert bool(exchangeable(made)) is told
     assert exchangeable(Detection(table([]), None, 1.0, 1.0, np.array([]))) == ()
+
+
+@pytest.mark.parametrize(("rate", "large"), [(1e-4, False), (1e-3, True)])
+def test_what_is_sure_but_small_is_seen_and_is_no_disagreement_by_itself(session_of, rate, large):
+    """A drift of 0.6 or 6 mN in the mean of a cell, of a press to 2.1 N."""
+    session = session_of(force=lambda time, depth, elastic: elastic + rate * (time - time[0]), noise=1e-4, trials=4)
+    found = detect(calibrate(session, prepare(session, 90)).base, Settings())
+    assert found.p < 0.05
+    assert (found.p_cells < 0.05) is large
 
 
 def test_the_smallest_visible_disagreement_is_that_of_a_channels_best_cell():

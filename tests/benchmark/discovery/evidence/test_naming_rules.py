@@ -365,10 +365,7 @@ def test_a_pair_takes_the_place_of_a_set_up_entry_alone(top, start, density, exp
 
 def test_set_up_entries_are_looked_for_beyond_better_effects(monkeypatch):
     names = ("setup.hole", "a", "b", "c", "d", "setup.clamp")
-    rounds = [[scored(name, 10.0 - number) for number, name in enumerate(names[:5])]]
-    rounds[0].append(scored("setup.clamp", 5.5))
-    for each in rounds[0]:
-        object.__setattr__(each, "fit", fitted(effect(each.slug)))
+    rounds = [[scored(name, 10.0 - 0.9 * number) for number, name in enumerate(names)]]
     monkeypatch.setattr(selection, "screen", lambda fit, effects: (SimpleNamespace(effect=effects[0], won=1.0),))
     current = fitted(effect("setup.hole"))
     begun = {
