@@ -1,4 +1,4 @@
-"""A press by quadratic triangles with a continuous linear pressure, for the second family of blind worlds.
+"""A press by quadratic triangles with a linear pressure in each stratum, for the second family of blind worlds.
 
 Shares nothing with the package `fem`: other elements (Taylor and Hood, Computers and Fluids 1 (1973) 73: six nodes for
 the displacement, three for the pressure), other laws (Gent, Yeoh), Newton's method by itself on displacement and
@@ -26,8 +26,11 @@ Energy = Callable[[Array, int], Array]
 TOLERANCE, MOST_TURNS, SHORTEST = 1e-8, 25, 1 / 64
 PLATE_REACH = 3.0
 """The sheet goes on beyond its hole for so many thicknesses."""
-BASE_REACH = 7.0
-"""A body on a rigid base is so many tool radii wide."""
+BASE_REACH = 12.0
+"""A body on a rigid base is so many tool radii wide: 7 are 0.6 % stiffer at small depths."""
+EDGE, GROWTH, LONGEST = 0.04, 1.5, 10.0
+"""Elements at the edges of tool and hole and at the faces of strata, in tool radii; how they grow, and to how many
+times as much."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +141,7 @@ class _Body:
         """Mesh the body and hold it."""
         total = sum(each.thickness for each in strata)
         wide = BASE_REACH * tool if hole is None else hole + (PLATE_REACH * total if clamp == "plate" else 0.0)
-        mesh = skfem.MeshTri.init_tensor(_across(tool, hole, wide), _down(strata))
+        mesh = skfem.MeshTri.init_tensor(_across(tool, hole, wide), _down(strata, tool))
         basis = skfem.Basis(mesh, skfem.ElementTriP2(), intorder=4)
         linear = skfem.Basis(mesh, skfem.ElementTriP1(), intorder=4)
         place = basis.doflocs
@@ -151,21 +154,21 @@ class _Body:
         free = free[np.argsort(r[free])]
         axis = np.isclose(r, 0.0)
         fixed = np.concatenate([_of(held, 0), _of(held, 1), _of(axis, 0), _of(top & inside, 0)])
-        pressures = 2 * place.shape[1] + linear.element_dofs.T
         depth = -mesh.p[1][mesh.t].mean(axis=0)
-        bottoms = np.cumsum([each.thickness for each in strata])
+        stratum = np.searchsorted(np.cumsum([each.thickness for each in strata]), depth)
+        pressures = _apart(linear.element_dofs.T, stratum)
         return cls(
             gradient=_gradients(basis),
             shape=np.stack([np.array(linear.basis[i][0])[0] for i in range(3)], axis=1),
             weight=2 * np.pi * basis.dx * np.array(basis.global_coordinates())[0],
-            rows=np.concatenate([_pairs(basis.element_dofs.T), pressures], axis=1),
+            rows=np.concatenate([_pairs(basis.element_dofs.T), 2 * place.shape[1] + pressures], axis=1),
             strata=strata,
-            stratum=np.searchsorted(bottoms, depth),
+            stratum=stratum,
             tool=_of(top & inside, 1),
             fixed=np.unique(fixed),
             face=2 * free,
             face_radius=r[free],
-            unknowns=2 * place.shape[1] + linear.N,
+            unknowns=2 * place.shape[1] + int(pressures.max()) + 1,
         )
 
     def balanced(self, state: Array, depth: float) -> Array:
@@ -290,24 +293,46 @@ def _pairs(nodes: Integers) -> Integers:
     return out
 
 
+def _apart(vertices: Integers, stratum: Integers) -> Integers:
+    """Numbers of the pressures (elements, 3): a vertex between strata has one in each, for the pressure jumps there."""
+    each = vertices * (int(stratum.max()) + 1) + stratum[:, None]
+    out: Integers = np.unique(each, return_inverse=True)[1].reshape(each.shape)
+    return out
+
+
 def _of(nodes: Flags, component: int) -> Integers:
     return 2 * np.flatnonzero(nodes) + component
 
 
 def _across(tool: float, hole: float | None, wide: float) -> Array:
-    """Radii of the mesh, closer at the tool's edge and at the hole's."""
-    under = tool * np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, 8)) ** 0.8
-    end = wide if hole is None else hole
-    beyond = tool + (end - tool) * np.linspace(0.0, 1.0, 19)[1:] ** 1.8
-    plate = end + (wide - end) * np.linspace(0.0, 1.0, 6)[1:] ** 1.5
-    return np.concatenate([under, beyond, plate if wide > end else []])
+    """Radii of the mesh, fine at the tool's edge and at the hole's."""
+    edge = EDGE * tool
+    under = tool - _finer_at_start(tool, edge)[::-1]
+    if hole is None:
+        return np.concatenate([under, tool + _finer_at_start(wide - tool, edge)[1:]])
+    beyond = tool + _finer_at_ends(hole - tool, edge)[1:]
+    inside = np.concatenate([under, beyond])
+    return inside if wide <= hole else np.append(inside, hole + _finer_at_start(wide - hole, edge)[1:])
 
 
-def _down(strata: tuple[Stratum, ...]) -> Array:
-    """Heights of the mesh, rising to 0 at the surface."""
-    total, marks, done = sum(each.thickness for each in strata), [0.0], 0.0
+def _down(strata: tuple[Stratum, ...], tool: float) -> Array:
+    """Heights of the mesh, rising to 0 at the surface, fine at every face of a stratum."""
+    marks = [np.zeros(1)]
     for each in strata:
-        parts = max(2, round(10 * each.thickness / total))
-        marks += [done + each.thickness * (number + 1) / parts for number in range(parts)]
-        done += each.thickness
-    return -np.array(marks[::-1])
+        marks.append(marks[-1][-1] + _finer_at_ends(each.thickness, EDGE * tool)[1:])
+    return -np.concatenate(marks)[::-1]
+
+
+def _finer_at_ends(length: float, edge: float) -> Array:
+    """Marks from 0 to a length, fine at both ends."""
+    half = _finer_at_start(0.5 * length, edge)
+    return np.concatenate([half, length - half[-2::-1]])
+
+
+def _finer_at_start(length: float, edge: float) -> Array:
+    """Marks from 0 to a length: the first part about as long as `edge`, each `GROWTH` times the one before."""
+    parts = edge * np.minimum(GROWTH ** np.arange(2 + int(length / edge)), LONGEST)
+    marks = np.append(0.0, np.cumsum(parts))
+    marks = marks[: 1 + int(np.searchsorted(marks, length * (1.0 - 1e-9)))]
+    out: Array = marks * (length / marks[-1])
+    return out
