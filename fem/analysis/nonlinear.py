@@ -13,7 +13,7 @@ from fem.analysis.equilibrium import Equilibrium, State
 from fem.analysis.linear import unit_state
 from fem.analysis.newton import NewtonSettings
 from fem.analysis.record import Record, largest_strain
-from fem.analysis.stepping import Advance, Stepper, Watch, settle
+from fem.analysis.stepping import Advance, Control, Stepper, Watch, settle
 from fem.assembly.system import System
 from fem.load import Load
 from fem.results.solution import Failure, Resumed, Solution, StepReport
@@ -100,6 +100,18 @@ class _Run:
         if self.on_step is not None:
             total, depth = len(self.load.time), self.record.equilibrium.depth(state.y)
             self.on_step(StepReport(step, total, time, state.force, depth, advance.iterations, advance.cuts))
+
+
+def equilibrium_near(
+    problem: Equilibrium, guess: State, control: Control, value: float, settings: NewtonSettings
+) -> State | None:
+    """The state in equilibrium at a load value (N or m) that a guess leads to, without the way there, if it does.
+
+    For bodies without a memory, whose state does not depend on the way.
+    """
+    scale = LEAST_SHARE_OF_PEAK * abs(guess.force)
+    found = Stepper(problem, control, scale, settings).found_near(guess, value)
+    return found.state if found.success else None
 
 
 def force_scale(problem: Equilibrium, load: Load) -> float:

@@ -7,20 +7,26 @@ still corrected by Newton like any other.
 
 Over time, for a body with a memory, whose states of the way up say nothing about the way back: while the load goes on
 at one rate the last three states are extrapolated; after a change of rate the last increment is scaled with the load.
+
+From another mesh of the same body: its displacements at these nodes. Round a sharp edge they may turn a larger element
+inside out, which then gets straight sides.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from fem.analysis.equilibrium import State
-from fem.arrays import FloatArray
+from fem.analysis.equilibrium import Equilibrium, State
+from fem.arrays import FloatArray, IntArray
+from fem.mesh.quads import Mesh
 
 LOWEST_ORDER, HIGHEST_ORDER = 2, 5  # as far as there are states
 SHRINKAGE = 0.5  # of the change by each further state; where it is less, the order rises no further
 LEAST_SPACING = 0.3
 KEPT = 3
 SAME_RATE = 1e-6
+MOST_STRAIGHTENED = 4
+"""Rounds in which elements get straight sides, since a neighbour may turn inside out by it."""
 
 
 class KnownStates:
@@ -117,6 +123,35 @@ class RecentStates:
             return combined(lagrange(times[:-1], time), states)
         ratio = steps[-1] / steps[-2] if steps[-2] != 0.0 else 0.0
         return combined(np.array([-ratio, 1.0 + ratio]), states[-2:])
+
+
+def from_displacement(problem: Equilibrium, mesh: Mesh, nodal: FloatArray, force: float, depth: float) -> State:
+    """State near one with displacements (N, 2) in m at the nodes, a force in N and a depth in m; no pressure yet."""
+    numbering = problem.system.numbering
+    own = nodal.T if numbering.prescribed is None else nodal.T - numbering.prescribed
+    y: FloatArray = np.zeros(numbering.count + 1)
+    for _ in range(MOST_STRAIGHTENED):
+        y[numbering.unknown] = own
+        y[problem.probe] = -depth
+        inverted = _inverted(problem, y[:-1])
+        if not inverted.size:
+            break
+        own = _straightened(own, mesh.elements[:, inverted])
+    return State(y[:-1], problem.system.rest()[1], force)
+
+
+def _inverted(problem: Equilibrium, y: FloatArray) -> IntArray:
+    """Elements that the unknowns (n,) turn inside out."""
+    deformation = problem.system.elements.deformation(problem.system.element_displacement(y))
+    return np.flatnonzero(~(deformation.J.min(axis=0) > 0.0))
+
+
+def _straightened(nodal: FloatArray, elements: IntArray) -> FloatArray:
+    """Displacements (2, N) with those of the elements' (9, m) mid-sides and centres the means of their corners'."""
+    corners, out = elements[:4], nodal.copy()
+    out[:, elements[4:8]] = 0.5 * (nodal[:, corners] + nodal[:, np.roll(corners, -1, axis=0)])
+    out[:, elements[8]] = nodal[:, corners].mean(axis=1)
+    return out
 
 
 def _steady(rates: np.ndarray) -> bool:

@@ -201,6 +201,10 @@ class Stepper:
         reason = f"more than {MOST_PARTS} parts of one step"
         return Advance(self._state, self._value, iterations, cuts, reason, self._time)
 
+    def found_near(self, guess: State, value: float) -> NewtonResult:
+        """Newton's result at a load value from a guess alone, without the way there; the stepper stays where it is."""
+        return self._settle(guess, value, self._problem.system, self._control)[0]
+
     def _touched_by_depth(self, target: float, duration: float) -> bool:
         """Make the first state of a press by force one by depth, with less than the force; whether there is one.
 

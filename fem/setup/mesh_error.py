@@ -15,9 +15,13 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
 
+from fem.analysis.nonlinear import equilibrium_near
+from fem.analysis.prediction import from_displacement
 from fem.errors import FemError
 from fem.load import Load
+from fem.mesh.quads import Mesh
 from fem.problem.parts import LARGEST_EDGE
 from fem.problem.problem import Problem
 from fem.results.solution import Solution
@@ -108,7 +112,7 @@ def estimate_mesh_error(model: Model, load: Load, solution: Solution, *, first_o
     quantity = "depth" if load.control == "force" else "force"
     value = float(getattr(solution, quantity)[peak])
     edges = EDGES[:2] if first_order else EDGES
-    further = list(_coarser(model.problem, _shortened(model.problem, load, peak), quantity, edges))
+    further = list(_coarser(model.problem, _shortened(model.problem, load, peak), _Pressed.of(solution, peak), edges))
     if not further:
         return None
     # Without a fan a third mesh showed orders of 2.1 to 4.9 under twelve stuck tools on thin first layers.
@@ -120,7 +124,35 @@ def estimate_mesh_error(model: Model, load: Load, solution: Solution, *, first_o
     )
 
 
-def _coarser(problem: Problem, load: Load, quantity: str, factors: Sequence[float]) -> Iterator[tuple[float, int]]:
+@dataclass(frozen=True)
+class _Pressed:
+    """One state of a solution: nodes (N, 2) with their displacements (N, 2) in m, depth in m and force in N."""
+
+    nodes: FloatArray
+    displacement: FloatArray
+    depth: float
+    force: float
+
+    @classmethod
+    def of(cls, solution: Solution, step: int) -> _Pressed:
+        """At a step of a solution."""
+        depth, force = float(solution.depth[step]), float(solution.force[step])
+        return cls(solution.mesh.nodes, solution.displacement[step], depth, force)
+
+    def value(self, control: str) -> float:
+        """What the load leaves free, m or N."""
+        return self.depth if control == "force" else self.force
+
+    def at(self, nodes: FloatArray) -> FloatArray:
+        """Displacement (M, 2) in m at other nodes (M, 2), linear between the nearest of its own."""
+        found: FloatArray = LinearNDInterpolator(self.nodes, self.displacement)(nodes)
+        outside = np.isnan(found[:, 0])
+        if outside.any():
+            found[outside] = NearestNDInterpolator(self.nodes, self.displacement)(nodes[outside])
+        return found
+
+
+def _coarser(problem: Problem, load: Load, pressed: _Pressed, factors: Sequence[float]) -> Iterator[tuple[float, int]]:
     """What half as many elements give, and unknowns; at a stuck edge also with elements larger there by the factors."""
     own, before = problem.discretisation, 0
     edges = [own.edge * factor for factor in factors if own.edge * factor <= LARGEST_EDGE]
@@ -131,10 +163,30 @@ def _coarser(problem: Problem, load: Load, quantity: str, factors: Sequence[floa
             return
         if model.unknowns == before:
             return  # there is no fan
-        found, before = model.run(load), model.unknowns
-        if not found.complete:
+        found, before = _found_near(model, load, pressed) or _followed(model, load), model.unknowns
+        if found is None:
             return
-        yield float(getattr(found, quantity)[-1]), model.unknowns
+        yield found.value(load.control), model.unknowns
+        pressed = found
+
+
+def _found_near(model: Model, load: Load, pressed: _Pressed) -> _Pressed | None:
+    """The end of a load history on this mesh, from a state nearby; None where the way there counts, or is needed."""
+    problem, mesh, settings = model.equilibrium, model.mesh, model.newton
+    if not isinstance(mesh, Mesh) or model.problem.kinematics == "linear" or _remembers(model.problem):
+        return None
+    guess = from_displacement(problem, mesh, pressed.at(mesh.nodes), pressed.force, pressed.depth)
+    found = equilibrium_near(problem, guess, load.control, float(load.value[-1]), settings)
+    if found is None:
+        return None
+    nodal = problem.system.numbering.expand(found.y).T
+    return _Pressed(mesh.nodes, nodal, problem.depth(found.y), found.force)
+
+
+def _followed(model: Model, load: Load) -> _Pressed | None:
+    """The end of a load history, followed from rest; None where it cannot be."""
+    found = model.run(load)
+    return _Pressed.of(found, -1) if found.complete else None
 
 
 def _judged(value: float, coarser: list[float], stuck: bool) -> tuple[float, float]:

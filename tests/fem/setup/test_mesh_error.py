@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import fem
+from fem.setup import mesh_error
 from fem.setup.supports import SUPPORT_MODELS
 
 STACK = ((1.5e-3, 3.5e5), (2e-3, 1.8e5), (1.5e-3, 2.6e5))
@@ -103,3 +104,33 @@ def test_a_body_that_remembers_is_followed_through_its_history(slab, triangle):
 def test_without_a_load_there_is_no_estimate(slab):
     load = fem.Load("depth", np.ones(1), np.zeros(1))
     assert judged(slab("uniform_pressure"), load)[1] is None
+
+
+@pytest.mark.parametrize("contact", ["uniform_pressure", "rigid_bonded", "rigid_frictionless"])
+def test_what_is_found_from_a_state_nearby_is_what_the_way_there_leads_to(contact, ramp, monkeypatch):
+    edge = 0.5e-3 if contact == "rigid_frictionless" else None
+    problem = replace(sheet(contact), tool=fem.Tool(5e-3, contact, edge_radius=edge))
+    load = ramp("depth", 3e-3, 25)
+    model = fem.prepare(problem)
+    solution = model.run(load)
+    near = fem.estimate_mesh_error(model, load, solution)
+    monkeypatch.setattr(mesh_error, "_found_near", lambda *_: None)
+    monkeypatch.setattr(mesh_error, "ELASTIC_STEPS", 25)
+    followed = fem.estimate_mesh_error(model, load, solution)
+    assert near.halved == pytest.approx(followed.halved, rel=1e-8)
+    assert near.error == pytest.approx(followed.error, rel=1e-5)
+    assert near.order == pytest.approx(followed.order, rel=1e-3)
+
+
+def test_a_deep_press_is_judged_without_the_way_there(ramp, monkeypatch):
+    """At the edge of a stuck tool the fine mesh's displacements turn larger elements inside out."""
+    layers = tuple(
+        fem.Layer(f"{n}", h, 1000.0, fem.NeoHookean(E, 0.48)) for n, (h, E) in enumerate(zip(SKIN, MODULI, strict=True))
+    )
+    problem = fem.Problem(layers, fem.Tool(5e-3, "rigid_bonded"), fem.Support("bonded"), "finite")
+    load = ramp("depth", 4e-3, 8)
+    model = fem.prepare(problem)
+    solution = model.run(load)
+    monkeypatch.setattr(mesh_error, "_followed", lambda *_: pytest.fail("the way there was followed"))
+    found = fem.estimate_mesh_error(model, load, solution)
+    assert 0.0 < found.percent < 2.0
