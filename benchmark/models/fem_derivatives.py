@@ -139,9 +139,10 @@ def differentiated_press(
 
 
 def _mesh_error(model: Model, load: fem.Load, solution: fem.Solution) -> float | None:
-    """The estimated error of the mesh, a share, fit to be taken off."""
+    """The estimated error of the mesh at the largest load, a share, fit to be taken off."""
     found = fem.estimate_mesh_error(model, load, solution, first_order=True)
-    return None if found is None else 0.01 * found.percent
+    largest = np.abs(load.value[: len(solution.time)]).max(initial=0.0)
+    return None if found is None or abs(found.load) < largest else 0.01 * found.percent
 
 
 def _change(told: fem.Problem, change: ScenarioChange, key: str) -> fem.ProblemChange:

@@ -56,14 +56,16 @@ def refinement_columns(levels: tuple[Level, ...]) -> Columns:
 
 
 def mesh_error_entry(found: MeshError) -> dict[str, Any]:
-    """The estimated discretisation error at the largest load, in mm and N."""
+    """The estimated discretisation error and the load at which it is told, in mm and N."""
     scale, unit = (1e3, "mm") if found.quantity == "depth" else (1.0, "N")
+    load = {"load_N": found.load} if found.quantity == "depth" else {"load_mm": 1e3 * found.load}
     lengths = {"value": found.value, "half_as_many_elements": found.halved, "extrapolated": found.extrapolated}
     return {
         "quantity": found.quantity,
         "error_percent": found.percent,
         **{f"{name}_{unit}": scale * value for name, value in lengths.items()},
         "order": found.order,
+        **load,
     }
 
 

@@ -86,7 +86,7 @@ DESCRIPTIONS = {
     "normal_fits.csv": "normal fits with goodness",
     "parameter_bands.csv": "both models with the bands that uncertain parameters leave",
     "timing.csv": "every timed repeat",
-    "mesh_error.csv": "estimated discretisation error of the finite elements at the largest load",
+    "mesh_error.csv": "estimated discretisation error of the finite elements, and the load at which it is told",
     "fitted_parameters.csv": "fitted and fixed parameters with intervals",
     "measured.csv": "every trial beside both models",
     VALIDATION: "errors beside their uncertainties",

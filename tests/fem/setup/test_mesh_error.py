@@ -10,7 +10,7 @@ from fem.setup import mesh_error
 from fem.setup.supports import SUPPORT_MODELS
 
 STACK = ((1.5e-3, 3.5e5), (2e-3, 1.8e5), (1.5e-3, 2.6e5))
-SKIN, MODULI = (0.5e-3, 1.8e-3, 9e-3), (6e5, 2e5, 4e4)
+SKIN, MODULI, SOFT = (0.5e-3, 1.8e-3, 9e-3), (6e5, 2e5, 4e4), (2e5, 1e5, 2e4)
 HOLE = fem.Support("hole", 15e-3)
 
 
@@ -134,3 +134,16 @@ def test_a_deep_press_is_judged_without_the_way_there(ramp, monkeypatch):
     monkeypatch.setattr(mesh_error, "_followed", lambda *_: pytest.fail("the way there was followed"))
     found = fem.estimate_mesh_error(model, load, solution)
     assert 0.0 < found.percent < 2.0
+
+
+def test_where_larger_elements_fold_the_error_is_told_at_half_of_the_load(ramp):
+    layers = tuple(
+        fem.Layer(f"{n}", h, 1000.0, fem.NeoHookean(E, 0.48)) for n, (h, E) in enumerate(zip(SKIN, SOFT, strict=True))
+    )
+    tool = fem.Tool(5e-3, "rigid_frictionless", edge_radius=1.5e-3)
+    problem = fem.Problem(layers, tool, fem.Support("bonded"), "finite")
+    solution, found = judged(problem, ramp("force", 5.0, 10))
+    assert solution.complete
+    assert found.load == 2.5
+    assert found.value == solution.depth[4]
+    assert abs(found.percent) < 1.0
