@@ -20,6 +20,7 @@ from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
 from fem.analysis.nonlinear import equilibrium_near
 from fem.analysis.prediction import from_displacement
 from fem.errors import FemError
+from fem.linear_solver.factory import suited_threads
 from fem.load import Load
 from fem.mesh.quads import Mesh
 from fem.problem.parts import LARGEST_EDGE
@@ -187,7 +188,8 @@ def _found_near(model: Model, load: Load, pressed: _Pressed) -> _Pressed | None:
     if not isinstance(mesh, Mesh) or model.problem.kinematics == "linear" or _remembers(model.problem):
         return None
     guess = from_displacement(problem, mesh, pressed.at(mesh.nodes), pressed.force, pressed.depth)
-    found = equilibrium_near(problem, guess, load.control, float(load.value[-1]), settings)
+    with suited_threads(model.unknowns):
+        found = equilibrium_near(problem, guess, load.control, float(load.value[-1]), settings)
     if found is None:
         return None
     nodal = problem.system.numbering.expand(found.y).T
