@@ -60,14 +60,22 @@ def _function(name: str) -> Any:
     module, _, function = name.partition(":")
     try:
         found = getattr(importlib.import_module(module), function)
-    except (ImportError, ValueError, AttributeError):
+    except ModuleNotFoundError as error:
+        raise InputError(_no_function(name, f"; {error}" if error.name != module else "")) from None
+    except ImportError as error:
+        raise InputError(_no_function(name, f"; {error}")) from None
+    except (ValueError, AttributeError):
         found = None
     if not callable(found):
-        raise InputError(
-            f"--discoverer {name!r}: there is no such function; allowed: module:function, as in {PRODUCT}, called with "
-            "a session and a seed"
-        )
+        raise InputError(_no_function(name))
     return found
+
+
+def _no_function(name: str, reason: str = "") -> str:
+    return (
+        f"--discoverer {name!r}: there is no such function{reason}; allowed: module:function, as in {PRODUCT}, called "
+        "with a session and a seed"
+    )
 
 
 def run_case(name: CaseName, discover: Discoverer) -> Judged:

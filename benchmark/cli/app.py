@@ -103,11 +103,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _is_interruption(error: BaseException | None) -> bool:
-    """Whether an error is Ctrl-C under another name, as libraries give it whose callbacks it met."""
+    """Whether an error is Ctrl-C under another name, as libraries give it whose callbacks it met.
+
+    An error `from None` speaks for itself.
+    """
     while error is not None:
         if isinstance(error, KeyboardInterrupt) or "KeyboardInterrupt" in str(error):
             return True
-        error = error.__cause__ or error.__context__
+        error = error.__cause__ or (None if error.__suppress_context__ else error.__context__)
     return False
 
 

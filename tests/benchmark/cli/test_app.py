@@ -12,6 +12,7 @@ import pytest
 from bench_hw.errors import DeviceError, InputError
 from benchmark.child_processes import forbid_ending
 from benchmark.cli import app
+from benchmark.errors import InterruptedRunError
 
 HEAVY = ("numpy", "scipy", "pandas", "pint", "pydantic", "skfem", "matplotlib", "pyvista", "statsmodels")
 
@@ -102,6 +103,19 @@ def test_an_interruption_under_another_name_is_one_too(benchmark_cli, monkeypatc
 
     monkeypatch.setattr(app, "app", as_a_library_does)
     assert benchmark_cli("tissues").code == 130
+
+
+def test_an_interruption_that_says_what_it_left_is_heard(benchmark_cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    def as_a_long_run_does(*_: object, **__: object) -> int:
+        try:
+            raise KeyboardInterrupt
+        except KeyboardInterrupt:
+            raise InterruptedRunError("interrupted; what was computed is in .press.unfinished") from None
+
+    monkeypatch.setattr(app, "app", as_a_long_run_does)
+    called = benchmark_cli("tissues")
+    assert called.code == 130
+    assert ".press.unfinished" in called.err
 
 
 def test_without_a_verb_the_help_is_shown_as_it_is(benchmark_cli) -> None:

@@ -49,8 +49,8 @@ def test_a_run_ends_in_stiffening_and_the_model_file_repairs_it(benchmark_cli, f
 
 
 @pytest.mark.slow
-def test_the_held_out_loads_tell_stiffening_from_a_floor(benchmark_cli, tmp_path: Path) -> None:
-    """At the shipped press both bend the fitted half alike: BIC there is within 1 of each other."""
+def test_stiffening_is_told_from_a_floor(benchmark_cli, tmp_path: Path) -> None:
+    """Both bend the fitted half of the shipped press upwards; a floor is worse there, and beyond."""
     press, out = tmp_path / "press", tmp_path / "d"
     called = benchmark_cli("run", "skin-5N", "--set", "wave.large_press=linear", "--out", press, "--quiet")
     assert called.code == 0, called.err
@@ -60,7 +60,7 @@ def test_the_held_out_loads_tell_stiffening_from_a_floor(benchmark_cli, tmp_path
     assert [effect["name"] for effect in document["effects"]] == ["strain_stiffening"]
     assert document["effects"][0]["lookalikes"] == []
     bic = {each["name"]: each["delta_bic"] for each in document["candidates"]}
-    assert abs(bic["bottoming_out"] - bic["strain_stiffening"]) < 1.0
+    assert bic["bottoming_out"] > bic["strain_stiffening"] + 10.0
     assert max(abs(layer["percent_at_peak_after"]) for layer in document["layers"].values()) < 5.0
 
 

@@ -54,7 +54,7 @@ def test_plain_folders_and_own_modules_are_nothing_to_speak_of(tmp_path):
 
 DISCOVERER = """
 import os
-from benchmark.discovery.result import Discovery
+from benchmark.discovery import Discovery
 def always(session, *, seed):
     raise ValueError("mine was called, in " + ("a child" if os.environ.get("OMP_NUM_THREADS") == "1" else "here"))
 """
