@@ -177,7 +177,7 @@ class ShapedTable:
         self, field: SeparableField, radius: Array, over_depth: tuple[NDArray[np.int64], Array, Array]
     ) -> Array:
         """(n, m) m of a field at depths (n,) and radii (m,), m; the field at those radii is kept for the next trial."""
-        key = (id(field), radius.tobytes())
+        key = (field is self.sink, radius.tobytes())
         if key not in self._kept:
             shapes = np.array([np.interp(radius, self.table.radius, row, right=0.0) for row in field.shapes])
             self._kept[key] = field.amplitudes.T @ shapes
@@ -185,6 +185,6 @@ class ShapedTable:
         return np.asarray(known[low] * before[:, None] + known[low + 1] * after[:, None])
 
     @cached_property
-    def _kept(self) -> dict[tuple[int, bytes], Array]:
-        """Fields (k, m) over the table's depths at radii that were asked for."""
+    def _kept(self) -> dict[tuple[bool, bytes], Array]:
+        """Fields (k, m) over the table's depths at radii that were asked for; whether it is the sinking."""
         return {}
