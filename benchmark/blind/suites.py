@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import product
 
 from benchmark.blind.cases import FAMILIES, CaseKind, CaseName
@@ -98,16 +98,23 @@ def _spread(kind: CaseKind, turns: Sequence[tuple[str, str]], count: int, streng
     return out
 
 
-def chosen(cases: tuple[CaseName, ...], slugs: tuple[str, ...]) -> tuple[CaseName, ...]:
-    """The cases of some effects (by slug, pair or "null"); all without any.
+def chosen(cases: tuple[CaseName, ...], slugs: tuple[str, ...], labs: tuple[str, ...] = ()) -> tuple[CaseName, ...]:
+    """The cases of some effects (by slug, pair or "null") in some labs; all without any.
 
     Raises
     ------
     InputError
-        A slug is in no case.
+        A slug or a lab is in no case.
     """
-    known = {case.slug or "null" for case in cases}
-    for slug in slugs:
-        if slug not in known:
-            raise InputError(f"--cases {slug!r}: no case of this suite; allowed: {', '.join(sorted(known))}")
-    return tuple(case for case in cases if not slugs or (case.slug or "null") in slugs)
+    return _among(_among(cases, "--cases", slugs, lambda case: case.slug or "null"), "--labs", labs, lambda case: case.lab)
+
+
+def _among(
+    cases: tuple[CaseName, ...], option: str, wanted: tuple[str, ...], of: Callable[[CaseName], str]
+) -> tuple[CaseName, ...]:
+    """Those of which something is among what an option wants; all where it wants nothing."""
+    known = {of(case) for case in cases}
+    for each in wanted:
+        if each not in known:
+            raise InputError(f"{option} {each!r}: no case of this suite; allowed: {', '.join(sorted(known))}")
+    return tuple(case for case in cases if not wanted or of(case) in wanted)

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 Suite = Annotated[str, typer.Option("--suite", help="small | first | medium | labs | full.")]
 Cases = Annotated[str, typer.Option("--cases", metavar="SLUG,...", help="Only these effects, pairs, or null.")]
+Labs = Annotated[str, typer.Option("--labs", metavar="LAB,...", help="Only cases of these labs (docs/blind.md).")]
 Most = Annotated[int, typer.Option("--most", min=0, metavar="N", help="Only the first N cases; 0 for all.")]
 Scheduler = Annotated[
     str, typer.Option("--scheduler", metavar="ADDRESS", help="A Dask cluster that works instead of local processes.")
@@ -42,6 +43,7 @@ def register(app: typer.Typer) -> None:
 def blind(
     suite: Suite = "small",
     cases: Cases = "",
+    labs: Labs = "",
     out: Out = None,
     seed: Seed = 0,
     workers: Workers = 2,
@@ -69,12 +71,14 @@ def blind(
     from benchmark.runs.output.destination import claimed, fresh
 
     console = Console(quiet=quiet)
-    slugs = tuple(each.strip() for each in cases.split(",") if each.strip())
+    slugs, places = _listed(cases), _listed(labs)
     scatter = _scatter(print_scatter)
-    names = tuple(replace(each, print_scatter=scatter) for each in chosen(cases_of(suite, seed), slugs))[: most or None]
+    picked = chosen(cases_of(suite, seed), slugs, places)[: most or None]
+    names = tuple(replace(each, print_scatter=scatter) for each in picked)
     discoverer = _discoverer(discoverer, without)
     settings = {"suite": suite, "seed": seed, "cases": list(slugs), "discoverer": discoverer}
     settings |= {"print_scatter": print_scatter} if scatter else {}
+    settings |= {"labs": list(places)} if places else {}
     settings |= {"most": most} if most else {}
     folder = fresh("blind") if out is None else out
     load_discoverer(discoverer)
@@ -94,6 +98,11 @@ def blind(
         print(text_table(rows_of(settings, judged)))
         print(f"\ntaken for something else:\n{confusion_text(judged)}\n  report: {folder / 'report.html'}")
     return 0
+
+
+def _listed(text: str) -> tuple[str, ...]:
+    """What stands between commas."""
+    return tuple(each.strip() for each in text.split(",") if each.strip())
 
 
 def _discoverer(discoverer: str, without: str) -> str:

@@ -55,6 +55,11 @@ def test_suites() -> None:
     assert {case.slug for case in chosen(first, ("adhesion", "null"))} == {"adhesion", ""}
     with pytest.raises(InputError, match="allowed: small, first"):
         suite("huge")
+    full = suite("full")
+    assert {case.lab for case in chosen(full, (), ("printed", "anything"))} == {"printed", "anything"}
+    assert {(case.slug, case.lab) for case in chosen(full, ("adhesion",), ("printed",))} == {("adhesion", "printed")}
+    with pytest.raises(InputError, match="--labs .printe.: no case of this suite; allowed: another_camera, anything"):
+        chosen(full, (), ("printe",))
     with pytest.raises(InputError, match="adhesio"):
         chosen(first, ("adhesio",))
 
