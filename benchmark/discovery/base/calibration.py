@@ -233,6 +233,14 @@ def _size(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
+def _early(touch: Array) -> float:
+    """Root mean square round zero of touches (R,) that are all early, as by a force, and else round their mean.
+
+    A touch that all trials have late is free travel: an effect.
+    """
+    return float(np.hypot(np.std(touch), min(float(touch.mean()), 0.0)))
+
+
 def _spreads(fitted: Fit, scale: Array) -> TrialPrior:
     state = fitted.nuisance
     noise = float(np.median(scale[:, 0]))
@@ -246,7 +254,7 @@ def _spreads(fitted: Fit, scale: Array) -> TrialPrior:
         gain=max(_spread(state[:, 0]), 3e-3),
         zero=max(_size(state[:, 1]), 0.2 * noise, 1e-9),
         shift=max(_size(state[:, 2]), 0.05 * fitted.model.problem.study.raw_interval, 1e-4),
-        height=max(_size(state[:, 3]), criteria.LEAST_HEIGHT * deepest),
+        height=max(_early(state[:, 3]), criteria.LEAST_HEIGHT * deepest),
         offset=max(offset, 0.3 * floor, 1e-9),
         rest=max(rest, 0.3 * floor, 1e-9),
         thickness=thickness_spread(fitted),
