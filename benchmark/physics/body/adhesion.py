@@ -15,18 +15,20 @@ if TYPE_CHECKING:
     from fem import Problem
 
 RISE = 0.1
-"""Share of its reach over which a tearing bond takes up its pull."""
+"""Share of its reach over which a tearing bond takes up its pull where a model file does not say."""
 
 DESCRIPTION = EffectDescription(
     slug="adhesion",
     acts_on="body",
     sentence="The tissue sticks to the tool: lifting it takes a pull before it lets go.",
-    equation="F = -f(|d|) above the surface until -F exceeds the pull-off force; a tearing bond adds -p (1 - |d| / r)",
+    equation="F = -f(|d|) above the surface until -F exceeds the pull-off force; a tearing bond adds "
+    "-p min(|d| / (s r), (1 - |d| / r) / (1 - s))",
     needs=(("lift_off",),),
     source="K. Kendall 1971, J Phys D 4:1186; Geubelle and Baylor 1998, Compos B 29:589 (bilinear cohesive law)",
     parameters=(
         linear("tear", "N", 0.0, 100.0, "pull p of a bond that tears gradually"),
         logarithmic("reach", "m", 1e-5, 0.02, "height r above the surface at which that bond is gone"),
+        linear("rise", "", 0.02, 0.98, "share s of that height over which its pull grows", RISE),
         linear(
             "adhesion_force",
             "N",
@@ -37,6 +39,7 @@ DESCRIPTION = EffectDescription(
             formerly="pull_off",
         ),
     ),
+    may_lack=("rise",),
     in_wave="on top of its elastic law",
     in_fem="the contact of a rigid_frictionless or rigid_frictional tool in finite strain lets go at that pull",
 )
@@ -55,15 +58,19 @@ def _observe(values: Values, readings: Readings, motion: Motion, context: TrialC
         return readings
     height = -motion.depth / values["reach"]
     held = Adhesion(1.0).touching(motion.depth, height, False) & (height > 0.0)
-    pull = values["tear"] * np.minimum(height / RISE, np.maximum(1.0 - height, 0.0) / (1.0 - RISE))
+    rise = values.get("rise", RISE)
+    pull = values["tear"] * np.minimum(height / rise, np.maximum(1.0 - height, 0.0) / (1.0 - rise))
     return replace(readings, force=readings.force - np.where(held, pull, 0.0))
 
 
 def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     peak, depth = context.peak_force, context.peak_depth
-    tearing = tuple({"tear": 0.05 * peak, "reach": share * depth, "adhesion_force": 0.0} for share in (0.1, 0.2, 0.4))
-    following = tuple({"tear": 0.0, "reach": 0.2 * depth, "adhesion_force": share * peak} for share in (0.03, 0.1, 0.3))
-    return tearing + following
+    tearing = {"tear": 0.05 * peak, "adhesion_force": 0.0}
+    following = {"tear": 0.0, "reach": 0.2 * depth, "rise": RISE}
+    return (
+        *(tearing | {"reach": share * depth, "rise": rise} for share in (0.1, 0.2, 0.4) for rise in (RISE, 0.9)),
+        *(following | {"adhesion_force": share * peak} for share in (0.03, 0.1, 0.3)),
+    )
 
 
 def _in_fem(values: Values, problem: Problem, context: TrialContext) -> tuple[Problem, str]:

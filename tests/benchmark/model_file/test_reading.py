@@ -113,6 +113,12 @@ def test_a_pretension_of_unknown_stress_is_refused_with_the_way_out(tmp_path: Pa
         read_model(_written(tmp_path, HEAD + older), KNOWN)
 
 
+def test_a_bond_of_an_older_file_rises_as_it_did(tmp_path: Path) -> None:
+    older = 'tear = "1 N"\nreach = "1 mm"\nadhesion_force = "0 N"\n'
+    text = HEAD + f'[[effects]]\nname = "adhesion"\n[effects.parameters]\n{older}'
+    assert set(read_model(_written(tmp_path, text), KNOWN).effects[0].parameters) == {"tear", "reach", "adhesion_force"}
+
+
 def test_a_quantity_is_given_once(tmp_path: Path) -> None:
     both = 'tear = "0 N"\nreach = "1 mm"\npull_off = "1 N"\nadhesion_force = "1 N"\n'
     with pytest.raises(InputError, match="adhesion has adhesion_force already"):

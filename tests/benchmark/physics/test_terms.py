@@ -220,6 +220,15 @@ def test_a_tearing_bond_pulls_as_far_as_it_reaches():
     assert extra[MOTION.depth < -0.5e-3] == pytest.approx(0.0)
 
 
+def test_a_bond_may_pull_most_just_before_it_lets_go():
+    made = readings(MOTION, adhesion={"tear": 0.1, "reach": 0.5e-3, "rise": 0.9, "adhesion_force": 0.0})
+    extra, held = made.force - PLAIN.force, np.clip(-MOTION.depth, 0.0, None)
+    rising = (held > 0.0) & (held < 0.45e-3) & (extra < 0.0)
+    assert rising.any()
+    assert extra[rising] == pytest.approx(-0.1 * held[rising] / 0.45e-3)
+    assert extra[held > 0.5e-3] == pytest.approx(0.0)
+
+
 def test_gap_shifts_the_depth():
     made = readings(MOTION, contact_gap={"gap": 0.5e-3})
     assert made.force[DEEP] == pytest.approx(STIFFNESS * 4.5e-3)

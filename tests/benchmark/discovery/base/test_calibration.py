@@ -34,10 +34,12 @@ def test_the_depth_at_touch_is_each_trials_own(session_of, quick_session):
 def test_trials_that_touch_alike_have_little_of_it(session_of):
     found, _ = _noise(session_of(trials=6))
     assert found.problem.prior.height < 0.1 * TOUCH
-    late = found.base.nuisance.copy()
+    late, early = found.base.nuisance.copy(), found.base.nuisance.copy()
     late[:, OWN.index("height")] -= 2.0 * TOUCH  # a rig that finds the touch by a force finds all of them late
-    shared = _spreads(replace(found.base, nuisance=late), found.problem.noise.scale)
+    early[:, OWN.index("height")] += 2.0 * TOUCH  # free travel before all of them, which no search by force leaves
+    shared, gap = (_spreads(replace(found.base, nuisance=n), found.problem.noise.scale) for n in (late, early))
     assert shared.height == pytest.approx(2.0 * TOUCH, rel=0.1)
+    assert gap.height < 0.1 * TOUCH
 
 
 def test_a_trial_that_was_not_filmed_counts_with_its_force_alone():
