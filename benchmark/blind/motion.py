@@ -52,7 +52,6 @@ class PressPlan:
 class ReportedMotion:
     """Reported motion: s and m (n,), equally spaced in time; frames (f,) s."""
 
-    plan: PressPlan
     time: Array
     depth: Array
     frames: Array
@@ -83,13 +82,17 @@ def motion(
     delay : float
         By how much the reported motion is late, s.
     """
-    times, depths = _corners(plan, depth_factor)
+    return rounded(*_corners(plan, depth_factor), rate, frame_rate, delay=delay)
+
+
+def rounded(times: Array, depths: Array, rate: float, frame_rate: float, *, delay: float = 0.0) -> ReportedMotion:
+    """The motion between depths (k,) m at times (k,) s, rounded at its corners; the rest as `motion`."""
     time = np.arange(0.0, times[-1], 1.0 / rate)
     width = np.linspace(-0.5, 0.5, 17)
     weight = np.cos(np.pi * width) ** 2
     moved = np.interp(time[:, None] - delay + SMOOTHING * width, times, depths)
     depth = moved @ (weight / weight.sum())
-    return ReportedMotion(plan, time, depth, np.arange(0.5 / frame_rate, time[-1], 1.0 / frame_rate))
+    return ReportedMotion(time, depth, np.arange(0.5 / frame_rate, time[-1], 1.0 / frame_rate))
 
 
 def _corners(plan: PressPlan, depth_factor: float) -> tuple[Array, Array]:

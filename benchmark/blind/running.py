@@ -10,12 +10,13 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import closing
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, cast
 
 from bench_hw.storage.folder_lock import scratch
 from benchmark.blind.cases import CaseName
-from benchmark.blind.scoring.judging import IMPOSSIBLE, Judged, failed, judge, unanswered
+from benchmark.blind.scoring.judging import IMPOSSIBLE, Judged, failed, judge, looped, unanswered
 from benchmark.blind.session_files import case
 from benchmark.child_processes import PoolContext, begin_in_pool, single_threaded_children
 from benchmark.discovery.discovery_result import Discovery
@@ -71,12 +72,14 @@ def _function(name: str) -> Any:
     return found
 
 
-def run_case(name: CaseName, discover: Discoverer) -> Judged:
+def run_case(name: CaseName, discover: Discoverer, experiments: int = 0) -> Judged:
     """Make the case, let `discover` answer for its session folder, and judge the answer.
 
     A discovery that raises is judged as one that says nothing; its time is the discovery's, reading included. A case
-    whose effect cannot be as strong as wanted in its lab is not put to it.
+    whose effect cannot be as strong as wanted in its lab is not put to it. With `experiments` the product's own
+    discovery answers, and again after each of so many experiments at most; the last answer is judged.
     """
+    from benchmark.blind.closed_loop import closed_loop
     from benchmark.files.sessions.session_loading import load_session
 
     with scratch() as parent:
@@ -86,6 +89,9 @@ def run_case(name: CaseName, discover: Discoverer) -> Judged:
             return unanswered(name, IMPOSSIBLE, str(error))
         started = time.perf_counter()
         try:
+            if experiments:
+                loop = closed_loop(made, folder, experiments)
+                return looped(made, loop.answers, loop.experiments, time.perf_counter() - started)
             answer = discover(load_session(folder), seed=name.seed)
         except Exception as error:
             return failed(made, error, time.perf_counter() - started)
@@ -93,7 +99,12 @@ def run_case(name: CaseName, discover: Discoverer) -> Judged:
 
 
 def run_cases(
-    cases: Sequence[CaseName], discoverer: str, journal: Path, workers: int | str, on_case: OnCase
+    cases: Sequence[CaseName],
+    discoverer: str,
+    journal: Path,
+    workers: int | str,
+    on_case: OnCase,
+    experiments: int = 0,
 ) -> tuple[Judged, ...]:
     """Run the cases that the journal does not have yet.
 
@@ -108,6 +119,8 @@ def run_cases(
         Processes; 1 is this one. Or the address of a Dask scheduler.
     on_case : callable
         Told how many of how many are finished, and the last one.
+    experiments : int
+        As `run_case` takes it.
 
     Returns
     -------
@@ -118,25 +131,33 @@ def run_cases(
     waiting = [name for name in cases if name.text not in finished]
     on_case(len(cases) - len(waiting), len(cases), None)
     with closing(Journal(journal)) as kept:
-        for row in _work(waiting, discoverer, workers):
+        for row in _work([Job(name, discoverer, experiments) for name in waiting], workers):
             kept.add(row)
             finished[row.case] = row
             on_case(sum(name.text in finished for name in cases), len(cases), row)
     return tuple(finished[name.text] for name in cases)
 
 
-def _work(waiting: Sequence[CaseName], discoverer: str, workers: int | str) -> Iterator[Judged]:
+@dataclass(frozen=True)
+class Job:
+    """A case, who answers for it, and how many experiments may follow."""
+
+    name: CaseName
+    discoverer: str
+    experiments: int
+
+
+def _work(jobs: Sequence[Job], workers: int | str) -> Iterator[Judged]:
     """Yield finished cases as they come; one worker is this process."""
     if isinstance(workers, str):
-        jobs = [(name, discoverer) for name in waiting]
-        yield from on_cluster(_job, jobs, lambda job, reason: unanswered(job[0], "error", reason), workers, _unheard)
+        yield from on_cluster(_done, jobs, lambda job, reason: unanswered(job.name, "error", reason), workers, _unheard)
         return
-    if workers == 1 or not waiting:
-        yield from (_in_process(name, discoverer) for name in waiting)
+    if workers == 1 or not jobs:
+        yield from (_done(job) for job in jobs)
         return
-    size = min(workers, len(waiting))
+    size = min(workers, len(jobs))
     with single_threaded_children(), ProcessPoolExecutor(size, PoolContext(), initializer=begin_in_pool) as pool:
-        futures = [pool.submit(_in_process, name, discoverer) for name in waiting]
+        futures = [pool.submit(_done, job) for job in jobs]
         try:
             for future in as_completed(futures):
                 yield future.result()
@@ -144,13 +165,9 @@ def _work(waiting: Sequence[CaseName], discoverer: str, workers: int | str) -> I
             pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _job(job: tuple[CaseName, str]) -> Judged:
-    return _in_process(*job)
-
-
 def _unheard(_: str) -> None:
     """Remarks on the cluster go nowhere."""
 
 
-def _in_process(name: CaseName, discoverer: str) -> Judged:
-    return run_case(name, load_discoverer(discoverer))
+def _done(job: Job) -> Judged:
+    return run_case(job.name, load_discoverer(job.discoverer), job.experiments)

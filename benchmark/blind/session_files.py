@@ -82,7 +82,7 @@ def write_case(made: BlindCase, folder: Path) -> Path:
         )
         text += f'\n[[trials]]\nfile = "trial_{number:03d}.csv"\ncondition = "{plan.name}"\n'
         fault = made.bad_trial if number - 1 == bad else ""
-        text += _write_trial(made, moved, folder, number, fault, rng)
+        text += write_trial(made, moved, folder, number, fault, rng)
     write_text(folder / "session.toml", text)
     write_text(folder / "specimen.toml", _specimen(made))
     return folder
@@ -100,18 +100,13 @@ def _specimen(made: BlindCase) -> str:
     return specimen_text(wrong, (modulus, thickness) if made.name.wrong_layers or lab.stated else None)
 
 
-def _write_trial(
+def write_trial(
     made: BlindCase, moved: ReportedMotion, folder: Path, number: int, fault: str, rng: np.random.Generator
 ) -> str:
     """Write one trial's files; returns what the session file says of its markers."""
     scene, peak = made.scene, made.scene.scale.force
     effects = [effect.in_trial(rng) for effect in made.effects]
-    late = ReportedMotion(
-        moved.plan,
-        moved.time,
-        np.interp(moved.time - rng.normal(0.0, DELAY_SCATTER), moved.time, moved.depth),
-        moved.frames,
-    )
+    late = replace(moved, depth=np.interp(moved.time - rng.normal(0.0, DELAY_SCATTER), moved.time, moved.depth))
     gain = float(np.exp(rng.normal(0.0, made.gain_scatter)))
     body = _specimen_of_trial(scene, rng)
     signals = simulate(body, scene.grid, late, effects, gain)

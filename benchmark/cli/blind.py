@@ -31,6 +31,13 @@ Named = Annotated[
 ]
 Without = Annotated[str, typer.Option("--without", metavar="PART", help="The discovery without one of its parts.")]
 
+Experiments = Annotated[
+    int,
+    typer.Option(
+        "--experiments", min=0, metavar="N", help="Do up to N proposed experiments on each case, and decide again."
+    ),
+]
+
 MOST_SCATTER = 1e-3
 """Markers printed farther off than this are no grid, m."""
 
@@ -52,6 +59,7 @@ def blind(
     print_scatter: PrintScatter = "",
     discoverer: Named = "benchmark.discovery:discover",
     without: Without = "",
+    experiments: Experiments = 0,
     json: Json = False,
     quiet: Quiet = False,
     debug: Debug = False,
@@ -76,10 +84,12 @@ def blind(
     picked = chosen(cases_of(suite, seed), slugs, places)[: most or None]
     names = tuple(replace(each, print_scatter=scatter) for each in picked)
     discoverer = _discoverer(discoverer, without)
+    _check_loop(experiments, discoverer)
     settings = {"suite": suite, "seed": seed, "cases": list(slugs), "discoverer": discoverer}
     settings |= {"print_scatter": print_scatter} if scatter else {}
     settings |= {"labs": list(places)} if places else {}
     settings |= {"most": most} if most else {}
+    settings |= {"experiments": experiments} if experiments else {}
     folder = fresh("blind") if out is None else out
     load_discoverer(discoverer)
     with claimed(out, "blind"), console.progress(f"blind trials, suite {suite} (synthetic)") as advance:
@@ -90,7 +100,7 @@ def blind(
             advance("cases", done, total, remark)
 
         with going_on(folder):
-            judged = run_cases(names, discoverer, journal, scheduler or workers, on_case)
+            judged = run_cases(names, discoverer, journal, scheduler or workers, on_case, experiments)
             result = finish(folder, settings, judged)
     if json:
         print_json({**result, "out": str(folder)})
@@ -116,6 +126,15 @@ def _discoverer(discoverer: str, without: str) -> str:
     if discoverer != PRODUCT:
         raise InputError(f"--without {without!r}: only the product's own discovery has parts; leave --discoverer out")
     return discoverer_without(without)
+
+
+def _check_loop(experiments: int, discoverer: str) -> None:
+    """Raise InputError where another discovery is to propose experiments."""
+    from benchmark.blind.running import PRODUCT
+    from benchmark.errors import InputError
+
+    if experiments and discoverer != PRODUCT:
+        raise InputError("--experiments: only the product's own discovery proposes them; leave --discoverer out")
 
 
 def _scatter(text: str) -> float:

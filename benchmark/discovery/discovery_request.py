@@ -15,7 +15,8 @@ from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence.pool import forget
 from benchmark.discovery.evidence.told_setup import on_told
 from benchmark.discovery.from_run import at_small_strain, is_run, read_run, repair_run
-from benchmark.discovery.planning.bench_loop import Asked, BenchWork, Loop, load_bench, session_copy, unattended
+from benchmark.discovery.planning.bench_loop import Loop
+from benchmark.discovery.planning.bench_work import Asked, BenchWork, load_bench, session_copy, unattended
 from benchmark.discovery.planning.proposing import Allowed, propose
 from benchmark.discovery.refitting.refit import picked, refits
 from benchmark.discovery.refitting.refit_result import ModelRefit

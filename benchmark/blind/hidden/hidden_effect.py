@@ -67,6 +67,10 @@ class Hidden:
         """The same effect with another amplitude."""
         return replace(self, amplitude=amplitude)
 
+    def under_tool(self, radius: float) -> Self:
+        """The same effect of the same specimen under a tool of another radius, m."""
+        return replace(self, scale=replace(self.scale, tool_radius=radius))
+
     def in_trial(self, rng: np.random.Generator) -> Self:
         """How it shows in one trial: its size scatters a little."""
         return self.of_size(self.amplitude * float(np.exp(rng.normal(0.0, AMPLITUDE_SCATTER))))

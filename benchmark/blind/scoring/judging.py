@@ -61,6 +61,10 @@ class Judged:
     trials : int
     setup_off : str
         Set-up entries that an answer may rightly name, with + between: what the session tells otherwise than it is.
+    experiments : int
+        That were done after the first answer.
+    set_before : str
+        The first effect and its look-alikes before them.
     """
 
     case: str
@@ -86,6 +90,8 @@ class Judged:
     markers: bool = True
     trials: int = 10
     setup_off: str = ""
+    experiments: int = 0
+    set_before: str = ""
 
     @property
     def first(self) -> str:
@@ -116,6 +122,12 @@ def judge(case: BlindCase, answer: Discovery, seconds: float) -> Judged:
         place_f1=f1(found, set(case.cells.shows), set(case.cells.may_show)) if strongest else None,
         gap_closed=_gap_closed(answer, strongest[0]) if strongest and case.name.kind == "effect" else None,
     )
+
+
+def looped(case: BlindCase, answers: Sequence[Discovery], experiments: int, seconds: float) -> Judged:
+    """Compare the last answer of a closed loop, whose answers are given in turn, with the truth."""
+    before = judge(case, answers[0], seconds).first_set
+    return replace(judge(case, answers[-1], seconds), experiments=experiments, set_before=before)
 
 
 def failed(case: BlindCase, error: Exception, seconds: float) -> Judged:
@@ -226,6 +238,7 @@ def table(cases: Sequence[Judged]) -> tuple[BlindRow, ...]:
     placed = [case for case in cases if case.place_found is not None and case.kind in ("effect", "pair")]
     named = [case for case in effects if case.reported]
     gaps = [case for case in effects if case.gap_closed is not None]
+    rivals = [case for case in effects if "+" in case.set_before and case.truth in case.set_before.split("+")]
     rows = [
         share("right name first", effects, lambda case: case.first == case.truth, ">= 0.9"),
         share(
@@ -241,6 +254,7 @@ def table(cases: Sequence[Judged]) -> tuple[BlindRow, ...]:
         share("outside: wrong confident name", outside, lambda case: case.verdict in CONFIDENT, "<= 0.1"),
         share("outside: flagged", outside, lambda case: case.verdict == "outside_catalogue", ">= 0.8"),
         share("pairs: both named", pairs, both_named, ">= 0.7"),
+        share("rivals separated by experiments", rivals, lambda case: case.first_set == case.truth, ">= 0.95"),
         share("place contains the true one", placed, lambda case: bool(case.place_found), ">= 0.95"),
         average("F1 over cells", placed, lambda case: case.place_f1 or 0.0, ">= 0.85"),
         median("gap closed on a held-out condition", gaps, lambda case: case.gap_closed or 0.0, ">= 0.8"),

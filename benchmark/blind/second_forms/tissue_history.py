@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -71,6 +71,11 @@ class PunchDrainage(Hidden):
     def draw(cls, scale: SessionScale, rng: np.random.Generator) -> Self:
         """One to eight seconds."""
         return cls(scale=scale, time=float(np.exp(rng.uniform(0.0, np.log(8.0)))))
+
+    def under_tool(self, radius: float) -> Self:
+        """Fluid has farther to go: the time grows with the radius squared."""
+        longer = (radius / self.scale.tool_radius) ** 2
+        return replace(super().under_tool(radius), time=longer * self.time)
 
     def push(self, time: Array, depth: Array, elastic: Array) -> Array:
         """What has drained is missing: each rise of the force drains by itself."""
