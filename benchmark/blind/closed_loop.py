@@ -1,4 +1,4 @@
-"""The closed loop on a blind case: a bench that does what is proposed on the true body, with the hidden effects in it."""
+"""The closed loop on a blind case: a bench that does what is proposed on the true body with its hidden effects."""
 
 from __future__ import annotations
 

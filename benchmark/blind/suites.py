@@ -106,7 +106,9 @@ def chosen(cases: tuple[CaseName, ...], slugs: tuple[str, ...], labs: tuple[str,
     InputError
         A slug or a lab is in no case.
     """
-    return _among(_among(cases, "--cases", slugs, lambda case: case.slug or "null"), "--labs", labs, lambda case: case.lab)
+    return _among(
+        _among(cases, "--cases", slugs, lambda case: case.slug or "null"), "--labs", labs, lambda case: case.lab
+    )
 
 
 def _among(
