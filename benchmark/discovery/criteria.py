@@ -56,10 +56,9 @@ class Settings:
 
 
 DECISIVE = 5.0
-"""Log density by which the trials of the proposed experiments together must speak against a rival.
+"""Log density by which trials must speak against a rival beyond what they said before the proposed experiments.
 
-"Very strong" in Kass and Raftery 1995 (2 ln B > 10). It was 12.5, a first choice before any loop was run: of what an
-experiment promised (18) a third came, since no rival has the true form.
+"Very strong" in Kass and Raftery 1995 (2 ln B > 10). It was 12.5, a first choice before any loop was run.
 """
 
 # ---- trials: what can be used, and what belongs together -----------------------------------------------------------

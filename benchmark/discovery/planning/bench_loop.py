@@ -1,7 +1,7 @@
 """The closed loop: the experiment that best separates the rivals, done on the bench, its trials added, decided again.
 
-A new measurement may rule a rival out in two ways. The trials of the new condition are predicted by each rival from
-the trials before: one that predicts them far worse is out. A rigid block in the specimen's place measures the rig's
+A new measurement may rule a rival out in two ways. Both rivals are fitted to the trials of the new condition, too: one that
+foretells trials far worse than before is out. A rigid block in the specimen's place measures the rig's
 give itself: where there is none, the rival that needs it is out; where it is as large as that rival says, the others
 are. What the bench records is added to a copy of the session; the session itself stays as it is.
 """
@@ -12,12 +12,12 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit
-from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.evidence.gains import held_out, held_out_conditions
 from benchmark.discovery.planning.bench_work import Bench
 from benchmark.discovery.planning.proposing import DEPTH_READ, GIVES, Allowed
@@ -44,6 +44,7 @@ class Loop:
     propose: Propose
     rounds: list[Round] = field(default_factory=list)
     measured: list[str] = field(default_factory=list)
+    leads: dict[tuple[tuple[str, ...], ...], Leads] = field(default_factory=dict)
     out: frozenset[str] = frozenset()
 
     def run(self) -> Findings:
@@ -60,6 +61,7 @@ class Loop:
 
     def _round(self, found: Findings, proposal: NextExperiment) -> Findings:
         standing = rivals(found)[:2]
+        before = self.leads.setdefault(tuple(each.slugs for each in standing), leads(found, standing) or {})
         number = len(self.rounds) + 1
         separation: float | None
         if proposal.choice == BLOCK:
@@ -70,7 +72,7 @@ class Loop:
             self.bench.add(proposal, self.bench.record(proposal, count, number))
             self.measured.append(proposal.choice)
             found = self.decide(self.bench.folder, self.out)
-            separation, lost = judged_by_prediction(found, standing, self.measured)
+            separation, lost = judged_by_trials(found, standing, self.measured, before)
         if lost:
             self.out |= lost
             found = self.decide(self.bench.folder, self.out)
@@ -137,27 +139,51 @@ def rigs_give(trial: Path) -> tuple[float, float]:
     return slope, DEPTH_READ / float(np.ptp(force))
 
 
-def judged_by_prediction(
-    found: Findings, standing: tuple[Rival, ...], measured: Sequence[str]
-) -> tuple[float | None, frozenset[str]]:
-    """Separation by what each rival predicts of new conditions, each from all others, and the slugs that lose by it.
+Leads: TypeAlias = dict[tuple[str, str], float]
+"""By how much the first of two rivals foretells a trial, by condition and name, better than the second: log density."""
 
-    A rival is out where the trials of the new conditions together speak decisively against it, half of that without
-    the one that speaks most, and by more than the winner itself falls short of what it would say having seen them.
-    """
+
+def leads(found: Findings, standing: tuple[Rival, ...]) -> Leads | None:
+    """What each trial says for the first of two rivals, each fitted to all others; None where one was not fitted."""
     fits = [_fit_of(found, rival) for rival in standing]
-    if any(fit is None for fit in fits):
+    if len(fits) < 2 or fits[0] is None or fits[1] is None:
+        return None
+    problem = fits[0].model.problem
+    names = [one.name for one in problem.study.conditions]
+    each = held_out(fits[0]) - held_out(fits[1])
+    return {(names[t.condition], t.name): float(lead) for t, lead in zip(problem.trials, each, strict=True)}
+
+
+def judged_by_trials(
+    found: Findings, standing: tuple[Rival, ...], measured: Sequence[str], before: Leads
+) -> tuple[float | None, frozenset[str]]:
+    """Separation by what all trials say for a rival beyond what they said before, and the slugs that lose by it.
+
+    What an experiment promises is how far apart the rivals are once both are fitted to all trials
+    (`rivals.separation`), and that is what is counted: an old trial speaks, too, against a rival that had to give way to
+    the new ones. A rival is out where all trials together speak decisively against it, half of that without the one
+    that speaks most, and by more than the winner falls short in the new conditions, each foretold from all others.
+    """
+    after = leads(found, standing)
+    if after is None:
         return None, frozenset()
-    first, second = (fit for fit in fits if fit is not None)
-    lead = _predicted(first, measured) - _predicted(second, measured)
-    total = float(lead.sum())
-    winner, loser = (first, standing[1]) if total > 0.0 else (second, standing[0])
-    most = float(np.max(np.sign(total) * lead))
-    short = float(np.sum(_of(winner, measured, held_out(winner)) - _predicted(winner, measured)))
-    sure = abs(total) >= max(criteria.DECISIVE, short) and abs(total) - most >= 0.5 * criteria.DECISIVE
-    other = standing[0] if loser is standing[1] else standing[1]
-    lost = frozenset(set(loser.slugs) - set(other.slugs)) if sure else frozenset()
+    told = np.array([lead - before.get(trial, 0.0) for trial, lead in after.items()])
+    total = float(told.sum())
+    winner, loser = standing[:2] if total > 0.0 else standing[1::-1]
+    others = abs(total) - float(np.max(np.sign(total) * told))
+    sure = abs(total) >= max(criteria.DECISIVE, _short(found, winner, measured)) and others >= 0.5 * criteria.DECISIVE
+    lost = frozenset(set(loser.slugs) - set(winner.slugs)) if sure else frozenset()
     return math.sqrt(2.0 * abs(total)), lost
+
+
+def _short(found: Findings, rival: Rival, measured: Sequence[str]) -> float:
+    """By how much a rival foretells new conditions worse than their trials one by one, log density."""
+    fit = _fit_of(found, rival)
+    if fit is None:
+        return math.inf
+    names = [one.name for one in fit.model.problem.study.conditions]
+    new = np.array([names[trial.condition] in measured for trial in fit.model.problem.trials])
+    return float(np.sum((held_out(fit) - held_out_conditions(fit))[new]))
 
 
 def _fit_of(found: Findings, rival: Rival) -> Fit | None:
@@ -167,13 +193,3 @@ def _fit_of(found: Findings, rival: Rival) -> Fit | None:
     made = [*fits, *(scored.fit for scored in chosen.candidates)]
     same = [fit for fit in made if {effect.slug for effect in fit.model.effects} == set(rival.slugs)]
     return min(same, key=lambda fit: fit.objective, default=None)
-
-
-def _predicted(fit: Fit, measured: Sequence[str]) -> Array:
-    return _of(fit, measured, held_out_conditions(fit))
-
-
-def _of(fit: Fit, measured: Sequence[str], each: Array) -> Array:
-    """The entries (R,) of some conditions' trials."""
-    names = [one.name for one in fit.model.problem.study.conditions]
-    return np.asarray(each[[names[trial.condition] in measured for trial in fit.model.problem.trials]])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmark.discovery.planning import bench_loop
-from benchmark.discovery.planning.bench_loop import Loop, judged_by_block, judged_by_prediction, rigs_give
+from benchmark.discovery.planning.bench_loop import Loop, judged_by_block, judged_by_trials, rigs_give
 from benchmark.discovery.planning.bench_work import BenchWork
 from benchmark.discovery.planning.rivals import Rival
 from benchmark.experiments.menu import rigid_block
@@ -25,39 +25,52 @@ def _pair(compliance: float):
     return giving, SimpleNamespace(slugs=("interface_slip",), values={})
 
 
-def _fit(slug: str, predicted, seen):
-    """A fit that says what it predicts of each of three trials, the last two of the new condition."""
+def _found(seen: dict[str, list[float]], foretold: dict[str, list[float]]) -> SimpleNamespace:
+    """Fits of two rivals that say how each foretells three trials, the last two of a new condition."""
     study = SimpleNamespace(conditions=(SimpleNamespace(name="usual"), SimpleNamespace(name="new")))
-    trials = [SimpleNamespace(condition=number) for number in (0, 1, 1)]
-    model = SimpleNamespace(effects=(SimpleNamespace(slug=slug),), problem=SimpleNamespace(study=study, trials=trials))
-    return SimpleNamespace(model=model, objective=0.0, predicted=np.array(predicted), seen=np.array(seen))
+    trials = [SimpleNamespace(condition=int(number > 0), name=f"t{number}") for number in range(3)]
+    problem = SimpleNamespace(study=study, trials=trials)
+    fits = [
+        SimpleNamespace(
+            model=SimpleNamespace(effects=(SimpleNamespace(slug=slug),), problem=problem),
+            objective=0.0,
+            seen=np.array(seen[slug]),
+            foretold=np.array(foretold.get(slug, seen[slug])),
+        )
+        for slug in "ab"
+    ]
+    candidates = tuple(SimpleNamespace(fit=fit) for fit in fits)
+    return SimpleNamespace(selection=SimpleNamespace(chosen=fits[0], rivals={}, candidates=candidates))
+
+
+BEFORE = {("usual", "t0"): 2.0}
+WORST = {"a": [0.0, -500.0, -500.0], "b": [0.0, -500.0, -500.0]}
 
 
 @pytest.mark.parametrize(
-    ("first", "second", "out"),
+    ("first", "second", "foretold", "total", "out"),
     [
-        ([0.0, -5.0, -5.0], [0.0, -40.0, -30.0], {"b"}),
-        ([0.0, -40.0, -30.0], [0.0, -5.0, -5.0], {"a"}),
-        ([0.0, -5.0, -30.0], [0.0, -40.0, -5.0], set()),
-        ([0.0, -5.0, -5.0], [0.0, -6.0, -6.0], set()),
-        ([0.0, -500.0, -500.0], [0.0, -540.0, -530.0], set()),
+        ([5.0, 8.0, 7.0], [3.0, 4.0, 3.0], {}, 8.0, {"b"}),
+        ([3.0, 4.0, 3.0], [3.0, 8.0, 7.0], {}, -10.0, {"a"}),
+        ([9.0, 0.0, 0.0], [1.0, 0.0, 0.0], {}, 6.0, set()),
+        ([5.0, 4.0, 3.0], [3.0, 3.0, 2.0], {}, 2.0, set()),
+        ([5.0, 8.0, 7.0], [3.0, 4.0, 3.0], WORST, 8.0, set()),
     ],
-    ids=["second", "first", "trials disagree", "not decisive", "both fail"],
+    ids=["second", "first", "one trial alone", "not decisive", "both fail"],
 )
-def test_who_predicts_the_new_condition_worse_is_out(monkeypatch, first, second, out) -> None:
-    monkeypatch.setattr(bench_loop, "held_out_conditions", lambda fit: fit.predicted)
+def test_whom_trials_speak_against_more_than_before_is_out(monkeypatch, first, second, foretold, total, out) -> None:
+    monkeypatch.setattr(bench_loop, "held_out_conditions", lambda fit: fit.foretold)
     monkeypatch.setattr(bench_loop, "held_out", lambda fit: fit.seen)
-    fits = [_fit("a", first, [0.0, 0.0, 0.0]), _fit("b", second, [0.0, 0.0, 0.0])]
-    candidates = tuple(SimpleNamespace(fit=fit) for fit in fits)
-    found = SimpleNamespace(selection=SimpleNamespace(chosen=fits[0], rivals={}, candidates=candidates))
-    separation, lost = judged_by_prediction(found, tuple(Rival((slug,), None) for slug in "ab"), ["new"])
+    found = _found({"a": first, "b": second}, foretold)
+    separation, lost = judged_by_trials(found, tuple(Rival((slug,), None) for slug in "ab"), ["new"], BEFORE)
     assert lost == out
-    assert separation == pytest.approx(np.sqrt(2.0 * abs(sum(first) - sum(second))))
+    assert separation == pytest.approx(np.sqrt(2.0 * abs(total)))
 
 
 def test_the_loop_stops_at_its_budget_or_when_nothing_is_proposed(bench, proposal, monkeypatch) -> None:
     found = SimpleNamespace(discovery=SimpleNamespace(verdict="lookalikes", effects=()), calibrated=None)
     monkeypatch.setattr(bench_loop, "rivals", lambda found: _pair(1e-3))
+    monkeypatch.setattr(bench_loop, "leads", lambda found, standing: {})
     monkeypatch.setattr(bench_loop, "judged_by_block", lambda standing, file: (4.0, frozenset()))
     monkeypatch.setattr(BenchWork, "record", lambda bench, proposal, trials, number: (bench.folder / "block.mcap",))
     block = proposal(rigid_block(2.0))
