@@ -1,9 +1,8 @@
 """The closed loop: the experiment that best separates the rivals, done on the bench, its trials added, decided again.
 
-A new measurement may rule a rival out in two ways. Both rivals are fitted to the trials of the new condition, too: one that
-foretells trials far worse than before is out. A rigid block in the specimen's place measures the rig's
-give itself: where there is none, the rival that needs it is out; where it is as large as that rival says, the others
-are. What the bench records is added to a copy of the session; the session itself stays as it is.
+A new measurement may rule a rival out in two ways. Both rivals are fitted to the trials of the new condition, too: one
+that foretells trials far worse than before is out. A rigid block in the specimen's place measures the rig's give
+itself: where there is none, the rival that needs it is out; where it is as large as that rival says, the others are. What the bench records is added to a copy of the session; the session itself stays as it is.
 """
 
 from __future__ import annotations
@@ -160,8 +159,8 @@ def judged_by_trials(
     """Separation by what all trials say for a rival beyond what they said before, and the slugs that lose by it.
 
     What an experiment promises is how far apart the rivals are once both are fitted to all trials
-    (`rivals.separation`), and that is what is counted: an old trial speaks, too, against a rival that had to give way to
-    the new ones. A rival is out where all trials together speak decisively against it, half of that without the one
+    (`rivals.separation`), and that is what is counted: an old trial speaks, too, against a rival that had to give way
+    to the new ones. A rival is out where all trials together speak decisively against it, half of that without the one
     that speaks most, and by more than the winner falls short in the new conditions, each foretold from all others.
     """
     after = leads(found, standing)
