@@ -2,7 +2,8 @@
 
 A new measurement may rule a rival out in two ways. Both rivals are fitted to the trials of the new condition, too: one
 that foretells trials far worse than before is out. A rigid block in the specimen's place measures the rig's give
-itself: where there is none, the rival that needs it is out; where it is as large as that rival says, the others are. What the bench records is added to a copy of the session; the session itself stays as it is.
+itself: where there is none, the rival that needs it is out; where it is as large as that rival says, the others are.
+What the bench records is added to a copy of the session; the session itself stays as it is.
 """
 
 from __future__ import annotations
