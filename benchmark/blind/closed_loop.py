@@ -18,9 +18,9 @@ from benchmark.blind.motion import Array, ReportedMotion, rounded
 from benchmark.blind.session_files import DEPTH_SCATTER, write_trial
 from benchmark.discovery import Settings
 from benchmark.discovery.discovery_result import Discovery
-from benchmark.discovery.planning.bench_loop import BLOCK, Loop
+from benchmark.discovery.planning.bench_loop import Loop
 from benchmark.discovery.planning.bench_work import enter, session_copy
-from benchmark.discovery.planning.proposing import DEPTH_READ, Allowed, propose
+from benchmark.discovery.planning.proposing import BLOCK, DEPTH_READ, Allowed, propose
 from benchmark.discovery.report.discovery_record import NextExperiment
 from benchmark.discovery.workflow import Findings, findings
 from benchmark.files.sessions.session_loading import load_session

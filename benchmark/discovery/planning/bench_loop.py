@@ -20,14 +20,12 @@ from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.evidence.gains import held_out, held_out_conditions
 from benchmark.discovery.planning.bench_work import Bench
-from benchmark.discovery.planning.proposing import DEPTH_READ, GIVES, Allowed
+from benchmark.discovery.planning.proposing import BLOCK, DEPTH_READ, GIVES, RULER, Allowed
 from benchmark.discovery.planning.rivals import Rival, rivals
 from benchmark.discovery.report.discovery_record import NextExperiment, Round
 from benchmark.discovery.workflow import Findings
 from benchmark.errors import InputError
 from benchmark.files.sessions.trials import read_table
-
-BLOCK, RULER = "rigid block", "ruler image"
 
 Decide = Callable[[Path, frozenset[str]], Findings]
 """The discovery of a session without effects that were ruled out."""
@@ -65,11 +63,10 @@ class Loop:
         number = len(self.rounds) + 1
         separation: float | None
         if proposal.choice == BLOCK:
-            files = self.bench.record(proposal, 1, number)
+            files = self.bench.record(proposal, proposal.trials, number)
             separation, lost = judged_by_block(standing, files[0])
         else:
-            count = max(each.size for each in found.calibrated.base.model.problem.study.conditions)
-            self.bench.add(proposal, self.bench.record(proposal, count, number))
+            self.bench.add(proposal, self.bench.record(proposal, proposal.trials, number))
             self.measured.append(proposal.choice)
             found = self.decide(self.bench.folder, self.out)
             separation, lost = judged_by_trials(found, standing, self.measured, before)
@@ -84,6 +81,7 @@ class Loop:
                 separation_now=proposal.separation_now,
                 expected=proposal.separation,
                 found=separation,
+                trials=proposal.trials,
                 minutes=proposal.minutes,
                 ruled_out=tuple(sorted(lost)),
                 verdict=found.discovery.verdict,

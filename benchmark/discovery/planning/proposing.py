@@ -10,6 +10,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import PHASES
 from benchmark.discovery.planning.rivals import Rival, expected, rivals, separation, under
 from benchmark.discovery.report.discovery_record import NextExperiment
@@ -95,6 +96,9 @@ def propose(
     if not weighed:
         return None
     best, size, cost = max(weighed.values(), key=lambda each: each[1] ** 2 / each[2])
+    trials = 1 if best.name in (BLOCK, RULER) else enough_trials(condition.size, size)
+    if trials > 1:
+        size, cost = size * math.sqrt(trials / condition.size), minutes(best, trials)
     return NextExperiment(
         rivals=(_distinct(first, second), _distinct(second, first)),
         choice=best.name,
@@ -104,12 +108,19 @@ def propose(
         minutes=cost,
         menu={name: (each[1], each[2]) for name, each in weighed.items()},
         toml=protocol_toml(best),
+        trials=trials,
     )
+
+
+def enough_trials(usual: int, size: float) -> int:
+    """Trials by which an experiment decides, whose rivals are `size` standard deviations apart in the usual number."""
+    wanted = math.ceil(usual * (criteria.PROMISED / max(size, 1e-9)) ** 2)
+    return min(max(wanted, usual), criteria.MOST_TIMES * usual)
 
 
 Weighed: TypeAlias = dict[str, tuple[Experiment, float, float]]
 """Name to experiment, separation in standard deviations over all trials, and minutes."""
-SAME = "same again"
+SAME, BLOCK, RULER = "same again", "rigid block", "ruler image"
 
 
 def _weighed(first: Rival, second: Rival, condition: ConditionData, allowed: Allowed) -> Weighed:

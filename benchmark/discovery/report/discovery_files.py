@@ -204,6 +204,7 @@ def _proposal(proposal: NextExperiment) -> dict[str, Any]:
         "choice": proposal.choice,
         "separation_now": proposal.separation_now,
         "separation": proposal.separation,
+        "trials": proposal.trials,
         "minutes": proposal.minutes,
         "menu": {
             name: {"separation": each[0], "minutes": each[1] if math.isfinite(each[1]) else None}

@@ -63,11 +63,13 @@ class NextExperiment:
     separation_now, separation : float
         Expected distance of the rivals in standard deviations with the session's protocol, and with the proposed one.
     minutes : float
-        Bench time of as many trials as the session has.
+        Bench time of its trials.
     menu : mapping
-        Entry to (separation, minutes), all that were weighed.
+        Entry to (separation, minutes) with as many trials as the session has, all that were weighed.
     toml : str
         The protocol file.
+    trials : int
+        That are expected to decide.
     """
 
     rivals: tuple[str, str]
@@ -78,6 +80,7 @@ class NextExperiment:
     minutes: float
     menu: Mapping[str, tuple[float, float]]
     toml: str
+    trials: int = 1
 
 
 @dataclass(frozen=True)
@@ -92,6 +95,7 @@ class Round:
     separation_now, expected, found : float
         Standard deviations between the rivals by the trials before, as expected of the experiment, and as it turned out
         (None where a rival was not fitted again).
+    trials : int
     minutes : float
         At the bench.
     ruled_out : tuple of str
@@ -110,6 +114,7 @@ class Round:
     separation_now: float
     expected: float
     found: float | None
+    trials: int
     minutes: float
     ruled_out: tuple[str, ...]
     verdict: str

@@ -188,10 +188,15 @@ def next_section(record: DiscoveryRecord) -> Section:
     text = (
         f"{proposal.words} Expected distance of {first} and {second}: "
         f"{proposal.separation:.1f} standard deviations instead of {proposal.separation_now:.1f}, in "
-        f"{proposal.minutes:.0f} minutes at the bench.{_apart(proposal)}"
+        f"{trials_in_words(proposal.trials)} and {proposal.minutes:.0f} minutes at the bench.{_apart(proposal)}"
     )
     listing = Listing(proposal.toml, "next_experiment.toml, for python -m bench_hw capture")
     return Section("What to measure next", [Paragraph(text), _menu(proposal), listing])
+
+
+def trials_in_words(count: int) -> str:
+    """How many trials."""
+    return "one trial" if count == 1 else f"{count} trials"
 
 
 def _apart(proposal: NextExperiment) -> str:
@@ -229,7 +234,7 @@ def loop_section(record: DiscoveryRecord) -> Section:
     ]
     columns = (
         "round", "experiment", "rivals", Column("before", "sd", 3), Column("expected", "sd", 3),
-        Column("found", "sd", 3), Column("bench time", "min", 3), "ruled out",
+        Column("found", "sd", 3), "trials", Column("bench time", "min", 3), "ruled out",
     )  # fmt: skip
     rows = [
         (
@@ -239,6 +244,7 @@ def loop_section(record: DiscoveryRecord) -> Section:
             each.separation_now,
             each.expected,
             each.found,
+            each.trials,
             each.minutes,
             ", ".join(map(effect_name, each.ruled_out)),
         )

@@ -7,7 +7,7 @@ import numpy as np
 from benchmark.discovery.discovery_result import Candidate, ChannelGap, Place, Trace, channel_unit
 from benchmark.discovery.report.disagreement_sections import representative, traced
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
-from benchmark.discovery.report.effect_sections import ADVICE, OF_A_RUN
+from benchmark.discovery.report.effect_sections import ADVICE, OF_A_RUN, trials_in_words
 from benchmark.discovery.report.words import channel_name, effect_name, phase_name, probability, sized
 from reports import Story, StoryStep
 from reports.figures import repaired
@@ -162,6 +162,7 @@ def _next(record: DiscoveryRecord) -> StoryStep:
     first, second = map(effect_name, proposal.rivals)
     detail = (
         f"Expected to set {first} and {second} {proposal.separation:.0f} standard deviations apart, now "
-        f"{proposal.separation_now:.0f}; {proposal.minutes:.0f} min at the bench. The protocol: next_experiment.toml."
+        f"{proposal.separation_now:.0f}; {trials_in_words(proposal.trials)}, {proposal.minutes:.0f} min at the bench. "
+        "The protocol: next_experiment.toml."
     )
     return StoryStep("What to measure next", proposal.words, detail)

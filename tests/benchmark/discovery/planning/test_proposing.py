@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmark.discovery.discovery_result import PHASES
-from benchmark.discovery.planning.proposing import _calibrations, _distinct, usual_press
+from benchmark.discovery.planning.proposing import _calibrations, _distinct, enough_trials, usual_press
 from benchmark.physics import TrialContext
 
 
@@ -32,6 +32,13 @@ def test_the_usual_press_is_read_off_the_trials() -> None:
     assert usual.hold == pytest.approx(6.0, abs=0.2)
     assert usual.thickness == 4e-3
     assert usual_press(_condition("hole")).thickness == np.inf
+
+
+def test_an_experiment_gets_as_many_trials_as_are_to_decide() -> None:
+    assert enough_trials(5, 20.0) == 5
+    assert enough_trials(5, 7.0) == 10
+    assert enough_trials(5, 1.0) == 15
+    assert enough_trials(5, 0.0) == 15
 
 
 def test_a_rigid_block_is_for_a_rig_that_gives_way() -> None:
