@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 from fem.arrays import FloatArray
-from fem.assembly.system import System
-from fem.linear_solver import SymmetricSolver
+from fem.assembly.system import Evaluation, System
+from fem.linear_solver import IterativeSolver, SymmetricSolver
 
 
 @dataclass(frozen=True)
@@ -26,9 +28,35 @@ class Equilibrium:
     """
 
     system: System
-    solver: SymmetricSolver
+    solver: SymmetricSolver | IterativeSolver
     unit_load: FloatArray
     probe: int
+
+    def factorise(self, state: Evaluation) -> Callable[[FloatArray], float]:
+        """Make the linear solver ready for the tangent at a state.
+
+        Returns
+        -------
+        callable
+            Norm in N of the forces that round-off leaves unbalanced at unknowns (n,).
+
+        Raises
+        ------
+        SingularMatrixError
+            If the tangent is singular.
+        """
+        if isinstance(self.solver, IterativeSolver):
+            self.solver.factorise(self.system.element_tangent(state))
+            return self.solver.round_off
+        tangent = self.system.tangent(state)
+        self.solver.factorise(tangent)
+        return partial(self.system.scatter.round_off, tangent)
+
+    def solve(self, right: FloatArray, tolerance: float) -> FloatArray:
+        """Solution (n, k) of right-hand sides (n, k), with at most `tolerance` of each left by an iterative solver."""
+        if isinstance(self.solver, IterativeSolver):
+            return self.solver.solve(right, tolerance)
+        return self.solver.solve(right)
 
     def depth(self, y: FloatArray) -> float:
         """Depth in m of the unknowns (n,)."""

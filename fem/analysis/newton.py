@@ -10,6 +10,7 @@ Nonlinear Problems, 2004, section 2.1).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -21,6 +22,7 @@ from fem.assembly.system import Evaluation
 from fem.linear_solver import SingularMatrixError
 
 MOST_ROUND_OFF = 1e3  # in tolerances: round-off beyond it is not accepted as equilibrium
+FORCING = 1e-4  # unbalanced forces that an iterative solver may leave of those before a correction
 SAFETY = 4.0  # on the reduction by old factors; in theory twice that of the correction they were made for
 
 
@@ -66,8 +68,7 @@ def solve_newton(
     for iteration in range(1, settings.iterations + 1):
         try:
             if outdated:
-                tangent = problem.system.tangent(evaluation)
-                problem.solver.factorise(tangent)
+                round_off = problem.factorise(evaluation)
             step = _correction(problem, state, evaluation, control, target)
         except SingularMatrixError as error:
             return NewtonResult(state, iteration, str(error))
@@ -78,7 +79,7 @@ def solve_newton(
         state, evaluation = moved
         unbalanced = _unbalanced(problem, state, evaluation)
         limit = settings.tolerance * max(abs(state.force), force_scale)
-        if unbalanced <= limit or _is_round_off(problem, tangent, state, unbalanced, limit):
+        if unbalanced <= limit or _is_round_off(round_off, state, unbalanced, limit):
             if control == "force" or _reached(problem, state, target):
                 return NewtonResult(State(state.y, evaluation.elements.consistent_pressure, state.force), iteration)
         elif unbalanced > settings.divergence * best:
@@ -93,11 +94,11 @@ def _unbalanced(problem: Equilibrium, state: State, evaluation: Evaluation) -> f
     return float(np.linalg.norm(evaluation.residual - state.force * problem.unit_load))
 
 
-def _is_round_off(problem: Equilibrium, tangent: FloatArray, state: State, unbalanced: float, limit: float) -> bool:
+def _is_round_off(round_off: Callable[[FloatArray], float], state: State, unbalanced: float, limit: float) -> bool:
     """Whether what is left is no more than round-off, as with very flat elements far away."""
     if unbalanced > MOST_ROUND_OFF * limit:
         return False
-    return unbalanced <= problem.system.scatter.round_off(tangent, state.y)
+    return unbalanced <= round_off(state.y)
 
 
 def _reached(problem: Equilibrium, state: State, target: float) -> bool:
@@ -114,8 +115,8 @@ def _correction(
     """Increments of the unknowns (n,) and of the force, with the factors the solver has."""
     unbalanced = state.force * problem.unit_load - evaluation.residual
     if control == "force":
-        return problem.solver.solve(unbalanced[:, None])[:, 0], 0.0
-    free, loaded = problem.solver.solve(np.stack((unbalanced, problem.unit_load), axis=1)).T
+        return problem.solve(unbalanced[:, None], FORCING)[:, 0], 0.0
+    free, loaded = problem.solve(np.stack((unbalanced, problem.unit_load), axis=1), FORCING).T
     if loaded[problem.probe] == 0.0:
         raise SingularMatrixError("the depth does not depend on the force")
     missing = -target - state.y[problem.probe] - free[problem.probe]

@@ -14,6 +14,7 @@ from fem.analysis.linear import run_linear
 from fem.analysis.newton import NewtonSettings
 from fem.analysis.nonlinear import run_nonlinear
 from fem.analysis.record import Record
+from fem.linear_solver import IterativeSolver
 from fem.linear_solver.factory import suited_threads
 from fem.load import Load
 from fem.mesh.solid import AnyMesh
@@ -105,13 +106,21 @@ class Model:
         warnings = self.warnings + ((self._pulling,) if load.value.min() < 0.0 else ())
         with suited_threads(self.unknowns):
             if self.problem.kinematics == "linear":
-                return run_linear(record, load, warnings, on_step)
+                return self._remarked(run_linear(record, load, warnings, on_step))
             kept = self.checkpoint(load, checkpoint) if isinstance(checkpoint, (str, Path)) else checkpoint
-            return self._bulged(self._advised(run_nonlinear(record, load, self.newton, warnings, on_step, kept)))
+            found = run_nonlinear(record, load, self.newton, warnings, on_step, kept)
+            return self._remarked(self._bulged(self._advised(found)))
 
     def checkpoint(self, load: Load, path: str | Path) -> Checkpoint:
         """The file in which a run of a load history keeps its steps."""
         return Checkpoint(Path(path), run_fingerprint(self.problem, self.mesh, load))
+
+    def _remarked(self, solution: Solution) -> Solution:
+        """The solution; where another linear solver took over it says so."""
+        solver = self.equilibrium.solver
+        if not isinstance(solver, IterativeSolver) or not solver.remark:
+            return solution
+        return replace(solution, warnings=(*solution.warnings, solver.remark))
 
     def _advised(self, solution: Solution) -> Solution:
         """The solution; a press that the mesh could not follow with what may go further."""

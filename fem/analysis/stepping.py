@@ -13,6 +13,7 @@ from fem.analysis.newton import NewtonSettings, solve_newton
 from fem.analysis.prediction import LOWEST_ORDER, KnownStates, RecentStates
 from fem.arrays import FloatArray
 from fem.assembly.system import Evaluation, System
+from fem.linear_solver import SingularMatrixError
 
 SMALLEST_PART = 2.0**-8
 MOST_PARTS = 400
@@ -60,7 +61,7 @@ def settle(problem: Equilibrium, force_scale: float, settings: NewtonSettings) -
     if not problem.system.is_displaced:
         return state, ""
     rest = at_rest(problem)
-    problem.solver.factorise(problem.system.plain.tangent(rest))
+    replace(problem, system=problem.system.plain).factorise(rest)
     direction = settle_linear(problem)
     share, part, reason = 0.0, 1.0, ""
     while share < 1.0 and part > SMALLEST_PART:
@@ -213,8 +214,11 @@ class Stepper:
         if self._control == "depth" or len(self._times) > 1 or target <= 0.0:
             return False
         problem, start = self._problem, self._state
-        problem.solver.factorise(problem.system.tangent(at_rest(problem)))
-        depth = target * problem.depth(problem.solver.solve(problem.unit_load[:, None])[:, 0])
+        try:
+            problem.factorise(at_rest(problem))
+            depth = target * problem.depth(problem.solver.solve(problem.unit_load[:, None])[:, 0])
+        except SingularMatrixError:
+            return False
         for _ in range(MOST_HALVINGS):
             depth *= 0.5
             found, system = self._settle(start, depth, problem.system, "depth")

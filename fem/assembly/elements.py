@@ -122,13 +122,22 @@ class Elements:
 
     def stiffness(self, state: ElementState) -> FloatArray:
         """Packed element stiffness (entries, E) in N/m, the pressure condensed."""
+        return self._packed(state, self.pressure_slope(state))
+
+    def soft_stiffness(self, state: ElementState) -> tuple[FloatArray, FloatArray]:
+        """The same with at most the shear modulus as derivative of the pressure, and the rest (E,) of it in Pa."""
+        slope = self.pressure_slope(state)
+        soft: FloatArray = np.minimum(slope, self.laws.shear_modulus)
+        return self._packed(state, soft), slope - soft
+
+    def _packed(self, state: ElementState, slope: FloatArray) -> FloatArray:
         components, deformation = self.geometry.components, state.deformation
         moduli = self.laws.tangent(deformation)
         moduli[components.cofactor_pairs] += state.pressure_at_points * deformation.cofactor_derivative
         components.add_products(moduli, self.point_modulus * deformation.cofactor, deformation.cofactor)
         moduli *= self.geometry.weight
         packed = self.geometry.stiffness(moduli)
-        self._condense(packed, state.coupling, self.pressure_slope(state))
+        self._condense(packed, state.coupling, slope)
         return packed
 
     def _condense(self, packed: FloatArray, coupling: FloatArray, modulus: FloatArray) -> None:

@@ -1,9 +1,13 @@
-"""From element arrays to the unknowns: numbering, and the sparse pattern built once, and made wider for items."""
+"""From element arrays to the unknowns: numbering, and the sparse pattern, built once where it is asked for.
+
+It is asked for by direct solvers and items; an iterative one does without, and without its memory.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -71,6 +75,23 @@ def number_unknowns(fixed: BoolArray, tied: BoolArray, level: Iterable[tuple[Int
 
 
 @dataclass(frozen=True)
+class Pattern:
+    """The sparse upper triangle.
+
+    Attributes
+    ----------
+    matrix_sum
+        Sparse (nnz, 171 E): packed element stiffness to the entries of the upper triangle.
+    indptr, indices
+        Pattern of the upper triangle in compressed rows, diagonal first in each row.
+    """
+
+    matrix_sum: sp.csr_array
+    indptr: IntArray
+    indices: IntArray
+
+
+@dataclass(frozen=True)
 class Scatter:
     """Sums element arrays into the unknowns.
 
@@ -78,19 +99,38 @@ class Scatter:
     ----------
     element_unknowns
         Unknowns of each element (18, E), radial ones first; fixed ones are n.
-    matrix_sum
-        Sparse (nnz, 171 E): packed element stiffness to the entries of the upper triangle.
     vector_sum
         Sparse (n, 18 E): element forces to forces on the unknowns.
-    indptr, indices
-        Pattern of the upper triangle in compressed rows, diagonal first in each row.
+    components
+        Displacement components.
+    wide
+        Pattern with more entries than those of the elements, or None.
     """
 
     element_unknowns: IntArray
-    matrix_sum: sp.csr_array
     vector_sum: sp.csr_array
-    indptr: IntArray
-    indices: IntArray
+    components: int
+    wide: Pattern | None = None
+
+    @cached_property
+    def pattern(self) -> Pattern:
+        """Pattern of the elements' upper triangle, or the wider one."""
+        return _pattern(self) if self.wide is None else self.wide
+
+    @property
+    def matrix_sum(self) -> sp.csr_array:
+        """See :class:`Pattern`."""
+        return self.pattern.matrix_sum
+
+    @property
+    def indptr(self) -> IntArray:
+        """See :class:`Pattern`."""
+        return self.pattern.indptr
+
+    @property
+    def indices(self) -> IntArray:
+        """See :class:`Pattern`."""
+        return self.pattern.indices
 
     def gather(self, y: FloatArray) -> FloatArray:
         """Element values (18, E) of the unknowns (n,)."""
@@ -119,12 +159,21 @@ class Scatter:
 def build_scatter(elements: IntArray, numbering: Numbering) -> Scatter:
     """Scatter of elements (nodes, E) with a numbering."""
     n = numbering.count
-    unknowns = np.concatenate([unknown[elements] for unknown in numbering.unknown]).astype(np.int32)
-    local_row, local_column = packed_positions(len(elements), len(numbering.unknown))
+    unknowns = np.concatenate([unknown[elements] for unknown in numbering.unknown])
+    flat = np.flatnonzero(unknowns.ravel() >= 0)
+    vector_sum = sp.csr_array((np.ones(flat.size), (unknowns.ravel()[flat], flat)), shape=(n, unknowns.size))
+    return Scatter(np.where(unknowns < 0, n, unknowns), vector_sum, len(numbering.unknown))
+
+
+def _pattern(scatter: Scatter) -> Pattern:
+    """Pattern of the elements."""
+    n = scatter.vector_sum.shape[0]
+    unknowns = np.where(scatter.element_unknowns == n, FIXED, scatter.element_unknowns).astype(np.int32)
+    local_row, local_column = packed_positions(len(unknowns) // scatter.components, scatter.components)
     row, column = unknowns[local_row].ravel(), unknowns[local_column].ravel()
     low, high = np.minimum(row, column), np.maximum(row, column)
     # An off-diagonal packed entry stands for itself and its mirror: both land on the diagonal of a tied unknown.
-    twice = (low == high) & np.repeat(local_row != local_column, elements.shape[1])
+    twice = (low == high) & np.repeat(local_row != local_column, unknowns.shape[1])
     order = np.flatnonzero(low >= 0).astype(np.int32)
     order = _stable_order(low, n, _stable_order(high, n, order))
     row, column = low[order], high[order]
@@ -132,11 +181,7 @@ def build_scatter(elements: IntArray, numbering: Numbering) -> Scatter:
     weight = 1.0 + twice[order]
     matrix_sum = sp.csr_array((weight, order, np.append(new, len(order)).astype(np.int32)), shape=(len(new), low.size))
     first_row, indices = row[new].astype(np.int64), column[new].astype(np.int64)
-    flat = np.flatnonzero(unknowns.ravel() >= 0)
-    vector_sum = sp.csr_array((np.ones(flat.size), (unknowns.ravel()[flat], flat)), shape=(n, unknowns.size))
-    indptr = np.searchsorted(first_row, np.arange(n + 1))
-    gathered = np.where(unknowns < 0, n, unknowns).astype(np.int64)
-    return Scatter(gathered, matrix_sum, vector_sum, indptr, indices)
+    return Pattern(matrix_sum, np.searchsorted(first_row, np.arange(n + 1)), indices)
 
 
 def _stable_order(key: Index, count: int, order: Index) -> Index:
@@ -179,4 +224,4 @@ def widened(scatter: Scatter, count: int, rows: IntArray, columns: IntArray) -> 
         shape=(len(keys), scatter.matrix_sum.shape[1]),
     )
     indptr = np.searchsorted(keys // count, np.arange(count + 1))
-    return replace(scatter, matrix_sum=matrix, indptr=indptr, indices=keys % count), added
+    return replace(scatter, wide=Pattern(matrix, indptr, keys % count)), added

@@ -10,6 +10,7 @@ from fem.arrays import FloatArray, IntArray
 from fem.assembly.elements import Elements, ElementState
 from fem.assembly.item import EquationItem, ItemForces
 from fem.assembly.scatter import Numbering, Scatter, widened
+from fem.linear_solver.iterative import ElementTangent
 
 
 @dataclass(frozen=True)
@@ -112,6 +113,15 @@ class System:
         for places, response in zip(self.places, state.responses, strict=True):
             np.add.at(out, places, response.stiffness)
         return out
+
+    def element_tangent(self, state: Evaluation) -> ElementTangent:
+        """The tangent of equations without items, element by element."""
+        elements = self.elements
+        packed, rest = elements.soft_stiffness(state.elements)
+        places = elements.geometry.packed
+        return ElementTangent(
+            packed, places, state.elements.coupling, rest, elements.laws.shear_modulus, lambda: self.tangent(state)
+        )
 
     def pressure_after(self, state: Evaluation, dy: FloatArray) -> FloatArray:
         """Pressure coefficients (3, E) after a Newton increment dy (n,) of the unknowns."""

@@ -1,6 +1,7 @@
-"""Direct solvers of symmetric sparse systems, one a file, behind one factory."""
+"""Solvers of symmetric systems, one a file: direct ones behind one factory, and an iterative one of elements."""
 
 from fem.linear_solver.factory import LINEAR_SOLVERS, make_solver
+from fem.linear_solver.iterative import IterativeSolver
 from fem.linear_solver.symmetric import SingularMatrixError, SymmetricSolver
 
-__all__ = ["LINEAR_SOLVERS", "SingularMatrixError", "SymmetricSolver", "make_solver"]
+__all__ = ["LINEAR_SOLVERS", "IterativeSolver", "SingularMatrixError", "SymmetricSolver", "make_solver"]

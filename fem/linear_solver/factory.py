@@ -18,9 +18,11 @@ from fem.errors import FemError, require_one_of
 from fem.linear_solver.superlu import SuperLUSolver
 from fem.linear_solver.symmetric import SymmetricSolver
 
-LINEAR_SOLVERS = ("auto", "pardiso", "superlu")
+LINEAR_SOLVERS = ("auto", "pardiso", "superlu", "iterative")
+DIRECT = LINEAR_SOLVERS[:3]
 VARIABLE = "PYPARDISO_MKL_RT"
 SMALL = 10_000
+NUMPY_LIBRARIES = ("libopenblas", "libscipy_openblas", "openblas")
 
 
 def make_solver(choice: str, indptr: IntArray, indices: IntArray) -> SymmetricSolver:
@@ -38,7 +40,7 @@ def make_solver(choice: str, indptr: IntArray, indices: IntArray) -> SymmetricSo
     FemError
         If the word is unknown, or Pardiso was asked for and cannot be loaded.
     """
-    require_one_of("linear_solver", choice, LINEAR_SOLVERS)
+    require_one_of("linear_solver", choice, DIRECT)
     if choice != "superlu":
         name_library()
         try:
@@ -60,9 +62,10 @@ def name_library(prefix: str = sys.prefix) -> None:
 
 @contextmanager
 def suited_threads(unknowns: int) -> Iterator[None]:
-    """One thread for small systems, whose threads wait for each other longer than they work; otherwise no limit."""
-    if unknowns >= SMALL:
-        yield
-        return
-    with threadpool_limits(1):
+    """One thread for small systems, whose threads wait for each other longer than they work.
+
+    Large systems have several in the linear solver, one in NumPy: its products are of 64 elements at a time, and beside
+    another program their threads took ten times as long as one.
+    """
+    with threadpool_limits(1 if unknowns < SMALL else dict.fromkeys(NUMPY_LIBRARIES, 1)):
         yield

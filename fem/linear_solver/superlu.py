@@ -22,6 +22,7 @@ class SuperLUSolver:
     """
 
     name = "superlu"
+    tolerance = 0.0
 
     def __init__(self, indptr: IntArray, indices: IntArray) -> None:
         count = len(indptr) - 1

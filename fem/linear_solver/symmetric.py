@@ -1,12 +1,16 @@
-"""What a direct solver of symmetric sparse systems gives, and the scaling both solvers use."""
+"""What a solver of symmetric sparse systems gives, and the scaling and the Krylov method that the solvers use."""
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable
+from typing import Protocol, TypeAlias
 
 import numpy as np
 
 from fem.arrays import FloatArray, IntArray
+
+Operator: TypeAlias = Callable[[FloatArray], FloatArray]
+"""A linear map of vectors (n,)."""
 
 
 class SingularMatrixError(ArithmeticError):
@@ -19,6 +23,11 @@ class SymmetricSolver(Protocol):
     @property
     def name(self) -> str:
         """Which solver this is, for reports."""
+        ...
+
+    @property
+    def tolerance(self) -> float:
+        """Unbalanced over given forces that a solution may leave; 0 where refinement takes it to round-off."""
         ...
 
     def factorise(self, data: FloatArray) -> None:
@@ -75,3 +84,47 @@ def require_finite(solution: FloatArray) -> FloatArray:
     if not np.isfinite(solution).all():
         raise SingularMatrixError("the stiffness matrix is singular")
     return solution
+
+
+def flexible_gmres(
+    times: Operator, precondition: Operator, right: FloatArray, tolerance: float, iterations: int
+) -> tuple[FloatArray, int, float]:
+    """Solve by the flexible GMRES without restart.
+
+    Parameters
+    ----------
+    times, precondition
+        Products with the matrix and with about its inverse.
+    right
+        Right-hand side (n,).
+    tolerance
+        Norm of the residual over that of the right-hand side to stop at.
+    iterations
+        Most iterations.
+
+    Returns
+    -------
+    tuple
+        Solution (n,), iterations made, and the norm of its residual over that of the right-hand side.
+    """
+    size = float(np.linalg.norm(right))
+    if size == 0.0:
+        return np.zeros_like(right), 0, 0.0
+    basis, ahead = np.empty((iterations + 1, len(right))), np.empty((iterations, len(right)))
+    hessenberg, target = np.zeros((iterations + 1, iterations)), np.zeros(iterations + 1)
+    basis[0], target[0] = right / size, size
+    for k in range(iterations):
+        ahead[k] = precondition(basis[k])
+        following = times(ahead[k])
+        for _ in range(2):  # once more, since one pass loses orthogonality
+            share = basis[: k + 1] @ following
+            hessenberg[: k + 1, k] += share
+            following = following - share @ basis[: k + 1]
+        hessenberg[k + 1, k] = np.linalg.norm(following)
+        small = hessenberg[: k + 2, : k + 1]
+        weights = np.linalg.lstsq(small, target[: k + 2], rcond=None)[0]
+        left = float(np.linalg.norm(target[: k + 2] - small @ weights)) / size
+        if left <= tolerance or hessenberg[k + 1, k] == 0.0 or not np.isfinite(left):
+            break
+        basis[k + 1] = following / hessenberg[k + 1, k]
+    return weights @ ahead[: len(weights)], len(weights), left

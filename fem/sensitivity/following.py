@@ -74,7 +74,7 @@ class Following:
         evaluation = system.evaluate(state.y, state.pressure)
         if evaluation is None:
             raise ArithmeticError("an accepted state cannot be evaluated")
-        self.equilibrium.solver.factorise(system.tangent(evaluation))
+        replace(self.equilibrium, system=system).factorise(evaluation)
         remembers = system.remembers
         if remembers:
             self._each(lambda side: side.system.advanced(time - self.time))

@@ -16,9 +16,9 @@ from fem.assembly.element_geometry import ElementGeometry
 from fem.assembly.elements import make_elements
 from fem.assembly.scatter import Numbering, build_scatter, number_unknowns
 from fem.assembly.solid import solid_geometry
-from fem.assembly.system import make_system
-from fem.errors import FemError
-from fem.linear_solver import make_solver
+from fem.assembly.system import System, make_system
+from fem.errors import FemError, require_one_of
+from fem.linear_solver import LINEAR_SOLVERS, IterativeSolver, SymmetricSolver, make_solver
 from fem.materials.components import Components
 from fem.materials.element_laws import ElementLaws, element_laws
 from fem.mesh.quads import Mesh, split_interfaces
@@ -29,6 +29,8 @@ from fem.setup.contacts import CONTACT_MODELS, Conditions
 from fem.setup.items import make_items, sliding_nodes
 from fem.setup.layout import lay_out
 from fem.setup.supports import SUPPORT_MODELS
+
+ITERATIVE_FROM = 70_000  # unknowns from which on the iterative solver is faster
 
 
 def build_model(problem: Problem, linear_solver: str, mesh_file: Path | None = None) -> Model:
@@ -118,13 +120,41 @@ def set_up(
     numbering, items, tool = make_items(problem, mesh, displacements, conditions)
     elements = make_elements(geometry, layer_laws(problem, mesh, geometry.components), stabilisation(problem))
     system = make_system(elements, numbering, build_scatter(mesh.elements, numbering), items)
-    solver = make_solver(linear_solver, system.scatter.indptr, system.scatter.indices)
+    solver = _linear_solver(linear_solver, mesh, system)
     if tool is not None:
         return Equilibrium(system, solver, -np.eye(1, numbering.count, tool)[0], tool)
     nodal = np.zeros(fixed.shape)
     nodal[-1] = conditions.load
     load: FloatArray = numbering.reduce(nodal)
     return Equilibrium(system, solver, load, int(numbering.unknown[-1, mesh.interfaces[0][0]]))
+
+
+def _linear_solver(choice: str, mesh: AnyMesh, system: System) -> SymmetricSolver | IterativeSolver:
+    """The solver of that name; "auto": iterative where it can be had and the system is large.
+
+    Raises
+    ------
+    FemError
+        If it is not available for this mesh.
+    """
+    require_one_of("linear_solver", choice, LINEAR_SOLVERS)
+    scatter, suited = system.scatter, isinstance(mesh, SolidMesh) and mesh.element == "hex27" and not system.items
+    if choice == "iterative" and not suited:
+        raise FemError(
+            "linear_solver = 'iterative': only with geometry = 'block' and without a tool that touches and comes off; "
+            "use 'auto'"
+        )
+    if isinstance(mesh, SolidMesh) and suited and _is_iterative(choice, system.numbering.count):
+        from fem.assembly.coarsening import coarse_space
+
+        space = coarse_space(mesh, system.numbering, scatter)
+        coarse = make_solver("auto", space.indptr, space.indices)
+        return IterativeSolver(space, coarse, lambda: make_solver("auto", scatter.indptr, scatter.indices))
+    return make_solver(choice, scatter.indptr, scatter.indices)
+
+
+def _is_iterative(choice: str, unknowns: int) -> bool:
+    return choice == "iterative" or (choice == "auto" and unknowns >= ITERATIVE_FROM)
 
 
 def _numbered(problem: Problem, mesh: AnyMesh, fixed: BoolArray, tied: BoolArray) -> Numbering:

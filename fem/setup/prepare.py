@@ -19,7 +19,8 @@ def prepare(problem: Problem, linear_solver: str = "auto", mesh_file: str | Path
     problem
         Layers, tool, support, kinematics and discretisation.
     linear_solver
-        "auto" (Pardiso where it installs, otherwise SuperLU), "pardiso" or "superlu".
+        "auto" (Pardiso where it installs, otherwise SuperLU; "iterative" for large blocks), "pardiso", "superlu" or
+        "iterative" (multigrid; for blocks without a tool that touches).
     mesh_file
         File in which the mesh of a body from a surface is kept, and taken from if it holds that of the same body; the
         mesher never makes the same mesh twice, which a checkpoint of a run needs. Other meshes need none.

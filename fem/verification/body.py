@@ -164,7 +164,7 @@ class Body:
     def solve_linear(self, load: FloatArray) -> FloatArray:
         """Unknowns (n,) of small displacements under a load (n,)."""
         problem, rest = self.equilibrium(load), self._rest()
-        problem.solver.factorise(self.system.tangent(rest))
+        problem.factorise(rest)
         y = problem.solver.solve(load[:, None])[:, 0]
         left = load - self.scatter.vector(self.system.linear_force(rest, y))
         return y + problem.solver.solve(left[:, None])[:, 0]

@@ -219,7 +219,7 @@ def fem_assembly(job: Job) -> Work:
     rest = system.evaluate(unknowns, pressure)
     if rest is None:
         raise ArithmeticError(f"scenario {scenario.name}: the mesh has an element without volume")
-    model.equilibrium.solver.factorise(system.tangent(rest))
+    model.equilibrium.factorise(rest)
     loaded = 0.1 * scenario.load.peak * model.equilibrium.solver.solve(model.equilibrium.unit_load[:, None])[:, 0]
 
     def work() -> None:

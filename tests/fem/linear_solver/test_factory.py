@@ -7,7 +7,7 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from fem.linear_solver import make_solver
-from fem.linear_solver.factory import SMALL, VARIABLE, name_library, suited_threads
+from fem.linear_solver.factory import NUMPY_LIBRARIES, SMALL, VARIABLE, name_library, suited_threads
 
 
 @pytest.fixture
@@ -45,15 +45,17 @@ def test_other_limits_of_threads_do_not_reach_between_the_phases(count):
     np.testing.assert_allclose(4 * x[1:-1] + x[:-2] + x[2:], 1.0, rtol=1e-12)
 
 
-def most_threads():
-    return max((library["num_threads"] for library in threadpool_info()), default=1)
+def threads():
+    """Threads of each library that has some."""
+    return {(library["prefix"], library["filepath"]): library["num_threads"] for library in threadpool_info()}
 
 
-def test_small_systems_get_one_thread_and_large_ones_what_there_is():
+def test_small_systems_get_one_thread_and_large_ones_one_in_numpy_alone():
     with threadpool_limits(2):
-        before = most_threads()
+        before = threads()
         with suited_threads(SMALL - 1):
-            assert most_threads() == 1
+            assert set(threads().values()) == {1}
         with suited_threads(SMALL):
-            assert most_threads() == before
-        assert most_threads() == before
+            expected = {key: 1 if key[0] in NUMPY_LIBRARIES else count for key, count in before.items()}
+            assert threads() == expected
+        assert threads() == before

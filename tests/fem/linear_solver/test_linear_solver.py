@@ -76,6 +76,40 @@ def test_superlu_needs_factors_first():
         make_solver("superlu", indptr, indices).solve(np.ones((5, 1)))
 
 
+@pytest.fixture
+def pardiso():
+    return pytest.importorskip("fem.linear_solver.pardiso", exc_type=ImportError)
+
+
+@pytest.mark.parametrize("low", [2.5, -2.5], ids=["definite", "indefinite"])
+def test_single_factors_solve_as_double_ones(pardiso, low):
+    rng = np.random.default_rng(14)
+    full, indptr, indices, data = tridiagonal(60, np.where(np.arange(60) % 3 == 0, low, 3.0))
+    solver = pardiso.PardisoSolver(indptr, indices, single_from=0)
+    right = rng.normal(size=(60, 2)) * [1.0, 1e-30]
+    for factor in (1.0, 1e9):
+        solver.factorise(factor * data)
+        np.testing.assert_allclose(solver.solve(right), np.linalg.solve(factor * full, right), rtol=1e-7)
+    assert solver.is_single
+
+
+def test_where_single_factors_do_not_suffice_double_ones_are_made(pardiso, monkeypatch):
+    monkeypatch.setattr(pardiso, "MOST_ITERATIONS", 1)
+    full, indptr, indices, data = tridiagonal(60, np.full(60, 2.001))
+    solver = pardiso.PardisoSolver(indptr, indices, single_from=0)
+    solver.factorise(data)
+    right = np.random.default_rng(15).normal(size=(60, 1))
+    np.testing.assert_allclose(solver.solve(right), np.linalg.solve(full, right), rtol=1e-9)
+    assert not solver.is_single
+
+
+def test_no_load_has_no_displacement(pardiso):
+    _, indptr, indices, data = tridiagonal(9, np.full(9, 4.0))
+    solver = pardiso.PardisoSolver(indptr, indices, single_from=0)
+    solver.factorise(data)
+    np.testing.assert_array_equal(solver.solve(np.zeros((9, 1))), 0.0)
+
+
 def test_unknown_choice_is_refused():
     with pytest.raises(FemError, match="linear_solver = 'mumps': allowed are auto, pardiso, superlu"):
         make_solver("mumps", np.array([0, 1]), np.array([0]))
