@@ -5,7 +5,7 @@ PY     := $(VENV)/bin/python
 RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
 
-BENCHES := bench-wave bench-accuracy bench-peers bench-liver bench-vision bench-tracking bench-gate bench-sweep bench-discovery bench-effects bench-derivatives bench-haptic bench-press bench-fit
+BENCHES := bench-wave bench-accuracy bench-peers bench-scale bench-liver bench-vision bench-tracking bench-gate bench-sweep bench-discovery bench-effects bench-derivatives bench-haptic bench-press bench-fit
 .PHONY: help run test test-slow test-torture $(BENCHES) lint types imports check docs pictures lock clean
 
 help:
@@ -19,6 +19,7 @@ help:
 	@echo "make bench-wave       microseconds a frame of the wave beside its rivals, each with its error"
 	@echo "make bench-accuracy   the wave's errors against the finite elements, small and finite strain"
 	@echo "make bench-peers      the same problems through FElupe and CalculiX, where they are installed"
+	@echo "make bench-scale      time and memory of a press in three dimensions from 20 thousand unknowns to a million"
 	@echo "make bench-liver      a synthetic liver from its STL file to a pressed VTU"
 	@echo "make bench-vision     frames a second of the tracker, and its memory on a long video"
 	@echo "make bench-tracking   what the tracker keeps of stretch, ellipses, blur, glare and shadow, beside the article's method"
@@ -90,6 +91,9 @@ bench-accuracy: $(RUN_STAMP)
 
 bench-peers: $(DEV_STAMP)
 	$(PY) -m tests.performance.peers
+
+bench-scale: $(RUN_STAMP)
+	$(PY) -m tests.performance.scale
 
 bench-liver: $(RUN_STAMP)
 	$(PY) -m tests.performance.liver results/liver

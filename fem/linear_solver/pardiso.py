@@ -107,7 +107,8 @@ class PardisoSolver:
         return np.stack(found, axis=1)
 
     def _take_double(self) -> None:
-        """Double factors from now on."""
+        """Double factors from now on; the memory of the single ones is given back first."""
+        del self._factors
         self._factors = Factors(self._matrix, np.float64)
 
     def _times(self, x: FloatArray) -> FloatArray:

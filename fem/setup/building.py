@@ -120,7 +120,7 @@ def set_up(
     numbering, items, tool = make_items(problem, mesh, displacements, conditions)
     elements = make_elements(geometry, layer_laws(problem, mesh, geometry.components), stabilisation(problem))
     system = make_system(elements, numbering, build_scatter(mesh.elements, numbering), items)
-    solver = _linear_solver(linear_solver, mesh, system)
+    solver = _linear_solver(linear_solver, problem, mesh, system)
     if tool is not None:
         return Equilibrium(system, solver, -np.eye(1, numbering.count, tool)[0], tool)
     nodal = np.zeros(fixed.shape)
@@ -129,7 +129,7 @@ def set_up(
     return Equilibrium(system, solver, load, int(numbering.unknown[-1, mesh.interfaces[0][0]]))
 
 
-def _linear_solver(choice: str, mesh: AnyMesh, system: System) -> SymmetricSolver | IterativeSolver:
+def _linear_solver(choice: str, problem: Problem, mesh: AnyMesh, system: System) -> SymmetricSolver | IterativeSolver:
     """The solver of that name; "auto": iterative where it can be had and the system is large.
 
     Raises
@@ -138,11 +138,12 @@ def _linear_solver(choice: str, mesh: AnyMesh, system: System) -> SymmetricSolve
         If it is not available for this mesh.
     """
     require_one_of("linear_solver", choice, LINEAR_SOLVERS)
-    scatter, suited = system.scatter, isinstance(mesh, SolidMesh) and mesh.element == "hex27" and not system.items
+    scatter, endless = system.scatter, problem.support.kind == "half_space"
+    suited = isinstance(mesh, SolidMesh) and mesh.element == "hex27" and not system.items and not endless
     if choice == "iterative" and not suited:
         raise FemError(
-            "linear_solver = 'iterative': only with geometry = 'block' and without a tool that touches and comes off; "
-            "use 'auto'"
+            "linear_solver = 'iterative': only with geometry = 'block', without a tool that touches and comes off, and "
+            "not on a half-space; use 'auto'"
         )
     if isinstance(mesh, SolidMesh) and suited and _is_iterative(choice, system.numbering.count):
         from fem.assembly.coarsening import coarse_space

@@ -106,6 +106,10 @@ def test_it_is_refused_where_there_is_none():
     axisymmetric = dataclasses.replace(block(), geometry="axisymmetric")
     with pytest.raises(fem.FemError, match="only with geometry = 'block'"):
         fem.prepare(axisymmetric, "iterative")
+    endless = fem.Layer("deep", np.inf, 1000.0, fem.LinearElastic(1e4, 0.49))
+    half_space = dataclasses.replace(block(), layers=(endless,), support=fem.Support("half_space"))
+    with pytest.raises(fem.FemError, match="not on a half-space"):
+        fem.prepare(half_space, "iterative")
 
 
 def test_round_off_bounds_what_exact_displacements_leave():
