@@ -29,9 +29,8 @@ CONTROLS = {0: 1, 1: 2, 7: 0, 9: 8, 20: 1}
 SINGLE_PRECISION = 27  # of iparm, 1 for single
 SMALL = 10_000  # unknowns below which threads wait for each other longer than they work
 SINGLE_FROM = 30_000  # unknowns; below, the iterations take what the factorisation saves
-TOLERANCE = (
-    1e-9  # residual over right-hand side, scaled to a unit diagonal; one pass of refinement takes it to round-off
-)
+# Residual over right-hand side, scaled to a unit diagonal; one pass of refinement takes it to round-off.
+TOLERANCE = 1e-9
 MOST_ITERATIONS = 30  # three times what layers of 1 MPa on 10 kPa take
 Single: TypeAlias = NDArray[np.float32]
 Values: TypeAlias = FloatArray | Single
