@@ -153,7 +153,7 @@ class IterativeSolver:
     def __init__(self, space: CoarseSpace, coarse: SymmetricSolver, direct: Callable[[], SymmetricSolver]) -> None:
         self._space, self._coarse, self._make_direct = space, coarse, direct
         self._elements = ElementSum(space.unknowns, space.count)
-        self._tangent: ElementTangent | None = None
+        self._assembled: Callable[[], FloatArray] | None = None
         self._matrix: SaddlePoint | None = None
         self._cycle: MultigridCycle | None = None
         self._direct: SymmetricSolver | None = None
@@ -177,7 +177,7 @@ class IterativeSolver:
         if self._direct is not None:
             self._direct.factorise(tangent.assembled())
             return
-        self._tangent, self._matrix = tangent, None  # the old one's memory first
+        self._assembled, self._matrix = tangent.assembled, None  # the old one's memory first
         if self._pace > SLOWER * self._new_pace:
             self._cycle = None
         self._matrix = SaddlePoint(tangent, self._elements, self._space.count)
@@ -232,12 +232,12 @@ class IterativeSolver:
 
     def _take_direct(self, reason: str) -> None:
         """A direct solver from now on."""
-        if self._tangent is None or self._space.count > MOST_DIRECT:
+        if self._assembled is None or self._space.count > MOST_DIRECT:
             raise SingularMatrixError(f"the iterative solver failed: {reason}")
         self._direct = self._make_direct()
         self.remark = f"the iterative solver failed: {reason}; {self._direct.name} took over"
         self._matrix = self._cycle = None
-        self._direct.factorise(self._tangent.assembled())
+        self._direct.factorise(self._assembled())
 
     def _given_up(self) -> SymmetricSolver:
         if self._direct is None:

@@ -30,7 +30,8 @@ from fem.setup.items import make_items, sliding_nodes
 from fem.setup.layout import lay_out
 from fem.setup.supports import SUPPORT_MODELS
 
-ITERATIVE_FROM = 70_000  # unknowns from which on the iterative solver is faster
+ITERATIVE_FROM = {"linear": 70_000, "finite": 230_000}
+"""Unknowns from which on the iterative solver is faster, by kinematics: it does more for each Newton correction."""
 
 
 def build_model(problem: Problem, linear_solver: str, mesh_file: Path | None = None) -> Model:
@@ -145,7 +146,7 @@ def _linear_solver(choice: str, problem: Problem, mesh: AnyMesh, system: System)
             "linear_solver = 'iterative': only with geometry = 'block', without a tool that touches and comes off, and "
             "not on a half-space; use 'auto'"
         )
-    if isinstance(mesh, SolidMesh) and suited and _is_iterative(choice, system.numbering.count):
+    if isinstance(mesh, SolidMesh) and suited and _is_iterative(choice, problem, system.numbering.count):
         from fem.assembly.coarsening import coarse_space
 
         space = coarse_space(mesh, system.numbering, scatter)
@@ -154,8 +155,8 @@ def _linear_solver(choice: str, problem: Problem, mesh: AnyMesh, system: System)
     return make_solver(choice, scatter.indptr, scatter.indices)
 
 
-def _is_iterative(choice: str, unknowns: int) -> bool:
-    return choice == "iterative" or (choice == "auto" and unknowns >= ITERATIVE_FROM)
+def _is_iterative(choice: str, problem: Problem, unknowns: int) -> bool:
+    return choice == "iterative" or (choice == "auto" and unknowns >= ITERATIVE_FROM[problem.kinematics])
 
 
 def _numbered(problem: Problem, mesh: AnyMesh, fixed: BoolArray, tied: BoolArray) -> Numbering:

@@ -7,6 +7,7 @@ import pytest
 
 import fem
 from fem.linear_solver import SingularMatrixError, iterative
+from fem.setup import building
 
 ONE_STEP = fem.Load("force", np.array([1.0]), np.array([1e-3]))
 
@@ -121,3 +122,10 @@ def test_round_off_bounds_what_exact_displacements_leave():
     entries = problem.system.tangent(rest)
     exact = problem.system.scatter.round_off(entries, y)
     assert exact <= round_off(y) <= 20 * exact
+
+
+def test_large_blocks_have_it_by_themselves(monkeypatch):
+    monkeypatch.setattr(building, "ITERATIVE_FROM", {"linear": 1_000, "finite": 1_000_000})
+    assert fem.prepare(block()).linear_solver == "iterative"
+    assert fem.prepare(block(law=fem.NeoHookean)).linear_solver != "iterative"
+    assert fem.prepare(block(), "superlu").linear_solver == "superlu"
