@@ -26,7 +26,7 @@ from benchmark.cli import (
     sweep,
     verify,
 )
-from benchmark.cli.folders import clean, dossier, reference, report, shipped
+from benchmark.cli.folders import results, shipped
 
 EXIT_USAGE = 2
 TOO_LITTLE = "there is too little memory for this: end other programs, or ask for less (a coarser mesh, fewer workers)"
@@ -47,13 +47,10 @@ for verb in (
     blind,
     check,
     sweep,
-    report,
+    results,
     reproduce,
     verify,
     shipped,
-    reference,
-    dossier,
-    clean,
     hands_on,
 ):
     verb.register(app)

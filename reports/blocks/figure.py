@@ -119,13 +119,14 @@ class LiveBody:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain lists and tables."""
+        limit, ring = plain((self.limit, self.ring))
         return {
             "kind": self.kind,
             "radius": plain(self.radius),
             "faces": [face.to_dict() for face in self.faces],
             "value_label": self.value_label,
-            "limit": self.limit,
-            "ring": self.ring,
+            "limit": limit,
+            "ring": ring,
         }
 
 

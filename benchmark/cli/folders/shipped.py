@@ -1,4 +1,4 @@
-"""`benchmark tissues`, `scenarios` and `session`: what ships, with sources, and files to start from."""
+"""`benchmark tissues`, `scenarios`, `session` and `reference`: what ships, with sources, and files to start from."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ NewName = Annotated[str | None, typer.Argument(help="With new: the name of the t
 ScenarioName = Annotated[str | None, typer.Argument(help="A shipped scenario or a TOML file, to see it resolved.")]
 NEW = "new"
 What = Annotated[Literal["new"], typer.Argument(help="new: propose a session.toml.")]
+Word = Annotated[str, typer.Argument(help="new.")]
+Shown = Annotated[str, typer.Argument(help="A shipped scenario or a TOML file.")]
+Table = Annotated[Path | None, typer.Option("--out", metavar="FILE", help="The table; by default SCENARIO-fea.csv.")]
 Folder = Annotated[Path, typer.Argument(help="A folder of trials: CSV, or any instrument's files.")]
 
 
@@ -22,6 +25,7 @@ def register(app: typer.Typer) -> None:
     app.command("tissues", help=tissues.__doc__)(tissues)
     app.command("scenarios", help=scenarios.__doc__)(scenarios)
     app.command("session", help=session.__doc__)(session)
+    app.command("reference", help=reference.__doc__)(reference)
 
 
 def tissues(name: Name = None, new_name: NewName = None, json: Json = False, debug: Debug = False) -> int:
@@ -119,4 +123,27 @@ def session(what: What, folder: Folder, json: Json = False, debug: Debug = False
         print("\n".join(map(str, written)))
         print(f"  look at it, and say: {', '.join(found.to_say)} (marked SAY)")
         print(f"  then: python -m benchmark run --trials {folder}")
+    return 0
+
+
+def reference(
+    word: Word, name: Shown, settings: Set = None, out: Table = None, json: Json = False, debug: Debug = False
+) -> int:
+    """`reference new SCENARIO` writes the table for your own FEA of it, one row a step and layer, `fem_mm` left empty.
+
+    It never overwrites one. `run SCENARIO --reference FILE` then puts the filled table in the FEM's place.
+    """
+    if word != "new":
+        raise typer.BadParameter(f"{word!r} is not known; allowed: reference new SCENARIO")
+    from benchmark.cli.show import print_json
+    from benchmark.files import load_scenario
+    from benchmark.models.own_models import write_template
+
+    scenario = load_scenario(name, parse_settings(settings))
+    path = out if out is not None else Path(f"{Path(name).stem}-fea.csv")
+    write_template(path, scenario)
+    if json:
+        print_json({"schema": 1, "file": str(path)})
+    else:
+        print(f"{path}\n  fill in fem_mm, then, with the same --set: python -m benchmark run {name} --reference {path}")
     return 0

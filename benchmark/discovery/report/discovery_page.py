@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from benchmark.discovery import criteria
+from benchmark.discovery.own_values import SetupEstimate, TrialValues
 from benchmark.discovery.report.disagreement_sections import (
     comparison_section,
     gap_section,
@@ -19,12 +20,21 @@ from benchmark.discovery.report.effect_sections import (
     loop_section,
     next_section,
 )
-from benchmark.discovery.report.own_sections import own_section
 from benchmark.discovery.report.refit_section import refit_section
 from benchmark.discovery.report.story import story
 from benchmark.discovery.report.words import channel_name, sized
-from reports import Download, Fact, Facts, Notice, Page, Section, Verdict
+from reports import Block, Column, Download, Fact, Facts, Notice, Page, Paragraph, Section, Table, Verdict
 
+SETUP = (
+    "How the set-up lies against what was told, with the answer's effects in the model: shares of the told value, of a "
+    "modulus the logarithm of its factor, of a clamp or contact the share of the way to the other one. One or two "
+    "standard deviations are what people are usually wrong by."
+)
+TRIALS = (
+    "What each trial has of its own. A zero lies within what the sensor shows at rest, a touch not beyond where the "
+    "force has risen over its noise, and force and frames are late by a sample or two at most. Where trials differ as "
+    "specimens of unlike thickness do, each has a thickness of its own, by which the base's force and field follow."
+)
 SYNTHETIC = "These trials were computed, not measured. They show that the chain works."
 DESCRIPTIONS = {
     "where.csv": "places that are significant",
@@ -56,7 +66,7 @@ def discovery_page(record: DiscoveryRecord, environment: Mapping[str, Any], tabl
     sections += [refit_section(record)] if record.refits else []
     sections += [loop_section(record)] if record.grown is not None else []
     sections += [remains_section(record), next_section(record)]
-    sections += [own_section(record)] if record.found.own else []
+    sections += [_own_section(record)] if record.found.own else []
     sections.append(Section("How this was found", [Facts(_facts(record, environment))]))
     return Page(
         title=f"{record.name}: what the model lacks",
@@ -163,3 +173,34 @@ def _sizes(record: DiscoveryRecord) -> list[str]:
         if not each.within
     ]
     return [f"The model still misses {', '.join(beyond)}."] if beyond else []
+
+
+def _own_section(record: DiscoveryRecord) -> Section:
+    """Return the fitted set-up and the trials' own values."""
+    found = record.found
+    blocks: list[Block] = []
+    if found.setup:
+        columns = (
+            "parameter", Column("change", "", 3), Column("95 % low"), Column("95 % high"),
+            Column("known to", "", 2), Column("standard deviations", "", 2), "named",
+        )  # fmt: skip
+        blocks += [
+            Paragraph(SETUP),
+            Table("The set-up", columns, [_setup_row(each) for each in found.setup], folded=False),
+        ]
+    heads = (
+        "trial", Column("gain", "", 4), Column("zero", "N", 3), Column("late", "ms", 3), Column("touch", "mm", 3),
+        Column("thicker", "%", 2), "at its bound",
+    )  # fmt: skip
+    rows = [_own_row(each) for each in found.own]
+    download = Download("tables/trials.csv", "the same")
+    return Section("Fitted beside it", [*blocks, Paragraph(TRIALS), Table("The trials", heads, rows, download, True)])
+
+
+def _setup_row(each: SetupEstimate) -> tuple[object, ...]:
+    return (each.key, each.change, *each.ci95, each.prior, each.of_prior, each.named)
+
+
+def _own_row(each: TrialValues) -> tuple[object, ...]:
+    own = (each.gain, each.zero, 1e3 * each.late, 1e3 * each.touch, 1e2 * each.thicker)
+    return (each.trial, *own, ", ".join(each.at_bound))

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from benchmark.blind.cases import CaseName
-from benchmark.blind.rivals.force_samples import ForceSamples, force_samples
-from benchmark.blind.rivals.textbook import _library, gaussian_process, plain_bic, sindy
+from benchmark.blind.rivals.textbook import ForceSamples, _library, force_samples, gaussian_process, plain_bic, sindy
 from benchmark.blind.session_files import case
 from benchmark.files import Session, load_session
 

@@ -1,0 +1,109 @@
+"""`benchmark report`, `dossier` and `clean`: finished folders once more, together, and what killed runs left behind."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from benchmark.cli.options import Debug, Json, Out, Quiet
+
+if TYPE_CHECKING:
+    from benchmark.gate.history.history_page import HistoryOutcome
+    from benchmark.runs.finished import ReportOutcome
+
+Runs = Annotated[list[Path], typer.Argument(help="Result folders of `run`, or the history of `check` (.jsonl).")]
+Results = Annotated[
+    list[Path], typer.Argument(metavar="RESULT...", help="Folders of run, fit, discover, verify, check and sweep.")
+]
+ContextFile = Annotated[
+    Path | None, typer.Option("--context", metavar="FILE", help="What the model is asked for, and what hangs on it.")
+]
+Folder = Annotated[Path, typer.Argument(help="Where to look, there and below.")]
+DryRun = Annotated[bool, typer.Option("--dry-run", help="Say what is there and remove nothing.")]
+HISTORY = ".jsonl"
+
+
+def register(app: typer.Typer) -> None:
+    """Add the verbs to the command line."""
+    app.command("report", help=report.__doc__)(report)
+    app.command("dossier", help=dossier.__doc__)(dossier)
+    app.command("clean", help=clean.__doc__)(clean)
+
+
+def report(runs: Runs, out: Out = None, json: Json = False, quiet: Quiet = False, debug: Debug = False) -> int:
+    """Make the page of a finished RUN again from its files, or set several side by side.
+
+    With one RUN its report.html is written anew; with several, a folder with report.html, tables/runs.csv and
+    report.json: parameters changed, results changed, figures laid over each other. A history that `check` keeps
+    becomes a page with every quantity by commit and its steps marked.
+    """
+    from benchmark.cli.show import print_json
+
+    outcome = _history(runs[0], out) if len(runs) == 1 and runs[0].suffix == HISTORY else _of_runs(runs, out)
+    if json:
+        print_json({**outcome.document, "out": str(outcome.folder)})
+    else:
+        print(f"{outcome.headline}\n  report: {outcome.folder / 'report.html'}")
+    return 0
+
+
+def _of_runs(runs: list[Path], out: Path | None) -> ReportOutcome:
+    from benchmark.runs.finished import compare_runs, page_again
+
+    return page_again(runs[0], out) if len(runs) == 1 else compare_runs(runs, out)
+
+
+def _history(path: Path, out: Path | None) -> HistoryOutcome:
+    from benchmark.gate.history.history_page import write_history
+
+    return write_history(path, out)
+
+
+def dossier(
+    results: Results, context: ContextFile = None, out: Out = None, json: Json = False, debug: Debug = False
+) -> int:
+    """Collect what finished results show for each credibility factor of ASME V&V 40, and what is missing.
+
+    Writes report.html, dossier.json and tables/evidence.csv. Nothing is computed anew.
+    """
+    from benchmark.cli.show import print_json
+    from benchmark.dossier import make_dossier
+
+    made = make_dossier(results, context, out)
+    if json:
+        print_json({**made.document, "out": str(made.folder)})
+    else:
+        print(f"{made.headline}.\n  report: {made.folder / 'report.html'}")
+    return 0
+
+
+def clean(folder: Folder = Path(), dry_run: DryRun = False, json: Json = False, debug: Debug = False) -> int:
+    """Remove what killed runs left: half-written files and folders, locks, and the steps kept to go on from.
+
+    Results, recordings, and whatever this program did not write stay. A run that is at work is left alone. After this
+    a stopped run begins anew instead of going on.
+    """
+    from benchmark.cli.show import print_json
+    from benchmark.errors import InputError
+    from benchmark.litter import cut_recordings, find_litter, remove
+
+    if not folder.is_dir():
+        raise InputError(f"{folder}: there is no such folder to clean")
+    found = list(find_litter(folder))
+    gone = [] if dry_run else [litter for litter in found if remove(litter)]
+    recordings = cut_recordings(folder)
+    if json:
+        rows = [{"path": str(each.path), "what": each.what, "bytes": each.size} for each in found]
+        removed = [str(each.path) for each in gone]
+        print_json({"schema": 1, "found": rows, "removed": removed, "recordings": [str(path) for path in recordings]})
+        return 0
+    for each in found:
+        word = "would go" if dry_run else "removed" if each in gone else "stays, it holds other files"
+        print(f"{each.path}: {each.what}, {each.size / 1e6:.1f} MB, {word}")
+    for path in recordings:
+        print(f"{path}: a recording that was cut off, stays; python -m bench_hw recover {path} --out NEW.mcap")
+    if not found and not recordings:
+        print(f"{folder}: nothing to clean")
+    return 0
