@@ -112,10 +112,13 @@ class RisingCurve:
         at = np.asarray(np.interp(wanted, self.values, self.knots))
         for _ in range(REFINEMENTS):
             excess = self.value(at) - wanted
-            if np.all(np.abs(excess) <= close):
+            there = np.abs(excess) <= close
+            if np.all(there):
                 break
             slope = self.slope(at)
             bottom, top = np.where(excess < 0.0, at, bottom), np.where(excess > 0.0, at, top)
             ahead = at - excess / np.where(slope > 0.0, slope, np.inf)
-            at = np.where((ahead > bottom) & (ahead < top), ahead, 0.5 * (bottom + top))
+            there |= (ahead == at) & (slope > 0.0)  # no nearer than round-off; halving would leave it
+            moved = np.where((ahead > bottom) & (ahead < top), ahead, 0.5 * (bottom + top))
+            at = np.where(there, at, moved)
         return at
