@@ -79,7 +79,6 @@ def run_case(name: CaseName, discover: Discoverer, experiments: int = 0) -> Judg
     whose effect cannot be as strong as wanted in its lab is not put to it. With `experiments` the product's own
     discovery answers, and again after each of so many experiments at most; the last answer is judged.
     """
-    from benchmark.blind.closed_loop import closed_loop
     from benchmark.files.sessions.session_loading import load_session
 
     with scratch() as parent:
@@ -90,6 +89,8 @@ def run_case(name: CaseName, discover: Discoverer, experiments: int = 0) -> Judg
         started = time.perf_counter()
         try:
             if experiments:
+                from benchmark.blind.closed_loop import closed_loop
+
                 loop = closed_loop(made, folder, experiments)
                 return looped(made, loop.answers, loop.experiments, time.perf_counter() - started)
             answer = discover(load_session(folder), seed=name.seed)

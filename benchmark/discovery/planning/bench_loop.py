@@ -59,7 +59,6 @@ class Loop:
 
     def _round(self, found: Findings, proposal: NextExperiment) -> Findings:
         standing = rivals(found)[:2]
-        before = self.leads.setdefault(tuple(each.slugs for each in standing), leads(found, standing) or {})
         number = len(self.rounds) + 1
         separation: float | None
         if proposal.choice == BLOCK:
@@ -67,9 +66,12 @@ class Loop:
             separation, lost = judged_by_block(standing, files[0])
         else:
             self.bench.add(proposal, self.bench.record(proposal, proposal.trials, number))
+            pair = tuple(each.slugs for each in standing)
+            if pair not in self.leads:
+                self.leads[pair] = leads(found, standing) or {}
             self.measured.append(proposal.choice)
             found = self.decide(self.bench.folder, self.out)
-            separation, lost = judged_by_trials(found, standing, self.measured, before)
+            separation, lost = judged_by_trials(found, standing, self.measured, self.leads[pair])
         if lost:
             self.out |= lost
             found = self.decide(self.bench.folder, self.out)
