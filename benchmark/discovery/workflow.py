@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from benchmark.discovery import criteria
 from benchmark.discovery.answer.estimates import (
@@ -116,6 +117,9 @@ def findings(
 ) -> Findings:
     """Find what the model of a session lacks, and keep the fits.
 
+    Linear algebra has one thread here: its products are small, and beside another program threads that wait for each
+    other took up to a hundred times as long as one.
+
     Parameters
     ----------
     session, settings
@@ -138,20 +142,20 @@ def findings(
     """
     began = time.perf_counter()
     listener("prepare", 0, 1, "")
-    calibrated = calibrate(session, prepare(session, settings.rows), table_of)
-    entries = setup_entries(calibrated.problem.tables)
-    known = tuple(each for each in (*entries, *catalogue(), *effects) if each.slug not in without)
-    own = [own_code(each) for each in effects]
-    key = fingerprint(VERSION, code_version(), session.fingerprint, settings, own, *sorted(without))
-    listener("detect", 0, 1, "")
-    with pool(settings.workers, store, key, effects, listener) as work:
-        searched = _answered(calibrated.base, told_priors(session), known, settings, work)
-    calibrated = replace(calibrated, warnings=(*calibrated.warnings, *searched.remarks))
-    listener("verify", 0, 1, "")
-    answer = _verified(searched, settings)
-    selection = searched.selection
-    discovery = _discovery(calibrated, answer, known, settings, began)
-    return Findings(discovery, calibrated, selection, entries, answer.chosen)
+    with threadpool_limits(1):
+        calibrated = calibrate(session, prepare(session, settings.rows), table_of)
+        entries = setup_entries(calibrated.problem.tables)
+        known = tuple(each for each in (*entries, *catalogue(), *effects) if each.slug not in without)
+        own = [own_code(each) for each in effects]
+        key = fingerprint(VERSION, code_version(), session.fingerprint, settings, own, *sorted(without))
+        listener("detect", 0, 1, "")
+        with pool(settings.workers, store, key, effects, listener) as work:
+            searched = _answered(calibrated.base, told_priors(session), known, settings, work)
+        calibrated = replace(calibrated, warnings=(*calibrated.warnings, *searched.remarks))
+        listener("verify", 0, 1, "")
+        answer = _verified(searched, settings)
+        discovery = _discovery(calibrated, answer, known, settings, began)
+    return Findings(discovery, calibrated, searched.selection, entries, answer.chosen)
 
 
 @dataclass(frozen=True, eq=False)
