@@ -269,7 +269,7 @@ def _discovery(
     """The answer in plain results; `began` is when the clock started, s."""
     base, chosen, before = answer.base, answer.chosen, answer.before
     gap = gaps(base, answer.held, settings)
-    facts = replace(_facts(answer, known, settings), grows=grows(gap))
+    facts = replace(_facts(answer, known, settings), grows=grows(base, answer.held, gap, settings))
     word = verdict(facts)
     untested = not facts.enough
     nothing = word in ("cannot_tell", "no_discrepancy")

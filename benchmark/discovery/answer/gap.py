@@ -110,14 +110,11 @@ def floors(base: Fit) -> list[Array]:
 
 def gaps(base: Fit, held: HeldOut, settings: Settings) -> tuple[ChannelGap, ...]:
     """The gap in each channel."""
-    channels, groups = base.model.problem.study.channels, conditions(base)
-    tables = [_squares(base, rows) for rows in (held.before, held.after, floors(base))]
-    generator = np.random.default_rng(settings.seed)
-    draws = [_draw(groups, generator) for _ in range(settings.bootstraps)]
+    draws = _draws(base, settings)
+    tables = [_channel_squares(base, rows) for rows in (held.before, held.after, floors(base))]
     out = []
-    for channel in dict.fromkeys(channels):
-        mine = [k for k, other in enumerate(channels) if other == channel]
-        before, after, floor = (table[:, mine].mean(axis=1) for table in tables)
+    for channel in tables[0]:
+        before, after, floor = (table[channel] for table in tables)
         told = np.isfinite(floor)
         one, two = (float(np.sqrt(values.mean())) for values in (before, after))
         if not told.any():
@@ -130,10 +127,30 @@ def gaps(base: Fit, held: HeldOut, settings: Settings) -> tuple[ChannelGap, ...]
     return tuple(out)
 
 
-def grows(channels: Sequence[ChannelGap]) -> bool:
-    """Whether the gap surely grows in some channel and surely shrinks in none: the effects predict nothing."""
-    known = [each.ci95 for each in channels if each.ci95 is not None]
-    return any(high < 0.0 for _, high in known) and not any(low > 0.0 for low, _ in known)
+def grows(base: Fit, held: HeldOut, channels: Sequence[ChannelGap], settings: Settings) -> bool:
+    """Whether the effects predict nothing: some channel's gap surely grows, and no channel is surely missed by less.
+
+    A gap is what lies over the replicates' error. What a channel is missed by may surely shrink where that error hides
+    its gap: it is the same in both predictions of a trial, whose difference is free of it.
+    """
+    if not any(each.ci95 is not None and each.ci95[1] < 0.0 for each in channels):
+        return False
+    before, after = (_channel_squares(base, rows) for rows in (held.before, held.after))
+    draws = _draws(base, settings)
+    less = [before[channel] - after[channel] for channel in before]
+    return not any(np.quantile([each[draw].mean() for draw in draws], 0.025) > 0.0 for each in less)
+
+
+def _channel_squares(base: Fit, rows: list[Array]) -> dict[str, Array]:
+    """(R,) mean squares of each trial's rows (n, C) by channel."""
+    table, channels = _squares(base, rows), np.array(base.model.problem.study.channels)
+    return {str(each): table[:, channels == each].mean(axis=1) for each in dict.fromkeys(channels.tolist())}
+
+
+def _draws(base: Fit, settings: Settings) -> list[Array]:
+    """Resampled trials, condition by condition."""
+    groups, generator = conditions(base), np.random.default_rng(settings.seed)
+    return [_draw(groups, generator) for _ in range(settings.bootstraps)]
 
 
 def _interval(squares: tuple[Array, Array, Array], draws: list[Array]) -> tuple[float, float] | None:

@@ -43,7 +43,7 @@ class Facts:
     worse : tuple of str
         Held-out conditions that the effects predict worse than the base.
     grows : bool
-        Whether the held-out gap surely grows in some channel and surely shrinks in none.
+        Whether the held-out gap surely grows in some channel and none is surely missed by less.
     conditions : int
     undetermined : tuple of str
         Accepted effects whose strength the data do not tell.

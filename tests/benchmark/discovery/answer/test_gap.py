@@ -145,18 +145,26 @@ def test_channels_count_together_in_units_of_their_noise(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("intervals", "expected"),
+    ("interval", "force_after", "expected"),
     [
-        ([None, (-0.15, -0.01)], True),
-        ([(-0.1, 0.1), (-0.15, -0.01)], True),
-        ([(0.6, 0.8), (-0.15, -0.01)], False),  # another channel shrinks
-        ([(-0.1, 0.1), None], False),  # not surely
-        ([None, None], False),  # nothing to close
+        ((-0.15, -0.01), [2.0, 2.1, 2.0, 2.1], True),  # as it was
+        ((-0.15, -0.01), [2.2, 2.3, 2.2, 2.3], True),  # worse there, too
+        ((-0.15, -0.01), [1.7, 2.5, 1.8, 2.2], True),  # less on some trials, not surely
+        ((-0.15, -0.01), [1.9, 2.0, 1.9, 2.0], False),  # a little less on each, below what replicates differ by
+        ((-0.1, 0.1), [2.0, 2.1, 2.0, 2.1], False),  # no gap surely grows
+        (None, [2.0, 2.1, 2.0, 2.1], False),  # nothing to close
     ],
 )
-def test_effects_predict_nothing_where_a_gap_surely_grows_and_none_shrinks(intervals, expected):
-    channels = [ChannelGap(str(n), 1.0, 1.0, 1.0, None, each, "condition") for n, each in enumerate(intervals)]
-    assert module.grows(channels) is expected
+def test_effects_predict_nothing_where_a_gap_surely_grows_and_no_channel_is_missed_by_less(
+    interval, force_after, expected
+):
+    before = np.ones((4, 5, 2)) * np.array([2.0, 2.1, 2.0, 2.1])[:, None, None]
+    after = before.copy()
+    after[:, :, 0] = np.array(force_after)[:, None]
+    channels = [ChannelGap("force_z", 2.0, 2.0, 3.0, None, None, "condition")]
+    channels += [ChannelGap("marker_x", 2.0, 2.0, 1.0, None, interval, "condition")]
+    base = measured(before, (0, 0, 1, 1))
+    assert module.grows(base, held(before, after), channels, Settings(bootstraps=200)) is expected
 
 
 def test_a_condition_held_out_is_predicted_by_the_others_and_a_trial_by_its_mates(monkeypatch):
