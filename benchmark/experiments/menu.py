@@ -101,25 +101,25 @@ def menu(usual: Usual, *, deeper: bool = True) -> tuple[Experiment, ...]:
     return tuple(entries)
 
 
-SECOND_TOOL = 1.6
-"""Radius of the second tool over the first one's, or the first one's over it: what drains takes 2.6 times as long."""
+SECOND_TOOLS = {"wider tool": 1.6, "narrower tool": 1.0 / 1.6, "much wider tool": 2.5, "much narrower tool": 1.0 / 2.5}
+"""Radii of second tools over the first one's: what drains takes 2.6 and 6.2 times as long, or as much less."""
 
 
 def second_tools(usual: Usual, radius: float) -> tuple[Experiment, ...]:
-    """The session's own press with a wider and with a narrower tool; `radius` is that of the first, m."""
-    words = "Change the tool to one of {:g} mm radius and press as before."
-    others = {"wider tool": _round(radius * SECOND_TOOL), "narrower tool": _round(radius / SECOND_TOOL)}
-    return tuple(
-        Experiment(
-            name,
-            words.format(1e3 * other),
-            _press(usual.depth, usual.speed, usual.hold),
-            {"tool_radius": _mm(other)},
-            TOOL_MINUTES,
-            other,
-        )
-        for name, other in others.items()
-    )
+    """The session's own press with wider and with narrower tools; `radius` is that of the first, m.
+
+    A wider tool is held longer, by the radii's ratio squared: fluid needs that time to leave, and a press as short as
+    before would show its beginning alone.
+    """
+    return tuple(_with_tool(usual, radius, name, _round(ratio * radius)) for name, ratio in SECOND_TOOLS.items())
+
+
+def _with_tool(usual: Usual, radius: float, name: str, other: float) -> Experiment:
+    hold = max(min(usual.hold * (other / radius) ** 2, LONG), usual.hold)
+    longer = f", and hold for {hold:.3g} s" if hold > usual.hold else ""
+    words = f"Change the tool to one of {1e3 * other:g} mm radius and press as before{longer}."
+    segments = _press(usual.depth, usual.speed, hold)
+    return Experiment(name, words, segments, {"tool_radius": _mm(other)}, TOOL_MINUTES, other)
 
 
 TOOL_MINUTES = 5.0
