@@ -28,6 +28,11 @@ from benchmark.files.units import LENGTH, parse_quantity
 from benchmark.response.fem_table import fem_or_wave_table
 
 BLOCK_ROWS = 200
+SPARE_DEPTH = 1.1
+"""Of the deepest press of session and protocol, to which a body is pressed under another tool.
+
+Under wide ones the press finds no balance much deeper.
+"""
 
 
 @dataclass(frozen=True)
@@ -59,8 +64,10 @@ class HiddenBench:
         if proposal.choice == BLOCK:
             return (self._block(self.folder / f"block_{number}.csv", rng),)
         protocol = validated(Protocol, tomllib.loads(proposal.toml), proposal.choice)
-        radius = protocol.setup.get("tool_radius")
-        made = self.made if radius is None else under_tool(self.made, parse_quantity(radius, LENGTH))
+        radius, made = protocol.setup.get("tool_radius"), self.made
+        if radius is not None:
+            depth = max(made.scene.scale.deep, *(step.depth_to for step in plan(protocol).steps))
+            made = under_tool(made, parse_quantity(radius, LENGTH), min(SPARE_DEPTH * depth, DEEPEST))
         files = []
         for place in range(1000 * number + 1, 1000 * number + 1 + trials):
             moved = _motion(made, protocol, 1.0 + DEPTH_SCATTER * rng.uniform(-1.0, 1.0))
@@ -91,10 +98,11 @@ class HiddenBench:
         return file
 
 
-def under_tool(made: BlindCase, radius: float) -> BlindCase:
-    """The case's specimen and effects under a tool of another radius, m."""
+def under_tool(made: BlindCase, radius: float, deepest: float = DEEPEST) -> BlindCase:
+    """The case's specimen and effects under a tool of another radius, m, that presses no deeper than so many m."""
     body = made.scene.body
-    scene = made.scene.with_body(replace(body, specimen=replace(body.specimen, tool_radius=radius)))
+    specimen = replace(body.specimen, tool_radius=radius)
+    scene = made.scene.with_body(replace(body, specimen=specimen, deepest=deepest))
     return replace(made, scene=scene, effects=tuple(effect.under_tool(radius) for effect in made.effects))
 
 

@@ -62,7 +62,9 @@ class PressTable:
 
 
 @lru_cache(maxsize=32)
-def press_table(specimen: ToldSpecimen, family: str = "first", clamp: str = "plate") -> PressTable:
+def press_table(
+    specimen: ToldSpecimen, family: str = "first", clamp: str = "plate", deepest: float = DEEPEST
+) -> PressTable:
     """Press the specimen with the told tool radius, and with one 10 % smaller and larger; some seconds.
 
     Parameters
@@ -72,10 +74,12 @@ def press_table(specimen: ToldSpecimen, family: str = "first", clamp: str = "pla
         "first" or "second": which solver and law.
     clamp : str
         Over a hole: "plate" (lower face held outside it) or "rim" (held at its border only).
+    deepest : float
+        m.
     """
-    presses = [_press(specimen, factor * specimen.tool_radius, family, clamp) for factor in RADIUS_FACTORS]
+    presses = [_press(specimen, factor * specimen.tool_radius, family, clamp, deepest) for factor in RADIUS_FACTORS]
     return PressTable(
-        depth=_depths(),
+        depth=_depths(deepest),
         force=np.stack([press.force for press in presses]),
         radius=_face_radii(),
         outward=np.stack([press.outward for press in presses]),
@@ -93,16 +97,18 @@ class Press:
 
 
 @lru_cache(maxsize=64)
-def changed_press(specimen: ToldSpecimen, family: str, clamp: str, key: str) -> Press:
+def changed_press(specimen: ToldSpecimen, family: str, clamp: str, key: str, deepest: float = DEEPEST) -> Press:
     """The press with the told tool on a specimen of which one key is `CHANGE` larger.
 
     Parameters
     ----------
     key : str
         LAYER.thickness, LAYER.youngs_modulus, or `ALL_THICKNESSES`.
+    deepest : float
+        m.
     """
     layers = tuple(_changed(layer, key) for layer in specimen.layers)
-    return _press(replace(specimen, layers=layers), specimen.tool_radius, family, clamp)
+    return _press(replace(specimen, layers=layers), specimen.tool_radius, family, clamp, deepest)
 
 
 def _changed(layer: ToldLayer, key: str) -> ToldLayer:
@@ -112,22 +118,21 @@ def _changed(layer: ToldLayer, key: str) -> ToldLayer:
     return replace(layer, **{quantity: getattr(layer, quantity) * (1.0 + CHANGE)})
 
 
-def _depths() -> Array:
-    return np.linspace(0.0, DEEPEST, STEPS + 1)
+def _depths(deepest: float) -> Array:
+    return np.linspace(0.0, deepest, STEPS + 1)
 
 
 def _face_radii() -> Array:
     return np.linspace(0.0, 0.9 * HOLE_RADIUS, 28)
 
 
-def _press(specimen: ToldSpecimen, radius: float, family: str, clamp: str) -> Press:
+def _press(specimen: ToldSpecimen, radius: float, family: str, clamp: str, deepest: float) -> Press:
     """One press by the solver of the family."""
-    return (
-        _press_by_triangles(specimen, radius, clamp) if family == "second" else _press_by_fem(specimen, radius, clamp)
-    )
+    by_family = _press_by_triangles if family == "second" else _press_by_fem
+    return by_family(specimen, radius, clamp, deepest)
 
 
-def _press_by_fem(specimen: ToldSpecimen, radius: float, clamp: str) -> Press:
+def _press_by_fem(specimen: ToldSpecimen, radius: float, clamp: str, deepest: float) -> Press:
     layers = tuple(fem.Layer(each.name, each.thickness, each.density, _silicone(each)) for each in specimen.layers)
     problem = fem.Problem(
         layers=layers,
@@ -139,7 +144,7 @@ def _press_by_fem(specimen: ToldSpecimen, radius: float, clamp: str) -> Press:
             radius=RIM * HOLE_RADIUS if clamp == "rim" and specimen.support == "hole" else None,
         ),
     )
-    solution = fem.prepare(problem).run(fem.Load("depth", np.arange(1.0, STEPS + 1), _depths()[1:]))
+    solution = fem.prepare(problem).run(fem.Load("depth", np.arange(1.0, STEPS + 1), _depths(deepest)[1:]))
     if not solution.complete:
         raise fem.FemError(f"blind specimen {specimen.name}: {solution.failure}")
     empty = np.zeros((STEPS + 1, _face_radii().size))
@@ -147,16 +152,16 @@ def _press_by_fem(specimen: ToldSpecimen, radius: float, clamp: str) -> Press:
     return Press(np.append(0.0, solution.force), outward, sinking)
 
 
-def _press_by_triangles(specimen: ToldSpecimen, radius: float, clamp: str) -> Press:
+def _press_by_triangles(specimen: ToldSpecimen, radius: float, clamp: str, deepest: float) -> Press:
     strata = tuple(_stratum(each, sheet=specimen.has_markers) for each in specimen.layers)
     hole = HOLE_RADIUS if specimen.support == "hole" else None
-    press = taylor_hood.press(strata, radius, hole, clamp, np.linspace(0.0, DEEPEST, COARSE_STEPS + 1)[1:])
-    force = CubicSpline(press.depth, press.force)(_depths())
+    press = taylor_hood.press(strata, radius, hole, clamp, np.linspace(0.0, deepest, COARSE_STEPS + 1)[1:])
+    force = CubicSpline(press.depth, press.force)(_depths(deepest))
     if hole is None:
         empty = np.zeros((STEPS + 1, _face_radii().size))
         return Press(force, empty, empty)
     outward, sinking = (
-        CubicSpline(press.depth, CubicSpline(press.radius, face, axis=1)(_face_radii()))(_depths())
+        CubicSpline(press.depth, CubicSpline(press.radius, face, axis=1)(_face_radii()))(_depths(deepest))
         for face in (press.outward, press.sinking)
     )
     return Press(force, outward, sinking)

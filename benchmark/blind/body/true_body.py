@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from benchmark.blind.body.presses import CHANGE, RADIUS_FACTORS, PressTable, changed_press, press_table
+from benchmark.blind.body.presses import CHANGE, DEEPEST, RADIUS_FACTORS, Press, PressTable, changed_press, press_table
 from benchmark.blind.body.specimens import ToldSpecimen
 from benchmark.blind.motion import Array
 
@@ -48,6 +48,8 @@ class TrueBody:
         As `press_table` takes them.
     setup : tuple of (key, relative change)
         Changes of the specimen as `changed_press` takes them.
+    deepest : float
+        Depth to which it is pressed, m.
     """
 
     specimen: ToldSpecimen
@@ -55,11 +57,12 @@ class TrueBody:
     family: str = "first"
     clamp: str = "plate"
     setup: tuple[tuple[str, float], ...] = ()
+    deepest: float = DEEPEST
 
     @property
     def table(self) -> PressTable:
         """Its presses."""
-        return press_table(self.specimen, self.family, self.clamp)
+        return press_table(self.specimen, self.family, self.clamp, self.deepest)
 
     def force(self, depth: Array) -> Array:
         """Elastic force (n,) N at depth (n,) m; zero in air."""
@@ -67,7 +70,7 @@ class TrueBody:
         pressed = np.clip(depth, 0.0, table.depth[-1])
         rows = self._at_radius(table.force)
         for key, change in self.setup:
-            other = changed_press(self.specimen, self.family, self.clamp, key).force
+            other = self._changed(key).force
             ratio = np.append(1.0, other[1:] / table.force[1, 1:])
             rows = rows * ratio ** (np.log1p(change) / np.log1p(CHANGE))
         curve = CubicSpline(table.depth, rows)
@@ -82,10 +85,13 @@ class TrueBody:
         points = radius / self.shape.width
         outward, sinking = self._at_radius(table.outward), self._at_radius(table.sinking)
         for key, change in self.setup:
-            other = changed_press(self.specimen, self.family, self.clamp, key)
+            other = self._changed(key)
             outward = outward + change / CHANGE * (other.outward - table.outward[1])
             sinking = sinking + change / CHANGE * (other.sinking - table.sinking[1])
         return _curves(table, outward, points)(pressed), _curves(table, sinking, points)(pressed)
+
+    def _changed(self, key: str) -> Press:
+        return changed_press(self.specimen, self.family, self.clamp, key, self.deepest)
 
     def _at_radius(self, rows: Array) -> Array:
         """A table's value at the true tool radius, quadratic through the three that were computed."""

@@ -1,7 +1,8 @@
 """The closed loop: the experiment that best separates the rivals, done on the bench, its trials added, decided again.
 
 A new measurement may rule a rival out in two ways. Both rivals are fitted to the trials of the new condition, too: one
-that foretells trials far worse than before is out. A rigid block in the specimen's place measures the rig's give
+that foretells trials far worse than before is out, if enough was promised: rivals that are little apart may be taken
+for each other by what their forms miss of the true one. A rigid block in the specimen's place measures the rig's give
 itself: where there is none, the rival that needs it is out; where it is as large as that rival says, the others are.
 What the bench records is added to a copy of the session; the session itself stays as it is.
 """
@@ -43,6 +44,7 @@ class Loop:
     rounds: list[Round] = field(default_factory=list)
     measured: list[str] = field(default_factory=list)
     leads: dict[tuple[tuple[str, ...], ...], Leads] = field(default_factory=dict)
+    promised: dict[tuple[tuple[str, ...], ...], float] = field(default_factory=dict)
     out: frozenset[str] = frozenset()
 
     def run(self) -> Findings:
@@ -69,9 +71,12 @@ class Loop:
             pair = tuple(each.slugs for each in standing)
             if pair not in self.leads:
                 self.leads[pair] = leads(found, standing) or {}
+            self.promised[pair] = math.hypot(self.promised.get(pair, 0.0), proposal.separation)
             self.measured.append(proposal.choice)
             found = self.decide(self.bench.folder, self.out)
             separation, lost = judged_by_trials(found, standing, self.measured, self.leads[pair])
+            if self.promised[pair] < criteria.PROMISED:
+                lost = frozenset()
         if lost:
             self.out |= lost
             found = self.decide(self.bench.folder, self.out)
@@ -162,7 +167,8 @@ def judged_by_trials(
     What an experiment promises is how far apart the rivals are once both are fitted to all trials
     (`rivals.separation`), and that is what is counted: an old trial speaks, too, against a rival that had to give way
     to the new ones. A rival is out where all trials together speak decisively against it, half of that without the one
-    that speaks most, and by more than the winner falls short in the new conditions, each foretold from all others.
+    that speaks most, and the winner foretells the new conditions, each from all others: it falls short of their trials
+    one by one by less than they speak for it, or by less than half of what the loser does.
     """
     after = leads(found, standing)
     if after is None:
@@ -171,7 +177,9 @@ def judged_by_trials(
     total = float(told.sum())
     winner, loser = standing[:2] if total > 0.0 else standing[1::-1]
     others = abs(total) - float(np.max(np.sign(total) * told))
-    sure = abs(total) >= max(criteria.DECISIVE, _short(found, winner, measured)) and others >= 0.5 * criteria.DECISIVE
+    missed, theirs = (_short(found, each, measured) for each in (winner, loser))
+    foretells = abs(total) >= missed or theirs >= 2.0 * missed + criteria.DECISIVE
+    sure = foretells and abs(total) >= criteria.DECISIVE and others >= 0.5 * criteria.DECISIVE
     lost = frozenset(set(loser.slugs) - set(winner.slugs)) if sure else frozenset()
     return math.sqrt(2.0 * abs(total)), lost
 

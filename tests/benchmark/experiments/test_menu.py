@@ -1,3 +1,4 @@
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,10 +16,11 @@ from benchmark.experiments.menu import (
     rigid_block,
     ruler_image,
     same_again,
+    second_tools,
 )
 
 USUAL = Usual(depth=2e-3, speed=1e-3, hold=5.0, thickness=20e-3)
-EVERYTHING = (same_again(USUAL), *menu(USUAL), rigid_block(4.0), ruler_image())
+EVERYTHING = (same_again(USUAL), *menu(USUAL), *second_tools(USUAL, 5e-3), rigid_block(4.0), ruler_image())
 
 
 @pytest.mark.parametrize("experiment", EVERYTHING, ids=lambda each: each.name)
@@ -46,6 +48,19 @@ def test_each_entry_changes_one_thing() -> None:
     assert motions["slower"][0][-1] > 3.0 * motions["same again"][0][-1]
     assert motions["longer hold"][0][-1] == pytest.approx(motions["same again"][0][-1] + 55.0)
     assert np.sum(np.diff(np.sign(motions["cycles"][1] - 1e-3)) > 0) == 3
+
+
+def test_a_wider_tool_is_held_as_much_longer_as_fluid_takes_to_leave() -> None:
+    tools = {each.name: each for each in second_tools(USUAL, 5e-3)}
+    assert [each.tool_radius for each in tools.values()] == pytest.approx([8e-3, 3e-3, 12.5e-3, 2e-3])
+    usual = motion(same_again(USUAL), 500)[0][-1]
+    more = {name: motion(each, 500)[0][-1] - usual for name, each in tools.items()}
+    assert more["wider tool"] == pytest.approx(5.0 * (1.6**2 - 1.0))
+    assert more["much wider tool"] == pytest.approx(5.0 * (2.5**2 - 1.0))
+    assert more["narrower tool"] == more["much narrower tool"] == pytest.approx(0.0, abs=1e-9)
+    longest = second_tools(replace(USUAL, hold=50.0), 5e-3)[2]
+    assert motion(longest, 500)[0][-1] == pytest.approx(usual + 55.0)
+    assert "hold for 60 s" in longest.words
 
 
 def test_a_thin_specimen_is_not_pressed_through() -> None:

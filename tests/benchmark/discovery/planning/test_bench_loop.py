@@ -1,3 +1,4 @@
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,7 +8,9 @@ from benchmark.discovery.planning import bench_loop
 from benchmark.discovery.planning.bench_loop import Loop, judged_by_block, judged_by_trials, rigs_give
 from benchmark.discovery.planning.bench_work import BenchWork
 from benchmark.discovery.planning.rivals import Rival
-from benchmark.experiments.menu import rigid_block
+from benchmark.experiments.menu import Usual, menu, rigid_block
+
+USUAL = Usual(depth=2e-3, speed=1e-3, hold=5.0, thickness=20e-3)
 
 
 def test_a_block_measures_the_rigs_own_give_and_says_who_is_out(bench, proposal) -> None:
@@ -55,8 +58,10 @@ WORST = {"a": [0.0, -500.0, -500.0], "b": [0.0, -500.0, -500.0]}
         ([9.0, 0.0, 0.0], [1.0, 0.0, 0.0], {}, 6.0, set()),
         ([5.0, 4.0, 3.0], [3.0, 3.0, 2.0], {}, 2.0, set()),
         ([5.0, 8.0, 7.0], [3.0, 4.0, 3.0], WORST, 8.0, set()),
+        ([5.0, 8.0, 7.0], [3.0, 4.0, 3.0], {"a": [0.0, -2.0, -3.0], "b": [0.0, -50.0, -50.0]}, 8.0, {"b"}),
+        ([5.0, 8.0, 7.0], [3.0, 4.0, 3.0], {"a": [0.0, -50.0, -50.0], "b": [0.0, -2.0, -3.0]}, 8.0, set()),
     ],
-    ids=["second", "first", "one trial alone", "not decisive", "both fail"],
+    ids=["second", "first", "one trial alone", "not decisive", "both fail", "the loser far more", "the winner"],
 )
 def test_whom_trials_speak_against_more_than_before_is_out(monkeypatch, first, second, foretold, total, out) -> None:
     monkeypatch.setattr(bench_loop, "held_out_conditions", lambda fit: fit.foretold)
@@ -65,6 +70,24 @@ def test_whom_trials_speak_against_more_than_before_is_out(monkeypatch, first, s
     separation, lost = judged_by_trials(found, tuple(Rival((slug,), None) for slug in "ab"), ["new"], BEFORE)
     assert lost == out
     assert separation == pytest.approx(np.sqrt(2.0 * abs(total)))
+
+
+@pytest.mark.parametrize(("size", "out"), [(4.5, frozenset()), (10.0, {"b"})], ids=["too little", "enough"])
+def test_what_promised_little_rules_nobody_out_until_more_adds_up(bench, proposal, monkeypatch, size, out) -> None:
+    found = SimpleNamespace(discovery=SimpleNamespace(verdict="lookalikes", effects=()))
+    standing = tuple(Rival((slug,), None) for slug in "ab")
+    monkeypatch.setattr(bench_loop, "rivals", lambda found: standing)
+    monkeypatch.setattr(bench_loop, "leads", lambda found, standing: {})
+    monkeypatch.setattr(bench_loop, "judged_by_trials", lambda *told: (4.0, frozenset({"b"})))
+    monkeypatch.setattr(BenchWork, "record", lambda bench, proposal, trials, number: ())
+    monkeypatch.setattr(BenchWork, "add", lambda bench, proposal, files: None)
+    longer = replace(proposal(menu(USUAL)[0]), separation=size)
+    loop = Loop(bench, 1, lambda path, without: found, lambda found, allowed: longer)
+    loop.run()
+    assert loop.out == out
+    more = Loop(bench, 5, lambda path, without: found, lambda found, allowed: longer)
+    more.run()
+    assert more.out == {"b"}  # five times 4.5 are 10.1
 
 
 def test_the_loop_stops_at_its_budget_or_when_nothing_is_proposed(bench, proposal, monkeypatch) -> None:
