@@ -228,7 +228,7 @@ def loop_section(record: DiscoveryRecord) -> Section:
     if not record.rounds:
         return Section(title, [Paragraph("No experiment was done: one answer stood, or none could be proposed.")])
     told = [
-        f"{each.words} {effect_name(each.rivals[0])} against {effect_name(each.rivals[1])}: "
+        f"{each.words} {_begun(effect_name(each.rivals[0]))} against {effect_name(each.rivals[1])}: "
         f"{_parted(each.found)} apart, {each.expected:.0f} expected. {_outcome(each)}"
         for each in record.rounds
     ]
@@ -261,4 +261,10 @@ def _parted(found: float | None) -> str:
 def _outcome(each: Round) -> str:
     answer = " and ".join(map(effect_name, each.answer)) or "no effect"
     out = f"{', '.join(map(effect_name, each.ruled_out))} ruled out; " if each.ruled_out else ""
-    return f"{out}{answer} {'stands alone' if each.remaining < 2 else f'and {each.remaining - 1} rivals stand'}."
+    beside = "alone" if each.remaining < 2 else "beside a rival" if each.remaining == 2 else "beside rivals"
+    return _begun(f"{out}{answer} stands {beside}.")
+
+
+def _begun(sentence: str) -> str:
+    """With a capital letter."""
+    return sentence[:1].upper() + sentence[1:]
