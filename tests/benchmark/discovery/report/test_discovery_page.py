@@ -7,7 +7,7 @@ import pytest
 from benchmark.discovery.discovery_result import VERDICTS, ChannelSize, ConditionEstimate, Estimate, LookAlike
 from benchmark.discovery.report.disagreement_sections import representative
 from benchmark.discovery.report.discovery_page import discovery_page, discovery_verdict
-from benchmark.discovery.report.discovery_record import NextExperiment
+from benchmark.discovery.report.discovery_record import NextExperiment, Round
 from benchmark.discovery.report.effect_sections import next_section
 from reports import render_page
 
@@ -110,6 +110,30 @@ def test_the_proposal_stands_with_its_protocol(record) -> None:
     text = _text(replace(record, proposal=proposal))
     for words in ("Rest 60 s.", "40.8 standard deviations instead of 6.9", "[[segments]]"):
         assert words in text
+
+
+def test_each_round_at_the_bench_is_told_and_stands_in_a_table(record, tmp_path) -> None:
+    first = Round(
+        rivals=("viscoelastic_relaxation", "poroelastic_drainage"),
+        choice="wider tool",
+        words="Change the tool to one of 8 mm radius and press as before.",
+        separation_now=0.1,
+        expected=15.2,
+        found=4.3,
+        trials=5,
+        minutes=11.0,
+        ruled_out=(),
+        verdict="lookalikes",
+        answer=("poroelastic_drainage",),
+        remaining=2,
+    )
+    last = replace(first, choice="longer hold", ruled_out=("viscoelastic_relaxation",), remaining=1)
+    text = _text(replace(record, proposal=None, grown=tmp_path, rounds=(first, last)))
+    assert "4 standard deviations apart, 15 expected. Poroelastic drainage stands beside a rival." in text
+    assert "Viscoelastic relaxation ruled out; poroelastic drainage stands alone." in text
+    assert "Viscoelastic relaxation against poroelastic drainage:" in text
+    assert re.search(r"longer hold viscoelastic relaxation / poroelastic drainage 0.1 15.2 4.3 5 11", text)
+    assert "2 more experiments: wider tool; longer hold" in text
 
 
 def test_one_trial_a_channel_and_condition_is_shown_the_held_out_one(found) -> None:
