@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -105,13 +105,30 @@ SECOND_TOOLS = {"wider tool": 1.6, "narrower tool": 1.0 / 1.6, "much wider tool"
 """Radii of second tools over the first one's: what drains takes 2.6 and 6.2 times as long, or as much less."""
 
 
-def second_tools(usual: Usual, radius: float) -> tuple[Experiment, ...]:
-    """The session's own press with wider and with narrower tools; `radius` is that of the first, m.
+SAME_TOOL = 0.01
+"""Relative difference of radii up to which a tool is the session's own."""
+
+
+def second_tools(usual: Usual, radius: float, there: Sequence[float] | None = None) -> tuple[Experiment, ...]:
+    """The session's own press with other tools; `radius` is that of the first, m.
 
     A wider tool is held longer, by the radii's ratio squared: fluid needs that time to leave, and a press as short as
     before would show its beginning alone.
+
+    Parameters
+    ----------
+    usual
+        The press.
+    radius
+        Of the session's own tool, m.
+    there
+        Radii of the tools that can be had, m; None: any, of which `SECOND_TOOLS` are taken.
     """
-    return tuple(_with_tool(usual, radius, name, _round(ratio * radius)) for name, ratio in SECOND_TOOLS.items())
+    if there is None:
+        others = {name: _round(ratio * radius) for name, ratio in SECOND_TOOLS.items()}
+    else:
+        others = {f"tool of {_mm(each)}": each for each in there if abs(each - radius) > SAME_TOOL * radius}
+    return tuple(_with_tool(usual, radius, name, other) for name, other in others.items())
 
 
 def _with_tool(usual: Usual, radius: float, name: str, other: float) -> Experiment:

@@ -142,11 +142,10 @@ def _tools(
     """Other tools, each with the elastic answer of the specimen under it."""
     table_of, specimen = base
     out: Weighed = {}
-    for experiment in second_tools(usual_press(condition), condition.tool.radius):
-        radius = experiment.tool_radius or condition.tool.radius
-        if experiment.name in allowed.done or not (allowed.radii is None or _near(radius, allowed.radii)):
+    for experiment in second_tools(usual_press(condition), condition.tool.radius, allowed.radii):
+        if experiment.name in allowed.done:
             continue
-        tool = condition.tool.model_copy(update={"radius": radius})
+        tool = condition.tool.model_copy(update={"radius": experiment.tool_radius})
         try:
             table = table_of(specimen, tool, condition.support, condition.around.peak_depth)
         except TissuebenchError:
@@ -156,10 +155,6 @@ def _tools(
         if size is not None:
             out[experiment.name] = (experiment, size, minutes(experiment, condition.size))
     return out
-
-
-def _near(radius: float, radii: Sequence[float]) -> bool:
-    return any(abs(each - radius) < 0.01 * radius for each in radii)
 
 
 def _simulated(

@@ -63,6 +63,12 @@ def test_a_wider_tool_is_held_as_much_longer_as_fluid_takes_to_leave() -> None:
     assert "hold for 60 s" in longest.words
 
 
+def test_tools_that_are_there_are_taken_instead_of_any() -> None:
+    found = second_tools(USUAL, 5e-3, (5.02e-3, 2.5e-3, 9e-3))
+    assert {each.name: each.tool_radius for each in found} == {"tool of 2.5 mm": 2.5e-3, "tool of 9 mm": 9e-3}
+    assert second_tools(USUAL, 5e-3, ()) == ()
+
+
 def test_a_thin_specimen_is_not_pressed_through() -> None:
     thin = Usual(depth=2e-3, speed=1e-3, hold=0.0, thickness=3e-3)
     assert "deeper" not in {each.name for each in menu(thin)}
