@@ -60,7 +60,7 @@ class Loop:
         return found
 
     def _round(self, found: Findings, proposal: NextExperiment) -> Findings:
-        standing = rivals(found)[:2]
+        standing = tuple(sorted(rivals(found)[:2], key=lambda rival: rival.slugs))  # one pair, whichever is first now
         number = len(self.rounds) + 1
         separation: float | None
         if proposal.choice == BLOCK:

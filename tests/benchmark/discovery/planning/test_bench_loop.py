@@ -90,6 +90,26 @@ def test_what_promised_little_rules_nobody_out_until_more_adds_up(bench, proposa
     assert more.out == {"b"}  # five times 4.5 are 10.1
 
 
+def test_what_a_pair_said_before_stays_when_the_other_comes_first(bench, proposal, monkeypatch) -> None:
+    found = SimpleNamespace(discovery=SimpleNamespace(verdict="lookalikes", effects=()))
+    first, second = (Rival((slug,), None) for slug in "ab")
+    turns, judged = [], []
+
+    def turned(found):
+        turns.append(None)
+        return (first, second) if len(turns) % 2 else (second, first)
+
+    monkeypatch.setattr(bench_loop, "rivals", turned)
+    monkeypatch.setattr(bench_loop, "leads", lambda found, standing: {("usual", f"{len(judged)}"): 1.0})
+    monkeypatch.setattr(bench_loop, "judged_by_trials", lambda *told: (judged.append(told[1:]) or 4.0, frozenset()))
+    monkeypatch.setattr(BenchWork, "record", lambda bench, proposal, trials, number: ())
+    monkeypatch.setattr(BenchWork, "add", lambda bench, proposal, files: None)
+    longer = proposal(menu(USUAL)[0])
+    Loop(bench, 3, lambda path, without: found, lambda found, allowed: longer).run()
+    assert [[rival.slugs for rival in told[0]] for told in judged] == [[("a",), ("b",)]] * 3
+    assert [told[2] for told in judged] == [{("usual", "0"): 1.0}] * 3
+
+
 def test_the_loop_stops_at_its_budget_or_when_nothing_is_proposed(bench, proposal, monkeypatch) -> None:
     found = SimpleNamespace(discovery=SimpleNamespace(verdict="lookalikes", effects=()), calibrated=None)
     monkeypatch.setattr(bench_loop, "rivals", lambda found: _pair(1e-3))
