@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmark.blind.body.presses import DEEPEST
 from benchmark.blind.cases import BlindCase, CaseName, make_case
 from benchmark.blind.closed_loop import HiddenBench, under_tool
 from benchmark.blind.scoring.judging import judge, looped, table
@@ -43,6 +44,14 @@ def test_a_wider_tool_presses_the_same_specimen(bench: HiddenBench) -> None:
     usual = next(trial for trial in grown.trials if trial.condition != "wider tool")
     shallow = [float(np.interp(1.5e-3, *_loading(trial.table.depth, trial.table.force))) for trial in (usual, added[0])]
     assert shallow[1] > 1.1 * shallow[0]
+
+
+def test_under_another_tool_a_body_is_pressed_as_deep_as_is_asked_and_answers_the_same(bench: HiddenBench) -> None:
+    radius = 1.6 * bench.made.scene.body.specimen.tool_radius
+    whole, short = (under_tool(bench.made, radius, deepest).scene.body for deepest in (DEEPEST, 3e-3))
+    assert (whole.table.depth[-1], short.table.depth[-1]) == pytest.approx((5e-3, 3e-3))
+    depth = np.array([1e-3, 2e-3, 2.9e-3])
+    np.testing.assert_allclose(short.force(depth), whole.force(depth), rtol=2e-3)
 
 
 def _loading(depth, force):
