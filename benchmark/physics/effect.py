@@ -201,6 +201,8 @@ class Effect:
         In place of the starts of the description, where a start goes with the press.
     needs_markers : bool
         Whether it shows in the markers alone.
+    seen_by : str
+        The parameter by which it shows in markers too, where there are some: what they do not show is another effect.
     richer : Effect or None
         The same effect with one more term, tried where this one is accepted.
     origin : str or None
@@ -221,6 +223,7 @@ class Effect:
     observe: Callable[[Values, Readings, Motion, TrialContext], Readings] | None = None
     starts: Callable[[TrialContext], tuple[dict[str, float], ...]] | None = None
     needs_markers: bool = False
+    seen_by: str = ""
     richer: Effect | None = None
     origin: str | None = None
     amplitudes: tuple[str, ...] = ()

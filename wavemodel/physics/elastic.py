@@ -12,14 +12,17 @@ from wavemodel.physics.load_segment import LoadSegment, Memory
 
 LENGTH = 1e-3
 """m, where the stiffness of a floor is told."""
+STEEPEST = 50.0
+"""Exponent up to which a body stiffens exponentially; beyond, a search has lost its way."""
 
 
 @dataclass(frozen=True)
 class StrainStiffening:
-    """F = f(d) (1 + b_1 x + b_2 x^2), x = |d| / length.
+    """F = f(d) (1 + (b_1 x + b_2 x^2) e^(b_3 x^2)), x = |d| / length.
 
     The first terms of any smooth hyperelastic law; on a bonded base it fits a neo-Hookean body to 0.02 % with the
-    height of the stack as the length (Hayes et al. 1972, J Biomech 5:541 for the linear law that is corrected).
+    height of the stack as the length (Hayes et al. 1972, J Biomech 5:541 for the linear law that is corrected). With
+    b_3 it grows as in Fung's exponential law (Y. C. Fung 1967, Am J Physiol 213:1532).
 
     Attributes
     ----------
@@ -27,21 +30,30 @@ class StrainStiffening:
         b_1 and b_2, 0 to 1e4; both zero: off.
     length
         In m, 1e-6 to 10.
+    exponential
+        b_3, 0 to 1e4.
     """
 
     linear: float = 0.0
     quadratic: float = 0.0
     length: float = 1e-2
+    exponential: float = 0.0
 
     def __post_init__(self) -> None:
         require_between("strain stiffening", "linear", self.linear, "", 0.0, 1e4)
         require_between("strain stiffening", "quadratic", self.quadratic, "", 0.0, 1e4)
         require_between("strain stiffening", "length", self.length, "m", 1e-6, 10.0)
+        require_between("strain stiffening", "exponential", self.exponential, "", 0.0, 1e4)
 
     def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
         """(n,) force."""
-        x = abs(segment.depth) / self.length
-        return segment.force * (1.0 + x * (self.linear + self.quadratic * x)), memory
+        return segment.force * self.factor(segment.depth), memory
+
+    def factor(self, depth: FloatArray) -> FloatArray:
+        """(n,) force over f at depths (n,), m; exponents end at `STEEPEST`."""
+        x = np.abs(depth) / self.length
+        steeper = np.exp(np.minimum(self.exponential * x**2, STEEPEST))
+        return np.asarray(1.0 + x * (self.linear + self.quadratic * x) * steeper)
 
 
 @dataclass(frozen=True)

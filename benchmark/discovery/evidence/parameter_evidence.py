@@ -62,13 +62,18 @@ class _Strength:
     value: float
 
     @property
+    def absent(self) -> bool:
+        """Whether it stands at none."""
+        return bool(not self.parameter.logarithmic and self.value == max(self.parameter.low, 0.0))
+
+    @property
     def free(self) -> bool:
         """Whether it stands within its range, off nothing and off a bound."""
         p = self.parameter
         if p.logarithmic:
             share = np.log(self.value / p.low) / np.log(p.high / p.low)
             return bool(1.0 - criteria.AT_BOUND < share < criteria.AT_BOUND)
-        return bool(self.value != max(p.low, 0.0) and p.low < self.value / criteria.AT_BOUND < p.high)
+        return bool(not self.absent and p.low < self.value / criteria.AT_BOUND < p.high)
 
 
 def strengths(fitted: Fit, effect: Effect, names: tuple[str, ...] = ()) -> list[_Strength]:
@@ -85,15 +90,17 @@ def strengths(fitted: Fit, effect: Effect, names: tuple[str, ...] = ()) -> list[
 def determined(fitted: Fit, effect: Effect, names: tuple[str, ...] = ()) -> bool:
     """Whether the data tell how strong an effect is.
 
-    Some strength must stand off its bounds (a share may be whole), and those that do must differ from none together:
-    Wald's statistic on the larger of the model's covariance and the trials' own scatter. A logarithmic strength has no
-    none: its interval must be narrower than its range.
+    Some strength must stand off its bounds (a share may be whole), and those that do must differ from none together
+    with those that are at none, which cannot take their place: Wald's statistic on the larger of the model's covariance
+    and the trials' own scatter. A logarithmic strength has no none: its interval must be narrower than its range.
     """
     found = strengths(fitted, effect, names)
     whole = [each for each in found if each.parameter.high == 1.0 and each.value > criteria.AT_BOUND]
     free = [each for each in found if each.free]
     if not free:
         return bool(whole)
+    if not all(each.parameter.logarithmic for each in free):
+        free += [each for each in found if each.absent]
     places = [each.place for each in free]
     covariance = max((m[np.ix_(places, places)] for m in (fitted.covariance, sandwich(fitted))), key=np.trace)
     if all(each.parameter.logarithmic for each in free):
@@ -106,10 +113,14 @@ def determined(fitted: Fit, effect: Effect, names: tuple[str, ...] = ()) -> bool
 
 
 def told_parameters(fitted: Fit, effect: Effect) -> int:
-    """How many parameters of an effect the data tell of: those that only show in markers count where there are some."""
+    """How many parameters of an effect the data tell of: those that only show in markers count where there are some.
+
+    A strength at none is a term that is not there.
+    """
     shares = 1.0 - np.diag(fitted.covariance) * fitted.precision
+    idle = {each.place for each in strengths(fitted, effect) if each.absent}
     return sum(
-        bool(shares[place] > criteria.TOLD)
+        bool(shares[place] > criteria.TOLD and place not in idle)
         for place, (slug, _) in enumerate(fitted.model.parameters, start=fitted.model.shape_count)
         if slug == effect.slug
     )
@@ -164,14 +175,21 @@ def _added_force(fitted: Fit, grown: Sequence[_Strength], vector: Array) -> floa
     return float(np.mean(most))
 
 
-def every_term_told(fitted: Fit) -> bool:
-    """Whether the data tell the strength of each term of the last effect: with more terms than one, any may be idle.
+def seen(fitted: Fit, effect: Effect) -> bool:
+    """Whether markers show an effect that must show in them, where there are any."""
+    if not effect.seen_by or fitted.model.problem.study.layout is None:
+        return True
+    return determined(fitted, effect, (effect.seen_by,))
+
+
+def terms_told(fitted: Fit, plain: Effect) -> bool:
+    """Whether the data tell the strength of each term that the last effect has more than its plain form.
 
     A power has no none, and is no strength.
     """
     effect = fitted.model.effects[-1]
-    terms = [p.name for p in effect.description.parameters if not p.logarithmic and p.low <= 0.0]
-    return all(determined(fitted, effect, (term,)) for term in terms)
+    more = [p for p in effect.description.parameters if p.name not in plain.names]
+    return all(determined(fitted, effect, (p.name,)) for p in more if not p.logarithmic and p.low <= 0.0)
 
 
 def by_condition(fitted: Fit) -> tuple[tuple[str, ConditionEstimate], ...]:

@@ -25,10 +25,10 @@ from benchmark.discovery.evidence.gains import (
     score,
 )
 from benchmark.discovery.evidence.parameter_evidence import (
-    determined,
-    every_term_told,
+    seen,
     steady,
     strength_told,
+    terms_told,
     told_parameters,
 )
 from benchmark.discovery.evidence.pool import Pool
@@ -123,13 +123,14 @@ def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
     """The simplest of those that gain as much as the best, which no data tell apart; then the catalogue's order."""
     places = {effect.slug: place for place, effect in enumerate(effects)}
     ties = [s for s in accepted if s.gain.mean >= (1.0 - criteria.TIE) * accepted[0].gain.mean]
-    told = [s for s in ties if determined(s.fit, s.fit.model.effects[-1])]
+    told = [s for s in ties if strength_told(s.fit, s.fit.model.effects[-1])]
     return min(told or ties, key=lambda s: (told_parameters(s.fit, s.fit.model.effects[-1]), places[s.slug]))
 
 
 def _evident(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:
-    """Whether a candidate has the evidence of trials, and beside others a strength."""
-    if steps and not strength_told(scored.fit, scored.fit.model.effects[-1]):
+    """Whether a candidate has the evidence of trials, in markers too where it must, and beside others a strength."""
+    effect = scored.fit.model.effects[-1]
+    if not seen(scored.fit, effect) or (steps and not strength_told(scored.fit, effect)):
         return False
     return _over_trials(scored.gain, settings) and scored.delta_bic < criteria.ACCEPT_BIC
 
@@ -196,7 +197,8 @@ def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
     near = [s for s in scored[:3] if s.gain.mean > criteria.RICHER_SHARE * top and s.gain.z >= criteria.RICHER_Z]
     pairs = [(s, effect) for s in near if (effect := s.fit.model.effects[-1].richer) is not None]
     richer = work.fits("second terms", [(current, effect) for _, effect in pairs])
-    told = [fit for fit in richer if every_term_told(fit)]
+    plain = [s.fit.model.effects[-1] for s, _ in pairs]
+    told = [fit for fit, effect in zip(richer, plain, strict=True) if terms_told(fit, effect)]
     better = {s.slug: s for s in score(current, told)}
     chosen = []
     for s in scored:
@@ -265,7 +267,9 @@ def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], settin
     for under, incoming in swaps:
         for scored in score(under, work.fits("swaps", [(under, rival) for rival in incoming])):
             then = held_out(scored.fit)
-            if float(then.sum()) <= density or not (carries_over(scored) and beats_bent(scored, settings)):
+            if float(then.sum()) <= density or not seen(scored.fit, scored.fit.model.effects[-1]):
+                continue
+            if not (carries_over(scored) and beats_bent(scored, settings)):
                 continue
             if not alone or _over_trials(gain(then, now, groups), settings):
                 best, density = scored.fit, float(then.sum())
@@ -311,6 +315,8 @@ def _in_place(
         made = [s.fit for s in rounds[0] if s.slug not in taken]
     alike, fitted = [], within_tolerance(current)
     for rival in made:
+        if not seen(rival, rival.model.effects[-1]):
+            continue
         lead = gain(now, held_out(rival), groups)
         close = _close(effect, rival.model.effects[-1]) if fitted else criteria.CLOSE_UNFITTED
         if lead.z < settings.lookalike_z or lead.mean < close * own.mean:

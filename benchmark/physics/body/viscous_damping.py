@@ -15,9 +15,10 @@ DESCRIPTION = EffectDescription(
     slug="viscous_damping",
     acts_on="body",
     sentence="The tissue resists the speed of the press, without any memory in a hold.",
-    equation="F = f + eta df/dt + c v_0 sign(v) |v / v_0|^n, v_0 = 1 mm/s",
+    equation="F = f + eta df/dt + (c + lambda F) v_0 sign(v) |v / v_0|^n, v_0 = 1 mm/s",
     needs=(("unloading", "hold", "second_rate"),),
-    source="Kelvin-Voigt solid; Simo and Hughes, Computational Inelasticity, chapter 10; power-law fluid for n < 1",
+    source="Kelvin-Voigt solid; Simo and Hughes, Computational Inelasticity, chapter 10; power-law fluid for n < 1; "
+    "Hunt and Crossley 1975, J Appl Mech 42:440 (damping that grows with the contact)",
     parameters=(
         linear(
             "damping_time",
@@ -29,8 +30,10 @@ DESCRIPTION = EffectDescription(
             formerly="eta",
         ),
         linear("drag", "N s/m", 0.0, 1e5, "resistance c at 1 mm/s, whatever the depth"),
-        linear("power", "", 0.5, 1.5, "power n of the speed in that resistance"),
+        linear("drag_growth", "s/m", 0.0, 1e4, "growth lambda of that resistance with the force"),
+        linear("power", "", 0.5, 1.0, "power n of the speed in that resistance", stated=(0.5, 1.5)),
     ),
+    may_lack=("drag_growth",),
     in_wave="on top of its elastic law",
     in_fem="quasi-linear: on top of its elastic answer, in `run --model` only",
 )
@@ -46,20 +49,27 @@ def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
 
 
 def _observe(values: Values, readings: Readings, motion: Motion, context: TrialContext) -> Readings:
-    if values["drag"] <= 0.0:
+    growth = values.get("drag_growth", 0.0)
+    if values["drag"] <= 0.0 and growth <= 0.0:
         return readings
     speed = np.gradient(motion.depth, motion.time) / REFERENCE_SPEED
     formed = np.clip(motion.depth / (FORMED * context.peak_depth), 0.0, 1.0)
-    resisted = values["drag"] * REFERENCE_SPEED * formed * np.sign(speed) * np.abs(speed) ** values["power"]
-    pushed = readings.force + resisted
+    resistance = (values["drag"] * formed + growth * np.maximum(readings.force, 0.0)) * REFERENCE_SPEED
+    pushed = readings.force + resistance * np.sign(speed) * np.abs(speed) ** values["power"]
     return replace(readings, force=np.where(motion.depth > 0.0, np.maximum(pushed, 0.0), readings.force))
 
 
 def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     slowest = context.peak_depth / context.duration
     drag = 0.01 * context.peak_force / max(slowest, 1e-9)
-    kelvin = {"damping_time": 0.003 * context.duration, "drag": 0.0, "power": 1.0}
-    return kelvin, {"damping_time": 0.0, "drag": drag, "power": 1.0}, {"damping_time": 0.0, "drag": drag, "power": 0.8}
+    growth = 0.01 / max(slowest, 1e-9)
+    none = {"damping_time": 0.0, "drag": 0.0, "drag_growth": 0.0, "power": 1.0}
+    kelvin = none | {"damping_time": 0.003 * context.duration}
+    drags = [none | {"drag": drag, "power": power} for power in (1.0, 0.8)]
+    growing = [none | {"drag_growth": growth, "power": power} for power in (1.0, 0.8)]
+    return kelvin, *drags, *growing
 
 
-EFFECT = Effect(DESCRIPTION, "damping_time", body=_body, observe=_observe, starts=_starts, amplitudes=("drag",))
+EFFECT = Effect(
+    DESCRIPTION, "damping_time", body=_body, observe=_observe, starts=_starts, amplitudes=("drag", "drag_growth")
+)

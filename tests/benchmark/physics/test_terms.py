@@ -120,6 +120,26 @@ def test_drag_is_the_same_at_all_depths_once_the_contact_has_formed():
     assert made.force[AIR] == pytest.approx(0.0)
 
 
+def test_drag_grows_with_the_force_as_in_hunt_and_crossleys_contact():
+    growing = {"damping_time": 0.0, "drag": 0.0, "drag_growth": 25.0, "power": 0.5}
+    made = readings(MOTION, viscous_damping=growing)
+    rate = np.gradient(MOTION.depth, MOTION.time) / 1e-3
+    inner = (MOTION.depth > 1e-3) & (MOTION.depth < 4e-3)
+    added = 25.0 * 1e-3 * PLAIN.force * np.sign(rate) * np.sqrt(np.abs(rate))
+    assert (made.force - PLAIN.force)[inner] == pytest.approx(added[inner])
+    without = readings(MOTION, viscous_damping={"damping_time": 0.0, "drag": 0.0, "power": 0.5})
+    assert without.force == pytest.approx(PLAIN.force)  # an older model file has no growth
+
+
+def test_stiffening_in_its_richer_form_is_fungs_exponential():
+    richer = BY_SLUG["strain_stiffening"].richer
+    values = {richer.slug: {"b_1": 0.5, "b_2": 2.0, "b_3": 3.0}}
+    made = TrialPipeline(AROUND, (richer,)).readings(linear_table(), values, MOTION)
+    x = np.maximum(MOTION.depth, 0.0) / AROUND.thickness
+    factor = 1.0 + (0.5 * x + 2.0 * x**2) * np.exp(3.0 * x**2)
+    assert made.force == pytest.approx(PLAIN.force * factor, rel=1e-9)
+
+
 def test_softening_spares_the_first_loading():
     made = readings(MOTION, stress_softening={"softening": 0.2, "softening_width": 0.5})
     first = np.arange(MOTION.time.size) < DEEP[0]

@@ -16,6 +16,16 @@ def test_is_its_polynomial(press):
     np.testing.assert_allclose(found, 500.0 * DEPTH * (1 + 0.3 * x + 2.0 * x**2), rtol=1e-13)
 
 
+def test_grows_exponentially_where_its_exponent_is_given(press):
+    x = DEPTH / 8e-3
+    found = press(Physics(stiffening=StrainStiffening(0.3, 2.0, 8e-3, 4.0)), DEPTH)
+    np.testing.assert_allclose(found, 500.0 * DEPTH * (1 + (0.3 * x + 2.0 * x**2) * np.exp(4.0 * x**2)), rtol=1e-13)
+
+
+def test_stays_finite_however_steep():
+    assert np.isfinite(StrainStiffening(0.3, 2.0, 1e-4, 1e4).factor(DEPTH)).all()
+
+
 def test_off_without_coefficients(press):
     np.testing.assert_array_equal(press(Physics(stiffening=StrainStiffening()), DEPTH), 500.0 * DEPTH)
 
@@ -26,7 +36,7 @@ def test_the_way_back_is_the_way_there(press, path):
     np.testing.assert_allclose(np.trapezoid(found, depth), 0.0, atol=1e-12)
 
 
-@pytest.mark.parametrize("wrong", [{"linear": -0.1}, {"quadratic": np.nan}, {"length": 0.0}])
+@pytest.mark.parametrize("wrong", [{"linear": -0.1}, {"quadratic": np.nan}, {"length": 0.0}, {"exponential": -1.0}])
 def test_stiffening_refuses(wrong):
     with pytest.raises(WaveError, match="strain stiffening"):
         StrainStiffening(**wrong)

@@ -16,7 +16,9 @@ from benchmark.discovery.evidence.parameter_evidence import (
     by_condition,
     constant,
     determined,
+    seen,
     strength_told,
+    terms_told,
     told_parameters,
     undetermined,
     unsteady,
@@ -29,7 +31,8 @@ SETTINGS = Settings()
 
 def effect(slug, parameters=1, richer=None, acts_on="body"):
     description = SimpleNamespace(acts_on=acts_on, parameters=())
-    return SimpleNamespace(slug=slug, names=("p",) * parameters, richer=richer, description=description)
+    names = ("p",) * parameters
+    return SimpleNamespace(slug=slug, names=names, richer=richer, description=description, seen_by="")
 
 
 def fitted(*effects, density=0.0, objective=0.0, conditions=(0,) * 8):
@@ -48,7 +51,6 @@ def scored(slug, mean, z=9.0, bic=-50.0, each=None, **changes):
 
 def known_where(monkeypatch, rule):
     """Strengths are known where a rule of fit and effect says so."""
-    monkeypatch.setattr(selection, "determined", rule)
     monkeypatch.setattr(selection, "strength_told", rule)
 
 
@@ -531,12 +533,66 @@ def test_a_share_at_its_bound_is_not_told_by_what_it_adds():
     assert not adds_force(made, one)
 
 
+def test_a_strength_that_trades_with_one_at_none_is_told_since_that_cannot_be_less():
+    one = SimpleNamespace(slug="one", amplitude="growth", amplitudes=("force",))
+    made = Told((0.0, 2.0), (1.0, 1.5**2), GROWTH, FORCE)
+    assert not determined(made, one)  # 2 of 1.5 standard errors, and nothing to trade with
+    made.covariance[0, 1] = made.covariance[1, 0] = -0.95 * 1.5
+    assert determined(made, one)
+    assert not determined(made, one, ("force",))
+    free = Told((0.01, 2.0), (1.0, 1.5**2), GROWTH, FORCE)
+    free.covariance = made.covariance
+    assert determined(free, one)
+
+
+@pytest.mark.parametrize(
+    ("layout", "shown", "expected"), [(None, 0.0, True), ("grid", 0.0, False), ("grid", 0.3, True)]
+)
+def test_what_must_show_in_markers_shows_in_them_where_there_are_some(layout, shown, expected):
+    slip = SimpleNamespace(slug="one", amplitude="part", amplitudes=("share",), seen_by="part")
+    made = Told((0.2, shown), (0.01**2, 0.05**2), SHARE, WHOLE)
+    made.model.problem = SimpleNamespace(study=SimpleNamespace(layout=layout))
+    assert seen(made, slip) is expected
+    assert seen(made, SimpleNamespace(slug="one", seen_by=""))
+
+
+def test_a_slip_that_no_marker_shows_is_neither_named_nor_a_look_alike(monkeypatch, known_densities):
+    monkeypatch.setattr(selection, "seen", lambda fit, effect: effect.slug != "slip")
+    slip, friction = scored("slip", 6.0), scored("friction", 5.0)
+    work = Work(slip.fit, friction.fit)
+    assert not selection._evident(slip, [], SETTINGS)
+    assert selection._evident(friction, [], SETTINGS)
+    chosen = friction.fit.model.effects[0]
+    _, rivals, _ = selection._in_place(fitted(), friction.fit, chosen, [[slip, friction]], SETTINGS, work)
+    assert rivals == ()
+
+
+def test_only_the_terms_that_the_plain_form_lacks_must_be_told():
+    more = EffectParameter("more", "", (0.0,), 0.0, 9.0, False, "a second term")
+    richer = SimpleNamespace(
+        slug="one", amplitude="growth", amplitudes=(), description=SimpleNamespace(parameters=(GROWTH, LIMIT, more))
+    )
+    made = Told((0.0, 1.0, 4.0), (1.0, 0.1, 1.0), GROWTH, LIMIT, more)
+    made.model.effects = (richer,)
+    assert terms_told(made, SimpleNamespace(names=("growth",)))
+    assert terms_told(made, SimpleNamespace(names=("growth", "more")))
+    assert not terms_told(made, SimpleNamespace(names=("more", "limit")))  # the first term is at none
+
+
 def test_a_parameter_that_only_its_prior_holds_does_not_count():
+    one = SimpleNamespace(slug="one", amplitude="part", amplitudes=())
     made = Told((0.3, 0.5), (0.01, 0.999), SHARE, WHOLE)
     made.precision = np.array([1.0, 1.0])
-    assert told_parameters(made, SimpleNamespace(slug="one")) == 1
+    assert told_parameters(made, one) == 1
     made.covariance = np.diag([0.01, 0.5])
-    assert told_parameters(made, SimpleNamespace(slug="one")) == 2
+    assert told_parameters(made, one) == 2
+
+
+def test_a_term_at_none_does_not_count():
+    one = SimpleNamespace(slug="one", amplitude="share", amplitudes=("part",))
+    made = Told((0.3, 0.0), (0.01, 0.5), SHARE, WHOLE)
+    made.precision = np.array([1.0, 1.0])
+    assert told_parameters(made, one) == 1
 
 
 def test_one_condition_or_no_effect_tells_nothing_of_constancy():
