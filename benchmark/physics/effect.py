@@ -193,6 +193,9 @@ class Effect:
         The parameter by which the effect grows from nothing, where a fit scales its start.
     amplitudes : tuple of str
         Further ones that are scaled with it.
+    form : tuple of str
+        Parameters of the form alone that the plain one does not have: how open they are says nothing of how strong the
+        effect is.
     drive : (values, motion, response) -> (n,) depth that the tissue is given, m
     body : (values, context) -> options of `wavemodel.physics.Physics` by their names
     lower_face : (values, face, press, context) -> LowerFaceMotion
@@ -227,6 +230,7 @@ class Effect:
     richer: Effect | None = None
     origin: str | None = None
     amplitudes: tuple[str, ...] = ()
+    form: tuple[str, ...] = ()
     fem: FemTerm | None = None
     native_in_wave: tuple[str, ...] = ()
     in_table: TableTerm | None = None

@@ -92,7 +92,8 @@ def determined(fitted: Fit, effect: Effect, names: tuple[str, ...] = ()) -> bool
 
     Some strength must stand off its bounds (a share may be whole), and those that do must differ from none together
     with those that are at none, which cannot take their place: Wald's statistic on the larger of the model's covariance
-    and the trials' own scatter. A logarithmic strength has no none: its interval must be narrower than its range.
+    and the trials' own scatter, both with the effect's form as fitted. A logarithmic strength has no none: its interval
+    must be narrower than its range.
     """
     found = strengths(fitted, effect, names)
     whole = [each for each in found if each.parameter.high == 1.0 and each.value > criteria.AT_BOUND]
@@ -102,7 +103,8 @@ def determined(fitted: Fit, effect: Effect, names: tuple[str, ...] = ()) -> bool
     if not all(each.parameter.logarithmic for each in free):
         free += [each for each in found if each.absent]
     places = [each.place for each in free]
-    covariance = max((m[np.ix_(places, places)] for m in (fitted.covariance, sandwich(fitted))), key=np.trace)
+    form = [each.place for each in strengths(fitted, effect, effect.form)] if effect.form else []
+    covariance = max((_given(m, places, form) for m in (fitted.covariance, sandwich(fitted))), key=np.trace)
     if all(each.parameter.logarithmic for each in free):
         widths = 2.0 * criteria.NORMAL_95 * np.sqrt(np.diag(covariance))
         return all(w < np.log(e.parameter.high / e.parameter.low) for w, e in zip(widths, free, strict=True))
@@ -110,6 +112,15 @@ def determined(fitted: Fit, effect: Effect, names: tuple[str, ...] = ()) -> bool
     amount = np.array([free[k].value for k in plain])
     size = float(amount @ scaled_inverse(covariance[np.ix_(plain, plain)]) @ amount)
     return bool(size > chi2.ppf(criteria.DETERMINED, len(plain)))
+
+
+def _given(covariance: Array, places: list[int], form: list[int]) -> Array:
+    """(k, k) covariance of the parameters at some places, those of the form being held."""
+    inner = covariance[np.ix_(places, places)]
+    if not form:
+        return inner
+    across = covariance[np.ix_(places, form)]
+    return np.asarray(inner - across @ scaled_inverse(covariance[np.ix_(form, form)]) @ across.T)
 
 
 def told_parameters(fitted: Fit, effect: Effect) -> int:

@@ -91,6 +91,7 @@ STEEPER = Effect(
     body=_body,
     starts=_steeper_starts,
     amplitudes=("b_1",),
+    form=("b_3",),
     fem=FemTerm(("b_1", "b_2", "b_3"), _in_fem),
 )
 EFFECT = replace(STEEPER, description=DESCRIPTION, starts=_starts, richer=STEEPER, fem=FemTerm(("b_1", "b_2"), _in_fem))

@@ -452,6 +452,10 @@ class Told:
         )
 
 
+def strong(amplitude, amplitudes=(), form=(), **more):
+    return SimpleNamespace(slug="one", amplitude=amplitude, amplitudes=amplitudes, form=form, **more)
+
+
 SHARE = EffectParameter("share", "", (0.2,), 0.0, 0.95, False, "share")
 WHOLE = EffectParameter("part", "", (0.2,), 0.0, 1.0, False, "share that may be whole")
 FORCE = EffectParameter("force", "N", (1.0,), 0.0, 100.0, False, "force")
@@ -474,7 +478,7 @@ LIMIT = EffectParameter("limit", "N", (1.0,), 1e-3, 1e3, True, "limit")
     ],
 )
 def test_a_strength_is_told_where_it_is_off_its_bounds_and_off_nothing(values, variance, parameters, expected):
-    one = SimpleNamespace(slug="one", amplitude=parameters[0].name, amplitudes=tuple(p.name for p in parameters[1:]))
+    one = strong(amplitude=parameters[0].name, amplitudes=tuple(p.name for p in parameters[1:]))
     assert determined(Told(values, variance, *parameters), one) is expected
 
 
@@ -492,7 +496,7 @@ OTHER = EffectParameter("other", "", (0.0,), 0.0, 9.0, False, "what the base can
     ],
 )
 def test_a_strength_is_told_by_what_it_adds_to_the_force(growth, linear, told):
-    one = SimpleNamespace(slug="one", amplitude="growth", amplitudes=())
+    one = strong(amplitude="growth", amplitudes=())
     made = Told((growth, 0.0), (300.0, 1.0), GROWTH, OTHER)
     made.nuisance, made.model.effects = None, (one,)
     made.model.bounds = (np.zeros(2), np.array([30.0, 9.0]))
@@ -508,7 +512,7 @@ WIDTH = EffectParameter("width", "", (1.0,), 0.0, 5.0, False, "how far it reache
 
 @pytest.mark.parametrize(("trade", "told"), [(-0.99, True), (0.0, False)])
 def test_a_share_that_trades_with_a_width_is_told_by_what_both_take_off_the_force(trade, told):
-    one = SimpleNamespace(slug="one", amplitude="share", amplitudes=())
+    one = strong(amplitude="share", amplitudes=())
     made = Told((0.1, 2.0), (0.06**2, 1.2**2), SHARE, WIDTH)
     made.covariance[0, 1] = made.covariance[1, 0] = trade * 0.06 * 1.2
     made.nuisance, made.model.effects = None, (one,)
@@ -528,13 +532,20 @@ def test_what_a_set_up_entry_adds_does_not_tell_its_number(slug, told, monkeypat
 
 
 def test_a_share_at_its_bound_is_not_told_by_what_it_adds():
-    one = SimpleNamespace(slug="one", amplitude="share", amplitudes=())
+    one = strong(amplitude="share", amplitudes=())
     made = Told((0.95,), (1e-6,), SHARE)
     assert not adds_force(made, one)
 
 
+def test_a_strength_is_judged_with_its_form_as_fitted():
+    made = Told((2.0, 0.5), (1.5**2, 1.0), FORCE, LIMIT)
+    made.covariance[0, 1] = made.covariance[1, 0] = -0.95 * 1.5
+    assert not determined(made, strong(amplitude="force"))
+    assert determined(made, strong(amplitude="force", form=("limit",)))
+
+
 def test_a_strength_that_trades_with_one_at_none_is_told_since_that_cannot_be_less():
-    one = SimpleNamespace(slug="one", amplitude="growth", amplitudes=("force",))
+    one = strong(amplitude="growth", amplitudes=("force",))
     made = Told((0.0, 2.0), (1.0, 1.5**2), GROWTH, FORCE)
     assert not determined(made, one)  # 2 of 1.5 standard errors, and nothing to trade with
     made.covariance[0, 1] = made.covariance[1, 0] = -0.95 * 1.5
@@ -549,7 +560,7 @@ def test_a_strength_that_trades_with_one_at_none_is_told_since_that_cannot_be_le
     ("layout", "shown", "expected"), [(None, 0.0, True), ("grid", 0.0, False), ("grid", 0.3, True)]
 )
 def test_what_must_show_in_markers_shows_in_them_where_there_are_some(layout, shown, expected):
-    slip = SimpleNamespace(slug="one", amplitude="part", amplitudes=("share",), seen_by="part")
+    slip = strong(amplitude="part", amplitudes=("share",), seen_by="part")
     made = Told((0.2, shown), (0.01**2, 0.05**2), SHARE, WHOLE)
     made.model.problem = SimpleNamespace(study=SimpleNamespace(layout=layout))
     assert seen(made, slip) is expected
@@ -569,9 +580,7 @@ def test_a_slip_that_no_marker_shows_is_neither_named_nor_a_look_alike(monkeypat
 
 def test_only_the_terms_that_the_plain_form_lacks_must_be_told():
     more = EffectParameter("more", "", (0.0,), 0.0, 9.0, False, "a second term")
-    richer = SimpleNamespace(
-        slug="one", amplitude="growth", amplitudes=(), description=SimpleNamespace(parameters=(GROWTH, LIMIT, more))
-    )
+    richer = strong(amplitude="growth", description=SimpleNamespace(parameters=(GROWTH, LIMIT, more)))
     made = Told((0.0, 1.0, 4.0), (1.0, 0.1, 1.0), GROWTH, LIMIT, more)
     made.model.effects = (richer,)
     assert terms_told(made, SimpleNamespace(names=("growth",)))
@@ -580,7 +589,7 @@ def test_only_the_terms_that_the_plain_form_lacks_must_be_told():
 
 
 def test_a_parameter_that_only_its_prior_holds_does_not_count():
-    one = SimpleNamespace(slug="one", amplitude="part", amplitudes=())
+    one = strong(amplitude="part", amplitudes=())
     made = Told((0.3, 0.5), (0.01, 0.999), SHARE, WHOLE)
     made.precision = np.array([1.0, 1.0])
     assert told_parameters(made, one) == 1
@@ -589,7 +598,7 @@ def test_a_parameter_that_only_its_prior_holds_does_not_count():
 
 
 def test_a_term_at_none_does_not_count():
-    one = SimpleNamespace(slug="one", amplitude="share", amplitudes=("part",))
+    one = strong(amplitude="share", amplitudes=("part",))
     made = Told((0.3, 0.0), (0.01, 0.5), SHARE, WHOLE)
     made.precision = np.array([1.0, 1.0])
     assert told_parameters(made, one) == 1
