@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fem
-from benchmark.physics import NotInFemError
+from benchmark.physics import NotInFemError, TrialContext, catalogue, fem_identification
 from benchmark.physics.fem_identification import relaxation_factor, stiffened
 
 THICKNESS = 10e-3
@@ -48,6 +48,23 @@ def test_the_press_has_the_wanted_factor_between_the_loads_that_were_fitted(foun
 def test_the_law_is_said_with_its_misfit(found):
     assert found.law.startswith("Yeoh, c20 = ")
     assert 0.0 < found.misfit < 0.003
+
+
+def test_stiffening_with_an_exponent_is_identified_from_its_own_factor(monkeypatch):
+    asked = []
+
+    def identified(problem, factor, control, peak):
+        asked.append((factor(np.array([2e-3, 4e-3])), control, peak))
+        return fem_identification.StiffenedLaw(problem, "Yeoh", 0.001)
+
+    monkeypatch.setattr(fem_identification, "stiffened", identified)
+    (effect,) = (each.richer for each in catalogue() if each.slug == "strain_stiffening")
+    around = TrialContext(5e-3, THICKNESS, 4e-3, PEAK, 10.0, control="force")
+    _, remark = effect.fem.change({"b_1": 0.5, "b_2": 2.0, "b_3": 3.0}, PROBLEM, around)
+    x = np.array([0.2, 0.4])
+    assert asked[0][0] == pytest.approx(1.0 + (0.5 * x + 2.0 * x**2) * np.exp(3.0 * x**2))
+    assert asked[0][1:] == ("force", PEAK)
+    assert "Yeoh" in remark
 
 
 def test_the_moduli_at_rest_stay(found):
