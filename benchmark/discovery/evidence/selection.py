@@ -120,11 +120,19 @@ def _promising(ranked: Sequence[Screened], count: int) -> list[Screened]:
 
 
 def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
-    """The simplest of those that gain as much as the best, which no data tell apart; then the catalogue's order."""
+    """The simplest of those that gain as much as the best, which no data tell apart.
+
+    By the terms that the data tell of, then by those that the form may have, then by the catalogue's order.
+    """
     places = {effect.slug: place for place, effect in enumerate(effects)}
     ties = [s for s in accepted if s.gain.mean >= (1.0 - criteria.TIE) * accepted[0].gain.mean]
     told = [s for s in ties if strength_told(s.fit, s.fit.model.effects[-1])]
-    return min(told or ties, key=lambda s: (told_parameters(s.fit, s.fit.model.effects[-1]), places[s.slug]))
+
+    def terms(scored: Scored) -> tuple[int, int, int]:
+        effect = scored.fit.model.effects[-1]
+        return told_parameters(scored.fit, effect), len(effect.names), places[scored.slug]
+
+    return min(told or ties, key=terms)
 
 
 def _evident(scored: Scored, steps: Sequence[Scored], settings: Settings) -> bool:

@@ -172,6 +172,14 @@ def test_of_equals_the_simplest_is_taken_then_the_first_of_the_catalogue():
     assert selection._simplest([best, scored("first", 9.69)], catalogue).slug == "two"
 
 
+def test_of_equals_of_as_many_terms_the_form_that_may_have_fewer_is_taken(monkeypatch):
+    monkeypatch.setattr(selection, "told_parameters", lambda fit, effect: 1)
+    catalogue = [effect("damping", 4), effect("latency", 1)]
+    tied = [scored("damping", 10.0, parameters=4), scored("latency", 9.9)]
+    assert selection._simplest(tied, catalogue).slug == "latency"
+    assert selection._simplest([tied[0], scored("latency", 9.6)], catalogue).slug == "damping"
+
+
 def test_where_no_form_is_within_the_tolerance_half_the_gain_makes_a_lookalike(monkeypatch, known_densities):
     base, best, other = fitted(), scored("best", 10.0), scored("other", 6.0)
     rounds = [[best, other]]
