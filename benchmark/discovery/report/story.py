@@ -30,10 +30,12 @@ def story(record: DiscoveryRecord) -> Story | None:
 def telling(record: DiscoveryRecord) -> Trace | None:
     """The trial that shows most: of those that stand for their group, the one whose misfit stands out most.
 
-    Over the scatter of replicates where all tell it, else over the channel's largest value: a channel in which nothing
-    but noise happens would be all misfit.
+    Where the gap of a channel shrinks, of those channels. The misfit is over the scatter of replicates where all tell
+    it, else over the channel's largest value: a channel in which nothing but noise happens would be all misfit.
     """
     shown = representative(record.found.traces)
+    shrinking = {gap.channel for gap in _closing(record)}
+    shown = [trace for trace in shown if trace.channel in shrinking] or shown
     over_noise = all(rms(trace.noise) > 0.0 for trace in shown)
     return max(shown, key=lambda trace: _misfit(trace, over_noise), default=None)
 
@@ -125,7 +127,7 @@ def _does(record: DiscoveryRecord, trace: Trace) -> list[StoryStep]:
 
 def _gap(record: DiscoveryRecord) -> list[StoryStep]:
     """The gap on data that the fit has not seen, in the channel where most was to be closed."""
-    closed = [gap for gap in record.found.gap if gap.closed is not None] if record.named else []
+    closed = _closing(record)
     if not closed:
         return []
     gap = max(closed, key=lambda each: each.rmse_before / max(each.noise_floor or 0.0, 1e-3 * each.rmse_before))
@@ -134,6 +136,11 @@ def _gap(record: DiscoveryRecord) -> list[StoryStep]:
     held = record.labels.get("held_out", f"a {gap.held_out} that the fit has not seen")
     detail = f"{channel_name(gap.channel)} {before} → {after} {unit} on {held}{_floor(gap)}."
     return [StoryStep("How the gap shrinks", _closed(gap), detail[0].upper() + detail[1:])]
+
+
+def _closing(record: DiscoveryRecord) -> list[ChannelGap]:
+    """The gaps of which it is known how far the named effects close them."""
+    return [gap for gap in record.found.gap if gap.closed is not None] if record.named else []
 
 
 def _closed(gap: ChannelGap) -> str:

@@ -15,6 +15,16 @@ def test_a_channel_in_which_only_noise_happens_is_not_the_picture(record) -> Non
     assert telling(other) == chosen
 
 
+def test_the_picture_is_of_a_channel_whose_gap_shrinks(record) -> None:
+    chosen = telling(record)
+    assert chosen.channel in {gap.channel for gap in record.found.gap if gap.closed is not None}
+    loud = replace(chosen, channel="marker_x", condition="loud", before=chosen.measured + 1e6)
+    other = replace(record, found=replace(record.found, traces=(*record.found.traces, loud)))
+    assert telling(other) == chosen
+    none = tuple(replace(gap, closed=None) for gap in other.found.gap)
+    assert telling(replace(other, found=replace(other.found, gap=none))) == loud
+
+
 def test_more_or_less_is_what_was_measured_not_what_the_effects_add(record) -> None:
     place = replace(record.found.where[0], size=0.5, residual=-0.2, percent_of_signal=-9.0)
     told = story(replace(record, found=replace(record.found, where=(place,))))
