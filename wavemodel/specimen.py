@@ -1,12 +1,12 @@
 """What is pressed and with what: the layers of the specimen and the disc-shaped tool (SI units)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.errors import WaveError, require_positive
+from wavemodel.errors import WaveError, require_between, require_positive
 
 CONTACTS = ("uniform_pressure", "rigid_bonded", "rigid_frictionless", "rigid_frictional")
 
@@ -106,18 +106,22 @@ class DiscTool:
         In m.
     contact
         "uniform_pressure", "rigid_bonded", "rigid_frictionless" or "rigid_frictional".
+    edge_radius
+        In m, zero for a sharp edge. What slides under a tool at finite strain slides over its edge.
 
     Raises
     ------
     WaveError
-        If the radius is not positive or the contact is none of these words.
+        If the radius is not positive, the edge is larger, or the contact is none of these words.
     """
 
     radius: float
     contact: str = "uniform_pressure"
+    edge_radius: float = 0.0
 
     def __post_init__(self) -> None:
         require_positive("tool radius", self.radius, "m")
+        require_between("tool", "edge_radius", self.edge_radius, "m", 0.0, self.radius)
         if self.contact not in CONTACTS:
             raise WaveError(f"tool contact = {self.contact!r} is not allowed: one of {', '.join(CONTACTS)}")
 
@@ -125,3 +129,13 @@ class DiscTool:
     def rigid(self) -> bool:
         """Whether the face under the tool moves as one."""
         return self.contact.startswith("rigid")
+
+    @property
+    def slides(self) -> bool:
+        """Whether the tissue slides under the tool and over its rounded edge."""
+        return self.contact == "rigid_frictionless" and self.edge_radius > 0.0
+
+    @property
+    def at_first_touch(self) -> "DiscTool":
+        """What a small press touches: the tool, or the flat face of one over whose edge the tissue slides."""
+        return replace(self, radius=self.radius - self.edge_radius, edge_radius=0.0) if self.slides else self

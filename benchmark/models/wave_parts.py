@@ -85,8 +85,9 @@ class PreparedWave:
 
 
 def wave_tool(scenario: Scenario) -> DiscTool:
-    """The tool."""
-    return DiscTool(scenario.tool.radius, scenario.tool.contact)
+    """The tool; its edge counts at finite strain, where tissue slides over it."""
+    edge = scenario.tool.edge_radius if scenario.fem.kinematics == "finite" else None
+    return DiscTool(scenario.tool.radius, scenario.tool.contact, edge or 0.0)
 
 
 def wave_relaxation(scenario: Scenario) -> list[Prony | None] | None:

@@ -2,11 +2,18 @@
 
 from dataclasses import replace
 
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.special import j0
+
+from wavemodel.arrays import FloatArray
 from wavemodel.errors import NotCoveredError, WaveError
 from wavemodel.integrators.viscoelastic import Damping, Prony
+from wavemodel.layered.field import ModalState
 from wavemodel.layered.finite_strain.correction import FiniteStrainLaw, finite_strain_law
-from wavemodel.layered.finite_strain.equilibrium import SPACING, ModalEquilibrium, press_path
+from wavemodel.layered.finite_strain.equilibrium import SHORTEST, SPACING, ModalEquilibrium, press_path
 from wavemodel.layered.finite_strain.modal_body import StackBody, disc_modes, thickness_of
+from wavemodel.layered.finite_strain.sliding_contact import RoundedTool, SlidingContact
 from wavemodel.layered.finite_strain.tool_contact import BondedContact, PressureContact, ToolContact
 from wavemodel.layered.layer_relaxation import shared
 from wavemodel.layered.press import Press
@@ -21,6 +28,14 @@ RESOLUTION, MOST_MODES = 16.0, 256
 SHARPER = 32.0
 """The first under a rigid tool on layers with laws of their own: where those stiffen, the edge's part that the modes do
 not have stays as soft as at rest. With 16 profiles are up to 3.5 % off, with 32 up to 1.3 %."""
+SLIDING = 64.0
+"""The first under a tool over whose edge the tissue slides: the touched part of the edge is a few modes wide."""
+SHORTEST_SLIDING = 0.25
+"""Share of the first step of force at which a sliding path ends: a step that fails takes as long as ten others."""
+SHARP_REACH, SHARP_POINTS = 3.0, 600
+"""Radii of the tool to which the linear surface has more than such modes, and points of the table of that."""
+LEAST_FACE = 0.2
+"""Of the radius: below it a small press is nearly that of a ball, whose depth goes with no power one of the force."""
 BORDER = 0.75
 """Radius of the disc over the side of the window, which just lets the linear field die away."""
 REACH, DEEP = 0.4, 0.75
@@ -120,14 +135,15 @@ def correction(press: Press, tool: DiscTool, *, deep: bool = False) -> FiniteStr
     Parameters
     ----------
     press, tool
-        What is pressed.
+        What is pressed; where the tissue slides over the tool's edge, the press is that of its face.
     deep
         Follow it to `DEEP`, and let the law go on from where the path ends, along its tangent, to the stack's height.
 
     Raises
     ------
     NotCoveredError
-        For pretension, a free lower face, or a contact other than "uniform_pressure" and "rigid_bonded".
+        For pretension, a free lower face, or a contact other than "uniform_pressure", "rigid_bonded", and
+        "rigid_frictionless" with a rounded edge and a flat face.
     WaveError
         If the stack finds no equilibrium beyond small loads.
     """
@@ -135,29 +151,57 @@ def correction(press: Press, tool: DiscTool, *, deep: bool = False) -> FiniteStr
         raise NotCoveredError("the large-press correction does not cover pretension")
     if press.stack.base != "bonded":
         raise NotCoveredError("the large-press correction covers a bonded base, not a free lower face")
-    if tool.contact not in ("uniform_pressure", "rigid_bonded"):
-        raise NotCoveredError(
-            f"the large-press correction does not cover tool contact {tool.contact!r}: 'uniform_pressure' and "
-            "'rigid_bonded' are covered"
-        )
+    _require_contact(tool)
     height = press.stack.height
     if SPACING * height > DEEPEST_START * tool.radius:
         raise WaveError("large press: the tool is too small beside the stack for a path to its heights")
     border = BORDER * press.field.domain.width
-    resolution = SHARPER if tool.rigid and any(press.stack.laws) else RESOLUTION
-    limit = min(resolution / tool.radius, 3.1 * MOST_MODES / border)
+    limit = min(_resolution(press, tool) / tool.radius, 3.1 * MOST_MODES / border)
     body = StackBody(disc_modes(border, limit), thickness_of(press.stack))
-    equilibrium = ModalEquilibrium(body, contact_of(press, body))
-    path = press_path(equilibrium, height, (DEEP if deep else REACH) * height)
+    equilibrium = ModalEquilibrium(body, contact_of(press, tool, body))
+    shortest = SHORTEST_SLIDING if tool.slides else SHORTEST
+    path = press_path(equilibrium, height, (DEEP if deep else REACH) * height, shortest)
     if path.force.size < FEWEST_LEVELS:
         raise WaveError("large press: no equilibrium was found beyond a small load")
-    radius = tool.radius if tool.rigid else 0.0
-    return finite_strain_law(path, body.radial.wavenumber, press.compliance, radius, height if deep else 0.0)
+    radius = tool.radius if tool.rigid and not tool.slides else 0.0  # a thick skin comes off the middle of a face
+    k, deepest = body.radial.wavenumber, height if deep else 0.0
+    sharp = _sharp(press, k, path.linear_deflection[0], tool) if tool.slides else None
+    return finite_strain_law(path, k, press.compliance, radius, deepest, sharp)
 
 
-def contact_of(press: Press, body: StackBody) -> ToolContact:
+def _sharp(press: Press, wavenumber: FloatArray, modal: FloatArray, tool: DiscTool) -> CubicSpline:
+    """The surface's linear deflection per force, m/N, over the radius, m, less that of a path's modes (N,)."""
+    radius = np.linspace(0.0, SHARP_REACH * tool.radius, SHARP_POINTS)
+    whole = press.field.along_x(ModalState(press.unit, 1.0), radius)[0]
+    fading = np.clip(2.0 * (1.0 - radius / radius[-1]), 0.0, 1.0)
+    return CubicSpline(radius, fading * (whole - modal @ j0(np.outer(wavenumber, radius))))
+
+
+def _require_contact(tool: DiscTool) -> None:
+    if tool.contact == "rigid_frictionless" and tool.radius - tool.edge_radius < LEAST_FACE * tool.radius:
+        raise NotCoveredError(
+            f"the large-press correction does not cover a tool without friction whose flat face is below "
+            f"{LEAST_FACE:g} of its radius: edge_radius = {1e3 * tool.edge_radius:g} mm of {1e3 * tool.radius:g} mm"
+        )
+    if tool.contact in ("uniform_pressure", "rigid_bonded") or tool.slides:
+        return
+    raise NotCoveredError(
+        f"the large-press correction does not cover tool contact {tool.contact!r}: 'uniform_pressure', 'rigid_bonded', "
+        "and 'rigid_frictionless' with a rounded edge (edge_radius) are covered"
+    )
+
+
+def _resolution(press: Press, tool: DiscTool) -> float:
+    if tool.slides:
+        return SLIDING
+    return SHARPER if tool.rigid and any(press.stack.laws) else RESOLUTION
+
+
+def contact_of(press: Press, tool: DiscTool, body: StackBody) -> ToolContact:
     """How the tool of a press pushes the modes of a body."""
-    basis = press.field.traction.basis
+    traction = press.field.traction
     if press.flexibility is None:
-        return PressureContact(body, basis)
-    return BondedContact(body, basis, press.flexibility)
+        return PressureContact(body, traction.basis)
+    if tool.slides:
+        return SlidingContact(body, RoundedTool(tool.radius, tool.edge_radius), traction, press.compliance)
+    return BondedContact(body, traction.basis, press.flexibility)

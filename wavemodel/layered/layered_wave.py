@@ -116,7 +116,8 @@ class LayeredWave:
         self.integrator, self.damping = integrator, damping or Damping()
         self.relaxation = series_of(relaxation, len(self.layers))
         stress = in_plane_stress(pretension, len(layers))
-        elastic = prepare(self.layers, tool, _base(support), discretisation, stress)
+        touched = tool if large_press == "linear" or integrator == "exact" else tool.at_first_touch
+        elastic = prepare(self.layers, touched, _base(support), discretisation, stress)
         self.body: StaticBody
         self.press: Press
         self.body, self.press = static_body(elastic, self.layers, tool.rigid, self.relaxation, self.damping)

@@ -24,11 +24,21 @@ def test_it_takes_the_strain_of_the_finite_elements(kinematics: str, same_as: st
 
 
 def test_beyond_the_correction_it_falls_back_to_small_strain_and_says_so() -> None:
-    settings = {"tool.contact": "rigid_frictionless", "tool.edge_radius": "0.5 mm"}
+    settings = {"tool.contact": "rigid_frictionless", "tool.edge_radius": "5 mm"}
     fallen, linear = pressed(settings), pressed({**settings, "wave.large_press": "linear"})
     np.testing.assert_array_equal(fallen.depth, linear.depth)
     assert fallen.notes["model"] == linear.notes["model"]
     assert FALLEN in fallen.warnings[0]
+
+
+def test_a_tool_over_whose_edge_the_tissue_slides_is_followed_at_finite_strain() -> None:
+    """Within 1 % of the finite elements, where the small-strain wave is 10 % off."""
+    scenario = load_scenario("skin-5N", {"tool.contact": "rigid_frictionless", "tool.edge_radius": "0.5 mm"})
+    drive = Drive("force", np.arange(1.0, 6.0), np.arange(1.0, 6.0))
+    found, truth = (prepare(model, scenario).run(drive) for model in ("wave", "fem"))
+    np.testing.assert_allclose(found.depth, truth.depth, rtol=0.01)
+    np.testing.assert_allclose(found.top_deflection, truth.top_deflection, rtol=0.01)
+    assert FALLEN not in " ".join(found.warnings)
 
 
 def test_small_strain_does_not_press_through_a_base() -> None:

@@ -3,8 +3,8 @@ import pytest
 from scipy.linalg import cholesky, expm
 
 from wavemodel import Damping, DiscTool, LayeredWave, Prony, WaveDiscretisation, WaveError
+from wavemodel.layered.dynamics import assemble
 from wavemodel.layered.stack.sublayers import consistent_mass, quadratic_stiffness
-from wavemodel.layered.stack.vibration import assemble
 
 TRIANGLE = np.concatenate([np.arange(1, 26), np.arange(24, -1, -1)]) / 25.0
 

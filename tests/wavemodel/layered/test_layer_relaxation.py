@@ -5,9 +5,9 @@ import pytest
 from scipy.linalg import expm
 
 from wavemodel import Damping, DiscTool, LayeredWave, NotCoveredError, Prony, WaveDiscretisation, WaveError, WaveLayer
+from wavemodel.layered.dynamics import assemble
 from wavemodel.layered.layer_relaxation import one_series, series_of, shared
 from wavemodel.layered.stack.sublayers import quadratic_stiffness
-from wavemodel.layered.stack.vibration import assemble
 
 SERIES = Prony((0.3,), (1.0,))
 

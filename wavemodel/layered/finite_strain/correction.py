@@ -44,6 +44,9 @@ class FiniteStrainLaw:
         Of a rigid face under which the surface has the tool's depth, m; zero under a pressure.
     deepest
         End of the range, m: the last level, or beyond it, where the law goes on straight along its tangent.
+    sharp
+        Radius, m, to the surface's linear deflection per force, m/N, that the modes do not have and finite strain takes
+        away, as under a tool whose touched face grows; its weight is the last, the force. None: it stays.
     """
 
     wavenumber: FloatArray
@@ -56,6 +59,7 @@ class FiniteStrainLaw:
     deepest: float
     _weights: CubicSpline
     _sideways: CubicSpline
+    sharp: CubicSpline | None = None
 
     calibrated_on = ()
 
@@ -180,6 +184,9 @@ class FiniteStrainLaw:
         out: FloatArray = self.fields @ j0(np.outer(self.wavenumber, radius))
         if self.rigid_radius:
             out[:, 0, radius <= self.rigid_radius] = self.depths[:, None]
+        if self.sharp is not None:
+            near = radius <= self.sharp.x[-1]
+            out[-1, 0, near] -= self.sharp(radius[near])
         return out
 
 
@@ -191,7 +198,12 @@ def _rising_levels(path: PressPath, compliance: float) -> int:
 
 
 def finite_strain_law(
-    path: PressPath, wavenumber: FloatArray, compliance: float, rigid_radius: float, deepest: float = 0.0
+    path: PressPath,
+    wavenumber: FloatArray,
+    compliance: float,
+    rigid_radius: float,
+    deepest: float = 0.0,
+    sharp: CubicSpline | None = None,
 ) -> FiniteStrainLaw:
     """Fields and their weights from a path.
 
@@ -207,6 +219,9 @@ def finite_strain_law(
         Of a rigid face, m; zero under a pressure.
     deepest
         How deep the law goes on along its tangent, m; no deeper than the path unless it is more.
+    sharp
+        What the linear surface has per force, m/N, over the radius, m, that the path's modes do not have and the body
+        at finite strain has no more.
     """
     path = path.first(_rising_levels(path, compliance))
     added = path.deflection - path.force[:, None, None] * path.linear_deflection
@@ -216,14 +231,18 @@ def finite_strain_law(
     kept = max(1, int(np.count_nonzero(sizes > NEGLECTED * max(sizes[0], 1e-300))))
     histories = left[:, :kept] * sizes[:kept]
     histories[0] = 0.0
-    spline = CubicSpline(path.force, histories, bc_type=((1, np.zeros(kept)), "not-a-knot"))
-    fields = right[:kept, :-1].reshape(kept, *path.linear_deflection.shape)
-    depths = np.ascontiguousarray(right[:kept, -1])
+    start, modes = np.zeros(kept), right[:kept]
+    if sharp is not None:
+        histories, start = np.column_stack([histories, path.force]), np.append(start, 1.0)
+        modes = np.append(modes, np.zeros((1, modes.shape[1])), axis=0)
+    spline = CubicSpline(path.force, histories, bc_type=((1, start), "not-a-knot"))
+    fields = modes[:, :-1].reshape(start.size, *path.linear_deflection.shape)
+    depths = np.ascontiguousarray(modes[:, -1])
     depth = compliance * path.force + histories @ depths
     deepest = max(deepest, float(depth[-1]))
     sideways = path.outward - path.force[:, None, None] * path.linear_outward
     rest = (1, np.zeros(path.linear_outward.shape))
     return FiniteStrainLaw(
         wavenumber, path.force, depth, compliance, fields, depths, rigid_radius, deepest, spline,
-        CubicSpline(path.force, sideways, bc_type=(rest, "not-a-knot")),
+        CubicSpline(path.force, sideways, bc_type=(rest, "not-a-knot")), sharp,
     )  # fmt: skip

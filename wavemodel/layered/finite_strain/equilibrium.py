@@ -6,6 +6,7 @@ linear answer. A step is shortened until the potential falls.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from wavemodel.arrays import FloatArray
 from wavemodel.integrators.equilibrium_path import EquilibriumState, follow, straight_on
 from wavemodel.layered.finite_strain.deformation_state import Deformed
 from wavemodel.layered.finite_strain.modal_body import StackBody
-from wavemodel.layered.finite_strain.tool_contact import ToolContact
+from wavemodel.layered.finite_strain.tool_contact import ContactState, ToolContact
 
 TOLERANCE = 1e-4
 """Of the load, in the energy norm; the depth, which is stationary, is then right to its square."""
@@ -33,76 +34,103 @@ comes to a largest force and then sinks in, and must not be followed to another 
 
 
 @dataclass(frozen=True)
+class _Balance:
+    """A body and its contact at amplitudes (N, 2 n)."""
+
+    body: StackBody
+    amplitude: FloatArray
+    matter: Deformed
+    contact: ContactState
+
+    @property
+    def potential(self) -> float:
+        """J."""
+        return self.body.energy(self.matter) + self.contact.potential
+
+    @cached_property
+    def residual(self) -> FloatArray:
+        """(N, 2 n) forces that are out of balance, N."""
+        return -(self.body.forces(self.matter.stress) + self.contact.forces)
+
+    def resistance(self, direction: FloatArray) -> FloatArray:
+        """(N, 2 n) forces against going along a direction, to first order."""
+        return self.body.force_change(self.matter, direction) + self.contact.change(direction)
+
+    def answer(self, forces: FloatArray) -> FloatArray:
+        """(N, 2 n) linear answer to forces (N, 2 n)."""
+        return self.contact.relieve(self.body.answer(forces))
+
+
+@dataclass(frozen=True)
 class ModalEquilibrium:
     """A body, its contact, and the potential of both under a force."""
 
     body: StackBody
     contact: ToolContact
 
-    def answer(self, forces: FloatArray) -> FloatArray:
-        """(N, 2 n) linear answer to forces (N, 2 n)."""
-        free = np.einsum("nij,nj->ni", self.body.linear_compliance, forces)
-        return self.contact.relieve(free)
+    @cached_property
+    def linear(self) -> FloatArray:
+        """(N, 2 n) amplitudes per force of the linear body."""
+        rest = self.contact.state(np.zeros_like(self.contact.load), 0.0)
+        assert rest is not None
+        return rest.relieve(self.body.answer(self.contact.load))
 
     def solve(self, force: float, start: FloatArray) -> FloatArray | None:
         """Amplitudes (N, 2 n) in equilibrium with a force (N), from a start near them; None where none are found."""
-        load = force * self.contact.load
-        goal = TOLERANCE**2 * _dot(load, self.answer(load))
-        amplitude, state = start, self.body.state(start)
+        goal = (TOLERANCE * force) ** 2 * _dot(self.contact.load, self.linear)
+        here = self._at(start, force)
         for _ in range(MOST_STEPS):
-            if state is None:
+            if here is None:
                 return None
-            residual = load - self._resistance(amplitude, state)
-            size = _dot(residual, self.answer(residual))
+            size = _dot(here.residual, here.answer(here.residual))
             if size <= goal:
-                return amplitude
+                return here.amplitude
             forcing = max(min(FORCING**2, size / goal * TOLERANCE**2), 0.25 * goal / size)
-            step = self._newton_step(state, residual, forcing)
-            amplitude, state = self._shortened(amplitude, state, step, load, residual)
+            here = self._shortened(here, _newton_step(here, forcing), force)
         return None
 
-    def _resistance(self, amplitude: FloatArray, state: Deformed) -> FloatArray:
-        return self.body.forces(state.stress) + self.contact.held(amplitude)
+    def depth(self, amplitude: FloatArray, force: float) -> float:
+        """Of the tool under a force, N, in equilibrium; m."""
+        found = self.contact.state(amplitude, force)
+        assert found is not None
+        return found.depth
 
-    def _newton_step(self, state: Deformed, residual: FloatArray, forcing: float) -> FloatArray:
-        """Solve the linearised equilibrium to a residual whose square has fallen by `forcing`."""
-        step, left = np.zeros_like(residual), residual
-        answer = self.answer(left)
-        direction, size = answer, _dot(left, answer)
-        enough = forcing * size
-        for count in range(MOST_DIRECTIONS):
-            pushed = self.body.force_change(state, direction) + self.contact.held(direction)
-            curvature = _dot(direction, pushed)
-            if curvature <= 0.0:
-                return direction if count == 0 else step
-            length = size / curvature
-            step = step + length * direction
-            left = left - length * pushed
-            answer = self.answer(left)
-            before, size = size, _dot(left, answer)
-            if size <= enough:
-                break
-            direction = answer + size / before * direction
-        return step
+    def _at(self, amplitude: FloatArray, force: float) -> _Balance | None:
+        matter = self.body.state(amplitude)
+        contact = None if matter is None else self.contact.state(amplitude, force)
+        return None if matter is None or contact is None else _Balance(self.body, amplitude, matter, contact)
 
-    def _shortened(
-        self, amplitude: FloatArray, state: Deformed, step: FloatArray, load: FloatArray, residual: FloatArray
-    ) -> tuple[FloatArray, Deformed | None]:
+    def _shortened(self, here: _Balance, step: FloatArray, force: float) -> _Balance | None:
         """Go along a step as far as the potential falls enough."""
-        here, slope, share = self._potential(amplitude, state, load), _dot(residual, step), 1.0
+        level, slope, share = here.potential, _dot(here.residual, step), 1.0
         for _ in range(MOST_HALVINGS):
-            there = amplitude + share * step
-            after = self.body.state(there)
-            if after is not None:
-                fall = here - self._potential(there, after, load)
-                if fall >= DESCENT * share * slope - 1e-12 * abs(here):
-                    return there, after
+            there = self._at(here.amplitude + share * step, force)
+            if there is not None and level - there.potential >= DESCENT * share * slope - 1e-12 * abs(level):
+                return there
             share *= 0.5
-        return amplitude, None
+        return None
 
-    def _potential(self, amplitude: FloatArray, state: Deformed, load: FloatArray) -> float:
-        held = 0.5 * _dot(amplitude, self.contact.held(amplitude))
-        return self.body.energy(state) + held - _dot(load, amplitude)
+
+def _newton_step(here: _Balance, forcing: float) -> FloatArray:
+    """Solve the linearised equilibrium to a residual whose square has fallen by `forcing`."""
+    step, left = np.zeros_like(here.residual), here.residual
+    answer = here.answer(left)
+    direction, size = answer, _dot(left, answer)
+    enough = forcing * size
+    for count in range(MOST_DIRECTIONS):
+        pushed = here.resistance(direction)
+        curvature = _dot(direction, pushed)
+        if curvature <= 0.0:
+            return direction if count == 0 else step
+        length = size / curvature
+        step = step + length * direction
+        left = left - length * pushed
+        answer = here.answer(left)
+        before, size = size, _dot(left, answer)
+        if size <= enough:
+            break
+        direction = answer + size / before * direction
+    return step
 
 
 def _dot(left: FloatArray, right: FloatArray) -> float:
@@ -164,7 +192,7 @@ class _ToDepth:
         if state is None:
             return None
         slope = self.compliance if len(path) == 1 else (last.depth - path[-2].depth) / (last.load - path[-2].load)
-        gained, expected = self.body.contact.depth(state, load) - last.depth, (load - last.load) * slope
+        gained, expected = self.body.depth(state, load) - last.depth, (load - last.load) * slope
         surprising = abs(gained - expected) > SURPRISE * expected
         return None if surprising else _Pressed(load, state, last.depth + gained, gained)
 
@@ -180,7 +208,7 @@ class _ToDepth:
         return path[-1].state if self.body.body.state(ahead) is None else ahead
 
 
-def press_path(equilibrium: ModalEquilibrium, height: float, reach: float) -> PressPath:
+def press_path(equilibrium: ModalEquilibrium, height: float, reach: float, shortest: float = SHORTEST) -> PressPath:
     """Load a body until its depth is `reach`, or until it has no equilibrium near the one before.
 
     Parameters
@@ -191,13 +219,14 @@ def press_path(equilibrium: ModalEquilibrium, height: float, reach: float) -> Pr
         Of the stack, m.
     reach
         Depth to come to, m.
+    shortest
+        Share of the first step of force below which a step ends the path.
     """
-    linear = equilibrium.answer(equilibrium.contact.load)
-    compliance = equilibrium.contact.depth(linear, 1.0)
+    linear, compliance = equilibrium.linear, equilibrium.contact.compliance
     spacing = SPACING * height
     step = spacing / compliance
     loading = _ToDepth(equilibrium, linear, compliance, spacing, reach)
-    path = follow(loading, [_Pressed(0.0, np.zeros_like(linear))], step, SHORTEST * step)
+    path = follow(loading, [_Pressed(0.0, np.zeros_like(linear))], step, shortest * step)
     tops, nodes = equilibrium.body.thickness.faces, equilibrium.body.nodes
     outward, deflection = (np.stack([one.state[:, tops + shift].T for one in path]) for shift in (0, nodes))
     return PressPath(

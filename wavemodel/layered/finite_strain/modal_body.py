@@ -235,6 +235,10 @@ class StackBody(ModalBody):
         """(N, 2 n) change of the internal forces with the amplitudes, to first order."""
         return self.forces(state.stress_change(self.gradient(change)))
 
+    def answer(self, forces: FloatArray) -> FloatArray:
+        """(N, 2 n) linear answer of the free body to forces (N, 2 n)."""
+        return np.asarray(np.einsum("nij,nj->ni", self.linear_compliance, forces))
+
     @cached_property
     def linear_compliance(self) -> FloatArray:
         """(N, 2 n, 2 n) inverse of the stiffness at rest, mode by mode, m/N."""

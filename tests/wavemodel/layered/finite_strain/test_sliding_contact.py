@@ -1,0 +1,101 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveLayer
+from wavemodel.layered.body_options import contact_of
+from wavemodel.layered.finite_strain.modal_body import StackBody, disc_modes, thickness_of
+from wavemodel.layered.finite_strain.sliding_contact import RoundedTool
+from wavemodel.layered.press import prepare
+from wavemodel.layered.window import WaveDiscretisation
+
+TOOL, FORCE = DiscTool(5e-3, "rigid_frictionless", 1e-3), 0.8
+
+
+@pytest.fixture(scope="module")
+def touched(skin):
+    """A contact and amplitudes at which a tenth of a millimetre has entered the tool."""
+    press = prepare(skin(), TOOL.at_first_touch, "bonded", WaveDiscretisation())
+    body = StackBody(disc_modes(0.75 * press.field.domain.width, 12.0 / 5e-3), thickness_of(press.stack))
+    contact = contact_of(press, TOOL, body)
+    linear = body.answer(contact.load)
+    return contact, FORCE * linear + 2e-6 * np.random.default_rng(3).normal(size=linear.shape)
+
+
+@pytest.mark.parametrize(
+    ("radius", "height", "deep"),
+    [
+        (0.0, 1e-4, 1e-4),  # under the face
+        (3e-3, -2e-4, -2e-4),
+        (4.6e-3, 0.2e-3, 0.0),  # on the edge: 0.6, 0.8, 1 mm
+        (4.3e-3, 0.6e-3, 0.5e-3),
+        (4.9e-3, 3e-3, 0.1e-3),  # beside the wall
+        (5.2e-3, 3e-3, -0.2e-3),
+    ],
+)
+def test_how_deep_a_point_is_in_a_rounded_tool(radius, height, deep):
+    found = RoundedTool(5e-3, 1e-3).entered(np.array([radius]), np.array([height]))
+    assert found[0, 0] == pytest.approx(deep, abs=1e-12)
+
+
+@given(st.floats(3e-3, 5.3e-3), st.floats(-4e-4, 8e-4))
+def test_slopes_and_bends_are_those_of_the_depth(radius, height):
+    tool, step = RoundedTool(5e-3, 1e-3), 1e-8
+    if abs(radius - tool.face) < 1e-6:
+        return  # where the bend jumps
+    at = tool.entered(np.array([radius]), np.array([height]))[:, 0]
+    for way, (first, one, two) in (((1.0, 0.0), (1, 3, 4)), ((0.0, 1.0), (2, 4, 5))):
+        forth, back = (
+            tool.entered(np.array([radius + sign * step * way[0]]), np.array([height + sign * step * way[1]]))[:, 0]
+            for sign in (1.0, -1.0)
+        )
+        np.testing.assert_allclose((forth[:3] - back[:3]) / (2.0 * step), at[[first, one, two]], rtol=1e-4, atol=1e-3)
+
+
+def test_the_springs_carry_the_force(touched):
+    contact, amplitude = touched
+    points = contact.state(amplitude, FORCE).points
+    assert points.push.size > 20
+    assert points.push @ points.slope[1] == pytest.approx(FORCE, rel=1e-9)
+
+
+def test_forces_are_the_slope_of_the_potential_and_their_change_that_of_the_forces(touched):
+    contact, amplitude = touched
+    change = np.random.default_rng(4).normal(size=amplitude.shape)
+    here, step = contact.state(amplitude, FORCE), 1e-9
+    forth, back = (contact.state(amplitude + sign * step * change, FORCE) for sign in (1.0, -1.0))
+    assert (here.forces * change).sum() == pytest.approx((forth.potential - back.potential) / (2 * step), rel=1e-5)
+    slope = (forth.forces - back.forces) / (2 * step)
+    np.testing.assert_allclose(here.change(change), slope, atol=1e-3 * np.abs(slope).max())
+
+
+def test_nothing_is_held_before_a_force(touched):
+    contact, amplitude = touched
+    rest = contact.state(amplitude, 0.0)
+    assert not rest.forces.any()
+    assert not rest.change(amplitude).any()
+    assert rest.relieve(amplitude) is amplitude
+
+
+def test_a_small_press_is_that_of_the_flat_face():
+    layer = [WaveLayer("gel", 20e-3, 1000.0, 5e4, 0.45)]
+    wave = LayeredWave(layer, DiscTool(5e-3, "rigid_frictionless", 1e-3))
+    flat = LayeredWave(layer, DiscTool(4e-3, "rigid_frictionless"), large_press="linear")
+    assert wave.law.compliance == pytest.approx(flat.law.compliance, rel=1e-12)
+    assert wave.law.large.followed > 0.25 * 20e-3
+
+
+def test_a_sharper_edge_sinks_in_less_under_the_same_force():
+    layer = [WaveLayer("gel", 20e-3, 1000.0, 5e4, 0.45)]
+    depth = [
+        float(LayeredWave(layer, DiscTool(5e-3, "rigid_frictionless", edge)).law.depth_at(np.array(0.5)))
+        for edge in (0.25e-3, 1e-3, 3e-3)
+    ]
+    assert depth[0] < depth[1] < depth[2]
+
+
+@pytest.mark.parametrize("edge", [0.0, 4.5e-3])
+def test_a_sharp_edge_and_a_ball_are_refused(skin, edge):
+    with pytest.raises(NotCoveredError, match="edge_radius"):
+        LayeredWave(skin(), DiscTool(5e-3, "rigid_frictionless", edge), large_press="corrected")
