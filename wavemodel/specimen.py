@@ -1,13 +1,14 @@
 """What is pressed and with what: the layers of the specimen and the disc-shaped tool (SI units)."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
 from wavemodel.arrays import FloatArray
-from wavemodel.errors import WaveError, require_between, require_positive
+from wavemodel.errors import WaveError, require_between, require_not_negative, require_positive
 
+SLIDING = ("rigid_frictionless", "rigid_frictional")
 CONTACTS = ("uniform_pressure", "rigid_bonded", "rigid_frictionless", "rigid_frictional")
 
 LAW_MISFIT = 1e-3
@@ -108,20 +109,24 @@ class DiscTool:
         "uniform_pressure", "rigid_bonded", "rigid_frictionless" or "rigid_frictional".
     edge_radius
         In m, zero for a sharp edge. What slides under a tool at finite strain slides over its edge.
+    friction
+        Coulomb's coefficient of "rigid_frictional".
 
     Raises
     ------
     WaveError
-        If the radius is not positive, the edge is larger, or the contact is none of these words.
+        If the radius is not positive, the edge is larger, the friction negative, or the contact none of these words.
     """
 
     radius: float
     contact: str = "uniform_pressure"
     edge_radius: float = 0.0
+    friction: float = 0.0
 
     def __post_init__(self) -> None:
         require_positive("tool radius", self.radius, "m")
         require_between("tool", "edge_radius", self.edge_radius, "m", 0.0, self.radius)
+        require_not_negative("tool friction", self.friction, "")
         if self.contact not in CONTACTS:
             raise WaveError(f"tool contact = {self.contact!r} is not allowed: one of {', '.join(CONTACTS)}")
 
@@ -133,9 +138,9 @@ class DiscTool:
     @property
     def slides(self) -> bool:
         """Whether the tissue slides under the tool and over its rounded edge."""
-        return self.contact == "rigid_frictionless" and self.edge_radius > 0.0
+        return self.contact in SLIDING and self.edge_radius > 0.0
 
     @property
     def at_first_touch(self) -> "DiscTool":
         """What a small press touches: the tool, or the flat face of one over whose edge the tissue slides."""
-        return replace(self, radius=self.radius - self.edge_radius, edge_radius=0.0) if self.slides else self
+        return DiscTool(self.radius - self.edge_radius, "rigid_frictionless") if self.slides else self

@@ -14,6 +14,9 @@ from benchmark.models.wave_parts import PreparedWave, Solution, refuse_fibres, v
 from wavemodel import LayeredWave, NotCoveredError, WaveDiscretisation, WaveError
 
 MM = 1e3
+FRICTION = (
+    "friction acts as while the tool goes in: the way back, on which tissue slides the other way, is that of the way in"
+)
 
 
 def layered_wave(scenario: Scenario) -> PreparedWave:
@@ -76,6 +79,7 @@ def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) ->
         follow=lambda drive: wave.run(drive.control, drive.time, drive.value),
         unknowns=wave.unknowns,
         choices=WaveChoices(large_press, wave.window, wave.modes),
+        warnings=(FRICTION,) if scenario.tool.contact == "rigid_frictional" else (),
         picture=lambda drive: _picture(wave, scenario.tool.radius, drive),
     )
 

@@ -86,8 +86,9 @@ class PreparedWave:
 
 def wave_tool(scenario: Scenario) -> DiscTool:
     """The tool; its edge counts at finite strain, where tissue slides over it."""
-    edge = scenario.tool.edge_radius if scenario.fem.kinematics == "finite" else None
-    return DiscTool(scenario.tool.radius, scenario.tool.contact, edge or 0.0)
+    tool, friction = scenario.tool, scenario.physics.friction_coefficient
+    edge = tool.edge_radius if scenario.fem.kinematics == "finite" else None
+    return DiscTool(tool.radius, tool.contact, edge or 0.0, friction or 0.0)
 
 
 def wave_relaxation(scenario: Scenario) -> list[Prony | None] | None:

@@ -136,16 +136,16 @@ def _sheet_fields(
 
 
 @lru_cache(maxsize=16)
-def _layered_wave(layers: tuple[Any, ...], radius: float, contact: str, edge_radius: float) -> Any:
+def _layered_wave(layers: tuple[Any, ...], radius: float, contact: str) -> Any:
     """The wave of a large press, which takes seconds to set up: once for all conditions with the same tool."""
     from wavemodel import DiscTool, LayeredWave
 
-    return LayeredWave(list(layers), DiscTool(radius, contact, edge_radius), large_press="corrected")
+    return LayeredWave(list(layers), DiscTool(radius, contact), large_press="corrected")
 
 
 def _layered_force(tissue: Tissue, tool: Tool, grid: Array) -> Array:
     """Force (k,) of a large press as far as its range goes, then on with the growth over the linear law."""
-    wave = _layered_wave(tuple(_layers(tissue)), tool.radius, _contact(tool), tool.edge_radius or 0.0)
+    wave = _layered_wave(tuple(_layers(tissue)), tool.radius, _contact(tool))
     linear = grid / wave.law.compliance
     reach = 0.999 * wave.law.large.deepest if wave.law.large is not None else grid[-1]
     inside = grid <= reach

@@ -27,8 +27,8 @@ from benchmark.models.wave_parts import Solution  # noqa: E402
 from benchmark.models.wave_plate import plate_wave  # noqa: E402
 
 SKINS = ("skin_forearm", "skin_mri_indentation", "skin_porcine_fat", "skin_traction")
-STEPS, MOST_FORCE, SHIPPED_RADIUS, EDGE = 10, 5.0, 5.0, 0.2
-"""Load steps; N; mm; edge of a tool without friction over its radius."""
+STEPS, MOST_FORCE, SHIPPED_RADIUS, EDGE, FRICTION = 10, 5.0, 5.0, 0.2, 0.3
+"""Load steps; N; mm; edge of a tool under which tissue slides, over its radius; Coulomb's coefficient."""
 RANGE = 0.3
 """Of the stack's height (of the hole's radius, over a hole): up to here the bars hold."""
 MAXIMUM, PROFILE = 2.0, 5.0
@@ -89,6 +89,7 @@ def shipped() -> Iterator[Press]:
             ("rigid_bonded", 5.0),
             ("rigid_frictionless", 5.0),
             ("rigid_frictionless", 2.0),
+            ("rigid_frictional", 5.0),
         ):
             yield _press("skin-5N", {"tissue": tissue}, contact, radius)
     for contact in ("rigid_bonded", "uniform_pressure"):
@@ -107,8 +108,10 @@ def _press(
 ) -> Press:
     """A smaller tool presses with less, so that it comes about as deep."""
     tool = {"tool.contact": contact, "tool.radius": f"{radius:g} mm", "fem.mesh": "fine"}
-    if contact == "rigid_frictionless":
+    if contact in ("rigid_frictionless", "rigid_frictional"):
         tool["tool.edge_radius"] = f"{EDGE * radius:g} mm"
+    if contact == "rigid_frictional":
+        tool["physics.friction_coefficient"] = f"{FRICTION:g}"
     scenario = load_scenario(base, {**changes, **tool})
     limit = None if all_the_way else scenario.tissue.max_force
     peak = min(limit or MOST_FORCE, MOST_FORCE) * radius / SHIPPED_RADIUS

@@ -204,6 +204,8 @@ def finite_strain_law(
     rigid_radius: float,
     deepest: float = 0.0,
     sharp: CubicSpline | None = None,
+    *,
+    grips: bool = False,
 ) -> FiniteStrainLaw:
     """Fields and their weights from a path.
 
@@ -222,6 +224,8 @@ def finite_strain_law(
     sharp
         What the linear surface has per force, m/N, over the radius, m, that the path's modes do not have and the body
         at finite strain has no more.
+    grips
+        Small presses are not those of the linear body either, as under friction.
     """
     path = path.first(_rising_levels(path, compliance))
     added = path.deflection - path.force[:, None, None] * path.linear_deflection
@@ -235,7 +239,7 @@ def finite_strain_law(
     if sharp is not None:
         histories, start = np.column_stack([histories, path.force]), np.append(start, 1.0)
         modes = np.append(modes, np.zeros((1, modes.shape[1])), axis=0)
-    spline = CubicSpline(path.force, histories, bc_type=((1, start), "not-a-knot"))
+    spline = CubicSpline(path.force, histories, bc_type=("not-a-knot" if grips else (1, start), "not-a-knot"))
     fields = modes[:, :-1].reshape(start.size, *path.linear_deflection.shape)
     depths = np.ascontiguousarray(modes[:, -1])
     depth = compliance * path.force + histories @ depths

@@ -19,6 +19,8 @@ from wavemodel.layered.finite_strain.tool_contact import ContactState, ToolConta
 TOLERANCE = 1e-4
 """Of the load, in the energy norm; the depth, which is stationary, is then right to its square."""
 MOST_STEPS, MOST_DIRECTIONS, MOST_HALVINGS = 20, 60, 12
+MOST_AGAIN = 6
+"""Equilibria of a force until its contact is what it went by."""
 FORCING = 0.1
 """How far a Newton step is solved for, at least."""
 DESCENT = 1e-4
@@ -72,7 +74,6 @@ class ModalEquilibrium:
     def linear(self) -> FloatArray:
         """(N, 2 n) amplitudes per force of the linear body."""
         rest = self.contact.state(np.zeros_like(self.contact.load), 0.0)
-        assert rest is not None
         return rest.relieve(self.body.answer(self.contact.load))
 
     def solve(self, force: float, start: FloatArray) -> FloatArray | None:
@@ -89,16 +90,22 @@ class ModalEquilibrium:
             here = self._shortened(here, _newton_step(here, forcing), force)
         return None
 
-    def depth(self, amplitude: FloatArray, force: float) -> float:
-        """Of the tool under a force, N, in equilibrium; m."""
-        found = self.contact.state(amplitude, force)
-        assert found is not None
-        return found.depth
+    def settled(self, force: float, start: FloatArray) -> tuple[FloatArray, ToolContact] | None:
+        """The same, with the contact by what it is there, and that contact."""
+        here = self
+        for _ in range(MOST_AGAIN):
+            found = here.solve(force, start)
+            if found is None:
+                return None
+            again = here.contact.again(found, force)
+            if again is None:
+                return found, here.contact
+            here, start = replace(here, contact=again), found
+        return None
 
     def _at(self, amplitude: FloatArray, force: float) -> _Balance | None:
         matter = self.body.state(amplitude)
-        contact = None if matter is None else self.contact.state(amplitude, force)
-        return None if matter is None or contact is None else _Balance(self.body, amplitude, matter, contact)
+        return None if matter is None else _Balance(self.body, amplitude, matter, self.contact.state(amplitude, force))
 
     def _shortened(self, here: _Balance, step: FloatArray, force: float) -> _Balance | None:
         """Go along a step as far as the potential falls enough."""
@@ -167,8 +174,9 @@ class PressPath:
 
 @dataclass(frozen=True)
 class _Pressed(EquilibriumState):
-    """Equilibrium under a force; its depth and what that gained on the one before, m."""
+    """Equilibrium under a force; its depth and what that gained on the one before, m, and the contact from there on."""
 
+    contact: ToolContact
     depth: float = 0.0
     gained: float = 0.0
 
@@ -188,13 +196,15 @@ class _ToDepth:
 
     def advance(self, path: Sequence[_Pressed], load: float) -> _Pressed | None:
         last = path[-1]
-        state = self.body.solve(load, self._start(path, load))
-        if state is None:
+        settled = replace(self.body, contact=last.contact).settled(load, self._start(path, load))
+        if settled is None:
             return None
+        state, contact = settled
         slope = self.compliance if len(path) == 1 else (last.depth - path[-2].depth) / (last.load - path[-2].load)
-        gained, expected = self.body.depth(state, load) - last.depth, (load - last.load) * slope
+        gained, expected = contact.state(state, load).depth - last.depth, (load - last.load) * slope
         surprising = abs(gained - expected) > SURPRISE * expected
-        return None if surprising else _Pressed(load, state, last.depth + gained, gained)
+        remembering = contact.after(state, load)
+        return None if surprising else _Pressed(load, state, remembering, last.depth + gained, gained)
 
     def next_step(self, path: Sequence[_Pressed], step: float) -> float:
         return min(FASTEST * step, self.spacing * step / path[-1].gained)
@@ -226,7 +236,7 @@ def press_path(equilibrium: ModalEquilibrium, height: float, reach: float, short
     spacing = SPACING * height
     step = spacing / compliance
     loading = _ToDepth(equilibrium, linear, compliance, spacing, reach)
-    path = follow(loading, [_Pressed(0.0, np.zeros_like(linear))], step, shortest * step)
+    path = follow(loading, [_Pressed(0.0, np.zeros_like(linear), equilibrium.contact)], step, shortest * step)
     tops, nodes = equilibrium.body.thickness.faces, equilibrium.body.nodes
     outward, deflection = (np.stack([one.state[:, tops + shift].T for one in path]) for shift in (0, nodes))
     return PressPath(

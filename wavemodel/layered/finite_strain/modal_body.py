@@ -169,12 +169,12 @@ class DiscModes(RadialTables):
     square: FloatArray
 
 
-def disc_modes(border: float, limit: float) -> DiscModes:
-    """Modes of a disc of radius `border` (m) up to the wavenumber `limit` (rad/m)."""
+def disc_modes(border: float, limit: float, points: float = POINTS_PER_MODE) -> DiscModes:
+    """Modes of a disc of radius `border` (m) up to the wavenumber `limit` (rad/m), and so many radial points a mode."""
     count = int(np.ceil(limit * border / np.pi))
     k = np.concatenate([[EVEN], jn_zeros(1, count)]) / border
     point, share = np.polynomial.legendre.leggauss(PANEL)
-    edges = np.linspace(0.0, border, int(np.ceil(POINTS_PER_MODE * count / PANEL)) + 1)
+    edges = np.linspace(0.0, border, int(np.ceil(points * count / PANEL)) + 1)
     width = np.diff(edges)[:, None]
     radius = (edges[:-1, None] + 0.5 * width * (point + 1.0)).ravel()
     area = 2.0 * np.pi * radius * (0.5 * width * share).ravel()

@@ -1,12 +1,17 @@
-"""A rigid round tool with a rounded edge, over which the tissue slides without friction at finite strain.
+"""A rigid round tool with a rounded edge, over which the tissue slides at finite strain, with or without friction.
 
 The surface may not enter the tool: springs push each point out of it along the tool's normal, and the tool stands where
 they carry its force. They are as stiff as the shortest waves that the modes lack, so that what a point enters by is
 what those would give. The tool is a cylinder with a quarter of a torus for an edge; the touched part of it grows with
 the press, and tissue moves over the edge as it is pressed.
+
+With friction like springs hold each point along the tool's profile where it was at the load before, until they pull
+with the share of what it pushes that Coulomb's law allows; that share goes by the equilibrium before, which is found
+again until it stays (J. C. Simo and T. A. Laursen 1992, Comput Struct 42:97).
 """
 
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -25,10 +30,12 @@ shortest. Set on one press (`skin-5N`, edge of 0.5 mm), where depths are then wi
 PANEL = 4
 AHEAD = 0.1
 """Of the radius, inside the face and outside the tool, as far as points of the surface may come to touch the edge."""
-FINE = 30
+FINE = 6
 """Panels of points over the edge."""
 CLOSE = 1e-12
 """Of the depth, to which a tool is put where it carries its force."""
+SETTLED = 0.03
+"""Of all friction that may act, by how much it may change when an equilibrium is found again."""
 
 
 @dataclass(frozen=True)
@@ -63,19 +70,27 @@ class RoundedTool:
         corner[3:, y == 0.0] = 0.0
         return np.where(x == 0.0, np.stack([height, none, none + 1.0, none, none, none]), corner)
 
+    def along(self, radius: FloatArray, height: FloatArray) -> FloatArray:
+        """(3, P) the length along the profile from the axis to the nearest point, m, and its slopes by the two."""
+        x, y = np.maximum(radius - self.face, 0.0), np.minimum(height - self.edge, 0.0)
+        reach = np.maximum(np.hypot(x, y), 1e-300)
+        length = np.minimum(radius, self.face) + self.edge * np.arctan2(x, -y) + np.maximum(height - self.edge, 0.0)
+        shorter = np.where((x > 0.0) & (y < 0.0), self.edge / reach, 1.0)
+        return np.stack([length, -y / reach * shorter, x / reach * shorter])
+
 
 @dataclass(frozen=True)
-class Entered:
-    """M points of the surface that have entered the tool.
+class Held:
+    """M ways in which the tool holds points of the surface: out of it, and along it.
 
     Attributes
     ----------
     outward, down
-        (M, N) their motion with the amplitudes U and W of the surface.
+        (M, N) motion of the point with the amplitudes U and W of the surface.
     spring, push
-        (M,) N/m and N.
+        (M,) N/m and N; a spring that slides has none.
     slope, bend
-        (2, M) and (3, M) first and second derivatives of how deep they are, by radius and height.
+        (2, M) and (3, M) first and second derivatives of the way by radius and height.
     """
 
     outward: FloatArray
@@ -93,6 +108,31 @@ class Entered:
 
 
 @dataclass(frozen=True)
+class Grip:
+    """What friction goes by at P points of the surface.
+
+    Attributes
+    ----------
+    coefficient
+        Coulomb's.
+    anchor
+        (P,) length along the profile at which each is not pulled, m.
+    limit
+        (P,) the strongest pull, N.
+    """
+
+    coefficient: float
+    anchor: FloatArray
+    limit: FloatArray
+
+    def pull(self, spring: FloatArray, length: FloatArray) -> tuple[FloatArray, float]:
+        """(P,) pull back along the profile at lengths (P,), m, in N, and its potential, J (Huber's)."""
+        stretch = length - self.anchor
+        pull = np.clip(spring * stretch, -self.limit, self.limit)
+        return pull, float(pull @ (stretch - 0.5 * pull / spring))
+
+
+@dataclass(frozen=True)
 class SlidingState:
     """The tool and the points that have entered it; see `ContactState`.
 
@@ -103,13 +143,13 @@ class SlidingState:
     depth, potential
         See `ContactState`.
     points
-        That have entered.
+        Its ways of holding the surface.
     """
 
     contact: "SlidingContact"
     depth: float
     potential: float
-    points: Entered
+    points: Held
 
     @cached_property
     def forces(self) -> FloatArray:
@@ -130,24 +170,23 @@ class SlidingState:
         """The linear answer with the springs (Woodbury), without the bend of the tool."""
         if not self.points.push.size:
             return answer
-        out, down = self._ways
+        out, down, _ = self._ways
         held = self._holding @ (out @ answer[:, 0] + down @ answer[:, self.contact.node])
         columns = self.contact.columns
         return np.asarray(answer - columns[..., 0] * (held @ out)[:, None] - columns[..., 1] * (held @ down)[:, None])
 
     @cached_property
-    def _ways(self) -> tuple[FloatArray, FloatArray]:
-        """(M, N) and (M, N) change of the points' ways out with U and W, by the roots of their springs."""
-        root, points = np.sqrt(self.points.spring), self.points
-        out, up = root * points.slope
-        return out[:, None] * points.outward, -up[:, None] * points.down
+    def _ways(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """(M, N), (M, N) and (M,) change of the ways with U, with W and with the tool, by the roots of the springs."""
+        points, holds = self.points, self.points.spring > 0.0
+        out, up = np.sqrt(points.spring[holds]) * points.slope[:, holds]
+        return out[:, None] * points.outward[holds], -up[:, None] * points.down[holds], up
 
     @cached_property
     def _holding(self) -> FloatArray:
         """(M, M) what the springs hold of the ways that the linear body would go, the tool following."""
         (uu, uw), (wu, ww) = self.contact.flexibility
-        out, down = self._ways
-        rising = np.sqrt(self.points.spring) * self.points.slope[1]
+        out, down, rising = self._ways
         follows = np.eye(rising.size) - np.outer(rising, rising) / (rising @ rising)
         modal = (out * uu + down * wu) @ out.T + (out * uw + down * ww) @ down.T
         return np.asarray(follows @ np.linalg.inv(np.eye(rising.size) + follows @ modal @ follows) @ follows)
@@ -160,7 +199,7 @@ class SlidingState:
 
 
 class SlidingContact:
-    """A rigid tool without friction.
+    """A rigid tool over which the tissue slides.
 
     Parameters
     ----------
@@ -172,9 +211,13 @@ class SlidingContact:
         Of unit force under a flat tool as wide as the face, which is the limit of small presses.
     compliance
         Depth per force there, m/N.
+    friction
+        Coulomb's coefficient.
     """
 
-    def __init__(self, body: StackBody, tool: RoundedTool, traction: Traction, compliance: float) -> None:
+    def __init__(
+        self, body: StackBody, tool: RoundedTool, traction: Traction, compliance: float, friction: float = 0.0
+    ) -> None:
         self.tool, self.node, self.compliance = tool, body.nodes, compliance
         push = on_surface(body, traction.basis.transform(body.radial.wavenumber))
         self.load: FloatArray = push @ traction.coefficients
@@ -187,33 +230,94 @@ class SlidingContact:
         surface = [0, self.node]
         self.columns = body.linear_compliance[:, :, surface]
         self.flexibility = np.moveaxis(self.columns[:, surface], 0, -1)
+        anchor = tool.along(self._radius, np.zeros_like(self._radius))[0]
+        self.grip = Grip(friction, anchor, np.zeros_like(anchor)) if friction > 0.0 else None
 
     def state(self, amplitude: FloatArray, force: float) -> SlidingState:
         """Under a force, N."""
-        radius = self._radius + self._outward @ amplitude[:, 0]
-        sunk = self._down @ amplitude[:, self.node]
-        depth = self._carrying(radius, sunk, force)
-        entered = self.tool.entered(radius, depth - sunk)
+        radius, height, depth = self._placed(amplitude, force)
+        entered = self.tool.entered(radius, height)
         at = entered[0] > 0.0 if force > 0.0 else np.zeros(radius.size, dtype=bool)
         deep, spring = entered[:, at], self._spring[at]
         push = spring * deep[0]
-        points = Entered(self._outward[at], self._down[at], spring, push, deep[1:3], deep[3:])
-        return SlidingState(self, depth, 0.5 * float(push @ deep[0]) - force * depth, points)
+        points = Held(self._outward[at], self._down[at], spring, push, deep[1:3], deep[3:])
+        potential = 0.5 * float(push @ deep[0]) - force * depth
+        if self.grip is not None and force > 0.0:
+            dragged, more = self._dragged(self.grip, radius, height)
+            points, potential = _joined(points, dragged), potential + more
+        return SlidingState(self, depth, potential, points)
+
+    def again(self, amplitude: FloatArray, force: float) -> "SlidingContact | None":
+        """The contact with friction by what points push; None where it was that."""
+        if self.grip is None:
+            return None
+        deep = self.tool.entered(*self._placed(amplitude, force)[:2])[0]
+        limit = self.grip.coefficient * self._spring * np.maximum(deep, 0.0)
+        if np.abs(limit - self.grip.limit).sum() <= SETTLED * limit.sum():
+            return None
+        return self._gripping(replace(self.grip, limit=limit))
+
+    def after(self, amplitude: FloatArray, force: float) -> "SlidingContact":
+        """The contact whose friction goes on from here."""
+        if self.grip is None:
+            return self
+        length = self.tool.along(*self._placed(amplitude, force)[:2])[0]
+        pull, _ = self.grip.pull(self._spring, length)
+        return self._gripping(replace(self.grip, anchor=length - pull / self._spring))
+
+    def _gripping(self, grip: Grip) -> "SlidingContact":
+        other = copy(self)
+        other.grip = grip
+        return other
+
+    def _placed(self, amplitude: FloatArray, force: float) -> tuple[FloatArray, FloatArray, float]:
+        """(P,) and (P,) radius of the points and height over the face, and its depth, m."""
+        radius = self._radius + self._outward @ amplitude[:, 0]
+        sunk = self._down @ amplitude[:, self.node]
+        depth = self._carrying(radius, sunk, force)
+        return radius, depth - sunk, depth
+
+    def _dragged(self, grip: Grip, radius: FloatArray, height: FloatArray) -> tuple[Held, float]:
+        """The points that friction holds, and its potential, J."""
+        length = self.tool.along(radius, height)
+        pull, potential = grip.pull(self._spring, length[0])
+        at = grip.limit > 0.0
+        spring = np.where(np.abs(pull) < grip.limit, self._spring, 0.0)[at]
+        slope = length[1:, at]
+        held = Held(self._outward[at], self._down[at], spring, pull[at], slope, np.zeros((3, spring.size)))
+        return held, potential
 
     def _carrying(self, radius: FloatArray, sunk: FloatArray, force: float) -> float:
         """Depth, m, at which the springs carry a force, N."""
 
         def missing(depth: float) -> float:
             entered = self.tool.entered(radius, depth - sunk)
-            return float((self._spring * np.maximum(entered[0], 0.0)) @ entered[2]) - force
+            return float((self._spring * np.maximum(entered[0], 0.0)) @ entered[2]) - force + dragged(depth)
+
+        def dragged(depth: float) -> float:
+            if self.grip is None:
+                return 0.0
+            length = self.tool.along(radius, depth - sunk)
+            return float(self.grip.pull(self._spring, length[0])[0] @ length[2])
 
         low = float(sunk.min())
         if force <= 0.0:
             return low
         step = 0.01 * self.tool.radius
+        while missing(low) > 0.0:
+            low -= step
         while missing(low + step) < 0.0:
             low, step = low + step, 2.0 * step
         return float(toms748(missing, low, low + step, xtol=CLOSE * self.tool.radius))
+
+
+def _joined(first: Held, second: Held) -> Held:
+    """Both ways of holding together."""
+    points_first = ("outward", "down")
+    return Held(*(
+        np.concatenate([getattr(first, each.name), getattr(second, each.name)], 0 if each.name in points_first else -1)
+        for each in fields(Held)
+    ))  # fmt: skip
 
 
 def _points(tool: RoundedTool, limit: float) -> tuple[FloatArray, FloatArray]:

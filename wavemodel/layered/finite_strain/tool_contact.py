@@ -6,7 +6,7 @@ sharp part near the edge, which stays linear. At small loads the answer is then 
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Protocol, Self
 
 import numpy as np
 
@@ -58,9 +58,28 @@ class ToolContact(Protocol):
         """Depth per force of the linear body, m/N."""
         ...
 
-    def state(self, amplitude: FloatArray, force: float) -> ContactState | None:
-        """Under a force, N; None where matter is too deep in the tool to tell how to get out."""
+    def state(self, amplitude: FloatArray, force: float) -> ContactState:
+        """Under a force, N."""
         ...
+
+    def again(self, amplitude: FloatArray, force: float) -> "ToolContact | None":
+        """The contact by what it was in an equilibrium under a force, N; None where that is what it went by."""
+        ...
+
+    def after(self, amplitude: FloatArray, force: float) -> "ToolContact":
+        """The contact that remembers an equilibrium under a force, N."""
+        ...
+
+
+class Memoryless:
+    """A contact that goes by nothing but the amplitudes."""
+
+    def again(self, amplitude: FloatArray, force: float) -> None:
+        """Nothing to go by."""
+
+    def after(self, amplitude: FloatArray, force: float) -> Self:  # noqa: ARG002 - as other contacts
+        """The same."""
+        return self
 
 
 class LinearContact(Protocol):
@@ -127,7 +146,7 @@ def on_surface(body: StackBody, load: FloatArray) -> FloatArray:
     return out
 
 
-class PressureContact:
+class PressureContact(Memoryless):
     """A uniform pressure on the disc as it was, straight down; the depth is that of the surface on the axis.
 
     Parameters
@@ -160,7 +179,7 @@ class PressureContact:
         return float(amplitude[:, self._node].sum())
 
 
-class BondedContact:
+class BondedContact(Memoryless):
     """A rigid flat face bonded to the disc.
 
     Parameters

@@ -4,9 +4,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from wavemodel import DiscTool, LayeredWave, NotCoveredError, WaveLayer
+from wavemodel.layered import body_options
 from wavemodel.layered.body_options import contact_of
 from wavemodel.layered.finite_strain.modal_body import StackBody, disc_modes, thickness_of
-from wavemodel.layered.finite_strain.sliding_contact import RoundedTool
+from wavemodel.layered.finite_strain.sliding_contact import Grip, RoundedTool
 from wavemodel.layered.press import prepare
 from wavemodel.layered.window import WaveDiscretisation
 
@@ -56,7 +57,7 @@ def test_slopes_and_bends_are_those_of_the_depth(radius, height):
 def test_the_springs_carry_the_force(touched):
     contact, amplitude = touched
     points = contact.state(amplitude, FORCE).points
-    assert points.push.size > 20
+    assert points.push.size > 5
     assert points.push @ points.slope[1] == pytest.approx(FORCE, rel=1e-9)
 
 
@@ -78,15 +79,22 @@ def test_nothing_is_held_before_a_force(touched):
     assert rest.relieve(amplitude) is amplitude
 
 
-def test_a_small_press_is_that_of_the_flat_face():
+@pytest.fixture
+def coarse(monkeypatch):
+    """A third of the resolution and no way on from the first force without equilibrium: a tenth of the time."""
+    monkeypatch.setattr(body_options, "SLIDING", 20.0)
+    monkeypatch.setattr(body_options, "SHORTEST_SLIDING", 1.0)
+
+
+def test_a_small_press_is_that_of_the_flat_face(coarse):
     layer = [WaveLayer("gel", 20e-3, 1000.0, 5e4, 0.45)]
     wave = LayeredWave(layer, DiscTool(5e-3, "rigid_frictionless", 1e-3))
     flat = LayeredWave(layer, DiscTool(4e-3, "rigid_frictionless"), large_press="linear")
     assert wave.law.compliance == pytest.approx(flat.law.compliance, rel=1e-12)
-    assert wave.law.large.followed > 0.25 * 20e-3
+    assert wave.law.large.followed > 0.2 * 20e-3
 
 
-def test_a_sharper_edge_sinks_in_less_under_the_same_force():
+def test_a_sharper_edge_sinks_in_less_under_the_same_force(coarse):
     layer = [WaveLayer("gel", 20e-3, 1000.0, 5e4, 0.45)]
     depth = [
         float(LayeredWave(layer, DiscTool(5e-3, "rigid_frictionless", edge)).law.depth_at(np.array(0.5)))
@@ -99,3 +107,70 @@ def test_a_sharper_edge_sinks_in_less_under_the_same_force():
 def test_a_sharp_edge_and_a_ball_are_refused(skin, edge):
     with pytest.raises(NotCoveredError, match="edge_radius"):
         LayeredWave(skin(), DiscTool(5e-3, "rigid_frictionless", edge), large_press="corrected")
+
+
+@given(st.floats(3e-3, 5.2e-3), st.floats(-4e-4, 8e-4))
+def test_the_way_along_the_profile_goes_as_its_slopes_say(radius, height):
+    tool, step = RoundedTool(5e-3, 1e-3), 1e-8
+    at = tool.along(np.array([radius]), np.array([height]))[:, 0]
+    if abs(radius - tool.face) < 1e-6:
+        return
+    for way, slope in (((step, 0.0), at[1]), ((0.0, step), at[2])):
+        forth, back = (
+            tool.along(np.array([radius + sign * way[0]]), np.array([height + sign * way[1]]))[0, 0]
+            for sign in (1.0, -1.0)
+        )
+        assert (forth - back) / (2.0 * step) == pytest.approx(slope, rel=1e-5, abs=1e-5)
+
+
+@pytest.fixture(scope="module")
+def gripping(touched):
+    """The same contact with friction, by what points push there, where they were at rest a moment ago."""
+    contact, amplitude = touched
+    rough = replace_friction(contact, 0.3).after(0.97 * amplitude, FORCE)
+    return rough.again(amplitude, FORCE), amplitude
+
+
+def replace_friction(contact, coefficient):
+    grip = Grip(coefficient, contact.tool.along(contact._radius, 0.0 * contact._radius)[0], 0.0 * contact._radius)
+    return contact._gripping(grip)
+
+
+def test_friction_is_no_more_than_its_share_of_the_push(gripping, touched):
+    contact, amplitude = gripping
+    pushed = touched[0].state(amplitude, FORCE).points.push
+    dragged = np.abs(contact.state(amplitude, FORCE).points.push[pushed.size :])
+    assert 0.0 < dragged.max() <= 0.3 * pushed.max() * 1.05
+    assert 0.1 * 0.3 * pushed.sum() < dragged.sum() <= 0.3 * pushed.sum() * 1.05
+
+
+def test_with_friction_the_forces_are_the_slope_of_the_potential(gripping):
+    contact, amplitude = gripping
+    change, step = np.random.default_rng(5).normal(size=amplitude.shape), 1e-10
+    here = contact.state(amplitude, FORCE)
+    forth, back = (contact.state(amplitude + sign * step * change, FORCE) for sign in (1.0, -1.0))
+    assert (here.forces * change).sum() == pytest.approx((forth.potential - back.potential) / (2 * step), rel=1e-4)
+
+
+def test_an_equilibrium_is_found_again_until_its_friction_stays(gripping):
+    contact, amplitude = gripping
+    for _ in range(5):
+        later = contact.again(amplitude, FORCE)
+        if later is None:
+            return
+        contact = later
+    raise AssertionError("the friction does not settle")
+
+
+def test_friction_holds_a_tool_up(coarse):
+    layer = [WaveLayer("gel", 10e-3, 1000.0, 5e4, 0.45)]
+    tools = [
+        DiscTool(5e-3, "rigid_frictionless", 1e-3),
+        DiscTool(5e-3, "rigid_frictional", 1e-3, 0.0),
+        DiscTool(5e-3, "rigid_frictional", 1e-3, 0.2),
+        DiscTool(5e-3, "rigid_frictional", 1e-3, 1.0),
+        DiscTool(5e-3, "rigid_bonded"),
+    ]
+    free, none, some, much, stuck = (float(LayeredWave(layer, tool).law.depth_at(np.array(1.0))) for tool in tools)
+    assert none == free
+    assert free > 1.005 * some > 1.005 * much > stuck
