@@ -47,7 +47,8 @@ class LayeredWave:
     layers
         L layers from the surface down.
     tool
-        Uniform pressure, or rigid and flat, frictionless or bonded.
+        Uniform pressure, or rigid and flat, frictionless or bonded; at finite strain also with friction, where tissue
+        slides over a rounded edge.
     support
         "bonded", or "free" (nothing under the lower face, the window's border simply supported).
     discretisation
