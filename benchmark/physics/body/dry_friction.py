@@ -42,7 +42,7 @@ DESCRIPTION = EffectDescription(
             "",
             0.0,
             10.0,
-            "Coulomb friction between tool and tissue; needed by a rigid_frictional tool, in FEM and wave (as it goes in)",
+            "Coulomb friction between tool and tissue; needed by a rigid_frictional tool, in FEM and wave (going in)",
         ),
     ),
     in_wave="on top of its elastic law",
