@@ -38,3 +38,11 @@ def test_small_strain_finite_elements_need_no_note():
     record = run_scenario(scenario, OPTIONS, QUIET, own=NOTHING)
     assert record.pair.wave.result is not None
     assert NOTE not in record.pair.wave.result.notes
+
+
+def test_under_friction_there_is_none_and_the_run_goes_on():
+    rough = {"tool.contact": "rigid_frictional", "physics.friction_coefficient": "0.3", "tool.edge_radius": "2 mm"}
+    record = run_scenario(load_scenario("skin-5N", QUICK | rough), OPTIONS, QUIET)
+    assert record.pair.wave.result is not None
+    assert NOTE not in record.pair.wave.result.notes
+    assert any("the way back" in one for one in record.pair.wave.result.warnings)
