@@ -16,7 +16,7 @@ from bench_hw.errors import TableError
 from bench_hw.tables.columns import numbers_of, read_source, text_columns
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
-from benchmark.models import Drive, read_reference
+from benchmark.models import Drive, UncoveredError, read_reference
 from benchmark.models.model_result import STRAINS
 from benchmark.models.prepare import in_small_strain, small_strain_deflection
 
@@ -136,9 +136,13 @@ def _wave(path: Path, shape: tuple[int, ...]) -> Array:
 def at_small_strain(run: FinishedRun) -> FinishedRun:
     """Return the run with the small-strain wave at the same loads, where `large_press = "auto"` took finite strain.
 
-    A wave whose large press was asked for, or that has effects of a model file, stays as it is.
+    A wave whose large press was asked for, that has effects of a model file, or whose tool small strain does not cover,
+    as one with friction, stays as it is.
     """
     if run.scenario.wave.large_press != "auto" or run.large_press != "corrected" or run.effects:
         return run
-    wave = small_strain_deflection(run.scenario, Drive("force", run.time, run.force))
+    try:
+        wave = small_strain_deflection(run.scenario, Drive("force", run.time, run.force))
+    except UncoveredError:
+        return run
     return replace(run, wave=wave, scenario=in_small_strain(run.scenario), large_press="linear", restarted=True)

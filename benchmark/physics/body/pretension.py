@@ -87,10 +87,11 @@ def _one_layer(thickness: float) -> tuple[WaveLayer, ...]:
 
 @lru_cache(maxsize=64)
 def _on_base(layers: tuple[WaveLayer, ...], tool_radius: float, contact: str) -> tuple[float, ...]:
-    """K / S in m at each of the probes."""
+    """K / S in m at each of the probes; friction is taken to hold."""
     from wavemodel import DiscTool, LayeredWave
 
-    tool, depth = DiscTool(tool_radius, contact), np.array([SHALLOW])
+    sticks = "rigid_bonded" if contact == "rigid_frictional" else contact
+    tool, depth = DiscTool(tool_radius, sticks), np.array([SHALLOW])
 
     def force(stress: float | None) -> float:
         return float(LayeredWave(layers, tool, support="bonded", pretension=stress, large_press="linear").law(depth)[0])

@@ -1,6 +1,7 @@
 """The wave that a repair begins with."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 from benchmark.discovery.from_run import at_small_strain, is_run, read_run
 from benchmark.errors import InputError
+from benchmark.files import load_scenario
 from benchmark.models.model_result import STRAINS
 
 
@@ -65,6 +67,12 @@ def test_finite_strain_taken_by_itself_is_taken_back(make_run) -> None:
     per_newton = small.wave[pressed] / small.force[pressed][:, None]
     np.testing.assert_allclose(per_newton, np.tile(per_newton[0], (pressed.sum(), 1)), rtol=1e-9)
     assert (per_newton[0] > 5e-4).all()
+
+
+def test_a_wave_under_friction_which_small_strain_does_not_cover_stays(make_run) -> None:
+    rough = {"tool.contact": "rigid_frictional", "physics.friction_coefficient": "0.3", "tool.edge_radius": "1 mm"}
+    run = replace(read_run(_told(make_run(), "corrected")), scenario=load_scenario("skin-5N", rough))
+    assert at_small_strain(run) is run
 
 
 def test_a_wave_in_small_strain_or_with_effects_stays(make_run) -> None:
