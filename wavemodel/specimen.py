@@ -9,6 +9,8 @@ from wavemodel.arrays import FloatArray
 from wavemodel.errors import WaveError, require_between, require_not_negative, require_positive
 
 SLIDING = ("rigid_frictionless", "rigid_frictional")
+LEAST_FACE = 0.2
+"""Radius of a flat face over that of its tool, at least."""
 CONTACTS = ("uniform_pressure", "rigid_bonded", "rigid_frictionless", "rigid_frictional")
 
 LAW_MISFIT = 1e-3
@@ -137,8 +139,11 @@ class DiscTool:
 
     @property
     def slides(self) -> bool:
-        """Whether the tissue slides under the tool and over its rounded edge."""
-        return self.contact in SLIDING and self.edge_radius > 0.0
+        """Whether the tissue slides under a flat face and over its rounded edge.
+
+        A ball has no flat face: its depth goes with no power one of a small force.
+        """
+        return self.contact in SLIDING and 0.0 < self.edge_radius <= (1.0 - LEAST_FACE) * self.radius
 
     @property
     def at_first_touch(self) -> "DiscTool":

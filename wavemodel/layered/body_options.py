@@ -20,7 +20,7 @@ from wavemodel.layered.press import Press
 from wavemodel.layered.shear_limit import ShearLimit, interface_slip
 from wavemodel.physics.quasi_static_press import Physics
 from wavemodel.physics.time_dependent import ViscousDamping
-from wavemodel.specimen import DiscTool
+from wavemodel.specimen import LEAST_FACE, DiscTool
 
 LARGE_PRESS = ("auto", "linear", "corrected", "deep")
 RESOLUTION, MOST_MODES = 16.0, 256
@@ -36,8 +36,6 @@ SHORTEST_SLIDING = 0.25
 """Share of the first step of force at which a sliding path ends: a step that fails takes as long as ten others."""
 SHARP_REACH, SHARP_POINTS = 3.0, 600
 """Radii of the tool to which the linear surface has more than such modes, and points of the table of that."""
-LEAST_FACE = 0.2
-"""Of the radius: below it a small press is nearly that of a ball, whose depth goes with no power one of the force."""
 BORDER = 0.75
 """Radius of the disc over the side of the window, which just lets the linear field die away."""
 REACH, DEEP = 0.4, 0.75
@@ -183,16 +181,12 @@ def _sharp(press: Press, wavenumber: FloatArray, modal: FloatArray, tool: DiscTo
 
 
 def _require_contact(tool: DiscTool) -> None:
-    if tool.slides and tool.radius - tool.edge_radius < LEAST_FACE * tool.radius:
-        raise NotCoveredError(
-            f"the large-press correction does not cover a sliding tool whose flat face is below "
-            f"{LEAST_FACE:g} of its radius: edge_radius = {1e3 * tool.edge_radius:g} mm of {1e3 * tool.radius:g} mm"
-        )
     if tool.contact in ("uniform_pressure", "rigid_bonded") or tool.slides:
         return
     raise NotCoveredError(
-        f"the large-press correction does not cover tool contact {tool.contact!r}: 'uniform_pressure', 'rigid_bonded', "
-        "'rigid_frictionless' and 'rigid_frictional' with a rounded edge (edge_radius) are covered"
+        f"the large-press correction does not cover tool contact {tool.contact!r} with edge_radius = "
+        f"{1e3 * tool.edge_radius:g} mm: 'uniform_pressure', 'rigid_bonded', and 'rigid_frictionless' and "
+        f"'rigid_frictional' with an edge above 0 and up to {1e3 * (1.0 - LEAST_FACE) * tool.radius:g} mm are covered"
     )
 
 

@@ -174,3 +174,10 @@ def test_friction_holds_a_tool_up(coarse):
     free, none, some, much, stuck = (float(LayeredWave(layer, tool).law.depth_at(np.array(1.0))) for tool in tools)
     assert none == free
     assert free > 1.005 * some > 1.005 * much > stuck
+
+
+def test_a_ball_is_that_of_small_strain_where_it_may_be(skin):
+    ball = LayeredWave(skin(), DiscTool(5e-3, "rigid_frictionless", 5e-3))
+    flat = LayeredWave(skin(), DiscTool(5e-3, "rigid_frictionless"), large_press="linear")
+    assert ball.law.large is None
+    assert ball.law.compliance == flat.law.compliance
