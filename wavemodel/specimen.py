@@ -112,12 +112,13 @@ class DiscTool:
     edge_radius
         In m, zero for a sharp edge. What slides under a tool at finite strain slides over its edge.
     friction
-        Coulomb's coefficient of "rigid_frictional".
+        Coulomb's coefficient of "rigid_frictional", zero for any other contact.
 
     Raises
     ------
     WaveError
-        If the radius is not positive, the edge is larger, the friction negative, or the contact none of these words.
+        If the radius is not positive, the edge is larger, the friction negative or that of a contact without, or the
+        contact none of these words.
     """
 
     radius: float
@@ -129,6 +130,10 @@ class DiscTool:
         require_positive("tool radius", self.radius, "m")
         require_between("tool", "edge_radius", self.edge_radius, "m", 0.0, self.radius)
         require_not_negative("tool friction", self.friction, "")
+        if self.friction > 0.0 and self.contact != "rigid_frictional":
+            raise WaveError(
+                f"tool friction = {self.friction:g} is not allowed with {self.contact!r}: 'rigid_frictional'"
+            )
         if self.contact not in CONTACTS:
             raise WaveError(f"tool contact = {self.contact!r} is not allowed: one of {', '.join(CONTACTS)}")
 

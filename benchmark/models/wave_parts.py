@@ -86,8 +86,9 @@ class PreparedWave:
 
 def wave_tool(scenario: Scenario) -> DiscTool:
     """The tool; its edge counts at finite strain, where tissue slides over it."""
-    tool, friction = scenario.tool, scenario.physics.friction_coefficient
+    tool = scenario.tool
     edge = tool.edge_radius if scenario.fem.kinematics == "finite" else None
+    friction = scenario.physics.friction_coefficient if tool.contact == "rigid_frictional" else None
     return DiscTool(tool.radius, tool.contact, edge or 0.0, friction or 0.0)
 
 

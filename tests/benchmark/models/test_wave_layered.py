@@ -5,8 +5,10 @@ import pytest
 
 from benchmark.files import load_scenario
 from benchmark.models import Drive, ModelResult, UncoveredError, prepare, scenario_drive
+from benchmark.models.wave_parts import wave_tool
 
 SHORT = {"load.observations": "4"}
+FRICTION = "physics.friction_coefficient"
 FALLEN = "without the layers' finite strain"
 
 
@@ -42,12 +44,20 @@ def test_a_tool_over_whose_edge_the_tissue_slides_is_followed_at_finite_strain()
 
 
 def test_friction_is_followed_in_loading_and_the_way_back_is_said_to_be_left_out() -> None:
-    settings = {"tool.contact": "rigid_frictional", "physics.friction_coefficient": "0.3", "tool.edge_radius": "1 mm"}
+    settings = {"tool.contact": "rigid_frictional", FRICTION: "0.3", "tool.edge_radius": "1 mm"}
     scenario = load_scenario("skin-5N", settings)
     drive = Drive("force", np.arange(1.0, 5.0), np.arange(1.0, 5.0))
     found, truth = (prepare(model, scenario).run(drive) for model in ("wave", "fem"))
     np.testing.assert_allclose(found.top_deflection, truth.top_deflection, rtol=0.015)
     assert "the way back" in " ".join(found.warnings)
+
+
+def test_a_coefficient_of_friction_without_effect_has_none_in_the_wave() -> None:
+    smooth = {"tool.contact": "rigid_frictionless", "tool.edge_radius": "1 mm"}
+    tools = [wave_tool(load_scenario("skin-5N", {**smooth, **more})) for more in ({}, {FRICTION: "0.3"})]
+    assert tools[0] == tools[1]
+    rough = load_scenario("skin-5N", {**smooth, "tool.contact": "rigid_frictional", FRICTION: "0.3"})
+    assert wave_tool(rough).friction == 0.3
 
 
 def test_small_strain_does_not_press_through_a_base() -> None:
