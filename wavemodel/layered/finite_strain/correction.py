@@ -26,7 +26,8 @@ SLACK = 1.0 + 1e-12
 class FiniteStrainLaw:
     """Nonlinear less linear answer of a stack to a tool, from no load to the last level of a path, or on from there.
 
-    Without load or under a pull it adds nothing. Nothing in it is calibrated (`calibrated_on` is empty).
+    Without load or under a pull it adds nothing. Nothing in it is calibrated (`calibrated_on` is empty); under a tool
+    that slides the springs of the contact were set on one press (`sliding_contact.SHORTER`).
 
     Attributes
     ----------
