@@ -139,7 +139,7 @@ class Place:
         m.
     size : float
         What the answer's effects add to the simulation there, N for the force and m for markers; without effects the
-        residual.
+        residual, or, where no cell's mean shows it, the root mean square of what trials share of it row by row.
     percent_of_signal : float
         Size of the residual as a share of the channel's largest signal.
     p : float

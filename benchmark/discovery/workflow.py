@@ -44,11 +44,13 @@ from benchmark.discovery.detection.disagreement import (
     combined,
     detect,
     exchangeable,
+    shared_by_chance,
+    shared_misfit,
     smallest_visible,
     strained,
 )
-from benchmark.discovery.detection.places import places
-from benchmark.discovery.discovery_result import Discovery
+from benchmark.discovery.detection.places import places, shared_places
+from benchmark.discovery.discovery_result import Discovery, Place
 from benchmark.discovery.evidence.gains import conditions, tissue_gain
 from benchmark.discovery.evidence.parameter_evidence import constant, undetermined, unsteady
 from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fingerprint, own_code, pool, silent
@@ -280,11 +282,9 @@ def _discovery(
     return Discovery(
         verdict=word,
         statement=statement(word, facts),
-        p=None if untested else before.p_cells if nothing else before.p,
+        p=None if untested else before.p_cells if nothing else facts.p_any,
         effects=() if nothing else named_effects(answer.selection, MOST_CONFIDENCE.get(word, 1.0)),
-        where=()
-        if untested
-        else places(base, *((base, base) if nothing else (answer.plain, chosen)), before, settings),
+        where=() if untested else _where(answer, facts, settings, nothing=nothing),
         contrasts=contrasts(base, before, settings),
         gap=gap,
         smallest_visible={} if untested else smallest_visible(base, before),
@@ -316,7 +316,7 @@ def _facts(answer: _Answer, known: Sequence[Effect], settings: Settings) -> Fact
         enough=reachable(conditions(answer.base), settings),
         effects=tuple(sorted(selection.chosen.model.effects, key=lambda each: -own_gain(selection, each.slug))),
         lookalikes=tuple(by_slug[slug] for slug in sorted(alike)),
-        left=min(answer.left, criteria.OUTSIDE) if selection.withheld else answer.left,
+        left=_left(answer),
         p_after=answer.after.p,
         transfers=constant(answer.chosen),
         level=settings.level,
@@ -328,4 +328,23 @@ def _facts(answer: _Answer, known: Sequence[Effect], settings: Settings) -> Fact
         undetermined=undetermined(answer.chosen),
         unsteady=unsteady(answer.chosen),
         p_strained=strained(answer.chosen, criteria.TIE * tissue_gain(selection.chosen, selection.own)),
+        shared=shared_misfit(answer.chosen),
+        p_shared=shared_by_chance(answer.chosen, settings),
     )
+
+
+def _where(answer: _Answer, facts: Facts, settings: Settings, *, nothing: bool) -> tuple[Place, ...]:
+    """Where they disagree; in the phases that trials share row by row where no cell shows it."""
+    base = answer.base
+    if facts.by_rows and not (nothing or facts.effects or facts.by_cells):
+        return shared_places(base, settings)
+    before, chosen = (base, base) if nothing else (answer.plain, answer.chosen)
+    return places(base, before, chosen, answer.before, settings)
+
+
+def _left(answer: _Answer) -> float:
+    """Share that the effects leave: what a withheld one would take is no unknown cause, if little is left beside it."""
+    selection = answer.selection
+    last = [s for s in selection.candidates if s.slug in selection.withheld and s.under is selection.steps[-1].fit]
+    beside = [answer.left * share_left(each.under, each.fit) for each in last]
+    return min(answer.left, criteria.OUTSIDE) if min(beside, default=1.0) <= criteria.OUTSIDE else answer.left

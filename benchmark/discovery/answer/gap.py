@@ -12,9 +12,10 @@ import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.calibration import pure_errors
-from benchmark.discovery.base.effect_model import EffectModel, Fit, White, settled
+from benchmark.discovery.base.effect_model import EffectModel, Fit, settled
 from benchmark.discovery.base.trials_problem import TrialsProblem, followed, only, replicates
 from benchmark.discovery.criteria import Settings
+from benchmark.discovery.detection.disagreement import shared_misfit
 from benchmark.discovery.discovery_result import Array, ChannelGap, Trace
 from benchmark.discovery.evidence.gains import conditions, delta_bic, effective_size
 from benchmark.response.least_squares import Search, least_squares
@@ -225,23 +226,6 @@ def _misfits(base: Fit, rows: list[Array]) -> Array:
     channels = np.array(problem.study.channels)
     each = [squares[:, channels == channel].mean(axis=1) for channel in dict.fromkeys(problem.study.channels)]
     return np.asarray(np.mean(each, axis=0))
-
-
-def shared_misfit(fitted: Fit) -> float:
-    """Squared norm of the whitened mean residual, in standard errors, above its expectation from replicates.
-
-    Each condition gives R |mean|^2 less the sum of its variances over trials; a condition without replicates gives its
-    rows' number in the place of the variances.
-    """
-    problem = fitted.model.problem
-    residuals = White(problem).residuals(fitted.model.signals(fitted.vector, fitted.nuisance))
-    groups = conditions(fitted)
-    total = 0.0
-    for number in np.unique(groups):
-        rows = np.array([residuals[i] for i in np.flatnonzero(groups == number)])
-        floor = rows.var(axis=0, ddof=1).sum() if len(rows) > 1 else float(rows.shape[1])
-        total += len(rows) * float(np.sum(rows.mean(axis=0) ** 2)) - float(floor)
-    return total
 
 
 def share_left(before: Fit, after: Fit) -> float:

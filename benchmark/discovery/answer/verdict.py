@@ -51,6 +51,10 @@ class Facts:
         Accepted effects of rig or sensor whose parameters are others in each condition, which an instrument's are not.
     p_strained : float
         Of the base's having to bend so far beside the effects, by the priors of what was told of the set-up.
+    shared : float
+        Squared norm of what trials share row by row beside the effects, in standard errors above chance.
+    p_shared : float
+        Of sharing so much by chance.
     """
 
     p: float
@@ -71,11 +75,33 @@ class Facts:
     p_strained: float = 1.0
     taken_up: bool = False
     fitted: bool = True
+    shared: float = 0.0
+    p_shared: float = 1.0
+
+    @property
+    def by_rows(self) -> bool:
+        """Whether trials surely share a misfit row by row, beside what effects there are."""
+        return self.p_shared < self.level and self.shared > criteria.SHARED
+
+    @property
+    def by_cells(self) -> bool:
+        """Whether cells surely do."""
+        return (self.p_after if self.effects else max(self.p, self.p_cells)) < self.level
+
+    @property
+    def shares(self) -> bool:
+        """Whether either does."""
+        return self.by_rows or self.by_cells
+
+    @property
+    def p_any(self) -> float:
+        """Of the disagreement that is answered."""
+        return self.p if self.effects or self.by_cells else min(self.p, self.p_shared)
 
     @property
     def partial(self) -> bool:
-        """Whether cells still disagree beside the effects, and something is surely left."""
-        return self.p_after < self.level and self.left > criteria.PARTLY
+        """Whether trials still disagree beside the effects, and something is surely left."""
+        return self.shares and self.left > criteria.PARTLY
 
     @property
     def strained(self) -> bool:
@@ -92,8 +118,7 @@ def verdict(facts: Facts) -> str:
     """One of `VERDICTS`."""
     if not facts.enough:
         return "cannot_tell"
-    seen = facts.p < facts.level if facts.effects else max(facts.p, facts.p_cells) < facts.level
-    if not seen:
+    if not (facts.p < facts.level if facts.effects else facts.shares):
         return "no_discrepancy" if facts.within else "cannot_tell"
     if not facts.effects or _fails(facts):
         return "outside_catalogue"
@@ -109,7 +134,7 @@ def _fails(facts: Facts) -> bool:
 
     An instrument of other parameters in each condition that leaves something is none either.
     """
-    leaves = facts.left > criteria.OUTSIDE and facts.p_after < facts.level
+    leaves = facts.left > criteria.OUTSIDE and facts.shares
     unlike = bool(facts.unsteady) and facts.partial
     return leaves or unlike or not facts.predicts or bool(facts.undetermined)
 
@@ -177,13 +202,14 @@ def _more(facts: Facts) -> str:
         return "beside it the set-up must still be another than was told"
     if not facts.fitted:
         return "with it in the model the trials are still missed by more than the stated tolerance"
-    return "cells still disagree with it in the model"
+    return f"{'cells' if facts.by_cells else 'row by row trials'} still disagree with it in the model"
 
 
 def _outside(names: str, facts: Facts) -> str:
     start = "Simulation and measurement disagree, and no entry of the catalogue accounts for it"
     if not names:
-        return f"{start}."
+        rows = ", though no cell's mean shows it: the trials share it row by row"
+        return f"{start}{'' if facts.by_cells else rows}."
     why = ""
     if facts.undetermined:
         why = ", whose strength these data do not tell"

@@ -182,14 +182,20 @@ def _flipped(
 ) -> tuple[Array, Array, Array, Array]:
     """Of means (K, R): t beyond `least`, standard error, family-wise p, (K,) each, and statistics (S, K) of flips."""
     count = means.shape[1]
-    weights, signs = _members(groups), _signs(count, *draw)
+    weights, signs = _members(groups), sign_patterns(count, *draw)
     t, error = (column[0] for column in _statistics(means, kinds, np.ones((1, count)), weights))
     t = np.sign(t) * np.maximum(np.abs(t) - least / np.maximum(error, 1e-300), 0.0)
     flipped = _statistics(means, kinds, signs, weights)[0]
     shown = np.where(sided, t, np.abs(t))
     above = _largest(flipped, sided)[:, None] >= shown[None] - 1e-9
-    p = above.mean(axis=0) if count <= criteria.ALL_FLIPS else (1.0 + above.sum(axis=0)) / (1.0 + len(signs))
-    return t, error, p, flipped
+    return t, error, share_of_flips(above, count), flipped
+
+
+def share_of_flips(above: np.ndarray, trials: int) -> Array:
+    """P from which flips (S, ...) reach what the data show: of all there are, or of those drawn and the data's own."""
+    if trials <= criteria.ALL_FLIPS:
+        return np.asarray(above.mean(axis=0))
+    return np.asarray((1.0 + above.sum(axis=0)) / (1.0 + len(above)))
 
 
 def _largest(flipped: Array, sided: np.ndarray) -> Array:
@@ -205,7 +211,8 @@ def _members(groups: np.ndarray) -> Array:
     return np.asarray(groups[None] == names[:, None], dtype=float)
 
 
-def _signs(trials: int, flips: int, seed: int) -> Array:
+def sign_patterns(trials: int, flips: int, seed: int) -> Array:
+    """(S, R) signs of whole trials: all 2^R where they are few, else so many at random."""
     if trials <= criteria.ALL_FLIPS:
         return np.array(list(itertools.product((1.0, -1.0), repeat=trials)))
     return np.asarray(np.random.default_rng(seed).choice((1.0, -1.0), size=(flips, trials)))
@@ -249,6 +256,12 @@ def tolerances(problem: TrialsProblem) -> dict[str, float]:
     force = criteria.TOLERANCE_FORCE * max(condition.around.peak_force for condition in problem.study.conditions)
     channels = dict.fromkeys(problem.study.channels)
     return {name: force if name.startswith("force") else criteria.TOLERANCE_MARKERS for name in channels}
+
+
+def too_small(problem: TrialsProblem) -> Array:
+    """(C,) size of each signal, N or m, up to which a mean is no disagreement."""
+    tolerance = tolerances(problem)
+    return np.array([criteria.TOO_SMALL * tolerance[channel] for channel in problem.study.channels])
 
 
 def within_tolerance(fitted: Fit) -> bool:

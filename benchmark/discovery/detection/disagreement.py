@@ -1,7 +1,8 @@
-"""Is there a disagreement, and where: the base's residuals tested in cells, refitted once on the clean ones."""
+"""Is there a disagreement: the base's residuals tested in cells, refitted once on the clean ones, and row by row."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.stats import norm
 
 from benchmark.discovery import criteria
-from benchmark.discovery.base.effect_model import EffectModel, Fit, fit
+from benchmark.discovery.base.effect_model import EffectModel, Fit, White, fit
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.cells import (
     CellTable,
@@ -18,9 +19,14 @@ from benchmark.discovery.detection.cells import (
     cells_of,
     flip_test,
     projected_residuals,
-    tolerances,
+    share_of_flips,
+    sign_patterns,
+    too_small,
 )
 from benchmark.discovery.discovery_result import Array
+
+SAME = 1e-12
+"""Of the sum of all sizes, by which the same products in another order may differ."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,10 +83,7 @@ def _table(fitted: Fit, full: Fit | None = None) -> CellTable:
 
 def _large(fitted: Fit, table: CellTable) -> CellTable:
     """The table of which only what is no longer small counts."""
-    problem = fitted.model.problem
-    tolerance = tolerances(problem)
-    least = [criteria.TOO_SMALL * tolerance[problem.study.channels[cell.signal]] for cell in table.cells]
-    return replace(table, least=np.array(least))
+    return replace(table, least=too_small(fitted.model.problem)[[cell.signal for cell in table.cells]])
 
 
 def _tested(table: CellTable, settings: Settings) -> FlipTest:
@@ -149,3 +152,63 @@ def exchangeable(detection: Detection) -> tuple[str, ...]:
             "trial to trial)",
         )
     return ()
+
+
+def shared_misfit(fitted: Fit) -> float:
+    """Squared norm of the whitened mean residual, in standard errors, above its expectation from replicates.
+
+    Each condition gives R |mean|^2 less the sum of its variances over trials; a condition without replicates gives its
+    rows' number in the place of the variances. Noise counts as no less than what is too small to matter.
+    """
+    return float(_in_common(fitted, _rows(fitted)).sum())
+
+
+def shared_by_chance(fitted: Fit, settings: Settings) -> float:
+    """P that trials share as much misfit by chance: what they share after flips of whole trials' signs, as for cells.
+
+    Cells average over phases and halves; this sees what changes its sign within one, such as a ringing or a dent.
+    """
+    products = _in_common(fitted, _rows(fitted))
+    return float(_beyond_flips(products[None], settings)[0])
+
+
+def shared_by(fitted: Fit, picks: Sequence[Sequence[NDArray[np.bool_]]], settings: Settings) -> tuple[Array, Array]:
+    """(K,) misfit that trials share in each of some picks of rows ((n, C) of each trial), and its family-wise p."""
+    rows = _rows(fitted)
+    products = np.array([_in_common(fitted, [r * p for r, p in zip(rows, pick, strict=True)]) for pick in picks])
+    return products.sum(axis=(1, 2)), _beyond_flips(products, settings)
+
+
+def _rows(fitted: Fit) -> list[Array]:
+    """White residuals (n, C) of each trial."""
+    problem = fitted.model.problem
+    residuals = White(problem).residuals(fitted.model.signals(fitted.vector, fitted.nuisance))
+    ratio = np.minimum(problem.noise.scale / too_small(problem), 1.0)
+    return [each.reshape(-1, ratio.shape[1]) * ratio[i] for i, each in enumerate(residuals)]
+
+
+def _in_common(fitted: Fit, rows: Sequence[Array]) -> Array:
+    """(R, R) what two trials have in common: products of their rows, over the mates of each in its condition."""
+    groups = np.array([trial.condition for trial in fitted.model.problem.trials])
+    out = np.zeros((groups.size, groups.size))
+    for number in np.unique(groups):
+        mine = np.flatnonzero(groups == number)
+        flat = np.array([rows[i].ravel() for i in mine.tolist()])
+        shared = flat @ flat.T
+        if mine.size > 1:
+            np.fill_diagonal(shared, 0.0)
+            shared /= mine.size - 1
+        else:
+            shared -= np.count_nonzero(flat)
+        out[np.ix_(mine, mine)] = shared
+    return out
+
+
+def _beyond_flips(products: Array, settings: Settings) -> Array:
+    """(K,) family-wise p of the sums of products (K, R, R), each in units of its scatter over the flips."""
+    count = products.shape[1]
+    signs = sign_patterns(count, settings.flips, settings.seed)
+    flipped = np.einsum("sr,krq,sq->sk", signs, products, signs, optimize=True)
+    unit = np.maximum(flipped.std(axis=0), 1e-300)
+    shown = (products.sum(axis=(1, 2)) - SAME * np.abs(products).sum(axis=(1, 2))) / unit
+    return share_of_flips((flipped / unit).max(axis=1)[:, None] >= shown[None], count)

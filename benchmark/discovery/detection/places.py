@@ -12,7 +12,7 @@ from benchmark.discovery.base.effect_model import EffectModel, Fit, White, nuisa
 from benchmark.discovery.base.trials_problem import followed
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.cells import Cell, one_sided
-from benchmark.discovery.detection.disagreement import Detection
+from benchmark.discovery.detection.disagreement import Detection, shared_by
 from benchmark.discovery.discovery_result import PHASES, Array, Place
 
 BOTH = ("radial_x", "radial_y")
@@ -31,6 +31,22 @@ def places(base: Fit, before: Fit, chosen: Fit, detection: Detection, settings: 
     first = effect_places(chosen, before, changes, settings)
     have = {(place.channel, place.phase) for place in first}
     return (*first, *(place for place in flagged if (place.channel, place.phase) not in have))
+
+
+def shared_places(fitted: Fit, settings: Settings) -> tuple[Place, ...]:
+    """Channels and phases in which trials surely share a misfit row by row, the largest first.
+
+    The size is the root mean square of what they share, in the condition where it is largest.
+    """
+    count = len(fitted.model.problem.trials)
+    found = [
+        (channel, signals, phase) for channel, signals in _channels(fitted).items() for phase in range(len(PHASES))
+    ]
+    picks = [[_picked(fitted, i, phase, signals) for i in range(count)] for _, signals, phase in found]
+    sizes, p = shared_by(fitted, picks, settings)
+    view = _View.of(fitted, None)
+    order = [k for k in np.argsort(-sizes) if p[k] < settings.level and sizes[k] > 0.0]
+    return tuple(view.shared(*found[k], p=float(p[k])) for k in order)
 
 
 def flagged_places(
@@ -202,6 +218,25 @@ class _View:
             for i, weight in zip(mine, weights, strict=True)
         ]
         return float(np.mean(total))
+
+    def shared(self, channel: str, signals: Sequence[int], phase: int, *, p: float) -> Place:
+        """What trials of a condition share row by row in a phase: of its signals and conditions where that is most."""
+        problem = self.fitted.model.problem
+        sizes: dict[tuple[int, int], float] = {}
+        for number, condition in enumerate(problem.study.conditions):
+            mine = [i for i, trial in enumerate(problem.trials) if trial.condition == number]
+            for signal in signals:
+                counted = np.all([problem.trials[i].count[:, signal] > 0.0 for i in mine], axis=0)
+                part = np.array([self.residuals[i][counted & (condition.phase == phase), signal] for i in mine])
+                if part.size and len(mine) > 1:
+                    square = part.mean(axis=0) ** 2 - part.var(axis=0, ddof=1) / len(mine)
+                    sizes[number, signal] = float(square.mean())
+        at = max(sizes, key=lambda key: sizes[key])
+        condition = problem.study.conditions[at[0]]
+        rows = condition.phase == phase
+        place = self.place(at, rows, int(condition.cycle[rows].min()), p)
+        size = float(np.sqrt(max(sizes[at], 0.0)))
+        return replace(place, channel=channel, size=size, percent_of_signal=100.0 * size / self.ranges[at[1]])
 
     def place(self, at: tuple[int, int], rows: np.ndarray, cycle: int, p: float) -> Place:
         """Rows (n,) of a condition and signal (`at`) as a place."""

@@ -14,7 +14,6 @@ from benchmark.discovery.answer.gap import (
     held_out_residuals,
     share_closed,
     share_left,
-    shared_misfit,
     traces,
     unbent,
     worse,
@@ -22,6 +21,7 @@ from benchmark.discovery.answer.gap import (
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.criteria import Settings
+from benchmark.discovery.detection.disagreement import shared_misfit
 from benchmark.discovery.discovery_result import ChannelGap
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
@@ -62,13 +62,6 @@ def test_the_right_effect_leaves_little_and_a_wrong_one_nearly_all(session_of):
     assert shared_misfit(base) > 200.0
     assert share_left(base, fit_candidate(base, BY_SLUG["force_drift"])) < 0.1
     assert share_left(base, fit_candidate(base, BY_SLUG["tool_inertia"])) > 0.7
-
-
-def test_noise_alone_is_not_shared(session_of):
-    session = session_of(noise=0.003, trials=4)
-    base = calibrate(session, prepare(session, 90)).base
-    rows = sum(trial.signals.size for trial in base.model.problem.trials[::4])
-    assert shared_misfit(base) == pytest.approx(0.0, abs=6.0 * np.sqrt(2.0 * rows))
 
 
 def measured(residuals, conditions, counts=None):

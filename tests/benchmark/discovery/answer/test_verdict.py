@@ -53,6 +53,21 @@ def test_a_disagreement_without_an_effect_is_outside_the_catalogue():
     assert verdict(facts(effects=())) == "outside_catalogue"
 
 
+def test_what_trials_share_row_by_row_is_no_agreement_and_no_name_where_it_is_much():
+    silent = {"effects": (), "p": 0.4, "p_cells": 0.4, "p_shared": 0.004}
+    made = facts(**silent, shared=900.0)
+    assert verdict(made) == "outside_catalogue"
+    assert "row by row" in statement("outside_catalogue", made)
+    assert made.p_any == 0.004
+    assert verdict(facts(**silent, shared=criteria.SHARED)) == "no_discrepancy"
+    rows = {"p_shared": 0.004, "shared": 900.0}
+    assert verdict(facts(left=0.5, **rows)) == "outside_catalogue"
+    partly = facts(left=0.2, **rows)
+    assert verdict(partly) == "partly_explained"
+    assert "row by row" in statement("partly_explained", partly)
+    assert verdict(facts(left=0.02, **rows)) == "named"
+
+
 def test_an_answer_that_misses_by_more_than_the_tolerance_is_not_all():
     made = facts(fitted=False)
     assert verdict(made) == "partly_explained"
@@ -99,8 +114,9 @@ CHOICES = {
     "undetermined": ((), ("viscoelastic_relaxation",)),
     "p_strained": (1.0, 1e-4),
     "unsteady": ((), ("force_drift",)),
+    "p_shared": (1.0, 0.004),
 }
-EVERY = [facts(**dict(zip(CHOICES, each, strict=True))) for each in itertools.product(*CHOICES.values())]
+EVERY = [facts(shared=1000.0, **dict(zip(CHOICES, each, strict=True))) for each in itertools.product(*CHOICES.values())]
 
 
 def verdicts_where(condition):
@@ -114,7 +130,7 @@ def test_every_combination_of_facts_has_one_of_the_verdicts_and_a_sentence():
 
 def test_nothing_is_named_of_too_few_trials_or_of_chance():
     assert verdicts_where(lambda each: not each.enough) == {"cannot_tell"}
-    chance = verdicts_where(lambda each: each.enough and each.p >= each.level)
+    chance = verdicts_where(lambda each: each.enough and each.p >= each.level and each.p_shared >= each.level)
     assert chance == {"no_discrepancy", "cannot_tell"}
 
 
@@ -155,7 +171,7 @@ def test_only_one_effect_that_holds_elsewhere_and_leaves_nothing_is_named():
             assert each.effects
             assert not each.lookalikes
             assert each.transfers is True
-            assert each.left <= 0.1 or each.p_after >= each.level
+            assert each.left <= 0.1 or min(each.p_after, each.p_shared) >= each.level
             assert not each.worse
             assert not each.undetermined
             assert not each.strained

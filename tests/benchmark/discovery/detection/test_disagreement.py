@@ -17,9 +17,12 @@ from benchmark.discovery.detection.disagreement import (
     combined,
     detect,
     exchangeable,
+    shared_by_chance,
+    shared_misfit,
     smallest_visible,
     strained,
 )
+from benchmark.discovery.detection.places import shared_places
 from benchmark.discovery.trials.preparing import prepare
 
 PROBABILITY = st.floats(0.0, 1.0)
@@ -101,3 +104,78 @@ def test_the_smallest_visible_disagreement_is_that_of_a_channels_best_cell():
     study = SimpleNamespace(channels=("force_z", "marker_radial", "marker_radial"))
     fit = SimpleNamespace(model=SimpleNamespace(problem=SimpleNamespace(study=study)))
     assert smallest_visible(fit, made) == pytest.approx({"force_z": 0.15, "marker_radial": 4e-6})
+
+
+def ringing(time, depth, elastic):
+    return elastic + 0.008 * np.sin(2.0 * np.pi * 3.0 * (time - time[0])) * (depth > 0.0)
+
+
+def test_what_changes_its_sign_within_a_phase_is_shared_though_no_cell_shows_it(session_of):
+    session = session_of(force=ringing, noise=0.003, trials=4)
+    base = calibrate(session, prepare(session, 220)).base
+    assert detect(base, Settings()).p_cells > 0.05
+    assert shared_misfit(base) > criteria.SHARED
+    assert shared_by_chance(base, Settings()) < 0.05
+    told = {(place.channel, place.phase) for place in shared_places(base, Settings())}
+    assert ("force_z", "hold") in told
+    assert ("force_z", "after_lift_off") not in told
+
+
+def test_noise_alone_is_not_shared(session_of):
+    session = session_of(noise=0.003, trials=4)
+    base = calibrate(session, prepare(session, 90)).base
+    rows = sum(trial.signals.size for trial in base.model.problem.trials[::4])
+    assert shared_misfit(base) == pytest.approx(0.0, abs=6.0 * np.sqrt(2.0 * rows))
+    assert shared_by_chance(base, Settings()) > 0.05
+    assert shared_places(base, Settings()) == ()
+
+
+def with_residuals(residuals, conditions, scale=1.0):
+    """A fit of trials of one signal that misses by white residuals (R, n), with noise of `scale` N."""
+    around = SimpleNamespace(peak_force=1.0)
+    study = SimpleNamespace(
+        channels=("force_z",), conditions=tuple(SimpleNamespace(around=around) for _ in set(conditions))
+    )
+    trials = tuple(SimpleNamespace(condition=number) for number in conditions)
+    noise = SimpleNamespace(scale=np.full((len(trials), 1), scale))
+    problem = SimpleNamespace(trials=trials, study=study, noise=noise)
+    return SimpleNamespace(
+        rows=[np.asarray(each, dtype=float) for each in residuals], model=SimpleNamespace(problem=problem)
+    )
+
+
+@pytest.fixture
+def known_rows(monkeypatch):
+    """Fits give the residuals that they were made with."""
+    white = lambda problem: SimpleNamespace(residuals=lambda rows: rows)  # noqa: E731
+    monkeypatch.setattr(disagreement, "White", white)
+
+    def make(*args, **options):
+        fit = with_residuals(*args, **options)
+        fit.model.signals = lambda vector, nuisance: fit.rows
+        fit.vector = fit.nuisance = None
+        return fit
+
+    return make
+
+
+def test_what_is_shared_is_the_mean_above_what_replicates_leave_it(known_rows):
+    rows = np.random.default_rng(0).normal(size=(5, 300))
+    shared = 5.0 * np.sum(rows.mean(axis=0) ** 2) - rows.var(axis=0, ddof=1).sum()
+    assert shared_misfit(known_rows(rows, [0] * 5)) == pytest.approx(shared)
+    alone = np.sum(rows[:1] ** 2) - 300.0
+    both = known_rows([*rows, *rows[:1]], [0] * 5 + [1])
+    assert shared_misfit(both) == pytest.approx(shared + alone)
+
+
+def test_noise_below_what_is_too_small_to_matter_does_not_make_it_sure(known_rows):
+    rows = np.tile(np.full(300, 3.0), (6, 1))
+    assert shared_misfit(known_rows(rows, [0] * 6)) == pytest.approx(6 * 300 * 9.0)
+    least = criteria.TOO_SMALL * criteria.TOLERANCE_FORCE
+    assert shared_misfit(known_rows(rows, [0] * 6, scale=0.01 * least)) == pytest.approx(6 * 300 * 9.0e-4)
+
+
+def test_trials_of_noise_share_by_chance_at_the_level(known_rows):
+    rng = np.random.default_rng(1)
+    p = [shared_by_chance(known_rows(rng.normal(size=(8, 40)), [0] * 4 + [1] * 4), Settings()) for _ in range(400)]
+    assert np.mean(np.array(p) < 0.05) == pytest.approx(0.05, abs=0.025)
