@@ -308,8 +308,9 @@ PARTLY = 0.1
 """Share left from which the answer is told to be partial. First choice."""
 SHARED = 400.0
 """Squared standard errors of the mean residual, row by row, from which trials that surely share it disagree with the
-model even where no cell does: twenty standard deviations, what blind effects are hidden at. Nulls of seed 24000 (15, to
-204) and causes outside the catalogue of seed 31000 that no cell showed (6, from 875, one of 81 left out).
+model even where no cell does: twenty standard deviations, what blind effects are hidden at. Seen before it was chosen:
+nulls of seed 24000 (14, up to 204) and causes outside the catalogue of seed 31000 that were silent (five from 875 on,
+two that share nothing).
 """
 LEAST_GAP = 0.05
 """Where the base leaves less than this share above the floor there is nothing to close. First choice."""
