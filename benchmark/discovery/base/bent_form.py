@@ -2,13 +2,14 @@
 
 An effect of the catalogue resembles the true one, and what it misses has no known shape. So each condition's force, and
 the pattern that the effect makes in the markers, may be off by a share of the most that the effect adds there, with a
-value of its own at each turn of the press and half way to it, linear between.
+value of its own at each turn of the press and half way to it, linear between. What an effect adds by the depth alone,
+such as a stiffening, is missed by the depth alone: the same on the way in, in a hold and on the way back.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -21,6 +22,10 @@ from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import one_step
 from benchmark.response.trials_model import TrialColumns
 
+DEPTHS = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Of a condition's deepest press: between which a form is off that goes by the depth alone, and not at all at touch."""
+FINE, BY_DEPTH = 13, 0.05
+"""Equal steps of depth, linear between which an effect adds all but this share of its most that goes by depth alone."""
 LEAST_MOVED = 1e-9
 """Standard deviations of noise: a sensor in which an effect adds less does not see it."""
 
@@ -71,7 +76,8 @@ def _bends(fitted: Fit, effect: Effect) -> list[Array]:
     """White bends (N, b) of one effect in each trial: those of other conditions are zero."""
     model, problem = fitted.model, fitted.model.problem
     felt = effect.description.acts_on != "observation"
-    turns = [_between_turns(condition) for condition in problem.study.conditions]
+    between = _between_depths if _by_depth(fitted, effect) else _between_turns
+    turns = [between(condition) for condition in problem.study.conditions]
     ends = np.cumsum([0, *(len(problem.study.names[:2]) * len(each) for each in turns)])
     out = []
     for index, (trial, added) in enumerate(zip(problem.trials, _added(fitted, effect.slug), strict=True)):
@@ -111,10 +117,39 @@ def _added(fitted: Fit, slug: str) -> list[Array]:
     return [whole - rest for whole, rest in pairs]
 
 
+def _by_depth(fitted: Fit, effect: Effect) -> bool:
+    """Whether what an effect adds by itself is the same at one depth, whenever it is there."""
+    model = fitted.model
+    alone = EffectModel(model.problem, (effect,))
+    mine = [k for k, (slug, _) in enumerate(model.parameters, start=model.shape_count) if slug == effect.slug]
+    vector = fitted.vector[[*range(len(model.problem.shapes)), *mine]]
+    by_itself = _added(replace(fitted, model=alone, vector=vector), effect.slug)
+    noise = model.problem.noise.scale
+    trials = zip(model.problem.trials, by_itself, noise, strict=True)
+    return all(_goes_by(trial.motion.depth, added / scale) for trial, added, scale in trials)
+
+
+def _goes_by(depth: Array, added: Array) -> bool:
+    """Whether values (n, C) in units of their noise are functions of the depth (n,), but for a small share."""
+    weights = _hats(depth, np.linspace(depth.min(), depth.max(), FINE)).T
+    left = added - weights @ np.linalg.lstsq(weights, added, rcond=None)[0]
+    return bool(np.abs(left).max() <= BY_DEPTH * np.abs(added).max())
+
+
+def _between_depths(condition: ConditionData) -> Array:
+    """(k, n) weights of the rows by their depth: 1 at one of `DEPTHS`, linear to the next; none of the touch."""
+    depth = np.median(condition.depth, axis=0)
+    return _hats(np.maximum(depth, 0.0), np.array(DEPTHS) * depth.max())[1:]
+
+
+def _hats(at: Array, knots: Array) -> Array:
+    """(k, n) weights of places (n,): 1 at a knot (k,), linear to the next."""
+    return np.array([np.interp(at, knots, each) for each in np.eye(knots.size)])
+
+
 def _between_turns(condition: ConditionData) -> Array:
     """(k, n) weights of the rows by the turns of the press, and half way to them: 1 at one, linear to the next."""
     parts = np.column_stack([condition.phase, condition.cycle, condition.part])
     changes = np.flatnonzero((np.diff(parts, axis=0) != 0).any(axis=1)) + 1
-    rows = np.arange(len(parts))
-    knots = np.unique([0, *changes, rows[-1]])
-    return np.array([np.interp(rows, knots, each) for each in np.eye(knots.size)])
+    rows = np.arange(float(len(parts)))
+    return _hats(rows, np.unique([0, *changes, rows[-1]]))

@@ -99,10 +99,17 @@ def tissue_gain(fitted: Fit, own: Mapping[str, Gain]) -> float:
 def broad(gain: Gain) -> float:
     """Held-out log density gained in all trials but the one that gains most; 0 where others lose too much of it.
 
-    What acts in the stiffest specimens alone scatters too much between trials for z.
+    What acts in the stiffest specimens alone scatters too much between trials for z. One trial may speak against it, as
+    one with a spike does, at the price of having been picked out of all.
     """
-    total = float(gain.each.sum() - gain.each.max())
-    lost = float(-gain.each[gain.each < 0.0].sum())
+    rest = np.sort(gain.each)[1:]
+    return max(_gained(gain.each), _gained(rest) - float(np.log(gain.each.size)))
+
+
+def _gained(each: Array) -> float:
+    """Sum of gains (R,) but for the largest; 0 where others lose too much of it."""
+    total = float(each.sum() - each.max()) if each.size else 0.0
+    lost = float(-each[each < 0.0].sum())
     return total if lost < criteria.BROAD_LOST * total else 0.0
 
 
