@@ -94,11 +94,14 @@ class NewtonResult:
         Number of Newton corrections made.
     reason
         Why it failed, or "".
+    round_off
+        Of the factors that the solver holds after a success, see :meth:`Equilibrium.factorise`.
     """
 
     state: State
     iterations: int
     reason: str = ""
+    round_off: Callable[[FloatArray], float] | None = None
 
     @property
     def success(self) -> bool:

@@ -5,7 +5,8 @@ solve), which keeps Newton robust for nearly incompressible layers. Under depth 
 more unknown: the bordered system is solved by two right-hand sides of the same factors, so the depth is
 exact and the force follows, also on branches where the force falls. Where the last correction promises that one more
 with the same factors suffices, no new ones are made (the simplified Newton method: P. Deuflhard, Newton Methods for
-Nonlinear Problems, 2004, section 2.1).
+Nonlinear Problems, 2004, section 2.1). Equations that differ little from those solved before, as in the rounds of
+Coulomb's law, begin with their factors and go on with them as long as each correction reduces enough.
 """
 
 from __future__ import annotations
@@ -24,6 +25,9 @@ from fem.linear_solver import SingularMatrixError
 MOST_ROUND_OFF = 1e3  # in tolerances: round-off beyond it is not accepted as equilibrium
 FORCING = 1e-3
 """Share of the unbalanced forces that an iterative solver may leave; 1e-2 and 1e-4 took 1.1 to 1.3 times as long."""
+ENOUGH = 0.25
+"""Unbalanced forces over those before, with which factors of another round go on: a new factorisation costs ten times
+as much as a correction with old factors."""
 SAFETY = 4.0  # on the reduction by old factors; in theory twice that of the correction they were made for
 
 
@@ -56,20 +60,22 @@ def solve_newton(
     target: float,
     force_scale: float,
     settings: NewtonSettings,
+    held: Callable[[FloatArray], float] | None = None,
 ) -> NewtonResult:
     """Find the equilibrium at a prescribed force (N) or depth (m), from a guess, with at least one correction.
 
-    Below the force scale in N the tolerance is not tightened further. A failure has its reason in the result.
+    Below the force scale in N the tolerance is not tightened further. A failure has its reason in the result. `held`
+    is the round-off of factors that the solver has of nearly the same equations, to begin with; None makes new ones.
     """
     state = guess if control == "depth" else State(guess.y, guess.pressure, target)
     evaluation = problem.system.evaluate(state.y, state.pressure)
     if evaluation is None:
         return NewtonResult(state, 0, "the predicted state turns an element inside out")
-    before, best, outdated = _unbalanced(problem, state, evaluation), np.inf, True
+    before, best, round_off, enough = _unbalanced(problem, state, evaluation), np.inf, held, ENOUGH
     for iteration in range(1, settings.iterations + 1):
         try:
-            if outdated:
-                round_off = problem.factorise(evaluation)
+            if round_off is None:
+                round_off, enough = problem.factorise(evaluation), 0.0
             step = _correction(problem, state, evaluation, control, target)
         except SingularMatrixError as error:
             return NewtonResult(state, iteration, str(error))
@@ -77,17 +83,26 @@ def solve_newton(
         moved = _move(problem, state, evaluation, step, settings.halvings, damped)
         if moved is None:
             return NewtonResult(state, iteration, "an element turns inside out")
+        unbalanced = _unbalanced(problem, *moved)
+        limit = settings.tolerance * max(abs(moved[0].force), force_scale)
+        if enough and unbalanced > max(before, limit):
+            round_off = None  # held factors that lead away: from the same state with new ones
+            continue
         state, evaluation = moved
-        unbalanced = _unbalanced(problem, state, evaluation)
-        limit = settings.tolerance * max(abs(state.force), force_scale)
         if unbalanced <= limit or _is_round_off(round_off, state, unbalanced, limit):
             if control == "force" or _reached(problem, state, target):
-                return NewtonResult(State(state.y, evaluation.elements.consistent_pressure, state.force), iteration)
+                return NewtonResult(_found(state, evaluation), iteration, round_off=round_off)
         elif unbalanced > settings.divergence * best:
             return NewtonResult(state, iteration, "the unbalanced forces grow")
-        outdated = not SAFETY * unbalanced**2 <= before * limit
+        if SAFETY * unbalanced**2 > before * limit and unbalanced > enough * before:
+            round_off = None
         before, best = unbalanced, min(best, unbalanced)
     return NewtonResult(state, settings.iterations, f"no equilibrium after {settings.iterations} iterations")
+
+
+def _found(state: State, evaluation: Evaluation) -> State:
+    """The state with the pressure of its displacements."""
+    return State(state.y, evaluation.elements.consistent_pressure, state.force)
 
 
 def _unbalanced(problem: Equilibrium, state: State, evaluation: Evaluation) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -13,7 +14,7 @@ from fem.analysis.newton import NewtonSettings, solve_newton
 from fem.analysis.prediction import LOWEST_ORDER, KnownStates, RecentStates
 from fem.arrays import FloatArray
 from fem.assembly.system import Evaluation, System
-from fem.linear_solver import SingularMatrixError
+from fem.linear_solver import IterativeSolver, SingularMatrixError
 
 SMALLEST_PART = 2.0**-8
 MOST_PARTS = 400
@@ -22,6 +23,9 @@ MOST_HALVINGS = 40
 """Of the depth with which a tool first touches where its force leads nowhere."""
 FIRST_TOLERANCE = 1e-2
 """Unbalanced forces over the force with which equations whose limits are only guessed are solved."""
+
+HELD_BELOW = 5e-4
+"""Tolerance below which such a round begins with the factors of the one before: hardly a node changes any more."""
 
 Control: TypeAlias = Literal["force", "depth"]
 Watch: TypeAlias = Callable[[System, State, float], None]
@@ -261,20 +265,27 @@ class Stepper:
         """Newton's result from a guess and equations to begin with, and the equations that fit it.
 
         Equations that do not fit yet are not solved to the last digit: each round begins with a tolerance a tenth of
-        that of the round before, and what fits is solved, and judged, with the tolerance that is wanted.
+        that of the round before, and what fits is solved, and judged, with the tolerance that is wanted. The
+        last rounds differ little and begin with the factors of the round before; where that fails, with new ones.
         """
-        iterations, wanted = 0, self._settings.tolerance
+        iterations, wanted, held = 0, self._settings.tolerance, None
+        direct = not isinstance(self._problem.solver, IterativeSolver)  # whose corrections cost more than what is held
         onwards = abs(value) >= abs(self._value)  # on the way back nodes let go one by one
         tolerance = max(wanted, FIRST_TOLERANCE) if system.follows_pressure and onwards else wanted
         for _ in range(MOST_CORRECTIONS):
             ahead, settings = replace(self._problem, system=system), replace(self._settings, tolerance=tolerance)
-            result = solve_newton(ahead, guess, control, value, self._force_scale, settings)
+            solve = partial(solve_newton, ahead, guess, control, value, self._force_scale, settings)
+            result = solve(held)
+            if held is not None and not result.success:
+                iterations += result.iterations
+                result = solve()
             iterations += result.iterations
             other = system.corrected(result.state.y, result.state.force) if result.success else None
             if other is None and (tolerance <= wanted or not result.success):
                 return replace(result, iterations=iterations), system
             tolerance = max(wanted, 0.1 * tolerance) if other is not None else wanted
             system, guess = other or system, result.state
+            held = result.round_off if tolerance < HELD_BELOW and direct else None
         return NewtonResult(guess, iterations, f"friction does not settle in {MOST_CORRECTIONS} rounds"), system
 
     def _accept(self, state: State, value: float, time: float, system: System) -> None:

@@ -17,6 +17,7 @@ import skfem
 from fem.arrays import BoolArray, FloatArray, IntArray
 from fem.errors import CheckpointError, FemError
 from fem.kept_file import fingerprint, read_kept, write_kept
+from fem.mesh.surface.own_process import tetrahedralize_apart
 from fem.mesh.surface.surface_file import Surface
 
 BOX_MARGIN = 0.1
@@ -129,10 +130,6 @@ def _polydata(surface: Surface):  # type: ignore[no-untyped-def] # pyvista is no
 
 
 def _tetrahedra(surface: Surface, depths: FloatArray, refinement: Refinement) -> tuple[FloatArray, IntArray]:
-    try:
-        from pytetwild.pytetwild import tetrahedralize
-    except ImportError as error:
-        raise FemError("geometry = 'surface' needs the mesher pytetwild, which is not installed") from error
     sleeve = _sleeve(refinement.place, refinement.radius)
     soup = [_box(surface), surface, sleeve, *(_offset(surface, depth) for depth in depths)]
     starts = np.cumsum([0, *(len(part.points) for part in soup)])
@@ -142,9 +139,9 @@ def _tetrahedra(surface: Surface, depths: FloatArray, refinement: Refinement) ->
     thinnest = float(np.diff(depths, prepend=0.0).min()) if len(depths) else diagonal
     low, high = soup[0].points.min(axis=0), soup[0].points.max(axis=0)
     background = skfem.MeshTet.init_tensor(*(np.linspace(a, b, BACKGROUND) for a, b in zip(low, high, strict=True)))
-    found, tetrahedra = tetrahedralize(
-        points,
-        triangles.astype(np.int32),
+    found, tetrahedra = tetrahedralize_apart(
+        vertices=points,
+        faces=triangles.astype(np.int32),
         edge_length_abs=refinement.coarse,
         epsilon=min(
             TOLERANCE, TOLERANCE_OF_LAYER * thinnest / diagonal, TOLERANCE_OF_TOOL * refinement.radius / diagonal
@@ -157,7 +154,7 @@ def _tetrahedra(surface: Surface, depths: FloatArray, refinement: Refinement) ->
         bg_tets=np.ascontiguousarray(background.t.T.astype(np.int32)),
         bg_values=refinement.length(background.p.T),
     )
-    return np.asarray(found, dtype=np.float64), _positive(found, np.asarray(tetrahedra, dtype=np.int64))
+    return found, _positive(found, tetrahedra)
 
 
 def _positive(points: FloatArray, tetrahedra: IntArray) -> IntArray:

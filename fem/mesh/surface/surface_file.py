@@ -12,7 +12,7 @@ import numpy as np
 
 from fem.arrays import FloatArray, IntArray
 from fem.errors import FemError, require_one_of
-from fem.mesh.surface.reading_process import read_apart, read_triangles
+from fem.mesh.surface.own_process import read_apart, read_triangles
 
 UNITS = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 25.4e-3}
 SUFFIXES = (".stl", ".obj", ".ply", ".vtk", ".vtp")

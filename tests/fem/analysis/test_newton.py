@@ -70,3 +70,31 @@ def test_the_last_correction_takes_the_factors_of_the_one_before(problem):
     result = solve_newton(dataclasses.replace(problem, solver=counting), close, "force", 0.31, 0.0, SETTINGS)
     assert result.success
     assert counting.count == result.iterations - 1
+
+
+def counted(problem, guess, held):
+    """Result from a guess at 0.3001 N with held factors, and how many new ones it took."""
+    counting = Counting(problem.solver)
+    return solve_newton(
+        dataclasses.replace(problem, solver=counting), guess, "force", 0.3001, 0.0, SETTINGS, held
+    ), counting.count
+
+
+def test_factors_of_nearly_the_same_equations_serve(problem):
+    close = solve_newton(problem, rest(problem), "force", 0.3, 0.0, SETTINGS)
+    result, count = counted(problem, close.state, close.round_off)
+    anew, _ = counted(problem, close.state, None)
+    assert (result.success, count) == (True, 0)
+    np.testing.assert_allclose(result.state.y, anew.state.y, atol=1e-8 * np.abs(anew.state.y).max())
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_held_factors_that_do_not_serve_are_replaced(problem, sign):
+    """Those of a tangent a hundred times as stiff reduce too little; those of its negative lead away."""
+    close = solve_newton(problem, rest(problem), "force", 0.29, 0.0, SETTINGS)
+    tangent = problem.system.tangent(problem.system.evaluate(close.state.y, close.state.pressure))
+    problem.solver.factorise(sign * 100.0 * tangent)
+    result, count = counted(problem, close.state, close.round_off)
+    anew, wanted = counted(problem, close.state, None)
+    assert (result.success, count) == (True, wanted)
+    np.testing.assert_allclose(result.state.y, anew.state.y, atol=1e-8 * np.abs(anew.state.y).max())

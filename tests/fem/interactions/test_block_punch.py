@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import fem
+from fem.analysis.equilibrium import Equilibrium
 
 SOFT = ((1e-2, 2e4),)
 SKIN = ((1e-4, 1e6), (1.5e-3, 1e5), (1e-2, 2e4))
@@ -189,3 +190,19 @@ def test_what_does_not_fit_is_refused(words, change):
 def test_linear_kinematics_keeps_the_tie():
     tied = model(kinematics="linear", edge_radius=None)
     assert tied.equilibrium.system.numbering.unknown.max() + 1 == tied.unknowns
+
+
+@pytest.mark.slow
+def test_friction_takes_at_most_three_times_the_factorisations(monkeypatch):
+    """They and the assembly before each are nearly all of the time of a press."""
+    counts, factorise = [], Equilibrium.factorise
+
+    def counted(equilibrium, state):
+        counts[-1] += 1
+        return factorise(equilibrium, state)
+
+    monkeypatch.setattr(Equilibrium, "factorise", counted)
+    for words in ({}, {"contact": "rigid_frictional", "friction_coefficient": 0.3}):
+        counts.append(0)
+        assert model(layers=SKIN, border=None, **words).run(press("force", 0.25, 0.5, 0.75, 1.0, 1.25)).complete
+    assert counts[1] <= 3 * counts[0]

@@ -1,5 +1,6 @@
 """Bodies bounded by a surface, from the mesh to the press."""
 
+import platform
 import subprocess
 import sys
 from dataclasses import replace
@@ -10,8 +11,10 @@ import pytest
 import pyvista
 
 import fem
+from fem.errors import FemError
 from fem.mesh.surface import filling as kept_filling
-from fem.mesh.surface.filling import Refinement
+from fem.mesh.surface.filling import Refinement, fill
+from fem.mesh.surface.own_process import tetrahedralize_apart
 from fem.mesh.surface.specimen import build_surface_mesh
 from fem.mesh.surface.surface_file import Surface
 from fem.setup.building import solid_model
@@ -137,6 +140,23 @@ def test_the_mesh_of_a_body_is_kept(ball, tmp_path, monkeypatch):
     kept_filling.kept_filling(ball, np.array([3e-3]), wanted, kept)
     kept_filling.kept_filling(ball, np.array([3e-3]), wanted, None)
     assert len(calls) == 4
+
+
+@pytest.mark.skipif((sys.platform, platform.machine()) != ("linux", "x86_64"), reason="the seed is set there only")
+def test_a_body_is_meshed_the_same_again(ball, monkeypatch):
+    """The mesher shuffles the surface's triangles; its seed is set, and the number of threads does not matter."""
+    wanted, found = Refinement(np.array([0.0, 0.0, 0.02]), 6e-3, 6e-3, 9e-3, 0.7), []
+    for threads in ("1", "2"):
+        monkeypatch.setenv("OMP_NUM_THREADS", threads)
+        found.append(fill(ball, np.array([4e-3]), wanted))
+    for first, second in zip(*found, strict=True):
+        np.testing.assert_array_equal(first, second)
+
+
+def test_a_mesher_that_fails_says_why(ball):
+    """Its process ends with the reason, which is an error of this one."""
+    with pytest.raises(FemError, match=r"the mesher failed \(ValueError: Edge length"):
+        tetrahedralize_apart(vertices=ball.points, faces=ball.triangles.astype(np.int32), edge_length_fac=2.0)
 
 
 @pytest.mark.slow
