@@ -344,7 +344,5 @@ def _where(answer: _Answer, facts: Facts, settings: Settings, *, nothing: bool) 
 
 def _left(answer: _Answer) -> float:
     """Share that the effects leave: what a withheld one would take is no unknown cause, if little is left beside it."""
-    selection = answer.selection
-    last = [s for s in selection.candidates if s.slug in selection.withheld and s.under is selection.steps[-1].fit]
-    beside = [answer.left * share_left(each.under, each.fit) for each in last]
+    beside = [answer.left * share_left(each.under, each.fit) for each in answer.selection.withheld]
     return min(answer.left, criteria.OUTSIDE) if min(beside, default=1.0) <= criteria.OUTSIDE else answer.left

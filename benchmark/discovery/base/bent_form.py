@@ -3,12 +3,13 @@
 An effect of the catalogue resembles the true one, and what it misses has no known shape. So each condition's force, and
 the pattern that the effect makes in the markers, may be off by a share of the most that the effect adds there, with a
 value of its own at each turn of the press and half way to it, linear between. What an effect adds by the depth alone,
-such as a stiffening, is missed by the depth alone: the same on the way in, in a hold and on the way back.
+such as a stiffening, is missed by the depth alone: the same on the way in, in a hold and on the way back. What a
+sensor adds evenly with time, such as a drift, is missed as evenly: not otherwise at each turn.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -22,10 +23,12 @@ from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import one_step
 from benchmark.response.trials_model import TrialColumns
 
-DEPTHS = (0.0, 0.25, 0.5, 0.75, 1.0)
-"""Of a condition's deepest press: between which a form is off that goes by the depth alone, and not at all at touch."""
-FINE, BY_DEPTH = 13, 0.05
-"""Equal steps of depth, linear between which an effect adds all but this share of its most that goes by depth alone."""
+SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Of a condition's deepest press, or of its time, between which a form is off that goes by depth or time alone.
+
+At touch the former is not off at all."""
+FINE, ALONE = 25, 0.05
+"""Places of depth or time, linear between which an effect adds all but this share of its most that goes by it alone."""
 LEAST_MOVED = 1e-9
 """Standard deviations of noise: a sensor in which an effect adds less does not see it."""
 
@@ -76,7 +79,7 @@ def _bends(fitted: Fit, effect: Effect) -> list[Array]:
     """White bends (N, b) of one effect in each trial: those of other conditions are zero."""
     model, problem = fitted.model, fitted.model.problem
     felt = effect.description.acts_on != "observation"
-    between = _between_depths if _by_depth(fitted, effect) else _between_turns
+    between = _knots_of(fitted, effect)
     turns = [between(condition) for condition in problem.study.conditions]
     ends = np.cumsum([0, *(len(problem.study.names[:2]) * len(each) for each in turns)])
     out = []
@@ -117,29 +120,41 @@ def _added(fitted: Fit, slug: str) -> list[Array]:
     return [whole - rest for whole, rest in pairs]
 
 
-def _by_depth(fitted: Fit, effect: Effect) -> bool:
-    """Whether what an effect adds by itself is the same at one depth, whenever it is there."""
+def _knots_of(fitted: Fit, effect: Effect) -> Callable[[ConditionData], Array]:
+    """Between what a form may be off: depths or times where it goes by these alone, else the turns of the press."""
     model = fitted.model
     alone = EffectModel(model.problem, (effect,))
     mine = [k for k, (slug, _) in enumerate(model.parameters, start=model.shape_count) if slug == effect.slug]
     vector = fitted.vector[[*range(len(model.problem.shapes)), *mine]]
-    by_itself = _added(replace(fitted, model=alone, vector=vector), effect.slug)
-    noise = model.problem.noise.scale
-    trials = zip(model.problem.trials, by_itself, noise, strict=True)
-    return all(_goes_by(trial.motion.depth, added / scale) for trial, added, scale in trials)
+    none = np.zeros_like(fitted.nuisance)  # a trial's own delay would part the way in from the way back
+    by_itself = _added(replace(fitted, model=alone, vector=vector, nuisance=none), effect.slug)
+    trials = [
+        (t.motion, a / s) for t, a, s in zip(model.problem.trials, by_itself, model.problem.noise.scale, strict=True)
+    ]
+    if all(_goes_by(motion.depth, added) for motion, added in trials):
+        return _between_depths
+    sensor = effect.description.acts_on == "observation"
+    even = sensor and all(_goes_by(motion.time, added) for motion, added in trials)
+    return _between_times if even else _between_turns
 
 
-def _goes_by(depth: Array, added: Array) -> bool:
-    """Whether values (n, C) in units of their noise are functions of the depth (n,), but for a small share."""
-    weights = _hats(depth, np.linspace(depth.min(), depth.max(), FINE)).T
+def _goes_by(what: Array, added: Array) -> bool:
+    """Whether values (n, C) in units of their noise are functions of a number a row (n,), but for a small share."""
+    weights = _hats(what, np.linspace(what.min(), what.max(), FINE)).T
     left = added - weights @ np.linalg.lstsq(weights, added, rcond=None)[0]
-    return bool(np.abs(left).max() <= BY_DEPTH * np.abs(added).max())
+    return bool(np.abs(left).max() <= ALONE * np.abs(added).max())
 
 
 def _between_depths(condition: ConditionData) -> Array:
-    """(k, n) weights of the rows by their depth: 1 at one of `DEPTHS`, linear to the next; none of the touch."""
+    """(k, n) weights of the rows by their depth: 1 at one of `SHARES`, linear to the next; none of the touch."""
     depth = np.median(condition.depth, axis=0)
-    return _hats(np.maximum(depth, 0.0), np.array(DEPTHS) * depth.max())[1:]
+    return _hats(np.maximum(depth, 0.0), np.array(SHARES) * depth.max())[1:]
+
+
+def _between_times(condition: ConditionData) -> Array:
+    """(k, n) weights of the rows by their time: 1 at one of `SHARES` of a trial, linear to the next."""
+    time = np.median(condition.time, axis=0)
+    return _hats(time, time[0] + np.array(SHARES) * (time[-1] - time[0]))
 
 
 def _hats(at: Array, knots: Array) -> Array:

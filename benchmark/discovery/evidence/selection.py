@@ -44,9 +44,9 @@ class Selection:
 
     `candidates` are those fitted, round by round, the best of a round first; `screened` all effects by what one step
     gains. `lookalikes`, `rivals` and `own` are by the slug of a chosen effect: who does as well in its place, their
-    fits, and what it gains itself over the others. `withheld` are further effects with all the evidence but that they
-    do not carry over, or may be another form of those before: the catalogue has something like what is left, and it is
-    not named.
+    fits, and what it gains itself over the others. `withheld` are effects with all the evidence but that they do not
+    carry over, or may be another form of the others: the catalogue has something like what is left, and does not name
+    it.
     """
 
     base: Fit
@@ -57,7 +57,7 @@ class Selection:
     lookalikes: dict[str, tuple[str, ...]]
     rivals: dict[str, tuple[Fit, ...]]
     own: dict[str, Gain] = field(default_factory=dict)
-    withheld: tuple[str, ...] = ()
+    withheld: tuple[Scored, ...] = ()
 
 
 def select(
@@ -65,7 +65,7 @@ def select(
 ) -> Selection:
     """Choose effects; `first_screen` is that of the base, where it is known."""
     current, ranked = base, first_screen
-    withheld: tuple[str, ...] = ()
+    withheld: tuple[Scored, ...] = ()
     steps: list[Scored] = []
     rounds: list[list[Scored]] = []
     for number in range(1, settings.most_effects + 1):
@@ -82,17 +82,17 @@ def select(
         evident = [s for s in rounds[-1] if _evident(s, steps, settings)]
         accepted = further(current, evident, settings) if steps else evident
         if not accepted:
-            withheld = tuple(s.slug for s in evident)
+            withheld = tuple(evident)
             break
         steps.append(_simplest(accepted, effects))
         current = steps[-1].fit
-    current = _pruned(base, current, settings, work)
+    current, forms = _pruned(base, current, settings, work)
     current = _told(base, _swapped(base, current, rounds, settings, work), work)
     places = [_in_place(base, current, effect, rounds, settings, work) for effect in current.model.effects]
     tried = tuple(scored for each in rounds for scored in each)
     lookalikes = {slug: tuple(fit.model.effects[-1].slug for fit in fits) for slug, fits, _ in places}
     rivals, own = {slug: fits for slug, fits, _ in places}, {slug: gained for slug, _, gained in places}
-    return Selection(base, current, tuple(steps), tried, first_screen, lookalikes, rivals, own, withheld)
+    return Selection(base, current, tuple(steps), tried, first_screen, lookalikes, rivals, own, (*withheld, *forms))
 
 
 def first_gain(selection: Selection) -> float:
@@ -223,23 +223,35 @@ def rebuilt(base: Fit, effects: Sequence[Effect], work: Pool, stage: str) -> Fit
     return current
 
 
-def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> Fit:
-    """Drop what the others make superfluous."""
+def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> tuple[Fit, tuple[Scored, ...]]:
+    """Drop what the others make superfluous, and what is another form of one that came later; also the latter."""
+    forms: list[Scored] = []
     while len(current.model.effects) > 1:
         groups, now = conditions(current), held_out(current)
-        trials = []
+        needless: list[Scored] = []
         for effect in current.model.effects[:-1]:
-            kept = [other for other in current.model.effects if other is not effect]
-            trials.append((effect, rebuilt(base, kept, work, "backward")))
-        needless = [
-            less
-            for _, less in trials
-            if gain(now, held_out(less), groups).z < settings.accept_z or less.objective <= current.objective
-        ]
+            less = rebuilt(base, [other for other in current.model.effects if other is not effect], work, "backward")
+            own = Scored(current, effect.slug, gain(now, held_out(less), groups), None, 0.0, less)
+            idle = own.gain.z < settings.accept_z or less.objective <= current.objective
+            if not idle and _is_form_of_others(own, settings):
+                forms.append(own)
+            elif not idle:
+                continue
+            needless.append(own)
         if not needless:
-            return current
-        current = min(needless, key=lambda each: each.objective)
-    return current
+            break
+        current = min((each.under for each in needless), key=lambda each: each.objective)
+    return current, tuple(forms)
+
+
+def _is_form_of_others(scored: Scored, settings: Settings) -> bool:
+    """Whether an effect is no more than what the others' forms miss, and these surely foretell more without it."""
+    forms = _own_forms(scored.under)
+    if not forms:
+        return False
+    instead = held_out(bent(scored.under, forms))
+    surely = gain(held_out(scored.fit), instead, conditions(scored.under)).z < -settings.lookalike_z
+    return surely and not beats_bent(scored, settings, instead)
 
 
 def _told(base: Fit, current: Fit, work: Pool) -> Fit:
