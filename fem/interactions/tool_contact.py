@@ -78,6 +78,10 @@ class ToolContact(EquationItem):
         Largest press so far in N.
     held
         Nodes (m,) that touch, whatever the state; None where multiplier and gap decide.
+    axis
+        Which node lies on the axis and which is next to it; None in three dimensions. Without area of its own the one
+        on the axis gets of a pressure p(r) no more than a force of the order p'' r^4, whose sign says nothing of p: it
+        also touches where the next one does.
     """
 
     punch: Punch
@@ -87,6 +91,7 @@ class ToolContact(EquationItem):
     pressed: bool = False
     peak: float = 0.0
     held: BoolArray | None = None
+    axis: tuple[int, int] | None = None
 
     def touch(self, y: FloatArray) -> Touch | None:
         """Contact at unknowns y (n,); None where a node is deep inside the punch."""
@@ -97,7 +102,7 @@ class ToolContact(EquationItem):
         gap = self.punch.gap(place)
         if gap is None:
             return None
-        touches = in_touch(u[c + 1], gap.distance) if self.held is None else self.held
+        touches = self._touching(u[c + 1], gap) if self.held is None else self.held
         active = (touches | self._adheres) * penalty
         push, rate = active * u[c + 1], with_punch(gap.normal)
         left = -active * gap.distance - penalty * u[c + 1]
@@ -234,7 +239,15 @@ class ToolContact(EquationItem):
         place = self.place + u[:c]
         place[-1] -= u[c]
         gap = self.punch.gap(place)
-        return None if gap is None else in_touch(u[c + 1], gap.distance)
+        return None if gap is None else self._touching(u[c + 1], gap)
+
+    def _touching(self, multiplier: FloatArray, gap: Gap) -> BoolArray:
+        """Which nodes (m,) multipliers (m,) in m and gap have touch."""
+        touches = in_touch(multiplier, gap.distance)
+        if self.axis is not None:
+            middle, beside = self.axis
+            touches[middle] |= touches[beside]
+        return touches
 
     def holding(self, active: BoolArray | None) -> ToolContact:
         """The contact with these nodes in touch, whatever the state."""
