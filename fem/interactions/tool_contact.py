@@ -25,6 +25,9 @@ from fem.interactions.active_set import Friction, in_touch
 from fem.interactions.punch import Gap, Punch
 
 LOOSE = 1e-12  # stiffness of a punch in the air, in penalties
+MOST_ENTRY = 0.5
+"""Of the edge radius, by which the surface may enter the punch between its nodes; at 0.27 the depth was within 0.5 % of
+that of much smaller elements."""
 
 
 @dataclass(frozen=True)
@@ -248,6 +251,19 @@ class ToolContact(EquationItem):
             middle, beside = self.axis
             touches[middle] |= touches[beside]
         return touches
+
+    def is_sound(self, y: FloatArray) -> bool:
+        """Whether the surface keeps out of the punch between its nodes, too; in axial symmetry only."""
+        if self.axis is None:
+            return True
+        row, u = np.argsort(self.place[0]), np.append(y, 0.0)[self.own]
+        place = (self.place + u[:2])[:, row]
+        place[1] -= u[2]
+        odd = len(row) - 1 + len(row) % 2
+        first, middle, last = place[:, : odd - 2 : 2], place[:, 1 : odd - 1 : 2], place[:, 2:odd:2]
+        quarter = [(3.0 * near + 6.0 * middle - far) / 8.0 for near, far in ((first, last), (last, first))]
+        gap = self.punch.gap(np.concatenate(quarter, axis=1))
+        return gap is not None and float(gap.distance.min()) >= -MOST_ENTRY * self.punch.edge_radius
 
     def holding(self, active: BoolArray | None) -> ToolContact:
         """The contact with these nodes in touch, whatever the state."""
