@@ -79,7 +79,7 @@ def test_the_punch_presses_by_what_the_nodes_push():
 
 
 def row(axis):
-    """Five nodes in axial symmetry under the face and the edge, on it; unknowns (2, 5), the punch's, multipliers (5,)."""
+    """Five nodes in axial symmetry; unknowns (2, 5), the punch's, multipliers (5,)."""
     place = np.array([[0.0, 2.0, 4.0, 4.5, 5.0], [0.0, 0.0, 0.0, 0.0, 0.0]])
     own = np.concatenate((np.arange(10).reshape(2, 5), np.full((1, 5), 10), 11 + np.arange(5)[None]))
     return ToolContact(Punch(5.0, 1.0), place, own, Friction(np.ones(5), np.zeros(5), place[:1]), axis=axis)
@@ -108,7 +108,7 @@ def test_an_axisymmetric_tool_knows_its_node_on_the_axis():
 
 @pytest.mark.parametrize(("share", "sound"), [(0.9, True), (1.1, False)])
 def test_a_surface_that_enters_between_its_nodes_is_not_sound(share, sound):
-    """An element's middle node enters the face: half way between two nodes of a parabola it is three quarters as deep."""
+    """Where an element's middle node enters the face its parabola enters half way by three quarters of that."""
     y = np.zeros(16)
     y[6] = share * MOST_ENTRY / 0.75
     assert row((0, 1)).is_sound(y) == sound
