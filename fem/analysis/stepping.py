@@ -254,7 +254,8 @@ class Stepper:
         tools that touch, of bodies without a memory.
         """
         problem, room = self._problem, MOST_LOST * self._work - sum(lost for _, lost in self._jumps)
-        if not problem.system.items or problem.system.remembers or room <= 0.0:
+        touches = any(item.active(self._state.y) is not None for item in problem.system.items)
+        if not touches or problem.system.remembers or room <= 0.0:
             return False
         for part in JUMPS_AHEAD:
             value = self._value + part * (target - self._value)
