@@ -100,8 +100,10 @@ def broad(gain: Gain) -> float:
     """Held-out log density gained in all trials but the one that gains most; 0 where others lose too much of it.
 
     What acts in the stiffest specimens alone scatters too much between trials for z. One trial may speak against it, as
-    one with a spike does, at the price of having been picked out of all.
+    one with a spike does, at the price of having been picked out of all, and by less than all gain.
     """
+    if gain.mean <= 0.0:
+        return 0.0
     rest = np.sort(gain.each)[1:]
     return max(_gained(gain.each), _gained(rest) - float(np.log(gain.each.size)))
 

@@ -125,7 +125,8 @@ def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
     By the terms that the data tell of, then by those that the form may have, then by the catalogue's order.
     """
     places = {effect.slug: place for place, effect in enumerate(effects)}
-    ties = [s for s in accepted if s.gain.mean >= (1.0 - criteria.TIE) * accepted[0].gain.mean]
+    best = accepted[0].gain.mean
+    ties = [s for s in accepted if s.gain.mean >= best - criteria.TIE * abs(best)]
     told = [s for s in ties if strength_told(s.fit, s.fit.model.effects[-1])]
 
     def terms(scored: Scored) -> tuple[int, int, int]:

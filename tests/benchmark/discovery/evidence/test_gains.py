@@ -36,6 +36,7 @@ def test_all_but_the_best_trial_are_evidence_unless_others_lose():
     assert broad(gains(0, 0, 0, 50, 0, 0, 0, 0)) == 0.0
     assert broad(gains(20, 30, 10, 50, 40, -20, -20, 0)) == 0.0
     assert broad(gains(20, 30, 10, 50, 40, -30, 0, 0)) == pytest.approx(100.0 - np.log(8))  # one with a spike
+    assert broad(gains(20, 30, 10, 50, 40, -300, 0, 0)) == 0.0
     assert broad(gains(20, -5)) == 0.0
 
 

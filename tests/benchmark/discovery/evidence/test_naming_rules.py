@@ -277,6 +277,11 @@ def test_the_last_effect_goes_where_it_makes_an_earlier_one_unknown(monkeypatch)
     assert selection._told(fitted(), three, Work(one, two)) is two
 
 
+def test_of_effects_that_one_trial_speaks_against_by_more_than_all_gain_one_is_still_the_best():
+    odd = scored("a", -1.0, each=[4.0] * 7 + [-36.0])
+    assert selection._simplest([odd], [odd.fit.model.effects[-1]]) is odd
+
+
 def test_an_effect_that_another_makes_needless_is_dropped(known_densities, monkeypatch):
     monkeypatch.setattr(selection, "bent", lambda fit, forms: fit)
     a, b = effect("a"), effect("b")
