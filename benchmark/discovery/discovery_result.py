@@ -139,7 +139,7 @@ class Place:
         m.
     size : float
         What the answer's effects add to the simulation there, N for the force and m for markers; without effects the
-        residual, or, where no cell's mean shows it, the root mean square of what trials share of it row by row.
+        residual.
     percent_of_signal : float
         Size of the residual as a share of the channel's largest signal.
     p : float
@@ -147,6 +147,9 @@ class Place:
     residual : float or None
         Mean of measured minus simulated without the effects over the trials, N or m; None where it is `size`. It may
         differ from what the effects add, even in sign: without them the base bends towards the data.
+    either_way : bool
+        Whether the residual changes its sign there, so that no cell's mean shows it: the size is then the root mean
+        square of what trials share of it row by row.
     """
 
     channel: str
@@ -158,6 +161,7 @@ class Place:
     percent_of_signal: float
     p: float
     residual: float | None = None
+    either_way: bool = False
 
     @property
     def missed(self) -> float:

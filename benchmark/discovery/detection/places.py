@@ -236,7 +236,9 @@ class _View:
         rows = condition.phase == phase
         place = self.place(at, rows, int(condition.cycle[rows].min()), p)
         size = float(np.sqrt(max(sizes[at], 0.0)))
-        return replace(place, channel=channel, size=size, percent_of_signal=100.0 * size / self.ranges[at[1]])
+        return replace(
+            place, channel=channel, size=size, percent_of_signal=100.0 * size / self.ranges[at[1]], either_way=True
+        )
 
     def place(self, at: tuple[int, int], rows: np.ndarray, cycle: int, p: float) -> Place:
         """Rows (n,) of a condition and signal (`at`) as a place."""

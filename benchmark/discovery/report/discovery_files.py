@@ -149,6 +149,7 @@ def _place(place: Place) -> dict[str, Any]:
         "percent_of_signal": place.percent_of_signal,
         "p": place.p,
         "residual": channel_unit(place.channel)[1] * place.missed,
+        "either_way": place.either_way,
     }
 
 

@@ -8,7 +8,7 @@ from benchmark.discovery.discovery_result import Candidate, ChannelGap, Place, T
 from benchmark.discovery.report.disagreement_sections import representative, traced
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
 from benchmark.discovery.report.effect_sections import ADVICE, OF_A_RUN, trials_in_words
-from benchmark.discovery.report.words import channel_name, effect_name, phase_name, probability, sized
+from benchmark.discovery.report.words import channel_name, compared, effect_name, phase_name, probability, sized
 from reports import Story, StoryStep
 from reports.figures import repaired
 from reports.formatting import format_number
@@ -30,12 +30,13 @@ def story(record: DiscoveryRecord) -> Story | None:
 def telling(record: DiscoveryRecord) -> Trace | None:
     """The trial that shows most: of those that stand for their group, the one whose misfit stands out most.
 
-    Where the gap of a channel shrinks, of those channels. The misfit is over the scatter of replicates where all tell
-    it, else over the channel's largest value: a channel in which nothing but noise happens would be all misfit.
+    Where the gap of a channel shrinks, of those channels, else of those in which they disagree. The misfit is over the
+    scatter of replicates where all tell it, else over the channel's largest value: a channel in which nothing but noise
+    happens would be all misfit.
     """
     shown = representative(record.found.traces)
-    shrinking = {gap.channel for gap in _closing(record)}
-    shown = [trace for trace in shown if trace.channel in shrinking] or shown
+    told = {gap.channel for gap in _closing(record)} or {place.channel for place in record.found.where}
+    shown = [trace for trace in shown if trace.channel in told] or shown
     over_noise = all(rms(trace.noise) > 0.0 for trace in shown)
     return max(shown, key=lambda trace: _misfit(trace, over_noise), default=None)
 
@@ -58,8 +59,7 @@ def _where(record: DiscoveryRecord) -> StoryStep:
         text = "Nowhere beyond chance" if found.verdict == "no_discrepancy" else "Not tested"
         return StoryStep("Where", text, "" if found.p is None else f"{probability(found.p)} over all places.")
     place = max(found.where, key=lambda each: abs(each.percent_of_signal))
-    sign = "more" if place.missed > 0 else "less"
-    answer = f"{channel_name(place.channel)}, {phase_name(place.phase)}: {_signed(place)}, {sign} than simulated"
+    answer = f"{channel_name(place.channel)}, {phase_name(place.phase)}: {_signed(place)}, {compared(place)}"
     more = len(found.where) - 1
     others = f"; {more} more place{'s' * (more != 1)} below" if more else ""
     return StoryStep("Where", answer, f"{_range(place)}, {probability(place.p)}{others}.")
@@ -67,7 +67,7 @@ def _where(record: DiscoveryRecord) -> StoryStep:
 
 def _signed(place: Place) -> str:
     """Measured minus simulated, with its share of the signal: +0.61 N (16 %)."""
-    sign = "+" if place.missed > 0 else "−"
+    sign = "±" if place.either_way else "+" if place.missed > 0 else "−"
     return f"{sign}{sized(place.channel, abs(place.missed))} ({format_number(abs(place.percent_of_signal), 2)} %)"
 
 

@@ -57,13 +57,19 @@ def place_words(place: Place) -> str:
     """A place in a sentence: where, how deep, how large, how sure."""
     cycle = f" of cycle {place.cycle}" if place.cycle else ""
     low, high = (format_number(1e3 * end, 3, trim=True) for end in place.depth)
-    more = "more" if place.missed > 0 else "less"
     return (
         f"{channel_name(place.channel)}, {phase_name(place.phase)}{cycle} ({place.condition}), {low} to {high} mm: "
-        f"{sized(place.channel, abs(place.missed))} {more} than simulated, "
+        f"{sized(place.channel, abs(place.missed))} {compared(place)}, "
         f"{format_number(abs(place.percent_of_signal), 2)} % of the signal, {probability(place.p)}"
         f"{_added(place)}"
     )
+
+
+def compared(place: Place) -> str:
+    """How a residual stands to the simulation."""
+    if place.either_way:
+        return "more and less than simulated in turn (root mean square)"
+    return f"{'more' if place.missed > 0 else 'less'} than simulated"
 
 
 def _added(place: Place) -> str:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from benchmark.discovery.report.story import story, telling
+from benchmark.discovery.report.words import place_words
 
 
 def test_a_channel_in_which_only_noise_happens_is_not_the_picture(record) -> None:
@@ -22,7 +23,16 @@ def test_the_picture_is_of_a_channel_whose_gap_shrinks(record) -> None:
     other = replace(record, found=replace(record.found, traces=(*record.found.traces, loud)))
     assert telling(other) == chosen
     none = tuple(replace(gap, closed=None) for gap in other.found.gap)
-    assert telling(replace(other, found=replace(other.found, gap=none))) == loud
+    assert telling(replace(other, found=replace(other.found, gap=none, where=()))) == loud
+    assert telling(replace(other, found=replace(other.found, gap=none))).channel != "marker_x"  # nothing is told of it
+
+
+def test_what_changes_its_sign_is_neither_more_nor_less(record) -> None:
+    place = replace(record.found.where[0], size=0.2, residual=None, percent_of_signal=9.0, either_way=True)
+    told = story(replace(record, found=replace(record.found, where=(place,)))).steps[0].answer
+    assert "±0.20 N" in told
+    assert "more and less than simulated in turn" in told
+    assert "more and less than simulated in turn" in place_words(place)
 
 
 def test_more_or_less_is_what_was_measured_not_what_the_effects_add(record) -> None:
