@@ -19,7 +19,7 @@ from fem.mesh.surface.specimen import build_surface_mesh
 from fem.mesh.surface.surface_file import Surface
 from fem.setup.building import solid_model
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture(scope="module")
