@@ -166,8 +166,9 @@ def _own_forms(fitted: Fit) -> list[str]:
 def beats_bent(scored: Scored, settings: Settings, instead: Array | None = None) -> bool:
     """Whether a further effect is more than what the forms of those before miss of the true ones.
 
-    It must have its evidence where those forms may be off; that must be most of what it gains where they may not, or it
-    must not foretell trials surely worse than they do by being off without it (`instead` (R,), where it is known).
+    It must foretell trials surely better than they do by being off without it (`instead` (R,), where it is known). Or
+    it must have its evidence where those forms may be off; that must be most of what it gains where they may not, or it
+    must not foretell trials surely worse than they do without it.
     """
     forms = _own_forms(scored.under)
     if not forms:
@@ -175,11 +176,13 @@ def beats_bent(scored: Scored, settings: Settings, instead: Array | None = None)
     if instead is None:
         instead = held_out(bent(scored.under, forms))
     groups = conditions(scored.under)
+    straight = gain(held_out(scored.fit), instead, groups)
+    if straight.z > settings.accept_z and straight.mean > 0.0:
+        return True
     beside = gain(held_out(bent(scored.fit, forms)), instead, groups)
     if not _over_trials(beside, settings):
         return False
-    own = beside.mean > criteria.MOSTLY_OWN * scored.gain.mean
-    return own or gain(held_out(scored.fit), instead, groups).z > -settings.lookalike_z
+    return beside.mean > criteria.MOSTLY_OWN * scored.gain.mean or straight.z > -settings.lookalike_z
 
 
 def carries_over(scored: Scored) -> bool:

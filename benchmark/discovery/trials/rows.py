@@ -21,6 +21,8 @@ GROWTH = 1.35
 """Each bin is so many times as large as the one before it, away from a turning point."""
 LEAST_BINS = 10
 """Of a segment."""
+FITTED = 5
+"""Rows of a local quadratic."""
 NEAR = (-0.04, 0.08)
 SPAN = 0.008
 """Bins whose depth comes within `NEAR` (shares of the peak) of contact span no more than `SPAN` of it."""
@@ -92,11 +94,15 @@ def bin_means(columns: Array, first: int, last: int, edges: Array) -> tuple[Arra
 
 
 def acceleration(time: Array, depth: Array) -> Array:
-    """(n,) m/s2 by local quadratics over five rows; even spacing is taken as the median's."""
+    """(n,) m/s2 by local quadratics, evenly spaced as the median is; 0 where a gap leaves fewer."""
     from scipy.signal import savgol_filter
 
     step = float(np.median(np.diff(time)))
-    return np.asarray(savgol_filter(depth, 5, 2, deriv=2, delta=step, mode="nearest"))
+    out = np.zeros(depth.size)
+    for rows in np.split(np.arange(depth.size), np.flatnonzero(np.diff(time) > criteria.LONG_GAP * step) + 1):
+        if rows.size >= FITTED:
+            out[rows] = savgol_filter(depth[rows], FITTED, 2, deriv=2, delta=step, mode="interp")
+    return out
 
 
 def marker_frames(trial: Trial, camera: Camera) -> tuple[Array, Array] | None:

@@ -101,6 +101,7 @@ def test_an_effect_needs_evidence_over_trials_and_bic(z, bic, each, expected):
         ("a", 23.0, 29.0, False),  # surely worse
         ("a", 23.0, 34.0, True),  # but most of what it gains is its own
         ("a", 18.0, 18.5, False),  # nothing is left for it beside another form
+        ("a", 12.0, 12.5, None),  # but it foretells surely better than that form
         ("setup.top.thickness", 30.0, 30.0, True),  # whose form is the finite elements'
     ],
 )
@@ -117,8 +118,8 @@ def test_a_further_effect_must_be_more_than_what_the_form_of_the_first_misses(
         return fitted(*fit.model.effects, density=beside if fit is made else instead + scatter)
 
     monkeypatch.setattr(selection, "bent", bent)
-    assert selection.further(under, [more, more], SETTINGS) == ([more, more] if expected else [])
-    once_a_round = [(under, ["a"]), (made, ["a"]), (made, ["a"])]
+    assert selection.further(under, [more, more], SETTINGS) == ([] if expected is False else [more, more])
+    once_a_round = [(under, ["a"])] + [(made, ["a"])] * (0 if expected is None else 2)
     assert asked == ([] if "." in before else once_a_round)
 
 

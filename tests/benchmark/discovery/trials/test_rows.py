@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from benchmark.discovery.trials.rows import frame_means, marker_frames
+from benchmark.discovery.trials.rows import acceleration, frame_means, marker_frames
 from benchmark.errors import InputError
 from benchmark.files import Camera
 
@@ -25,6 +25,17 @@ def test_frames_outside_the_rows_are_left_out():
     means, counts, _ = frame_means(frames, frames[:, None], np.array([0.0, 0.1]))
     assert counts.tolist() == [1.0]
     assert means[0, 0] == pytest.approx(0.05)
+
+
+def test_a_gap_between_rows_is_no_jerk():
+    time = np.arange(0.0, 4.0, 0.01)
+    depth = 1e-3 * (1.0 - np.cos(time))
+    kept = (time < 1.0) | (time > 1.3)
+    whole, parted = acceleration(time, depth), acceleration(time[kept], depth[kept])
+    np.testing.assert_allclose(whole, 1e-3 * np.cos(time), atol=3e-5)
+    np.testing.assert_allclose(parted, whole[kept], atol=3e-5)
+    lone = np.flatnonzero((time < 1.0) | ((time > 1.3) & (time < 1.335)) | (time > 1.6))
+    assert not acceleration(time[lone], depth[lone])[100:103].any()
 
 
 def test_a_marker_beyond_the_grid_is_refused():
