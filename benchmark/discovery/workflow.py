@@ -27,6 +27,7 @@ from benchmark.discovery.answer.gap import (
     grows,
     held_out_residuals,
     share_left,
+    shrinks,
     traces,
     unbent,
     worse,
@@ -271,7 +272,11 @@ def _discovery(
     """The answer in plain results; `began` is when the clock started, s."""
     base, chosen, before = answer.base, answer.chosen, answer.before
     gap = gaps(base, answer.held, settings)
-    facts = replace(_facts(answer, known, settings), grows=grows(base, answer.held, gap, settings))
+    facts = replace(
+        _facts(answer, known, settings),
+        grows=grows(base, answer.held, gap, settings),
+        shrinks=shrinks(base, answer.held, settings),
+    )
     word = verdict(facts)
     untested = not facts.enough
     nothing = word in ("cannot_tell", "no_discrepancy")

@@ -131,15 +131,24 @@ def gaps(base: Fit, held: HeldOut, settings: Settings) -> tuple[ChannelGap, ...]
 def grows(base: Fit, held: HeldOut, channels: Sequence[ChannelGap], settings: Settings) -> bool:
     """Whether the effects predict nothing: some channel's gap surely grows, and no channel is surely missed by less.
 
-    A gap is what lies over the replicates' error. What a channel is missed by may surely shrink where that error hides
-    its gap: it is the same in both predictions of a trial, whose difference is free of it.
+    A gap is what lies over the replicates' error. It grows where the mean square does by more than round-off, too.
     """
-    if not any(each.ci95 is not None and each.ci95[1] < 0.0 for each in channels):
-        return False
+    gone = {each.channel for each in channels if each.ci95 is not None and each.ci95[1] < 0.0}
+    before, after = (_channel_squares(base, rows) for rows in (held.before, held.after))
+    larger = [after[each].mean() > (1.0 + criteria.WORSE) * before[each].mean() for each in gone]
+    return any(larger) and not shrinks(base, held, settings)
+
+
+def shrinks(base: Fit, held: HeldOut, settings: Settings) -> bool:
+    """Whether some channel is surely missed by less where it is held out.
+
+    That may be so where the replicates' error hides its gap: it is the same in both predictions of a trial, whose
+    difference is free of it.
+    """
     before, after = (_channel_squares(base, rows) for rows in (held.before, held.after))
     draws = _draws(base, settings)
     less = [before[channel] - after[channel] for channel in before]
-    return not any(np.quantile([each[draw].mean() for draw in draws], 0.025) > 0.0 for each in less)
+    return any(np.quantile([each[draw].mean() for draw in draws], 0.025) > 0.0 for each in less)
 
 
 def _channel_squares(base: Fit, rows: list[Array]) -> dict[str, Array]:

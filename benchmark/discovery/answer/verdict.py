@@ -44,6 +44,8 @@ class Facts:
         Held-out conditions that the effects predict worse than the base.
     grows : bool
         Whether the held-out gap surely grows in some channel and none is surely missed by less.
+    shrinks : bool
+        Whether some channel is surely missed by less where it is held out.
     conditions : int
     undetermined : tuple of str
         Accepted effects whose strength the data do not tell.
@@ -69,6 +71,7 @@ class Facts:
     within: bool = True
     worse: tuple[str, ...] = ()
     grows: bool = False
+    shrinks: bool = True
     conditions: int = 2
     undetermined: tuple[str, ...] = ()
     unsteady: tuple[str, ...] = ()
@@ -126,7 +129,7 @@ def verdict(facts: Facts) -> str:
         return "instrument_first" if _mixed((*facts.effects, *facts.lookalikes)) else "lookalikes"
     if facts.worse or facts.strained or not facts.fitted or (facts.partial and facts.transfers is not None):
         return "partly_explained"
-    return "named" if facts.transfers else "conditional"
+    return "named" if facts.transfers and facts.shrinks else "conditional"
 
 
 def _fails(facts: Facts) -> bool:

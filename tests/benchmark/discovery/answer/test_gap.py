@@ -157,7 +157,10 @@ def test_effects_predict_nothing_where_a_gap_surely_grows_and_no_channel_is_miss
     channels = [ChannelGap("force_z", 2.0, 2.0, 3.0, None, None, "condition")]
     channels += [ChannelGap("marker_x", 2.0, 2.0, 1.0, None, interval, "condition")]
     base = measured(before, (0, 0, 1, 1))
+    assert not module.grows(base, held(before, after), channels, Settings(bootstraps=200))  # by nothing but round-off
+    after[:, :, 1] *= 1.02
     assert module.grows(base, held(before, after), channels, Settings(bootstraps=200)) is expected
+    assert module.shrinks(base, held(before, after), Settings(bootstraps=200)) is (force_after == [1.9, 2.0, 1.9, 2.0])
 
 
 def test_a_condition_held_out_is_predicted_by_the_others_and_a_trial_by_its_mates(monkeypatch):

@@ -111,6 +111,7 @@ CHOICES = {
     "within": (True, False),
     "worse": ((), ("fast",), ("slow", "fast")),
     "grows": (False, True),
+    "shrinks": (True, False),
     "undetermined": ((), ("viscoelastic_relaxation",)),
     "p_strained": (1.0, 1e-4),
     "unsteady": ((), ("force_drift",)),
@@ -148,6 +149,11 @@ def test_an_effect_with_which_no_gap_shrinks_and_one_grows_is_no_answer():
     assert "predicts unseen data worse" in statement("outside_catalogue", found)
 
 
+def test_an_effect_that_no_held_out_condition_needs_is_conditional():
+    """A tool's inertia acts in the fast presses alone, of which the slow ones tell nothing, nor need it."""
+    assert verdict(facts(shrinks=False)) == "conditional"
+
+
 def test_a_held_out_condition_predicted_worse_forbids_a_name_and_all_of_them_an_effect():
     one, both = facts(worse=("fast",)), facts(worse=("slow", "fast"))
     assert (verdict(one), verdict(both)) == ("partly_explained", "outside_catalogue")
@@ -173,6 +179,7 @@ def test_only_one_effect_that_holds_elsewhere_and_leaves_nothing_is_named():
             assert each.transfers is True
             assert each.left <= 0.1 or min(each.p_after, each.p_shared) >= each.level
             assert not each.worse
+            assert each.shrinks
             assert not each.undetermined
             assert not each.strained
 
