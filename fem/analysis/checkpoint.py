@@ -20,7 +20,7 @@ from fem.load import Load
 from fem.mesh.solid import AnyMesh
 from fem.problem.problem import Problem
 
-FORMAT = "fem checkpoint 5"
+FORMAT = "fem checkpoint 4"
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,6 @@ class Progress:
         The states in the order in which they were found, the one before the first step included.
     settled
         What the corrections had chosen (k, c) in each state; see :attr:`fem.assembly.item.EquationItem.settled`.
-    jumps
-        Which states were found by a jump over a limit point, and the energy in J each lost, (j, 2).
     seconds
         CPU time in s that all of them took, in however many processes.
     """
@@ -55,7 +53,6 @@ class Progress:
     times: FloatArray
     states: tuple[State, ...]
     settled: FloatArray
-    jumps: FloatArray
     seconds: float
 
 

@@ -12,7 +12,7 @@ Coulomb's law, begin with their factors and go on with them as long as each corr
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -29,12 +29,6 @@ ENOUGH = 0.25
 """Unbalanced forces over those before, with which factors of another round go on: a new factorisation costs ten times
 as much as a correction with old factors."""
 SAFETY = 4.0  # on the reduction by old factors; in theory twice that of the correction they were made for
-
-FIRST_DURATION = 1e-4
-"""Of a creeping body's first step, in its own time (:meth:`fem.assembly.system.System.slowed`)."""
-MOST_CREEP = 100  # steps
-MOST_IN_CREEP, FEW = 15, 8  # corrections in a step, and up to which the next one is twice as long
-AT_REST = 1e-2  # drag over the force, below which equilibrium without it is near
 
 
 @dataclass(frozen=True)
@@ -109,58 +103,6 @@ def solve_newton(
 def _found(state: State, evaluation: Evaluation) -> State:
     """The state with the pressure of its displacements."""
     return State(state.y, evaluation.elements.consistent_pressure, state.force)
-
-
-def creep(
-    problem: Equilibrium,
-    start: State,
-    control: Literal["force", "depth"],
-    target: float,
-    force_scale: float,
-    settings: NewtonSettings,
-    most_lost: float,
-) -> tuple[NewtonResult, float]:
-    """Let a body without a memory creep from one equilibrium to another, against a drag that ends as it comes to rest.
-
-    So it gets over a limit point, beyond which there is no equilibrium near (viscous stabilisation by implicit Euler
-    steps; P. Wriggers, Nonlinear Finite Element Methods, 2008, section 5.2).
-
-    Parameters
-    ----------
-    problem, control, target, force_scale, settings
-        See :func:`solve_newton`.
-    start
-        The equilibrium to begin from, at another load value.
-    most_lost
-        Energy in J that the drag may take.
-
-    Returns
-    -------
-    tuple
-        The result, in equilibrium without any drag, and the energy in J that the drag took on the way.
-    """
-    state, duration, before, lost, iterations = start, FIRST_DURATION, 0.0, 0.0, 0
-    few = replace(settings, iterations=MOST_IN_CREEP)
-    for _ in range(MOST_CREEP):
-        system, drag = problem.system.slowed(duration, state.y)
-        found = solve_newton(replace(problem, system=system), state, control, target, force_scale, few)
-        iterations += found.iterations
-        if not found.success:
-            duration *= 0.25
-            continue
-        pull = drag.respond(found.state.y).force
-        lost += float(pull @ (found.state.y - state.y)[drag.where])
-        if lost > most_lost:
-            return NewtonResult(start, iterations, "the tissue gives way"), lost
-        state, duration = found.state, duration * (2.0 if found.iterations <= FEW else 1.0)
-        size, earlier = float(np.linalg.norm(pull)), before
-        before = size
-        if size <= min(AT_REST * abs(state.force), earlier):
-            last = solve_newton(problem, state, control, target, force_scale, settings)
-            iterations += last.iterations
-            if last.success:
-                return replace(last, iterations=iterations), lost
-    return NewtonResult(start, iterations, "no equilibrium beyond a limit point"), lost
 
 
 def _unbalanced(problem: Equilibrium, state: State, evaluation: Evaluation) -> float:

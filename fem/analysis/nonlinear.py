@@ -87,22 +87,9 @@ class _Run:
             if advance.reason:
                 failure = Failure(n + 1, time, self.load.control, advance.value, value, advance.reason)
                 further = _between(self.record, self.stepper.problem.system, advance, self.start)
-                return self.record.solution(failure, self._warned(), further)
+                return self.record.solution(failure, self.warnings, further)
             self._accept(n + 1, time, advance)
-        return self.record.solution(None, self._warned())
-
-    def _warned(self) -> tuple[str, ...]:
-        """The warnings, and what the jumps over limit points lost."""
-        jumps = self.stepper.jumps
-        if not len(jumps):
-            return self.warnings
-        first = self.stepper.known.states[int(jumps[0, 0])]
-        share, depth = 100.0 * jumps[:, 1].sum() / self.stepper.work, 1e3 * self.record.equilibrium.depth(first.y)
-        said = (
-            f"the surface snapped past the tool's edge {len(jumps)} times, first at {first.force:.4g} N and "
-            f"{depth:.4g} mm: viscous stabilisation, which no state kept has any of, took {share:.2g} % of the work"
-        )
-        return (*self.warnings, said)
+        return self.record.solution(None, self.warnings)
 
     def _accept(self, step: int, time: float, advance: Advance) -> None:
         system, state = self.stepper.problem.system, advance.state
@@ -160,7 +147,7 @@ def _resume(record: Record, stepper: Stepper, checkpoint: Keeper) -> int:
         return 0
     for n, time, reached, strain in zip(found.steps, found.time, found.reactions, found.strains, strict=True):
         record.add(float(time), found.states[n], float(reached), float(strain))
-    stepper.resume(found.values, found.times, found.states, found.settled, found.jumps)
+    stepper.resume(found.values, found.times, found.states, found.settled)
     record.resumed = Resumed(len(found.steps), found.seconds)
     return len(found.steps)
 
@@ -177,6 +164,5 @@ def _progress(record: Record, stepper: Stepper, seconds: float) -> Progress:
         times=stepper.times,
         states=known.states,
         settled=stepper.settled,
-        jumps=stepper.jumps,
         seconds=earlier + seconds,
     )

@@ -35,7 +35,6 @@ class KnownStates:
     def __init__(self, value: float, state: State) -> None:
         self._values = [value]
         self._states = [state]
-        self._first = 0
 
     @property
     def values(self) -> FloatArray:
@@ -47,10 +46,8 @@ class KnownStates:
         """The states in the same order."""
         return tuple(self._states)
 
-    def add(self, value: float, state: State, jumped: bool = False) -> None:
-        """Remember a state; after a jump those before it predict nothing more."""
-        if jumped:
-            self._first = len(self._values)
+    def add(self, value: float, state: State) -> None:
+        """Remember a state."""
         self._values.append(value)
         self._states.append(state)
 
@@ -63,7 +60,7 @@ class KnownStates:
     def _choose(self, value: float, most: int) -> list[int]:
         """Nearest known states, far enough from each other for the distance to the value."""
         distance = np.abs(np.array(self._values) - value)
-        order = self._first + np.argsort(distance[self._first :], kind="stable")
+        order = np.argsort(distance, kind="stable")
         chosen = [int(order[0])]
         spacing = LEAST_SPACING * max(float(distance[order[0]]), 1e-9 * float(distance.max()))
         for n in order[1:]:

@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from fem.analysis.equilibrium import Equilibrium, NewtonResult, State
-from fem.analysis.newton import NewtonSettings, creep, solve_newton
+from fem.analysis.newton import NewtonSettings, solve_newton
 from fem.analysis.prediction import LOWEST_ORDER, KnownStates, RecentStates
 from fem.arrays import FloatArray
 from fem.assembly.system import Evaluation, System
@@ -23,11 +23,6 @@ MOST_HALVINGS = 40
 """Of the depth with which a tool first touches where its force leads nowhere."""
 FIRST_TOLERANCE = 1e-2
 """Unbalanced forces over the force with which equations whose limits are only guessed are solved."""
-JUMPS_AHEAD = (1.0 / 64.0, 1.0 / 8.0)
-"""How far beyond the last equilibrium, of a step, the next one is looked for behind a limit point."""
-ENTERED = "the surface enters the tool between its nodes"
-MOST_LOST = 0.01
-"""Of the tool's work, that all jumps over limit points together may lose."""
 
 HELD_BELOW = 5e-4
 """Tolerance below which such a round begins with the factors of the one before: hardly a node changes any more."""
@@ -154,18 +149,6 @@ class Stepper:
         self._times, self._settled = [time], [problem.system.settled]
         self._known = KnownStates(self._value, self._state)
         self._recent = RecentStates(self._value, self._time, self._state) if problem.system.remembers else None
-        self._work = 0.0
-        self._jumps: list[tuple[int, float]] = []
-
-    @property
-    def work(self) -> float:
-        """What the tool did so far, in J."""
-        return self._work
-
-    @property
-    def jumps(self) -> FloatArray:
-        """Which of the states were found by a jump over a limit point, and the energy in J each lost, (j, 2)."""
-        return np.array(self._jumps).reshape(-1, 2)
 
     @property
     def known(self) -> KnownStates:
@@ -182,14 +165,12 @@ class Stepper:
         """What the corrections had chosen (k, c) in each; see :attr:`fem.assembly.item.EquationItem.settled`."""
         return np.stack(self._settled)
 
-    def resume(
-        self, values: FloatArray, times: FloatArray, states: Sequence[State], settled: FloatArray, jumps: FloatArray
-    ) -> None:
+    def resume(self, values: FloatArray, times: FloatArray, states: Sequence[State], settled: FloatArray) -> None:
         """Go on from known states, each with its load value (k,) in N or m and its time (k,) in s, the start first."""
-        rows, lost = zip(values.tolist(), times.tolist(), states, settled, strict=True), dict(jumps.tolist())
-        for n, (value, time, state, chosen) in list(enumerate(rows))[1:]:
+        rows = zip(values.tolist(), times.tolist(), states, settled, strict=True)
+        for value, time, state, chosen in list(rows)[1:]:
             system = self._problem.system.advanced(time - self._time).as_settled(chosen)
-            self._accept(state, value, time, system, lost.get(n))
+            self._accept(state, value, time, system)
 
     @property
     def problem(self) -> Equilibrium:
@@ -218,7 +199,7 @@ class Stepper:
                 part *= 0.5
                 cuts += 1
                 if part <= SMALLEST_PART:
-                    if self._touched_by_depth(target, duration) or self._jumped(target, duration):
+                    if self._touched_by_depth(target, duration):
                         further = self.advance(target, time)
                         return replace(further, iterations=further.iterations + iterations, cuts=further.cuts + cuts)
                     return Advance(self._state, self._value, iterations, cuts, result.reason, self._time)
@@ -248,25 +229,6 @@ class Stepper:
             if found.success and 0.0 < found.state.force < target:
                 share = found.state.force / target
                 self._accept(found.state, found.state.force, self._time + share * duration, system)
-                return True
-        return False
-
-    def _jumped(self, target: float, duration: float) -> bool:
-        """Go over a limit point on the way to a target to an equilibrium behind it; whether there is one.
-
-        A node of the surface that slips round the tool's edge snaps past it; what the snap sets free is lost. Only for
-        tools that touch, of bodies without a memory.
-        """
-        problem, room = self._problem, MOST_LOST * self._work - sum(lost for _, lost in self._jumps)
-        touches = any(item.active(self._state.y) is not None for item in problem.system.items)
-        if not touches or problem.system.remembers or room <= 0.0:
-            return False
-        for part in JUMPS_AHEAD:
-            value = self._value + part * (target - self._value)
-            found, lost = creep(problem, self._state, self._control, value, self._force_scale, self._settings, room)
-            fits = found.success and problem.system.corrected(found.state.y, found.state.force) is None
-            if fits and problem.system.is_sound(found.state.y):
-                self._accept(found.state, value, self._time + part * duration, problem.system, lost)
                 return True
         return False
 
@@ -320,30 +282,19 @@ class Stepper:
             iterations += result.iterations
             other = system.corrected(result.state.y, result.state.force) if result.success else None
             if other is None and (tolerance <= wanted or not result.success):
-                return self._judged(replace(result, iterations=iterations), system), system
+                return replace(result, iterations=iterations), system
             tolerance = max(wanted, 0.1 * tolerance) if other is not None else wanted
             system, guess = other or system, result.state
             held = result.round_off if tolerance < HELD_BELOW and direct else None
         return NewtonResult(guess, iterations, f"friction does not settle in {MOST_CORRECTIONS} rounds"), system
 
-    def _judged(self, result: NewtonResult, system: System) -> NewtonResult:
-        """The result; behind a jump it fails where the surface enters the tool between its nodes."""
-        if not self._jumps or not result.success or system.is_sound(result.state.y):
-            return result
-        return replace(result, reason=ENTERED)
-
-    def _accept(self, state: State, value: float, time: float, system: System, lost: float | None = None) -> None:
-        """Take a state of equilibrium as the last one; `lost` is the energy in J of a jump to it."""
-        sunk = self._problem.depth(state.y) - self._problem.depth(self._state.y)
-        self._work += 0.5 * (state.force + self._state.force) * sunk
-        if lost is not None:
-            self._jumps.append((len(self._times), lost))
+    def _accept(self, state: State, value: float, time: float, system: System) -> None:
         if self._watch is not None:
             self._watch(system, state, time)
         self._problem = replace(self._problem, system=system.accepted(state.y))
         self._state, self._value, self._time = state, value, time
         self._times.append(time)
         self._settled.append(system.settled)
-        self._known.add(value, state, lost is not None)
+        self._known.add(value, state)
         if self._recent is not None:
             self._recent.add(value, time, state)

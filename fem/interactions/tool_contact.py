@@ -25,9 +25,6 @@ from fem.interactions.active_set import Friction, in_touch
 from fem.interactions.punch import Gap, Punch
 
 LOOSE = 1e-12  # stiffness of a punch in the air, in penalties
-MOST_ENTRY = 0.5
-"""Of the edge radius, by which the surface may enter the punch between its nodes; at 0.27 the depth was within 0.5 % of
-that of much smaller elements."""
 
 
 @dataclass(frozen=True)
@@ -81,10 +78,6 @@ class ToolContact(EquationItem):
         Largest press so far in N.
     held
         Nodes (m,) that touch, whatever the state; None where multiplier and gap decide.
-    axis
-        Which node lies on the axis and which is next to it; None in three dimensions. Without area of its own the one
-        on the axis gets of a pressure p(r) no more than a force of the order p'' r^4, whose sign says nothing of p: it
-        also touches where the next one does.
     """
 
     punch: Punch
@@ -94,7 +87,6 @@ class ToolContact(EquationItem):
     pressed: bool = False
     peak: float = 0.0
     held: BoolArray | None = None
-    axis: tuple[int, int] | None = None
 
     def touch(self, y: FloatArray) -> Touch | None:
         """Contact at unknowns y (n,); None where a node is deep inside the punch."""
@@ -105,7 +97,7 @@ class ToolContact(EquationItem):
         gap = self.punch.gap(place)
         if gap is None:
             return None
-        touches = self._touching(u[c + 1], gap) if self.held is None else self.held
+        touches = in_touch(u[c + 1], gap.distance) if self.held is None else self.held
         active = (touches | self._adheres) * penalty
         push, rate = active * u[c + 1], with_punch(gap.normal)
         left = -active * gap.distance - penalty * u[c + 1]
@@ -242,28 +234,7 @@ class ToolContact(EquationItem):
         place = self.place + u[:c]
         place[-1] -= u[c]
         gap = self.punch.gap(place)
-        return None if gap is None else self._touching(u[c + 1], gap)
-
-    def _touching(self, multiplier: FloatArray, gap: Gap) -> BoolArray:
-        """Which nodes (m,) multipliers (m,) in m and gap have touch."""
-        touches = in_touch(multiplier, gap.distance)
-        if self.axis is not None:
-            middle, beside = self.axis
-            touches[middle] |= touches[beside]
-        return touches
-
-    def is_sound(self, y: FloatArray) -> bool:
-        """Whether the surface keeps out of the punch between its nodes, too; in axial symmetry only."""
-        if self.axis is None:
-            return True
-        row, u = np.argsort(self.place[0]), np.append(y, 0.0)[self.own]
-        place = (self.place + u[:2])[:, row]
-        place[1] -= u[2]
-        odd = len(row) - 1 + len(row) % 2
-        first, middle, last = place[:, : odd - 2 : 2], place[:, 1 : odd - 1 : 2], place[:, 2:odd:2]
-        quarter = [(3.0 * near + 6.0 * middle - far) / 8.0 for near, far in ((first, last), (last, first))]
-        gap = self.punch.gap(np.concatenate(quarter, axis=1))
-        return gap is not None and float(gap.distance.min()) >= -MOST_ENTRY * self.punch.edge_radius
+        return None if gap is None else in_touch(u[c + 1], gap.distance)
 
     def holding(self, active: BoolArray | None) -> ToolContact:
         """The contact with these nodes in touch, whatever the state."""

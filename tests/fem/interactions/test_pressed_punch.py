@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import fem
-from fem.analysis import stepping
 from fem.interactions.punch import Punch
 
 SKIN = ((1e-4, 1e6), (1.5e-3, 1e5), (1e-2, 2e4))
@@ -157,41 +156,3 @@ def test_real_contact_is_for_finite_strain():
     tool = fem.Tool(5e-3, "rigid_frictional", 5e-4, friction_coefficient=0.3)
     with pytest.raises(fem.FemError, match="kinematics = 'finite' only"):
         fem.prepare(fem.Problem((layer,), tool, fem.Support("bonded"), "linear"))
-
-
-SNAP = fem.Load("force", np.arange(1, 8) / 7, 0.25 * np.arange(1, 8))
-
-
-def soft_on_stiff():
-    """1.5 mm of 12.4 kPa on 1 mm of 443 kPa, whose surface snaps past the tool's edge at 1.19 N."""
-    soft = fem.Layer("soft", 1.469e-3, 1e3, fem.NeoHookean(12.4e3, 0.45))
-    stiff = fem.Layer("stiff", 1e-3, 1e3, fem.NeoHookean(443e3, 0.49))
-    return fem.prepare(fem.Problem((soft, stiff), fem.Tool(5e-3, "rigid_frictionless", 5e-4), fem.Support("bonded")))
-
-
-def test_a_press_goes_over_a_limit_point_and_tells_what_that_lost(tmp_path, monkeypatch):
-    whole = soft_on_stiff().run(SNAP)
-    assert whole.complete
-    assert any("snapped past the tool's edge" in text for text in whole.warnings)
-    np.testing.assert_allclose(whole.reaction, SNAP.value, rtol=1e-6)
-    assert (np.diff(whole.depth) > 0.0).all()
-
-    def stop_behind_the_jump(report):
-        if report.step == 6:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        soft_on_stiff().run(SNAP, stop_behind_the_jump, tmp_path / "steps.kept")
-    resumed = soft_on_stiff().run(SNAP, checkpoint=tmp_path / "steps.kept")
-    np.testing.assert_array_equal(resumed.depth, whole.depth)
-    assert resumed.warnings == whole.warnings
-
-    monkeypatch.setattr(stepping, "JUMPS_AHEAD", ())
-    stopped = soft_on_stiff().run(SNAP)
-    assert stopped.failure.step == 6
-    np.testing.assert_array_equal(stopped.depth, whole.depth[:5])
-
-
-def test_a_jump_that_would_lose_too_much_is_not_made(monkeypatch):
-    monkeypatch.setattr(stepping, "MOST_LOST", 1e-9)
-    assert not soft_on_stiff().run(SNAP).complete
