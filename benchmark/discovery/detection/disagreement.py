@@ -208,7 +208,7 @@ def _beyond_flips(products: Array, settings: Settings) -> Array:
     """(K,) family-wise p of the sums of products (K, R, R), each in units of its scatter over the flips."""
     count = products.shape[1]
     signs = sign_patterns(count, settings.flips, settings.seed)
-    flipped = np.einsum("sr,krq,sq->sk", signs, products, signs, optimize=True)
+    flipped = np.column_stack([np.sum(signs @ each * signs, axis=1) for each in products])
     unit = np.maximum(flipped.std(axis=0), 1e-300)
     shown = (products.sum(axis=(1, 2)) - SAME * np.abs(products).sum(axis=(1, 2))) / unit
     return share_of_flips((flipped / unit).max(axis=1)[:, None] >= shown[None], count)

@@ -46,7 +46,8 @@ def shared_places(fitted: Fit, settings: Settings) -> tuple[Place, ...]:
     sizes, p = shared_by(fitted, picks, settings)
     view = _View.of(fitted, None)
     order = [k for k in np.argsort(-sizes) if p[k] < settings.level and sizes[k] > 0.0]
-    return tuple(view.shared(*found[k], p=float(p[k])) for k in order)
+    shared = (view.shared(*found[k], p=float(p[k])) for k in order)
+    return tuple(place for place in shared if place is not None)
 
 
 def flagged_places(
@@ -219,8 +220,11 @@ class _View:
         ]
         return float(np.mean(total))
 
-    def shared(self, channel: str, signals: Sequence[int], phase: int, *, p: float) -> Place:
-        """What trials of a condition share row by row in a phase: of its signals and conditions where that is most."""
+    def shared(self, channel: str, signals: Sequence[int], phase: int, *, p: float) -> Place | None:
+        """What trials of a condition share row by row in a phase: of its signals and conditions where that is most.
+
+        None where no condition shows any, as where no row has samples of all its trials.
+        """
         problem = self.fitted.model.problem
         sizes: dict[tuple[int, int], float] = {}
         for number, condition in enumerate(problem.study.conditions):
@@ -231,11 +235,13 @@ class _View:
                 if part.size and len(mine) > 1:
                     square = part.mean(axis=0) ** 2 - part.var(axis=0, ddof=1) / len(mine)
                     sizes[number, signal] = float(square.mean())
-        at = max(sizes, key=lambda key: sizes[key])
+        at = max(sizes, key=lambda key: sizes[key], default=None)
+        if at is None or not sizes[at] > 0.0:
+            return None
         condition = problem.study.conditions[at[0]]
         rows = condition.phase == phase
         place = self.place(at, rows, int(condition.cycle[rows].min()), p)
-        size = float(np.sqrt(max(sizes[at], 0.0)))
+        size = float(np.sqrt(sizes[at]))
         return replace(
             place, channel=channel, size=size, percent_of_signal=100.0 * size / self.ranges[at[1]], either_way=True
         )

@@ -228,24 +228,25 @@ def rebuilt(base: Fit, effects: Sequence[Effect], work: Pool, stage: str) -> Fit
 
 
 def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> tuple[Fit, tuple[Scored, ...]]:
-    """Drop what the others make superfluous, and what is another form of one that came later; also the latter."""
+    """Drop what the others make superfluous and what is another form of a later one; the dropped of the second kind."""
     forms: list[Scored] = []
     while len(current.model.effects) > 1:
-        groups, now = conditions(current), held_out(current)
-        needless: list[Scored] = []
-        for effect in current.model.effects[:-1]:
-            less = rebuilt(base, [other for other in current.model.effects if other is not effect], work, "backward")
-            own = Scored(current, effect.slug, gain(now, held_out(less), groups), None, 0.0, less)
-            idle = own.gain.z < settings.accept_z or less.objective <= current.objective
-            if not idle and _is_form_of_others(own, settings):
-                forms.append(own)
-            elif not idle:
-                continue
-            needless.append(own)
-        if not needless:
+        owns = [_own(base, current, effect, work) for effect in current.model.effects[:-1]]
+        idle = [own for own in owns if own.gain.z < settings.accept_z or own.under.objective <= current.objective]
+        others = [own for own in owns if own not in idle and _is_form_of_others(own, settings)]
+        if not idle and not others:
             break
-        current = min((each.under for each in needless), key=lambda each: each.objective)
+        dropped = min((*idle, *others), key=lambda each: each.under.objective)
+        forms += [own for own in others if own is dropped]
+        current = dropped.under
     return current, tuple(forms)
+
+
+def _own(base: Fit, current: Fit, effect: Effect, work: Pool) -> Scored:
+    """A chosen effect with what it gains over the others alone."""
+    less = rebuilt(base, [other for other in current.model.effects if other is not effect], work, "backward")
+    own = gain(held_out(current), held_out(less), conditions(current))
+    return Scored(current, effect.slug, own, None, 0.0, less)
 
 
 def _is_form_of_others(scored: Scored, settings: Settings) -> bool:

@@ -158,9 +158,10 @@ def _where_table(record: DiscoveryRecord) -> Table:
         )
         for place in record.found.where
     ]
-    return Table(
-        "Places that are significant, largest first", columns, rows, Download("tables/where.csv", "the same"), True
-    )
+    turning = any(place.either_way for place in record.found.where)
+    note = "; of what changes its sign in a phase, the root mean square of what trials share" if turning else ""
+    caption = f"Places that are significant, largest first{note}"
+    return Table(caption, columns, rows, Download("tables/where.csv", "the same"), True)
 
 
 def _contrasts(contrasts: tuple[Contrast, ...]) -> list[Block]:

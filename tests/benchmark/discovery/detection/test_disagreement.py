@@ -23,6 +23,7 @@ from benchmark.discovery.detection.disagreement import (
     strained,
 )
 from benchmark.discovery.detection.places import shared_places
+from benchmark.discovery.discovery_result import PHASES
 from benchmark.discovery.trials.preparing import prepare
 
 PROBABILITY = st.floats(0.0, 1.0)
@@ -119,6 +120,20 @@ def test_what_changes_its_sign_within_a_phase_is_shared_though_no_cell_shows_it(
     told = {(place.channel, place.phase) for place in shared_places(base, Settings())}
     assert ("force_z", "hold") in told
     assert ("force_z", "after_lift_off") not in told
+
+
+def test_a_phase_of_which_no_row_has_samples_of_all_trials_is_no_place(session_of):
+    session = session_of(force=ringing, noise=0.003, trials=4)
+    base = calibrate(session, prepare(session, 220)).base
+    shown = len(shared_places(base, Settings()))
+    hold = [c.phase == PHASES.index("hold") for c in base.model.problem.study.conditions]
+    for number, rows in enumerate(hold):
+        mine = [trial for trial in base.model.problem.trials if trial.condition == number]
+        for k, trial in enumerate(mine):
+            trial.count[np.flatnonzero(rows)[k % 2 :: 2]] = 0.0
+    told = shared_places(base, Settings())
+    assert len(told) < shown
+    assert all(place.size > 0.0 and place.phase != "hold" for place in told)
 
 
 def test_noise_alone_is_not_shared(session_of):

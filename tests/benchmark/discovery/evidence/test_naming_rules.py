@@ -306,6 +306,19 @@ def test_an_effect_that_is_another_form_of_a_later_one_is_withheld(
     assert [each.slug for each in forms] == ["first"] * dropped
 
 
+def test_what_could_have_gone_as_another_form_and_stays_is_not_withheld(known_densities, monkeypatch):
+    """Of two that are other forms the one goes that is missed least; beside what is left the other is its own."""
+    first, second, third = effect("first"), effect("second"), effect("third")
+    three = fitted(first, second, third, density=10.0, objective=50.0)
+    kept, dear = fitted(second, third, density=2.0, objective=60.0), fitted(first, third, density=2.0, objective=90.0)
+    last = fitted(third, density=0.0, objective=200.0)
+    loose = {id(kept): 20.0, id(dear): 20.0, id(last): 0.0}
+    monkeypatch.setattr(selection, "bent", lambda fit, forms: fitted(density=loose.get(id(fit), 20.0)))
+    found, forms = selection._pruned(fitted(), three, SETTINGS, Work(fitted(first), fitted(second), kept, dear, last))
+    assert found is kept
+    assert [each.slug for each in forms] == ["first"]
+
+
 @pytest.fixture
 def swap(monkeypatch, known_densities):
     """Whether a rival of this density (trial by trial) comes in beside b, if what it must pass lets it."""
