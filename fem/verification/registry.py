@@ -15,7 +15,6 @@ from fem.verification import (
     pretension,
     prony,
     sections,
-    solid_patch,
 )
 from fem.verification.case import Case
 
@@ -36,7 +35,7 @@ FAMILIES: tuple[Callable[[], tuple[Case, ...]], ...] = (
     press.cases,
     prony.cases,
     pretension.cases,
-    solid_patch.cases,
+    patch.solid_cases,
     block.cases,
 )
 

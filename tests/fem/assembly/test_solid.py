@@ -6,8 +6,8 @@ import scipy.sparse as sp
 
 import fem
 from fem.assembly.solid import SOLID_ELEMENTS, solid_geometry
-from fem.verification.solid_patch import cube, solve_linear
-from fem.verification.solid_patch import equations as equations_of
+from fem.verification.patch import cube, solve_linear
+from fem.verification.patch import equations as equations_of
 
 ELEMENTS = ("hex27", "hex20", "tet10")
 
