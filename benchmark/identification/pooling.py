@@ -12,8 +12,7 @@ import numpy as np
 import scipy
 
 from benchmark.identification.elastic_law import NAMES, inside, law_derivatives, law_force
-from benchmark.identification.errors import FittingError
-from benchmark.identification.trial_data import TrialData, reduced
+from benchmark.identification.trial_data import FittingError, TrialData, reduced
 from benchmark.identification.trial_features import ContactRange
 from benchmark.identification.trial_fit import TrialFit
 from benchmark.response.force_curve import Array

@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 import scipy
 
-from benchmark.identification.errors import FittingError, NoContactError
 from benchmark.identification.fitted_parameters import FittedParameter, LayerLike, fitted_parameters
 from benchmark.identification.pooling import JointFit, PooledStiffness, fit_jointly, pool
-from benchmark.identification.trial_data import TrialData
+from benchmark.identification.trial_data import FittingError, NoContactError, TrialData
 from benchmark.identification.trial_fit import TrialFit, fit_trial, prepare_rows
 from benchmark.response.force_curve import Array
 

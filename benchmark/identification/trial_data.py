@@ -14,8 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmark.identification.errors import FittingError
-from benchmark.response.force_curve import Array, ForceCurve
+from benchmark.response.force_curve import Array, ForceCurve, ResponseError
 
 LEAST_ROWS = 20
 
@@ -27,6 +26,14 @@ PER_STROKE: Final = 40
 """Rows with which a stroke is followed: each a fortieth of the travel."""
 SAMPLES: Final = 200_000
 """Means over the record in which turns are looked for."""
+
+
+class FittingError(ResponseError):
+    """Trials or curves that cannot be fitted; the message names which, the value and what is allowed."""
+
+
+class NoContactError(FittingError):
+    """A trial without motion or without a force that rises over the noise: it tells no stiffness."""
 
 
 @dataclass(frozen=True)

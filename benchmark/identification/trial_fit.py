@@ -9,8 +9,15 @@ from typing import Any
 import numpy as np
 
 from benchmark.identification.elastic_law import LawFit, minimise
-from benchmark.identification.errors import FittingError, NoContactError
-from benchmark.identification.trial_data import LEAST_ROWS, TrialData, reduced, rows_of, up_to_depth
+from benchmark.identification.trial_data import (
+    LEAST_ROWS,
+    FittingError,
+    NoContactError,
+    TrialData,
+    reduced,
+    rows_of,
+    up_to_depth,
+)
 from benchmark.identification.trial_features import (
     LEAST_EVIDENCE,
     LEAST_TRAVEL,
