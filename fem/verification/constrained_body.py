@@ -2,13 +2,17 @@
 
 For comparison with cases of other codes, which are no press of a tool: their mesh, their elements, dead loads. The
 unknowns are what is neither held, nor prescribed, nor eliminated by a constraint: u = T q + s g at the share s of the
-load. The volumetric energy may be theirs, K/2 (ln J)^2 of the element's mean volume, instead of K/2 (J - 1)^2.
+load. The volumetric energy may be theirs, K/2 (ln J)^2 of the element's mean volume, instead of K/2 (J - 1)^2. Rigid
+surfaces may touch nodes by a penalty, with Lagrange multipliers that are augmented from solve to solve (J. C. Simo and
+T. A. Laursen, An augmented Lagrangian treatment of contact problems involving friction, Computers & Structures 42,
+1992, without the friction).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -24,6 +28,7 @@ from fem.materials.element_laws import element_laws
 from fem.mesh.solid import SolidMesh
 
 TOLERANCE, MOST_CORRECTIONS = 1e-12, 60
+MOST_AUGMENTATIONS, MOST_HALVINGS = 1000, 6
 
 
 @dataclass(frozen=True)
@@ -41,6 +46,49 @@ class Constraint:
     component: int
     node: int
     terms: tuple[tuple[int, int, float], ...]
+
+
+@dataclass(frozen=True)
+class Touch:
+    """What a contact does at one state.
+
+    Attributes
+    ----------
+    force
+        On the body (3 N,), N.
+    stiffness
+        Its derivative by the displacements with the sign turned (3 N, 3 N), N/m.
+    pressure
+        Of each node that can touch (n,), Pa; where it is no equilibrium's, what the multiplier would become.
+    """
+
+    force: FloatArray
+    stiffness: sp.csr_array
+    pressure: FloatArray
+
+
+class Contact(Protocol):
+    """What touches nodes."""
+
+    @property
+    def count(self) -> int:
+        """Nodes n that can touch."""
+
+    def touch(self, u: FloatArray, share: float, multiplier: FloatArray) -> Touch:
+        """What it does at displacements (3, N) in m and the share of the load, with multipliers (n,) in Pa."""
+
+    def settled(self, multiplier: FloatArray, pressure: FloatArray, times: int) -> bool:
+        """Whether multipliers (n,) that were augmented so many times may stay, though the pressures (n,) differ."""
+
+
+@dataclass(frozen=True)
+class _State:
+    """An equilibrium: its share of the load, displacements (3 N,), pressures of elements, multipliers of contacts."""
+
+    share: float
+    y: FloatArray
+    pressure: FloatArray
+    multipliers: tuple[FloatArray, ...]
 
 
 @dataclass(frozen=True)
@@ -88,6 +136,8 @@ class ConstrainedBody:
         Displacements that are sums of others, none of them eliminated.
     logarithmic
         Whether the volumetric energy is K/2 (ln J)^2.
+    contacts
+        What touches it.
     """
 
     nodes: FloatArray
@@ -100,6 +150,7 @@ class ConstrainedBody:
     force: FloatArray
     constraints: tuple[Constraint, ...] = ()
     logarithmic: bool = False
+    contacts: tuple[Contact, ...] = ()
 
     @cached_property
     def system(self) -> System:
@@ -138,39 +189,64 @@ class ConstrainedBody:
         return sp.csr_array(chosen), goal.ravel()
 
     def press(self, steps: int) -> FloatArray:
-        """Displacements (3, N) in m under the full load, brought up in equal steps.
+        """Displacements (3, N) in m under the full load, brought up in equal steps, halved where none is found.
 
         Raises
         ------
         ArithmeticError
             If a step finds no equilibrium.
         """
-        chosen, goal = self._reduced
         y, pressure = self.system.rest()
-        q = np.zeros(chosen.shape[1])
+        state = _State(0.0, y, pressure, tuple(np.zeros(one.count) for one in self.contacts))
         for step in range(1, steps + 1):
-            share = step / steps
-            q, pressure = self._step(chosen @ q + share * goal, pressure, share * self.force.ravel(), q)
-        y = chosen @ q + goal
-        return np.asarray(y.reshape(3, -1))
+            state = self._brought(state, step / steps, MOST_HALVINGS)
+        return np.asarray(state.y.reshape(3, -1))
 
-    def _step(
-        self, y: FloatArray, pressure: FloatArray, load: FloatArray, q: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Free displacements (m,) and pressures in equilibrium, from displacements that fit the supports."""
-        chosen = self._reduced[0]
+    def _brought(self, state: _State, share: float, halvings: int) -> _State:
+        try:
+            return self._step(state, share)
+        except ArithmeticError:
+            if halvings == 0:
+                raise
+        half = self._brought(state, 0.5 * (state.share + share), halvings - 1)
+        return self._brought(half, share, halvings - 1)
+
+    def _step(self, state: _State, share: float) -> _State:
+        """The equilibrium at a share, the multipliers augmented until the contacts are content."""
+        for times in range(MOST_AUGMENTATIONS):
+            state, touches = self._equilibrium(state, share)
+            settled = tuple(
+                one.settled(multiplier, touch.pressure, times)
+                for one, multiplier, touch in zip(self.contacts, state.multipliers, touches, strict=True)
+            )
+            if all(settled):
+                return state
+            told = zip(settled, state.multipliers, touches, strict=True)
+            state = replace(state, multipliers=tuple(m if stays else touch.pressure for stays, m, touch in told))
+        raise ArithmeticError("the multipliers of a contact do not settle: its penalty is too small")
+
+    def _equilibrium(self, state: _State, share: float) -> tuple[_State, tuple[Touch, ...]]:
+        """Displacements and pressures in equilibrium with these multipliers, by Newton; the supports move first."""
+        (chosen, goal), load = self._reduced, share * self.force.ravel()
+        y, pressure, jump = state.y, state.pressure, (share - state.share) * goal
         for _ in range(MOST_CORRECTIONS):
-            state = self.system.evaluate(y, pressure)
-            if state is None:
+            found = self.system.evaluate(y, pressure)
+            if found is None:
                 break
-            left = chosen.T @ (load - state.residual)
-            change = np.atleast_1d(spla.spsolve(sp.csc_array(chosen.T @ self._tangent(state) @ chosen), left))
-            dy = chosen @ change
-            pressure = self.system.pressure_after(state, dy)
-            y, q = y + dy, q + change
-            if np.abs(change).max(initial=0.0) <= TOLERANCE * max(float(np.abs(y).max()), TOLERANCE):
-                return q, pressure
+            touches = self._touches(y, share, state.multipliers)
+            tangent = sum((touch.stiffness for touch in touches), self._tangent(found))
+            left = chosen.T @ (load + sum(touch.force for touch in touches) - found.residual - tangent @ jump)
+            change = np.atleast_1d(spla.spsolve(sp.csc_array(chosen.T @ tangent @ chosen), left))
+            dy = chosen @ change + jump
+            pressure, y = self.system.pressure_after(found, dy), y + dy
+            if not jump.any() and np.abs(change).max(initial=0.0) <= TOLERANCE * max(float(np.abs(y).max()), TOLERANCE):
+                return _State(share, y, pressure, state.multipliers), self._touches(y, share, state.multipliers)
+            jump = np.zeros_like(jump)
         raise ArithmeticError("no equilibrium is found: the steps are too long, or the body is not held")
+
+    def _touches(self, y: FloatArray, share: float, multipliers: tuple[FloatArray, ...]) -> tuple[Touch, ...]:
+        u = y.reshape(3, -1)
+        return tuple(one.touch(u, share, m) for one, m in zip(self.contacts, multipliers, strict=True))
 
     def _tangent(self, state: Evaluation) -> sp.csr_array:
         scatter, count = self.system.scatter, self.system.numbering.count

@@ -134,8 +134,7 @@ def test_the_later_format_is_the_same(tmp_path):
         (text(boundary=SLIDING.replace(">z<", ">p<")), "'p': must be displacements"),
         (text(boundary='<bc type="rigid" node_set="left"/>'), "'rigid' is not read"),
         (text(loads='<Loads><surface_load type="pressure"/></Loads>'), "'pressure' is not read"),
-        (text(extra="<Rigid><rigid_bc/></Rigid>"), "Rigid: this section is not read"),
-        (text(extra='<Contact><contact type="sliding"/></Contact>'), "'sliding' is not read"),
+        (text(extra="<Step><step/></Step>"), "Step: this section is not read"),
         (text().replace("7,3,2", "7,3,99"), "no node 99"),
         (text().replace("hex8", "penta6"), "penta6"),
     ],
@@ -143,6 +142,16 @@ def test_the_later_format_is_the_same(tmp_path):
 def test_what_is_not_covered_is_refused_by_its_name(tmp_path, content, said):
     with pytest.raises(InputError, match=said):
         read(tmp_path, content)
+
+
+def test_a_load_that_is_too_much_for_one_step_is_halved(tmp_path):
+    def bulge(stretch):
+        return brentq(lambda a: coupled(stretch, a)[1], 0.9, 4.0, xtol=1e-15)
+
+    at_once = text(NEO_HOOKEAN, SLIDING, FORCE.replace("-0.5", "-2")).replace("<time_steps>5<", "<time_steps>1<")
+    stretch = brentq(lambda s: coupled(s, bulge(s))[0] + 8.0, 0.1, 0.99, xtol=1e-14)
+    found = read(tmp_path, at_once.replace("<step_size>0.2<", "<step_size>1<")).solved()
+    np.testing.assert_allclose(found[0, 4:], stretch - 1, rtol=1e-9)
 
 
 def test_a_body_that_is_pressed_flat_is_said(tmp_path):
