@@ -1,15 +1,18 @@
 """FEBio's input files (`.feb`, format 3.0 and 4.0) as bodies for our finite elements, as far as our laws go.
 
 Read are linear elements (hex8, tet4), neo-Hookean (coupled, as FEBio has it), Mooney-Rivlin and Ogden parts, held and
-prescribed displacements, nodal forces, linear constraints, and load curves at the end of the one step. What else acts
-in a file (rigid bodies, contact, pressure, other materials) is refused by its name, so that no case is solved by half.
-Units are the file's own. Written after FEBio's documentation.
+prescribed displacements, nodal forces, linear constraints, rigid surfaces that touch (see
+:mod:`benchmark.exchange.febio_contact`), and load curves at the end of the one step: everything grows with the share of
+the load, but for penalties, which are those at the end. What else acts in a file (other contact, pressure, other
+materials) is refused by its name, so that no case is solved by half. Units are the file's own. Written after FEBio's
+documentation.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from xml.etree import ElementTree
@@ -17,6 +20,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from benchmark.errors import InputError
+from benchmark.exchange.febio_contact import ContactReader, rigid_materials
 from fem import FemError, Material, MooneyRivlin, Ogden
 from fem.assembly.solid import SOLID_ELEMENTS
 from fem.materials.neo_hookean import CoupledNeoHookean
@@ -28,7 +32,9 @@ IGNORED = frozenset(
     {"Module", "Control", "Globals", "Material", "Mesh", "MeshDomains", "LoadData", "Output", "MeshData"}
 )
 """Sections that do not act, or are read elsewhere."""
+ACTING = frozenset({"Boundary", "Loads", "Contact", "Rigid", "Constraints"})
 COUPLED = frozenset({"neo-Hookean"})
+DEFAULT_MODEL = ("default", "0")
 SUPPORTED_ELEMENTS = ("hex8", "tet4")
 
 
@@ -109,9 +115,11 @@ class _Reader:
 
     def case(self) -> FebioCase:
         for section in self.root:
-            if section.tag not in IGNORED | {"Boundary", "Loads", "Contact"} and len(section):
+            if section.tag not in IGNORED | ACTING and len(section):
                 raise self.refuse(f"{section.tag}: this section is not read, so the case would not be the same")
-        numbers, nodes = self._nodes()
+        points, rigid = self._nodes(), self._rigid
+        numbers = [number for number in points if number not in rigid]
+        nodes = np.array([points[number] for number in numbers]).reshape(-1, 3)
         place = {number: k for k, number in enumerate(numbers)}
         kind, elements, part, names = self._elements(place)
         laws = [self._law(name) for name in names]
@@ -128,13 +136,14 @@ class _Reader:
             nodes, elements, kind, part, tuple(law for _, law in laws), held, moved, force,
             tuple(self._constraints(place)), logarithmic=not kinds & COUPLED,
         )  # fmt: skip
+        body = replace(body, contacts=ContactReader(self, place, rigid, points).contacts(body))
         return FebioCase(self.path.stem, body, self._steps(), tuple(sorted(kinds)))
 
     def _each(self, section: str, tag: str) -> Iterator[ElementTree.Element]:
         found = self.root.find(section)
         yield from () if found is None else found.findall(tag)
 
-    def _number(self, text: str | None, what: str) -> float:
+    def number(self, text: str | None, what: str) -> float:
         try:
             value = float((text or "").strip())
         except ValueError:
@@ -143,31 +152,52 @@ class _Reader:
             raise self.refuse(f"{what} = {text!r}: must be finite")
         return value
 
-    def _row(self, text: str | None, what: str) -> list[float]:
-        return [self._number(word, what) for word in (text or "").split(",")]
+    def row(self, text: str | None, what: str) -> list[float]:
+        return [self.number(word, what) for word in (text or "").split(",")]
 
     def _place(self, number: float, place: dict[int, int], what: str) -> int:
+        if int(number) in self._rigid:
+            raise self.refuse(f"{what}: node {number:g} is of a rigid body: one that is glued to others is not read")
         if int(number) not in place:
             raise self.refuse(f"{what}: there is no node {number:g}")
         return place[int(number)]
 
-    def _nodes(self) -> tuple[list[int], np.ndarray]:
+    def _nodes(self) -> dict[int, np.ndarray]:
+        """Where each node is, by number."""
         numbers, rows = [], []
         for node in self.root.findall("Mesh/Nodes/node"):
-            numbers.append(int(self._number(node.get("id"), "node: id")))
-            rows.append(self._row(node.text, f"node {numbers[-1]}"))
+            numbers.append(int(self.number(node.get("id"), "node: id")))
+            rows.append(self.row(node.text, f"node {numbers[-1]}"))
         if not rows or any(len(row) != 3 for row in rows) or len(set(numbers)) != len(numbers):
             raise self.refuse("Mesh/Nodes: must list nodes with three coordinates, each once")
-        return numbers, np.array(rows)
+        return dict(zip(numbers, np.array(rows), strict=True))
+
+    def _domains(self) -> dict[str | None, str]:
+        """Material of each group of elements."""
+        return {one.get("name"): one.get("mat") or "" for one in self.root.findall("MeshDomains/SolidDomain")}
+
+    @cached_property
+    def _rigid(self) -> dict[int, str]:
+        """Rigid body of each node that has one."""
+        out, material, rigid = {}, self._domains(), rigid_materials(self)
+        for one in self.root.findall("Mesh/Elements"):
+            name = material.get(one.get("name"), "")
+            if name in rigid:
+                for elem in one.findall("elem"):
+                    numbers = self.row(elem.text, f"elem {elem.get('id')}")
+                    out.update(dict.fromkeys((int(number) for number in numbers), name))
+        return out
 
     def _elements(self, place: dict[int, int]) -> tuple[str, np.ndarray, np.ndarray, list[str]]:
         """Kind, nodes (n, E) in scikit-fem's order, part (E,), and the material's name of each part."""
-        material = {one.get("name"): one.get("mat") or "" for one in self.root.findall("MeshDomains/SolidDomain")}
+        material, rigid = self._domains(), rigid_materials(self)
         kinds: set[str] = set()
         names: list[str] = []
         rows, part = [], []
         for group in self.root.findall("Mesh/Elements"):
             kind, name = group.get("type", ""), group.get("name")
+            if material.get(name) in rigid:
+                continue
             if kind not in SUPPORTED_ELEMENTS or name not in material:
                 raise self.refuse(
                     f"Elements {name}: {kind} without a SolidDomain, or none of {', '.join(SUPPORTED_ELEMENTS)}"
@@ -175,7 +205,7 @@ class _Reader:
             kinds.add(kind)
             for one in group.findall("elem"):
                 what = f"elem {one.get('id')}"
-                rows.append([self._place(number, place, what) for number in self._row(one.text, what)])
+                rows.append([self._place(number, place, what) for number in self.row(one.text, what)])
                 part.append(len(names))
             names.append(material[name])
         if len(kinds) != 1 or {len(row) for row in rows} != {len(SOLID_ELEMENTS[min(kinds)].vtk_order)}:
@@ -190,9 +220,11 @@ class _Reader:
         if not found or found[0].get("type") not in LAWS:
             kind = found[0].get("type") if found else "none"
             raise self.refuse(f"material {name}: {kind} is not read; read are {', '.join(sorted(LAWS))}")
-        values = {one.tag: self._number(one.text, f"material {name}: {one.tag}") for one in found[0]}
+        told = {one.tag: one.text for one in found[0]}
+        model = (told.pop("pressure_model", None) or DEFAULT_MODEL[0]).strip()
+        values = {tag: self.number(text, f"material {name}: {tag}") for tag, text in told.items()}
         kind = str(found[0].get("type"))
-        if values.get("pressure_model", 0.0) != 0.0:
+        if model not in DEFAULT_MODEL:
             raise self.refuse(f"material {name}: another pressure_model than FEBio's default is not read")
         try:
             return kind, LAWS[kind](values)
@@ -202,12 +234,13 @@ class _Reader:
             raise self.refuse(f"material {name}: {error}") from error
 
     def _set(self, name: str | None, place: dict[int, int]) -> list[int]:
-        """Places of the nodes of a set: `<n id=.../>` each, or numbers between commas."""
+        """Places of the nodes of a set, those of rigid bodies apart: `<n id=.../>` each, or numbers between commas."""
         for one in self.root.findall("Mesh/NodeSet"):
             if one.get("name") == name:
-                numbers = [self._number(n.get("id"), f"NodeSet {name}") for n in one.findall("n")]
-                listed = self._row(one.text, f"NodeSet {name}") if (one.text or "").strip() else []
-                return [self._place(number, place, f"NodeSet {name}") for number in (*numbers, *listed)]
+                numbers = [self.number(n.get("id"), f"NodeSet {name}") for n in one.findall("n")]
+                listed = self.row(one.text, f"NodeSet {name}") if (one.text or "").strip() else []
+                soft = [number for number in (*numbers, *listed) if int(number) not in self._rigid]
+                return [self._place(number, place, f"NodeSet {name}") for number in soft]
         raise self.refuse(f"there is no NodeSet {name}")
 
     def _axes(self, text: str | None, what: str) -> list[int]:
@@ -229,7 +262,7 @@ class _Reader:
             axes = [n for n, axis in enumerate(AXES) if (one.findtext(f"{axis}_dof") or "0").strip() == "1"]
             held[np.ix_(axes, nodes)] = True
         else:
-            amount = self._scaled(one.find("scale" if kind == "prescribe" else "value"), what)
+            amount = self.scaled(one.find("scale" if kind == "prescribe" else "value"), what)
             moved[np.ix_(self._axes(one.findtext("dof"), what), nodes)] = amount
 
     def _force(self, one: ElementTree.Element, place: dict[int, int], force: np.ndarray) -> None:
@@ -237,21 +270,19 @@ class _Reader:
         if one.tag != "nodal_load" or one.get("type") not in ("nodal_load", None):
             raise self.refuse(f"{what}: type {one.get('type')!r} is not read")
         nodes = self._set(one.get("node_set"), place)
-        force[np.ix_(self._axes(one.findtext("dof"), what), nodes)] += self._scaled(one.find("scale"), what)
+        force[np.ix_(self._axes(one.findtext("dof"), what), nodes)] += self.scaled(one.find("scale"), what)
 
-    def _scaled(self, one: ElementTree.Element | None, what: str) -> float:
+    def scaled(self, one: ElementTree.Element | None, what: str) -> float:
         """A value times its load curve at the end."""
         if one is None:
             raise self.refuse(f"{what}: no value")
-        value, curve = self._number(one.text, what), one.get("lc")
+        value, curve = self.number(one.text, what), one.get("lc")
         return value if curve is None else value * self._curve(curve)
 
     def _curve(self, number: str) -> float:
         for one in self.root.findall("LoadData/load_controller"):
             if one.get("id") == number:
-                points = [
-                    self._row(p.text, f"load_controller {number}") for p in one.iter() if p.tag in ("point", "pt")
-                ]
+                points = [self.row(p.text, f"load_controller {number}") for p in one.iter() if p.tag in ("point", "pt")]
                 if not points or any(len(point) != 2 for point in points):
                     raise self.refuse(f"load_controller {number}: must have points of time and value")
                 time, value = np.array(sorted(points)).T
@@ -259,24 +290,22 @@ class _Reader:
         raise self.refuse(f"there is no load_controller {number}")
 
     def _end(self) -> float:
-        return self._steps() * self._number(self.root.findtext("Control/step_size"), "Control: step_size")
+        return self._steps() * self.number(self.root.findtext("Control/step_size"), "Control: step_size")
 
     def _steps(self) -> int:
-        return max(1, round(self._number(self.root.findtext("Control/time_steps"), "Control: time_steps")))
+        return max(1, round(self.number(self.root.findtext("Control/time_steps"), "Control: time_steps")))
 
     def _constraints(self, place: dict[int, int]) -> Iterator[Constraint]:
         for one in self._each("Boundary", "bc"):
             if one.get("type") == "linear constraint":
                 component, node, _ = self._term(one, place)
                 yield Constraint(component, node, tuple(self._term(child, place) for child in one.findall("child_dof")))
-        for contact in self._each("Contact", "*"):
-            raise self.refuse(f"contact of type {contact.get('type')!r} is not read")
 
     def _term(self, one: ElementTree.Element, place: dict[int, int]) -> tuple[int, int, float]:
         what = "linear constraint"
         axis = self._axes(one.findtext("dof"), what)[0]
-        node = self._place(self._number(one.findtext("node"), what), place, what)
-        return axis, node, self._number(one.findtext("value") or "1", what)
+        node = self._place(self.number(one.findtext("node"), what), place, what)
+        return axis, node, self.number(one.findtext("value") or "1", what)
 
 
 def _mooney_rivlin(values: Mapping[str, float]) -> Material:
