@@ -3,7 +3,16 @@
 import os
 import sys
 
-from bench_hw.starting import end, interrupted, keep_interruptions, leave_current_folder, open_streams, speak_utf8, tell
+from bench_hw.starting import (
+    end,
+    interrupted,
+    keep_interruptions,
+    leave_current_folder,
+    not_installed,
+    open_streams,
+    speak_utf8,
+    tell,
+)
 
 
 def start() -> int:
@@ -13,8 +22,10 @@ def start() -> int:
         open_streams()
         speak_utf8()
         tell(leave_current_folder(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), sys.argv)
-        from bench_hw.cli import main
-
+        try:
+            from bench_hw.cli import main
+        except ModuleNotFoundError as error:
+            return not_installed(error)
         return end(main())
     except KeyboardInterrupt:  # while modules are imported, before the verbs or after them
         return interrupted()

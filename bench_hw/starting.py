@@ -24,6 +24,7 @@ PAUSE = 0.02
 """Before an interruption comes once more, s."""
 NAMED = 5
 """Shadowing names that are told."""
+OURS = ("bench_hw", "benchmark", "fem", "reports", "wavemodel")
 
 
 def leave_current_folder(root: str) -> list[str]:
@@ -76,6 +77,25 @@ def tell(names: list[str], arguments: list[str]) -> None:
     more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
     verb = "has the name of a module and is" if len(names) == 1 else "have names of modules and are"
     print(f"note: {', '.join(names[:NAMED])}{more} in this folder {verb} not imported", file=sys.stderr)
+
+
+def not_installed(error: ModuleNotFoundError) -> int:
+    """Say in one line that a library is not there for this Python, and how it comes there; the exit code.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        It is a module of ours: the installation is broken.
+    """
+    name = (error.name or "").partition(".")[0]
+    if not name or name in OURS:
+        raise error
+    print(
+        f"error: {name} is not installed for {sys.executable}: in a checkout `make run` once, then "
+        "`. .venv/bin/activate`; elsewhere `pip install .`",
+        file=sys.stderr,
+    )
+    return EXIT_UNSAID
 
 
 def _shadowing(here: str, others: list[str]) -> list[str]:

@@ -17,15 +17,25 @@ def start() -> int:
 def _start() -> int:
     root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     sys.path.insert(0, root)
-    from bench_hw.starting import end, keep_interruptions, leave_current_folder, open_streams, speak_utf8, tell
+    from bench_hw.starting import (
+        end,
+        keep_interruptions,
+        leave_current_folder,
+        not_installed,
+        open_streams,
+        speak_utf8,
+        tell,
+    )
 
     sys.path.remove(root)
     keep_interruptions()
     open_streams()
     speak_utf8()
     tell(leave_current_folder(root), sys.argv)
-    from benchmark.cli.app import main
-
+    try:
+        from benchmark.cli.app import main
+    except ModuleNotFoundError as error:
+        return not_installed(error)
     return end(main())
 
 

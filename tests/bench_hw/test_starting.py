@@ -110,6 +110,29 @@ def test_ctrl_c_while_python_ends_brings_no_traceback(package):
     assert (code, err) == (-2, "")
 
 
+@pytest.mark.parametrize("package", ["benchmark", "bench_hw"])
+def test_a_library_that_is_not_installed_is_one_line_that_says_what_to_do(package):
+    code, err = ended(WITHOUT_A_LIBRARY.format(package=package, missing="typer"))
+    assert (code, err.count("\n")) == (2, 1)
+    assert err.startswith(f"error: typer is not installed for {sys.executable}: ")
+    assert "make run" in err
+
+
+def test_a_module_of_ours_that_is_missing_is_no_library():
+    code, err = ended(WITHOUT_A_LIBRARY.format(package="benchmark", missing="benchmark.cli.app"))
+    assert code == 1
+    assert "ModuleNotFoundError" in err
+
+
+WITHOUT_A_LIBRARY = """
+import sys
+sys.modules["{missing}"] = None
+sys.argv = ["program", "--version"]
+from {package}.__main__ import start
+sys.exit(start())
+"""
+
+
 SWALLOWED = """
 import os, signal, sys
 class Deaf:
