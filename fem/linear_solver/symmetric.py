@@ -53,7 +53,7 @@ class DiagonalScaling:
 
     def __init__(self, indptr: IntArray, indices: IntArray) -> None:
         self._diagonal = indptr[:-1]
-        self._row = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
+        self._lengths = np.diff(indptr)
         self._column = indices
         self.factor = np.ones(len(indptr) - 1)
 
@@ -69,7 +69,8 @@ class DiagonalScaling:
             raise SingularMatrixError("the stiffness matrix has entries that are not finite")
         diagonal = np.abs(data[self._diagonal])
         self.factor = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
-        out: FloatArray = data * self.factor[self._row] * self.factor[self._column]
+        out: FloatArray = data * np.repeat(self.factor, self._lengths)
+        out *= self.factor[self._column]
         return out
 
 
