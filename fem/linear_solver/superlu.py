@@ -57,8 +57,8 @@ class SuperLUSolver:
         except RuntimeError as error:
             raise SingularMatrixError(str(error)) from error
 
-    def solve(self, right: FloatArray) -> FloatArray:
-        """Solution (n, k) of right-hand sides (n, k).
+    def solve(self, right: FloatArray, tolerance: float = 0.0) -> FloatArray:  # noqa: ARG002 (it comes to round-off)
+        """Solution (n, k) of right-hand sides (n, k), whatever the tolerance.
 
         Raises
         ------

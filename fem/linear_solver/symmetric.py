@@ -34,8 +34,8 @@ class SymmetricSolver(Protocol):
         """Factorise the upper triangle with entries (nnz,)."""
         ...
 
-    def solve(self, right: FloatArray) -> FloatArray:
-        """Solution (n, k) of right-hand sides (n, k)."""
+    def solve(self, right: FloatArray, tolerance: float = ...) -> FloatArray:
+        """Solution (n, k) of right-hand sides (n, k), with about `tolerance` of each left, or less."""
         ...
 
 
