@@ -83,22 +83,25 @@ class Pattern:
     place
         Entry (171, E) of each entry of a packed element stiffness; nnz for what is fixed.
     twice
-        Entries (m,) of the flat packed stiffness that stand for two: for themselves and for their mirror.
+        Whether each of these entries stands for two, for itself and for its mirror; None where none does.
     indptr, indices
         Pattern of the upper triangle in compressed rows, diagonal first in each row.
     """
 
     place: Index
-    twice: IntArray
+    twice: BoolArray | None
     indptr: Index
     indices: Index
 
-    def sum(self, packed: FloatArray) -> FloatArray:
-        """Entries (nnz,) of the upper triangle from packed element stiffness (171, E)."""
+    def sum(self, parts: Iterable[tuple[slice, FloatArray]]) -> FloatArray:
+        """Entries (nnz,) of the upper triangle from packed element stiffness (171, part), part by part."""
         out = np.zeros(len(self.indices) + 1)
-        for place, values in zip(self.place, packed, strict=True):
-            np.add.at(out, place, values)
-        np.add.at(out, self.place.ravel()[self.twice], packed.ravel()[self.twice])
+        for part, packed in parts:
+            place = self.place[:, part]
+            np.add.at(out, place.ravel(), packed.ravel())
+            if self.twice is not None:
+                is_twice = self.twice[:, part]
+                np.add.at(out, place[is_twice], packed[is_twice])
         return out[:-1]
 
 
@@ -159,7 +162,11 @@ class Scatter:
 
     def matrix(self, packed: FloatArray) -> FloatArray:
         """Entries (nnz,) of the upper triangle from packed element stiffness (171, E)."""
-        return self.pattern.sum(packed)
+        return self.pattern.sum([(slice(None), packed)])
+
+    def matrix_of_parts(self, parts: Iterable[tuple[slice, FloatArray]]) -> FloatArray:
+        """The same of elements and their packed stiffness (171, part), part by part."""
+        return self.pattern.sum(parts)
 
 
 def build_scatter(elements: IntArray, numbering: Numbering) -> Scatter:
@@ -182,14 +189,14 @@ def _pattern(scatter: Scatter) -> Pattern:
     if not is_plain:
         table, indptr, indices = _merged(real, count, table, indptr, indices)
     place = _packed_places(scatter.elements, pairs.number, table)
-    twice = np.zeros(0, dtype=np.int64)
+    twice = None
     if not is_plain or pairs.has_folded:
         # An off-diagonal packed entry stands for itself and its mirror: both land on the diagonal of a tied unknown.
         row, column = packed_positions(len(scatter.elements), len(unknown))
         is_diagonal = np.zeros(len(indices) + 1, dtype=np.bool_)
         is_diagonal[indptr[:-1]] = np.diff(indptr) > 0
         is_diagonal[-1] = False
-        twice = np.flatnonzero(is_diagonal[place] & (row != column)[:, None])
+        twice = is_diagonal[place] & (row != column)[:, None]
     return Pattern(place, twice, indptr, indices)
 
 

@@ -19,7 +19,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from fem.arrays import FloatArray, IntArray
+from fem.arrays import FloatArray, IndexArray, IntArray
 from fem.linear_solver.symmetric import SingularMatrixError, SymmetricSolver
 
 DEGREE = 3  # of the Chebyshev polynomial; 2 and 4 take 5 to 10 % more products with the matrix
@@ -59,8 +59,8 @@ class CoarseSpace:
     transfer: sp.csr_array
     packed: tuple[IntArray, IntArray]
     matrix_sum: Callable[[FloatArray], FloatArray]
-    indptr: IntArray
-    indices: IntArray
+    indptr: IndexArray
+    indices: IndexArray
 
     @property
     def count(self) -> int:

@@ -22,7 +22,7 @@ import scipy.sparse as sp
 from numpy.typing import DTypeLike, NDArray
 from pypardiso.pardiso_wrapper import PyPardisoError
 
-from fem.arrays import FloatArray, IntArray
+from fem.arrays import FloatArray, IndexArray
 from fem.linear_solver.symmetric import DiagonalScaling, SingularMatrixError, flexible_gmres, require_finite
 
 POSITIVE_DEFINITE, INDEFINITE = 2, -2
@@ -87,11 +87,11 @@ class PardisoSolver:
     name = "pardiso"
     tolerance = 0.0
 
-    def __init__(self, indptr: IntArray, indices: IntArray, single_from: int = SINGLE_FROM) -> None:
+    def __init__(self, indptr: IndexArray, indices: IndexArray, single_from: int = SINGLE_FROM) -> None:
         count = len(indptr) - 1
         self._scaling = DiagonalScaling(indptr, indices)
         self._matrix = sp.csr_array(
-            (np.ones(len(indices)), indices.astype(np.int32), indptr.astype(np.int32)), shape=(count, count)
+            (np.zeros(len(indices)), indices.astype(np.int32), indptr.astype(np.int32)), shape=(count, count)
         )
         self._ways = [*SINGLE, DOUBLE] if count >= single_from else [DOUBLE]
         self._factors = Factors(self._matrix, self._ways[0])
@@ -109,7 +109,7 @@ class PardisoSolver:
         SingularMatrixError
             If Pardiso finds no factors.
         """
-        self._matrix.data[:] = self._scaling.scale(data)
+        self._matrix.data = self._scaling.scale(data)
         self._refactorise()
 
     def solve(self, right: FloatArray, tolerance: float = TOLERANCE) -> FloatArray:
@@ -190,12 +190,12 @@ class Factors:
     def __init__(self, pattern: sp.csr_array, way: Way) -> None:
         self._way, self.dtype = way, np.dtype(way.dtype)
         self._rows, self._columns = pattern.indptr + np.int32(1), pattern.indices + np.int32(1)
-        self._values: Values = np.ones(1, dtype=self.dtype)
+        self._values: Values = np.zeros(1, dtype=self.dtype)
         self._solver = _new_solver(way)
         count = pattern.shape[0]
         self._threads = 1 if count < SMALL else int(self._solver.libmkl.MKL_Get_Max_Threads())
         self._nothing = np.zeros((count, 1), dtype=self.dtype)
-        self._values = np.ones(len(self._columns), dtype=self.dtype)
+        self._values = np.zeros(len(self._columns), dtype=self.dtype)
         self._call(ANALYSE, self._nothing)
         weakref.finalize(self, _release, self._solver)
 
