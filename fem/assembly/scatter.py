@@ -18,6 +18,7 @@ from fem.arrays import BoolArray, FloatArray, IntArray
 from fem.assembly.element_geometry import packed_positions
 
 FIXED = -1
+PLACED_AT_ONCE = 512  # elements whose places are found together, so that what is made of them stays in the cache
 Index: TypeAlias = NDArray[np.int32]  # half the memory of the pattern's large arrays
 
 
@@ -288,17 +289,20 @@ def _packed_places(elements: IntArray, number: Index, table: Index) -> Index:
     pair = np.zeros((k, k), dtype=np.int64)
     first, second = np.triu_indices(k)
     pair[first, second] = pair[second, first] = np.arange(len(first))
-    number_of = number[pair].reshape(k * k, -1)
-    is_turned = (elements[:, None] > elements).reshape(k * k, -1)
     out = np.empty((len(packed_positions(k, dim)[0]), elements.shape[1]), dtype=np.int32)
-    end = 0
-    for a in range(dim):
-        for b in range(a, dim):
-            start, end = end, end + (len(number) if a == b else k * k)
-            if a == b:
-                out[start:end] = table[a, a][number]
-            else:
-                out[start:end] = np.where(is_turned, table[b, a][number_of], table[a, b][number_of])
+    for begin in range(0, elements.shape[1], PLACED_AT_ONCE):
+        part = slice(begin, begin + PLACED_AT_ONCE)
+        of_upper, nodes = number[:, part], elements[:, part]
+        of_all = number[pair.ravel(), part]
+        is_turned = (nodes[:, None] > nodes).reshape(k * k, -1)
+        end = 0
+        for a in range(dim):
+            for b in range(a, dim):
+                start, end = end, end + (len(number) if a == b else k * k)
+                if a == b:
+                    out[start:end, part] = table[a, a][of_upper]
+                else:
+                    out[start:end, part] = np.where(is_turned, table[b, a][of_all], table[a, b][of_all])
     return out
 
 

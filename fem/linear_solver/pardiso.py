@@ -91,7 +91,8 @@ class PardisoSolver:
         count = len(indptr) - 1
         self._scaling = DiagonalScaling(indptr, indices)
         self._matrix = sp.csr_array(
-            (np.zeros(len(indices)), indices.astype(np.int32), indptr.astype(np.int32)), shape=(count, count)
+            (np.zeros(len(indices)), indices.astype(np.int32, copy=False), indptr.astype(np.int32, copy=False)),
+            shape=(count, count),
         )
         self._ways = [*SINGLE, DOUBLE] if count >= single_from else [DOUBLE]
         self._factors = Factors(self._matrix, self._ways[0])
@@ -201,7 +202,7 @@ class Factors:
 
     def factorise(self, data: FloatArray) -> None:
         """Factorise the entries (nnz,); SingularMatrixError if Pardiso finds no factors."""
-        self._values = np.ascontiguousarray(data, dtype=self.dtype)
+        np.copyto(self._values, data, casting="same_kind")
         self._call(FACTORISE, self._nothing)
 
     def solve(self, right: FloatArray) -> FloatArray:
