@@ -95,12 +95,17 @@ class PardisoSolver:
             shape=(count, count),
         )
         self._ways = [*SINGLE, DOUBLE] if count >= single_from else [DOUBLE]
-        self._factors = Factors(self._matrix, self._ways[0])
+        self._factors = Factors(self._matrix, self.way)
+
+    @property
+    def way(self) -> Way:
+        """The way to factorise that is taken now."""
+        return self._ways[0]
 
     @property
     def is_single(self) -> bool:
         """Whether the factors are in single precision."""
-        return self._ways[0].is_single
+        return self.way.is_single
 
     def factorise(self, data: FloatArray) -> None:
         """Factorise the entries (nnz,).
@@ -164,7 +169,7 @@ class PardisoSolver:
         """Another way from now on; the memory of the factors before is given back first."""
         del self._factors
         del self._ways[0]
-        self._factors = Factors(self._matrix, self._ways[0])
+        self._factors = Factors(self._matrix, self.way)
 
     def _times(self, x: FloatArray) -> FloatArray:
         """Product (n,) of the scaled matrix, whose diagonal is 1 or -1, with x (n,)."""
