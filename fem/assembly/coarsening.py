@@ -33,7 +33,7 @@ def coarse_space(mesh: SolidMesh, numbering: Numbering, scatter: Scatter) -> Coa
         _each_component(values),
         _transfer(mesh.elements, numbering, below, values),
         packed_positions(count, 3),
-        coarse.matrix_sum,
+        coarse.matrix,
         coarse.indptr,
         coarse.indices,
     )

@@ -8,6 +8,7 @@ displacement component in reference coordinates; "pulled back" are quantities th
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from functools import cached_property
 
 import numpy as np
@@ -62,15 +63,11 @@ class ElementGeometry(ABC):
         both = self._on_nodes(weighted.reshape(rate.shape[0] * rate.shape[1], count * elements))
         return both.reshape(len(both), count, elements)
 
-    def stiffness(self, moduli: FloatArray) -> FloatArray:
-        """Packed element stiffness (entries, E) of weighted packed moduli (pairs, q, E)."""
-        count = self.weight.shape[1]
-        parts = [slice(n, n + ELEMENTS_AT_ONCE) for n in range(0, count, ELEMENTS_AT_ONCE)]
-        entries = sum(table.shape[0] for table in self._products)
-        out = np.empty((entries, count))
-        for part in parts:
-            out[:, part] = self._stiffness(moduli[..., part], part)
-        return out
+    def stiffness_parts(self, moduli: FloatArray) -> Iterator[tuple[slice, FloatArray]]:
+        """Elements and their packed stiffness (entries, part), part by part, of weighted moduli (pairs, q, E)."""
+        for start in range(0, self.weight.shape[1], ELEMENTS_AT_ONCE):
+            part = slice(start, start + ELEMENTS_AT_ONCE)
+            yield part, self._stiffness(moduli[..., part], part)
 
     def _stiffness(self, moduli: FloatArray, part: slice) -> FloatArray:
         half = self.pull_back(self.components.unpack(moduli), part)

@@ -12,12 +12,13 @@ Linear kinematics is the tangent at rest.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.assembly.element_geometry import ELEMENTS_AT_ONCE, ElementGeometry
+from fem.assembly.element_geometry import ElementGeometry
 from fem.materials.deformation import Deformation
 from fem.materials.element_laws import ElementLaws
 from fem.materials.prony import Memory
@@ -120,33 +121,34 @@ class Elements:
         """Derivative (E,) in Pa of the wanted pressure by the volume change."""
         return self.field_modulus
 
-    def stiffness(self, state: ElementState) -> FloatArray:
-        """Packed element stiffness (entries, E) in N/m, the pressure condensed."""
-        return self._packed(state, self.pressure_slope(state))
+    def stiffness_parts(self, state: ElementState) -> Iterator[tuple[slice, FloatArray]]:
+        """Elements and their packed stiffness (entries, part) in N/m, the pressure condensed, part by part."""
+        return self._parts(state, self.pressure_slope(state))
 
     def soft_stiffness(self, state: ElementState) -> tuple[FloatArray, FloatArray]:
-        """The same with at most the shear modulus as derivative of the pressure, and the rest (E,) of it in Pa."""
+        """Packed stiffness (entries, E) with at most the shear modulus as derivative of the pressure; the rest (E,)."""
         slope = self.pressure_slope(state)
         soft: FloatArray = np.minimum(slope, self.laws.shear_modulus)
-        return self._packed(state, soft), slope - soft
+        out = np.empty((len(self.geometry.packed[0]), len(slope)))
+        for part, packed in self._parts(state, soft):
+            out[:, part] = packed
+        return out, slope - soft
 
-    def _packed(self, state: ElementState, slope: FloatArray) -> FloatArray:
+    def _parts(self, state: ElementState, slope: FloatArray) -> Iterator[tuple[slice, FloatArray]]:
         components, deformation = self.geometry.components, state.deformation
         moduli = self.laws.tangent(deformation)
         moduli[components.cofactor_pairs] += state.pressure_at_points * deformation.cofactor_derivative
         components.add_products(moduli, self.point_modulus * deformation.cofactor, deformation.cofactor)
         moduli *= self.geometry.weight
-        packed = self.geometry.stiffness(moduli)
-        self._condense(packed, state.coupling, slope)
-        return packed
+        for part, packed in self.geometry.stiffness_parts(moduli):
+            self._condense(packed, state.coupling[..., part], slope[part])
+            yield part, packed
 
     def _condense(self, packed: FloatArray, coupling: FloatArray, modulus: FloatArray) -> None:
-        """Add what the eliminated pressure does to the packed stiffness, with its slope (E,) in Pa."""
-        rows, columns = self.geometry.packed
-        for start in range(0, packed.shape[1], ELEMENTS_AT_ONCE):
-            part = slice(start, start + ELEMENTS_AT_ONCE)
-            b = coupling[..., part]
-            packed[:, part] += np.einsum("pie,pie->pe", (b * modulus[part])[rows], b[columns])
+        """Add what the eliminated pressure does to the packed stiffness, with its slope in Pa."""
+        if coupling.shape[1] > 0:
+            rows, columns = self.geometry.packed
+            packed += np.einsum("pie,pie->pe", (coupling * modulus)[rows], coupling[columns])
 
     def pressure_after(self, state: ElementState, du: FloatArray) -> FloatArray:
         """Pressure coefficients (3, E) after an increment du (18, E) of the nodal displacements."""

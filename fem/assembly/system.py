@@ -109,7 +109,7 @@ class System:
 
     def tangent(self, state: Evaluation) -> FloatArray:
         """Upper triangle (nnz,) of the tangent, the pressure condensed."""
-        out = self.scatter.matrix(self.elements.stiffness(state.elements))
+        out = self.scatter.matrix_of_parts(self.elements.stiffness_parts(state.elements))
         for places, response in zip(self.places, state.responses, strict=True):
             np.add.at(out, places, response.stiffness)
         return out

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from fem.arrays import IntArray
+from fem.arrays import IndexArray
 from fem.errors import FemError, require_one_of
 from fem.linear_solver.superlu import SuperLUSolver
 from fem.linear_solver.symmetric import SymmetricSolver
@@ -25,7 +25,7 @@ SMALL = 10_000
 NUMPY_LIBRARIES = ("libopenblas", "libscipy_openblas", "openblas")
 
 
-def make_solver(choice: str, indptr: IntArray, indices: IntArray) -> SymmetricSolver:
+def make_solver(choice: str, indptr: IndexArray, indices: IndexArray) -> SymmetricSolver:
     """Direct solver for a pattern.
 
     Parameters

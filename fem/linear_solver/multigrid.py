@@ -11,6 +11,7 @@ since it serves as a preconditioner.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias, TypeVar
 
@@ -18,12 +19,12 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from fem.arrays import FloatArray, IntArray
+from fem.arrays import FloatArray, IndexArray, IntArray
 from fem.linear_solver.symmetric import SingularMatrixError, SymmetricSolver
 
 DEGREE = 3  # of the Chebyshev polynomial; 2 and 4 take 5 to 10 % more products with the matrix
 DAMPED = 25.0  # largest eigenvalue over the smallest that the polynomial damps
-POWER_STEPS = 12
+POWER_STEPS = 20
 MARGIN = 1.1  # on the largest eigenvalue, which the power iteration finds from below
 AT_ONCE = 256  # elements or columns of which copies in double precision are made at a time
 Single: TypeAlias = NDArray[np.float32]
@@ -47,7 +48,7 @@ class CoarseSpace:
     packed
         Row and column (entries,) of each packed entry of a linear element's matrix.
     matrix_sum
-        Sparse (nnz, entries E): packed linear elements to the entries of the upper triangle.
+        Entries (nnz,) of the upper triangle from packed linear elements (entries, E).
     indptr, indices
         Pattern of the linear elements' upper triangle in compressed rows, diagonal first in each row.
     """
@@ -57,9 +58,9 @@ class CoarseSpace:
     element_transfer: FloatArray
     transfer: sp.csr_array
     packed: tuple[IntArray, IntArray]
-    matrix_sum: sp.csr_array
-    indptr: IntArray
-    indices: IntArray
+    matrix_sum: Callable[[FloatArray], FloatArray]
+    indptr: IndexArray
+    indices: IndexArray
 
     @property
     def count(self) -> int:
@@ -73,8 +74,7 @@ class CoarseSpace:
         for part in parts(len(matrices)):
             small = self.element_transfer.T @ matrices[part] @ self.element_transfer
             packed[:, part] = small[:, rows, columns].T
-        out: FloatArray = self.matrix_sum @ packed.ravel()
-        return out
+        return self.matrix_sum(packed)
 
 
 class ElementSum:

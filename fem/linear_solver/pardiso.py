@@ -1,8 +1,9 @@
-"""Pardiso of the MKL: symmetric indefinite LDL^T of the upper triangle, analysed once.
+"""Pardiso of the MKL: factors of the upper triangle, analysed once.
 
-Large systems are factorised in single precision, in half the time and memory. The factors then precondition the
-flexible GMRES in double precision (E. Carson and N. J. Higham,
-SIAM Journal on Scientific Computing 40 (2018) A817). Where it does not come there, the system is factorised in double.
+Small systems have symmetric indefinite ones (LDL^T) in double precision. Large systems are factorised in single
+precision, in half the time and memory, by Cholesky, and by LDL^T where they are not positive definite. The factors then
+precondition the flexible GMRES in double precision (E. Carson and N. J. Higham, SIAM Journal on Scientific Computing
+40 (2018) A817). Where it does not come there, the system is factorised in double. A way that failed is not tried again.
 """
 
 from __future__ import annotations
@@ -10,6 +11,9 @@ from __future__ import annotations
 import copy
 import ctypes
 import weakref
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TypeAlias
 
 import numpy as np
@@ -18,14 +22,16 @@ import scipy.sparse as sp
 from numpy.typing import DTypeLike, NDArray
 from pypardiso.pardiso_wrapper import PyPardisoError
 
-from fem.arrays import FloatArray, IntArray
+from fem.arrays import FloatArray, IndexArray
 from fem.linear_solver.symmetric import DiagonalScaling, SingularMatrixError, flexible_gmres, require_finite
 
-REAL_SYMMETRIC_INDEFINITE = -2
+POSITIVE_DEFINITE, INDEFINITE = 2, -2
 ANALYSE, FACTORISE, SOLVE = 11, 22, 33
 # iparm by its number from 0: own values, METIS, two steps of refinement only where pivots were perturbed, by 1e-8,
 # Bunch-Kaufman pivots. By default refinement takes its two steps every time.
-CONTROLS = {0: 1, 1: 2, 7: 0, 9: 8, 20: 1}
+CONTROLS = MappingProxyType({0: 1, 1: 2, 7: 0, 9: 8, 20: 1})
+# Two-level factorisation of variable blocks: unknowns that are alike to 80 %, those of a node, are analysed as one.
+BLOCKS = MappingProxyType({23: 1, 36: -80})
 SINGLE_PRECISION = 27  # of iparm, 1 for single
 SMALL = 10_000  # unknowns below which threads wait for each other longer than they work
 SINGLE_FROM = 30_000  # unknowns; below, the iterations take what the factorisation saves
@@ -34,6 +40,37 @@ TOLERANCE = 1e-9
 MOST_ITERATIONS = 30  # three times what layers of 1 MPa on 10 kPa take
 Single: TypeAlias = NDArray[np.float32]
 Values: TypeAlias = FloatArray | Single
+
+
+@dataclass(frozen=True)
+class Way:
+    """One way to factorise.
+
+    Attributes
+    ----------
+    kind
+        Pardiso's number of the kind of matrix.
+    dtype
+        Double or single.
+    controls
+        Entries of iparm by their number from 0.
+    """
+
+    kind: int
+    dtype: DTypeLike
+    controls: Mapping[int, int]
+
+    @property
+    def is_single(self) -> bool:
+        """Whether it is in single precision."""
+        return self.dtype == np.float32
+
+
+DOUBLE = Way(INDEFINITE, np.float64, CONTROLS)
+SINGLE = (
+    Way(POSITIVE_DEFINITE, np.float32, MappingProxyType({**CONTROLS, **BLOCKS})),
+    Way(INDEFINITE, np.float32, MappingProxyType({**CONTROLS, **BLOCKS})),
+)
 
 
 class PardisoSolver:
@@ -50,18 +87,25 @@ class PardisoSolver:
     name = "pardiso"
     tolerance = 0.0
 
-    def __init__(self, indptr: IntArray, indices: IntArray, single_from: int = SINGLE_FROM) -> None:
+    def __init__(self, indptr: IndexArray, indices: IndexArray, single_from: int = SINGLE_FROM) -> None:
         count = len(indptr) - 1
         self._scaling = DiagonalScaling(indptr, indices)
         self._matrix = sp.csr_array(
-            (np.ones(len(indices)), indices.astype(np.int32), indptr.astype(np.int32)), shape=(count, count)
+            (np.zeros(len(indices)), indices.astype(np.int32, copy=False), indptr.astype(np.int32, copy=False)),
+            shape=(count, count),
         )
-        self._factors = Factors(self._matrix, np.float32 if count >= single_from else np.float64)
+        self._ways = [*SINGLE, DOUBLE] if count >= single_from else [DOUBLE]
+        self._factors = Factors(self._matrix, self.way)
+
+    @property
+    def way(self) -> Way:
+        """The way to factorise that is taken now."""
+        return self._ways[0]
 
     @property
     def is_single(self) -> bool:
         """Whether the factors are in single precision."""
-        return self._factors.dtype == np.float32
+        return self.way.is_single
 
     def factorise(self, data: FloatArray) -> None:
         """Factorise the entries (nnz,).
@@ -71,17 +115,19 @@ class PardisoSolver:
         SingularMatrixError
             If Pardiso finds no factors.
         """
-        self._matrix.data[:] = self._scaling.scale(data)
-        if self.is_single:
-            try:
-                self._factors.factorise(self._matrix.data)
-                return
-            except SingularMatrixError:
-                self._take_double()
-        self._factors.factorise(self._matrix.data)
+        self._matrix.data = self._scaling.scale(data)
+        self._refactorise()
 
-    def solve(self, right: FloatArray) -> FloatArray:
+    def solve(self, right: FloatArray, tolerance: float = TOLERANCE) -> FloatArray:
         """Solution (n, k) of right-hand sides (n, k).
+
+        Parameters
+        ----------
+        right
+            The right-hand sides.
+        tolerance
+            Residual to aim at over the right-hand side, scaled to a unit diagonal. More is left where single factors
+            do not come closer, at most 1e-9; double factors leave less.
 
         Raises
         ------
@@ -90,25 +136,40 @@ class PardisoSolver:
         """
         factor = self._scaling.factor[:, None]
         scaled = factor * right
-        found = self._refined(scaled) if self.is_single else self._factors.solve(scaled)
-        return require_finite(factor * found)
+        while self.is_single:
+            found = self._refined(scaled, tolerance)
+            if found is not None:
+                return require_finite(factor * found)
+            self._take_next()
+            self._refactorise()
+        return require_finite(factor * self._factors.solve(scaled))
 
-    def _refined(self, right: FloatArray) -> FloatArray:
-        """Solution (n, k) by single factors, or by double ones where those do not suffice."""
+    def _refactorise(self) -> None:
+        """Factorise the matrix in the first way that can."""
+        while True:
+            try:
+                self._factors.factorise(self._matrix.data)
+                return
+            except SingularMatrixError:
+                if len(self._ways) == 1:
+                    raise
+            self._take_next()
+
+    def _refined(self, right: FloatArray, tolerance: float) -> FloatArray | None:
+        """Solution (n, k) by single factors; None where those do not suffice."""
         found = []
         for column in right.T:
-            x, _, left = flexible_gmres(self._times, self._approximate, column, TOLERANCE, MOST_ITERATIONS)
-            if not left <= TOLERANCE:
-                self._take_double()
-                self._factors.factorise(self._matrix.data)
-                return self._factors.solve(right)
+            x, _, left = flexible_gmres(self._times, self._approximate, column, tolerance, MOST_ITERATIONS)
+            if not left <= max(tolerance, TOLERANCE):
+                return None
             found.append(x)
         return np.stack(found, axis=1)
 
-    def _take_double(self) -> None:
-        """Double factors from now on; the memory of the single ones is given back first."""
+    def _take_next(self) -> None:
+        """Another way from now on; the memory of the factors before is given back first."""
         del self._factors
-        self._factors = Factors(self._matrix, np.float64)
+        del self._ways[0]
+        self._factors = Factors(self._matrix, self.way)
 
     def _times(self, x: FloatArray) -> FloatArray:
         """Product (n,) of the scaled matrix, whose diagonal is 1 or -1, with x (n,)."""
@@ -122,32 +183,31 @@ class PardisoSolver:
 
 
 class Factors:
-    """Pardiso's factors of one pattern in one precision.
+    """Pardiso's factors of one pattern in one way.
 
     Parameters
     ----------
     pattern
         Upper triangle, diagonal first in each row.
-    dtype
-        Double or single.
+    way
+        The way.
     """
 
-    def __init__(self, pattern: sp.csr_array, dtype: DTypeLike) -> None:
-        self.dtype = np.dtype(dtype)
+    def __init__(self, pattern: sp.csr_array, way: Way) -> None:
+        self._way, self.dtype = way, np.dtype(way.dtype)
         self._rows, self._columns = pattern.indptr + np.int32(1), pattern.indices + np.int32(1)
-        self._values: Values = np.ones(1, dtype=self.dtype)
-        self._solver = _new_solver()
-        self._solver.iparm[SINGLE_PRECISION] = int(self.dtype == np.float32)
+        self._values: Values = np.zeros(1, dtype=self.dtype)
+        self._solver = _new_solver(way)
         count = pattern.shape[0]
         self._threads = 1 if count < SMALL else int(self._solver.libmkl.MKL_Get_Max_Threads())
         self._nothing = np.zeros((count, 1), dtype=self.dtype)
-        self._values = np.ones(len(self._columns), dtype=self.dtype)
+        self._values = np.zeros(len(self._columns), dtype=self.dtype)
         self._call(ANALYSE, self._nothing)
         weakref.finalize(self, _release, self._solver)
 
     def factorise(self, data: FloatArray) -> None:
         """Factorise the entries (nnz,); SingularMatrixError if Pardiso finds no factors."""
-        self._values = np.ascontiguousarray(data, dtype=self.dtype)
+        np.copyto(self._values, data, casting="same_kind")
         self._call(FACTORISE, self._nothing)
 
     def solve(self, right: FloatArray) -> FloatArray:
@@ -172,7 +232,7 @@ class Factors:
         handle = solver.pt.ctypes.data_as(ctypes.POINTER(solver._pt_type[0]))
         one, silent = (ctypes.byref(ctypes.c_int32(value)) for value in (1, 0))
         kind, which, rows, sides = (
-            ctypes.byref(ctypes.c_int32(value)) for value in (REAL_SYMMETRIC_INDEFINITE, phase, count, columns)
+            ctypes.byref(ctypes.c_int32(value)) for value in (self._way.kind, phase, count, columns)
         )
         pattern = _integers(self._rows), _integers(self._columns), _integers(solver.perm)
         values, given, wanted = (array.ctypes.data_as(ctypes.c_void_p) for array in (self._values, right, found))
@@ -191,13 +251,14 @@ def _integers(array: NDArray[np.int32]) -> ctypes._Pointer[ctypes.c_int32]:
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_int32))
 
 
-def _new_solver() -> pypardiso.PyPardisoSolver:
+def _new_solver(way: Way) -> pypardiso.PyPardisoSolver:
     """A solver with a memory of its own on the library pypardiso has loaded; finding it again takes 0.2 s."""
     solver = copy.copy(pypardiso.ps)
     solver.pt = np.zeros_like(solver.pt)
     solver.iparm = np.zeros_like(solver.iparm)
-    solver.iparm[list(CONTROLS)] = list(CONTROLS.values())
-    solver.set_matrix_type(REAL_SYMMETRIC_INDEFINITE)
+    solver.iparm[list(way.controls)] = list(way.controls.values())
+    solver.iparm[SINGLE_PRECISION] = int(way.is_single)
+    solver.set_matrix_type(way.kind)
     return solver
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
-from fem.arrays import FloatArray, IntArray
+from fem.arrays import FloatArray, IndexArray
 from fem.linear_solver.symmetric import DiagonalScaling, SingularMatrixError, require_finite
 
 PIVOT_THRESHOLD = 0.01
@@ -24,7 +24,7 @@ class SuperLUSolver:
     name = "superlu"
     tolerance = 0.0
 
-    def __init__(self, indptr: IntArray, indices: IntArray) -> None:
+    def __init__(self, indptr: IndexArray, indices: IndexArray) -> None:
         count = len(indptr) - 1
         self._scaling = DiagonalScaling(indptr, indices)
         row = np.repeat(np.arange(count), np.diff(indptr))
@@ -57,8 +57,8 @@ class SuperLUSolver:
         except RuntimeError as error:
             raise SingularMatrixError(str(error)) from error
 
-    def solve(self, right: FloatArray) -> FloatArray:
-        """Solution (n, k) of right-hand sides (n, k).
+    def solve(self, right: FloatArray, tolerance: float = 0.0) -> FloatArray:  # noqa: ARG002 (it comes to round-off)
+        """Solution (n, k) of right-hand sides (n, k), whatever the tolerance.
 
         Raises
         ------

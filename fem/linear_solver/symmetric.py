@@ -7,8 +7,9 @@ from typing import Protocol, TypeAlias
 
 import numpy as np
 
-from fem.arrays import FloatArray, IntArray
+from fem.arrays import FloatArray, IndexArray
 
+ROWS_AT_ONCE = 4096  # so that what is made of their entries is small
 Operator: TypeAlias = Callable[[FloatArray], FloatArray]
 """A linear map of vectors (n,)."""
 
@@ -34,8 +35,8 @@ class SymmetricSolver(Protocol):
         """Factorise the upper triangle with entries (nnz,)."""
         ...
 
-    def solve(self, right: FloatArray) -> FloatArray:
-        """Solution (n, k) of right-hand sides (n, k)."""
+    def solve(self, right: FloatArray, tolerance: float = ...) -> FloatArray:
+        """Solution (n, k) of right-hand sides (n, k), with about `tolerance` of each left, or less."""
         ...
 
 
@@ -51,9 +52,8 @@ class DiagonalScaling:
         Pattern of the upper triangle, diagonal first in each row.
     """
 
-    def __init__(self, indptr: IntArray, indices: IntArray) -> None:
-        self._diagonal = indptr[:-1]
-        self._row = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
+    def __init__(self, indptr: IndexArray, indices: IndexArray) -> None:
+        self._indptr = indptr
         self._column = indices
         self.factor = np.ones(len(indptr) - 1)
 
@@ -67,9 +67,14 @@ class DiagonalScaling:
         """
         if not np.isfinite(data).all():
             raise SingularMatrixError("the stiffness matrix has entries that are not finite")
-        diagonal = np.abs(data[self._diagonal])
+        diagonal = np.abs(data[self._indptr[:-1]])
         self.factor = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
-        out: FloatArray = data * self.factor[self._row] * self.factor[self._column]
+        out = np.empty_like(data)
+        for start in range(0, len(self.factor), ROWS_AT_ONCE):
+            ends = self._indptr[start : start + ROWS_AT_ONCE + 1]
+            part = slice(ends[0], ends[-1])
+            of_row = np.repeat(self.factor[start : start + ROWS_AT_ONCE], np.diff(ends))
+            np.multiply(data[part], of_row * self.factor[self._column[part]], out=out[part])
         return out
 
 

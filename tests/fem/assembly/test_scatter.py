@@ -61,6 +61,35 @@ def test_matrix_sum_equals_dense_assembly(seed):
     )
 
 
+def test_unknowns_of_a_node_follow_each_other():
+    fixed = np.zeros((3, 4), dtype=bool)
+    fixed[1, 2] = True
+    numbering = number_unknowns(fixed, np.zeros(4, dtype=bool))
+    np.testing.assert_array_equal(numbering.unknown.T, [[0, 1, 2], [3, 4, 5], [6, -1, 7], [8, 9, 10]])
+
+
+def test_an_element_may_have_a_node_twice():
+    """The two entries of one node with itself, each other's mirrors, both land on the diagonal."""
+    numbering = number_unknowns(np.zeros((2, 3), dtype=bool), np.zeros(3, dtype=bool))
+    elements = np.array([[2], [0], [2], [1]])
+    scatter = build_scatter(elements, numbering)
+    stiffness = np.random.default_rng(8).normal(size=(8, 8))
+    stiffness += stiffness.T
+    expected = np.zeros((6, 6))
+    unknown = numbering.unknown[:, elements[:, 0]].ravel()
+    np.add.at(expected, (unknown[:, None], unknown), stiffness)
+    data = scatter.matrix(stiffness[packed_positions(4, 2)][:, None])
+    np.testing.assert_allclose(dense(scatter, data, 6), expected, atol=1e-12)
+
+
+def test_parts_of_the_elements_add_up_to_all_of_them(block):
+    mesh = block()
+    scatter = build_scatter(mesh.elements, number_unknowns(np.stack((mesh.axis, mesh.base)), mesh.top))
+    packed = np.random.default_rng(9).normal(size=(171, mesh.elements.shape[1]))
+    parts = [(slice(0, 3), packed[:, :3]), (slice(3, None), packed[:, 3:])]
+    np.testing.assert_allclose(scatter.matrix_of_parts(parts), scatter.matrix(packed), rtol=1e-12, atol=1e-12)
+
+
 def test_pattern_has_the_diagonal_first(block):
     mesh = block()
     numbering = number_unknowns(np.stack((mesh.base | mesh.axis, mesh.base)), mesh.top)

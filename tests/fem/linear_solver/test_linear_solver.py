@@ -83,6 +83,7 @@ def pardiso():
 
 @pytest.mark.parametrize("low", [2.5, -2.5], ids=["definite", "indefinite"])
 def test_single_factors_solve_as_double_ones(pardiso, low):
+    """By Cholesky where there are such factors, otherwise by LDL^T."""
     rng = np.random.default_rng(14)
     full, indptr, indices, data = tridiagonal(60, np.where(np.arange(60) % 3 == 0, low, 3.0))
     solver = pardiso.PardisoSolver(indptr, indices, single_from=0)
@@ -91,6 +92,16 @@ def test_single_factors_solve_as_double_ones(pardiso, low):
         solver.factorise(factor * data)
         np.testing.assert_allclose(solver.solve(right), np.linalg.solve(factor * full, right), rtol=1e-7)
     assert solver.is_single
+    assert solver.way.kind == (pardiso.POSITIVE_DEFINITE if low > 0.0 else pardiso.INDEFINITE)
+
+
+def test_a_solution_is_as_close_as_wanted(pardiso):
+    full, indptr, indices, data = tridiagonal(60, np.full(60, 2.001))
+    solver = pardiso.PardisoSolver(indptr, indices, single_from=0)
+    solver.factorise(data)
+    right = np.random.default_rng(16).normal(size=(60, 1))
+    loose, close = (np.linalg.norm(full @ solver.solve(right, tolerance) - right) for tolerance in (1e-3, 1e-12))
+    assert close < 1e-11 * np.linalg.norm(right) < 0.1 * loose
 
 
 def test_where_single_factors_do_not_suffice_double_ones_are_made(pardiso, monkeypatch):
