@@ -89,7 +89,8 @@ def effect_places(chosen: Fit, before: Fit, changes: Sequence[Array], settings: 
 
     The change is what the model with the effects gives more than without them, less what a base could follow that is
     wrong in modulus, tool radius, exponent and width alone. Its norm is that of its whitened mean over all conditions;
-    the residual without the effects must lie along it, trial by trial. The size told is the residual of `before`.
+    the residual without the effects must lie along it, trial by trial. Where it is small everywhere, the largest are
+    shown. The size told is the residual of `before`.
     """
     problem = chosen.model.problem
     bare = EffectModel(problem, ())
@@ -101,15 +102,15 @@ def effect_places(chosen: Fit, before: Fit, changes: Sequence[Array], settings: 
     for channel, signals in _channels(chosen).items():
         for phase in range(len(PHASES)):
             pick = [_picked(chosen, i, phase, signals) for i in range(len(changes))]
-            size = _size(chosen, moved, pick)
-            if size >= criteria.SHOWN:
-                along = [float(np.sum(m[p] * r[p])) for m, r, p in zip(moved, residual, pick, strict=True)]
-                found.append(_Shown(channel, phase, signals, size, np.array(along)))
-    if not found:
+            along = [float(np.sum(m[p] * r[p])) for m, r, p in zip(moved, residual, pick, strict=True)]
+            found.append(_Shown(channel, phase, signals, _size(chosen, moved, pick), np.array(along)))
+    least = min(criteria.SHOWN, criteria.SHOWN_OF_LARGEST * max(each.size for each in found))
+    shown = [each for each in found if each.size >= least and each.size > 0.0]
+    if not shown:
         return ()
     groups = np.array([trial.condition for trial in problem.trials])
-    p = one_sided(np.array([each.along for each in found]), groups, settings.flips, settings.seed)
-    clear = [(each, float(value)) for each, value in zip(found, p, strict=True) if value < settings.level]
+    p = one_sided(np.array([each.along for each in shown]), groups, settings.flips, settings.seed)
+    clear = [(each, float(value)) for each, value in zip(shown, p, strict=True) if value < settings.level]
     clear.sort(key=lambda pair: -pair[0].size)
     view = _View.of(before, changes)
     return tuple(_largest_change(view, changes, each, value) for each, value in clear)

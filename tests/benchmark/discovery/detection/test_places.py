@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from benchmark.discovery import criteria
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.criteria import Settings
@@ -60,3 +61,15 @@ def test_an_effect_of_no_size_shows_nowhere(session_of):
     chosen = fit_candidate(base, BY_SLUG["tool_inertia"])
     assert effect_places(chosen, base, effect_changes(chosen), Settings()) == ()
     assert np.isfinite(chosen.objective)
+
+
+def test_an_effect_that_is_small_everywhere_shows_where_it_is_largest(session_of, monkeypatch):
+    session = session_of(force=drifting, noise=0.003, trials=4)
+    base = calibrate(session, prepare(session, 90)).base
+    chosen = fit_candidate(base, BY_SLUG["force_drift"])
+    changes = effect_changes(chosen)
+    usual = effect_places(chosen, base, changes, Settings())
+    monkeypatch.setattr(criteria, "SHOWN", np.inf)
+    largest = effect_places(chosen, base, changes, Settings())
+    assert largest == usual[: len(largest)]
+    assert 1 <= len(largest) < len(usual)
