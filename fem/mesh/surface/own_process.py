@@ -137,18 +137,28 @@ def _last_line(done: subprocess.CompletedProcess[bytes]) -> str:
     return (done.stderr.decode("utf-8", "replace").strip().splitlines() or [""])[-1]
 
 
+def has_seed() -> bool:
+    """Whether the mesher's seed can be set here, so far as that can be told without doing it."""
+    return _seed_source() is not None
+
+
+def _seed_source() -> int | None:
+    """Where the code of the C++ library's random device is; None where it is another library or processor."""
+    if sys.platform != "linux" or platform.machine() != "x86_64":
+        return None
+    try:
+        return ctypes.cast(ctypes.CDLL("libstdc++.so.6")[SEED_SOURCE], ctypes.c_void_p).value
+    except (OSError, AttributeError):
+        return None
+
+
 def _set_seed() -> bool:
     """Let the C++ library's random device give one number in this process; whether it does.
 
     pytetwild has no argument for the seed. Possible with libstdc++ on x86-64, where the system lets a process change
     its own code.
     """
-    if sys.platform != "linux" or platform.machine() != "x86_64":
-        return False
-    try:
-        place = ctypes.cast(ctypes.CDLL("libstdc++.so.6")[SEED_SOURCE], ctypes.c_void_p).value
-    except (OSError, AttributeError):
-        return False
+    place = _seed_source()
     if place is None:
         return False
     protect = ctypes.CDLL(None).mprotect

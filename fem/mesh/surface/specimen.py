@@ -10,6 +10,7 @@ from fem.arrays import BoolArray, FloatArray, IntArray
 from fem.errors import FemError
 from fem.mesh.surface.checking import check_surface
 from fem.mesh.surface.filling import Refinement, kept_filling
+from fem.mesh.surface.own_process import has_seed
 from fem.mesh.surface.surface_file import Surface
 from fem.mesh.surface.surface_mesh import POOR, MeshQuality, SurfaceMesh, barycentric, measure_quality
 
@@ -18,6 +19,7 @@ FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))  # looking outwards
 BASE_HEIGHT = 0.15  # of the body: what of its underside rests on the base
 LOOKING_UP = 0.2  # least vertical part of the normal of a face that the tool touches
 WORST = 1e-3
+UNLIKE = "the mesher takes no seed on this system: each run has another mesh, and differs by what the mesh is worth"
 MOST_VOLUME_ERROR = 0.1
 LARGEST_BODY = 100.0  # in tool radii: a larger one is remarked upon
 PARTS = 16  # of each side of a face, where the tool's circle is integrated
@@ -62,6 +64,8 @@ def build_surface_mesh(
     remarks = (*surface.remarks, *_size_remark(surface, radius))
     if quality.least < POOR / 2:
         remarks = (*remarks, f"mesh quality: {quality}")
+    if not has_seed():
+        remarks = (*remarks, UNLIKE)
     return _pressed_mesh(*quadratic(points, tetrahedra), layer, place, radius, quality, remarks)
 
 

@@ -13,6 +13,7 @@ import pyvista
 import fem
 from fem.errors import FemError
 from fem.mesh.surface import filling as kept_filling
+from fem.mesh.surface import own_process
 from fem.mesh.surface.filling import Refinement, fill
 from fem.mesh.surface.own_process import tetrahedralize_apart
 from fem.mesh.surface.specimen import build_surface_mesh
@@ -151,6 +152,12 @@ def test_a_body_is_meshed_the_same_again(ball, monkeypatch):
         found.append(fill(ball, np.array([4e-3]), wanted))
     for first, second in zip(*found, strict=True):
         np.testing.assert_array_equal(first, second)
+
+
+def test_a_mesher_without_a_seed_is_told_of(ball, monkeypatch):
+    monkeypatch.setattr(own_process.platform, "machine", lambda: "riscv64")
+    mesh = build_surface_mesh(ball, (1.0,), (0.0, 0.0, 6e-3), 0.4)
+    assert mesh.remarks[-1].startswith("the mesher takes no seed on this system: each run has another mesh")
 
 
 def test_a_mesher_that_fails_says_why(ball):
