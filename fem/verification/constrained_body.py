@@ -230,15 +230,16 @@ class ConstrainedBody:
         (chosen, goal), load = self._reduced, share * self.force.ravel()
         y, pressure, jump = state.y, state.pressure, (share - state.share) * goal
         for _ in range(MOST_CORRECTIONS):
-            found = self.system.evaluate(y, pressure)
+            found = self.system.evaluate(self._numbered(y), pressure)
             if found is None:
                 break
             touches = self._touches(y, share, state.multipliers)
             tangent = sum((touch.stiffness for touch in touches), self._tangent(found))
-            left = chosen.T @ (load + sum(touch.force for touch in touches) - found.residual - tangent @ jump)
+            inner = found.residual[self._unknown]
+            left = chosen.T @ (load + sum(touch.force for touch in touches) - inner - tangent @ jump)
             change = np.atleast_1d(spla.spsolve(sp.csc_array(chosen.T @ tangent @ chosen), left))
             dy = chosen @ change + jump
-            pressure, y = self.system.pressure_after(found, dy), y + dy
+            pressure, y = self.system.pressure_after(found, self._numbered(dy)), y + dy
             if not jump.any() and np.abs(change).max(initial=0.0) <= TOLERANCE * max(float(np.abs(y).max()), TOLERANCE):
                 return _State(share, y, pressure, state.multipliers), self._touches(y, share, state.multipliers)
             jump = np.zeros_like(jump)
@@ -248,7 +249,18 @@ class ConstrainedBody:
         u = y.reshape(3, -1)
         return tuple(one.touch(u, share, m) for one, m in zip(self.contacts, multipliers, strict=True))
 
+    @cached_property
+    def _unknown(self) -> IntArray:
+        """Number (3 N,) in the equations of each displacement, component by component."""
+        return self.system.numbering.unknown.ravel()
+
+    def _numbered(self, y: FloatArray) -> FloatArray:
+        """Displacements (3 N,) as the equations number them."""
+        out = np.empty_like(y)
+        out[self._unknown] = y
+        return out
+
     def _tangent(self, state: Evaluation) -> sp.csr_array:
         scatter, count = self.system.scatter, self.system.numbering.count
         upper = sp.csr_array((self.system.tangent(state), scatter.indices, scatter.indptr), shape=(count, count))
-        return sp.csr_array(upper + sp.triu(upper, 1).T)
+        return sp.csr_array(upper + sp.triu(upper, 1).T)[self._unknown][:, self._unknown]
