@@ -43,10 +43,12 @@ def test_a_tool_over_whose_edge_the_tissue_slides_is_followed_at_finite_strain()
     assert FALLEN not in " ".join(found.warnings)
 
 
-def test_friction_is_followed_in_loading_and_the_way_back_is_said_to_be_left_out() -> None:
+@pytest.mark.parametrize("deepest", [2, pytest.param(4, marks=pytest.mark.slow)])
+def test_friction_is_followed_in_loading_and_the_way_back_is_said_to_be_left_out(deepest: int) -> None:
     settings = {"tool.contact": "rigid_frictional", FRICTION: "0.3", "tool.edge_radius": "1 mm"}
     scenario = load_scenario("skin-5N", settings)
-    drive = Drive("force", np.arange(1.0, 5.0), np.arange(1.0, 5.0))
+    newtons = np.arange(1.0, deepest + 1.0)
+    drive = Drive("force", newtons, newtons)
     found, truth = (prepare(model, scenario).run(drive) for model in ("wave", "fem"))
     np.testing.assert_allclose(found.top_deflection, truth.top_deflection, rtol=0.015)
     assert "the way back" in " ".join(found.warnings)
