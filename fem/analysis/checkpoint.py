@@ -20,7 +20,7 @@ from fem.load import Load
 from fem.mesh.solid import AnyMesh
 from fem.problem.problem import Problem
 
-FORMAT = "fem checkpoint 5"
+FORMAT = "fem checkpoint 6"
 
 
 @dataclass(frozen=True)
