@@ -251,8 +251,8 @@ ACCEPT_BIC = -4.0
 """BIC by which an effect is accepted beside its held-out gain. Development seeds."""
 RICHER_BIC = -6.0
 """BIC by which one more term of an effect is preferred ("strong" in Kass and Raftery 1995). Development seeds."""
-RICHER_SHARE, RICHER_Z = 0.5, 2.0
-"""One more term is tried of the best three that gain this share of the best and stand out by so many errors. Cost."""
+RICHER, RICHER_SHARE, RICHER_Z = 3, 0.3, 2.0
+"""One more term is tried of so many that may have one, gain this share of the best and stand out by so much. Cost."""
 BROAD = 8.0
 """Held-out log density gained in all but the best trial that is evidence enough without z. Development seeds.
 

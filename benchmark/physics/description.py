@@ -169,6 +169,8 @@ def logarithmic(
     *start: float,
     option: Option | None = None,
     formerly: str = "",
+    stated: tuple[float, float] | None = None,
 ) -> EffectParameter:
     """A positive parameter fitted by its logarithm; without a start it begins at the middle of its range."""
-    return EffectParameter(name, unit, start or ((low * high) ** 0.5,), low, high, True, meaning, option, formerly)
+    first = start or ((low * high) ** 0.5,)
+    return EffectParameter(name, unit, first, low, high, True, meaning, option, formerly, stated)

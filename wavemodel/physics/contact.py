@@ -90,11 +90,15 @@ class DryFriction:
 
 @dataclass(frozen=True)
 class PermanentSet:
-    """Below the deepest depth d_m so far the surface stands at s = fraction max(d_m - onset, 0).
+    """A surface that does not come back: the deepest depth d_m so far leaves s = fraction max(d_m - onset, 0).
 
-    What the tool meets is d_c = (d - s) d_m / (d_m - s): the first loading is the base law, unloading starts from its
-    peak and ends at s, and reloading follows it back (elastic unloading of an elastic-plastic body, with the recovery
-    of W. C. Oliver and G. M. Pharr 1992, J Mater Res 7:1564, scaled instead of shifted).
+    Without a delay s is there at once, and what the tool meets is d_c = (d - s) d_m / (d_m - s): the first loading is
+    the base law, unloading starts from its peak and ends at s, and reloading follows it back (elastic unloading of an
+    elastic-plastic body, with the recovery of W. C. Oliver and G. M. Pharr 1992, J Mater Res 7:1564, scaled instead of
+    shifted). With a delay the base law is that of a press too fast to leave a set, the surface sinks to s as
+    s' = (fraction max(d_m - onset, 0) - s) / delay while the tool stands below the untouched surface, and
+    d_c = d - s: creep that is not recovered (W. N. Findley, J. S. Lai and K. Onaran 1976, Creep and Relaxation of
+    Nonlinear Viscoelastic Materials, chapter 1), so that the force falls in a hold, too.
 
     Attributes
     ----------
@@ -102,18 +106,49 @@ class PermanentSet:
         0 to 0.95; zero: off.
     onset
         Depth that leaves no set, m, 0 to 10.
+    delay
+        With which the surface sinks, s, 0 to 1e6; zero: at once.
     """
 
     fraction: float
     onset: float = 0.0
+    delay: float = 0.0
 
     def __post_init__(self) -> None:
         require_between("permanent set", "fraction", self.fraction, "", 0.0, 0.95)
         require_between("permanent set", "onset", self.onset, "m", 0.0, 10.0)
+        require_between("permanent set", "delay", self.delay, "s", 0.0, 1e6)
 
-    def meet(self, depth: FloatArray, memory: Memory) -> tuple[FloatArray, FloatArray, Memory]:
-        """Depth below the surface (n,) that the tool (n,) meets, the surface (n,), m, and the memory."""
-        deepest = np.maximum.accumulate(np.maximum(depth, memory[0] if memory else 0.0))
+    def meet(self, duration: FloatArray, depth: FloatArray, memory: Memory) -> tuple[FloatArray, FloatArray, Memory]:
+        """Depth below the surface (n,) that the tool meets, the surface (n,), m, and the memory.
+
+        Parameters
+        ----------
+        duration
+            (n,) of the steps that end at the samples, s; the first is zero where the body has been so for ever.
+        depth
+            (n,) of the tool, m.
+        memory
+            Deepest depth and surface before the first sample, m; empty at rest.
+        """
+        before, stood = memory or (0.0, 0.0)
+        deepest = np.maximum.accumulate(np.maximum(depth, before))
         surface = self.fraction * np.maximum(deepest - self.onset, 0.0)
+        if self.delay > 0.0:
+            start = self.fraction * max(before - self.onset, 0.0)
+            surface = self._sunk(duration, depth, surface, (start, stood))
+            return depth - surface, surface, (float(deepest[-1]), float(surface[-1]))
         scale = np.divide(deepest, deepest - surface, out=np.ones_like(depth), where=deepest > 0.0)
-        return (depth - surface) * scale, surface, (float(deepest[-1]),)
+        return (depth - surface) * scale, surface, (float(deepest[-1]), float(surface[-1]))
+
+    def _sunk(self, duration: FloatArray, depth: FloatArray, end: FloatArray, start: tuple[float, float]) -> FloatArray:
+        """Surface (n,) that sinks to `end` (n,), which is taken as linear in a step, from its (end, surface) before."""
+        first_end, stood = start
+        way = np.where(depth > 0.0, duration / self.delay, 0.0)
+        if duration[0] == 0.0:
+            way[0], first_end = DECAYED, float(end[0])
+        moved = np.diff(end, prepend=first_end)
+        lag = np.divide(-np.expm1(-way), way, out=np.ones_like(way), where=way > 0.0)
+        kept = np.exp(-np.minimum(way, DECAYED))
+        gain = end - kept * (end - moved) - lag * moved
+        return np.asarray(decaying_sum(way, gain, stood))

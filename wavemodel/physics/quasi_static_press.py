@@ -170,7 +170,8 @@ class QuasiStaticPress:
         held
             Whether tool and tissue are one: no lift-off, and any pull.
         """
-        met, surface, set_memory = (self.physics.permanent_set or PermanentSet(0.0)).meet(depth, state.surface)
+        lasting = self.physics.permanent_set or PermanentSet(0.0)
+        met, surface, set_memory = lasting.meet(duration, depth, state.surface)
         start = self._touched(duration, met, state.touching, held)
         memories = iter(state.options)
         elastic, first = _chain(self.physics.elastic, start, memories)

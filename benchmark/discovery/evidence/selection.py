@@ -206,8 +206,8 @@ def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
     if not scored:
         return scored
     top = scored[0].gain.mean
-    near = [s for s in scored[:3] if s.gain.mean > criteria.RICHER_SHARE * top and s.gain.z >= criteria.RICHER_Z]
-    pairs = [(s, effect) for s in near if (effect := s.fit.model.effects[-1].richer) is not None]
+    near = [s for s in scored if s.gain.mean > criteria.RICHER_SHARE * top and s.gain.z >= criteria.RICHER_Z]
+    pairs = [(s, effect) for s in near if (effect := s.fit.model.effects[-1].richer) is not None][: criteria.RICHER]
     richer = work.fits("second terms", [(current, effect) for _, effect in pairs])
     plain = [s.fit.model.effects[-1] for s, _ in pairs]
     told = [fit for fit, effect in zip(richer, plain, strict=True) if terms_told(fit, effect)]

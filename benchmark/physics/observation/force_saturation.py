@@ -9,6 +9,8 @@ import numpy as np
 from benchmark.physics.description import EffectDescription, logarithmic
 from benchmark.physics.effect import Effect, Motion, Readings, TrialContext, Values
 
+SOFTEST = 0.12
+"""A wider bend is no end of a range: it would take the place of whatever lets the force grow ever less."""
 DESCRIPTION = EffectDescription(
     slug="force_saturation",
     acts_on="observation",
@@ -17,7 +19,9 @@ DESCRIPTION = EffectDescription(
     source="clipping of an amplifier; smooth minimum",
     parameters=(
         logarithmic("limit", "N", 1e-3, 1e3, "largest reading"),
-        logarithmic("softness", "", 1e-3, 0.3, "width of the bend as a share of the limit", 0.02),
+        logarithmic(
+            "softness", "", 1e-3, SOFTEST, "width of the bend as a share of the limit", 0.02, stated=(1e-3, 0.3)
+        ),
     ),
 )
 

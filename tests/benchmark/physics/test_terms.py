@@ -155,6 +155,18 @@ def test_set_leaves_the_surface_and_the_markers():
     assert made.markers[after, 0, 0] == pytest.approx(6e-3 + 0.1 * 0.1 * PEAK)
 
 
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_a_late_set_moves_the_markers_as_it_sinks(share):
+    values = {"permanent_set": 0.2, "permanent_set_onset": 0.0, "marker_share": share, "permanent_set_delay": 1.0}
+    made = readings(MOTION, permanent_set=values)
+    after = AIR & (MOTION.time > 12.0)
+    assert np.ptp(made.markers[after, 0, 0]) < 1e-12
+    assert made.markers[after, 0, 0].max() - 6e-3 == pytest.approx(0.1 * share * 0.2 * PEAK, rel=0.3)
+    sinks = np.diff(made.force[DEEP]) / STIFFNESS
+    np.testing.assert_allclose(np.diff(made.markers[DEEP, 0, 0]), 0.1 * (1.0 - share) * sinks, atol=1e-9)
+    assert sinks.min() < -1e-5
+
+
 def test_drainage_goes_faster_under_a_smaller_tool():
     values = {"poroelastic_drainage": {"drainage_share": 0.4, "drainage_diffusivity": 5e-6}}
     effect = BY_SLUG["poroelastic_drainage"]

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from wavemodel import WaveError
 from wavemodel.physics.contact import Adhesion, DryFriction, PermanentSet
@@ -122,7 +123,50 @@ def test_permanent_set_is_off_at_zero(press, path):
     np.testing.assert_array_equal(press(Physics(permanent_set=PermanentSet(0.0)), depth), 500.0 * depth)
 
 
-@pytest.mark.parametrize("wrong", [(1.0, 0.0), (-0.1, 0.0), (0.1, -1e-3)])
+DELAY = 2.0
+LATE = Physics(permanent_set=PermanentSet(0.2, 0.5e-3, DELAY))
+
+
+def sunk(time: np.ndarray, depth: np.ndarray) -> np.ndarray:
+    """The equation of a late set, step by step with an integrator that is not ours."""
+    surface, stood, deepest = [0.0], 0.0, depth[0]
+    for k in range(1, time.size):
+        before, deepest = deepest, max(deepest, depth[k])
+        step, first, last = time[k] - time[k - 1], *(0.2 * max(d - 0.5e-3, 0.0) for d in (before, deepest))
+
+        def rate(t, s, step=step, first=first, last=last):
+            return (first + (last - first) * t / step - s) / DELAY
+
+        if depth[k] > 0.0:
+            stood = solve_ivp(rate, (0.0, step), [stood], rtol=1e-10, atol=1e-16).y[0, -1]
+        surface.append(stood)
+    return np.array(surface)
+
+
+def test_a_late_set_follows_its_equation(path):
+    depth = path(-1e-3, 3e-3, -1e-3, 3e-3, 1e-3, points=61)
+    time = 0.1 * np.arange(1, depth.size + 1)
+    met = np.maximum(depth - sunk(time, depth), 0.0)
+    found = QuasiStaticPress(lambda d: 500.0 * d, LATE).force(time, depth)
+    np.testing.assert_allclose(found, 500.0 * met, atol=1e-10)
+
+
+def test_a_late_set_lets_the_force_of_a_hold_fall_and_does_not_come_back():
+    time, depth = np.array([0.0, 1e-6, 1.0, 4.0, 40.0, 41.0, 90.0, 90.001]), 1e-3 * np.array([0, 3, 3, 3, 3, -1, -1, 3])
+    trace = QuasiStaticPress(lambda d: 500.0 * d, LATE).trace(time, depth)
+    surface = 0.2 * 2.5e-3 * -np.expm1(-time[1:5] / DELAY)
+    np.testing.assert_allclose(trace.force[1:5], 500.0 * (3e-3 - surface), rtol=1e-6)
+    np.testing.assert_allclose(trace.surface[5:7], 0.5e-3, rtol=1e-6)
+    assert trace.force[-1] == pytest.approx(500.0 * 2.5e-3, rel=1e-6)
+
+
+def test_a_long_delay_leaves_no_set(press, path):
+    depth = path(0.0, 3e-3, 0.0, 3e-3)
+    found = press(Physics(permanent_set=PermanentSet(0.2, 0.0, 1e6)), depth)
+    np.testing.assert_allclose(found, 500.0 * depth, atol=1e-5)
+
+
+@pytest.mark.parametrize("wrong", [(1.0, 0.0), (-0.1, 0.0), (0.1, -1e-3), (0.1, 0.0, -1.0)])
 def test_permanent_set_refuses(wrong):
     with pytest.raises(WaveError, match="permanent set"):
         PermanentSet(*wrong)

@@ -215,10 +215,25 @@ def test_one_more_term_only_where_bic_prefers_it_clearly(monkeypatch, bic, kept)
 def test_no_further_term_is_tried_of_what_gains_little(monkeypatch):
     asked = []
     monkeypatch.setattr(selection, "score", lambda current, fits: asked.append(fits) or [])
-    low = scored("low", 4.9, richer=effect("low", 3))
+    low = scored("low", 2.9, richer=effect("low", 3))
     unsure = scored("unsure", 9.0, z=1.9, richer=effect("unsure", 3))
     selection._enriched(fitted(), [scored("best", 10.0), unsure, low], Work())
     assert asked == [[]]
+
+
+def test_a_further_term_is_tried_of_the_best_that_may_have_one(monkeypatch):
+    monkeypatch.setattr(selection, "score", lambda current, fits: [])
+    monkeypatch.setattr(selection, "terms_told", lambda fit, plain: True)
+    tried = []
+
+    def fits(stage, jobs):
+        tried.extend(added.slug for _, added in jobs)
+        return [fitted(added) for _, added in jobs]
+
+    without = [scored(f"plain_{k}", 10.0) for k in range(4)]
+    withs = [scored(f"may_{k}", 9.0 - k, richer=effect(f"may_{k}", 3)) for k in range(4)]
+    selection._enriched(fitted(), [*without, *withs], SimpleNamespace(fits=fits))
+    assert tried == ["may_0", "may_1", "may_2"]
 
 
 def test_a_rival_is_a_lookalike_within_two_errors_or_a_tenth_of_the_gain(known_densities):
