@@ -1,12 +1,14 @@
 """The command line called in this process, its output caught."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
 import pytest
 
 from benchmark.cli.app import main
+from benchmark.runs.options import RunOptions
 from benchmark.runs.output.pressed import Drawn
+from benchmark.side_by_side import ModelProcess
 
 
 @dataclass(frozen=True)
@@ -32,3 +34,23 @@ def benchmark_cli(capfd: pytest.CaptureFixture[str]) -> Callable[..., Called]:
 def no_drawing(monkeypatch: pytest.MonkeyPatch) -> None:
     """The pressed tissue's picture takes seconds and has tests of its own."""
     monkeypatch.setattr("benchmark.runs.output.pressed.draw_pressed", lambda *_: Drawn(b"", "left out of this test"))
+
+
+def timed_once(**options: object) -> RunOptions:
+    """Options of a run whose repeats are one, however many were asked for."""
+    return replace(RunOptions(**options), repeats=1)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def quick_runs(in_threads: None) -> Iterator[None]:
+    """A repeat is the same computation again: runs are timed once, without processes, but where all is `as_told`."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("benchmark.runs.RunOptions", timed_once)
+        yield
+
+
+@pytest.fixture
+def as_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs are timed as often as the command says, each model in a process of its own."""
+    monkeypatch.setattr("benchmark.runs.RunOptions", RunOptions)
+    monkeypatch.setattr("benchmark.side_by_side.runner.ModelProcess", ModelProcess)
