@@ -1,6 +1,7 @@
 """The command line called in this process, its output caught."""
 
-from collections.abc import Callable, Iterator
+import pickle
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import pytest
@@ -9,6 +10,8 @@ from benchmark.cli.app import main
 from benchmark.runs.options import RunOptions
 from benchmark.runs.output.pressed import Drawn
 from benchmark.side_by_side import ModelProcess
+from benchmark.sweeps.local import work_locally
+from benchmark.sweeps.point import PointResult, Task, evaluate
 
 
 @dataclass(frozen=True)
@@ -41,16 +44,24 @@ def timed_once(**options: object) -> RunOptions:
     return replace(RunOptions(**options), repeats=1)
 
 
+def work_here(tasks: Sequence[Task], workers: int) -> Iterator[PointResult]:
+    """Compute the points of a sweep one after the other in this process."""
+    for task in tasks:
+        yield pickle.loads(pickle.dumps(evaluate(pickle.loads(pickle.dumps(task)))))
+
+
 @pytest.fixture(scope="module", autouse=True)
 def quick_runs(in_threads: None) -> Iterator[None]:
-    """A repeat is the same computation again: runs are timed once, without processes, but where all is `as_told`."""
+    """Runs are timed once, as a repeat is the same again, and nothing starts processes, but where all is `as_told`."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("benchmark.runs.RunOptions", timed_once)
+        patch.setattr("benchmark.sweeps.sweep_run.work_locally", work_here)
         yield
 
 
 @pytest.fixture
 def as_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Runs are timed as often as the command says, each model in a process of its own."""
+    """Runs are timed as often as the command says, each model and the points of a sweep in processes of their own."""
     monkeypatch.setattr("benchmark.runs.RunOptions", RunOptions)
     monkeypatch.setattr("benchmark.side_by_side.runner.ModelProcess", ModelProcess)
+    monkeypatch.setattr("benchmark.sweeps.sweep_run.work_locally", work_locally)

@@ -19,6 +19,7 @@ def frame_of(out: Path) -> pd.DataFrame:
     return pd.read_parquet(out / "points.parquet")
 
 
+@pytest.mark.usefixtures("as_told")
 def test_a_grid_leaves_a_row_a_point_and_a_report(benchmark_cli, tmp_path: Path) -> None:
     out = tmp_path / "sweep"
     called = benchmark_cli("sweep", "skin-5N", *SMALL, *VARY, "--workers", "2", "--out", out, "--json", "--quiet")
