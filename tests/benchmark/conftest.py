@@ -3,7 +3,8 @@
 import multiprocessing
 import pickle
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 
 import pytest
 
@@ -29,8 +30,8 @@ class ModelThread(ModelProcess):
         self.connection.close()
 
 
-@pytest.fixture(scope="module")
-def in_threads() -> Iterator[None]:
+@contextmanager
+def models_in_threads() -> Iterator[None]:
     """`run_side_by_side` starts no processes; those have tests of their own in `side_by_side` and `cli`."""
     execute = worker._execute
 
@@ -41,4 +42,17 @@ def in_threads() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(worker, "_execute", by_turns)
         patch.setattr(runner, "ModelProcess", ModelThread)
+        yield
+
+
+@pytest.fixture(scope="session")
+def threads() -> Callable[[], AbstractContextManager[None]]:
+    """For a `with`, inside of which models run in threads."""
+    return models_in_threads
+
+
+@pytest.fixture(scope="module")
+def in_threads(threads: Callable[[], AbstractContextManager[None]]) -> Iterator[None]:
+    """Models run in threads in the whole module."""
+    with threads():
         yield

@@ -33,10 +33,12 @@ def benchmark_cli(capfd: pytest.CaptureFixture[str]) -> Callable[..., Called]:
     return call
 
 
-@pytest.fixture(autouse=True)
-def no_drawing(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture(scope="module", autouse=True)
+def no_drawing() -> Iterator[None]:
     """The pressed tissue's picture takes seconds and has tests of its own."""
-    monkeypatch.setattr("benchmark.runs.output.pressed.draw_pressed", lambda *_: Drawn(b"", "left out of this test"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("benchmark.runs.output.pressed.draw_pressed", lambda *_: Drawn(b"", "left out of this test"))
+        yield
 
 
 def timed_once(**options: object) -> RunOptions:
