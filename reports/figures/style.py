@@ -129,7 +129,8 @@ def draw(paint: Callable[[Drawing], None], width: float = WIDE, height: float = 
         matplotlib.rcParams["font.size"] = _TYPE_WIDE if width > SMALL else _TYPE_SMALL
         drawing = Drawing(figsize=(width / 72, height / 72), layout=None if placed else "constrained")
         paint(drawing)
-        FigureCanvasSVG(drawing).print_svg(stream, metadata={"Date": None})  # savefig would draw it twice
+        canvas: Any = FigureCanvasSVG(drawing)
+        canvas.print_svg(stream, metadata={"Date": None})  # savefig would draw it twice
     return themed(stream.getvalue())
 
 
