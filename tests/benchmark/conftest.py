@@ -4,7 +4,7 @@ import multiprocessing
 import pickle
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 
 import pytest
 
@@ -20,7 +20,7 @@ class ModelThread(ModelProcess):
         self.model = model
         self.connection, far_end = multiprocessing.Pipe()
         job = pickle.loads(pickle.dumps(worker.ModelJob(model, scenario, every_field, own, keep)))
-        self._thread = threading.Thread(target=worker.serve, args=(far_end, job, None), daemon=True)
+        self._thread = threading.Thread(target=serve, args=(far_end, job), daemon=True)
         self._thread.start()
 
     def __exit__(self, kind, error, trace):
@@ -28,6 +28,12 @@ class ModelThread(ModelProcess):
             self.connection.send(None)
             self._thread.join()
         self.connection.close()
+
+
+def serve(connection, job):
+    """Answer until the other end is closed, which after an error may be in the middle of a run."""
+    with suppress(ConnectionResetError):
+        worker.serve(connection, job, None)
 
 
 @contextmanager
