@@ -119,6 +119,7 @@ def draw(paint: Callable[[Drawing], None], width: float = WIDE, height: float = 
         If a colour outside `reports.palette` is used.
     """
     import matplotlib
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure as Drawing
 
     stream = io.StringIO()
@@ -128,7 +129,8 @@ def draw(paint: Callable[[Drawing], None], width: float = WIDE, height: float = 
         matplotlib.rcParams["font.size"] = _TYPE_WIDE if width > SMALL else _TYPE_SMALL
         drawing = Drawing(figsize=(width / 72, height / 72), layout=None if placed else "constrained")
         paint(drawing)
-        drawing.savefig(stream, format="svg", metadata={"Date": None})
+        canvas: Any = FigureCanvasSVG(drawing)
+        canvas.print_svg(stream, metadata={"Date": None})  # savefig would draw it twice
     return themed(stream.getvalue())
 
 

@@ -15,7 +15,7 @@ QUICK = {"fem.mesh": "coarse", "load.observations": "10", "wave.large_press": "l
 
 
 @pytest.fixture(scope="module")
-def record():
+def record(in_threads):
     return run_scenario(load_scenario("skin-5N", QUICK), RunOptions(repeats=1), Console(quiet=True))
 
 

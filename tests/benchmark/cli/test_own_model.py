@@ -13,6 +13,7 @@ EXAMPLE = Path(__file__).parents[3] / "examples" / "own_model.py"
 NAME = "layer-by-layer squeeze"
 
 
+@pytest.mark.usefixtures("as_told")
 def test_the_example_stands_in_the_waves_place(benchmark_cli, tmp_path: Path) -> None:
     out = tmp_path / "r"
     called = benchmark_cli("run", "skin-5N", *SMALL, "--wave", EXAMPLE, "--out", out, "--json")
@@ -88,6 +89,7 @@ def test_own_model_against_own_fea_needs_none_of_ours(benchmark_cli, tmp_path: P
     assert all(layer["percent_error_max"] < 1e-9 for layer in json.loads(called.out)["comparison"].values())
 
 
+@pytest.mark.usefixtures("as_told")
 @pytest.mark.parametrize(
     ("text", "words"),
     [

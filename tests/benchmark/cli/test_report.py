@@ -1,5 +1,6 @@
 """`benchmark report` on finished runs: the page made again, runs side by side."""
 
+import base64
 import json
 from pathlib import Path
 
@@ -7,14 +8,22 @@ import pandas as pd
 import pytest
 
 from benchmark.cli.app import main
+from benchmark.runs.output.pressed import Drawn
 
 SMALL = ("--set", "fem.mesh=coarse", "--set", "load.observations=6", "--set", "load.peak=1 N", "--quiet")
+
+
+DOT = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNgAAAAAgABSK+kcQAAAABJRU5ErkJggg==")
+"""A PNG of one pixel, in the place of the picture of the pressed tissue."""
 
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     folder = tmp_path_factory.mktemp("runs")
-    assert main(["run", "skin-5N", *SMALL, "--out", str(folder / "first")]) == 0
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("benchmark.runs.output.pressed.draw_pressed", lambda *_: Drawn(DOT))
+        assert main(["run", "skin-5N", *SMALL, "--out", str(folder / "first")]) == 0
+    assert (folder / "first" / "pictures" / "pressed.png").read_bytes() == DOT
     stiff = ("--set", "dermis.youngs_modulus=2 MPa", "--set", "support.kind=half_space")
     assert main(["run", "skin-5N", *SMALL, *stiff, "--out", str(folder / "second")]) == 0
     return folder / "first", folder / "second"

@@ -11,6 +11,7 @@ import pytest
 COARSE = ("--set", "fem.mesh=coarse", "--set", "load.observations=20")
 
 
+@pytest.mark.usefixtures("as_told")
 def test_a_run_leaves_every_file_of_the_contract(benchmark_cli, tmp_path: Path) -> None:
     out = tmp_path / "result"
     called = benchmark_cli("run", "skin-5N", *COARSE, "--out", out, "--json", "--quiet")

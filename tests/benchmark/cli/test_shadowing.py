@@ -23,19 +23,33 @@ def put(folder, *names):
         path.write_text(THEIRS)
 
 
-@pytest.mark.parametrize("name", [*PACKAGES, "fem.py", "numpy.py", "pydantic.py", "typing.py", "typer.py"])
-def test_the_command_line_answers_as_ever_and_says_it(tmp_path, name):
-    put(tmp_path, name)
+ONE = "has the name of a module and is"
+SEVERAL = "have names of modules and are"
+
+
+@pytest.mark.parametrize(
+    ("names", "said"),
+    [
+        (("fem",), f"fem/ in this folder {ONE}"),
+        (("typing.py",), f"typing.py in this folder {ONE}"),
+        (PACKAGES, f"bench_hw/, fem/, reports/, wavemodel/ in this folder {SEVERAL}"),
+        (
+            ("fem.py", "numpy.py", "pydantic.py", "typer.py"),
+            f"fem.py, numpy.py, pydantic.py, typer.py in this folder {SEVERAL}",
+        ),
+    ],
+)
+def test_the_command_line_answers_as_ever_and_says_it(tmp_path, names, said):
+    put(tmp_path, *names)
     done = call(tmp_path, "-m", "benchmark", "tissues", "skin_forearm")
     assert done.returncode == 0, done.stderr
     assert "skin_forearm" in done.stdout
-    said = name if "." in name else f"{name}/"
-    assert done.stderr == f"note: {said} in this folder has the name of a module and is not imported\n"
+    assert done.stderr == f"note: {said} not imported\n"
 
 
-@pytest.mark.parametrize("name", ["benchmark.py", "benchmark", "fem.py", "numpy.py", "typer.py"])
-def test_the_bench_and_the_commands_too(tmp_path, name):
-    put(tmp_path, name)
+@pytest.mark.parametrize("names", [("benchmark.py", "fem.py", "numpy.py", "typer.py"), ("benchmark",)])
+def test_the_bench_and_the_commands_too(tmp_path, names):
+    put(tmp_path, *names)
     done = call(tmp_path, "-m", "bench_hw", "devices", "--json", "--quiet")
     assert done.returncode == 0, done.stderr
     for module in ("benchmark", "bench_hw"):

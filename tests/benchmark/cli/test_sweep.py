@@ -19,6 +19,7 @@ def frame_of(out: Path) -> pd.DataFrame:
     return pd.read_parquet(out / "points.parquet")
 
 
+@pytest.mark.usefixtures("as_told")
 def test_a_grid_leaves_a_row_a_point_and_a_report(benchmark_cli, tmp_path: Path) -> None:
     out = tmp_path / "sweep"
     called = benchmark_cli("sweep", "skin-5N", *SMALL, *VARY, "--workers", "2", "--out", out, "--json", "--quiet")
@@ -89,7 +90,15 @@ def test_failed_points_are_kept_with_their_reason(benchmark_cli, tmp_path: Path)
 
 def test_without_a_single_result_it_exits_4(benchmark_cli, tmp_path: Path) -> None:
     soft = [word for name in ("epidermis", "dermis") for word in ("--set", f"{name}.youngs_modulus=5 kPa")]
-    vary = (*soft, "--set", "load.peak=50 N", "--vary", "subcutaneous_fat.youngs_modulus=4 kPa,5 kPa")
+    vary = (
+        *soft,
+        "--set",
+        "load.peak=50 N",
+        "--set",
+        "support.kind=half_space",
+        "--vary",
+        "subcutaneous_fat.youngs_modulus=4 kPa,5 kPa",
+    )
     called = benchmark_cli("sweep", "skin-5N", *SMALL[:4], *vary, "--out", tmp_path / "s")
     assert called.code == 4
     assert "no point of the sweep has results" in called.err

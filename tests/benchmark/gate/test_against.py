@@ -41,7 +41,9 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def test_a_change_of_the_users_model_is_found_without_a_baseline(repository, tmp_path: Path) -> None:
+def test_a_change_of_the_users_model_is_found_without_a_baseline_and_its_history_told_apart(
+    repository, tmp_path: Path
+) -> None:
     repository.change("my_model.py", "[1e-3", "[1.01e-3")
     verdict = run(repository, tmp_path).verdict
     failed = [row for row in verdict.accuracy if not row.passed]
@@ -49,6 +51,8 @@ def test_a_change_of_the_users_model_is_found_without_a_baseline(repository, tmp
     assert verdict.against == git(repository.folder, "rev-parse", "HEAD")
     assert "measured in the same minutes" in verdict.timing_source
     assert len(git(repository.folder, "worktree", "list").splitlines()) == 1
+    entry = json.loads((tmp_path / "tissuebench-baseline.history.jsonl").read_text())
+    assert entry["against"] == verdict.against
 
 
 def test_a_change_that_is_far_slower_is_found(repository, tmp_path: Path) -> None:
@@ -104,9 +108,3 @@ def test_a_revision_is_the_products_unless_the_gate_has_own_models(tiny_gate) ->
     assert subject(load_plan(gate.path)) == gate.folder
     gate.change("gate.toml", '\nown = "my_model.py"', "")
     assert subject(load_plan(gate.path)) == PRODUCT
-
-
-def test_its_history_is_told_apart(repository, tmp_path: Path) -> None:
-    run(repository, tmp_path)
-    entry = json.loads((tmp_path / "tissuebench-baseline.history.jsonl").read_text())
-    assert entry["against"] == git(repository.folder, "rev-parse", "HEAD")

@@ -1,5 +1,7 @@
 """Evidence as `reproduce` gathers it, from two trials without a film and from coarse meshes."""
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import replace
 
 import pytest
@@ -22,12 +24,13 @@ def chain() -> Chain:
 
 
 @pytest.fixture(scope="package")
-def evidence(chain: Chain) -> Evidence:
-    table_2, press = (
-        run_scenario(load_scenario(name, {"fem.mesh": "coarse", **more}), RunOptions(repeats=0), QUIET)
-        for name, more in (
-            ("paper", {"load.observations": "20"}),
-            ("skin-5N", {"load.observations": "8", "load.peak": "1 N"}),
+def evidence(chain: Chain, threads: Callable[[], AbstractContextManager[None]]) -> Evidence:
+    with threads():
+        table_2, press = (
+            run_scenario(load_scenario(name, {"fem.mesh": "coarse", **more}), RunOptions(repeats=0), QUIET)
+            for name, more in (
+                ("paper", {"load.observations": "20"}),
+                ("skin-5N", {"load.observations": "8", "load.peak": "1 N"}),
+            )
         )
-    )
     return Evidence(chain, table_2, press)

@@ -13,8 +13,9 @@ from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.small_strain import NOTE, beside_small_strain
 
 QUICK = {"fem.mesh": "coarse", "load.observations": "10"}
-OPTIONS = RunOptions(repeats=3)
+OPTIONS = RunOptions(repeats=0)
 QUIET = Console(quiet=True)
+pytestmark = pytest.mark.usefixtures("in_threads")
 
 
 def test_a_deep_press_says_how_far_small_strain_is_off():

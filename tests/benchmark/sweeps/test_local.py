@@ -19,7 +19,7 @@ class Deadly:
 
 @pytest.fixture
 def tasks(plan_of) -> list[Task]:
-    plan = plan_of("tool.radius=3 mm:6 mm:5")
+    plan = plan_of("tool.radius=3 mm:6 mm:5", fem_kinematics="linear")
     return [Task(number, scenario) for number, scenario in enumerate(plan.scenarios, 1)]
 
 

@@ -117,26 +117,33 @@ CHOICES = {
     "unsteady": ((), ("force_drift",)),
     "p_shared": (1.0, 0.004),
 }
-EVERY = [facts(shared=1000.0, **dict(zip(CHOICES, each, strict=True))) for each in itertools.product(*CHOICES.values())]
 
 
-def verdicts_where(condition):
-    return {verdict(each) for each in EVERY if condition(each)}
+@pytest.fixture(scope="module")
+def every():
+    """All combinations, each with its verdict."""
+    combinations = (dict(zip(CHOICES, each, strict=True)) for each in itertools.product(*CHOICES.values()))
+    made = (facts(shared=1000.0, **each) for each in combinations)
+    return [(each, verdict(each)) for each in made]
 
 
-def test_every_combination_of_facts_has_one_of_the_verdicts_and_a_sentence():
-    assert {verdict(each) for each in EVERY} == set(VERDICTS)
-    assert all(statement(verdict(each), each).endswith(".") for each in EVERY)
+def verdicts_where(every, condition):
+    return {word for each, word in every if condition(each)}
 
 
-def test_nothing_is_named_of_too_few_trials_or_of_chance():
-    assert verdicts_where(lambda each: not each.enough) == {"cannot_tell"}
-    chance = verdicts_where(lambda each: each.enough and each.p >= each.level and each.p_shared >= each.level)
+def test_every_combination_of_facts_has_one_of_the_verdicts_and_a_sentence(every):
+    assert {word for _, word in every} == set(VERDICTS)
+    assert all(statement(word, each).endswith(".") for each, word in every)
+
+
+def test_nothing_is_named_of_too_few_trials_or_of_chance(every):
+    assert verdicts_where(every, lambda each: not each.enough) == {"cannot_tell"}
+    chance = verdicts_where(every, lambda each: each.enough and each.p >= each.level and each.p_shared >= each.level)
     assert chance == {"no_discrepancy", "cannot_tell"}
 
 
-def test_what_misses_by_more_than_the_tolerance_is_never_called_agreement():
-    assert "no_discrepancy" not in verdicts_where(lambda each: not each.within)
+def test_what_misses_by_more_than_the_tolerance_is_never_called_agreement(every):
+    assert "no_discrepancy" not in verdicts_where(every, lambda each: not each.within)
     large = facts(effects=(), p=0.4, p_cells=0.4, within=False)
     assert verdict(large) == "cannot_tell"
     assert "more than the stated tolerance" in statement("cannot_tell", large)
@@ -169,9 +176,9 @@ def test_an_effect_of_unknown_strength_is_the_nearest_entry_only():
     assert "strength these data do not tell" in statement("outside_catalogue", unknown)
 
 
-def test_only_one_effect_that_holds_elsewhere_and_leaves_nothing_is_named():
-    for each in EVERY:
-        if verdict(each) == "named":
+def test_only_one_effect_that_holds_elsewhere_and_leaves_nothing_is_named(every):
+    for each, word in every:
+        if word == "named":
             assert each.enough
             assert each.p < each.level
             assert each.effects
@@ -184,13 +191,13 @@ def test_only_one_effect_that_holds_elsewhere_and_leaves_nothing_is_named():
             assert not each.strained
 
 
-def test_what_leaves_a_third_for_sure_is_never_an_answer():
-    left = verdicts_where(lambda each: each.effects and each.left > 0.3 and each.p_after < each.level)
+def test_what_leaves_a_third_for_sure_is_never_an_answer(every):
+    left = verdicts_where(every, lambda each: each.effects and each.left > 0.3 and each.p_after < each.level)
     assert left == {"outside_catalogue", "no_discrepancy", "cannot_tell"}
 
 
-def test_an_instrument_among_the_rivals_of_tissue_asks_for_a_calibration():
-    mixed = verdicts_where(lambda each: each.effects and DRIFT in each.lookalikes)
+def test_an_instrument_among_the_rivals_of_tissue_asks_for_a_calibration(every):
+    mixed = verdicts_where(every, lambda each: each.effects and DRIFT in each.lookalikes)
     assert mixed == {"instrument_first", "outside_catalogue", "no_discrepancy", "cannot_tell"}
     assert verdict(facts(effects=(DRIFT,), lookalikes=(BY_SLUG["tool_inertia"],))) == "lookalikes"
     assert verdict(facts(effects=(DRIFT,), lookalikes=(RELAXATION,))) == "instrument_first"

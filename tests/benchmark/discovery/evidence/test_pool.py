@@ -26,7 +26,7 @@ def damped(time, depth, elastic):
 def base(tmp_path_factory, quick_session):
     from benchmark.files import load_session
 
-    folder = quick_session.write_session(tmp_path_factory.mktemp("pool") / "s", trials=3, noise=0.003, force=damped)
+    folder = quick_session.write_session(tmp_path_factory.mktemp("pool") / "s", trials=2, noise=0.003, force=damped)
     session = load_session(folder)
     return calibrate(session, prepare(session, SETTINGS.rows)).base
 

@@ -16,9 +16,9 @@ QUICK = {"fem.mesh": "coarse", "load.observations": "20", "wave.large_press": "l
 
 
 @pytest.fixture(scope="module")
-def finished() -> RunRecord:
+def finished(in_threads: None) -> RunRecord:
     """A quick run."""
-    return run_scenario(load_scenario("skin-5N", QUICK), RunOptions(repeats=3), Console(quiet=True))
+    return run_scenario(load_scenario("skin-5N", QUICK), RunOptions(repeats=1), Console(quiet=True))
 
 
 def _with_wave(record: RunRecord, factor: np.ndarray) -> RunRecord:
