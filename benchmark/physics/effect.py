@@ -204,6 +204,8 @@ class Effect:
         In place of the starts of the description, where a start goes with the press.
     needs_markers : bool
         Whether it shows in the markers alone.
+    remembers : bool
+        Whether the way back may be another than the way in, though a fit may find them alike.
     seen_by : str
         The parameter by which it shows in markers too, where there are some: what they do not show is another effect.
     richer : Effect or None
@@ -226,6 +228,7 @@ class Effect:
     observe: Callable[[Values, Readings, Motion, TrialContext], Readings] | None = None
     starts: Callable[[TrialContext], tuple[dict[str, float], ...]] | None = None
     needs_markers: bool = False
+    remembers: bool = False
     seen_by: str = ""
     richer: Effect | None = None
     origin: str | None = None

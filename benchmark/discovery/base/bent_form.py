@@ -27,8 +27,14 @@ SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Of a condition's deepest press, or of its time, between which a form is off that goes by depth or time alone.
 
 At touch the former is not off at all."""
-FINE, ALONE = 25, 0.05
-"""Places of depth or time, linear between which an effect adds all but this share of its most that goes by it alone."""
+FINE, ALONE = 25, 0.1
+"""Places of time, linear between which an effect adds all but this share (of the norm) that goes by it alone."""
+NEIGHBOURS = 4
+"""Rows next to each other in depth, between which it is linear where an effect goes by that alone.
+
+Fewer than the passes of a press, so that a way in and a way back are told apart; at even places a gap's step at touch
+would be off.
+"""
 LEAST_MOVED = 1e-9
 """Standard deviations of noise: a sensor in which an effect adds less does not see it."""
 
@@ -131,18 +137,19 @@ def _knots_of(fitted: Fit, effect: Effect) -> Callable[[ConditionData], Array]:
     trials = [
         (t.motion, a / s) for t, a, s in zip(model.problem.trials, by_itself, model.problem.noise.scale, strict=True)
     ]
-    if all(_goes_by(motion.depth, added) for motion, added in trials):
+    by_depth = (_goes_by(m.depth, np.sort(m.depth)[::NEIGHBOURS], added) for m, added in trials)
+    if not effect.remembers and all(by_depth):
         return _between_depths
     sensor = effect.description.acts_on == "observation"
-    even = sensor and all(_goes_by(motion.time, added) for motion, added in trials)
+    even = sensor and all(_goes_by(m.time, np.linspace(m.time[0], m.time[-1], FINE), added) for m, added in trials)
     return _between_times if even else _between_turns
 
 
-def _goes_by(what: Array, added: Array) -> bool:
+def _goes_by(what: Array, knots: Array, added: Array) -> bool:
     """Whether values (n, C) in units of their noise are functions of a number a row (n,), but for a small share."""
-    weights = _hats(what, np.linspace(what.min(), what.max(), FINE)).T
+    weights = _hats(what, np.unique(knots)).T
     left = added - weights @ np.linalg.lstsq(weights, added, rcond=None)[0]
-    return bool(np.abs(left).max() <= ALONE * np.abs(added).max())
+    return bool(np.linalg.norm(left) <= ALONE * np.linalg.norm(added))
 
 
 def _between_depths(condition: ConditionData) -> Array:

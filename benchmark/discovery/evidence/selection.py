@@ -22,6 +22,7 @@ from benchmark.discovery.evidence.gains import (
     conditions,
     gain,
     held_out,
+    refitted_conditions,
     score,
 )
 from benchmark.discovery.evidence.parameter_evidence import (
@@ -198,7 +199,11 @@ def carries_over(scored: Scored) -> bool:
     parts = np.array([max(float(scored.gain.each[groups == number].sum()), 0.0) for number in np.unique(groups)])
     if parts.max() > criteria.ONE_ALONE * parts.sum() and steady(scored.fit, scored.slug):
         return True
-    return scored.transfer.mean >= criteria.CARRIED * scored.gain.mean
+    asked = criteria.CARRIED * scored.gain.mean
+    if scored.transfer.mean >= asked:
+        return True
+    groups = conditions(scored.fit)
+    return gain(refitted_conditions(scored.fit), refitted_conditions(scored.under), groups).mean >= asked
 
 
 def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:

@@ -136,6 +136,7 @@ EFFECT = Effect(
     "marker_share",
     body=_body,
     lower_face=_lower_face,
+    remembers=True,
     seen_by="marker_share",
     starts=_starts,
     amplitudes=("slip_share",),

@@ -64,7 +64,8 @@ def test_a_pull_in_the_air_that_the_form_of_a_relaxation_misses_is_no_drift(sess
 
 
 @pytest.mark.parametrize(
-    ("slug", "places"), [("strain_stiffening", 4), ("bottoming_out", 4), ("machine_compliance", 4), ("force_drift", 5)]
+    ("slug", "places"),
+    [("strain_stiffening", 4), ("bottoming_out", 4), ("machine_compliance", 4), ("contact_gap", 4), ("force_drift", 5)],
 )
 def test_a_form_that_goes_by_depth_or_time_alone_is_off_by_these(session_of, slug, places):
     session = session_of(force=relaxing_and_drifting, noise=0.003, trials=4, speeds=(6e-3,))

@@ -8,7 +8,14 @@ import pytest
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.detection.disagreement import combined, strained
-from benchmark.discovery.evidence.gains import broad, gain, strain, tissue_gain
+from benchmark.discovery.evidence.gains import (
+    broad,
+    gain,
+    held_out_conditions,
+    refitted_conditions,
+    strain,
+    tissue_gain,
+)
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
 
@@ -45,6 +52,15 @@ def test_only_effects_of_the_tissue_have_forms_that_miss_something():
     own = {"pretension": gains(3, 4), "perspective": gains(500, 500), "dry_friction": gains(20, 10)}
     fitted = SimpleNamespace(model=SimpleNamespace(effects=effects))
     assert tissue_gain(fitted, own) == 37.0
+
+
+def test_refitting_a_straight_effect_says_what_the_first_order_says(session_of):
+    session = session_of(force=lambda time, depth, elastic: elastic + 5e-4 * time, noise=0.003)
+    base = calibrate(session, prepare(session, 90)).base
+    drift = fit_candidate(base, BY_SLUG["force_drift"])
+    first_order = held_out_conditions(drift) - held_out_conditions(base)
+    refitted = refitted_conditions(drift) - refitted_conditions(base)
+    assert refitted.sum() == pytest.approx(first_order.sum(), rel=0.1)
 
 
 @pytest.mark.slow

@@ -124,20 +124,25 @@ def test_a_further_effect_must_be_more_than_what_the_form_of_the_first_misses(
 
 
 @pytest.mark.parametrize(
-    ("each", "kept", "agrees", "expected"),
+    ("each", "kept", "refitted", "agrees", "expected"),
     [
-        ([9.0] * 8, 2.7, False, True),
-        ([9.0] * 8, 2.6, True, False),  # the other condition gains nothing: what the first effect's form misses
-        ([18.0] * 4 + [1.9] * 4, 0.0, True, True),  # one condition has over nine tenths: the other cannot tell
-        ([18.0] * 4 + [1.9] * 4, 0.0, False, False),  # but it does
-        ([18.0] * 4 + [2.1] * 4, 0.0, True, False),
+        ([9.0] * 8, 2.7, 0.0, False, True),
+        ([9.0] * 8, 2.6, 2.6, True, False),  # the other condition gains nothing: what the first effect's form misses
+        ([9.0] * 8, -50.0, 2.7, True, True),  # so it seemed, to first order
+        ([18.0] * 4 + [1.9] * 4, 0.0, 0.0, True, True),  # one condition has over nine tenths: the other cannot tell
+        ([18.0] * 4 + [1.9] * 4, 0.0, 0.0, False, False),  # but it does
+        ([18.0] * 4 + [2.1] * 4, 0.0, 0.0, True, False),
     ],
 )
-def test_a_further_effect_must_carry_over_to_a_condition_that_is_not_fitted(each, kept, agrees, expected, monkeypatch):
+def test_a_further_effect_must_carry_over_to_a_condition_that_is_not_fitted(
+    each, kept, refitted, agrees, expected, monkeypatch
+):
     made = scored("b", float(np.mean(each)), each=each)
     made.fit.model.problem.trials = tuple(SimpleNamespace(condition=number) for number in (0,) * 4 + (1,) * 4)
     moved = replace(made, transfer=Gain(np.full(8, kept), kept, 1.0, 9.0))
     monkeypatch.setattr(selection, "steady", lambda fit, slug: agrees)
+    densities = {id(moved.fit): np.full(8, refitted), id(moved.under): np.zeros(8)}
+    monkeypatch.setattr(selection, "refitted_conditions", lambda fit: densities[id(fit)])
     assert selection.carries_over(moved) is expected
 
 
@@ -153,6 +158,7 @@ def test_a_further_effect_that_does_not_carry_over_is_withheld(monkeypatch, know
     ranked = [Screened(each, 9.0, np.zeros((1, 8))) for each in (a, b)]
     monkeypatch.setattr(selection, "beats_bent", lambda scored, settings, instead: True)
     monkeypatch.setattr(selection, "bent", lambda fit, forms: fit)
+    monkeypatch.setattr(selection, "refitted_conditions", lambda fit: np.full(8, kept if fit is both else 0.0))
     monkeypatch.setattr(
         selection, "screen", lambda fit, rest: tuple(r for r in ranked if r.effect in rest) if rest else ()
     )
