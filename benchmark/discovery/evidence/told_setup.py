@@ -70,11 +70,17 @@ def setup_first(told: Selection) -> bool:
 
 
 def taken_up(told: Selection, moving: Selection) -> tuple[str, ...]:
-    """A remark where effects that the set-up as told would need are gone on one that moves: neither is shown."""
-    effects = [effect.slug for effect in told.chosen.model.effects if setup_key(effect.slug) is None]
-    if not effects or moving.chosen.model.effects:
+    """A remark where effects that the set-up as told would need are gone on one that moves: neither is shown.
+
+    Where another effect came in, that may have taken their place.
+    """
+    needed = [effect.slug for effect in told.chosen.model.effects if setup_key(effect.slug) is None]
+    found = [effect.slug for effect in moving.chosen.model.effects]
+    gone = [slug for slug in needed if slug not in found]
+    if not gone or not set(found) <= set(needed):
         return ()
-    base, names = moving.base, " and ".join(slug.replace("_", " ") for slug in effects)
+    base, names = moving.base, " and ".join(slug.replace("_", " ") for slug in gone)
+    beside = f" beside {' and '.join(slug.replace('_', ' ') for slug in found)}" if found else ""
     problem = base.model.problem
     moved = [
         name
@@ -82,7 +88,7 @@ def taken_up(told: Selection, moving: Selection) -> tuple[str, ...]:
         if name in problem.setup and abs(value) > SHOWN_MOVE * size
     ]
     return (
-        f"a set-up exactly as told would need {names}; one that is off by what people are usually wrong by "
+        f"a set-up exactly as told would need {names}{beside}; one that is off by what people are usually wrong by "
         f"({', '.join(moved) or 'everything a little'}) explains the trials as well, and these data do not tell which: "
         'state how well the set-up is known, as in "4 mm +/- 1 %", or calibrate',
     )

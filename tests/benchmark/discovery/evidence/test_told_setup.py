@@ -101,3 +101,6 @@ def test_what_a_set_up_that_moves_takes_up_is_told_of():
         taken_up(SimpleNamespace(chosen=SimpleNamespace(model=SimpleNamespace(effects=(entry,)))), chosen(base)) == ()
     )
     assert taken_up(chosen(base, "adhesion"), chosen(base, "adhesion")) == ()
+    (remark,) = taken_up(chosen(base, "adhesion", "machine_compliance"), chosen(base, "adhesion"))
+    assert "would need machine compliance beside adhesion;" in remark
+    assert taken_up(chosen(base, "adhesion", "machine_compliance"), chosen(base, "perspective")) == ()
