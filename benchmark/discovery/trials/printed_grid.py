@@ -19,6 +19,8 @@ FAR = 4.5
 ROUNDS = 5
 DISTORTED = 1e-6
 """Of a grid's size: markers on one ring differ by less, and show no distortion beside their scale."""
+CENTRED = 0.02
+"""Of the error of a grid's centre: a frame whose origin lies nearer was laid through the markers' middle."""
 PLANE_FREEDOM = 6
 """Degrees of freedom that a plane not quite parallel to the camera's must leave to be fitted."""
 
@@ -32,7 +34,8 @@ class PrintedGrid:
     places : (m, 2)
         Resting places round the tool axis, m: what was measured, less its translation and its scale.
     origin : (2,)
-        Where the camera sees the grid's centre, m.
+        Where the camera sees the nominal tool axis, m: zero where its frame's origin is that, else at the middle of the
+        markers.
     scatter : float
         Standard deviation of the print along x and along y, m; 0 where tracking hides it.
     scale, scale_error : float
@@ -41,7 +44,8 @@ class PrintedGrid:
     lens, lens_error : float
         Radial distortion at rest, relative at the outermost marker, and its standard error from print and tracking.
     centre_error : float
-        Standard error of the grid's centre from the print along x and along y, m; 0 where the nominal grid is trusted.
+        Standard error of that place along x and along y, m: from the print where it is the markers' middle; 0 where the
+        nominal grid is trusted.
     """
 
     places: Array
@@ -109,8 +113,23 @@ def printed_grid(camera: Camera, nominal: Array, rests: Array) -> PrintedGrid:
     centred = nominal[usual] - nominal[usual].mean(axis=0)
     error = float(np.hypot(scatter / np.sqrt(np.sum(centred**2)), stated))
     lens, lens_error = _distortion(nominal, mean, usual, tracking + scatter**2)
-    middle = scatter / np.sqrt(usual.sum())
-    return PrintedGrid((mean - origin) / scale, origin, scatter, scale, error, lens, lens_error, float(middle))
+    origin, centre_error = _tool_axis(rests, origin, scatter / float(np.sqrt(usual.sum())))
+    return PrintedGrid((mean - origin) / scale, origin, scatter, scale, error, lens, lens_error, centre_error)
+
+
+def _tool_axis(rests: Array, middle: Array, error: float) -> tuple[Array, float]:
+    """Where the camera sees the nominal tool axis (2,), m, and its standard error, m, from the markers' middle.
+
+    A session's frame has its origin there. It is taken at its word where the middle is no farther from it than the
+    print lets it be, as far as the camera stands still from trial to trial. A frame that lies elsewhere, or whose
+    origin is the middle of the markers itself, tells the axis by that middle alone.
+    """
+    stands = rests.mean(axis=1)
+    moved = float(np.sqrt(np.mean(np.var(stands, axis=0)) / len(stands)))
+    away = np.abs(middle)
+    if moved < error and (away <= FAR * error).all() and (away > CENTRED * error).any():
+        return np.zeros(2), moved
+    return middle, error
 
 
 def _distortion(nominal: Array, mean: Array, usual: NDArray[np.bool_], variance: float) -> tuple[float, float]:

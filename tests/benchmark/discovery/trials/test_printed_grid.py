@@ -45,6 +45,32 @@ def test_scatter_scale_and_places_are_found():
     assert "markers scatter by 0.0" in found[0].remark
 
 
+def test_a_frame_is_taken_at_its_word_where_the_print_allows_it():
+    rng = np.random.default_rng(8)
+    found = [printed_grid(CAMERA, NOMINAL, rests(rng)) for _ in range(200)]
+    at_word = [each for each in found if (each.origin == 0.0).all()]
+    assert len(at_word) > 195
+    for each in at_word:
+        assert each.centre_error < 1e-6
+    middle = np.array([each.places.mean(axis=0) for each in at_word])
+    assert np.std(middle) == pytest.approx(SCATTER / np.sqrt(18), rel=0.1)
+
+
+@pytest.mark.parametrize(("move", "camera_moves"), [(0.1e-3, 0.0), (0.0, 0.1e-3)])
+def test_a_frame_that_lies_elsewhere_or_moves_tells_the_axis_by_the_markers_alone(move, camera_moves):
+    rng = np.random.default_rng(9)
+    places = rests(rng, move=(move, 0.0)) + rng.normal(0.0, camera_moves, (10, 1, 2))
+    found = printed_grid(CAMERA, NOMINAL, places)
+    assert found.origin == pytest.approx(places.mean(axis=(0, 1)), abs=1e-6)
+    assert found.centre_error == pytest.approx(SCATTER / np.sqrt(18), rel=0.2)
+
+
+def test_a_frame_laid_through_the_markers_middle_tells_the_axis_no_better():
+    places = rests(np.random.default_rng(10))
+    found = printed_grid(CAMERA, NOMINAL, places - places.mean(axis=(0, 1)))
+    assert found.centre_error == pytest.approx(SCATTER / np.sqrt(18), rel=0.2)
+
+
 def test_a_grid_within_tracking_is_trusted():
     rng = np.random.default_rng(2)
     exact = [printed_grid(CAMERA, NOMINAL, rests(rng, scatter=0.0, scale=1.02)).exact for _ in range(200)]
@@ -168,7 +194,7 @@ def test_the_base_begins_with_the_lens_that_the_resting_grid_shows(sheet, tmp_pa
         )
         assert np.count_nonzero(mean) == 1
         off = study.layout.centre_error * np.sqrt(np.sum(study.layout.rest**2, axis=1).max())
-        assert off == pytest.approx(0.06e-3 / np.sqrt(18), rel=0.4)
+        assert 0.0 < off < 0.05 * 0.06e-3 / np.sqrt(18)  # the frame's origin is the tool axis
         assert problem.shape_priors["centre_x"] == problem.shape_priors["centre_y"] == study.layout.centre_error
 
 
