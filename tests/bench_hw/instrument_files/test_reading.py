@@ -253,3 +253,28 @@ def test_numbered_curves_are_trials_of_their_folder(tmp_path):
 def test_the_one_trial_of_a_report_has_no_number(tmp_path):
     (record,) = read_instrument_file(samples.bluehill_report(tmp_path)).records
     assert record.name == ""
+
+
+def ramp(path, lead, law=1.0):
+    """A press of 2 mm at 1 mm/s with 1 N at its end, from `lead` mm above the surface, and 0.3 mN of noise."""
+    depth = np.linspace(-lead, 2.0, 400)
+    force = np.clip(depth / 2.0, 0.0, None) ** law + 3e-4 * np.random.default_rng(5).normal(size=400)
+    rows = (f"{0.01 * n:.3f};{d:.6f};{f:.6f}" for n, (d, f) in enumerate(zip(depth, force, strict=True)))
+    path.write_text("\n".join(["time [s];depth [mm];force [N]", *rows]))
+    (record,) = read_instrument_file(path).records
+    return record
+
+
+def test_a_record_that_begins_in_contact_has_no_air(tmp_path):
+    """Its rise was taken for noise in air: 0.2 mm of its depth and a fiftieth of its force were taken off."""
+    record = ramp(tmp_path / "a.csv", lead=0.0)
+    assert record.notes == ()
+    assert record.table.depth.max() == pytest.approx(2e-3, abs=1e-9)
+    assert record.table.force.max() == pytest.approx(1.0, abs=2e-3)
+
+
+@pytest.mark.parametrize(("lead", "law"), [(0.05, 1.0), (0.2, 1.0), (1.0, 1.0), (0.2, 1.5), (1.0, 1.5)])
+def test_the_touch_is_found_after_little_air_as_well(tmp_path, lead, law):
+    record = ramp(tmp_path / "a.csv", lead=lead, law=law)
+    assert record.table.depth.max() == pytest.approx(2e-3, abs=0.04e-3)
+    assert record.table.force.max() == pytest.approx(1.0, abs=4e-3)
