@@ -110,7 +110,10 @@ def read_recordings(file: SessionFile, paths: Sequence[Path], *, listed: bool) -
             read = read_instrument_file(path, told)
         except NoNumbersError as error:
             if listed or path.suffix.lower() not in NOTES:
-                raise InputError(f"{error}.") from None
+                apart = (
+                    "" if listed else " Where it is no trial, keep it elsewhere, or list the trials in session.toml."
+                )
+                raise InputError(f"{error}.{apart}") from None
             aside.append(f"{path.name} holds no rows of numbers and is left aside")
             continue
         except BenchError as error:

@@ -333,6 +333,14 @@ def test_notes_beside_trials_are_left_aside_and_said(tmp_path):
     assert session.specimen.layers[0].thickness == pytest.approx(12e-3, rel=0.01)
 
 
+def test_a_stray_table_says_what_may_be_done_with_it(tmp_path, write_trial):
+    write_trial(tmp_path / "day" / "one.csv")
+    (tmp_path / "day" / "summary.csv").write_text("trial,peak\none,1.5\n")
+    said = refusal(tmp_path / "day")
+    assert "summary.csv" in said
+    assert "Where it is no trial, keep it elsewhere, or list the trials in session.toml." in said
+
+
 def test_columns_are_named_by_options_of_the_session(tmp_path, write_trial):
     lines = (f"{n / 50:.2f},{n / 500:.4f},{-max(n - 20, 0) / 300:.5f}" for n in range(100))
     (tmp_path / "odd.csv").write_text("\n".join(["a,b,c", *lines]))
