@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bench_hw.instrument_files import Told, preview, read_instrument_file
+from bench_hw.instrument_files.told import asking_key
 from bench_hw.instrument_files.vocabulary import label_and_unit, role_of
 from tests.instruments import samples
 from tests.instruments.samples import SAMPLES, press
@@ -278,3 +279,17 @@ def test_the_touch_is_found_after_little_air_as_well(tmp_path, lead, law):
     record = ramp(tmp_path / "a.csv", lead=lead, law=law)
     assert record.table.depth.max() == pytest.approx(2e-3, abs=0.04e-3)
     assert record.table.force.max() == pytest.approx(1.0, abs=4e-3)
+
+
+@pytest.mark.parametrize(
+    ("key", "example", "asked"),
+    [
+        ("rate", "100 Hz", "--set import.rate=\"100 Hz\" (bench_hw import: --rate '100 Hz')"),
+        ("drop_empty", "true", '--set import.drop_empty="true" (bench_hw import: --drop-empty)'),
+        ("delimiter", "tab", '--set import.delimiter="tab" (bench_hw import: --delimiter tab)'),
+        ("height", "10 mm", '--set import.height="10 mm"'),
+    ],
+)
+def test_what_is_asked_for_can_be_typed_as_it_stands(key, example, asked):
+    """It named options that `bench_hw import` has not, and values with blanks that a shell takes apart."""
+    assert asking_key(key, example) == asked
