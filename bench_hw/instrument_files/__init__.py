@@ -11,6 +11,7 @@ from bench_hw.instrument_files.reading import (
     InstrumentFile,
     Reading,
     is_plain_trial,
+    is_told_of,
     preview,
     read_instrument_file,
 )
@@ -26,6 +27,7 @@ __all__ = [
     "Told",
     "ending_of",
     "is_plain_trial",
+    "is_told_of",
     "preview",
     "read_instrument_file",
 ]

@@ -33,6 +33,12 @@ IN_AIR: Final = 0.02
 """Of the travel that must be in air before the touch for the touch to be looked for."""
 TOUCH_FORCE: Final = 5e-4
 """Of the peak, which the force must exceed to be a touch, besides four times its noise."""
+STEEP: Final = 0.4
+"""Of the mean slope up to a tenth of the peak, above which a force rises already, as powers of the depth up to 2 do."""
+MEDIANS: Final = 3.2
+"""Of the noise's median second difference over the root of the rows: three standard deviations between two medians."""
+FEWEST: Final = 6
+"""Rows that tell whether a force rises."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -268,11 +274,30 @@ def first_touch(table: TrialTable) -> tuple[int, float]:
     rise = float(force.max()) - level
     above = np.flatnonzero(force - level > 0.1 * rise)
     until = int(above[0]) if len(above) else len(force)
-    start = force[: max(5, until // 2)]
+    start = _in_air(force[: max(until, 1)])
+    if start is None:
+        return 0, float(force[0])
     level = float(np.median(start))
     noise = 1.4826 * float(np.median(np.abs(start - level)))
     quiet = np.flatnonzero(force[: max(until, 1)] - level <= max(4.0 * noise, TOUCH_FORCE * rise))
     return (int(quiet[-1]) if len(quiet) else 0), level
+
+
+def _in_air(force: FloatArray) -> FloatArray | None:
+    """The rows at the beginning of a first rise in which the force does not rise yet; None where it does at once.
+
+    It rises where its second half is above its first by more than noise, nearly as steeply as in the whole rise.
+    """
+    noise = float(np.median(np.abs(np.diff(force, 2)))) if len(force) > 2 else 0.0
+    steep = STEEP * (float(force[-1]) - float(force[0])) / len(force)
+    start = force[: max(5, len(force) // 2)]
+    while len(start) >= FEWEST:
+        half = len(start) // 2
+        gained = float(np.median(start[half:]) - np.median(start[:half]))
+        if gained <= max(MEDIANS * noise / half**0.5, steep * half):
+            return start
+        start = start[:half]
+    return start if len(force) < 2 * FEWEST else None
 
 
 def phases(table: TrialTable) -> tuple[int, float]:

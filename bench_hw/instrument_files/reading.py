@@ -16,7 +16,7 @@ from bench_hw.instrument_files.column_choice import is_record, takes
 from bench_hw.instrument_files.containers import OPENERS, ending_of, open_container
 from bench_hw.instrument_files.press_record import PressRecord, phases, record_of
 from bench_hw.instrument_files.text_sheet import text_sheet
-from bench_hw.instrument_files.told import Told
+from bench_hw.instrument_files.told import Told, parse_source
 from bench_hw.instrument_files.vocabulary import (
     DIMENSIONS,
     FACT_DIMENSIONS,
@@ -294,13 +294,24 @@ def preview(file: InstrumentFile) -> list[str]:
 
 def is_plain_trial(path: Path) -> bool:
     """Whether a text file is the bench's own trial table by its first line: read strictly, without recognition."""
+    return {"time_s", "depth_mm", "force_N"} <= _first_names(path)
+
+
+def _first_names(path: Path) -> set[str]:
+    """The names in the first line of a text file, separated by commas; none where it is no such text."""
     try:
         with path.open("rb") as stream:
             first = stream.readline(100_000)
-        names = {name.strip().strip('"') for name in first.decode("utf-8-sig").rstrip("\r\n").split(",")}
+        return {name.strip().strip('"') for name in first.decode("utf-8-sig").rstrip("\r\n").split(",")}
     except (OSError, UnicodeDecodeError):
-        return False
-    return {"time_s", "depth_mm", "force_N"} <= names
+        return set()
+
+
+def is_told_of(path: Path, told: Told) -> bool:
+    """Whether a person said how a trial table of the bench is to be read: a column of it, a rate, rows to leave out."""
+    sources = [parse_source(role, text).name for role, text in told.columns.items()]
+    named = not _first_names(path).isdisjoint(sources) or any(name.startswith("#") for name in sources)
+    return named or told.drop_empty or told.rate is not None
 
 
 __all__ = [
@@ -309,6 +320,7 @@ __all__ = [
     "Reading",
     "header_reading",
     "is_plain_trial",
+    "is_told_of",
     "preview",
     "read_instrument_file",
     "takes",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -100,6 +101,14 @@ def asking(role: str, example: str) -> str:
     return f"{own} (bench_hw import: --map {target}={example})" if target else own
 
 
+ONLY_OF_SESSIONS: Final = ("height", "area")
+"""What `bench_hw import` has no option for."""
+
+
 def asking_key(key: str, example: str) -> str:
-    """How to say another option: in a session, and in `bench_hw import`."""
-    return f'--set import.{key}="{example}" (bench_hw import: --{key.replace("_", "-")} {example})'
+    """How to say another option: in a session, and in `bench_hw import` where that has it."""
+    own = f'--set import.{key}="{example}"'
+    if key in ONLY_OF_SESSIONS:
+        return own
+    value = "" if example == "true" else f" {shlex.quote(example)}"
+    return f"{own} (bench_hw import: --{key.replace('_', '-')}{value})"

@@ -69,7 +69,7 @@ def read_source(path: Path, required: Sequence[str]) -> CsvText:
     Raises
     ------
     TableError
-        The file is missing, unreadable, empty or no UTF-8; a column is missing, duplicated or unnamed.
+        The file is missing, unreadable, empty or no UTF-8; a column is missing or duplicated.
     """
     text = _decoded(path, _bytes_of(path)).replace("\r\n", "\n").replace("\r", "\n")
     if not text.strip():
@@ -77,7 +77,15 @@ def read_source(path: Path, required: Sequence[str]) -> CsvText:
     header, _, body = text.partition("\n")
     names = tuple(name for _, cells in _records(path, header, 1) for name in cells)
     _check_names(path, names, required)
-    return CsvText(path, names, body)
+    return CsvText(path, names, _without_empty_end(body))
+
+
+def _without_empty_end(body: str) -> str:
+    """The rows without those at the end that hold nothing but commas, as spreadsheets write cells that were cleared."""
+    kept = body.rstrip("\n")
+    while kept and not kept[(start := kept.rfind("\n") + 1) :].strip(", \t"):
+        kept = kept[:start].rstrip("\n")
+    return kept
 
 
 def _bytes_of(path: Path) -> bytes:
@@ -106,9 +114,7 @@ def _check_names(path: Path, names: tuple[str, ...], required: Sequence[str]) ->
             allowed = f"a header, separated by commas, with {', '.join(required)} (it has {listed})"
             raise TableError(path, "the column is missing", allowed, row=1, column=name)
     for name, count in Counter(names).items():
-        if not name:
-            raise TableError(path, "a column has no name", "a name for every column", row=1, column=name)
-        if count > 1:
+        if count > 1 and name:
             raise TableError(path, f"the column is there {count} times", "each name once", row=1, column=name)
 
 
@@ -136,7 +142,7 @@ def _streamed(path: Path, required: Sequence[str]) -> NumericColumns | None:
     if not plain or len(plain) < len(pieces):
         return None
     lines = np.arange(2, sum(map(len, plain)) + 2)
-    values = {name: np.concatenate([piece[:, k] for piece in plain]) for k, name in enumerate(names)}
+    values = {name: np.concatenate([piece[:, k] for piece in plain]) for k, name in enumerate(names) if name}
     for name, column in values.items():
         _check_finite(path, name, column, lines)
         _check_size(path, name, column, lines)
@@ -237,7 +243,7 @@ def read_columns(source: CsvText, required: Sequence[str], may_be_empty: Collect
         The file.
     required : sequence of str
         Columns that must be numbers throughout; so must every column whose name ends in a unit. Another
-        column is left out unless it is numbers throughout.
+        column is left out unless it is numbers throughout, and so is one without a name.
     may_be_empty : collection of str
         Columns in which an empty cell is allowed and becomes NaN.
 
@@ -249,7 +255,7 @@ def read_columns(source: CsvText, required: Sequence[str], may_be_empty: Collect
     matrix = numeric_matrix(source)
     if matrix is not None:
         lines = np.arange(2, len(matrix) + 2)
-        values = {name: matrix[:, index] for index, name in enumerate(source.names)}
+        values = {name: matrix[:, index] for index, name in enumerate(source.names) if name}
         for name, column in values.items():
             _check_finite(source.path, name, column, lines)
             _check_size(source.path, name, column, lines)
@@ -258,6 +264,8 @@ def read_columns(source: CsvText, required: Sequence[str], may_be_empty: Collect
     lines = np.array(line_list, dtype=np.int64)
     values = {}
     for name, cells in zip(source.names, columns, strict=True):
+        if not name:
+            continue
         strict = name in required or name in may_be_empty or split_unit(name)[1] != ""
         if strict or all(map(_NUMBER.fullmatch, cells)):
             values[name] = numbers_of(source.path, name, cells, lines, empty=name in may_be_empty)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -117,8 +118,8 @@ def staged_baseline(path: Path, baseline: Baseline) -> Iterator[None]:
         beside.unlink(missing_ok=True)
 
 
-def read_baseline(path: Path) -> Baseline:
-    """Read a baseline.
+def read_baseline(path: Path, gate: Path | None = None) -> Baseline:
+    """Read a baseline; a refusal says how to make one with the gate file `gate` (None: the shipped gate).
 
     Raises
     ------
@@ -127,33 +128,38 @@ def read_baseline(path: Path) -> Baseline:
     InputError
         The file is no baseline.
     """
-    table = _table(path)
+    table = _table(path, gate)
     if table.get("schema") != SCHEMA:
         raise NotComparableError(
-            f"{path} has schema {table.get('schema')!r} and this version compares with schema {SCHEMA}; {how_to(path)}"
+            f"{path} has schema {table.get('schema')!r} and this version compares with schema {SCHEMA}; "
+            f"{how_to(path, gate)}"
         )
     try:
         return Baseline.model_validate(table)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         place = ".".join(str(part) for part in first["loc"])
-        raise InputError(f"{path}, {place}: {first['msg']}; the file is no whole baseline; {how_to(path)}") from None
+        problem = f"{path}, {place}: {first['msg']}; the file is no whole baseline"
+        raise InputError(f"{problem}; {how_to(path, gate)}") from None
 
 
-def how_to(path: Path) -> str:
-    """How to make a baseline, as the end of a sentence."""
-    return f"make one from this version with: python -m benchmark check --baseline {path} --accept"
+def how_to(path: Path, gate: Path | None = None) -> str:
+    """How to make a baseline with a gate file (None: the shipped one), as the end of a sentence."""
+    of = "" if gate is None else f" --gate {shlex.quote(str(gate))}"
+    made = f"python -m benchmark check{of} --baseline {shlex.quote(str(path))} --accept"
+    return f"make one from this version with: {made}"
 
 
-def _table(path: Path) -> dict[str, Any]:
+def _table(path: Path, gate: Path | None) -> dict[str, Any]:
+    away = f"move it away and {how_to(path, gate)}"
     try:
         table = json.loads(read_regular(path, DOCUMENT).decode("utf-8-sig"))
     except FileNotFoundError:
-        raise NotComparableError(f"there is no baseline {path} to compare with; {how_to(path)}") from None
+        raise NotComparableError(f"there is no baseline {path} to compare with; {how_to(path, gate)}") from None
     except OSError as error:
         raise InputError(f"{path}: this baseline cannot be read ({error.strerror or error})") from None
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: this baseline is no JSON ({error}); {how_to(path)}") from None
+        raise InputError(f"{path}: this baseline is no JSON ({error}); {away}") from None
     if not isinstance(table, dict):
-        raise InputError(f"{path}: this baseline is no JSON object; {how_to(path)}")
+        raise InputError(f"{path}: this baseline is no JSON object; {away}")
     return table

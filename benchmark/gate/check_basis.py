@@ -96,12 +96,12 @@ def stored_baseline(request: CheckRequest, plan: GatePlan) -> Baseline | None:
     path = request.baseline_path
     if request.against is not None and request.baseline is None and not path.exists():
         return None
-    baseline = read_baseline(path)
+    baseline = read_baseline(path, request.gate)
     names = [timed.name for timed in plan.file.timed]
     if request.against is None and not _same_gate(baseline, plan.fingerprint, names):
         raise NotComparableError(
             f"{path} was made with another gate ({baseline.gate}): other timed quantities or scenarios, or another way "
-            f"to measure; {how_to(path)}"
+            f"to measure; {how_to(path, request.gate)}"
         )
     return baseline
 

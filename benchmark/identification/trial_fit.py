@@ -204,7 +204,8 @@ def prepare_rows(trial: TrialData) -> tuple[TrialData, ContactRange, list[str]]:
 def _no_contact(trial: TrialData, start: Start) -> str:
     return (
         f"{trial.label}: no force rises with depth over the noise (t = {start.evidence:.3g}, at least "
-        f"{LEAST_EVIDENCE:g} is needed); was there contact, and is press positive in force and depth?"
+        f"{LEAST_EVIDENCE:g} is needed); was there contact, and is press positive in force and depth? "
+        'A column is turned by --set import.force="-COLUMN:N" or import.depth="-COLUMN:mm"'
     )
 
 

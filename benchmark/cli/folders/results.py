@@ -62,7 +62,12 @@ def _history(path: Path, out: Path | None) -> HistoryOutcome:
 
 
 def dossier(
-    results: Results, context: ContextFile = None, out: Out = None, json: Json = False, debug: Debug = False
+    results: Results,
+    context: ContextFile = None,
+    out: Out = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
 ) -> int:
     """Collect what finished results show for each credibility factor of ASME V&V 40, and what is missing.
 
@@ -79,7 +84,9 @@ def dossier(
     return 0
 
 
-def clean(folder: Folder = Path(), dry_run: DryRun = False, json: Json = False, debug: Debug = False) -> int:
+def clean(
+    folder: Folder = Path(), dry_run: DryRun = False, json: Json = False, quiet: Quiet = False, debug: Debug = False
+) -> int:
     """Remove what killed runs left: half-written files and folders, locks, and the steps kept to go on from.
 
     Results, recordings, and whatever this program did not write stay. A run that is at work is left alone. After this

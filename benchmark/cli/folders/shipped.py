@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
 
-from benchmark.cli.options import Debug, Json, Set, parse_settings
+from benchmark.cli.options import Debug, Json, Quiet, Set, parse_settings
 
 Name = Annotated[str | None, typer.Argument(help="A shipped tissue or a TOML file, to see its layers; or: new.")]
 NewName = Annotated[str | None, typer.Argument(help="With new: the name of the tissue file to write.")]
@@ -28,13 +29,15 @@ def register(app: typer.Typer) -> None:
     app.command("reference", help=reference.__doc__)(reference)
 
 
-def tissues(name: Name = None, new_name: NewName = None, json: Json = False, debug: Debug = False) -> int:
+def tissues(
+    name: Name = None, new_name: NewName = None, json: Json = False, quiet: Quiet = False, debug: Debug = False
+) -> int:
     """List the shipped tissues with their sources, or show the layers of one.
 
     `tissues new NAME` writes the commented file NAME.toml to start from; it never overwrites one.
     """
     if name == NEW:
-        _write_new(new_name, as_json=json)
+        _write_new(new_name, as_json=json, quiet=quiet)
     elif new_name is not None:
         raise typer.BadParameter(f"{new_name!r} is one word too many; allowed: tissues [NAME] or tissues new NAME")
     elif name is not None:
@@ -44,7 +47,7 @@ def tissues(name: Name = None, new_name: NewName = None, json: Json = False, deb
     return 0
 
 
-def _write_new(name: str | None, *, as_json: bool) -> None:
+def _write_new(name: str | None, *, as_json: bool, quiet: bool) -> None:
     from benchmark.cli.show import print_json
     from benchmark.files.shipped import write_new_tissue
 
@@ -54,7 +57,17 @@ def _write_new(name: str | None, *, as_json: bool) -> None:
     if as_json:
         print_json({"schema": 1, "file": str(path)})
     else:
-        print(f"{path}\n  run it: python -m benchmark run skin-5N --tissue {path}")
+        _print(path, f"  run it: python -m benchmark run skin-5N --tissue {_typed(path)}", quiet=quiet)
+
+
+def _print(path: Path, remark: str, *, quiet: bool) -> None:
+    """Print a file that was written, and what to do with it."""
+    print(path if quiet else f"{path}\n{remark}")
+
+
+def _typed(path: Path | str) -> str:
+    """A path as it is typed in a shell."""
+    return shlex.quote(str(path))
 
 
 def _show(name: str, *, as_json: bool) -> None:
@@ -81,7 +94,9 @@ def _list(*, as_json: bool) -> None:
             print(f"{key}\n  layers: {', '.join(each.layer_names)}\n  source: {each.citation}")
 
 
-def scenarios(name: ScenarioName = None, settings: Set = None, json: Json = False, debug: Debug = False) -> int:
+def scenarios(
+    name: ScenarioName = None, settings: Set = None, json: Json = False, quiet: Quiet = False, debug: Debug = False
+) -> int:
     """List the shipped scenarios, or show one fully resolved."""
     from benchmark.cli.show import print_json
     from benchmark.files import load_scenario, shipped_scenarios
@@ -106,7 +121,7 @@ def scenarios(name: ScenarioName = None, settings: Set = None, json: Json = Fals
     return 0
 
 
-def session(what: What, folder: Folder, json: Json = False, debug: Debug = False) -> int:
+def session(what: What, folder: Folder, json: Json = False, quiet: Quiet = False, debug: Debug = False) -> int:
     """Look at a folder's files and write the session.toml and specimen.toml they suggest.
 
     Conditions come from speeds, depths and holds, tool and thickness from headers and the first touch. What a person
@@ -121,13 +136,20 @@ def session(what: What, folder: Folder, json: Json = False, debug: Debug = False
         print_json({"schema": 1, "files": [str(path) for path in written], "to_say": list(found.to_say)})
     else:
         print("\n".join(map(str, written)))
-        print(f"  look at it, and say: {', '.join(found.to_say)} (marked SAY)")
-        print(f"  then: python -m benchmark run --trials {folder}")
+        if not quiet:
+            print(f"  look at it, and say: {', '.join(found.to_say)} (marked SAY)")
+            print(f"  then: python -m benchmark run --trials {_typed(folder)}")
     return 0
 
 
 def reference(
-    word: Word, name: Shown, settings: Set = None, out: Table = None, json: Json = False, debug: Debug = False
+    word: Word,
+    name: Shown,
+    settings: Set = None,
+    out: Table = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
 ) -> int:
     """`reference new SCENARIO` writes the table for your own FEA of it, one row a step and layer, `fem_mm` left empty.
 
@@ -145,5 +167,6 @@ def reference(
     if json:
         print_json({"schema": 1, "file": str(path)})
     else:
-        print(f"{path}\n  fill in fem_mm, then, with the same --set: python -m benchmark run {name} --reference {path}")
+        again = f"python -m benchmark run {_typed(name)} --reference {_typed(path)}"
+        _print(path, f"  fill in fem_mm, then, with the same --set: {again}", quiet=quiet)
     return 0

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -20,8 +20,10 @@ from bench_hw.instrument_files import (
     ENDINGS,
     NoNumbersError,
     Reading,
+    Told,
     ending_of,
     is_plain_trial,
+    is_told_of,
     preview,
     read_instrument_file,
 )
@@ -100,14 +102,18 @@ def read_recordings(file: SessionFile, paths: Sequence[Path], *, listed: bool) -
     shown: list[str] = []
     aside: list[str] = []
     for entry, path in zip(file.trials, paths, strict=True):
-        if not is_instruments(path):
+        told = _told(file, entry, path)
+        if told is None:
             trials.append(Recording(entry, "", read_table(path)))
             continue
         try:
-            read = read_instrument_file(path, file.import_.told(entry.sheet))
+            read = read_instrument_file(path, told)
         except NoNumbersError as error:
             if listed or path.suffix.lower() not in NOTES:
-                raise InputError(f"{error}.") from None
+                apart = (
+                    "" if listed else " Where it is no trial, keep it elsewhere, or list the trials in session.toml."
+                )
+                raise InputError(f"{error}.{apart}") from None
             aside.append(f"{path.name} holds no rows of numbers and is left aside")
             continue
         except BenchError as error:
@@ -121,6 +127,19 @@ def read_recordings(file: SessionFile, paths: Sequence[Path], *, listed: bool) -
     if not trials:
         raise InputError(f"{paths[0].parent}: no file holds a trial; allowed: tables with time, depth and force.")
     return Recordings(tuple(trials), tuple(shown), (*_warnings(trials), *aside))
+
+
+def _told(file: SessionFile, entry: TrialEntry, path: Path) -> Told | None:
+    """How to read a file as another instrument's; None for the bench's own, of which nobody said anything.
+
+    The bench's own table counts depth as it is meant, so its touch is looked for only where that was asked for.
+    """
+    told = file.import_.told(entry.sheet)
+    if is_instruments(path):
+        return told
+    if path.suffix.lower() == ".mcap" or not is_told_of(path, told):
+        return None
+    return told if "touch" in file.import_.model_fields_set else replace(told, touch="none")
 
 
 def _warnings(trials: Sequence[Recording]) -> list[str]:
@@ -204,13 +223,20 @@ def check_tool_is_told(file: SessionFile, trials: Sequence[Recording]) -> None:
     Raises
     ------
     InputError
-        A condition is pressed less deep than `SHALLOWEST` and its tool's radius is not told.
+        A condition is never pressed at all, or less deep than `SHALLOWEST` while its tool's radius is not told.
     """
     for name in dict.fromkeys(trial.entry.condition for trial in trials):
         own = [trial for trial in trials if trial.entry.condition == name]
         deepest = max(float(trial.table.depth.max()) for trial in own)
         keys = file.conditions.get(name, ConditionKeys())
         if deepest < SHALLOWEST and "radius" not in file.tool and "radius" not in keys.tool:
+            if deepest <= 0.0:
+                least = min(float(trial.table.depth.min()) for trial in own)
+                raise InputError(
+                    f"condition {name}: the depth is never above zero (down to {1e3 * least:.4g} mm); allowed: press "
+                    'positive. Turn it where pressing is negative: --set import.depth="-depth_mm:mm", the force by '
+                    '--set import.force="-force_N:N".'
+                )
             raise InputError(
                 f"condition {name}: pressed {1e6 * deepest:.3g} um deep, and neither file nor "
                 f"session tells the tool's radius; 5 mm are assumed from {1e6 * SHALLOWEST:g} um on. "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -174,6 +175,7 @@ def _trials(
         by_entry = {}
     named = dict(zip(map(id, file.trials), trial_names(files, source.folder), strict=True))
     names = recorded_names(read, [named[id(each.entry)] for each in read])
+    warnings += _copied(read, names)
     tables, counts = even_depths([each.table for each in read])
     trials = []
     for name, each, path, table in zip(names, read, paths, tables, strict=True):
@@ -192,6 +194,18 @@ def _doubled(read: Sequence[Recording]) -> list[str]:
     times = Counter((Path(each.table.source).resolve(), each.name) for each in read)
     doubled = [path.name for (path, _), count in times.items() if count > 1]
     return [f"listed as more than one trial: {', '.join(doubled)}; these are no replicates"] if doubled else []
+
+
+def _copied(read: Sequence[Recording], names: Sequence[str]) -> list[str]:
+    """A warning where trials of different files hold the same numbers, as copies of one record do."""
+    alike: dict[bytes, dict[Path, str]] = {}
+    for each, name in zip(read, names, strict=True):
+        numbers = hashlib.sha256(each.table.depth.tobytes() + each.table.force.tobytes()).digest()
+        alike.setdefault(numbers, {}).setdefault(Path(each.table.source).resolve(), name)
+    copies = [", ".join(files.values()) for files in alike.values() if len(files) > 1]
+    if not copies:
+        return []
+    return [f"the same numbers to the last digit: {'; '.join(copies)}; copies of one trial are no replicates"]
 
 
 def _specimen(

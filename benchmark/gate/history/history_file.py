@@ -11,6 +11,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from benchmark.errors import InputError
+
 HISTORY_SCHEMA = 1
 HISTORY_SIGN = b'"revision"'
 """What tells it from files that nothing must be added to."""
@@ -51,7 +53,9 @@ class HistoryEntry:
 
 
 def history_path(baseline: Path) -> Path:
-    """The history that belongs to a baseline, beside it."""
+    """The history that belongs to a baseline, beside it; raises InputError for a folder such as `.`."""
+    if not baseline.name:
+        raise InputError(f"--baseline {baseline} is a folder; give a file")
     return baseline.with_name(f"{baseline.stem}.history.jsonl")
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bench_hw.instrument_files import Told, preview, read_instrument_file
+from bench_hw.instrument_files.told import asking_key
 from bench_hw.instrument_files.vocabulary import label_and_unit, role_of
 from tests.instruments import samples
 from tests.instruments.samples import SAMPLES, press
@@ -253,3 +254,42 @@ def test_numbered_curves_are_trials_of_their_folder(tmp_path):
 def test_the_one_trial_of_a_report_has_no_number(tmp_path):
     (record,) = read_instrument_file(samples.bluehill_report(tmp_path)).records
     assert record.name == ""
+
+
+def ramp(path, lead, law=1.0):
+    """A press of 2 mm at 1 mm/s with 1 N at its end, from `lead` mm above the surface, and 0.3 mN of noise."""
+    depth = np.linspace(-lead, 2.0, 400)
+    force = np.clip(depth / 2.0, 0.0, None) ** law + 3e-4 * np.random.default_rng(5).normal(size=400)
+    rows = (f"{0.01 * n:.3f};{d:.6f};{f:.6f}" for n, (d, f) in enumerate(zip(depth, force, strict=True)))
+    path.write_text("\n".join(["time [s];depth [mm];force [N]", *rows]))
+    (record,) = read_instrument_file(path).records
+    return record
+
+
+def test_a_record_that_begins_in_contact_has_no_air(tmp_path):
+    """Its rise was taken for noise in air: 0.2 mm of its depth and a fiftieth of its force were taken off."""
+    record = ramp(tmp_path / "a.csv", lead=0.0)
+    assert record.notes == ()
+    assert record.table.depth.max() == pytest.approx(2e-3, abs=1e-9)
+    assert record.table.force.max() == pytest.approx(1.0, abs=2e-3)
+
+
+@pytest.mark.parametrize(("lead", "law"), [(0.05, 1.0), (0.2, 1.0), (1.0, 1.0), (0.2, 1.5), (1.0, 1.5)])
+def test_the_touch_is_found_after_little_air_as_well(tmp_path, lead, law):
+    record = ramp(tmp_path / "a.csv", lead=lead, law=law)
+    assert record.table.depth.max() == pytest.approx(2e-3, abs=0.04e-3)
+    assert record.table.force.max() == pytest.approx(1.0, abs=4e-3)
+
+
+@pytest.mark.parametrize(
+    ("key", "example", "asked"),
+    [
+        ("rate", "100 Hz", "--set import.rate=\"100 Hz\" (bench_hw import: --rate '100 Hz')"),
+        ("drop_empty", "true", '--set import.drop_empty="true" (bench_hw import: --drop-empty)'),
+        ("delimiter", "tab", '--set import.delimiter="tab" (bench_hw import: --delimiter tab)'),
+        ("height", "10 mm", '--set import.height="10 mm"'),
+    ],
+)
+def test_what_is_asked_for_can_be_typed_as_it_stands(key, example, asked):
+    """It named options that `bench_hw import` has not, and values with blanks that a shell takes apart."""
+    assert asking_key(key, example) == asked

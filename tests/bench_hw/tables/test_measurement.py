@@ -50,6 +50,24 @@ def test_columns_in_any_order_with_blanks_and_quotes(good_lines, write):
     np.testing.assert_array_equal(table.time, np.arange(20))
 
 
+@pytest.mark.parametrize("numbered", [False, True], ids=["at the end", "of row numbers"])
+def test_columns_without_a_name_are_left_out(good_lines, write, numbered):
+    """As a spreadsheet writes an empty column, and a data frame its index."""
+    head, *rows = good_lines
+    changed = [f",{head}", *(f"{n},{row}" for n, row in enumerate(rows))] if numbered else [f"{x}," for x in good_lines]
+    table, other = read_trial_csv(write(changed)), read_trial_csv(write(good_lines))
+    np.testing.assert_array_equal(table.force, other.force)
+    assert table.extra.keys() == other.extra.keys()
+
+
+def test_rows_of_commas_at_the_end_do_not_matter(good_lines, write):
+    commas = "," * good_lines[0].count(",")
+    table, other = read_trial_csv(write([*good_lines, commas, commas])), read_trial_csv(write(good_lines))
+    np.testing.assert_array_equal(table.force, other.force)
+    with pytest.raises(TableError, match=r"row 5.*the cell is empty"):
+        read_trial_csv(write([*good_lines[:4], commas, *good_lines[4:]]))
+
+
 def test_text_columns_are_left_out_and_numbers_without_unit_carried(good_lines, write):
     lines = [f"{line},{'phase' if i == 0 else 'hold'},{'cycle' if i == 0 else 3}" for i, line in enumerate(good_lines)]
     table = read_trial_csv(write(lines))

@@ -8,6 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
+from typer.main import get_command
 
 from bench_hw.errors import DeviceError, InputError
 from benchmark.child_processes import forbid_ending
@@ -137,3 +138,9 @@ def test_what_numpy_says_on_the_way_is_not_shown(benchmark_cli, monkeypatch: pyt
 
     monkeypatch.setattr(app, "app", overflowing)
     assert benchmark_cli("tissues").err == ""
+
+
+@pytest.mark.parametrize("verb", sorted(get_command(app.app).commands))
+def test_every_verb_has_the_options_that_scripts_pass_everywhere(verb: str) -> None:
+    options = {name for parameter in get_command(app.app).commands[verb].params for name in parameter.opts}
+    assert {"--json", "--quiet", "--debug"} <= options

@@ -106,7 +106,8 @@ def test_the_first_run_says_how_to_make_a_baseline(call) -> None:
     called = call()
     assert called.code == 3
     assert called.out == ""
-    assert "python -m benchmark check --baseline tissuebench-baseline.json --accept" in paragraph(called)
+    typed = "python -m benchmark check --gate gate.toml --baseline tissuebench-baseline.json --accept"
+    assert typed in paragraph(called)
     assert not [path for path in Path("results").glob("*") if not path.name.endswith(".lock")]  # until the process ends
 
 

@@ -69,3 +69,9 @@ def test_what_it_refuses(benchmark_cli, tmp_path: Path, words: list[str], said: 
 def test_json_names_the_file(benchmark_cli) -> None:
     called = benchmark_cli("tissues", "new", "my_skin", "--json")
     assert json.loads(called.out) == {"schema": 1, "file": "my_skin.toml"}
+
+
+def test_what_to_do_next_can_be_typed_as_it_stands(benchmark_cli) -> None:
+    called = benchmark_cli("reference", "new", "skin-5N", "--out", "my fea.csv")
+    assert "--reference 'my fea.csv'" in called.out
+    assert benchmark_cli("tissues", "new", "my_skin", "--quiet").out == "my_skin.toml\n"

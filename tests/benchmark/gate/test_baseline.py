@@ -28,6 +28,20 @@ def test_without_a_file_it_says_how_to_make_one(tmp_path: Path) -> None:
     assert caught.value.exit_code == 3
 
 
+def test_the_way_out_names_the_gate_that_was_asked_for(tmp_path: Path) -> None:
+    path, gate = tmp_path / "b.json", Path("my gate.toml")
+    with pytest.raises(NotComparableError, match=r"check --gate 'my gate\.toml' --baseline .*b\.json --accept"):
+        read_baseline(path, gate)
+
+
+@pytest.mark.parametrize("text", ["[]", "\x00\x01"])
+def test_what_accept_would_not_replace_is_to_be_moved_away(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "b.json"
+    path.write_text(text)
+    with pytest.raises(InputError, match="move it away and make one"):
+        read_baseline(path)
+
+
 @pytest.mark.parametrize("schema", [0, 2, "1", None])
 def test_another_schema_cannot_be_compared_with(baseline: Baseline, tmp_path: Path, schema: object) -> None:
     path = write_baseline(tmp_path / "b.json", baseline)

@@ -33,7 +33,7 @@ def test_a_session_file(session_folder):
     assert session.trials[0].tool == session.tool == Tool(radius=5e-3, contact="rigid_bonded")
     assert session.trials[0].support == session.support == Support()
     assert len(session.trials[0].table.time) == 30
-    assert len(session.warnings) == 3
+    assert len(session.warnings) == 4
 
 
 def test_plain_files(tmp_path, write_trial):
@@ -43,7 +43,7 @@ def test_plain_files(tmp_path, write_trial):
     assert (session.name, session.conditions) == ("day", ("day",))
     assert session.specimen_assumed
     assert session.specimen.thickness == 8e-3
-    assert len(session.warnings) == 4
+    assert len(session.warnings) == 5
     assert any("the specimen is not given" in warning for warning in session.warnings)
     said = " ".join(session.warnings)
     assert all(f"--set {key}=" in said for key in ("tool.radius", "tool.contact", "support.kind", "specimen.thickness"))
@@ -216,6 +216,47 @@ def test_a_file_listed_twice_is_said(session_folder, change):
     assert any("more than one trial: one.csv" in warning for warning in session.warnings)
 
 
+def test_copies_of_one_trial_are_said(tmp_path, write_trial):
+    for name in ("one.csv", "one - copy.csv"):
+        write_trial(tmp_path / "day" / name)
+    write_trial(tmp_path / "day" / "other.csv", rows=31)
+    (said,) = (text for text in load_session(tmp_path / "day").warnings if "the same numbers" in text)
+    assert "one - copy, one;" in said
+    assert "other" not in said
+
+
+def turned(path, force="-", depth=""):
+    lines = (f"{0.1 * n:.1f},{depth}{0.05 * n:.2f},{force}{0.01 * n:.2f}" for n in range(30))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n".join(["time_s,depth_mm,force_N", *lines]) + "\n")
+    return path
+
+
+def test_what_is_said_of_a_column_holds_for_the_benchs_own_table(tmp_path):
+    """It was passed over without a word."""
+    turned(tmp_path / "day" / "one.csv")
+    (trial,) = load_session(tmp_path / "day", {"import.force": "-force_N:N"}).trials
+    np.testing.assert_allclose(trial.table.force, 0.01 * np.arange(30), atol=1e-12)
+    np.testing.assert_allclose(trial.table.depth, 0.05e-3 * np.arange(30), atol=1e-12)
+    assert "no column is called so" not in str(load_session(tmp_path / "day", {"import.force": "Load:N"}).warnings)
+
+
+def test_rows_without_a_number_are_left_out_of_the_benchs_own_table_where_told(tmp_path, write_trial):
+    path = write_trial(tmp_path / "day" / "one.csv")
+    path.write_text(path.read_text().replace("0.5,0.25,0.05,", "0.5,0.25,NaN,"))
+    assert "one.csv (row 7, column 'force_N', value 'NaN')" in refusal(tmp_path / "day")
+    (trial,) = load_session(tmp_path / "day", {"import.drop_empty": "true"}).trials
+    assert trial.table.time.size == 29
+    assert trial.table.depth[0] == 0.0
+
+
+def test_a_depth_that_is_never_positive_is_no_question_of_the_tool(tmp_path):
+    turned(tmp_path / "day" / "one.csv", depth="-")
+    said = refusal(tmp_path / "day")
+    assert "the depth is never above zero (down to -1.45 mm)" in said
+    assert "--set import.depth" in said
+
+
 @pytest.mark.skipif(DATA is None, reason="measured data: set TISSUEBENCH_DATA to the folder that holds pig_indentation")
 @pytest.mark.parametrize(("day", "trials"), [("2023-03-27", 17), ("2023-03-31", 49), ("2023-04-03", 29)])
 def test_measured_tissue_loads(day, trials):
@@ -290,6 +331,14 @@ def test_notes_beside_trials_are_left_aside_and_said(tmp_path):
     assert [trial.name for trial in session.trials] == ["cellscale"]
     assert any("notes.txt holds no rows of numbers" in text for text in session.warnings)
     assert session.specimen.layers[0].thickness == pytest.approx(12e-3, rel=0.01)
+
+
+def test_a_stray_table_says_what_may_be_done_with_it(tmp_path, write_trial):
+    write_trial(tmp_path / "day" / "one.csv")
+    (tmp_path / "day" / "summary.csv").write_text("trial,peak\none,1.5\n")
+    said = refusal(tmp_path / "day")
+    assert "summary.csv" in said
+    assert "Where it is no trial, keep it elsewhere, or list the trials in session.toml." in said
 
 
 def test_columns_are_named_by_options_of_the_session(tmp_path, write_trial):

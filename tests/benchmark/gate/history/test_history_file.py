@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from benchmark.errors import InputError
 from benchmark.gate.history.history_file import HistoryEntry, append, history_path, read_history
 
 ENTRY = HistoryEntry(
@@ -77,3 +78,8 @@ def test_lines_whose_values_are_of_another_kind_are_counted(tmp_path: Path, odd:
 
 def test_it_stands_beside_the_baseline() -> None:
     assert history_path(Path("ci/b.json")) == Path("ci/b.history.jsonl")
+
+
+def test_a_folder_has_no_history_beside_it() -> None:
+    with pytest.raises(InputError, match=r"--baseline \. is a folder; give a file"):
+        history_path(Path())
