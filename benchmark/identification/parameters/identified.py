@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from benchmark.identification.fitted_parameters import FittedParameter
-from benchmark.identification.parameters.free_parameters import Parameter
+from benchmark.identification.parameters.free_parameters import Parameter, Prior
 from benchmark.identification.parameters.held_out import HeldOut, held_out
 from benchmark.identification.parameters.identifiability import (
     KNOWN,
@@ -34,6 +34,8 @@ from benchmark.identification.parameters.profile_likelihood import Profile, larg
 
 NOT_DETERMINED = "not determined"
 PRIOR_ALONE = "on its prior alone"
+FAR = 2.0
+"""Standard uncertainties beyond which a told value of the set-up has moved far: one in twenty does by chance."""
 
 
 @dataclass(frozen=True)
@@ -213,6 +215,7 @@ class Identified:
         """What a reader must know before a figure is quoted."""
         said = [*self.remarks, *([] if self.found.spread is None else [self.found.spread.text])]
         said += [one.warning for one in self.undetermined]
+        said += self._moved_far
         use = discrepancy_use(self.found)
         said += [] if use is None else [use.text]
         said += [f"another answer follows the trials as well: {self._values(one)}" for one in self.others]
@@ -220,6 +223,22 @@ class Identified:
         if self.found.problem.freedom < 1:
             said.append("no set-up was pressed twice: the scatter of trials is assumed (1.5 %), not measured")
         return tuple(said)
+
+    @property
+    def _moved_far(self) -> list[str]:
+        """A warning for each told value of the set-up that the trials move beyond what it is known to."""
+        return [
+            f"the trials move {one.key} from {one.scale * one.prior.value:.4g} to "
+            f"{one.scale * self.found.value(k):.4g} {one.unit}".strip()
+            + f", {far:.2g} standard uncertainties "
+            f"({one.prior.source}), and the free values go with it: measure it, or look for another law or contact"
+            for k, one in enumerate(self.found.problem.parameters)
+            if one.told and one.prior is not None and (far := self._moved(k, one.prior, one)) > FAR
+        ]
+
+    def _moved(self, index: int, prior: Prior, one: Parameter) -> float:
+        """Standard uncertainties between a told value and the fit's."""
+        return abs(float(self.found.vector[index]) - one.coordinate(prior.value)) / prior.deviation
 
     @property
     def _unsettled(self) -> str:

@@ -1,8 +1,10 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from benchmark.identification.parameters.free_parameters import Prior
 from benchmark.identification.parameters.identifiability import Direction, directions
 from benchmark.identification.parameters.identified import NOT_DETERMINED, identify
 from benchmark.identification.parameters.profile_likelihood import profile
@@ -43,6 +45,22 @@ def test_the_two_tools_that_tell_them_are_held_out_in_turn(toy_fit) -> None:
     assert all(0.0 <= one.covered <= 1.0 for one in told.held_out)
     low, high = next((one.low, one.high) for one in told.estimates if one.key == MODULI[2])
     assert low < 1e-3 * TRUTH[MODULI[2]] < high
+
+
+@pytest.mark.parametrize(("deviations", "said"), [(1.9, False), (-1.9, False), (-7.0, True), (2.1, True)])
+def test_a_told_value_that_the_trials_move_far_is_warned_of(toy_fit, deviations, said) -> None:
+    told = answer(toy_fit())
+    parameters, vector = list(told.found.problem.parameters), told.found.vector.copy()
+    prior = Prior(parameters[0].value(vector[0]), 0.035, "told without its uncertainty")
+    parameters[0] = replace(parameters[0], told=True, prior=prior)
+    vector[0] += 0.035 * deviations
+    problem = replace(told.found.problem, parameters=tuple(parameters))
+    found = replace(told.found, problem=problem, fit=replace(told.found.fit, vector=vector))
+    warned = [one for one in replace(told, found=found).warnings if "standard uncertainties" in one]
+    assert len(warned) == said
+    if said:
+        assert f"the trials move {parameters[0].key} from " in warned[0]
+        assert f"{abs(deviations):.2g} standard uncertainties (told without its uncertainty)" in warned[0]
 
 
 def test_directions_are_said_in_words() -> None:
