@@ -4,7 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmark.identification.parameters.free_parameters import Prior
+from benchmark.identification.parameters.free_parameters import Parameter, Prior
 from benchmark.identification.parameters.identifiability import Direction, directions
 from benchmark.identification.parameters.identified import NOT_DETERMINED, identify
 from benchmark.identification.parameters.profile_likelihood import profile
@@ -50,16 +50,16 @@ def test_the_two_tools_that_tell_them_are_held_out_in_turn(toy_fit) -> None:
 @pytest.mark.parametrize(("deviations", "said"), [(1.9, False), (-1.9, False), (-7.0, True), (2.1, True)])
 def test_a_told_value_that_the_trials_move_far_is_warned_of(toy_fit, deviations, said) -> None:
     told = answer(toy_fit())
-    parameters, vector = list(told.found.problem.parameters), told.found.vector.copy()
-    prior = Prior(parameters[0].value(vector[0]), 0.035, "told without its uncertainty")
-    parameters[0] = replace(parameters[0], told=True, prior=prior)
-    vector[0] += 0.035 * deviations
-    problem = replace(told.found.problem, parameters=tuple(parameters))
+    prior = Prior(0.01, 0.035, "told without its uncertainty")
+    thickness = Parameter("specimen.thickness", 0.01, 1e-4, 1.0, prior, told=True)
+    vector = np.append(told.found.vector, np.log(0.01) + 0.035 * deviations)
+    problem = replace(told.found.problem, parameters=(*told.found.problem.parameters, thickness))
     found = replace(told.found, problem=problem, fit=replace(told.found.fit, vector=vector))
     warned = [one for one in replace(told, found=found).warnings if "standard uncertainties" in one]
     assert len(warned) == said
     if said:
-        assert f"the trials move {parameters[0].key} from " in warned[0]
+        moved = 10.0 * np.exp(0.035 * deviations)
+        assert f"the trials move specimen.thickness from 10 to {moved:.4g} mm, " in warned[0]
         assert f"{abs(deviations):.2g} standard uncertainties (told without its uncertainty)" in warned[0]
 
 
