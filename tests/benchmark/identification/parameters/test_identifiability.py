@@ -52,7 +52,8 @@ def test_a_told_value_that_the_trials_move_far_is_warned_of(toy_fit, deviations,
     told = answer(toy_fit())
     prior = Prior(0.01, 0.035, "told without its uncertainty")
     thickness = Parameter("specimen.thickness", 0.01, 1e-4, 1.0, prior, told=True)
-    vector = np.append(told.found.vector, np.log(0.01) + 0.035 * deviations)
+    count = len(told.found.problem.parameters)
+    vector = np.insert(told.found.vector, count, np.log(0.01) + 0.035 * deviations)
     problem = replace(told.found.problem, parameters=(*told.found.problem.parameters, thickness))
     found = replace(told.found, problem=problem, fit=replace(told.found.fit, vector=vector))
     warned = [one for one in replace(told, found=found).warnings if "standard uncertainties" in one]
