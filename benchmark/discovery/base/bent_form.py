@@ -32,8 +32,8 @@ FINE, ALONE = 25, 0.1
 NEIGHBOURS = 4
 """Rows next to each other in depth, between which it is linear where an effect goes by that alone.
 
-Fewer than the passes of a press, so that a way in and a way back are told apart; at even places a gap's step at touch
-would be off.
+About as many as a depth is passed, so that a way in and a way back lie between the same two and are told apart; between
+even places a gap's step at touch would be off.
 """
 LEAST_MOVED = 1e-9
 """Standard deviations of noise: a sensor in which an effect adds less does not see it."""

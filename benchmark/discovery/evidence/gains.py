@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
 from benchmark.discovery import criteria
-from benchmark.discovery.base.effect_model import EffectModel, Fit, fit, settled
+from benchmark.discovery.base.effect_model import Fit, fit, settled
 from benchmark.discovery.base.trials_problem import only
 from benchmark.discovery.discovery_result import Array
 from benchmark.response.least_squares import least_squares
@@ -90,13 +90,12 @@ def refitted_conditions(fitted: Fit) -> Array:
     To first order a strongly curved effect, such as a bond that lets go at a height, may end far beyond what one
     condition tells of it.
     """
-    groups, effects = conditions(fitted), fitted.model.effects
+    groups, model = conditions(fitted), fitted.model
     out = np.empty(groups.size)
     for number in np.unique(groups):
         left, rest = np.flatnonzero(groups == number), np.flatnonzero(groups != number)
-        others = EffectModel(only(fitted.model.problem, rest.tolist()), effects)
+        others, unseen = (replace(model, problem=only(model.problem, some.tolist())) for some in (rest, left))
         found = least_squares(others, fitted.vector, fitted.nuisance[rest], around=fitted.prior_mean)
-        unseen = EffectModel(only(fitted.model.problem, left.tolist()), effects)
         own = settled(unseen, found.vector, fitted.nuisance[left])
         out[left] = fit(unseen, found.vector, own, most=0).log_density(found.vector)
     return out - strain(fitted) / groups.size
