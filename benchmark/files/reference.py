@@ -19,7 +19,7 @@ from benchmark.files.schema import FileModel
 from benchmark.files.sessions.description import SessionFile
 from benchmark.files.tissue import Tissue
 from benchmark.files.units import format_quantity
-from benchmark.physics.reference import effects_reference
+from benchmark.physics import EffectDescription, catalogue
 
 HEAD = """# File reference
 
@@ -27,6 +27,11 @@ Every key of the files that people write, from the schemas that read them; made 
 `python -m benchmark.files.reference`. Quantities are text with a unit, such as `"120 kPa"`; the examples in
 [Files](files.md) show them at work. A quantity may carry its standard uncertainty, `"5 mm +/- 0.05 mm"` or
 `"120 kPa +/- 30 %"`.
+"""
+EFFECTS = """## Effects
+
+What a model can lack, by the name that `discover`, `model.toml` and reports use, in the order of the catalogue. Keys of
+`[physics]` state the same quantities in a scenario. "On top" acts on the force of an elastic press (quasi-linear).
 """
 ROOTS: tuple[tuple[str, type[FileModel]], ...] = (
     ("Tissue", Tissue),
@@ -40,7 +45,8 @@ def reference() -> str:
     """The whole page as Markdown."""
     done: set[type[FileModel]] = set()
     sections = [HEAD, *(line for title, model in ROOTS for line in _section(title, model, done))]
-    return "\n".join([*sections, effects_reference()])
+    effects = (line for effect in catalogue() for line in _effect((effect.richer or effect).description))
+    return "\n".join([*sections, EFFECTS, *effects])
 
 
 def _section(title: str, model: type[FileModel], done: set[type[FileModel]]) -> Iterator[str]:
@@ -115,6 +121,21 @@ def _default(field: FieldInfo) -> str:
                 return "endless"
             return f'`"{format_quantity(value, each.dimension)}"`'
     return f'`"{value}"`' if isinstance(value, str) else "none" if value == () else f"`{str(value).lower()}`"
+
+
+def _effect(effect: EffectDescription) -> Iterator[str]:
+    """An effect's equation, source, how wave and FEM carry it, and its parameters with their bounds."""
+    yield from (f"### `{effect.slug}`", "", f"{effect.sentence} Acts on: {effect.acts_on}.", "")
+    yield from (f"    {effect.equation}", "", f"Source: {effect.source}.")
+    if effect.acts_on == "body":
+        yield from ("", f"Wave: {effect.in_wave or 'not carried'}. FEM: {effect.in_fem or 'not carried'}.")
+    yield from ("", "| parameter | unit | a fit searches | key of `[physics]` | is |", "|---|---|---|---|---|")
+    for each in effect.parameters:
+        key = f"`{each.key}`" if each.key else ""
+        yield f"| `{each.name}` | {each.unit} | {each.low:g} to {each.high:g} | {key} | {each.meaning} |"
+    for each in effect.options:
+        yield f"| | {each.unit} | not searched | `{each.key}` | {each.meaning} |"
+    yield ""
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ from fem.load import Load
 from fem.mesh.solid import AnyMesh
 from fem.problem.problem import Problem
 
-FORMAT = "fem checkpoint 6"
+FORMAT = "fem checkpoint 7"
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,8 @@ class Progress:
         The states in the order in which they were found, the one before the first step included.
     settled
         What the corrections had chosen (k, c) in each state; see :attr:`fem.assembly.item.EquationItem.settled`.
+    accounts
+        Energy up to each state (k, 4); see :class:`fem.analysis.limit_points.Account`.
     seconds
         CPU time in s that all of them took, in however many processes.
     """
@@ -53,6 +55,7 @@ class Progress:
     times: FloatArray
     states: tuple[State, ...]
     settled: FloatArray
+    accounts: FloatArray
     seconds: float
 
 

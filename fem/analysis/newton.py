@@ -45,12 +45,15 @@ class NewtonSettings:
         Most halvings of a correction that turns an element inside out.
     divergence
         Growth of the unbalanced forces over the best so far that counts as divergence.
+    beyond_limits
+        Whether a press may be followed over limit points; see :mod:`fem.analysis.limit_points`.
     """
 
     tolerance: float = 1e-9
     iterations: int = 25
     halvings: int = 5
     divergence: float = 1e6
+    beyond_limits: bool = True
 
 
 def solve_newton(

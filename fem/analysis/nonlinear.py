@@ -10,6 +10,7 @@ import numpy as np
 
 from fem.analysis.checkpoint import Keeper, Progress
 from fem.analysis.equilibrium import Equilibrium, State
+from fem.analysis.limit_points import Account
 from fem.analysis.linear import unit_state
 from fem.analysis.newton import NewtonSettings
 from fem.analysis.record import Record, largest_strain
@@ -18,6 +19,8 @@ from fem.assembly.system import System
 from fem.load import Load
 from fem.results.solution import Failure, Resumed, Solution, StepReport
 
+NOTICED = 1e-3
+"""Share of the work whose loss is told where nothing crept."""
 LEAST_SHARE_OF_PEAK = 1e-3
 
 
@@ -87,9 +90,26 @@ class _Run:
             if advance.reason:
                 failure = Failure(n + 1, time, self.load.control, advance.value, value, advance.reason)
                 further = _between(self.record, self.stepper.problem.system, advance, self.start)
-                return self.record.solution(failure, self.warnings, further)
+                return self.record.solution(failure, self._warned(), further)
             self._accept(n + 1, time, advance)
-        return self.record.solution(None, self.warnings)
+        return self.record.solution(None, self._warned())
+
+    def _warned(self) -> tuple[str, ...]:
+        """The warnings, and what was lost over limit points."""
+        accounts = [Account.of_row(row) for row in self.stepper.accounts]
+        crept, share = accounts[-1].crept, max(accounts[-1].share, 0.0)
+        if not crept and share < NOTICED:
+            return self.warnings
+        where = ""
+        if crept:
+            first = next(n for n, account in enumerate(accounts) if account.crept)
+            state, times = self.stepper.known.states[first], "once" if crept == 1 else f"{crept} times, first"
+            where = f" ({times} at {state.force:.4g} N and {1e3 * self.record.equilibrium.depth(state.y):.4g} mm)"
+        said = (
+            f"the surface snapped past the tool's edge{where}: {100.0 * share:.2g} % of the tool's work was lost, "
+            "and beyond that another mesh may differ by several per cent"
+        )
+        return (*self.warnings, said)
 
     def _accept(self, step: int, time: float, advance: Advance) -> None:
         system, state = self.stepper.problem.system, advance.state
@@ -147,7 +167,7 @@ def _resume(record: Record, stepper: Stepper, checkpoint: Keeper) -> int:
         return 0
     for n, time, reached, strain in zip(found.steps, found.time, found.reactions, found.strains, strict=True):
         record.add(float(time), found.states[n], float(reached), float(strain))
-    stepper.resume(found.values, found.times, found.states, found.settled)
+    stepper.resume(found.values, found.times, found.states, found.settled, found.accounts)
     record.resumed = Resumed(len(found.steps), found.seconds)
     return len(found.steps)
 
@@ -164,5 +184,6 @@ def _progress(record: Record, stepper: Stepper, seconds: float) -> Progress:
         times=stepper.times,
         states=known.states,
         settled=stepper.settled,
+        accounts=stepper.accounts,
         seconds=earlier + seconds,
     )

@@ -35,6 +35,7 @@ class KnownStates:
     def __init__(self, value: float, state: State) -> None:
         self._values = [value]
         self._states = [state]
+        self._first = 0
 
     @property
     def values(self) -> FloatArray:
@@ -46,8 +47,10 @@ class KnownStates:
         """The states in the same order."""
         return tuple(self._states)
 
-    def add(self, value: float, state: State) -> None:
-        """Remember a state."""
+    def add(self, value: float, state: State, *, alone: bool = False) -> None:
+        """Remember a state; behind one that stands alone those before it predict nothing more."""
+        if alone:
+            self._first = len(self._values)
         self._values.append(value)
         self._states.append(state)
 
@@ -60,7 +63,7 @@ class KnownStates:
     def _choose(self, value: float, most: int) -> list[int]:
         """Nearest known states, far enough from each other for the distance to the value."""
         distance = np.abs(np.array(self._values) - value)
-        order = np.argsort(distance, kind="stable")
+        order = self._first + np.argsort(distance[self._first :], kind="stable")
         chosen = [int(order[0])]
         spacing = LEAST_SPACING * max(float(distance[order[0]]), 1e-9 * float(distance.max()))
         for n in order[1:]:

@@ -10,6 +10,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from fem.analysis.equilibrium import Equilibrium, NewtonResult, State
+from fem.analysis.limit_points import GIVES_WAY, Account, creep
 from fem.analysis.newton import NewtonSettings, solve_newton
 from fem.analysis.prediction import LOWEST_ORDER, KnownStates, RecentStates
 from fem.arrays import FloatArray
@@ -23,9 +24,10 @@ MOST_HALVINGS = 40
 """Of the depth with which a tool first touches where its force leads nowhere."""
 FIRST_TOLERANCE = 1e-2
 """Unbalanced forces over the force with which equations whose limits are only guessed are solved."""
-
 HELD_BELOW = 5e-4
 """Tolerance below which such a round begins with the factors of the one before: hardly a node changes any more."""
+AHEAD = (1.0 / 64.0, 1.0 / 8.0)
+"""How far beyond the last equilibrium, of the way to a step, the next one is looked for behind a limit point."""
 
 Control: TypeAlias = Literal["force", "depth"]
 Watch: TypeAlias = Callable[[System, State, float], None]
@@ -149,6 +151,12 @@ class Stepper:
         self._times, self._settled = [time], [problem.system.settled]
         self._known = KnownStates(self._value, self._state)
         self._recent = RecentStates(self._value, self._time, self._state) if problem.system.remembers else None
+        self._accounts = [Account()]
+
+    @property
+    def accounts(self) -> FloatArray:
+        """What the tool did up to each state and what was lost over limit points (k, 4); see :class:`Account`."""
+        return np.stack([account.row for account in self._accounts])
 
     @property
     def known(self) -> KnownStates:
@@ -165,12 +173,14 @@ class Stepper:
         """What the corrections had chosen (k, c) in each; see :attr:`fem.assembly.item.EquationItem.settled`."""
         return np.stack(self._settled)
 
-    def resume(self, values: FloatArray, times: FloatArray, states: Sequence[State], settled: FloatArray) -> None:
+    def resume(
+        self, values: FloatArray, times: FloatArray, states: Sequence[State], settled: FloatArray, accounts: FloatArray
+    ) -> None:
         """Go on from known states, each with its load value (k,) in N or m and its time (k,) in s, the start first."""
-        rows = zip(values.tolist(), times.tolist(), states, settled, strict=True)
-        for value, time, state, chosen in list(rows)[1:]:
+        rows = zip(values.tolist(), times.tolist(), states, settled, accounts, strict=True)
+        for value, time, state, chosen, account in list(rows)[1:]:
             system = self._problem.system.advanced(time - self._time).as_settled(chosen)
-            self._accept(state, value, time, system)
+            self._accept(state, value, time, system, Account.of_row(account))
 
     @property
     def problem(self) -> Equilibrium:
@@ -199,7 +209,7 @@ class Stepper:
                 part *= 0.5
                 cuts += 1
                 if part <= SMALLEST_PART:
-                    if self._touched_by_depth(target, duration):
+                    if self._touched_by_depth(target, duration) or self._goes_beyond(target, duration):
                         further = self.advance(target, time)
                         return replace(further, iterations=further.iterations + iterations, cuts=further.cuts + cuts)
                     return Advance(self._state, self._value, iterations, cuts, result.reason, self._time)
@@ -231,6 +241,45 @@ class Stepper:
                 self._accept(found.state, found.state.force, self._time + share * duration, system)
                 return True
         return False
+
+    def _goes_beyond(self, target: float, duration: float) -> bool:
+        """Take the equations that may be followed over limit points, or creep over one with these; whether it did.
+
+        Only for presses that go deeper, of bodies without a memory, of which the tool's work tells what is lost.
+        """
+        system = self._problem.system
+        deeper = self._state.force > 0.0 and target > self._value
+        if system.remembers or not deeper or not self._settings.beyond_limits:
+            return False
+        beyond = system.beyond_limits()
+        if beyond is not None:
+            self._problem = replace(self._problem, system=beyond)
+            return True
+        return system.is_beyond and any(self._crept(part, target, duration) for part in AHEAD)
+
+    def _crept(self, part: float, target: float, duration: float) -> bool:
+        """Creep over a limit point by a part of the way to a target; whether there is an equilibrium."""
+        problem, value = self._problem, self._value + part * (target - self._value)
+        way = (self._control, value, self._force_scale, self._settings)
+        found, account = creep(problem, self._state, *way, self._accounts[-1])
+        if not found.success or not problem.system.is_sound(found.state.y):
+            return False
+        self._accept(found.state, value, self._time + part * duration, problem.system, account)
+        return True
+
+    def _account_at(self, state: State, system: System) -> Account:
+        """The account after the way from the last state of equilibrium to another of some equations."""
+        return self._accounts[-1].after(self._problem, self._state, state, beyond=system.is_beyond)
+
+    def _judged(self, result: NewtonResult, system: System) -> NewtonResult:
+        """The result; beyond limit points it fails where the surface enters the tool, or too much work is lost."""
+        if not result.success or not system.is_beyond:
+            return result
+        if not system.is_sound(result.state.y):
+            return replace(result, reason="the surface enters the tool between its nodes")
+        if self._account_at(result.state, system).overdrawn:
+            return replace(result, reason=GIVES_WAY)
+        return result
 
     def _solve(self, value: float, time: float) -> tuple[NewtonResult, System]:
         """Newton's result at a load value and a time, and the equations that fit it."""
@@ -282,19 +331,23 @@ class Stepper:
             iterations += result.iterations
             other = system.corrected(result.state.y, result.state.force) if result.success else None
             if other is None and (tolerance <= wanted or not result.success):
-                return replace(result, iterations=iterations), system
+                return self._judged(replace(result, iterations=iterations), system), system
             tolerance = max(wanted, 0.1 * tolerance) if other is not None else wanted
             system, guess = other or system, result.state
             held = result.round_off if tolerance < HELD_BELOW and direct else None
         return NewtonResult(guess, iterations, f"friction does not settle in {MOST_CORRECTIONS} rounds"), system
 
-    def _accept(self, state: State, value: float, time: float, system: System) -> None:
+    def _accept(self, state: State, value: float, time: float, system: System, account: Account | None = None) -> None:
+        """Take a state of equilibrium as the last one, with its account where a straight way there tells another."""
+        account = account or self._account_at(state, system)
+        crept = account.crept > self._accounts[-1].crept
+        self._accounts.append(account)
         if self._watch is not None:
             self._watch(system, state, time)
         self._problem = replace(self._problem, system=system.accepted(state.y))
         self._state, self._value, self._time = state, value, time
         self._times.append(time)
         self._settled.append(system.settled)
-        self._known.add(value, state)
+        self._known.add(value, state, alone=crept)
         if self._recent is not None:
             self._recent.add(value, time, state)

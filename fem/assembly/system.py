@@ -8,9 +8,11 @@ import numpy as np
 
 from fem.arrays import FloatArray, IntArray
 from fem.assembly.elements import Elements, ElementState
-from fem.assembly.item import EquationItem, ItemForces
+from fem.assembly.item import EquationItem, ItemForces, ViscousDrag
 from fem.assembly.scatter import Numbering, Scatter, widened
 from fem.linear_solver.iterative import ElementTangent
+
+GAUSS_POINTS = 5  # on the way from one state to another
 
 
 @dataclass(frozen=True)
@@ -202,6 +204,55 @@ class System:
         if all(other is None for other in others):
             return None
         return replace(self, items=tuple(other or item for other, item in zip(others, self.items, strict=True)))
+
+    def slowed(self, duration: float, y: FloatArray) -> tuple[System, ViscousDrag]:
+        """The equations with a drag against the way from unknowns y (n,), and the drag.
+
+        The body's viscosity is such that each element's shear modulus and volume, over the whole volume's size squared,
+        hold its nodes back in a time of 1.
+
+        Parameters
+        ----------
+        duration
+            Time in which the way is covered, in that unit.
+        y
+            Unknowns (n,) at its begin.
+        """
+        volume = self.elements.geometry.weight.sum(axis=0)
+        share = self.elements.laws.shear_modulus * volume / (len(self.scatter.element_unknowns) * duration)
+        held = self.scatter.vector(np.broadcast_to(share, self.scatter.element_unknowns.shape))
+        where = np.flatnonzero(held > 0.0)
+        drag = ViscousDrag(where, held[where] / float(volume.sum()) ** (2.0 / 3.0), y[where])
+        places: tuple[IntArray, ...] = (*self.places, self.scatter.indptr[where].astype(np.int64))
+        return replace(self, items=(*self.items, drag), places=places), drag
+
+    @property
+    def is_beyond(self) -> bool:
+        """Whether they may be followed over limit points."""
+        return any(item.is_beyond for item in self.items)
+
+    def beyond_limits(self) -> System | None:
+        """The equations that may be followed over limit points; None if they are these, or may not."""
+        return self._with([item.beyond_limits() for item in self.items])
+
+    def taken(self, start: FloatArray, end: FloatArray) -> float:
+        """Energy in J that elements without a memory take on the way from unknowns y (n,) to others.
+
+        Their forces have a potential, so any way will do: the straight one, by Gauss's rule. NaN where that turns an
+        element inside out.
+        """
+        total, way = 0.0, self.scatter.gather(end - start)
+        for place, weight in zip(*np.polynomial.legendre.leggauss(GAUSS_POINTS), strict=True):
+            y = start + 0.5 * (1.0 + place) * (end - start)
+            state = self.elements.evaluate(self.element_displacement(y), self.elements.rest_pressure)
+            if state is None:
+                return np.nan
+            total += 0.5 * weight * float(np.sum(state.force * way))
+        return total
+
+    def is_sound(self, y: FloatArray) -> bool:
+        """Whether all items are at unknowns y (n,); see :meth:`fem.assembly.item.EquationItem.is_sound`."""
+        return all(item.is_sound(y) for item in self.items)
 
     def warnings(self, y: FloatArray) -> tuple[str, ...]:
         """What a person must know of the accepted state y (n,)."""

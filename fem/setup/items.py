@@ -155,4 +155,6 @@ def tool_contact(problem: Problem, mesh: AnyMesh, numbering: Numbering, punch: P
     gap = punch.gap(place)
     anchor = place[:-1] if gap is None else gap.path
     penalty = PENALTY * problem.layers[0].material.shear_modulus / punch.radius * area[nodes]
-    return ToolContact(punch, place, own, Friction(penalty, np.zeros(len(nodes)), anchor))
+    first, second = (int(n) for n in np.argsort(place[0])[:2])
+    axis = (first, second) if isinstance(mesh, Mesh) else None
+    return ToolContact(punch, place, own, Friction(penalty, np.zeros(len(nodes)), anchor), axis=axis)

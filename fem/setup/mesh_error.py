@@ -49,7 +49,8 @@ class MeshError:
     quantity
         "depth" or "force": what the load leaves free.
     load
-        The load value (N or m) at which it is told: the largest, or half of it where larger elements fold before.
+        The load value (N or m) at which it is told: the largest, or half of it where larger elements have no state
+        near the run's.
     value
         The quantity (m or N) in the run.
     halved
@@ -112,9 +113,9 @@ def estimate_mesh_error(model: Model, load: Load, solution: Solution, *, first_o
     began = clock.process_time()
     quantity = "depth" if load.control == "force" else "force"
     edges = EDGES[:2] if first_order else EDGES
-    for step in _judged_steps(model.problem, reached):
+    for step, follow in _judged_steps(model, reached):
         pressed = _Pressed.of(solution, step)
-        further = list(_coarser(model.problem, _shortened(model.problem, load, step), pressed, edges))
+        further = list(_coarser(model.problem, _shortened(model.problem, load, step), pressed, edges, follow=follow))
         if further:
             break
     else:
@@ -129,11 +130,21 @@ def estimate_mesh_error(model: Model, load: Load, solution: Solution, *, first_o
     )
 
 
-def _judged_steps(problem: Problem, reached: FloatArray) -> list[int]:
-    """The step of the largest load, and without a memory that nearest to half of it, if larger elements fold before."""
+def _judged_steps(model: Model, reached: FloatArray) -> list[tuple[int, bool]]:
+    """Steps at which to try, and whether the way there from rest may be followed: at last, since it costs most.
+
+    That of the largest load, and without a memory that nearest to half of it.
+    """
     peak = int(np.abs(reached).argmax())
     half = int(np.abs(reached[: peak + 1] - 0.5 * reached[peak]).argmin())
-    return [peak] if _remembers(problem) or half == peak else [peak, half]
+    steps = [peak] if _remembers(model.problem) or half == peak else [peak, half]
+    return [(step, follow) for follow in ((False, True) if _has_near(model) else (True,)) for step in steps]
+
+
+def _has_near(model: Model) -> bool:
+    """Whether a state may be sought near another one: the way there does not count, and the mesh is plane."""
+    linear = model.problem.kinematics == "linear"
+    return isinstance(model.mesh, Mesh) and not linear and not _remembers(model.problem)
 
 
 @dataclass(frozen=True)
@@ -164,8 +175,13 @@ class _Pressed:
         return found
 
 
-def _coarser(problem: Problem, load: Load, pressed: _Pressed, factors: Sequence[float]) -> Iterator[tuple[float, int]]:
-    """What half as many elements give, and unknowns; at a stuck edge also with elements larger there by the factors."""
+def _coarser(
+    problem: Problem, load: Load, pressed: _Pressed, factors: Sequence[float], *, follow: bool
+) -> Iterator[tuple[float, int]]:
+    """What half as many elements give, and unknowns; at a stuck edge also with elements larger there by the factors.
+
+    The first is sought near the state `pressed` or, with `follow`, followed from rest; the others are if need be.
+    """
     own, before = problem.discretisation, 0
     edges = [own.edge * factor for factor in factors if own.edge * factor <= LARGEST_EDGE]
     for edge in edges if _is_stuck(problem) else edges[:1]:
@@ -175,7 +191,10 @@ def _coarser(problem: Problem, load: Load, pressed: _Pressed, factors: Sequence[
             return
         if model.unknowns == before:
             return  # there is no fan
-        found, before = _found_near(model, load, pressed) or _followed(model, load), model.unknowns
+        found = _found_near(model, load, pressed)
+        if found is None and (follow or before):
+            found = _followed(model, load)
+        before = model.unknowns
         if found is None:
             return
         yield found.value(load.control), model.unknowns
@@ -185,7 +204,7 @@ def _coarser(problem: Problem, load: Load, pressed: _Pressed, factors: Sequence[
 def _found_near(model: Model, load: Load, pressed: _Pressed) -> _Pressed | None:
     """The end of a load history on this mesh, from a state nearby; None where the way there counts, or is needed."""
     problem, mesh, settings = model.equilibrium, model.mesh, model.newton
-    if not isinstance(mesh, Mesh) or model.problem.kinematics == "linear" or _remembers(model.problem):
+    if not _has_near(model) or not isinstance(mesh, Mesh):
         return None
     guess = from_displacement(problem, mesh, pressed.at(mesh.nodes), pressed.force, pressed.depth)
     with suited_threads(model.unknowns):
@@ -197,7 +216,8 @@ def _found_near(model: Model, load: Load, pressed: _Pressed) -> _Pressed | None:
 
 
 def _followed(model: Model, load: Load) -> _Pressed | None:
-    """The end of a load history, followed from rest; None where it cannot be."""
+    """The end of a load history, followed from rest; None where it cannot be without going over limit points."""
+    model = replace(model, newton=replace(model.newton, beyond_limits=False))
     found = model.run(load)
     return _Pressed.of(found, -1) if found.complete else None
 

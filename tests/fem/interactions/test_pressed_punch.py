@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import fem
+from fem.analysis import limit_points, stepping
 from fem.interactions.punch import Punch
 
 SKIN = ((1e-4, 1e6), (1.5e-3, 1e5), (1e-2, 2e4))
@@ -156,3 +157,43 @@ def test_real_contact_is_for_finite_strain():
     tool = fem.Tool(5e-3, "rigid_frictional", 5e-4, friction_coefficient=0.3)
     with pytest.raises(fem.FemError, match="kinematics = 'finite' only"):
         fem.prepare(fem.Problem((layer,), tool, fem.Support("bonded"), "linear"))
+
+
+SNAPS = fem.Load("depth", np.arange(1, 4) / 3, 0.15e-3 * np.arange(1, 4))
+
+
+def soft_pad():
+    """1 mm of 5 kPa, whose surface snaps past the tool's edge at 0.345 mm and deeper."""
+    pad = fem.Layer("pad", 1e-3, 1e3, fem.NeoHookean(5e3, 0.45))
+    tool = fem.Tool(5e-3, "rigid_frictionless", 3e-4)
+    return fem.prepare(
+        fem.Problem((pad,), tool, fem.Support("bonded"), discretisation=fem.Discretisation("coarse")),
+    )
+
+
+def test_a_press_goes_over_limit_points_and_tells_what_that_lost(tmp_path, monkeypatch):
+    whole = soft_pad().run(SNAPS)
+    assert whole.complete
+    assert any("snapped past the tool's edge (2 times, first at 0.45" in text for text in whole.warnings)
+    np.testing.assert_allclose(whole.depth, SNAPS.value, rtol=1e-9)
+    assert (np.diff(whole.reaction) > 0.0).all()
+
+    def stop_at_the_last(report):
+        if report.step == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        soft_pad().run(SNAPS, stop_at_the_last, tmp_path / "steps.kept")
+    resumed = soft_pad().run(SNAPS, checkpoint=tmp_path / "steps.kept")
+    np.testing.assert_array_equal(resumed.reaction, whole.reaction)
+    assert resumed.warnings == whole.warnings
+
+    monkeypatch.setattr(stepping, "AHEAD", ())
+    stopped = soft_pad().run(SNAPS)
+    assert stopped.failure.step == 3
+    np.testing.assert_array_equal(stopped.reaction, whole.reaction[:2])
+
+
+def test_a_way_that_would_lose_too_much_is_not_taken(monkeypatch):
+    monkeypatch.setattr(limit_points, "MOST_LOST", 1e-9)
+    assert not soft_pad().run(SNAPS).complete

@@ -1,11 +1,12 @@
-"""The contact of nodes in three dimensions: its stiffness is the derivative of its force."""
+"""The contact of nodes: its stiffness is the derivative of its force; the node on the axis; entry between nodes."""
 
 import numpy as np
 import pytest
 
+import fem
 from fem.interactions.active_set import Friction
 from fem.interactions.punch import Punch, standing
-from fem.interactions.tool_contact import ToolContact
+from fem.interactions.tool_contact import MOST_ENTRY, ToolContact
 
 NODES, STEP = 6, 1e-7
 
@@ -75,3 +76,43 @@ def test_the_punch_presses_by_what_the_nodes_push():
     found = made.touch(y)
     assert found.press == pytest.approx(-found.force[3].sum())
     assert found.press == pytest.approx(found.force[2].sum())
+
+
+def row(axis):
+    """Five nodes in axial symmetry; unknowns (2, 5), the punch's, multipliers (5,)."""
+    place = np.array([[0.0, 2.0, 4.0, 4.5, 5.0], [0.0, 0.0, 0.0, 0.0, 0.0]])
+    own = np.concatenate((np.arange(10).reshape(2, 5), np.full((1, 5), 10), 11 + np.arange(5)[None]))
+    return ToolContact(Punch(5.0, 1.0), place, own, Friction(np.ones(5), np.zeros(5), place[:1]), axis=axis)
+
+
+@pytest.mark.parametrize(("beside", "touches"), [(1e-3, True), (-1e-3, False)])
+def test_beyond_limits_the_node_on_the_axis_touches_where_the_next_one_does(beside, touches):
+    """Its own multiplier pulls a little, which says nothing of the pressure there."""
+    y = np.zeros(16)
+    y[11:13] = -1e-4, beside
+    y[[6, 5]] = -beside, 1e-4
+    joined = row((0, 1)).beyond_limits()
+    assert joined.is_beyond
+    assert joined.beyond_limits() is None
+    assert joined.active(y)[:2].tolist() == [touches, touches]
+    assert not row((0, 1)).active(y)[0]
+    assert row(None).beyond_limits() is None
+    again = row((0, 1)).as_settled(joined.settled)
+    assert again.joined
+
+
+def test_an_axisymmetric_tool_knows_its_node_on_the_axis():
+    layer = fem.Layer("gel", 4e-3, 1e3, fem.NeoHookean(1e4, 0.48))
+    model = fem.prepare(fem.Problem((layer,), fem.Tool(5e-3, "rigid_frictionless", 5e-4), fem.Support("bonded")))
+    made = model.equilibrium.system.items[0]
+    first, second = made.axis
+    assert made.place[0, first] == 0.0
+    assert made.place[0, second] == np.sort(made.place[0])[1]
+
+
+@pytest.mark.parametrize(("share", "sound"), [(0.9, True), (1.1, False)])
+def test_a_surface_that_enters_between_its_nodes_is_not_sound(share, sound):
+    """An element whose middle node is in the face: its parabola enters by three quarters of that half way."""
+    y = np.zeros(16)
+    y[6] = share * MOST_ENTRY / 0.75
+    assert row((0, 1)).is_sound(y) == sound

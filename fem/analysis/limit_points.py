@@ -1,0 +1,130 @@
+"""Over limit points: to the next equilibrium where none is near, and what the way there loses.
+
+Under a tool without friction soft tissue slides out over the edge, and where it slips round, equilibrium ends in force
+and mostly in depth. What the slip sets free is lost, as it would be to viscosity or in waves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from fem.analysis.equilibrium import Equilibrium, NewtonResult, State
+from fem.analysis.newton import NewtonSettings, solve_newton
+from fem.arrays import FloatArray
+
+MOST_LOST = 0.02
+"""Of the tool's work, that all ways over limit points together may lose."""
+LEAST_GAIN = 1e-5
+"""Of the tool's work, above which energy is taken for gained and not for unbalanced by a tolerance."""
+GIVES_WAY = "the tissue gives way"
+FIRST_DURATION = 1e-4
+"""Of a creeping body's first step, in its own time (:meth:`fem.assembly.system.System.slowed`)."""
+MOST_CREEP = 100  # steps
+MOST_IN_CREEP, FEW = 15, 8  # corrections in a step, and up to which the next one is twice as long
+AT_REST = 1e-2  # drag over the force, below which equilibrium without it is near
+
+
+@dataclass(frozen=True)
+class Account:
+    """Energy in J of a press up to a state.
+
+    Attributes
+    ----------
+    work
+        What the tool did, by the trapezoidal rule from state to state.
+    most
+        The largest it was.
+    lost
+        What of it the body did not take, from the first limit point on.
+    crept
+        How often the body crept over one.
+    """
+
+    work: float = 0.0
+    most: float = 0.0
+    lost: float = 0.0
+    crept: int = 0
+
+    def after(self, problem: Equilibrium, start: State, end: State, *, beyond: bool) -> Account:
+        """The account after the way from one state to another; what is lost counts where that is beyond limits."""
+        done = 0.5 * (start.force + end.force) * (problem.depth(end.y) - problem.depth(start.y))
+        lost = done - problem.system.taken(start.y, end.y) if beyond else 0.0
+        return Account(self.work + done, max(self.most, self.work + done), self.lost + lost, self.crept)
+
+    @property
+    def row(self) -> FloatArray:
+        """The four as numbers (4,); `Account.of_row` makes them an account again."""
+        return np.array([self.work, self.most, self.lost, self.crept])
+
+    @classmethod
+    def of_row(cls, row: FloatArray) -> Account:
+        """The account of numbers (4,)."""
+        work, most, lost, crept = row.tolist()
+        return cls(work, most, lost, int(crept))
+
+    @property
+    def share(self) -> float:
+        """What is lost of the largest work."""
+        return self.lost / self.most if self.most > 0.0 else 0.0
+
+    @property
+    def overdrawn(self) -> bool:
+        """Whether more is lost than may be, or nobody knows."""
+        return not self.lost <= MOST_LOST * self.most
+
+
+def creep(
+    problem: Equilibrium,
+    start: State,
+    control: Literal["force", "depth"],
+    target: float,
+    force_scale: float,
+    settings: NewtonSettings,
+    account: Account,
+) -> tuple[NewtonResult, Account]:
+    """Let a body without a memory creep from one equilibrium to another, against a drag that ends as it comes to rest.
+
+    Viscous stabilisation by implicit Euler steps (P. Wriggers, Nonlinear Finite Element Methods, 2008, section 5.2).
+    A step in which the body takes more than the tool gives leads to a state to which nothing creeps, and is made
+    smaller.
+
+    Parameters
+    ----------
+    problem, control, target, force_scale, settings
+        See :func:`solve_newton`.
+    start
+        The equilibrium to begin from, at another load value.
+    account
+        Of the press up to there; the creep ends where it is overdrawn.
+
+    Returns
+    -------
+    tuple
+        The result, in equilibrium without any drag, and the account there.
+    """
+    state, duration, before, iterations = start, FIRST_DURATION, 0.0, 0
+    account = replace(account, crept=account.crept + 1)
+    few = replace(settings, iterations=MOST_IN_CREEP)
+    for _ in range(MOST_CREEP):
+        system, drag = problem.system.slowed(duration, state.y)
+        found = solve_newton(replace(problem, system=system), state, control, target, force_scale, few)
+        iterations += found.iterations
+        now = account.after(problem, state, found.state, beyond=True) if found.success else account
+        if not found.success or not now.lost >= account.lost - LEAST_GAIN * now.most:
+            duration *= 0.25
+            continue
+        if now.overdrawn:
+            return NewtonResult(start, iterations, GIVES_WAY), now
+        pull = float(np.linalg.norm(drag.respond(found.state.y).force))
+        state, account, duration = found.state, now, duration * (2.0 if found.iterations <= FEW else 1.0)
+        if pull <= min(AT_REST * abs(state.force), before):
+            last = solve_newton(problem, state, control, target, force_scale, settings)
+            iterations += last.iterations
+            then = account.after(problem, state, last.state, beyond=True) if last.success else account
+            if last.success and then.lost >= account.lost - LEAST_GAIN * then.most:
+                return replace(last, iterations=iterations), then
+        before = pull
+    return NewtonResult(start, iterations, "no equilibrium beyond a limit point"), account
