@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -101,6 +102,18 @@ class BlindCase:
     strength: float
     gain_scatter: float
     bad_trial: str
+
+    @cached_property
+    def unexplained(self) -> float | None:
+        """D of the hidden effect that is weakest beside what the session does not state of the layers; None on a null.
+
+        A discovery must let the base explain as much, since nobody told it more; `strength` counts what is off.
+        """
+        if not self.effects:
+            return None
+        scene = replace(self.scene, lab=self.scene.lab.unsure)
+        base = base_of(scene)
+        return min(strength(scene, base, [effect]) for effect in self.effects)
 
 
 def make_case(name: CaseName) -> BlindCase:

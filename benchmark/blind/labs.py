@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,9 @@ Draw = Callable[[np.random.Generator], "LabConditions"]
 PRINTED = 0.06e-3
 """Standard deviation of dots made by hand with a stencil, m."""
 USUAL_RATE = 30.0
-AS_TOLD = "as_told"
+USUAL_THICKNESS_ERROR, USUAL_MODULUS_ERROR = 0.035, 0.35
+"""What people know of a layer who do not say how well: the middles of 2 to 5 % and 20 to 50 %."""
+AS_TOLD, UNSTATED = "as_told", "unstated"
 
 
 @dataclass(frozen=True)
@@ -69,6 +71,20 @@ class LabConditions:
     def doubtful(self) -> bool:
         """Whether the strength of an effect must leave room for what the lab does not know."""
         return self.name != AS_TOLD
+
+    @property
+    def unsure(self) -> LabConditions:
+        """The same lab, with what it does not state of the layers as uncertain as that usually is."""
+        if self.stated and (self.modulus_error or self.thickness_error):
+            return self
+        thickness = max(self.thickness_error, USUAL_THICKNESS_ERROR)
+        return replace(
+            self,
+            name=self.name if self.doubtful else UNSTATED,
+            stated=False,
+            thickness_error=thickness,
+            modulus_error=max(self.modulus_error, USUAL_MODULUS_ERROR),
+        )
 
     @property
     def in_words(self) -> str:

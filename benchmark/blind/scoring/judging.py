@@ -65,6 +65,8 @@ class Judged:
         That were done after the first answer.
     set_before : str
         The first effect and its look-alikes before them.
+    unexplained : float or None
+        D of the weakest hidden effect beside what the session does not state of its layers.
     """
 
     case: str
@@ -92,6 +94,7 @@ class Judged:
     setup_off: str = ""
     experiments: int = 0
     set_before: str = ""
+    unexplained: float | None = None
 
     @property
     def first(self) -> str:
@@ -186,6 +189,7 @@ def _silent(case: BlindCase, verdict: str, seconds: float) -> Judged:
         markers=case.scene.grid is not None,
         trials=case.scene.repeats * len(case.scene.plans),
         setup_off="+".join(_setup_off(case)),
+        unexplained=case.unexplained,
     )
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 
 from benchmark.blind.scoring.judging import CONFIDENT, IMPOSSIBLE, Judged, both_named
 from benchmark.blind.scoring.measure_rows import BlindRow, average, clopper_pearson, median, share
+from benchmark.blind.strength import SHOWS
 
 INSTRUMENTS = frozenset(
     {"contact_gap", "off_centre_load", "machine_compliance", "backlash", "tool_inertia", "force_drift"}
@@ -30,13 +31,15 @@ def lab_table(cases: Sequence[Judged]) -> tuple[BlindRow, ...]:
     printed, off = _of_lab(singles, "printed"), _of_lab(singles, "as_labs_are")
     clamped = _of_lab(enough, "clamped_otherwise")
     bare = [case for case in singles if not case.markers]
-    nulls = [case for case in cases if case.kind == "null"]
+    nulls, pairs = [case for case in cases if case.kind == "null"], [case for case in enough if case.kind == "pair"]
     tissue = [case for case in singles if case.truth not in INSTRUMENTS]
     usual = [case for case in enough if case.markers and case.trials == USUAL_TRIALS]
     few = [case for case in cases if case.trials < ENOUGH_TRIALS]
     return (
         share("printed: right name first", printed, first_right, ">= 0.9"),
         share("printed: first or a look-alike of it", printed, alike_right, ">= 0.95"),
+        share("printed, seen beside what is not stated: first", _seen(printed), first_right, ""),
+        share("... first or a look-alike of it", _seen(printed), alike_right, ""),
         share("clamp: right name or set-up first", _singles(clamped), _right_or_setup, ">= 0.75"),
         share("clamp: wrong instrument, confident", clamped, _wrongly(INSTRUMENTS), "<= 0"),
         share("as labs are: right name first", off, first_right, ">= 0.75"),
@@ -47,7 +50,8 @@ def lab_table(cases: Sequence[Judged]) -> tuple[BlindRow, ...]:
         share("without markers: in the set", bare, in_set, ">= 0.92"),
         _effects_reached(singles),
         share("tissue: sensor, confident", tissue, _wrongly(SENSORS), "<= 0"),
-        share("pairs: both named, all labs", [case for case in enough if case.kind == "pair"], both_named, ">= 0.8"),
+        share("pairs: both named, all labs", pairs, both_named, ">= 0.8"),
+        share("pairs seen beside what is not stated: both named", _seen(pairs), both_named, ""),
         share("outside: confident wrong, all labs", _outside(enough), _wrongly(None), "<= 0.05"),
         median("seconds, ten trials with markers", usual, lambda case: case.seconds, "<= 30"),
         share("fewer than six trials: something named", few, lambda case: bool(case.said), ""),
@@ -107,6 +111,11 @@ def _effects_reached(singles: Sequence[Judged]) -> BlindRow:
     if not n:
         return BlindRow("effects with 80 % in the set", 0.0, (0.0, 1.0), 0, ">= 1", None)
     return BlindRow("effects with 80 % in the set", hits / n, clopper_pearson(hits, n), n, ">= 1", hits == n, True)
+
+
+def _seen(cases: Sequence[Judged]) -> list[Judged]:
+    """Cases whose effects all show beside what their sessions do not state of the layers."""
+    return [case for case in cases if case.unexplained is not None and case.unexplained >= SHOWS]
 
 
 def _of_lab(cases: Sequence[Judged], lab: str) -> list[Judged]:

@@ -159,5 +159,5 @@ def test_the_first_cases_of_a_mixed_suite(stub: Path, tmp_path: Path, capsys: py
     assert rows["nulls named, all labs"]["bar"] == "<= 0.01"
     written = (out / "cases.csv").read_text().splitlines()
     assert len(written) == 3
-    assert written[0].endswith("family,lab,conditions,markers,trials,setup_off,experiments,set_before")
+    assert written[0].endswith("family,lab,conditions,markers,trials,setup_off,experiments,set_before,unexplained")
     assert [name.text for name in suite("labs", 6)[:2]] == [line.partition(",")[0] for line in written[1:]]

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmark.blind.cases import BlindCase
+from benchmark.blind.cases import BlindCase, CaseName, make_case
 from benchmark.blind.hidden.hidden_effect import Hidden
+from benchmark.blind.labs import USUAL_MODULUS_ERROR, USUAL_THICKNESS_ERROR, LabConditions
 from benchmark.blind.scene import Noise, whiten
 from benchmark.blind.session_files import remembered
 from benchmark.blind.simulate import Signals
@@ -37,3 +38,22 @@ def test_whitened_noise_is_white_with_unit_size(saturation: BlindCase) -> None:
     white = whiten(scene, Signals(noise, None, None)).force
     assert white.std() == pytest.approx(1.0, rel=0.05)
     assert abs(np.mean(white[1:] * white[:-1])) < 0.02
+
+
+def test_what_nobody_states_of_the_layers_takes_up_what_looks_like_it() -> None:
+    """A perspective looks like another thickness; a bond that tears after the press looks like none."""
+    perspective = make_case(CaseName("effect", "perspective", 39108, lab="printed"))
+    adhesion = make_case(CaseName("effect", "adhesion", 0, lab="printed"))
+    assert perspective.unexplained < 0.5 * perspective.strength
+    assert 0.95 * adhesion.strength < adhesion.unexplained <= 1.001 * adhesion.strength
+    assert make_case(CaseName("null", "", 0)).unexplained is None
+
+
+def test_a_lab_that_states_its_errors_is_taken_at_its_word() -> None:
+    stated = LabConditions(name="as_labs_are", thickness_error=0.01, modulus_error=0.1)
+    assert stated.unsure == stated
+    silent = replace(stated, stated=False).unsure
+    assert (silent.thickness_error, silent.modulus_error) == (USUAL_THICKNESS_ERROR, USUAL_MODULUS_ERROR)
+    assert LabConditions().unsure.doubtful
+    worse = LabConditions(thickness_error=0.1, stated=False)
+    assert worse.unsure.thickness_error == 0.1

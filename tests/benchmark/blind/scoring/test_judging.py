@@ -188,3 +188,19 @@ def test_a_case_that_cannot_be_made_counts_nowhere() -> None:
 )
 def test_what_is_right_depends_on_the_kind(case: Judged, said: bool) -> None:
     assert right(case) is said
+
+
+def test_what_a_session_lets_show_counts_by_itself() -> None:
+    """Beside the bar, which takes every case."""
+    seen = replace(CASE, lab="printed", unexplained=20.0)
+    hidden = replace(SILENT, lab="printed", unexplained=2.3)
+    pair = replace(CASE, kind="pair", truth="adhesion+force_drift", said="adhesion", unexplained=4.9)
+    rows = lab_rows(seen, hidden, pair, replace(NULL, lab="printed"), replace(WRONG, lab="printed"))
+    assert (rows["printed: right name first"].n, rows["printed: right name first"].passed) == (3, False)
+    assert (rows["printed, seen beside what is not stated: first"].n, rows["printed: right name first"].bar) == (
+        1,
+        ">= 0.9",
+    )
+    assert rows["printed, seen beside what is not stated: first"].value == 1.0
+    assert rows["pairs: both named, all labs"].n == 1
+    assert rows["pairs seen beside what is not stated: both named"].n == 0
