@@ -4,6 +4,8 @@ VENV   := .venv
 PY     := $(VENV)/bin/python
 RUN_STAMP := $(VENV)/.run-ready
 DEV_STAMP := $(VENV)/.dev-ready
+# Each of many processes would compile the same modules anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 BENCHES := bench-wave bench-accuracy bench-peers bench-scale bench-liver bench-vision bench-tracking bench-gate bench-sweep bench-discovery bench-effects bench-derivatives bench-haptic bench-press bench-fit
 .PHONY: help run test test-slow test-torture $(BENCHES) lint types imports check docs pictures lock clean
@@ -49,8 +51,12 @@ $(DEV_STAMP): requirements-dev.lock $(RUN_STAMP)
 run: $(RUN_STAMP)
 	$(PY) -m benchmark run
 
+# Two processes share the cores: one thread a library in each. What is shared by tests is made by one of them, mostly.
+test: export OPENBLAS_NUM_THREADS = 1
+test: export OMP_NUM_THREADS = 1
+test: export MKL_NUM_THREADS = 1
 test: $(DEV_STAMP)
-	$(PY) -m pytest -n 2
+	$(PY) -m pytest -n 2 --dist worksteal
 
 test-slow: $(DEV_STAMP)
 	$(PY) -m pytest -n 2 -m slow

@@ -7,6 +7,7 @@ fail there, and only its layout and its SVG are left out, which have tests of th
 """
 
 import os
+from collections.abc import Iterator
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -19,6 +20,14 @@ settings.load_profile("same_each_run")
 os.environ["TISSUEBENCH_CACHE"] = ""
 
 BLANK = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"/>'
+
+
+@pytest.fixture(autouse=True, scope="session")
+def no_waiting_for_the_disk() -> Iterator[None]:
+    """Files are written, closed and renamed as ever, and read again from memory: no test cuts the power."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "fsync", os.fstat)  # which wants an open file, too
+        yield
 
 
 @pytest.fixture

@@ -62,6 +62,7 @@ def test_side_by_side_names_what_changed(benchmark_cli, runs, tmp_path: Path) ->
     assert "second, wave model" not in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_side_by_side_names_other_models(benchmark_cli, runs, tmp_path: Path) -> None:
     fea = runs[0] / "tables/max_deformation.csv"
     assert main(["run", "skin-5N", *SMALL, "--reference", str(fea), "--out", str(tmp_path / "mine")]) == 0

@@ -105,6 +105,7 @@ def test_without_a_single_result_it_exits_4(benchmark_cli, tmp_path: Path) -> No
     assert (frame_of(tmp_path / "s").status == "failed").all()
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("sample", ["lhs", "sobol"])
 def test_samples_take_their_number_of_points(benchmark_cli, tmp_path: Path, sample: str) -> None:
     drawn = ("--sample", sample, "--points", "3", "--seed", "4")
@@ -164,6 +165,7 @@ def test_what_it_refuses(benchmark_cli, tmp_path: Path, arguments, words) -> Non
     assert not (tmp_path / "s" / "points.parquet").exists()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_another_command_on_the_same_folder_is_refused(benchmark_cli, tmp_path: Path) -> None:
     arguments = ("sweep", "skin-5N", *SMALL, "--out", tmp_path / "s", "--quiet", "--vary")
     assert benchmark_cli(*arguments, "tool.radius=3 mm,5 mm").code == 0

@@ -109,16 +109,27 @@ class Deformed:
             out[..., own.columns] += own.stress
         return out
 
-    @property
+    @cached_property
     def _along_inverse(self) -> FloatArray:
         return np.asarray(self.bulk * (self.J - 1.0) * self.J - self.scale * self.first / 3.0)
+
+    @cached_property
+    def _by_volume(self) -> tuple[FloatArray, FloatArray]:
+        """(...) and (...) Pa, what a change of volume is multiplied by: for the shear, per its modulus, and bulk."""
+        return np.asarray(2.0 / 9.0 * self.first), np.asarray(self.bulk * (2.0 * self.J - 1.0) * self.J)
+
+    @cached_property
+    def _plane_cofactor(self) -> FloatArray:
+        """(4, ...) of F."""
+        return _cofactor(self.F)[:4]
 
     def stress_change(self, change: FloatArray) -> FloatArray:
         """(5, ...) change of stress with a change (5, ...) of F, to first order."""
         volume = np.einsum("i...,i...->...", self.H, change)
         stretch = np.einsum("i...,i...->...", self.F, change)
-        along = self.scale * (2.0 / 9.0 * self.first * volume - 2.0 / 3.0 * stretch)
-        along += self.bulk * (2.0 * self.J - 1.0) * self.J * volume
+        shear, bulk = self._by_volume
+        along = self.scale * (shear * volume - 2.0 / 3.0 * stretch)
+        along += bulk * volume
         out = self.scale * (change - (2.0 / 3.0) * volume * self.F)
         out += along * self.H
         out += self._along_inverse * self._inverse_change(change)
@@ -129,7 +140,7 @@ class Deformed:
     def _inverse_change(self, change: FloatArray) -> FloatArray:
         """(5, ...) change of H."""
         turned = _cofactor(change)
-        plane = np.einsum("i...,i...->...", _cofactor(self.F)[:4], change[:4])
+        plane = np.einsum("i...,i...->...", self._plane_cofactor, change[:4])
         turned[:4] = (turned[:4] - self.H[:4] * plane) / self.plane
         turned[4] = -change[4] * self.H[4] ** 2
         return turned

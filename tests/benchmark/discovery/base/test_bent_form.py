@@ -63,16 +63,28 @@ def test_a_pull_in_the_air_that_the_form_of_a_relaxation_misses_is_no_drift(sess
     assert bent(first, ["viscoelastic_relaxation"]).objective == pytest.approx(first.objective, rel=1e-3)
 
 
+@pytest.fixture(scope="module")
+def drifting(quick_session, tmp_path_factory):
+    """The base of a session that relaxes and drifts, pressed at one speed."""
+    folder = tmp_path_factory.mktemp("drifting") / "session"
+    made = quick_session.write_session(folder, force=relaxing_and_drifting, noise=0.003, trials=4, speeds=(6e-3,))
+    session = load_session(made)
+    return calibrate(session, prepare(session, 90)).base
+
+
+@pytest.fixture(scope="module")
+def turns(drifting):
+    """Places at which the form of dry friction is off, which goes by the way back, too."""
+    return bent(fit_candidate(drifting, CATALOGUE["dry_friction"]), ["dry_friction"]).model.bends
+
+
 @pytest.mark.parametrize(
     ("slug", "places"),
     [("strain_stiffening", 4), ("bottoming_out", 4), ("machine_compliance", 4), ("contact_gap", 4), ("force_drift", 5)],
 )
-def test_a_form_that_goes_by_depth_or_time_alone_is_off_by_these(session_of, slug, places):
-    session = session_of(force=relaxing_and_drifting, noise=0.003, trials=4, speeds=(6e-3,))
-    base = calibrate(session, prepare(session, 90)).base
-    loose = bent(fit_candidate(base, CATALOGUE[slug]), [slug])
+def test_a_form_that_goes_by_depth_or_time_alone_is_off_by_these(drifting, turns, slug, places):
+    loose = bent(fit_candidate(drifting, CATALOGUE[slug]), [slug])
     assert loose.model.bends == places
-    turns = bent(fit_candidate(base, CATALOGUE["dry_friction"]), ["dry_friction"]).model.bends
     assert turns > 2 * places
 
 
