@@ -88,7 +88,7 @@ def select(
         steps.append(_simplest(accepted, effects))
         current = steps[-1].fit
     current, forms = _pruned(base, current, settings, work)
-    current = _told(base, _swapped(base, current, rounds, settings, work), work)
+    current = _told(base, _swapped(base, current, rounds, settings, work), effects, settings, work)
     places = [_in_place(base, current, effect, rounds, settings, work) for effect in current.model.effects]
     tried = tuple(scored for each in rounds for scored in each)
     lookalikes = {slug: tuple(fit.model.effects[-1].slug for fit in fits) for slug, fits, _ in places}
@@ -264,12 +264,25 @@ def _is_form_of_others(scored: Scored, settings: Settings) -> bool:
     return surely and not beats_bent(scored, settings, instead)
 
 
-def _told(base: Fit, current: Fit, work: Pool) -> Fit:
-    """Go back a step while the data do not tell the strength of every effect beside the others."""
+def _told(base: Fit, current: Fit, effects: Sequence[Effect], settings: Settings, work: Pool) -> Fit:
+    """Go back a step while the data do not tell the strength of every effect beside the others.
+
+    A further term of an effect may have stood for the others before these were there. Without it the strengths may be
+    told; so it is left out first, where trials are foretold surely better so than without the last effect.
+    """
+    plain = {effect.slug: effect for effect in effects}
     while len(current.model.effects) > 1:
-        if all(strength_told(current, effect) for effect in current.model.effects):
+        untold = {effect.slug for effect in current.model.effects if not strength_told(current, effect)}
+        if not untold:
             return current
-        current = rebuilt(base, current.model.effects[:-1], work, "backward")
+        less = rebuilt(base, current.model.effects[:-1], work, "backward")
+        forms = [plain[effect.slug] if effect.slug in untold else effect for effect in current.model.effects]
+        if sum(len(form.names) for form in forms) < sum(len(effect.names) for effect in current.model.effects):
+            simpler = rebuilt(base, forms, work, "backward")
+            more = gain(held_out(simpler), held_out(less), conditions(current))
+            if _over_trials(more, settings) and all(strength_told(simpler, effect) for effect in forms):
+                return simpler
+        current = less
     return current
 
 
