@@ -286,17 +286,36 @@ def test_of_equals_one_of_known_strength_is_taken_and_no_further_one_of_unknown_
     assert selection._evident(scored("vague", 9.0), [], SETTINGS)  # the verdict then names it nearest only
 
 
+def told(current, catalogue, work):
+    return selection._told(fitted(), current, catalogue, SETTINGS, work)
+
+
 def test_a_further_effect_of_unknown_strength_is_dropped():
-    both, alone = fitted(effect("clear"), effect("vague")), fitted(effect("clear"))
-    assert selection._told(fitted(), both, Work(alone)) is alone
-    assert selection._told(fitted(), alone, Work()) is alone
+    clear, vague = effect("clear"), effect("vague")
+    both, alone = fitted(clear, vague), fitted(clear)
+    assert told(both, [clear, vague], Work(alone)) is alone
+    assert told(alone, [clear, vague], Work()) is alone
 
 
 def test_the_last_effect_goes_where_it_makes_an_earlier_one_unknown(monkeypatch):
     first, second, third = effect("first"), effect("second"), effect("third")
     known_where(monkeypatch, lambda fit, each, names=(): each is not second or third not in fit.model.effects)
     three, two, one = fitted(first, second, third), fitted(first, second), fitted(first)
-    assert selection._told(fitted(), three, Work(one, two)) is two
+    assert told(three, [first, second, third], Work(one, two)) is two
+
+
+@pytest.mark.parametrize(
+    ("simpler", "clear", "kept"),
+    [(8.0, True, True), (0.1, True, False), (8.0, False, False)],  # density above that without the last effect
+)
+def test_a_further_term_goes_before_an_effect_beside_which_it_is_not_told(
+    known_densities, monkeypatch, simpler, clear, kept
+):
+    plain, rich, last = effect("first"), effect("first", 2), effect("last")
+    known_where(monkeypatch, lambda fit, each, names=(): each is not rich and (clear or each is not plain))
+    both, alone = fitted(rich, last, density=9.0), fitted(rich, density=1.0)
+    less = fitted(plain, last, density=1.0 + simpler + np.array([1.0, -1.0] * 4))
+    assert told(both, [plain, last], Work(alone, less)) is (less if kept else alone)
 
 
 def test_of_effects_that_one_trial_speaks_against_by_more_than_all_gain_one_is_still_the_best():
