@@ -7,13 +7,15 @@ and mostly in depth. What the slip sets free is lost, as it would be to viscosit
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 
 from fem.analysis.equilibrium import Equilibrium, NewtonResult, State
 from fem.analysis.newton import NewtonSettings, solve_newton
-from fem.arrays import FloatArray
+from fem.arrays import FloatArray, IntArray
+from fem.assembly.item import EquationItem, ItemForces
+from fem.assembly.system import System
 
 MOST_LOST = 0.02
 """Of the tool's work, that all ways over limit points together may lose."""
@@ -21,7 +23,7 @@ LEAST_GAIN = 1e-5
 """Of the tool's work, above which energy is taken for gained and not for unbalanced by a tolerance."""
 GIVES_WAY = "the tissue gives way"
 FIRST_DURATION = 1e-4
-"""Of a creeping body's first step, in its own time (:meth:`fem.assembly.system.System.slowed`)."""
+"""Of a creeping body's first step, in its own time (:func:`slowed`)."""
 MOST_CREEP = 100  # steps
 MOST_IN_CREEP, FEW = 15, 8  # corrections in a step, and up to which the next one is twice as long
 AT_REST = 1e-2  # drag over the force, below which equilibrium without it is near
@@ -76,6 +78,65 @@ class Account:
         return not self.lost <= MOST_LOST * self.most
 
 
+@dataclass(frozen=True)
+class ViscousDrag(EquationItem):
+    """A drag against the way from one state, as if it were covered at an even speed; nothing is left of it at rest.
+
+    Attributes
+    ----------
+    where
+        Unknowns (k,) that it holds back.
+    weight
+        Its force (k,) in N per m of the way.
+    start
+        Where the unknowns (k,) come from, in m.
+    """
+
+    where: IntArray
+    weight: FloatArray
+    start: FloatArray
+    in_small_strain: ClassVar[bool] = False
+
+    @property
+    def unknowns(self) -> IntArray:
+        """See :class:`EquationItem`."""
+        return self.where
+
+    @property
+    def entries(self) -> tuple[IntArray, IntArray]:
+        """The diagonal."""
+        return self.where, self.where
+
+    @property
+    def remembers(self) -> bool:
+        """It knows one state only."""
+        return False
+
+    def respond(self, y: FloatArray) -> ItemForces:
+        """Weight times way at unknowns y (n,)."""
+        return ItemForces(self.weight * (y[self.where] - self.start), self.weight)
+
+    def accepted(self, y: FloatArray) -> Self:
+        """From there on it starts at unknowns y (n,)."""
+        return replace(self, start=y[self.where])
+
+
+def slowed(system: System, duration: float, y: FloatArray) -> tuple[System, ViscousDrag]:
+    """The equations with a drag against the way from unknowns y (n,), and the drag.
+
+    The body's viscosity is such that each element's shear modulus and volume, over the whole volume's size squared,
+    hold its nodes back in a time of 1; the way is covered in `duration` of that unit.
+    """
+    elements, scatter = system.elements, system.scatter
+    volume = elements.geometry.weight.sum(axis=0)
+    share = elements.laws.shear_modulus * volume / (len(scatter.element_unknowns) * duration)
+    held = scatter.vector(np.broadcast_to(share, scatter.element_unknowns.shape))
+    where = np.flatnonzero(held > 0.0)
+    drag = ViscousDrag(where, held[where] / float(volume.sum()) ** (2.0 / 3.0), y[where])
+    diagonal: IntArray = scatter.indptr[where].astype(np.int64)
+    return replace(system, items=(*system.items, drag), places=(*system.places, diagonal)), drag
+
+
 def creep(
     problem: Equilibrium,
     start: State,
@@ -109,7 +170,7 @@ def creep(
     account = replace(account, crept=account.crept + 1)
     few = replace(settings, iterations=MOST_IN_CREEP)
     for _ in range(MOST_CREEP):
-        system, drag = problem.system.slowed(duration, state.y)
+        system, drag = slowed(problem.system, duration, state.y)
         found = solve_newton(replace(problem, system=system), state, control, target, force_scale, few)
         iterations += found.iterations
         now = account.after(problem, state, found.state, beyond=True) if found.success else account

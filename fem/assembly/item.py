@@ -7,7 +7,7 @@ an item stands for. The items are in :mod:`fem.interactions`.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar, Self
 
 import numpy as np
@@ -123,46 +123,3 @@ class EquationItem(ABC):
         """What a person must know of an accepted state, or ""."""
         del y
         return ""
-
-
-@dataclass(frozen=True)
-class ViscousDrag(EquationItem):
-    """A drag against the way from one state, as if it were covered at an even speed; nothing is left of it at rest.
-
-    Attributes
-    ----------
-    where
-        Unknowns (k,) that it holds back.
-    weight
-        Its force (k,) in N per m of the way.
-    start
-        Where the unknowns (k,) come from, in m.
-    """
-
-    where: IntArray
-    weight: FloatArray
-    start: FloatArray
-    in_small_strain: ClassVar[bool] = False
-
-    @property
-    def unknowns(self) -> IntArray:
-        """See :class:`EquationItem`."""
-        return self.where
-
-    @property
-    def entries(self) -> tuple[IntArray, IntArray]:
-        """The diagonal."""
-        return self.where, self.where
-
-    @property
-    def remembers(self) -> bool:
-        """It knows one state only."""
-        return False
-
-    def respond(self, y: FloatArray) -> ItemForces:
-        """Weight times way at unknowns y (n,)."""
-        return ItemForces(self.weight * (y[self.where] - self.start), self.weight)
-
-    def accepted(self, y: FloatArray) -> Self:
-        """From there on it starts at unknowns y (n,)."""
-        return replace(self, start=y[self.where])

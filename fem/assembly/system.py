@@ -8,7 +8,7 @@ import numpy as np
 
 from fem.arrays import FloatArray, IntArray
 from fem.assembly.elements import Elements, ElementState
-from fem.assembly.item import EquationItem, ItemForces, ViscousDrag
+from fem.assembly.item import EquationItem, ItemForces
 from fem.assembly.scatter import Numbering, Scatter, widened
 from fem.linear_solver.iterative import ElementTangent
 
@@ -204,27 +204,6 @@ class System:
         if all(other is None for other in others):
             return None
         return replace(self, items=tuple(other or item for other, item in zip(others, self.items, strict=True)))
-
-    def slowed(self, duration: float, y: FloatArray) -> tuple[System, ViscousDrag]:
-        """The equations with a drag against the way from unknowns y (n,), and the drag.
-
-        The body's viscosity is such that each element's shear modulus and volume, over the whole volume's size squared,
-        hold its nodes back in a time of 1.
-
-        Parameters
-        ----------
-        duration
-            Time in which the way is covered, in that unit.
-        y
-            Unknowns (n,) at its begin.
-        """
-        volume = self.elements.geometry.weight.sum(axis=0)
-        share = self.elements.laws.shear_modulus * volume / (len(self.scatter.element_unknowns) * duration)
-        held = self.scatter.vector(np.broadcast_to(share, self.scatter.element_unknowns.shape))
-        where = np.flatnonzero(held > 0.0)
-        drag = ViscousDrag(where, held[where] / float(volume.sum()) ** (2.0 / 3.0), y[where])
-        places: tuple[IntArray, ...] = (*self.places, self.scatter.indptr[where].astype(np.int64))
-        return replace(self, items=(*self.items, drag), places=places), drag
 
     @property
     def is_beyond(self) -> bool:
