@@ -20,7 +20,7 @@ from fem.load import Load
 from fem.results.solution import Failure, Resumed, Solution, StepReport
 
 NOTICED = 1e-3
-"""Share of the work whose loss is told where nothing crept."""
+"""Share of the work below which a loss is within what the trapezoidal rule is off, and told only of a creep."""
 LEAST_SHARE_OF_PEAK = 1e-3
 
 
@@ -97,7 +97,7 @@ class _Run:
     def _warned(self) -> tuple[str, ...]:
         """The warnings, and what was lost over limit points."""
         accounts = [Account.of_row(row) for row in self.stepper.accounts]
-        crept, share = accounts[-1].crept, max(accounts[-1].share, 0.0)
+        crept, share = accounts[-1].crept, accounts[-1].share
         if not crept and share < NOTICED:
             return self.warnings
         where = ""
@@ -105,8 +105,9 @@ class _Run:
             first = next(n for n, account in enumerate(accounts) if account.crept)
             state, times = self.stepper.known.states[first], "once" if crept == 1 else f"{crept} times, first"
             where = f" ({times} at {state.force:.4g} N and {1e3 * self.record.equilibrium.depth(state.y):.4g} mm)"
+        lost = f"{100.0 * share:.2g} %" if share >= NOTICED else f"less than {100.0 * NOTICED:g} %"
         said = (
-            f"the surface snapped past the tool's edge{where}: {100.0 * share:.2g} % of the tool's work was lost, "
+            f"the surface snapped past the tool's edge{where}: {lost} of the tool's work was lost, "
             "and beyond that another mesh may differ by several per cent"
         )
         return (*self.warnings, said)
