@@ -11,10 +11,11 @@ import math
 import re
 import tomllib
 from collections.abc import Mapping
+from difflib import get_close_matches
 from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
 
@@ -110,7 +111,7 @@ def validated(model: type[Model], tables: dict[str, Any], source: str) -> Model:
     try:
         return model.model_validate(tables)
     except ValidationError as error:
-        mistakes = dict.fromkeys(_mistake(part, tables) for part in _own_mistakes(error))
+        mistakes = dict.fromkeys(_mistake(part, tables, model) for part in _own_mistakes(error))
         raise InputError(f"{source}: {'; '.join(mistakes)}") from error
 
 
@@ -160,7 +161,7 @@ def _own_mistakes(error: ValidationError) -> list[Any]:
     ]
 
 
-def _mistake(part: Any, tables: Any) -> str:
+def _mistake(part: Any, tables: Any, model: type[BaseModel]) -> str:
     """One mistake: key, value and what is allowed, in the file's own terms and units."""
     key = _key(part, tables)
     context = part.get("ctx", {})
@@ -169,11 +170,41 @@ def _mistake(part: Any, tables: Any) -> str:
     ]
     reason = bounds[0] if bounds else _WORDS.get(part["type"], str(part["msg"])).format(**context)
     reason = reason.removeprefix("Value error, ")
+    if not key:
+        return reason
     if part["type"] in ("missing", "extra_forbidden"):
-        return f"key {key}: {reason}"
+        return f"key {key}: {reason}{_meant(part, model)}"
     value = repr(part["input"])
     plain = not isinstance(part["input"], Mapping | list)
     return f"key {key}{f' = {value}' if plain and value not in reason and len(value) <= _LONGEST else ''}: {reason}"
+
+
+def _meant(part: Any, model: type[BaseModel]) -> str:
+    """The known key that is nearest to one that is unknown."""
+    *places, word = part["loc"]
+    near = get_close_matches(str(word), _known(model, places), n=1) if part["type"] == "extra_forbidden" else []
+    return f"; did you mean {near[0]}?" if near else ""
+
+
+def _known(model: type[BaseModel], places: list[Any]) -> list[str]:
+    """The keys of a table, by its place: fields, numbers of a list, and pydantic's names of kinds."""
+    models = [model]
+    for place in places:
+        fields = [field for each in models for name, field in each.model_fields.items() if place in (name, field.alias)]
+        of_kind = [each for each in models if place in _kinds(each)]
+        models = [found for field in fields for found in _models(field.annotation)] or of_kind or models
+    return [field.alias or name for each in models for name, field in each.model_fields.items()]
+
+
+def _kinds(model: type[BaseModel]) -> tuple[Any, ...]:
+    return get_args(model.model_fields["kind"].annotation) if "kind" in model.model_fields else ()
+
+
+def _models(annotation: Any) -> list[type[BaseModel]]:
+    """The models that a field's type names."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [found for part in get_args(annotation) for found in _models(part)]
 
 
 def _bound(value: Any, given: object) -> str:
@@ -188,7 +219,7 @@ def _bound(value: Any, given: object) -> str:
 
 
 def _key(part: Any, tables: Any) -> str:
-    """The key of a mistake as it stands in the file: without pydantic's names of kinds, list entries from 1."""
+    """The key of a mistake as it stands in the file, without pydantic's names of kinds, lists from 1; or none."""
     text, node = "", tables
     places = part["loc"]
     for number, place in enumerate(places, start=1):
@@ -199,7 +230,7 @@ def _key(part: Any, tables: Any) -> str:
         elif last_missing or (isinstance(node, Mapping) and place in node):
             text += f".{place}" if text else str(place)
             node = node.get(place) if isinstance(node, Mapping) else None
-    return text or "the file"
+    return text
 
 
 @lru_cache(maxsize=1)

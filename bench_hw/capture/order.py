@@ -39,7 +39,7 @@ class CaptureOrder:
     pause : float
         Rest between two trials, s.
     seed : int, optional
-        Of the simulated devices; by default the rig's.
+        Of the simulated devices; by default the rig's. Appended trials take it plus the number of those there.
     session_keys : Mapping[str, str]
         More keys of the session file (`tool.radius` = "5 mm").
     """

@@ -58,8 +58,9 @@ class CaptureState:
     def line(self) -> str:
         """Say it in one line."""
         film = "" if self.camera is None else f"camera {self.camera:.1f}/s dropped {self.dropped}  "
+        trial = f"trial {self.trial}/{self.trials} {self.elapsed:.1f}/{self.planned:.1f} s"
         return (
-            f"trial {self.trial}/{self.trials} {self.elapsed:.1f}/{self.planned:.1f} s  "
+            f"{trial if self.trial else 'before the first trial'}  "
             f"depth {self.depth * 1e3:+.3f} mm  force {self.press:+.3f} N  {film}lost {self.lost}  {self.doing}"
         )
 

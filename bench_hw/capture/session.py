@@ -83,7 +83,7 @@ def _captured(order: CaptureOrder, progress: ProgressDisplay, specimen: Specimen
         with (
             stop_on_signals() as stop,
             _short_turns(),
-            open_bench(order.rig, clock, specimen=specimen, seed=order.seed) as bench,
+            open_bench(order.rig, clock, specimen=specimen, seed=folder.seed(order)) as bench,
         ):
             return _Session(order, folder, bench, _loop_context(order, bench, clock, stop, progress)).run()
     finally:

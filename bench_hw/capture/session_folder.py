@@ -55,13 +55,23 @@ class SessionFolder:
         self._made = not self.path.exists()
         self._check_writable()
 
+    def seed(self, order: CaptureOrder) -> int | None:
+        """Give the seed of simulated devices: trials that are appended are no copies of those that are there."""
+        if not order.append:
+            return order.seed
+        return (order.rig.rig.simulation.seed if order.seed is None else order.seed) + len(self._names())
+
     def next_trial(self) -> str:
         """Give the name of the next trial, `trial_001` being the first."""
-        names = {path.name.split(".")[0] for path in self.path.glob("trial_*.mcap*")}
+        names = self._names()
         number = 1
         while f"trial_{number:03d}" in names:
             number += 1
         return f"trial_{number:03d}"
+
+    def _names(self) -> set[str]:
+        """The names of the trials that are there, whole or not."""
+        return {path.name.split(".")[0] for path in self.path.glob("trial_*.mcap*")}
 
     def begin(self, order: CaptureOrder, keys: dict[str, Any]) -> None:
         """Prepare the session's entries; nothing is written before the first trial is whole."""
@@ -135,17 +145,17 @@ class SessionFolder:
     def _existing(self) -> dict[str, Any]:
         path = self.path / SESSION_FILE
         if not path.is_file():
-            raise InputError(f"{path}: there is no session to append to; leave --append out for a new one")
+            empty = not self.path.is_dir() or not any(self.path.iterdir())
+            new = "leave --append out for a new one" if empty else "give another --out, without --append, for a new one"
+            raise InputError(f"{path}: there is no session to append to; {new}")
         return read_toml(path)[0]
 
     def _check_empty(self) -> None:
         if not self.path.is_dir():
             raise InputError(f"{self.path}: is no folder; give another --out")
         if any(self.path.iterdir()):
-            raise InputError(
-                f"{self.path}: is not empty and nothing in it is overwritten; give another --out, or --append to "
-                "add trials to its session"
-            )
+            append = ", or --append to add trials to its session" if (self.path / SESSION_FILE).is_file() else ""
+            raise InputError(f"{self.path}: is not empty and nothing in it is overwritten; give another --out{append}")
 
     def _check_writable(self) -> None:
         try:

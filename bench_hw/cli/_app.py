@@ -7,6 +7,7 @@ command, so that `--help` answers at once.
 from __future__ import annotations
 
 import importlib
+import os
 import pkgutil
 import sys
 from pathlib import Path
@@ -55,6 +56,7 @@ app = make_app()
 
 def main() -> int:
     """Run the command line and return its exit code."""
+    os.environ.setdefault("OPENCV_LOG_LEVEL", "SILENT")  # a camera that is missing is said by the bench itself
     try:
         app()
     except SystemExit as end:

@@ -54,6 +54,8 @@ def capture(
         if dry_run:
             _dry_run(loaded, trials, plot, as_json=as_json)
             return
+        if plot is not None:
+            raise InputError(f"--plot {plot}: the planned motion is drawn by --dry-run; give both, or neither")
         if not rig or out is None:
             raise InputError("capture needs --rig and --out (or --dry-run)")
         from bench_hw.capture.order import CaptureOrder

@@ -14,7 +14,9 @@ from bench_hw.cli._report import Debug, Json, Quiet, print_json, reporting
 from bench_hw.errors import InputError
 
 Seed = Annotated[int, typer.Option(help="Of all noise and chance.", min=0)]
-Duration = Annotated[float | None, typer.Option(help="End after this time, s; without it, on SIGTERM or Ctrl-C.")]
+Duration = Annotated[
+    float | None, typer.Option(help="End after this time, s; without it, on SIGTERM or Ctrl-C.", min=0.0, max=1e7)
+]
 Loss = Annotated[float, typer.Option(help="Chance that a record or frame is lost.", min=0.0, max=1.0)]
 Drop = Annotated[str, typer.Option(help="Positions in the stream, from 1, that are lost: 200-202,500.")]
 
@@ -69,7 +71,7 @@ def netft(
 
 
 def camera(
-    port: Annotated[int, typer.Option(help="HTTP port; 0 lets the system choose.")] = 0,
+    port: Annotated[int, typer.Option(help="HTTP port; 0 lets the system choose.", min=0, max=65_535)] = 0,
     rate_hz: Annotated[float, typer.Option(help="Frames per second.", min=0.1, max=1000.0)] = 30.0,
     size: Annotated[str, typer.Option(help="Width x height, pixels.")] = "640x480",
     noise: Annotated[float, typer.Option(help="Standard deviation of a grey level.", min=0.0)] = 3.0,
@@ -78,7 +80,9 @@ def camera(
     loss: Loss = 0.0,
     drop: Drop = "",
     freeze: Annotated[str, typer.Option(help="Frames that repeat the one before.")] = "",
-    images: Annotated[Path | None, typer.Option(help="Write picture files into this folder instead.")] = None,
+    images: Annotated[
+        Path | None, typer.Option(help="Write picture files into this new or empty folder instead.")
+    ] = None,
     frames: Annotated[int, typer.Option(help="With --images: how many.", min=1)] = 30,
     seed: Seed = 0,
     duration_s: Duration = None,
@@ -101,6 +105,7 @@ def camera(
         markers = pressed_sheet()
         take = partial(_picture, painter.paint, markers)
         if images is not None:
+            _check_new(images)
             paths = write_pictures(images, take, [k / rate_hz for k in range(frames)])
             return _counted(len(paths), 0, f"pictures in {images}", as_json=as_json, quiet=quiet)
         dropped, frozen = parse_positions(drop), parse_positions(freeze)
@@ -160,6 +165,12 @@ def _serve(duration: float | None) -> None:
 
     with stop_on_signals() as stop:
         stop.wait(duration)
+
+
+def _check_new(folder: Path) -> None:
+    """Refuse a folder with anything in it, whose pictures would be replaced or mixed with others."""
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise InputError(f"--images {folder}: is there and not empty; allowed: a folder that is new or empty")
 
 
 def _say(text: str, quiet: bool) -> None:

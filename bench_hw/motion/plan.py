@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import singledispatch
 from typing import TYPE_CHECKING
 
+from bench_hw.errors import InputError
 from bench_hw.motion.protocol_file import Approach, Cycle, Move, Protocol, Retract, Wait
 
 if TYPE_CHECKING:
@@ -169,12 +170,14 @@ def write_plot(plan: MotionPlan, path: Path) -> Path:
     Raises
     ------
     InputError
-        There is a file that is no such picture.
+        There is a file that is no such picture, or the name has another ending.
     OSError
         The folder cannot be made or written.
     """
     import io
 
+    if path.suffix.lower() != ".svg":
+        raise InputError(f"{path}: the motion is drawn as SVG; allowed: a name that ends in .svg")
     from matplotlib.figure import Figure
 
     from bench_hw.storage.atomic import check_replaceable, write_bytes

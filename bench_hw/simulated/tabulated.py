@@ -238,7 +238,9 @@ def read_sheet(name_or_path: str | Path) -> SheetTable:
             **arrays,
         )
     except OSError:
-        raise InputError(f"specimen {str(name_or_path)!r}: no such file, and none of that name is shipped") from None
+        known = ", ".join(sorted(each.stem for each in shipped.parent.glob("*.json")))
+        problem = f"no such file, and none of that name is shipped; allowed: a path, or {known}"
+        raise InputError(f"specimen {str(name_or_path)!r}: {problem}") from None
     except (ValueError, KeyError, TypeError) as error:
         raise InputError(f"{path}: this is no table of a sheet ({error})") from None
     _check(path, table)

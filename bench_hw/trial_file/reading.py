@@ -8,6 +8,7 @@ the last there is no row. Late, duplicate, saturated or faulty rows are left out
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -212,7 +213,10 @@ def read_trial_mcap(path: Path | str) -> TrialTable:
     """
     contents = read_contents(Path(path), (FORCE.topic, DEPTH.topic))
     if not contents.scan.whole:
-        problem = f"the trial is damaged or cut ({contents.scan.damages[0]}); use `recover` and read its result"
+        recover = f"python -m bench_hw recover {shlex.quote(str(path))} --out NEW.mcap"
+        problem = (
+            f"the trial is damaged or cut ({contents.scan.damages[0]}); save what is whole and read that: {recover}"
+        )
         raise TrialFileError(contents.scan.path, problem)
     table = trial_rows(contents)
     if len(table.time) < MINIMUM_ROWS:

@@ -81,7 +81,8 @@ def part_of(path: Path) -> Path:
     part = path.with_name(path.name + PART)
     for existing in (path, part):
         if existing.exists():
-            raise TrialFileError(existing, "the file exists and is not overwritten; give another name")
+            why = "" if existing == path else f"; no {path.name} is written beside this recording"
+            raise TrialFileError(existing, f"the file exists and is not overwritten{why}; give another name")
     return part
 
 

@@ -10,7 +10,7 @@ import textwrap
 import traceback
 import warnings
 from collections.abc import Sequence
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -116,7 +116,7 @@ def _report(error: Exception, *, debug: bool) -> int:
     if debug:
         traceback.print_exc()
     if hasattr(error, "format_message"):  # a usage error of the command-line library
-        return _fail(f"{error.format_message()} See python -m benchmark --help.", EXIT_USAGE)
+        return _fail(_usage(error), EXIT_USAGE)
     if isinstance(error, typer.Abort):
         return _fail("interrupted", EXIT_INTERRUPTED)
     from bench_hw.errors import BenchError, system_words, what_is_missing
@@ -133,6 +133,14 @@ def _report(error: Exception, *, debug: bool) -> int:
         return _fail(missing, EXIT_USAGE)
     text = f"a fault of the program, {type(error).__name__}: {error}; --debug shows where"
     return _fail(text, EXIT_BUG)
+
+
+def _usage(error: Any) -> str:
+    """A usage error of the command-line library, with whose help tells more."""
+    said = error.format_message().replace("Value error, ", "").rstrip(".")
+    context = getattr(error, "ctx", None)
+    verb = "python -m benchmark" if context is None else context.command_path
+    return f"{said}. See {verb} --help."
 
 
 def _who_ended(end: SystemExit) -> str:

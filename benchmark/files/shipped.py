@@ -83,6 +83,8 @@ def find(name_or_path: str | Path, what: str, base: Path | None = None) -> Path:
         return entries[text].path
     if text and is_file(path):
         return path
+    if text and is_file(Path(f"{path}.toml")):
+        raise InputError(f"no {what} {text!r} ships with tissuebench; did you mean the file {text}.toml?")
     raise InputError(
         f"no {what} {text!r} ships with tissuebench and there is no file of that name; {nearest(text, entries)} "
         f"A path to a file of your own ends in .toml."

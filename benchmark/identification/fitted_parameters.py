@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from benchmark.identification.pooling import PooledStiffness, mean_interval
+from benchmark.identification.pooling import PooledStiffness, counted_trials, mean_interval
 from benchmark.identification.sheet_session import Pooled, SheetFit, pool_values
 from benchmark.identification.sheet_trial import SheetTrial
 from benchmark.identification.trial_fit import TrialFit
@@ -103,7 +103,7 @@ def fitted_parameters(
     pooled: PooledStiffness, trials: Sequence[TrialFit], layers: Sequence[LayerLike]
 ) -> tuple[FittedParameter, ...]:
     """Rows for the pooled stiffness, the layers of the specimen, and the trials' onsets and zeros."""
-    count = "1 trial" if pooled.trials == 1 else f"{pooled.trials} trials"
+    count = counted_trials(pooled.trials)
     factor = FittedParameter(
         "stiffness_factor",
         pooled.value,
@@ -184,7 +184,7 @@ def sheet_parameters(
     names = {f"{layer.name}.youngs_modulus": layer for layer in layers}
     kept = [replace(row, name=f"{row.name}.force_alone") for row in alone if row.name == "stiffness_factor"]
     fixed = [row for row in alone if row.name.endswith((".poisson_ratio", ".thickness")) or row.name == "force_zero"]
-    source = f"force and markers of {_trials(sheet.stiffness)} together, at once after a step of depth"
+    source = f"force and markers of {counted_trials(sheet.stiffness.trials)} together, at once after a step of depth"
     rows = [_row("stiffness_factor", "", sheet.stiffness, True, source)]
     rows += [_modulus_sheet_parameters(name, layer, sheet, len(layers)) for name, layer in names.items()]
     return (*rows, *_relaxation(sheet), *_thickness(sheet), *_nuisances(sheet.trials), *kept, *fixed)
@@ -195,10 +195,6 @@ def _row(name: str, unit: str, pooled: Pooled, identifiable: bool, source: str, 
     known = identifiable and bool(np.isfinite([pooled.low, pooled.high]).all())
     low, high = (scale * pooled.low, scale * pooled.high) if known else (None, None)
     return FittedParameter(name, scale * pooled.value, unit, low, high, known, source)
-
-
-def _trials(pooled: Pooled) -> str:
-    return "1 trial" if pooled.trials == 1 else f"{pooled.trials} trials"
 
 
 def _modulus_sheet_parameters(name: str, layer: LayerLike, sheet: SheetFit, layers: int) -> FittedParameter:
@@ -218,7 +214,7 @@ def _relaxation(sheet: SheetFit) -> list[FittedParameter]:
         return [empty, replace(empty, name="relaxation.tau_1", unit="s")]
     seen = sheet.share.low > 0.0
     most = f" (at most {sheet.share.high:.2g}, 95 %)" if np.isfinite(sheet.share.high) else ""
-    source = f"of {_trials(sheet.share)} with a hold; " + (
+    source = f"of {counted_trials(sheet.share.trials)} with a hold; " + (
         "a clock of the force that is 2 ms off the depth's moves the time by a tenth"
         if seen
         else f"not to be told from none{most}: a longer hold, or trials of more speeds, would tell"
@@ -233,8 +229,8 @@ def _thickness(sheet: SheetFit) -> list[FittedParameter]:
     """Thickness fitted together with the stiffness, and how far the two can be told apart."""
     force, both = (_correlation(sheet.with_thickness, name) for name in ("force_correlations", "correlations"))
     source = (
-        f"fitted together with the stiffness in {_trials(sheet.thickness)}; they correlate by {force:.3f} in the force "
-        f"alone and by {both:.3f} with the markers"
+        f"fitted together with the stiffness in {counted_trials(sheet.thickness.trials)}; they correlate by "
+        f"{force:.3f} in the force alone and by {both:.3f} with the markers"
     )
     clear = abs(both) < CLEAR
     if not clear:
@@ -256,7 +252,7 @@ def _correlation(trials: Sequence[SheetTrial], which: str) -> float:
 
 def _nuisances(trials: Sequence[SheetTrial]) -> list[FittedParameter]:
     """Means over trials of what is each trial's own: contact and tool axis."""
-    source = f"mean over {len(trials)} trials of each trial's own value, from its force and markers"
+    source = f"mean over {counted_trials(len(trials))} of each trial's own value, from its force and markers"
     rows = []
     for name, values, key in (
         ("contact_onset", [1e3 * trial.state.onset for trial in trials], "onset"),

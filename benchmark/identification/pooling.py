@@ -213,3 +213,8 @@ class _CommonStiffness:
 
 def _weight(trial: TrialData, fit: TrialFit) -> float:
     return 1.0 / (fit.peak * math.sqrt(trial.rows))
+
+
+def counted_trials(number: int) -> str:
+    """A number of trials in words."""
+    return "1 trial" if number == 1 else f"{number} trials"

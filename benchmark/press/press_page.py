@@ -157,10 +157,15 @@ def _varied(scenario: Scenario, request: PressRequest) -> list[Scenario]:
     from benchmark.files import Source, scenario_from_table
 
     table, source = scenario.to_table(), Source("press")
-    changes: list[dict[str, str]] = [{}]
-    changes += [{"tissue": tissue} for tissue in request.tissues]
-    changes += [{"tool.radius": radius} for radius in request.tools]
-    return [scenario_from_table(table, source, change) if change else scenario for change in changes]
+    asked = [("--tissue", "tissue", tissue) for tissue in request.tissues]
+    asked += [("--tool", "tool.radius", radius) for radius in request.tools]
+    found = [scenario]
+    for option, key, value in asked:
+        try:
+            found.append(scenario_from_table(table, source, {key: value}))
+        except InputError as error:
+            raise InputError(f"{option}: {str(error).removeprefix(f'--set {key}: ')}") from error
+    return found
 
 
 def document(found: Sequence[PressedSpecimen]) -> dict[str, Any]:

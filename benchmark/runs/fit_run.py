@@ -154,12 +154,11 @@ def carry_out_fit(request: FitRequest, listener: Listener) -> FitRecord:
     if request.effects is not None and request.model is None:
         raise InputError("--effects brings effects that a model file names: give --model with it")
     repair = None if request.model is None else load_repair(request.model, request.effects)
-    found = fit_trials(request.session, request.specimen, request.settings, listener, repair=repair)
+    check = request.wish.check
+    found = fit_trials(request.session, request.specimen, request.settings, listener, repair=repair, check=check)
     table = request.wish.table(found.session.fit)
     check_exports(found.session, request.export, free=bool(table.free))
     if not table.free:
-        if request.wish.sessions or table.law is not None or request.wish.posterior:
-            raise InputError("several sessions, a law or a posterior need free parameters: give --free KEY,KEY")
         said = common_factor_warnings(found, listener) if repair is None else ()
         return FitRecord(replace(found, warnings=(*said, *found.warnings)), repair, request.seed)
     if repair is not None:

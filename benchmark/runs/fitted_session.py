@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -88,10 +88,12 @@ def fit_trials(
     *,
     films: bool = True,
     repair: RepairedModel | None = None,
+    check: Callable[[Session], None] | None = None,
 ) -> FittedSession:
     """Read a session and fit its specimen to all trials.
 
-    With `films` to their markers, too; with the effects of a model file (`repair`) to their force alone.
+    With `films` to their markers, too; with the effects of a model file (`repair`) to their force alone. `check` may
+    refuse the session by InputError before anything is computed.
 
     Raises
     ------
@@ -101,6 +103,8 @@ def fit_trials(
         The finite-element curve could not be computed deep enough.
     """
     session = load_session(path, settings, specimen)
+    if check is not None:
+        check(session)
     for line in session.shown:
         listener.say(line)
     base = base_curves(session, _depths(session), listener)

@@ -9,13 +9,15 @@ from pathlib import Path
 from benchmark.errors import InputError, SolverError
 from benchmark.experiments.optimal_design import designed
 from benchmark.experiments.parameters_answer import ParametersAnswer
+from benchmark.files import Session
 from benchmark.files.schema import validated
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.files.sources import Source, read_toml
-from benchmark.identification.parameters.free_parameters import COMMON, MODULUS
+from benchmark.identification.parameters.free_parameters import COMMON, MODULUS, parameters_of
 from benchmark.identification.parameters.identifiability import directions
 from benchmark.identification.parameters.identified import Identified, identify
 from benchmark.identification.parameters.law_selection import scores, simplest
+from benchmark.identification.parameters.law_shapes import law_shape
 from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit, begun, fit_layers
 from benchmark.identification.parameters.other_answers import other_answers
 from benchmark.identification.parameters.posterior import posterior
@@ -78,7 +80,24 @@ class ParameterWish:
         law = None if self.laws is None else self.laws[0]
         said: dict[str, object] = {"free": self.free, "exact": self.exact, "law": law, "forward": self.forward}
         said |= {"discrepancy": self.discrepancy, "markers": self.markers}
-        return validated(FitTable, table | {key: value for key, value in said.items() if value is not None}, source)
+        said = {key: value for key, value in said.items() if value is not None}
+        for key, value in said.items():
+            validated(FitTable, {key: value}, Source(f"--{key}"))
+        return validated(FitTable, table | said, source)
+
+    def check(self, session: Session) -> None:
+        """Refuse laws, models and a specimen's keys that there are not, before anything is computed.
+
+        Keys of the tool and the support are left to the fit, which may take another tool than the one told.
+        """
+        for name in self.laws or ():
+            law_shape(name)
+        table, first = self.table(session.fit), session.trials[0]
+        if not table.free and (self.sessions or table.law is not None or self.posterior):
+            raise InputError("several sessions, a law or a posterior need free parameters: give --free KEY,KEY")
+        for key in (key for key in table.free if not key.startswith(("tool.", "support."))):
+            for law in self.laws or (table.law,):
+                parameters_of(key, (session.specimen, first.tool, first.support), law)
 
 
 def answer_of(

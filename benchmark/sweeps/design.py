@@ -111,7 +111,7 @@ def _saltelli(sample: str | None, points: int | None, parameters: int, seed: int
         raise InputError("--sensitivity needs a Sobol design of its own: leave --sample lhs out")
     if points is not None and base_samples(points, parameters) < LEAST_BASE:
         raise InputError(
-            f"--points {points} is too few for --sensitivity with {parameters} parameters; "
+            f"--points {points} is too few for --sensitivity with {parameters} parameter{'s' * (parameters != 1)}; "
             f"allowed: at least {LEAST_BASE * block}"
         )
     return Design("saltelli", DEFAULT_BASE * block if points is None else points, seed)

@@ -53,6 +53,42 @@ def test_names_every_wrong_key():
     assert "allowed is more than 0" in message
 
 
+class Shaped(StrictModel):
+    kind: Literal["shaped"]
+    stretch: int = 0
+
+
+class Formed(StrictModel):
+    kind: Literal["formed"]
+    formation: int = 0
+
+
+class Whole(StrictModel):
+    schema_version: Annotated[int, Field(alias="schema")] = 1
+    parts: tuple[Annotated[Shaped | Formed, Field(discriminator="kind")], ...] = ()
+    own: Inner | None = None
+    by_name: dict[str, Inner] = {}  # noqa: RUF012 - a field
+
+
+@pytest.mark.parametrize(
+    ("tables", "says"),
+    [
+        ({"shema": 1}, "key shema: is unknown here; did you mean schema?"),
+        ({"own": {"depth": 1, "dept": 1}}, "key own.dept: is unknown here; did you mean depth?"),
+        (
+            {"parts": [{"kind": "formed", "fromation": 1}]},
+            "key parts[1].fromation: is unknown here; did you mean formation?",
+        ),
+        ({"parts": [{"kind": "formed", "strech": 1}]}, "key parts[1].strech: is unknown here"),
+        ({"by_name": {"a": {"depth": 1, "detph": 2}}}, "key by_name.a.detph: is unknown here; did you mean depth?"),
+    ],
+)
+def test_says_the_key_that_was_meant(tables, says):
+    with pytest.raises(InputError) as caught:
+        validated(Whole, tables, "rig.toml")
+    assert str(caught.value) == f"rig.toml: {says}"
+
+
 @pytest.mark.parametrize(
     ("text", "unit", "value"),
     [

@@ -1,11 +1,15 @@
 """What killed runs left is found and removed; everything else stays."""
 
 import os
+import re
 import time
 
 import pytest
 
 from bench_hw.storage.folder_lock import locked
+from benchmark.cli.folders.results import clean
+from benchmark.errors import InputError
+from benchmark.files.sessions.session_folder import session_table
 from benchmark.litter import cut_recordings, find_litter, remove
 from reports import whole_folder
 
@@ -67,3 +71,14 @@ def test_an_earlier_result_that_stepped_aside_comes_back(tmp_path):
     (found,) = find_litter(tmp_path)
     assert remove(found)
     assert (tmp_path / "result" / "a").read_text() == "1"
+
+
+def test_the_way_to_save_a_recording_can_be_typed_as_it_stands(tmp_path, capsys):
+    (tmp_path / "my session").mkdir()
+    recording = tmp_path / "my session" / "trial_001.mcap.part"
+    recording.write_bytes(b"")
+    way = f"python -m bench_hw recover '{recording}' --out NEW.mcap"
+    clean(tmp_path)
+    assert way in capsys.readouterr().out
+    with pytest.raises(InputError, match=re.escape(way)):
+        session_table(recording.parent)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -110,7 +111,8 @@ def clean(
         word = "would go" if dry_run else "removed" if each in gone else "stays, it holds other files"
         print(f"{each.path}: {each.what}, {each.size / 1e6:.1f} MB, {word}")
     for path in recordings:
-        print(f"{path}: a recording that was cut off, stays; python -m bench_hw recover {path} --out NEW.mcap")
+        recover = f"python -m bench_hw recover {shlex.quote(str(path))} --out NEW.mcap"
+        print(f"{path}: a recording that was cut off, stays; {recover}")
     if not found and not recordings:
         print(f"{folder}: nothing to clean")
     return 0

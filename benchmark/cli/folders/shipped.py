@@ -15,7 +15,7 @@ NewName = Annotated[str | None, typer.Argument(help="With new: the name of the t
 ScenarioName = Annotated[str | None, typer.Argument(help="A shipped scenario or a TOML file, to see it resolved.")]
 NEW = "new"
 What = Annotated[Literal["new"], typer.Argument(help="new: propose a session.toml.")]
-Word = Annotated[str, typer.Argument(help="new.")]
+Word = Annotated[str, typer.Argument(metavar="new", help="The word new.")]
 Shown = Annotated[str, typer.Argument(help="A shipped scenario or a TOML file.")]
 Table = Annotated[Path | None, typer.Option("--out", metavar="FILE", help="The table; by default SCENARIO-fea.csv.")]
 Folder = Annotated[Path, typer.Argument(help="A folder of trials: CSV, or any instrument's files.")]

@@ -217,6 +217,14 @@ def _between_plates(file: SessionFile, trials: Sequence[Recording]) -> tuple[Ses
     return file.model_copy(update={"conditions": conditions}), said
 
 
+TURN = (
+    'Turn it where pressing is negative: --set import.depth="-depth_mm:mm", the force by --set '
+    'import.force="-force_N:N".'
+)
+UNTOUCHED = "A recording that ended before its tool touched, or that only rests, holds no press: record it anew."
+"""Of the bench's own recordings, whose depth zero is the contact and whose columns nothing turns."""
+
+
 def check_tool_is_told(file: SessionFile, trials: Sequence[Recording]) -> None:
     """Refuse presses for which the usual tool is out of the question, where nobody says which it was.
 
@@ -232,10 +240,10 @@ def check_tool_is_told(file: SessionFile, trials: Sequence[Recording]) -> None:
         if deepest < SHALLOWEST and "radius" not in file.tool and "radius" not in keys.tool:
             if deepest <= 0.0:
                 least = min(float(trial.table.depth.min()) for trial in own)
+                of_bench = all(trial.entry.file.lower().endswith(".mcap") and not trial.notes for trial in own)
                 raise InputError(
                     f"condition {name}: the depth is never above zero (down to {1e3 * least:.4g} mm); allowed: press "
-                    'positive. Turn it where pressing is negative: --set import.depth="-depth_mm:mm", the force by '
-                    '--set import.force="-force_N:N".'
+                    f"positive. {UNTOUCHED if of_bench else TURN}"
                 )
             raise InputError(
                 f"condition {name}: pressed {1e6 * deepest:.3g} um deep, and neither file nor "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+import shlex
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -133,8 +134,14 @@ def _entries(folder: Path, name: str) -> list[dict[str, str]]:
             named = ({key: f"{sub.name}/{file}" for key, file in files.items()} for files in _trial_files(sub))
             found += [{**files, "condition": sub.name} for files in named]
     if not found:
-        raise InputError(f"{folder}: there is neither a {SESSION_FILE} nor a trial ({_ENDINGS}) in this folder.")
+        cut = next((f" {_cut_off(path)}" for path in sorted(folder.glob("*.mcap.part"))), "")
+        raise InputError(f"{folder}: there is neither a {SESSION_FILE} nor a trial ({_ENDINGS}) in this folder.{cut}")
     return found
+
+
+def _cut_off(path: Path) -> str:
+    recover = f"python -m bench_hw recover {shlex.quote(str(path))} --out NEW.mcap"
+    return f"{path.name} is a recording that was cut off; save what is whole in it: {recover}"
 
 
 def _trial_files(folder: Path) -> list[dict[str, str]]:

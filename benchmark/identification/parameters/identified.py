@@ -31,6 +31,7 @@ from benchmark.identification.parameters.presses.marker_rings import TRUST
 from benchmark.identification.parameters.presses.model_error import ModelError
 from benchmark.identification.parameters.presses.press_surrogate import Press
 from benchmark.identification.parameters.profile_likelihood import Profile, largest_errors, verified_profiles
+from benchmark.identification.pooling import counted_trials
 
 NOT_DETERMINED = "not determined"
 PRIOR_ALONE = "on its prior alone"
@@ -206,9 +207,9 @@ class Identified:
     @property
     def headline(self) -> str:
         """The fit in one sentence."""
-        trials = len(self.found.problem.trials)
+        trials = counted_trials(len(self.found.problem.trials))
         law = "" if self.found.problem.law is None else f", law {self.found.problem.law}"
-        return f"{trials} trials{law}: {'; '.join(one.text for one in self.estimates)}"
+        return f"{trials}{law}: {'; '.join(one.text for one in self.estimates)}"
 
     @property
     def warnings(self) -> tuple[str, ...]:

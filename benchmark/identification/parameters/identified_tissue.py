@@ -13,6 +13,7 @@ from benchmark.files import Layer, Tissue
 from benchmark.files.tissue import Correlation, PronyTerm
 from benchmark.identification.parameters.free_parameters import POISSON, SHARE, Parameter, with_values
 from benchmark.identification.parameters.identified import NOT_DETERMINED, Identified
+from benchmark.identification.pooling import counted_trials
 
 MOST = 0.99
 """Largest relative uncertainty that a tissue file can carry."""
@@ -109,6 +110,6 @@ def provenance(answer: Identified) -> str:
     unknown = [one.key for one in answer.estimates if one.standing == NOT_DETERMINED]
     said = f" {NOT_DETERMINED}: {', '.join(unknown)}." if unknown else ""
     return (
-        f"Identified with the {problem.forward} model from {len(problem.trials)} trials of {sources}. "
+        f"Identified with the {problem.forward} model from {counted_trials(len(problem.trials))} of {sources}. "
         f"{'; '.join(one.text for one in answer.estimates)}.{said}"
     )

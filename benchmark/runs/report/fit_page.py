@@ -7,6 +7,7 @@ from typing import Any
 
 from benchmark.files import Session
 from benchmark.identification import SessionFit, SheetFit
+from benchmark.identification.pooling import counted_trials
 from benchmark.runs.report.trials_section import fit_section
 from benchmark.runs.report.values import fit_headline, sentence, sheet_headline
 from reports import Column, Download, Fact, Notice, Page, Section, Table, Verdict
@@ -28,7 +29,7 @@ def fit_page(
         notices.append(Notice("warning", "Read these before you quote a figure.", warnings))
     return Page(
         title=f"{session.name}: fit",
-        subtitle=f"{len(session.trials)} trials of {session.specimen.name}",
+        subtitle=f"{counted_trials(len(session.trials))} of {session.specimen.name}",
         verdict=Verdict("finding", sentence(headline)),
         facts=(Fact("Made", str(environment["made"])), Fact("Session", session.fingerprint[:16])),
         notices=notices,

@@ -15,6 +15,7 @@ from benchmark.identification.parameters.identifiability import KNOWN, LARGEST_E
 from benchmark.identification.parameters.identified import Identified
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.posterior import Posterior
+from benchmark.identification.pooling import counted_trials
 from benchmark.models import Array
 from benchmark.runs.report.values import MM, sentence
 from reports import Block, Bullets, Column, Download, Fact, Notice, Page, Paragraph, Section, Table, Verdict
@@ -30,10 +31,10 @@ def parameters_page(
         notices.append(Notice("synthetic", "These trials were computed, not measured."))
     if warnings:
         notices.append(Notice("warning", "Read these before you quote a figure.", warnings))
-    trials = len(answer.found.problem.trials)
+    trials = counted_trials(len(answer.found.problem.trials))
     return Page(
         title=f"{session.name}: parameters",
-        subtitle=f"{trials} trials of {', '.join(answer.specimens)}",
+        subtitle=f"{trials} of {', '.join(answer.specimens)}",
         verdict=Verdict("finding", sentence(whole.headline)),
         facts=(
             Fact("Made", str(environment["made"])),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from benchmark.identification import SessionFit, SheetFit
+from benchmark.identification.pooling import counted_trials
 from benchmark.models import Array, ModelResult
 from benchmark.runs.record import RunRecord
 from benchmark.runs.trials.measured import MeasuredComparison
@@ -108,8 +109,8 @@ def sheet_headline(sheet: SheetFit) -> str:
     """Return the fit of force and markers in one sentence."""
     found = sheet.stiffness
     text = (
-        f"force and markers of {found.trials} trials together: the specimen is {found.value:.4g} times as stiff as "
-        f"told (95 % {found.low:.4g} to {found.high:.4g})"
+        f"force and markers of {counted_trials(found.trials)} together: the specimen is {found.value:.4g} times as "
+        f"stiff as told (95 % {found.low:.4g} to {found.high:.4g})"
     )
     if sheet.relaxation.share > 0.0 and sheet.share is not None:
         text += (

@@ -12,11 +12,11 @@ from bench_hw.errors import BenchError, InputError
 from bench_hw.vision.displacement import maximum_radius, moving_average, published_variables, sound_variables
 from benchmark.files import Session, Trial
 from benchmark.identification import FittedParameter
-from benchmark.identification.pooling import mean_interval
+from benchmark.identification.pooling import counted_trials, mean_interval
 from benchmark.runs.trials.film_tables import Motion
 
-OURS = "Table 1 with dimensions that are right, mean over {} trials of condition {}"
-THEIRS = "Table 1 in the article's own way, units mixed as there, mean over {} trials of condition {}"
+OURS = "Table 1 with dimensions that are right, mean over {} of condition {}"
+THEIRS = "Table 1 in the article's own way, units mixed as there, mean over {} of condition {}"
 CANCEL = ": markers on opposite sides cancel in the averages"
 
 Values = dict[str, tuple[float, str]]
@@ -56,7 +56,7 @@ def table_one(session: Session, motions: Sequence[Motion], placed: Mapping[str, 
 def _rows(values: Sequence[Mapping[str, tuple[float, str]]], source: str, condition: str) -> list[FittedParameter]:
     if not values:
         return []
-    said = source.format(len(values), condition)
+    said = source.format(counted_trials(len(values)), condition)
     rows = []
     for name, (_, unit) in values[0].items():
         each = [value[name][0] for value in values if math.isfinite(value[name][0])]

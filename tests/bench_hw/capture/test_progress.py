@@ -17,6 +17,12 @@ def test_a_snapshot_in_one_line():
     assert "3 of 5: move" in line
 
 
+def test_before_the_first_trial_no_trial_is_counted():
+    line = CaptureState(depth=-5e-3).line()
+    assert line.startswith("before the first trial  depth -5.000 mm")
+    assert "0/0" not in line
+
+
 def test_a_camera_is_shown_with_its_rate_and_its_dropped_frames():
     shown = CaptureState(1, 1, camera=29.97, dropped=2).line()
     assert "camera 30.0/s dropped 2" in shown

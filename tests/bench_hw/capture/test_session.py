@@ -216,6 +216,13 @@ def test_trials_of_another_condition_can_be_appended(record, session):
     assert {"capture.json", "capture-2.json"} <= {path.name for path in session.iterdir()}
 
 
+@pytest.mark.parametrize("seed", [None, 7])
+def test_appended_trials_are_no_copies(record, seed):
+    found = [read_trial_mcap(record(append=more, seed=seed).trials[0]).force[:200] for more in (False, True, True)]
+    for first, second in ((0, 1), (0, 2), (1, 2)):
+        assert len(np.intersect1d(found[first], found[second])) < 40
+
+
 def test_an_existing_session_is_not_touched(record, session):
     record()
     before = {path.name: path.read_bytes() for path in session.iterdir()}
@@ -225,8 +232,17 @@ def test_an_existing_session_is_not_touched(record, session):
 
 
 def test_appending_needs_a_session(record):
-    with pytest.raises(InputError, match="no session to append to"):
+    with pytest.raises(InputError, match="no session to append to; leave --append out"):
         record(append=True)
+
+
+def test_a_folder_with_trials_of_no_session_is_to_be_left_alone(record, session):
+    record()
+    (session / "session.toml").unlink()  # as a first trial leaves the folder that ended with a fault
+    with pytest.raises(InputError, match="no session to append to; give another --out, without --append"):
+        record(append=True)
+    with pytest.raises(InputError, match=r"give another --out$"):
+        record()
 
 
 @pytest.mark.parametrize(

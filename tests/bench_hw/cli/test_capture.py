@@ -90,6 +90,13 @@ def test_the_dry_run_needs_no_rig_and_moves_nothing(run):
     assert "*" in ran.stdout
 
 
+def test_a_picture_of_the_motion_belongs_to_the_dry_run(run, quick, rig, tmp_path):
+    ran = run("capture", quick, "--rig", rig(), "--out", tmp_path / "s", "--fast", "--plot", tmp_path / "plan.svg")
+    assert ran.exit_code == 2
+    assert "is drawn by --dry-run" in ran.stderr
+    assert not (tmp_path / "s").exists()
+
+
 def test_the_dry_run_as_json_and_as_a_picture(run, tmp_path):
     ran = run("capture", "paper_press", "--dry-run", "--json", "--plot", tmp_path / "plan.svg")
     answer = json.loads(ran.stdout)

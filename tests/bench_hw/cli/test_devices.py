@@ -1,6 +1,8 @@
 """`devices` on the command line."""
 
 import json
+import subprocess
+import sys
 
 import pytest
 
@@ -51,3 +53,15 @@ def test_a_host_that_can_be_none_is_exit_2(run, host):
 @pytest.mark.parametrize("host", ["..", "\u00fc" * 70])
 def test_a_host_that_no_network_has_is_missing(run, host):
     assert "missing  force     netft" in run("devices", "--host", host).stdout
+
+
+def test_a_missing_webcam_is_said_by_the_bench_alone(tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text(
+        'schema = 1\nname = "r"\n[force]\nkind = "simulated"\n[actuator]\nkind = "simulated"\nstroke = "50 mm"\n'
+        '[camera]\nkind = "webcam"\ndevice = 97\n'
+    )
+    command = [sys.executable, "-m", "bench_hw", "devices", "--rig", str(path)]
+    ran = subprocess.run(command, capture_output=True, text=True)
+    assert (ran.returncode, ran.stderr) == (5, "")
+    assert "fix: webcam 97: cannot be opened" in ran.stdout

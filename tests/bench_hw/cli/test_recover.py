@@ -50,3 +50,9 @@ def test_an_existing_file_is_not_overwritten(run, trial_file, cut_file):
     assert ran.exit_code == 2
     assert "not overwritten" in ran.stderr
     assert trial_file.read_bytes() == before
+
+
+def test_the_name_of_the_recording_is_kept_for_it(run, cut_file):
+    ran = run("recover", cut_file, "--out", cut_file.with_suffix(""))
+    assert ran.exit_code == 2
+    assert "no trial_002.mcap is written beside this recording; give another name" in ran.stderr

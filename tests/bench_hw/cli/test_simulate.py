@@ -82,6 +82,24 @@ def test_a_camera_as_files(run, tmp_path):
     assert len(list((tmp_path / "p").glob("frame_*.png"))) == 3
 
 
+def test_pictures_replace_and_join_nothing(run, tmp_path):
+    mine = tmp_path / "p" / "frame_00001.png"
+    mine.parent.mkdir()
+    mine.write_bytes(b"mine")
+    for place in (mine.parent, mine):
+        ran = run("simulate", "camera", "--size", "64x48", "--images", place, "--frames", 2)
+        assert ran.exit_code == 2
+        assert "allowed: a folder that is new or empty" in ran.stderr
+    assert [(path.name, path.read_bytes()) for path in mine.parent.iterdir()] == [("frame_00001.png", b"mine")]
+
+
+@pytest.mark.parametrize("wrong", [("--port", 80_000), ("--port", -1), ("--duration-s", -1), ("--duration-s", "inf")])
+def test_a_camera_that_cannot_be_is_a_usage_error(run, wrong):
+    ran = run("simulate", "camera", *wrong)
+    assert ran.exit_code == 2
+    assert f"Invalid value for '{wrong[0]}'" in ran.stderr
+
+
 def test_a_session(run, tmp_path):
     ran = run("simulate", "session", "--out", tmp_path / "s", "--trials", 1, "--no-camera", "--json", "--seed", 2)
     assert ran.exit_code == 0

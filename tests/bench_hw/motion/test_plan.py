@@ -83,4 +83,6 @@ def test_the_plot_replaces_a_plot_and_nothing_else(tmp_path):
     with pytest.raises(InputError, match="is not a picture of a motion"):
         write_plot(planned, mine)
     assert mine.read_text() == "<svg>mine</svg>"
+    with pytest.raises(InputError, match=r"plot\.png: .* ends in \.svg"):
+        write_plot(planned, tmp_path / "plot.png")
     assert write_plot(planned, write_plot(planned, tmp_path / "plot.svg")).stat().st_size > 1000

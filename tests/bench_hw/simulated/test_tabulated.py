@@ -84,7 +84,7 @@ def test_the_shipped_sheet_says_that_it_is_synthetic() -> None:
 
 
 def test_what_is_no_table_is_refused(tmp_path) -> None:
-    with pytest.raises(InputError, match="none of that name is shipped"):
+    with pytest.raises(InputError, match="none of that name is shipped; allowed: a path, or phantom"):
         read_sheet("nobody")
     (tmp_path / "bad.json").write_text('{"depth": [1]}')
     with pytest.raises(InputError, match="no table of a sheet"):

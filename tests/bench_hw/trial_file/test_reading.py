@@ -118,9 +118,9 @@ def test_too_few_rows_no_positions_and_no_force_are_refused(record):
 
 def test_a_cut_trial_is_refused_with_the_way_out(three_seconds, tmp_path):
     content = three_seconds.read_bytes()
-    path = tmp_path / "cut.mcap"
+    path = tmp_path / "cut off.mcap"
     path.write_bytes(content[: len(content) // 2])
-    with pytest.raises(TrialFileError, match=r"damaged or cut.*use `recover`"):
+    with pytest.raises(TrialFileError, match=r"damaged or cut.*bench_hw recover '.*/cut off\.mcap' --out NEW\.mcap"):
         read_trial_mcap(path)
     with pytest.raises(TrialFileError, match="No such file"):
         read_trial_mcap(tmp_path / "none.mcap")

@@ -144,3 +144,20 @@ def test_what_numpy_says_on_the_way_is_not_shown(benchmark_cli, monkeypatch: pyt
 def test_every_verb_has_the_options_that_scripts_pass_everywhere(verb: str) -> None:
     options = {name for parameter in get_command(app.app).commands[verb].params for name in parameter.opts}
     assert {"--json", "--quiet", "--debug"} <= options
+
+
+@pytest.mark.parametrize(
+    ("typed", "said"),
+    [
+        (("sweep", "skin-5N"), "error: Missing option '--vary'. See python -m benchmark sweep --help."),
+        (("sweep", "skin-5N", "--vary", "tool.radius=4 mm", "--sample", "foo"),
+         "error: Invalid value for '--sample': 'foo' is not one of 'lhs', 'sobol'. See python -m benchmark sweep"),
+        (("reference",), "error: Missing argument 'new'. See python -m benchmark reference --help."),
+        (("tissues", "new"), "tissues new NAME. See python -m benchmark tissues --help."),
+        (("nosuch",), "error: No such command 'nosuch'. See python -m benchmark --help."),
+    ],
+)  # fmt: skip
+def test_what_is_typed_wrong_is_said_with_the_help_of_its_verb(benchmark_cli, typed, said) -> None:
+    called = benchmark_cli(*typed)
+    assert called.code == app.EXIT_USAGE
+    assert said in " ".join(called.err.split())

@@ -36,12 +36,18 @@ def test_a_plain_name_may_be_a_file(tmp_path):
     assert find("mine", "tissue", tmp_path) == tmp_path / "mine"
 
 
+def test_a_name_without_its_ending_finds_the_file_that_was_meant(tmp_path):
+    (tmp_path / "my skin.toml").touch()
+    with pytest.raises(InputError, match=r"did you mean the file my skin\.toml\?"):
+        find("my skin", "tissue", tmp_path)
+
+
 def test_a_name_that_is_nothing_lists_the_nearest():
     with pytest.raises(InputError, match="did you mean skin_forearm"):
         find("skin_forarm", "tissue")
     with pytest.raises(InputError, match="known: compression, paper, phantom, skin-5N"):
         find("zzzz", "scenario")
-    for odd in ("", "x" * 400, "a\0b"):
+    for odd in ("", ".", "x" * 400, "a\0b"):
         with pytest.raises(InputError):
             find(odd, "tissue")
 

@@ -17,6 +17,7 @@ from benchmark.identification.fitted_parameters import sheet_parameters
 from benchmark.identification.sheet_session import Pooled
 from benchmark.response import CameraView
 from benchmark.runs.options import Listener
+from benchmark.runs.report.values import sheet_headline
 from benchmark.runs.trials.session_tables import base_curves, session_sheets
 from benchmark.sessions import SHIPPED
 from benchmark.sessions.phantom_sheet import RELAXATION, TRUE_FACTOR
@@ -132,6 +133,15 @@ def test_a_relaxation_that_may_be_none_has_no_interval_but_a_most(small, model) 
     for name in ("relaxation.g_1", "relaxation.tau_1"):
         assert (rows[name].ci95_low, rows[name].identifiable) == (None, False)
         assert "not to be told from none (at most 0.04, 95 %)" in rows[name].source
+
+
+def test_one_trial_is_said_in_the_singular(small, model) -> None:
+    alone, fit = small
+    lone = replace(fit, stiffness=replace(fit.stiffness, trials=1), trials=fit.trials[:1])
+    assert sheet_headline(lone).startswith("force and markers of 1 trial together")
+    rows = {row.name: row for row in sheet_parameters(lone, model[0], alone.parameters)}
+    assert rows["contact_onset"].source.startswith("mean over 1 trial of")
+    assert sheet_headline(fit).startswith(f"force and markers of {fit.stiffness.trials} trials together")
 
 
 def test_a_single_trial_without_standard_errors_identifies_nothing(small, model) -> None:

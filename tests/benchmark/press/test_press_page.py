@@ -143,3 +143,15 @@ def test_nothing_in_the_page_ends_its_data_early(page_document):
     page = render_press_page(hostile)
     assert "<script>alert" not in page
     assert "connect-src" not in page
+
+
+@pytest.mark.parametrize(
+    ("request_", "says"),
+    [
+        (PressRequest("skin-5N", tools=("2",)), "--tool: the bare number 2 has no unit"),
+        (PressRequest("skin-5N", tissues=("skin_foream",)), "--tissue: no tissue 'skin_foream' ships"),
+    ],
+)
+def test_what_can_be_chosen_is_refused_by_the_option_it_was_given_with(request_, says) -> None:
+    with pytest.raises(InputError, match=f"^{says}"):
+        specimens(request_, Silent())

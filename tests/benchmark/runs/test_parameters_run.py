@@ -97,3 +97,27 @@ def test_what_cannot_be_fitted_is_refused_by_its_name(session, tmp_path, wish, n
     with pytest.raises(InputError, match=named):
         fit(session, tmp_path / "out", wish)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("wish", "says"),
+    [
+        (ParameterWish(forward="fea"), "--forward, forward: 'fea' is not allowed; allowed: 'fem' or 'wave'"),
+        (ParameterWish(laws=("yeoh", "gentt")), "--law gentt: no such law; allowed: neo_hookean"),
+        (
+            ParameterWish(free=("youngs_modulus",)),
+            "--free youngs_modulus: this specimen and set-up have no such number",
+        ),
+        (ParameterWish(free=(), laws=("yeoh",)), "a law or a posterior need free parameters: give --free"),
+        (ParameterWish(free=("silicon.relaxation",)), "--free silicon.relaxation: this specimen"),
+        (ParameterWish(free=("law.c20_over_c10",), laws=("gent",)), "--free law.c20_over_c10: the fit has no such law"),
+    ],
+)
+def test_what_is_mistyped_is_refused_before_anything_is_computed(session, tmp_path, monkeypatch, wish, says):
+    def computed(*_):
+        pytest.fail("the finite elements were at work")
+
+    monkeypatch.setattr("benchmark.runs.fitted_session.base_curves", computed)
+    with pytest.raises(InputError, match=says):
+        fit(session, tmp_path / "out", wish)
+    assert not (tmp_path / "out").exists()

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from bench_hw.tables import TrialTable
+from bench_hw.trial_file import DepthRecord, ForceRecord, TrialHeader, open_trial
 from benchmark.errors import InputError
 from benchmark.files import load_session, load_tissue
 from benchmark.files.load import Load
@@ -255,6 +256,18 @@ def test_a_depth_that_is_never_positive_is_no_question_of_the_tool(tmp_path):
     said = refusal(tmp_path / "day")
     assert "the depth is never above zero (down to -1.45 mm)" in said
     assert "--set import.depth" in said
+
+
+def test_a_recording_that_ended_before_the_touch_is_not_to_be_turned(tmp_path):
+    header = TrialHeader("trial_001", "2024-05-06T07:08:09+00:00", 0.0, synthetic=True)
+    with open_trial(tmp_path / "trial_001.mcap", header, background=False) as writer:
+        for number in range(100):
+            writer.write_force(ForceRecord(number / 100, number, number, 0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+            writer.write_depth(DepthRecord(number / 100, -2e-3 + 1e-5 * number))
+    said = refusal(tmp_path)
+    assert "the depth is never above zero (down to -2 mm)" in said
+    assert "ended before its tool touched" in said
+    assert "import.depth" not in said
 
 
 @pytest.mark.skipif(DATA is None, reason="measured data: set TISSUEBENCH_DATA to the folder that holds pig_indentation")
