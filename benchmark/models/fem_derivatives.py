@@ -113,7 +113,7 @@ def differentiated_press(
     if scenario.support.pull < 0.0:
         raise fem.NotDifferentiableError("a cylinder between grips: the solver's own derivatives are those of a press")
     load = fem.Load(drive.control, drive.time, drive.value)
-    prepared = FemModel(scenario).prepared
+    prepared = FemModel(scenario, beyond_limits=False).prepared
     problems = {key: _change(prepared.problem, each, key) for key, each in changes.items()}
     found: dict[int, fem.DifferentiatedSolution] = {}
 

@@ -46,6 +46,8 @@ class FemModel:
         Where the steps of the one load history that is followed are kept, and taken up; None keeps nothing.
     judge_mesh
         Whether results tell the discretisation error of their mesh, which takes further solutions.
+    beyond_limits
+        Whether a press goes on over limit points, where its curve jumps.
     added
         Effects of a model file; those that the solver does not carry by itself are `carried.on_top`.
 
@@ -64,6 +66,7 @@ class FemModel:
         every_field: bool = False,
         keeping: Keeping | None = None,
         judge_mesh: bool = False,
+        beyond_limits: bool = True,
         added: tuple[Given, ...] = (),
     ):
         refuse_options(scenario, carried_keys())
@@ -76,9 +79,10 @@ class FemModel:
             slow = scenario.fem.geometry == "surface"
             mesh_file = kept_mesh(keeping) if keeping is not None and slow else None
             self.carried = with_added_effects(with_stated_effects(scenario), added, scenario)
-            self._model = fem.prepare(self.carried.problem, mesh_file=mesh_file)
+            model = fem.prepare(self.carried.problem, mesh_file=mesh_file)
         except fem.FemError as error:
             raise InputError(f"scenario {scenario.name}: {error}") from None
+        self._model = model if beyond_limits else model.within_limits
 
     @property
     def prepared(self) -> Model:

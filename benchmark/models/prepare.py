@@ -31,6 +31,7 @@ def prepare(
     own: UserFile | None = None,
     keeping: Keeping | None = None,
     judge_mesh: bool = False,
+    beyond_limits: bool = True,
 ) -> PreparedModel:
     """Set a model up for a scenario.
 
@@ -48,6 +49,8 @@ def prepare(
         Where the steps of the load history are kept (FEM); None keeps nothing.
     judge_mesh
         Whether the result tells the discretisation error of its mesh (FEM), which takes further solutions.
+    beyond_limits
+        Whether a press goes on over limit points, where its curve jumps (FEM).
 
     Raises
     ------
@@ -59,7 +62,9 @@ def prepare(
     if model == "fem":
         from benchmark.models.fem_model import FemModel
 
-        return FemModel(scenario, every_field=every_field, keeping=keeping, judge_mesh=judge_mesh)
+        return FemModel(
+            scenario, every_field=every_field, keeping=keeping, judge_mesh=judge_mesh, beyond_limits=beyond_limits
+        )
     if own is not None:
         from benchmark.models.user_model import UserModel
 

@@ -244,7 +244,7 @@ def _fem_ramp(scenario: Scenario, wave: RadialTable) -> tuple[FemRamp | None, tu
 
 def _ramp(scenario: Scenario, wave: RadialTable) -> FemRamp:
     start = time.perf_counter()
-    model = FemModel(scenario).prepared
+    model = FemModel(scenario, beyond_limits=False).prepared
     ready, busy = time.perf_counter(), time.process_time()
     depth = wave.deepest * np.arange(1, LEVELS + 1) / LEVELS
     solution = model.run(fem.Load("depth", np.arange(1.0, LEVELS + 1), depth))

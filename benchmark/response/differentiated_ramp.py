@@ -159,7 +159,8 @@ def elastic_ramp(session: Session, tissue: Tissue, tool: Tool, support: Support,
         The finite elements do not cover it.
     """
     try:
-        model = prepare("fem", _elastic(session, (tissue, tool, support)), every_field=support.kind == "hole")
+        scenario = _elastic(session, (tissue, tool, support))
+        model = prepare("fem", scenario, every_field=support.kind == "hole", beyond_limits=False)
         return depth_ramp(model, depth, steps, face=support.kind == "hole")
     except UncoveredError as error:
         raise InputError(f"the finite elements do not cover {session.name}: {error}") from None

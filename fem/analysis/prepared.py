@@ -73,6 +73,14 @@ class Model:
         """Name of the linear solver in use."""
         return self.equilibrium.solver.name
 
+    @property
+    def within_limits(self) -> Model:
+        """The same model, whose presses end where they would go over a limit point (:mod:`fem.analysis.limit_points`).
+
+        For curves that must be smooth: beyond one they jump.
+        """
+        return replace(self, newton=replace(self.newton, beyond_limits=False))
+
     def run(
         self,
         load: Load,

@@ -217,8 +217,7 @@ def _found_near(model: Model, load: Load, pressed: _Pressed) -> _Pressed | None:
 
 def _followed(model: Model, load: Load) -> _Pressed | None:
     """The end of a load history, followed from rest; None where it cannot be without going over limit points."""
-    model = replace(model, newton=replace(model.newton, beyond_limits=False))
-    found = model.run(load)
+    found = model.within_limits.run(load)
     return _Pressed.of(found, -1) if found.complete else None
 
 

@@ -69,7 +69,7 @@ def _followed(session: Session, setup: Setup, depth: float, on_step: OnStep) -> 
     steps = min(max(math.ceil(depth / STEP), LEAST_STEPS), MOST_STEPS)
 
     def ramp_of(tool: Tool) -> Ramp:
-        model = prepare("fem", setup_scenario(session, session.specimen, (tool, setup[1])))
+        model = prepare("fem", setup_scenario(session, session.specimen, (tool, setup[1])), beyond_limits=False)
         return depth_ramp(model, depth, steps, on_step)
 
     try:
@@ -113,7 +113,8 @@ def _sheet(
     """Force and lower face with all layers thicker by a share; raises SolverError."""
     tissue, tool, support = changed_setup(session.specimen, *setup, THICKNESS, thicker)
     task = f"{tissue.name}, thicker" if thicker else tissue.name
-    model = prepare("fem", setup_scenario(session, tissue, (tool, support)), every_field=True)
+    scenario = setup_scenario(session, tissue, (tool, support))
+    model = prepare("fem", scenario, every_field=True, beyond_limits=False)
     ramp = depth_ramp(model, depth, FACE_STEPS, _told(advance, task), face=True)
     face = ramp.face
     if ramp.failure is not None or face is None:

@@ -194,6 +194,15 @@ def test_a_press_goes_over_limit_points_and_tells_what_that_lost(tmp_path, monke
     np.testing.assert_array_equal(stopped.reaction, whole.reaction[:2])
 
 
+def test_a_press_within_limits_ends_at_the_first(monkeypatch):
+    ended = soft_pad().within_limits.run(SNAPS)
+    assert not ended.complete
+    assert ended.warnings == ()
+    monkeypatch.setattr(stepping, "AHEAD", ())
+    joined = soft_pad().run(SNAPS)
+    np.testing.assert_array_equal(ended.reaction, joined.reaction[: len(ended.reaction)])
+
+
 def test_a_way_that_would_lose_too_much_is_not_taken(monkeypatch):
     monkeypatch.setattr(limit_points, "MOST_LOST", 1e-9)
     assert not soft_pad().run(SNAPS).complete
