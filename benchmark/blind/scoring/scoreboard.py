@@ -21,7 +21,8 @@ MOST_POINTS = 6
 READING = (
     "A bar is reached where the measured value is on its good side; it is sure only where the whole 95 % interval "
     "(Clopper-Pearson for shares, resampled cases for means and medians) is. Sessions with fewer than six trials are "
-    "counted in their own row alone."
+    "counted in their own row alone. What can show is five standard deviations and more beside what its session does "
+    "not state of the layers."
 )
 SYNTHETIC = "All sessions are synthetic: computed by the blind trials' generator, not measured."
 
