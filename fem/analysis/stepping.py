@@ -26,6 +26,7 @@ FIRST_TOLERANCE = 1e-2
 """Unbalanced forces over the force with which equations whose limits are only guessed are solved."""
 HELD_BELOW = 5e-4
 """Tolerance below which such a round begins with the factors of the one before: hardly a node changes any more."""
+MOST_OVER = 30  # limit points in a press; five were the most that was seen
 AHEAD = (1.0 / 64.0, 1.0 / 8.0)
 """How far beyond the last equilibrium, of the way to a step, the next one is looked for behind a limit point."""
 
@@ -255,7 +256,8 @@ class Stepper:
         if beyond is not None:
             self._problem = replace(self._problem, system=beyond)
             return True
-        return system.is_beyond and any(self._crept(part, target, duration) for part in AHEAD)
+        allowed = system.is_beyond and self._accounts[-1].crept < MOST_OVER
+        return allowed and any(self._crept(part, target, duration) for part in AHEAD)
 
     def _crept(self, part: float, target: float, duration: float) -> bool:
         """Creep over a limit point by a part of the way to a target; whether there is an equilibrium."""

@@ -203,6 +203,7 @@ def test_a_press_within_limits_ends_at_the_first(monkeypatch):
     np.testing.assert_array_equal(ended.reaction, joined.reaction[: len(ended.reaction)])
 
 
-def test_a_way_that_would_lose_too_much_is_not_taken(monkeypatch):
-    monkeypatch.setattr(limit_points, "MOST_LOST", 1e-9)
+@pytest.mark.parametrize(("module", "bound", "value"), [(limit_points, "MOST_LOST", 1e-9), (stepping, "MOST_OVER", 1)])
+def test_a_press_ends_where_too_much_would_be_lost_or_too_often(monkeypatch, module, bound, value):
+    monkeypatch.setattr(module, bound, value)
     assert not soft_pad().run(SNAPS).complete
