@@ -12,6 +12,9 @@ from bench_hw.cli._report import Debug, Json, Quiet, print_json, reporting
 if TYPE_CHECKING:
     from bench_hw.trial_file.inspection import Inspection
 
+SMALLEST_MS = 1e-3
+"""The shortest time in ms that is shown as a number: no clock of a bench is as good."""
+
 
 def register(app: typer.Typer) -> None:
     """Add the verbs."""
@@ -74,11 +77,16 @@ def _text(inspection: Inspection) -> str:
     synthetic = ", synthetic (simulated devices)" if inspection.trial.get("synthetic") else ""
     lines = [f"{inspection.path}: {state}{synthetic}"]
     for name, report in inspection.channels.items():
-        figures = (f"{key} {_figure(value)}" for key, value in report.to_dict().items())
+        figures = (f"{key} {_figure(key, value)}" for key, value in report.to_dict().items())
         lines.append(f"  {name}: " + ", ".join(figures))
     lines += [f"  fault: {fault}" for fault in inspection.faults]
     return "\n".join(lines)
 
 
-def _figure(value: float | None) -> str:
-    return "-" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)
+def _figure(key: str, value: float | None) -> str:
+    """A figure as people read it: thousandths of a millisecond, and six digits of anything else."""
+    if value is None:
+        return "-"
+    if key.endswith("_ms"):
+        return f"below {SMALLEST_MS:g}" if 0.0 < value < SMALLEST_MS else f"{value:.6g}"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -23,6 +23,8 @@ DRIFT_ROWS = 10
 """Fewest rows at either end from which a drift is told."""
 SAME_DEPTH = 0.2e-3
 """Depths at start and end that are this close (m) count as the same: the actuator's own accuracy."""
+STAMP_DIGITS = 9
+"""Decimals of a time stamp in s, which a file holds in whole nanoseconds: a scatter below them is rounding."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +40,7 @@ class ChannelReport:
     rate : float or None
         Records per second as the device sent them, lost ones included, Hz.
     jitter : float or None
-        Standard deviation of the intervals between neighbours, s.
+        Standard deviation of the intervals between neighbours, s; 0 where it is below the stamps' nanosecond.
     longest_interval : float or None
         s.
     lost : int
@@ -124,7 +126,7 @@ def report_channel(
         first_time=float(time.min()),
         last_time=float(time.max()),
         rate=_rate(ordered, step),
-        jitter=float(interval[neighbours].std()) if neighbours.any() else None,
+        jitter=round(float(interval[neighbours].std()), STAMP_DIGITS) if neighbours.any() else None,
         longest_interval=float(interval.max()) if len(interval) else None,
         lost=check.lost + int(unseen.sum()),
         gaps=check.gaps + int(long.sum()),

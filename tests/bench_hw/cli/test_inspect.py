@@ -2,6 +2,10 @@
 
 import json
 
+import pytest
+
+from bench_hw.cli.inspect import _figure
+
 
 def test_the_json_of_a_sound_trial(run, trial_file):
     ran = run("inspect", trial_file, "--json")
@@ -33,6 +37,17 @@ def test_the_text_says_synthetic_and_what_is_wrong(run, trial_file, cut_file):
     assert "lost 4" in text
     assert "NOT complete" in run("inspect", cut_file).stdout
     assert run("inspect", cut_file, "--quiet").stdout == ""
+
+
+def test_a_jitter_is_shown_as_far_as_it_means_something(run, trial_file):
+    text = run("inspect", trial_file).stdout
+    assert "jitter_ms 0," in text
+    assert "e-" not in text
+
+
+@pytest.mark.parametrize(("jitter", "shown"), [(0.0, "0"), (3e-6, "below 0.001"), (0.25, "0.25"), (None, "-")])
+def test_times_below_a_microsecond_are_said_to_be_so(jitter, shown):
+    assert _figure("jitter_ms", jitter) == shown
 
 
 def test_what_is_no_trial_is_exit_two_and_one_paragraph(run, tmp_path):

@@ -38,6 +38,12 @@ def test_jitter_is_the_spread_of_intervals_between_neighbours():
     assert report.jitter == pytest.approx(np.sqrt(2) * 1e-4, rel=0.05)
 
 
+def test_what_rounding_scatters_is_no_jitter():
+    number = np.arange(5000)
+    assert report_channel(number / 1000.0, number).jitter == 0.0
+    assert report_channel(np.round(number / 30.0, 9), number).jitter == 0.0
+
+
 def test_a_pause_without_a_number_skipped_is_a_gap_but_nothing_lost():
     number = np.arange(1000)
     time = number / 1000.0 + np.where(number >= 400, 0.06, 0.0)
