@@ -17,6 +17,8 @@ Seed = Annotated[int, typer.Option(help="Of all noise and chance.", min=0)]
 Duration = Annotated[
     float | None, typer.Option(help="End after this time, s; without it, on SIGTERM or Ctrl-C.", min=0.0, max=1e7)
 ]
+USUAL_FRAMES = 30
+"""Pictures that are written where nobody says how many."""
 Loss = Annotated[float, typer.Option(help="Chance that a record or frame is lost.", min=0.0, max=1.0)]
 Drop = Annotated[str, typer.Option(help="Positions in the stream, from 1, that are lost: 200-202,500.")]
 
@@ -83,7 +85,7 @@ def camera(
     images: Annotated[
         Path | None, typer.Option(help="Write picture files into this new or empty folder instead.")
     ] = None,
-    frames: Annotated[int, typer.Option(help="With --images: how many.", min=1)] = 30,
+    frames: Annotated[int | None, typer.Option(help="With --images: how many; 30 without it.", min=1)] = None,
     seed: Seed = 0,
     duration_s: Duration = None,
     as_json: Json = False,
@@ -105,9 +107,13 @@ def camera(
         markers = pressed_sheet()
         take = partial(_picture, painter.paint, markers)
         if images is not None:
+            _check_of_files({"--port": port, "--jitter-s": jitter_s, "--loss": loss, "--drop": drop,
+                             "--freeze": freeze, "--duration-s": duration_s})  # fmt: skip
             _check_new(images)
-            paths = write_pictures(images, take, [k / rate_hz for k in range(frames)])
+            paths = write_pictures(images, take, [k / rate_hz for k in range(frames or USUAL_FRAMES)])
             return _counted(len(paths), 0, f"pictures in {images}", as_json=as_json, quiet=quiet)
+        if frames is not None:
+            raise InputError(f"--frames {frames}: a stream ends by --duration-s; allowed with --images FOLDER")
         dropped, frozen = parse_positions(drop), parse_positions(freeze)
         settings = CameraSettings(rate_hz, jitter_s, loss=loss, drop=dropped, freeze=frozen)
         with CameraServer(take, MonotonicClock(), settings, of_chance, port=port) as server:
@@ -165,6 +171,16 @@ def _serve(duration: float | None) -> None:
 
     with stop_on_signals() as stop:
         stop.wait(duration)
+
+
+def _check_of_files(of_stream: dict[str, float | str | None]) -> None:
+    """Refuse the faults and times of a stream where pictures are written as files, which hold no instants."""
+    given = [f"{option} {value}" for option, value in of_stream.items() if value not in (None, "", 0)]
+    if given:
+        raise InputError(
+            f"{', '.join(given)}: only the stream has this; allowed with --images are --frames, --rate-hz, --size, "
+            "--noise, --blur and --seed"
+        )
 
 
 def _check_new(folder: Path) -> None:

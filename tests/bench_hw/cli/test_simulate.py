@@ -82,6 +82,23 @@ def test_a_camera_as_files(run, tmp_path):
     assert len(list((tmp_path / "p").glob("frame_*.png"))) == 3
 
 
+@pytest.mark.parametrize(
+    "fault", [("--loss", "0.5"), ("--drop", "1-3"), ("--freeze", "4"), ("--jitter-s", "0.1"), ("--duration-s", "2")]
+)
+def test_files_take_no_fault_of_the_stream(run, tmp_path, fault):
+    ran = run("simulate", "camera", "--size", "64x48", "--images", tmp_path / "p", *fault)
+    assert ran.exit_code == 2
+    assert f"error: {fault[0]} {fault[1]}" in ran.stderr
+    assert "allowed with --images are" in ran.stderr
+    assert not (tmp_path / "p").exists()
+
+
+def test_a_stream_takes_no_number_of_pictures(run):
+    ran = run("simulate", "camera", "--frames", 3, "--duration-s", 0.1)
+    assert ran.exit_code == 2
+    assert "--frames 3" in ran.stderr
+
+
 def test_pictures_replace_and_join_nothing(run, tmp_path):
     mine = tmp_path / "p" / "frame_00001.png"
     mine.parent.mkdir()
