@@ -23,6 +23,7 @@ from bench_hw.vision.calibration.views import (
 )
 from bench_hw.vision.camera.camera_file import camera_tables, write_camera
 from bench_hw.vision.camera.pinhole import Camera, InvertibleDomain, Plane, Quality, survey_domain
+from bench_hw.vision.frames.opening import picture_files
 
 USUAL_MARK = 1e-3
 """Distance of a ruler's finest marks, m."""
@@ -35,7 +36,7 @@ class CalibrationOrder:
     Parameters
     ----------
     images : tuple of pathlib.Path
-        Views of the board.
+        Views of the board; a folder stands for the pictures in it.
     board : Board
         The board.
     out : pathlib.Path
@@ -123,6 +124,7 @@ def calibrate(order: CalibrationOrder, progress: Progress | None = None) -> Cali
         to tell the parameters, a map that held-out views contradict, or no scale in the plane's picture. No file is
         written then.
     """
+    order = replace(order, images=_pictures(order.images))
     if order.out.resolve() in [path.resolve() for path in (*order.images, order.plane or order.out.parent)]:
         raise InputError(f"{order.out}: this file is read; allowed: another name")
     check_replaceable(order.out, b"[matrix]", "a camera file")
@@ -146,6 +148,11 @@ def calibrate(order: CalibrationOrder, progress: Progress | None = None) -> Cali
     warnings += [] if domain.whole else [str(domain)]
     write_camera(order.out, camera, _remarks(fit, order, domain, scale))
     return CalibrationOutcome(order.out, camera, fit, error, domain, tuple(warnings))
+
+
+def _pictures(given: tuple[Path, ...]) -> tuple[Path, ...]:
+    """The views that were given, those of folders in the natural order of their names."""
+    return tuple(each for path in given for each in (picture_files(str(path)) if path.is_dir() else [path]))
 
 
 def _views(order: CalibrationOrder, progress: Progress | None) -> tuple[list[BoardView], tuple[int, int]]:

@@ -80,11 +80,9 @@ class PictureFrames:
 
     def __init__(self, place: str, rate: float | None = None) -> None:
         self._assumed = rate is None
-        self._files = sorted(_files(place), key=_natural)
+        self._files = picture_files(place)
         self.name, self.synthetic, self.expected = place, False, len(self._files)
         self.rate = rate or USUAL_RATE
-        if not self._files:
-            raise InputError(f"{place}: no pictures; allowed endings: {', '.join(KINDS)}")
 
     def frames(self) -> Iterator[Frame]:
         """Give the pictures, number / rate as time."""
@@ -106,6 +104,20 @@ def is_pictures(place: str) -> bool:
 
 def _is_pattern(place: str) -> bool:
     return not Path(place).exists() and (any(sign in place for sign in "*?[") or bool(_NUMBERED.search(place)))
+
+
+def picture_files(place: str) -> list[Path]:
+    """The pictures of a folder or pattern, or the one picture, in the natural order of their names.
+
+    Raises
+    ------
+    InputError
+        There is no picture.
+    """
+    files = sorted(_files(place), key=_natural)
+    if not files:
+        raise InputError(f"{place}: no pictures; allowed endings: {', '.join(KINDS)}")
+    return files
 
 
 def _files(place: str) -> list[Path]:

@@ -67,6 +67,23 @@ def test_a_refusal_is_exit_two_one_paragraph_and_no_file(run, views, tmp_path, o
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_folder_stands_for_the_pictures_in_it(run, views, tmp_path):
+    folder = tmp_path / "views"
+    folder.mkdir()
+    for path in views[:3]:
+        (folder / path.name).write_bytes(path.read_bytes())
+    (folder / "notes.txt").write_text("three views")
+    arguments = ("--corners", "9x6", "--square-mm", "8", "--out", tmp_path / "camera.toml")
+    assert "too few views: 3 of 3" in run("calibrate", folder, *arguments).stderr
+    assert "too few views: 5 of 5" in run("calibrate", folder, *views[3:5], *arguments).stderr
+
+
+def test_a_folder_without_pictures_is_said_to_have_none(run, tmp_path):
+    ran = run("calibrate", tmp_path, "--corners", "9x6", "--square-mm", "8", "--out", tmp_path / "camera.toml")
+    assert ran.exit_code == 2
+    assert f"{tmp_path}: no pictures; allowed endings: .png" in ran.stderr
+
+
 def test_a_missing_picture_is_named(run, tmp_path):
     ran = run("calibrate", tmp_path / "none.png", "--corners", "9x6", "--square-mm", "8", "--out", tmp_path / "c.toml")
     assert ran.exit_code == 2
