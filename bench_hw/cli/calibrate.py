@@ -20,7 +20,7 @@ def register(app: typer.Typer) -> None:
 
 
 def calibrate(
-    images: Annotated[list[Path], typer.Argument(help="Views of a chessboard, at least 20: pictures, or folders of them.")],
+    images: Annotated[list[Path], typer.Argument(help="At least 20 views of a chessboard, or a folder of them.")],
     corners: Annotated[str, typer.Option(help="Inner corners of the board, COLUMNSxROWS, for instance 9x6.")],
     square_mm: Annotated[float, typer.Option(help="Side of a square, mm.")],
     out: Annotated[Path, typer.Option(help="The file to write, for instance camera.toml.")],
