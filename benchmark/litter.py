@@ -14,8 +14,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from bench_hw.storage.folder_lock import is_free, lock_path
+from bench_hw.storage.folder_lock import in_use, is_free
 from benchmark.discovery.evidence.pool import KEPT as KEPT_FIT
+from benchmark.files.sessions.session_folder import RECORDING
 from benchmark.runs.output.unfinished import is_kept
 from reports.folders.building import dead_builds
 from reports.manifest import read_manifest, remove_known, remove_ours
@@ -25,7 +26,6 @@ PART = re.compile(r"\.(?P<name>.+)\.[0-9a-f]{8}\.(?:part|tmp)")
 """A file that was being written."""
 BESIDE = re.compile(r"\.(?P<name>.+)\.(?P<what>lock|previous|unfinished)")
 """What stands beside a result's place."""
-RECORDING = ".mcap.part"
 OLD = 60.0
 """Seconds after which a file that was being written is no longer being written."""
 
@@ -53,6 +53,15 @@ def find_litter(folder: Path) -> Iterator[Litter]:
 
 def cut_recordings(folder: Path) -> list[Path]:
     """Recordings in a folder and below that were cut off, which are not litter."""
+    return [path for path in _recordings(folder) if not in_use(path.parent)]
+
+
+def live_recordings(folder: Path) -> list[Path]:
+    """Recordings in a folder and below where a capture is at work."""
+    return [path for path in _recordings(folder) if in_use(path.parent)]
+
+
+def _recordings(folder: Path) -> list[Path]:
     return sorted(path for path in folder.rglob(f"*{RECORDING}") if path.is_file())
 
 
@@ -80,17 +89,12 @@ def _what(path: Path) -> str:
         return "a file that was being written" if stale else ""
     if beside["what"] == "lock":
         return "a lock" if path.is_file() and is_free(path) else ""
-    if not path.is_dir() or _in_use(path.with_name(beside["name"])):
+    if not path.is_dir() or in_use(path.with_name(beside["name"])):
         return ""
     if beside["what"] == "previous":
         return "a result that was being replaced" if read_manifest(path) is not None else ""
     ours = all(_is_kept(each.name) for each in path.rglob("*") if not each.is_dir())
     return "steps of a run that was stopped" if ours else ""
-
-
-def _in_use(target: Path) -> bool:
-    lock = lock_path(target)
-    return lock.is_file() and not is_free(lock)
 
 
 def _is_kept(name: str) -> bool:

@@ -111,6 +111,12 @@ def is_free(path: Path) -> bool:
         os.close(handle)
 
 
+def in_use(folder: Path) -> bool:
+    """Whether a process, this one too, is at work in a folder."""
+    lock = lock_path(folder)
+    return lock.is_file() and not is_free(lock)
+
+
 def _taken(path: Path, folder: Path) -> int:
     """A handle that holds the lock, and is the file that now has its name."""
     while True:

@@ -10,7 +10,7 @@ from bench_hw.storage.folder_lock import locked
 from benchmark.cli.folders.results import clean
 from benchmark.errors import InputError
 from benchmark.files.sessions.session_folder import session_table
-from benchmark.litter import cut_recordings, find_litter, remove
+from benchmark.litter import cut_recordings, find_litter, live_recordings, remove
 from reports import whole_folder
 
 
@@ -57,6 +57,19 @@ def test_each_kind_is_found_and_removed_and_nothing_else(place):
 def test_what_is_at_work_is_left_alone(place):
     with locked(place / "press", "run"):
         assert {".press.lock", ".press.unfinished"}.isdisjoint(each.path.name for each in find_litter(place))
+
+
+def test_a_recording_whose_capture_is_at_work_was_not_cut_off(place, capsys):
+    session = place / "session"
+    with locked(session, "capture"):
+        assert (cut_recordings(place), live_recordings(place)) == ([], [session / "trial_001.mcap.part"])
+        with pytest.raises(InputError, match=r"trial_001\.mcap\.part is still being recorded$"):
+            session_table(session)
+        clean(place)
+        said = capsys.readouterr().out
+    assert f"{session / 'trial_001.mcap.part'}: is being recorded, left alone" in said
+    assert "cut off" not in said
+    assert live_recordings(place) == []
 
 
 def test_a_file_that_is_just_being_written_is_left_alone(tmp_path):

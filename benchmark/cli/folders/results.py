@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -95,24 +94,26 @@ def clean(
     """
     from benchmark.cli.show import print_json
     from benchmark.errors import InputError
-    from benchmark.litter import cut_recordings, find_litter, remove
+    from benchmark.files.sessions.session_folder import recover_command
+    from benchmark.litter import cut_recordings, find_litter, live_recordings, remove
 
     if not folder.is_dir():
         raise InputError(f"{folder}: there is no such folder to clean")
     found = list(find_litter(folder))
     gone = [] if dry_run else [litter for litter in found if remove(litter)]
-    recordings = cut_recordings(folder)
+    cut, live = cut_recordings(folder), live_recordings(folder)
     if json:
         rows = [{"path": str(each.path), "what": each.what, "bytes": each.size} for each in found]
-        removed = [str(each.path) for each in gone]
-        print_json({"schema": 1, "found": rows, "removed": removed, "recordings": [str(path) for path in recordings]})
+        paths = {"removed": [each.path for each in gone], "recordings": cut, "being_recorded": live}
+        print_json({"schema": 1, "found": rows, **{key: list(map(str, each)) for key, each in paths.items()}})
         return 0
     for each in found:
         word = "would go" if dry_run else "removed" if each in gone else "stays, it holds other files"
         print(f"{each.path}: {each.what}, {each.size / 1e6:.1f} MB, {word}")
-    for path in recordings:
-        recover = f"python -m bench_hw recover {shlex.quote(str(path))} --out NEW.mcap"
-        print(f"{path}: a recording that was cut off, stays; {recover}")
-    if not found and not recordings:
+    for path in cut:
+        print(f"{path}: a recording that was cut off, stays; {recover_command(path)}")
+    for path in live:
+        print(f"{path}: is being recorded, left alone")
+    if not (found or cut or live):
         print(f"{folder}: nothing to clean")
     return 0

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from bench_hw.instrument_files import ENDINGS, ending_of
+from bench_hw.storage.folder_lock import in_use
 from benchmark.errors import InputError
 from benchmark.files.loading import read_file
 from benchmark.files.schema import SCHEMA
@@ -20,6 +21,8 @@ SESSION_FILE = "session.toml"
 TRIAL_SUFFIXES = ENDINGS
 """Of the bench's own recordings, and of the files of other instruments."""
 _ENDINGS = ", ".join(TRIAL_SUFFIXES)
+RECORDING = ".mcap.part"
+"""Of a recording that was not closed: it was cut off, or is still being made."""
 MARKERS = "_markers.csv"
 """In a folder without a session file, NAME_markers.csv holds the marker tracks of the trial NAME."""
 
@@ -134,14 +137,35 @@ def _entries(folder: Path, name: str) -> list[dict[str, str]]:
             named = ({key: f"{sub.name}/{file}" for key, file in files.items()} for files in _trial_files(sub))
             found += [{**files, "condition": sub.name} for files in named]
     if not found:
-        cut = next((f" {_cut_off(path)}" for path in sorted(folder.glob("*.mcap.part"))), "")
+        cut = "".join(f" {said}" for said in _said_of_unclosed(folder, "")[:1])
         raise InputError(f"{folder}: there is neither a {SESSION_FILE} nor a trial ({_ENDINGS}) in this folder.{cut}")
     return found
 
 
-def _cut_off(path: Path) -> str:
-    recover = f"python -m bench_hw recover {shlex.quote(str(path))} --out NEW.mcap"
-    return f"{path.name} is a recording that was cut off; save what is whole in it: {recover}"
+def unclosed_recordings(source: Source) -> list[str]:
+    """What is said of recordings beside a session's trials that were not closed; nothing where one trial was named."""
+    given = Path(source.name)
+    if given.name != SESSION_FILE and is_file(given):
+        return []
+    return _said_of_unclosed(source.folder, " and is left aside")
+
+
+def _said_of_unclosed(folder: Path, aside: str) -> list[str]:
+    """A sentence for each recording in a folder and its conditions that was not closed."""
+    places = [folder, *(each for each in folder.iterdir() if each.is_dir() and not each.name.startswith("."))]
+    found = sorted(path for place in places for path in place.glob(f"*{RECORDING}"))
+    return [f"{path.name} {_unclosed(path, aside)}" for path in found]
+
+
+def _unclosed(path: Path, aside: str) -> str:
+    if in_use(path.parent):
+        return f"is still being recorded{aside}"
+    return f"is a recording that was cut off{aside}; save what is whole in it: {recover_command(path)}"
+
+
+def recover_command(path: Path) -> str:
+    """What to type to save what is whole in a recording that was cut off."""
+    return f"python -m bench_hw recover {shlex.quote(str(path))} --out NEW.mcap"
 
 
 def _trial_files(folder: Path) -> list[dict[str, str]]:

@@ -36,7 +36,7 @@ from benchmark.files.sessions.recordings import (
     told_heights,
     with_headers,
 )
-from benchmark.files.sessions.session_folder import fingerprint, inside, session_table
+from benchmark.files.sessions.session_folder import fingerprint, inside, session_table, unclosed_recordings
 from benchmark.files.sessions.trials import (
     Session,
     Trial,
@@ -110,7 +110,7 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
         camera=file.camera,
         synthetic=file.synthetic or any(is_synthetic(trial.path) for trial in trials),
         trials=tuple(trials),
-        warnings=(*told, *read.warnings, *warnings, *([assumed] if assumed else [])),
+        warnings=(*told, *read.warnings, *warnings, *([assumed] if assumed else []), *unclosed_recordings(source)),
         shown=read.shown,
         settings=settings,
         fingerprint=fingerprint(source.folder, files),

@@ -4,6 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bench_hw.storage.folder_lock import locked
 from bench_hw.tables import TrialTable
 from bench_hw.trial_file import DepthRecord, ForceRecord, TrialHeader, open_trial
 from benchmark.errors import InputError
@@ -48,6 +49,26 @@ def test_plain_files(tmp_path, write_trial):
     assert any("the specimen is not given" in warning for warning in session.warnings)
     said = " ".join(session.warnings)
     assert all(f"--set {key}=" in said for key in ("tool.radius", "tool.contact", "support.kind", "specimen.thickness"))
+
+
+def test_a_recording_that_was_cut_off_beside_trials_is_said_to_be_left_aside(session_folder):
+    part = session_folder / "trial_003.mcap.part"
+    before = load_session(session_folder).warnings
+    part.write_bytes(b"half")
+    (said,) = set(load_session(session_folder).warnings) - set(before)
+    assert said == (
+        "trial_003.mcap.part is a recording that was cut off and is left aside; save what is whole in it: "
+        f"python -m bench_hw recover {part} --out NEW.mcap"
+    )
+    with locked(session_folder, "capture"):
+        assert "trial_003.mcap.part is still being recorded and is left aside" in load_session(session_folder).warnings
+    assert not any("trial_003" in each for each in load_session(session_folder / "one.csv").warnings)
+
+
+def test_a_cut_recording_of_a_condition_is_seen(tmp_path, write_trial):
+    write_trial(tmp_path / "day" / "slow" / "one.csv")
+    (tmp_path / "day" / "slow" / "two.mcap.part").write_bytes(b"half")
+    assert any(each.startswith("two.mcap.part is a recording") for each in load_session(tmp_path / "day").warnings)
 
 
 def test_plain_files_without_a_gap(tmp_path, write_trial):
