@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from benchmark.errors import InputError
 from benchmark.files.schema import FileModel, Name, Schema, nearest, validated
@@ -29,10 +29,16 @@ class _Parameter(FileModel):
     value: str
     ci95: tuple[str, str] | None = None
 
+    @model_validator(mode="before")
+    @classmethod
+    def _alone(cls, given: Any) -> Any:
+        """A value may stand alone, without its table."""
+        return given if isinstance(given, Mapping) else {"value": given}
+
 
 class _Effect(FileModel):
     name: str
-    parameters: dict[str, _Parameter | str] = Field(default_factory=dict)
+    parameters: dict[str, _Parameter] = Field(default_factory=dict)
 
 
 class _File(FileModel):
@@ -94,8 +100,7 @@ def _effect(effect: _Effect, place: int, known: Mapping[str, EffectDescription],
     return AddedEffect(effect.name, values)
 
 
-def _value(given: _Parameter | str, parameter: EffectParameter, at: KeyPath, source: Source) -> Value:
-    texts = _Parameter(value=given) if isinstance(given, str) else given
+def _value(texts: _Parameter, parameter: EffectParameter, at: KeyPath, source: Source) -> Value:
     value = _number(texts.value, parameter, at, source)
     least, most = parameter.allowed
     if not least <= value <= most:

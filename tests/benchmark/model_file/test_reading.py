@@ -92,6 +92,15 @@ def test_what_is_wrong_is_said_with_its_place(tmp_path: Path, text: str, words: 
         assert word in str(failure.value)
 
 
+@pytest.mark.parametrize("given", ["3", "{ value = 3 }"])
+def test_a_value_without_quotes_is_said_in_words_of_the_file(tmp_path: Path, given: str) -> None:
+    text = HEAD + f'[[effects]]\nname = "machine_compliance"\n[effects.parameters]\ncompliance = {given}\n'
+    with pytest.raises(InputError) as failure:
+        read_model(_written(tmp_path, text), KNOWN)
+    key = "effects[machine_compliance].parameters.compliance.value"
+    assert str(failure.value) == f"{tmp_path / 'model.toml'}, line 8, {key}: 3 is not text; write it in quotes."
+
+
 def test_older_names_of_the_same_quantity_are_read(tmp_path: Path) -> None:
     older = 'force = "12 mN"\nlength = "80 um"\ncoefficient = "0.1"\n'
     text = HEAD + f'[[effects]]\nname = "dry_friction"\n[effects.parameters]\n{older}'
