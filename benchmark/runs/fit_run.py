@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -154,20 +155,26 @@ def carry_out_fit(request: FitRequest, listener: Listener) -> FitRecord:
     if request.effects is not None and request.model is None:
         raise InputError("--effects brings effects that a model file names: give --model with it")
     repair = None if request.model is None else load_repair(request.model, request.effects)
-    check = request.wish.check
+    check = partial(_check, request)
     found = fit_trials(request.session, request.specimen, request.settings, listener, repair=repair, check=check)
     table = request.wish.table(found.session.fit)
-    check_exports(found.session, request.export, free=bool(table.free))
     if not table.free:
         said = common_factor_warnings(found, listener) if repair is None else ()
         return FitRecord(replace(found, warnings=(*said, *found.warnings)), repair, request.seed)
-    if repair is not None:
-        raise InputError("--free and --model do not go together: the effects of a model file act on a common factor")
     others = [fit_trials(path, request.specimen, request.settings, listener) for path in request.wish.sessions]
     answer = answer_of((found, *others), request.wish, table, listener)
     exported, said = exports(answer.identified, request.export)
     found = replace(found, warnings=(*found.warnings, *said))
     return FitRecord(found, repair, request.seed, answer, exported)
+
+
+def _check(request: FitRequest, session: Session) -> None:
+    """Refuse what cannot be fitted, or not be written, before anything is computed; raises InputError."""
+    request.wish.check(session)
+    free = bool(request.wish.table(session.fit).free)
+    if free and request.model is not None:
+        raise InputError("--free and --model do not go together: the effects of a model file act on a common factor")
+    check_exports(session, request.export, free=free)
 
 
 def fit_to_folder(request: FitRequest, out: Path | None, listener: Listener) -> FitOutcome:

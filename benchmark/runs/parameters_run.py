@@ -13,7 +13,7 @@ from benchmark.files import Session
 from benchmark.files.schema import validated
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.files.sources import Source, read_toml
-from benchmark.identification.parameters.free_parameters import COMMON, MODULUS, parameters_of
+from benchmark.identification.parameters.free_parameters import COMMON, EDGE_RADIUS, MODULUS, parameters_of
 from benchmark.identification.parameters.identifiability import directions
 from benchmark.identification.parameters.identified import Identified, identify
 from benchmark.identification.parameters.law_selection import scores, simplest
@@ -86,16 +86,16 @@ class ParameterWish:
         return validated(FitTable, table | said, source)
 
     def check(self, session: Session) -> None:
-        """Refuse laws, models and a specimen's keys that there are not, before anything is computed.
+        """Refuse laws, models and keys that there are not, before anything is computed.
 
-        Keys of the tool and the support are left to the fit, which may take another tool than the one told.
+        A tool's edge is left to the fit, which may give one to a tool that was told without.
         """
         for name in self.laws or ():
             law_shape(name)
         table, first = self.table(session.fit), session.trials[0]
         if not table.free and (self.sessions or table.law is not None or self.posterior):
             raise InputError("several sessions, a law or a posterior need free parameters: give --free KEY,KEY")
-        for key in (key for key in table.free if not key.startswith(("tool.", "support."))):
+        for key in (key for key in table.free if key != EDGE_RADIUS):
             for law in self.laws or (table.law,):
                 parameters_of(key, (session.specimen, first.tool, first.support), law)
 

@@ -27,6 +27,9 @@ SetUp: TypeAlias = tuple[Tissue, Tool, Support]
 Values: TypeAlias = Mapping[str, float]
 
 STRESS = ("youngs_modulus", "c10", "c01", "c20", "c30", "mu", "k1")
+EDGE_RADIUS = "tool.edge_radius"
+SETUP_KEYS = (RADIUS, EDGE_RADIUS, "support.hole_radius", "support.specimen_radius")
+"""What a fit may vary of tool and support."""
 LENGTHS = ("radius", "hole_radius", "edge_radius", "specimen_radius")
 
 COMMON = "stiffness_factor"
@@ -134,6 +137,9 @@ def parameters_of(key: str, setup: SetUp, law: str | None) -> tuple[Parameter, .
         return (_shape(key, law),)
     if key in (COMMON, THICKNESS):
         return (Parameter(key, 1.0, 1.0 / FAR, FAR),)
+    head = key.partition(".")[0]
+    if head in ("tool", "support") and head not in setup[0].layer_names and key not in SETUP_KEYS:
+        raise _no_key(key, setup[0])
     value = value_of(key, setup)
     if not value > 0.0 or math.isinf(value):
         raise InputError(f"--free {key}: {value:g} is nothing to vary by shares; allowed: values above 0")
@@ -193,7 +199,7 @@ def _no_key(key: str, tissue: Tissue) -> InputError:
     return InputError(
         f"--free {key}: this specimen and set-up have no such number; allowed: LAYER.youngs_modulus, LAYER.thickness, "
         f"LAYER.poisson_ratio, LAYER.relaxation, LAYER.hyperelastic.NAME for the layers {layers}; thickness, "
-        f"relaxation, tool.radius, support.hole_radius, support.specimen_radius, and a law's constant of shape"
+        f"relaxation, {', '.join(SETUP_KEYS)}, and a law's constant of shape"
     )
 
 
@@ -206,7 +212,7 @@ def with_values(setup: SetUp, values: Values, law: str | None = None) -> SetUp:
         tissue = with_law(tissue, law, values.get(LAW_SHAPES[law].key, LAW_SHAPES[law].start))
     constants = [_own_constants(layer, values) for layer in tissue.layers]
     changed: SetUp = (tissue.model_copy(update={"layers": tuple(constants)}), tool, support)
-    for key in (THICKNESS, RADIUS, "tool.edge_radius", "support.hole_radius", "support.specimen_radius"):
+    for key in (THICKNESS, *SETUP_KEYS):
         if key in values:
             told = 1.0 if key == THICKNESS else value_of(key, changed)
             changed = changed_setup(*changed, key, values[key] / told - 1.0)

@@ -99,6 +99,14 @@ def test_what_cannot_be_fitted_is_refused_by_its_name(session, tmp_path, wish, n
     assert not (tmp_path / "out").exists()
 
 
+@pytest.fixture
+def nothing_computed(monkeypatch):
+    def computed(*_):
+        pytest.fail("the finite elements were at work")
+
+    monkeypatch.setattr("benchmark.runs.fitted_session.base_curves", computed)
+
+
 @pytest.mark.parametrize(
     ("wish", "says"),
     [
@@ -110,14 +118,45 @@ def test_what_cannot_be_fitted_is_refused_by_its_name(session, tmp_path, wish, n
         ),
         (ParameterWish(free=(), laws=("yeoh",)), "a law or a posterior need free parameters: give --free"),
         (ParameterWish(free=("silicon.relaxation",)), "--free silicon.relaxation: this specimen"),
+        (ParameterWish(free=("tool.radios",)), r"--free tool.radios: .* tool.radius, tool.edge_radius, support.hole"),
+        (ParameterWish(free=("tool.tilt",)), "--free tool.tilt: this specimen and set-up have no such number"),
+        (ParameterWish(free=("support.hole_radius",)), "--free support.hole_radius: this specimen and set-up have"),
         (ParameterWish(free=("law.c20_over_c10",), laws=("gent",)), "--free law.c20_over_c10: the fit has no such law"),
     ],
 )
-def test_what_is_mistyped_is_refused_before_anything_is_computed(session, tmp_path, monkeypatch, wish, says):
-    def computed(*_):
-        pytest.fail("the finite elements were at work")
-
-    monkeypatch.setattr("benchmark.runs.fitted_session.base_curves", computed)
+def test_what_is_mistyped_is_refused_before_anything_is_computed(session, tmp_path, nothing_computed, wish, says):
     with pytest.raises(InputError, match=says):
         fit(session, tmp_path / "out", wish)
     assert not (tmp_path / "out").exists()
+
+
+MODEL = """schema = 1
+[base]
+tissue = "layer"
+model = "wave"
+[[effects]]
+name = "machine_compliance"
+[effects.parameters]
+compliance = "3 um/N"
+"""
+
+
+@pytest.mark.parametrize(
+    ("free", "says"),
+    [
+        ("tool.radios", "--free tool.radios: this specimen and set-up have no such number"),
+        ("tool.radius", "--free and --model do not go together"),
+    ],
+)
+def test_what_goes_with_no_model_file_is_refused_before_anything_is_computed(
+    session, tmp_path, nothing_computed, free, says
+):
+    model = tmp_path / "model.toml"
+    model.write_text(MODEL)
+    with pytest.raises(InputError, match=says):
+        fit_to_folder(FitRequest(session, model=model, wish=ParameterWish(free=(free,))), tmp_path / "out", Unheard())
+
+
+def test_a_format_that_cannot_be_written_is_refused_before_anything_is_computed(session, tmp_path, nothing_computed):
+    with pytest.raises(InputError, match="--export odb: no such format"):
+        fit_to_folder(FitRequest(session, export=("odb",)), tmp_path / "out", Unheard())
