@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -32,6 +33,12 @@ SECTIONS: Final[Mapping[str, type[FileModel]]] = {
 """The sections of a scenario besides its tissue."""
 
 TISSUE_KEYS = ("citation", "max_force")
+OTHER_FILES: Final[Mapping[str, str]] = {
+    "layers": "this is a tissue file; a scenario presses it: python -m benchmark run skin-5N --tissue {file}",
+    "trials": "this is a session file; its trials are run by: python -m benchmark run --trials {file}",
+    "base": "this is a model file; its effects are switched on by: python -m benchmark run skin-5N --model {file}",
+}
+"""What another kind of file than a scenario is, by a key that it alone has, and how it is used."""
 _FILE_KEYS = (("load", "file"), ("fem", "surface"))
 _NO_OVERRIDES: Overrides = {}
 
@@ -98,7 +105,11 @@ def load_scenario(name_or_path: str | Path, overrides: Overrides = _NO_OVERRIDES
     InputError
         One paragraph with file, line and key, or the `--set` key, the value and what is allowed.
     """
-    table, source = read_file(find(name_or_path, "scenario"), "scenario")
+    path = find(name_or_path, "scenario")
+    table, source = read_file(path, "scenario")
+    for key, means in OTHER_FILES.items():
+        if key in table and "tissue" not in table:
+            raise InputError(f"{path}: {means.format(file=shlex.quote(str(path)))}")
     return scenario_from_table(table, source, overrides)
 
 

@@ -85,6 +85,10 @@ def find(name_or_path: str | Path, what: str, base: Path | None = None) -> Path:
         return path
     if text and is_file(Path(f"{path}.toml")):
         raise InputError(f"no {what} {text!r} ships with tissuebench; did you mean the file {text}.toml?")
+    if what == "scenario" and text in shipped_tissues():
+        raise InputError(
+            f"{text!r} is a tissue; a scenario presses it: python -m benchmark run skin-5N --tissue {text}"
+        )
     raise InputError(
         f"no {what} {text!r} ships with tissuebench and there is no file of that name; {nearest(text, entries)} "
         f"A path to a file of your own ends in .toml."

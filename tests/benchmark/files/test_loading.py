@@ -127,6 +127,29 @@ def test_a_bad_scenario_is_refused_with_file_line_and_key(scenario_file, change,
     assert says in refusal(load_scenario, change(scenario_file, old, new))
 
 
+def test_a_tissue_file_in_a_scenarios_place_is_said_to_be_one(tissue_file):
+    with pytest.raises(InputError) as failure:
+        load_scenario(tissue_file)
+    way = f"python -m benchmark run skin-5N --tissue {tissue_file}"
+    assert str(failure.value) == f"{tissue_file}: this is a tissue file; a scenario presses it: {way}"
+    with pytest.raises(InputError, match=r"'skin_forearm' is a tissue; .* run skin-5N --tissue skin_forearm$"):
+        load_scenario("skin_forearm")
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ('[[trials]]\nfile = "a.csv"\ncondition = "a"\n', "a session file; .* run --trials"),
+        ('[base]\ntissue = "skin_forearm"\nmodel = "wave"\n', "a model file; .* run skin-5N --model"),
+    ],
+)
+def test_other_files_in_a_scenarios_place_are_said_to_be_so(tmp_path, text, says):
+    file = tmp_path / "my file.toml"
+    file.write_text(f"schema = 1\n{text}")
+    with pytest.raises(InputError, match=rf"this is {says} '{file}'$"):
+        load_scenario(file)
+
+
 def test_a_missing_file_is_refused_by_name(tmp_path):
     assert refusal(load_tissue, tmp_path / "none.toml").startswith(str(tmp_path / "none.toml"))
     assert "no scenario 'skin-6N' ships" in refusal(load_scenario, "skin-6N")
