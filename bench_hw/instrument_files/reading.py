@@ -30,7 +30,7 @@ from bench_hw.instrument_files.vocabulary import (
 )
 from bench_hw.tables.columns import MINIMUM_ROWS
 
-TEXT_ENDINGS: Final = (".csv", ".txt", ".tsv", ".tab", ".dat", ".asc", ".tra")
+TEXT_ENDINGS: Final = (".csv", ".txt", ".tsv", ".tab", ".dat", ".asc", ".tra", ".lvm")
 ENDINGS: Final = (*TEXT_ENDINGS, *OPENERS)
 """Of the files that this reads."""
 FACT_LIMITS: Final = {"tool_radius": (1e-9, 1.0), "height": (1e-7, 1.0), "area": (1e-14, 1.0)}

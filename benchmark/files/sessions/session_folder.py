@@ -50,7 +50,10 @@ def session_table(path: Path) -> tuple[dict[str, Any], Source]:
         if path.name == SESSION_FILE:
             return read_file(path, "session")
         if ending_of(path) not in TRIAL_SUFFIXES:
-            raise InputError(f"{path}: this is no trial; allowed: a session's folder, its session.toml, {_ENDINGS}.")
+            raise InputError(
+                f"{path}: this is no trial; allowed: a session's folder, its session.toml, {_ENDINGS}. Files of other "
+                "kinds are read when their program exports them as csv or txt, with time, depth and force in columns."
+            )
         if _of_trial(path):
             raise InputError(f"{path}: by its name this holds marker tracks; allowed: the trial, or its folder.")
         entry = {"file": path.name, "condition": path.stem}

@@ -5,6 +5,7 @@ import importlib.util
 import numpy as np
 import pytest
 
+from bench_hw.errors import TableError
 from bench_hw.instrument_files import Told, preview, read_instrument_file
 from bench_hw.instrument_files.told import asking_key
 from bench_hw.instrument_files.vocabulary import label_and_unit, role_of
@@ -84,6 +85,37 @@ def test_what_is_told_comes_before_what_is_found(tmp_path):
     (record,) = read_instrument_file(path, told).records
     np.testing.assert_allclose(record.table.depth, one.depth * 25.4 * 25.4e-6, atol=1e-9)
     np.testing.assert_allclose(record.table.force, one.force, atol=1e-6)
+
+
+def labview(path, heading="X_Value\tForce\tDisplacement\tComment", sign="."):
+    """LabVIEW's measurement file: two blocks of header, units apart from the names, a column for remarks."""
+    one = press()
+    head = ["LabVIEW Measurement\t", "Writer_Version\t2", "Separator\tTab", f"Decimal_Separator\t{sign}",
+            "Multi_Headings\tNo", "X_Columns\tOne", "Date\t2024/05/06", "***End_of_Header***\t", "\t",
+            "Channels\t2\t\t", f"Samples\t{one.time.size}\t{one.time.size}\t", "Time\t10:11:12.1\t10:11:12.1\t",
+            "Y_Unit_Label\tN\tmm\t", "Delta_X\t0.02\t0.02\t", "***End_of_Header***\t\t\t", heading]  # fmt: skip
+    cells = zip(one.time, one.force, one.depth, strict=True)
+    lines = ("\t".join(f"{cell:.6f}".replace(".", sign) for cell in row) + "\t" for row in cells)
+    path.write_text("\n".join([*head, *lines]))
+    return path
+
+
+@pytest.mark.parametrize("sign", [".", ","])
+def test_a_measurement_of_labview_is_read_as_text_once_its_columns_are_told(tmp_path, sign):
+    path = labview(tmp_path / "a.lvm", sign=sign)
+    with pytest.raises(TableError, match=r"unit of the force stands neither .* --set import\.force=\"Force:N\""):
+        read_instrument_file(path)
+    told = Told({"time": "X_Value:s", "depth": "Displacement:mm", "force": "Force:N"}, touch="none")
+    (record,) = read_instrument_file(path, told).records
+    one = press()
+    np.testing.assert_allclose(record.table.force, one.force, atol=1e-6)
+    np.testing.assert_allclose(record.table.depth, 1e-3 * one.depth, atol=1e-9)
+
+
+def test_a_measurement_of_labview_with_units_in_its_names_needs_nothing_told_but_the_time(tmp_path):
+    path = labview(tmp_path / "a.lvm", "X_Value\tForce (N)\tDisplacement (mm)\tComment")
+    (record,) = read_instrument_file(path, Told({"time": "X_Value:s"})).records
+    assert record.table.force.max() == pytest.approx(press().force.max(), rel=0.01)
 
 
 def cylinder_text(head, units, unit_row="(s){0}(mm){0}(N){0}(%){0}(kPa)", between=",", sign="."):

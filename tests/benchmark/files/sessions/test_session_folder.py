@@ -70,6 +70,12 @@ def test_what_is_no_session_is_refused(tmp_path, name):
         session_table(tmp_path / name)
 
 
+def test_a_file_of_another_kind_is_told_what_is_read_and_how_it_gets_there(tmp_path):
+    (tmp_path / "a.vi").write_text("no table")
+    with pytest.raises(InputError, match=r"\.csv, \.txt, .*\.lvm, .* exports them as csv or txt, with time, depth"):
+        session_table(tmp_path / "a.vi")
+
+
 def test_a_pipe_or_a_device_is_said_to_be_one(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path / "pipe", Path(os.devnull)):
