@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal, Self
 
 from pydantic import model_validator
@@ -9,6 +10,7 @@ from pydantic import model_validator
 from benchmark.files.quantities import Length, SignedLength, Tilt, problem
 from benchmark.files.schema import FileModel
 from benchmark.files.tissue import Tissue
+from benchmark.files.units import LENGTH, shown_quantity
 
 Contact = Literal["uniform_pressure", "rigid_bonded", "rigid_frictionless", "rigid_frictional"]
 
@@ -18,6 +20,9 @@ BETWEEN_PLATES = ("rigid_bonded", "rigid_frictionless")
 """What the faces of a cylinder do on its plates: stick, or slide without friction."""
 COVERING = 0.9
 """Of a cylinder's radius, from which on a plate is taken to cover its face: widths are not known better."""
+
+WIDEST, THICKEST = 0.5, 1.0
+"""Radii and thicknesses of layers (m) up to which nothing is asked: no bench for tissue or phantoms has larger ones."""
 
 
 class Tool(FileModel):
@@ -108,6 +113,28 @@ def setup_uncertainties(tissue: Tissue, tool: Tool, support: Support) -> dict[st
     parts = {"tool": tool, "support": support}
     own = {f"{name}.{key}": share for name, part in parts.items() for key, share in part.own_uncertainties.items()}
     return {**tissue.uncertainties, **own}
+
+
+def oversized(tissue: Tissue, tool: Tool, support: Support) -> list[str]:
+    """A sentence for each length that no bench has, as where a unit was left short ("4 m" for "4 mm").
+
+    The bounds of the files are wider: problems of verification and of other scales are allowed.
+    """
+    hole = support.hole_radius if support.kind == "hole" else None
+    radii = {
+        "tool.radius": tool.radius,
+        "tool.edge_radius": tool.edge_radius,
+        "support.hole_radius": hole,
+        "support.specimen_radius": support.specimen_radius,
+    }
+    lengths = [(key, value, WIDEST) for key, value in radii.items() if value is not None]
+    lengths += [(f"{each.name}.thickness", each.thickness, THICKEST) for each in tissue.layers]
+    return [
+        f"{key} is {shown_quantity(value, LENGTH)}, more than any bench has ({shown_quantity(most, LENGTH)}): "
+        f'is another unit meant, such as "{value:.6g} mm"?'
+        for key, value, most in lengths
+        if most < value < math.inf
+    ]
 
 
 def check_hole(tool: Tool, support: Support) -> None:

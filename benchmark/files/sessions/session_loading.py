@@ -48,7 +48,7 @@ from benchmark.files.sessions.trials import (
 from benchmark.files.shipped import find, shipped_tissues
 from benchmark.files.sources import KeyPath, Source
 from benchmark.files.tissue import Layer, Tissue
-from benchmark.files.tool import Support, Tool
+from benchmark.files.tool import Support, Tool, oversized
 
 _NO_OVERRIDES: Overrides = {}
 
@@ -116,8 +116,8 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
         fingerprint=fingerprint(source.folder, files),
         fit=file.fit,
     )
-    _check_presses(session)
-    return session
+    sizes = _checked_presses(session)
+    return replace(session, warnings=(*session.warnings, *sizes))
 
 
 def _check_films(file: SessionFile, source: Source, films: Sequence[Path | None]) -> None:
@@ -133,10 +133,13 @@ def _filmed(trials: Sequence[Trial], read: Sequence[Recording], films: Mapping[i
     return [replace(trial, film=films.get(id(each.entry))) for trial, each in zip(trials, read, strict=True)]
 
 
-def _check_presses(session: Session) -> None:
-    """Refuse tools, supports and settings that no scenario can have, before anything long begins."""
+def _checked_presses(session: Session) -> list[str]:
+    """What to ask of their sizes; tools, supports and settings that no scenario can have are refused."""
+    said: list[str] = []
     for tool, support in dict.fromkeys((trial.tool, trial.support) for trial in session.trials):
         session.scenario(session.specimen, tool, support, Load(peak=1.0))
+        said += oversized(session.specimen, tool, support)
+    return list(dict.fromkeys(said))
 
 
 def _session_path(key: str, table: dict[str, Any]) -> KeyPath | None:

@@ -188,6 +188,12 @@ def test_the_shipped_scenario_has_nothing_to_note():
         ({"load__hold": "3 s"}, "load.hold has no effect: the shape is triangle"),
         ({"support__hole_radius": "30 mm"}, "support.hole_radius has no effect: the support is bonded"),
         ({"physics__friction_coefficient": "0.3"}, "physics.friction_coefficient has no effect"),
+        (
+            {"tool__radius": "4 m"},
+            'tool.radius is 4 m, more than any bench has (500 mm): is another unit meant, such as "4',
+        ),
+        ({"dermis__thickness": "1.5 m"}, "dermis.thickness is 1.5 m, more than any bench has (1 m)"),
+        ({"support__kind": "hole", "support__hole_radius": "30 m"}, "support.hole_radius is 30 m"),
     ],
 )
 def test_what_is_easily_misread_is_said(overrides, says):

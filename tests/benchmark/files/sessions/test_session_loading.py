@@ -51,6 +51,13 @@ def test_plain_files(tmp_path, write_trial):
     assert all(f"--set {key}=" in said for key in ("tool.radius", "tool.contact", "support.kind", "specimen.thickness"))
 
 
+def test_a_tool_that_no_bench_has_is_asked_about(session_folder):
+    said = load_session(session_folder, {"tool.radius": "4 m"}).warnings
+    assert [each for each in said if "more than any bench has" in each] == [
+        'tool.radius is 4 m, more than any bench has (500 mm): is another unit meant, such as "4 mm"?'
+    ]
+
+
 def test_a_recording_that_was_cut_off_beside_trials_is_said_to_be_left_aside(session_folder):
     part = session_folder / "trial_003.mcap.part"
     before = load_session(session_folder).warnings
