@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from bench_hw.capture.session_keys import specimen_source
 from bench_hw.configuration import validated
 from bench_hw.errors import InputError
 from bench_hw.motion.protocol_file import LoadedProtocol, Protocol
@@ -31,7 +32,7 @@ class CaptureOrder:
     condition : str
         What the trials share, for the session file; by default the protocol's name.
     specimen : str
-        Name of a shipped tissue or path inside the folder, for the session file; may be empty.
+        Name of a shipped tissue or a tissue file, for the session file; may be empty.
     fast : bool
         Simulated time: faster than real time, for simulated devices only.
     append : bool
@@ -63,10 +64,12 @@ def check_order(order: CaptureOrder) -> None:
     Raises
     ------
     InputError
-        Simulated time with real devices, a number of trials below one, a speed the actuator has not, or a
-        depth outside the travel.
+        Simulated time with real devices, a number of trials below one, a specimen that there is not, a speed the
+        actuator has not, or a depth outside the travel.
     """
     rig, protocol = order.rig.rig, order.protocol.protocol
+    if order.specimen:
+        specimen_source(order.specimen, order.out)
     if order.trials < 1:
         raise InputError(f"--trials {order.trials}: allowed is 1 or more")
     if order.fast and not rig.without_hardware:

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from bench_hw.capture.order import CaptureOrder
-from bench_hw.capture.session_keys import check_session, check_session_file
+from bench_hw.capture.session_keys import check_session, check_session_file, specimen_source
 from bench_hw.configuration import read_toml
 from bench_hw.devices.protocols import DeviceInfo
 from bench_hw.errors import InputError
@@ -48,6 +48,8 @@ class SessionFolder:
     def __init__(self, order: CaptureOrder) -> None:
         self.path = order.out
         self._session = self._existing() if order.append else {}
+        if order.append and order.specimen:
+            self._check_same(order.specimen)
         check_session(_keys_of(order), "--set")
         self._log: list[dict[str, Any]] = []
         if not order.append and self.path.exists():
@@ -74,15 +76,24 @@ class SessionFolder:
         return {path.name.split(".")[0] for path in self.path.glob("trial_*.mcap*")}
 
     def begin(self, order: CaptureOrder, keys: dict[str, Any]) -> None:
-        """Prepare the session's entries; nothing is written before the first trial is whole."""
+        """Prepare the session's entries, and copy its tissue's file; the rest waits until the first trial is whole.
+
+        Raises
+        ------
+        InputError, OSError
+            The tissue's file cannot be read, or not be written.
+        """
         if self._session:
             return
         self._session = {"schema": SCHEMA, "name": self.path.resolve().name}
-        if order.specimen:
-            self._session["specimen"] = order.specimen
         if order.rig.rig.synthetic:
             self._session["synthetic"] = True
         _merge(self._session, keys)
+        if order.specimen:
+            source = specimen_source(order.specimen, self.path)
+            self._session["specimen"] = order.specimen if source is None else source.name
+            if source is not None:
+                self.keep(source.name, read_toml(source)[1])
         _merge(self._session, _keys_of(order))
 
     def add_trial(self, file: Path, condition: str) -> None:
@@ -149,6 +160,13 @@ class SessionFolder:
             new = "leave --append out for a new one" if empty else "give another --out, without --append, for a new one"
             raise InputError(f"{path}: there is no session to append to; {new}")
         return read_toml(path)[0]
+
+    def _check_same(self, specimen: str) -> None:
+        """Refuse another specimen than the session's, which the trials to be added are of."""
+        told = str(self._session.get("specimen", ""))
+        if told not in (specimen, Path(specimen).name):
+            its = f"this session's is {told}" if told else "this session names none, and another is not put in"
+            raise InputError(f"--specimen {specimen}: {its}; leave it out with --append, or give another --out")
 
     def _check_empty(self) -> None:
         if not self.path.is_dir():

@@ -7,12 +7,15 @@ that a person sets are checked before anything moves, the whole file before it i
 from __future__ import annotations
 
 import tomllib
+from difflib import get_close_matches
+from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field
 
-from bench_hw.configuration import StrictModel, parse_quantity, validated
+from bench_hw.configuration import StrictModel, parse_quantity, read_toml, validated
+from bench_hw.errors import InputError
 
 
 def _in(unit: str) -> BeforeValidator:
@@ -131,3 +134,42 @@ def check_session(tables: dict[str, Any], source: str) -> None:
 def check_session_file(path: Path) -> None:
     """Read a session file back, as `check_session`."""
     check_session(tomllib.loads(path.read_text(encoding="utf-8")), str(path))
+
+
+TISSUES = "tissuebench.tissues"
+"""The group of entry points by which programs that read sessions tell the tissues they ship: what they give, called,
+holds the names."""
+
+
+def specimen_source(name: str, folder: Path) -> Path | None:
+    """Where the tissue that a session will name is: a file to be copied into its folder, or None, where it is known.
+
+    Parameters
+    ----------
+    name : str
+        A shipped tissue, a file in the session's folder, or a tissue file elsewhere.
+    folder : pathlib.Path
+        The session's folder, which need not exist.
+
+    Raises
+    ------
+    InputError
+        There is no such tissue, or the file is none.
+    """
+    known = sorted({each for point in entry_points(group=TISSUES) for each in point.load()()})
+    path = Path(name)
+    inside = not path.is_absolute() and (folder / path).is_file()
+    if name in known or inside:
+        return None
+    if path.is_file():
+        if "layers" not in read_toml(path)[0]:
+            raise InputError(f"--specimen {name}: this file has no [[layers]]; allowed is a tissue file")
+        return path
+    if not known and path.suffix != ".toml":
+        return None  # no program here says which tissues there are
+    near = get_close_matches(name, known, n=1)
+    meant = f"did you mean {near[0]}? " if near else ""
+    shipped = f"a shipped tissue ({', '.join(known)}) or " if known else ""
+    raise InputError(
+        f"--specimen {name}: there is no such tissue; {meant}allowed is {shipped}a tissue file that exists"
+    )

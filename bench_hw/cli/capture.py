@@ -30,7 +30,9 @@ def capture(
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the motion and its time; move nothing.")] = False,
     plot: Annotated[Path | None, typer.Option(help="With --dry-run: write the motion as an SVG picture.")] = None,
     condition: Annotated[str, typer.Option(help="What these trials share; the protocol's name by default.")] = "",
-    specimen: Annotated[str, typer.Option(help="Tissue of the session file: a shipped name or a path in it.")] = "",
+    specimen: Annotated[
+        str, typer.Option(help="Tissue of the session: a shipped name, or a file to copy into it.")
+    ] = "",
     append: Annotated[bool, typer.Option("--append", help="Add the trials to a session that exists.")] = False,
     pause_s: Annotated[float, typer.Option(help="Rest between two trials, s.", min=0.0)] = 0.0,
     seed: Annotated[int | None, typer.Option(help="Of simulated devices; the rig's by default.", min=0)] = None,
@@ -64,6 +66,7 @@ def capture(
         from bench_hw.rig.rig_file import load_rig
 
         keys = _pairs(settings or [])
+        specimen = keys.pop("specimen", specimen).strip('"')
         order = CaptureOrder(loaded, load_rig(rig), out, trials, condition, specimen, fast, append, pause_s, seed, keys)
         progress = choose_progress(quiet or as_json)
         _say_setup(loaded, progress.say)

@@ -3,6 +3,7 @@
 import json
 import shutil
 import tomllib
+from importlib.metadata import EntryPoint
 
 import pytest
 
@@ -68,6 +69,60 @@ def test_a_session(run, quick, rig, tmp_path):
     listed = tomllib.loads((out / "session.toml").read_text())
     assert (listed["specimen"], listed["tool"]) == ("rtv3498_sheet", {"radius": "5 mm"})
     assert listed["trials"][1] == {"file": "trial_002.mcap", "condition": "slow"}
+
+
+TISSUE = 'schema = 1\nname = "mine"\n[[layers]]\nname = "gel"\n'
+
+
+@pytest.fixture
+def tissues(monkeypatch):
+    """A program that reads sessions and says which tissues it ships."""
+    point = EntryPoint("reader", "reader:tissues", "tissuebench.tissues")
+    monkeypatch.setattr(EntryPoint, "load", lambda self: lambda: {"skin_forearm": 1, "rtv3498_sheet": 2})
+    monkeypatch.setattr("bench_hw.capture.session_keys.entry_points", lambda group: [point])
+
+
+@pytest.mark.parametrize(
+    "given", [("--specimen", "skin_forarm"), ("--set", "specimen=skin_forarm"), ("--set", 'specimen="skin_forarm"')]
+)
+def test_a_specimen_that_there_is_not_is_refused_before_anything_moves(run, quick, rig, tmp_path, tissues, given):
+    ran = run("capture", quick, "--rig", rig(), "--out", tmp_path / "s", "--fast", *given)
+    assert ran.exit_code == 2
+    assert ran.stderr == (
+        "error: --specimen skin_forarm: there is no such tissue; did you mean skin_forearm? allowed is a shipped "
+        "tissue (rtv3498_sheet, skin_forearm) or a tissue file that exists\n"
+    )
+    assert not (tmp_path / "s").exists()
+
+
+def test_a_specimens_file_must_be_there_and_be_one(run, quick, rig, tmp_path):
+    for name, says in (("none.toml", "there is no such tissue"), ("rig.toml", "this file has no [[layers]]")):
+        file = tmp_path / name
+        ran = run("capture", quick, "--rig", rig(), "--out", tmp_path / "s", "--fast", "--specimen", file)
+        assert ran.exit_code == 2
+        assert f"--specimen {file}: {says}" in ran.stderr
+        assert not (tmp_path / "s").exists()
+
+
+def test_a_specimens_file_is_copied_into_the_session(run, quick, rig, tmp_path):
+    mine, out = tmp_path / "mine.toml", tmp_path / "s"
+    mine.write_text(TISSUE)
+    arguments = ("capture", quick, "--rig", rig(), "--out", out, "--fast", "--quiet", "--specimen", mine)
+    assert run(*arguments).exit_code == 0
+    assert tomllib.loads((out / "session.toml").read_text())["specimen"] == "mine.toml"
+    assert (out / "mine.toml").read_text() == TISSUE
+    assert run(*arguments, "--append").exit_code == 0
+    other = tmp_path / "other.toml"
+    other.write_text(TISSUE)
+    ran = run(*arguments[:-1], other, "--append")
+    assert ran.exit_code == 2
+    assert f"--specimen {other}: this session's is mine.toml" in ran.stderr
+
+
+def test_a_specimen_that_is_told_comes_before_the_rigs(run, quick, tmp_path):
+    arguments = ("--rig", "simulated_phantom", "--out", tmp_path / "s", "--fast", "--quiet")
+    assert run("capture", quick, *arguments, "--specimen", "skin_forearm").exit_code == 0
+    assert tomllib.loads((tmp_path / "s" / "session.toml").read_text())["specimen"] == "skin_forearm"
 
 
 def test_progress_is_lines_where_there_is_no_terminal(run, quick, rig, tmp_path):

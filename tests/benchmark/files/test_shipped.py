@@ -2,11 +2,14 @@
 
 import subprocess
 import sys
+import tomllib
+from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from bench_hw.capture.session_keys import TISSUES
 from benchmark.errors import InputError
 from benchmark.files import load_scenario, load_tissue, scenario_notes
 from benchmark.files.shipped import find, shipped_scenarios, shipped_tissues
@@ -151,3 +154,9 @@ def test_paper_is_the_default_skin_stiffened_by_one_factor():
 def test_importing_the_package_builds_no_unit_registry():
     code = "import sys, benchmark.files; sys.exit('pint' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_the_bench_is_told_the_shipped_tissues():
+    project = tomllib.loads((Path(__file__).parents[3] / "pyproject.toml").read_text())["project"]
+    (named,) = project["entry-points"][TISSUES].values()
+    assert EntryPoint("benchmark", named, TISSUES).load()() == shipped_tissues()
