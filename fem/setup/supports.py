@@ -20,7 +20,6 @@ FAR_BORDER = (
     2.0e4  # in tool radii or stack thicknesses: fixed at the distance R it takes about a/R of the deflection away
 )
 FAR_FIELD = 40.0  # in the same, from where the mesh grows geometrically
-CLAMP_IN_THICKNESSES = 4.0
 # A sheet bends: the tool's edge weighs little, but the press goes several thicknesses deep.
 EDGE_FACTOR = 1.5
 CORNER_RINGS = (1.0, 0.5, 0.25)  # of the fans where a clamped edge meets the faces
@@ -123,12 +122,12 @@ class Hole:
     """Lower face fixed for r >= hole_radius, outer border fixed; a clamp at the rim is the outer border alone."""
 
     def extent(self, problem: Problem) -> Extent:
-        """Border several thicknesses outside the hole, or at its rim; the rim of the hole is resolved."""
+        """Border several decay lengths outside the hole, or at its rim; the rim of the hole is resolved."""
         hole, thickness = hole_radius(problem), tuple(layer.thickness for layer in problem.layers)
         total = sum(thickness)
         radius = problem.discretisation.radius
         if radius is None:
-            radius = max(hole, problem.tool.radius) + CLAMP_IN_THICKNESSES * total
+            radius = max(hole, problem.tool.radius) + BORDER_IN_DECAY_LENGTHS * decay_length(problem)
         size = min(total, hole) / 8.0
         fans: tuple[Fan, ...] = ()
         if problem.support.clamp == "rim":

@@ -8,6 +8,7 @@ displacement is that on the motion of what holds the face, but for a spring that
 sheet's material: stiff enough, and the tangent can be factorised as a positive matrix.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,7 @@ from wavemodel.sheet.layered.stretched_modes import StretchedModes
 
 STIFFNESS = 1e4
 FUNCTIONS = 8
-"""Of each direction on a face: as many as the modes resolve at the edge; more would lock them."""
+"""Of each direction under a tool: as many as the modes resolve at the edge; more would lock them."""
 POINTS = 240
 
 
@@ -100,11 +101,12 @@ def bonded_tool(place: Amplitudes, radius: float) -> FloatArray:
     return np.hstack([level, place.on(0, powers[1::2] @ place.modes.outward(at)[0], None)])
 
 
-def plate(place: Amplitudes, hole: float) -> FloatArray:
-    """(A, 2 J) of the functions on the lower face outside a hole (m)."""
+def plate(place: Amplitudes, hole: float, near: float) -> FloatArray:
+    """(A, 2 J) of the functions on the lower face outside a hole (m), as many as tell lengths `near` (m) at its rim."""
     root, share = _half_range()
-    at = hole + (place.modes.radius.border - hole) * root**2
-    powers = legendre.legvander(2.0 * root - 1.0, FUNCTIONS - 1).T * (share * at / hole)
+    ring = place.modes.radius.border - hole
+    at = hole + ring * root**2
+    powers = legendre.legvander(2.0 * root - 1.0, math.ceil(math.sqrt(ring / near)) - 1).T * (share * at / hole)
     last = place.nodes - 1
     level = place.on(last, None, powers @ place.modes.level(at)[0])
     return np.hstack([level, place.on(last, powers @ place.modes.outward(at)[0], None)])

@@ -5,6 +5,7 @@ body is that of the large press on a base (`wavemodel.layered.finite_strain.moda
 holds it. Nothing is calibrated.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -20,8 +21,8 @@ from wavemodel.sheet.layered.stretched_modes import StretchedRadius, stretched_m
 from wavemodel.sheet.layered.through_thickness import Piece, SheetThickness, sheet_thickness
 from wavemodel.specimen import DiscTool, WaveLayer
 
-BEHIND = 3.0
-"""Thicknesses of the sheet that lie on the plate round the hole: behind it nothing moves."""
+BEHIND = 6.0
+"""Decay lengths of the sheet that lie on the plate round the hole: behind it nothing moves."""
 FAR, AT_TOOL, AT_HOLE = 1.0, 0.03, 0.05
 """Resolved sizes: over the thickness (or the tool's radius, if less) away from the edges and at the tool's edge, and
 over the thickness at the hole's."""
@@ -126,7 +127,7 @@ def layered_sheet(layers: Sequence[WaveLayer], tool: DiscTool, hole: float, clam
     size = min(total, tool.radius)
     at_tool = AT_TOOL_BY_LAW if tool.rigid and any(layer.law for layer in layers) else AT_TOOL
     around = StretchedRadius(
-        hole + BEHIND * total if clamp == "plate" else hole,
+        hole + BEHIND * decay_length(layers) if clamp == "plate" else hole,
         max(FAR * size, hole / MOST_SIZES),
         ((tool.radius, at_tool * size), (hole, AT_HOLE * total)),
     )
@@ -135,8 +136,19 @@ def layered_sheet(layers: Sequence[WaveLayer], tool: DiscTool, hole: float, clam
     return LayeredSheet(modes.tables(), thickness, place, _held(place, layers, tool, hole, clamp), tool)
 
 
+def decay_length(layers: Sequence[WaveLayer]) -> float:
+    """Length in m over which a sheet stuck to a plate takes up a pull, sqrt(H sum(G_i h_i) / G): shear lag.
+
+    H is the whole thickness and G the modulus of the softest layer; of one layer it is its thickness.
+    """
+    total = sum(layer.thickness for layer in layers)
+    pull = sum(layer.shear_modulus * layer.thickness for layer in layers)
+    return math.sqrt(total * pull / min(layer.shear_modulus for layer in layers))
+
+
 def _held(place: Amplitudes, layers: Sequence[WaveLayer], tool: DiscTool, hole: float, clamp: str) -> HeldFaces:
-    below = plate(place, hole) if clamp == "plate" else border(place)
+    total = sum(layer.thickness for layer in layers)
+    below = plate(place, hole, AT_HOLE * total) if clamp == "plate" else border(place)
     stiff = np.full(below.shape[1], STIFFNESS * 2.0 * np.pi * hole * layers[-1].shear_modulus)
     if not tool.rigid:
         return HeldFaces(below, stiff, np.zeros(stiff.size), pressure_on(place, tool.radius))
