@@ -56,7 +56,7 @@ def test_more_or_fewer_functions_only_where_the_plate_is_asked_for() -> None:
     asked = pressed(load_scenario("phantom", {**SHORT, "wave.model": "plate", "wave.modes": "8"}))
     assert (asked.notes["modes"], asked.warnings) == ("8 radial functions each", ())
     automatic = pressed(load_scenario("phantom", {**SHORT, "wave.modes": "8", "wave.window": "40 mm"}))
-    assert automatic.notes["modes"] == "35 radial functions each"
+    assert automatic.notes["modes"] == "40 radial functions each"
     assert [warning.split(" is left out")[0] for warning in automatic.warnings] == ["wave.window", "wave.modes"]
 
 
