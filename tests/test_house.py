@@ -1,6 +1,7 @@
 """A house one can live in: few rooms, modules that are one concept, short functions, names for one thing."""
 
 import importlib.util
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -45,3 +46,12 @@ def test_functions_are_short(house):
 
 def test_one_name_is_one_thing(house):
     assert over({name: count for name, count in house.names.items() if name not in ANYWHERE}, MOST_OF_ONE_NAME) == {}
+
+
+def test_the_wheel_holds_the_five_packages_alone():
+    """The tests and benchmarks are no part of what is installed."""
+    setuptools, root = pytest.importorskip("setuptools"), Path(__file__).parents[1]
+    pyproject = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))
+    include = pyproject["tool"]["setuptools"]["packages"]["find"]["include"]
+    found = setuptools.find_namespace_packages(str(root), include=include)
+    assert {name.partition(".")[0] for name in found} == {"benchmark", "fem", "wavemodel", "bench_hw", "reports"}

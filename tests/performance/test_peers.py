@@ -28,6 +28,19 @@ def test_the_same_mesh_gives_the_same_displacements(program, case, allowed):
     assert 0.0 < found[program].difference < allowed
 
 
+@needs_felupe
+@pytest.mark.parametrize(("name", "within"), [("sheet, small", 0.02), ("stiff on soft", 0.015)])
+def test_elements_of_another_code_bound_the_force_over_a_hole(name, within):
+    """By displacement alone from above, with one pressure an element from below; held too near, ours was 5 % above."""
+    from tests.performance.peers.felupe_refined import PRESSES, SMALL, Judge
+
+    press = PRESSES[name]
+    ours, above = press.ours("fine"), Judge(press, 0.5).force()
+    assert above * (1.0 - within) < ours < above
+    if press.depth < SMALL * press.radius:
+        assert above * (1.0 - 2.0 * within) < Judge(press, 0.5, pressure=True).force() < ours
+
+
 def timing(seconds, moved=1.0):
     return Timing(seconds, seconds, seconds, np.array([[0.0, moved]]))
 

@@ -18,6 +18,27 @@ except ImportError:
     direct = spsolve
 
 
+def line(start: float, end: float, first: float, growth: float, largest: float, *, at_end: bool = False) -> np.ndarray:
+    """Points from start to end, spaced by `first` at one end and more, by `growth` a length, away from it."""
+    place = np.linspace(start, end, 4001)
+    size = np.minimum(largest, first + growth * (end - place if at_end else place - start))
+    steps = 0.5 * (1.0 / size[1:] + 1.0 / size[:-1]) * np.diff(place)
+    count = np.concatenate([[0.0], np.cumsum(steps)])
+    return np.interp(np.linspace(0.0, count[-1], max(1, int(np.ceil(count[-1]))) + 1), count, place)
+
+
+def quads(r: np.ndarray, depth: np.ndarray, faces: np.ndarray) -> tuple[felupe.Mesh, np.ndarray]:
+    """Nine-node cells (first axis z, second r) between lines over the radius and the depth, and the layer of each."""
+    z = -np.unique(np.round(depth, 12))[::-1]
+    fine_r, fine_z = (np.sort(np.concatenate([x, 0.5 * (x[1:] + x[:-1])])) for x in (r, z))
+    points = np.stack([one.ravel() for one in np.meshgrid(fine_z, fine_r, indexing="ij")], axis=1)
+    i, j = (2 * one.ravel() for one in np.meshgrid(np.arange(z.size - 1), np.arange(r.size - 1), indexing="ij"))
+    order = ((0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1), (1, 1))
+    cells = np.stack([(i + a) * fine_r.size + j + b for a, b in order], axis=1)
+    middle = -points[cells[:, 8], 0]
+    return felupe.Mesh(points, cells, "quad9"), np.searchsorted(faces, middle) - 1
+
+
 def solid(case: Case) -> tuple[felupe.FieldContainer, felupe.SolidBody]:
     """hex20 with 8 Gauss points, linear elastic."""
     cells = case.elements[case.vtk_order].T

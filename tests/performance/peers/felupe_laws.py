@@ -21,17 +21,12 @@ from dataclasses import dataclass  # noqa: E402
 import felupe  # noqa: E402
 import numpy as np  # noqa: E402
 from felupe.constitution import tensortrax  # noqa: E402
-from scipy.sparse.linalg import spsolve  # noqa: E402
 
 from benchmark.files import Scenario  # noqa: E402
 from benchmark.models import Drive  # noqa: E402
 from benchmark.models.wave_layered import layered_wave  # noqa: E402
+from tests.performance.peers.felupe import direct, line, quads  # noqa: E402
 from tests.performance.wave.laws import presses  # noqa: E402
-
-try:
-    from pypardiso import spsolve as direct
-except ImportError:
-    direct = spsolve
 
 MM = 1e-3
 BORDER, NEAR = 60.0 * MM, 12.0 * MM
@@ -46,15 +41,6 @@ def theirs(law: str, shear: float) -> tuple[object, dict[str, object]]:
     if law.startswith("yeoh"):
         return models.yeoh, {"C10": shear / 2, "C20": shear / 2, "C30": shear / 5}
     return models.ogden, {"mu": [shear], "alpha": [10.0]}
-
-
-def line(start: float, end: float, first: float, growth: float, largest: float, *, at_end: bool = False) -> np.ndarray:
-    """Points from start to end, spaced by `first` at one end and more, by `growth` a length, away from it."""
-    place = np.linspace(start, end, 4001)
-    size = np.minimum(largest, first + growth * (end - place if at_end else place - start))
-    steps = 0.5 * (1.0 / size[1:] + 1.0 / size[:-1]) * np.diff(place)
-    count = np.concatenate([[0.0], np.cumsum(steps)])
-    return np.interp(np.linspace(0.0, count[-1], max(1, int(np.ceil(count[-1]))) + 1), count, place)
 
 
 def grid(scenario: Scenario, scale: float) -> tuple[felupe.Mesh, np.ndarray]:
@@ -75,14 +61,7 @@ def grid(scenario: Scenario, scale: float) -> tuple[felupe.Mesh, np.ndarray]:
         line(top, bottom, first * size, 0.25, largest * size)
         for (top, bottom), (first, largest) in zip(itertools.pairwise(faces), spacing, strict=True)
     ]
-    z = -np.unique(np.round(np.concatenate(parts), 12))[::-1]
-    fine_r, fine_z = (np.sort(np.concatenate([x, 0.5 * (x[1:] + x[:-1])])) for x in (r, z))
-    points = np.stack([one.ravel() for one in np.meshgrid(fine_z, fine_r, indexing="ij")], axis=1)
-    i, j = (2 * one.ravel() for one in np.meshgrid(np.arange(z.size - 1), np.arange(r.size - 1), indexing="ij"))
-    order = ((0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1), (1, 1))
-    cells = np.stack([(i + a) * fine_r.size + j + b for a, b in order], axis=1)
-    middle = -points[cells[:, 8], 0]
-    return felupe.Mesh(points, cells, "quad9"), np.searchsorted(faces, middle) - 1
+    return quads(r, np.concatenate(parts), faces)
 
 
 @dataclass(frozen=True)
