@@ -299,6 +299,8 @@ OTHER_PAIRS = 2
 """Such pairs that are fitted."""
 LEAST_ERROR = 0.02
 """A gain's standard error is at least this share of the gain: trials alike to the last digit do not make z endless."""
+TOO_FAR = 100.0
+"""Log density that a trial may lose by the first-order step to the fit without it; one that loses more is refitted."""
 SAME_ERRORS = 3.0
 """Parameters agree between conditions where they differ by less than so many standard errors ..."""
 SAME_SHARE, SAME_LOG = 0.35, 0.7

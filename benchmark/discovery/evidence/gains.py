@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit, fit, settled
@@ -63,13 +64,18 @@ def strain(fitted: Fit) -> float:
 
 
 def held_out(fitted: Fit) -> Array:
-    """(R,) log density of each trial under the fit to the others, less its share of the base's strain."""
+    """(R,) log density of each trial under the fit to the others, less its share of the base's strain.
+
+    To first order, but where that step away from a trial costs the trial more than `TOO_FAR`: there the fit converges
+    without it, since a curved effect, such as a limit that one trial reaches more than the others, is stepped over.
+    """
     count = len(fitted.model.problem.trials)
-    out = np.empty(count)
+    with_all, out = fitted.log_density(fitted.vector), np.empty(count)
     for index in range(count):
-        left = np.zeros(count, dtype=bool)
-        left[index] = True
+        left = np.arange(count) == index
         out[index] = fitted.log_density(fitted.without(left))[index]
+        if with_all[index] - out[index] > criteria.TOO_FAR:
+            out[left] = _refitted(fitted, left)
     return out - strain(fitted) / count
 
 
@@ -90,15 +96,21 @@ def refitted_conditions(fitted: Fit) -> Array:
     To first order a strongly curved effect, such as a bond that lets go at a height, may end far beyond what one
     condition tells of it.
     """
-    groups, model = conditions(fitted), fitted.model
+    groups = conditions(fitted)
     out = np.empty(groups.size)
     for number in np.unique(groups):
-        left, rest = np.flatnonzero(groups == number), np.flatnonzero(groups != number)
-        others, unseen = (replace(model, problem=only(model.problem, some.tolist())) for some in (rest, left))
-        found = least_squares(others, fitted.vector, fitted.nuisance[rest], around=fitted.prior_mean)
-        own = settled(unseen, found.vector, fitted.nuisance[left])
-        out[left] = fit(unseen, found.vector, own, most=0).log_density(found.vector)
+        left = groups == number
+        out[left] = _refitted(fitted, left)
     return out - strain(fitted) / groups.size
+
+
+def _refitted(fitted: Fit, left: NDArray[np.bool_]) -> Array:
+    """Log density of the trials `left` (R,) under the fit to the others, converged."""
+    model, places = fitted.model, (np.flatnonzero(~left), np.flatnonzero(left))
+    others, unseen = (replace(model, problem=only(model.problem, some.tolist())) for some in places)
+    found = least_squares(others, fitted.vector, fitted.nuisance[~left], around=fitted.prior_mean)
+    own = settled(unseen, found.vector, fitted.nuisance[left])
+    return fit(unseen, found.vector, own, most=0).log_density(found.vector)
 
 
 def gain(fitted: Array, other: Array, groups: Array) -> Gain:
