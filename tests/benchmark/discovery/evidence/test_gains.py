@@ -65,18 +65,19 @@ def test_refitting_a_straight_effect_says_what_the_first_order_says(session_of):
     assert refitted.sum() == pytest.approx(first_order.sum(), rel=0.1)
 
 
-@pytest.mark.slow
 def test_a_trial_that_the_first_order_steps_too_far_from_is_refitted(session_of, monkeypatch):
     """A limit that one trial reaches more than the others: 1587 in log density lost by the step, 34 gained refitted."""
     session = session_of(force=lambda time, depth, elastic: elastic + 5e-4 * time, noise=0.003)
     drift = fit_candidate(calibrate(session, prepare(session, 90)).base, BY_SLUG["force_drift"])
     straight = held_out(drift)
-    monkeypatch.setattr(criteria, "TOO_FAR", -np.inf)
+    lost = drift.log_density(drift.vector) - straight - strain(drift) / straight.size
+    monkeypatch.setattr(criteria, "TOO_FAR", float(np.median(lost)))
     refitted = held_out(drift)
-    assert not np.array_equal(refitted, straight)
-    np.testing.assert_allclose(refitted, straight, atol=0.05)
+    np.testing.assert_array_equal(refitted != straight, lost > np.median(lost))
+    np.testing.assert_allclose(refitted, straight, atol=0.1)
 
 
+@pytest.mark.slow
 def test_a_base_that_bends_far_is_strained_and_pays_for_it(session_of):
     session = session_of(force=lambda time, depth, elastic: elastic * (1 + (depth / 3e-3) ** 2), noise=0.003, trials=4)
     bent = calibrate(session, prepare(session, 90)).base
