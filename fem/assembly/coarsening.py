@@ -9,6 +9,7 @@ from fem.arrays import BoolArray, FloatArray, IntArray
 from fem.assembly.element_geometry import packed_positions
 from fem.assembly.scatter import Numbering, Scatter, build_scatter
 from fem.assembly.solid import SOLID_ELEMENTS
+from fem.linear_solver.columns import ColumnPlaces
 from fem.linear_solver.multigrid import CoarseSpace
 from fem.mesh.solid import SolidMesh
 
@@ -29,7 +30,7 @@ def coarse_space(mesh: SolidMesh, numbering: Numbering, scatter: Scatter) -> Coa
     coarse = build_scatter(corners, below)
     return CoarseSpace(
         scatter.element_unknowns,
-        _columns(mesh.nodes, numbering),
+        _columns(mesh.nodes, numbering, scatter.element_unknowns),
         _each_component(values),
         _transfer(mesh.elements, numbering, below, values),
         packed_positions(count, 3),
@@ -78,13 +79,32 @@ def _transfer(elements: IntArray, numbering: Numbering, below: Numbering, values
     return sp.csr_array((np.concatenate(entries), place), shape=(numbering.count, below.count))
 
 
-def _columns(nodes: FloatArray, numbering: Numbering) -> IntArray:
-    """Column (n,) of each unknown; one that several nodes share is in that of the first of them."""
+def _columns(nodes: FloatArray, numbering: Numbering, unknowns: IntArray) -> ColumnPlaces:
+    """Places of the unknowns in columns; one that several nodes share is in that of the first of them."""
     grid = np.rint(nodes[:, :2] / (SAME_PLACE * np.ptp(nodes[:, 0]))).astype(np.int64)
-    _, of_node = np.unique(grid, axis=0, return_inverse=True)
-    column = np.zeros(numbering.count, dtype=np.int64)
-    for unknown in numbering.unknown:
+    of_node = np.unique(grid, axis=0, return_inverse=True)[1].ravel()
+    level = _levels(of_node, nodes[:, 2])
+    column, slot = np.zeros((2, numbering.count), dtype=np.int64)
+    for component, unknown in enumerate(numbering.unknown):
         free = np.flatnonzero(unknown >= 0)[::-1]
-        column[unknown[free]] = of_node.ravel()[free]
-    out: IntArray = np.unique(column, return_inverse=True)[1]
+        column[unknown[free]], slot[unknown[free]] = of_node[free], 3 * level[free] + component
+    column = np.unique(column, return_inverse=True)[1]
+    return ColumnPlaces(column, slot, 3 * _most_levels(unknowns, np.append(column, -1), np.append(slot, 0) // 3))
+
+
+def _levels(of_node: IntArray, z: FloatArray) -> IntArray:
+    """Number (N,) of each node in its column, from the lowest."""
+    order = np.lexsort((z, of_node))
+    out = np.empty(len(z), dtype=np.int64)
+    out[order] = np.arange(len(z)) - np.searchsorted(of_node[order], of_node[order])
     return out
+
+
+def _most_levels(unknowns: IntArray, column: IntArray, level: IntArray) -> int:
+    """Most levels between two unknowns of one element (k, E) and one column; both with an entry for what is fixed."""
+    most = 1
+    for i in range(1, len(unknowns)):
+        one, others = unknowns[i], unknowns[:i]
+        same = (column[others] == column[one]) & (column[one] >= 0)
+        most = max(most, int(np.abs(level[others] - level[one])[same].max(initial=0)))
+    return most

@@ -8,15 +8,12 @@ displacement component in reference coordinates; "pulled back" are quantities th
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
 from functools import cached_property
 
 import numpy as np
 
 from fem.arrays import FloatArray, IntArray
 from fem.materials.components import Components
-
-ELEMENTS_AT_ONCE = 64  # so that their pulled back moduli stay in the cache
 
 
 class ElementGeometry(ABC):
@@ -63,13 +60,8 @@ class ElementGeometry(ABC):
         both = self._on_nodes(weighted.reshape(rate.shape[0] * rate.shape[1], count * elements))
         return both.reshape(len(both), count, elements)
 
-    def stiffness_parts(self, moduli: FloatArray) -> Iterator[tuple[slice, FloatArray]]:
-        """Elements and their packed stiffness (entries, part), part by part, of weighted moduli (pairs, q, E)."""
-        for start in range(0, self.weight.shape[1], ELEMENTS_AT_ONCE):
-            part = slice(start, start + ELEMENTS_AT_ONCE)
-            yield part, self._stiffness(moduli[..., part], part)
-
-    def _stiffness(self, moduli: FloatArray, part: slice) -> FloatArray:
+    def stiffness(self, moduli: FloatArray, part: slice) -> FloatArray:
+        """Packed stiffness (entries, part) of some elements, of their weighted moduli (pairs, q, part)."""
         half = self.pull_back(self.components.unpack(moduli), part)
         rows = self.pull_back(np.swapaxes(half, 0, 1), part)[self.components.pairs]
         flat = rows.reshape(-1, rows.shape[2])

@@ -19,9 +19,12 @@ import numpy as np
 
 from fem.arrays import FloatArray
 from fem.assembly.element_geometry import ElementGeometry
+from fem.linear_solver.factory import in_parts, in_threads
 from fem.materials.deformation import Deformation
 from fem.materials.element_laws import ElementLaws
 from fem.materials.prony import Memory
+
+ELEMENTS_AT_ONCE = 64  # so that their pulled back moduli stay in the cache
 
 
 @dataclass(frozen=True)
@@ -123,26 +126,38 @@ class Elements:
 
     def stiffness_parts(self, state: ElementState) -> Iterator[tuple[slice, FloatArray]]:
         """Elements and their packed stiffness (entries, part) in N/m, the pressure condensed, part by part."""
-        return self._parts(state, self.pressure_slope(state))
+        moduli, slope = self._moduli(state), self.pressure_slope(state)
+        for part in in_parts(len(slope), ELEMENTS_AT_ONCE):
+            yield part, self._stiffness(moduli, state, slope, part)
 
-    def soft_stiffness(self, state: ElementState) -> tuple[FloatArray, FloatArray]:
-        """Packed stiffness (entries, E) with at most the shear modulus as derivative of the pressure; the rest (E,)."""
-        slope = self.pressure_slope(state)
+    def soft_matrices(self, state: ElementState) -> tuple[FloatArray, FloatArray]:
+        """Stiffness (E, 18, 18) with at most the shear modulus as derivative of the pressure; the rest (E,)."""
+        slope, (rows, columns) = self.pressure_slope(state), self.geometry.packed
         soft: FloatArray = np.minimum(slope, self.laws.shear_modulus)
-        out = np.empty((len(self.geometry.packed[0]), len(slope)))
-        for part, packed in self._parts(state, soft):
-            out[:, part] = packed
+        moduli = self._moduli(state)
+        out = np.empty((len(slope), len(state.force), len(state.force)))
+
+        def fill(part: slice) -> None:
+            packed = self._stiffness(moduli, state, soft, part)
+            out[part, rows, columns] = out[part, columns, rows] = packed.T
+
+        in_threads(fill, in_parts(len(slope), ELEMENTS_AT_ONCE))
         return out, slope - soft
 
-    def _parts(self, state: ElementState, slope: FloatArray) -> Iterator[tuple[slice, FloatArray]]:
+    def _moduli(self, state: ElementState) -> FloatArray:
+        """Weighted moduli (pairs, q, E) of all but the pressure's shapes."""
         components, deformation = self.geometry.components, state.deformation
         moduli = self.laws.tangent(deformation)
         moduli[components.cofactor_pairs] += state.pressure_at_points * deformation.cofactor_derivative
         components.add_products(moduli, self.point_modulus * deformation.cofactor, deformation.cofactor)
         moduli *= self.geometry.weight
-        for part, packed in self.geometry.stiffness_parts(moduli):
-            self._condense(packed, state.coupling[..., part], slope[part])
-            yield part, packed
+        return moduli
+
+    def _stiffness(self, moduli: FloatArray, state: ElementState, slope: FloatArray, part: slice) -> FloatArray:
+        """Packed stiffness (entries, part) of some elements, the pressure with a slope (E,) condensed."""
+        packed = self.geometry.stiffness(moduli[..., part], part)
+        self._condense(packed, state.coupling[..., part], slope[part])
+        return packed
 
     def _condense(self, packed: FloatArray, coupling: FloatArray, modulus: FloatArray) -> None:
         """Add what the eliminated pressure does to the packed stiffness, with its slope in Pa."""

@@ -118,12 +118,9 @@ class System:
 
     def element_tangent(self, state: Evaluation) -> ElementTangent:
         """The tangent of equations without items, element by element."""
-        elements = self.elements
-        packed, rest = elements.soft_stiffness(state.elements)
-        places = elements.geometry.packed
-        return ElementTangent(
-            packed, places, state.elements.coupling, rest, elements.laws.shear_modulus, lambda: self.tangent(state)
-        )
+        elements, at = self.elements, state.elements
+        matrices, rest = elements.soft_matrices(at)
+        return ElementTangent(matrices, at.coupling, rest, elements.laws.shear_modulus, lambda: self.tangent(state))
 
     def pressure_after(self, state: Evaluation, dy: FloatArray) -> FloatArray:
         """Pressure coefficients (3, E) after a Newton increment dy (n,) of the unknowns."""

@@ -1,4 +1,4 @@
-"""Choice of the direct solver, where its library is, and how many threads it may use.
+"""Choice of the direct solver, where its library is, and how many threads the work may have.
 
 Without being told pypardiso would search the whole environment for the MKL, which takes up to a second.
 """
@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -69,3 +70,26 @@ def suited_threads(unknowns: int) -> Iterator[None]:
     """
     with threadpool_limits(1 if unknowns < SMALL else dict.fromkeys(NUMPY_LIBRARIES, 1)):
         yield
+
+
+def usable_threads() -> int:
+    """As many as this process has processors, or fewer where OMP_NUM_THREADS says so."""
+    told = os.environ.get("OMP_NUM_THREADS", "")
+    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return min(int(told), usable) if told.isdigit() and int(told) > 0 else usable
+
+
+def in_threads(work: Callable[[slice], None], parts: Sequence[slice]) -> None:
+    """Do the work on all parts, on as many threads as may be used; what it writes must not overlap."""
+    count = min(usable_threads(), len(parts))
+    if count <= 1:
+        for part in parts:
+            work(part)
+        return
+    with ThreadPoolExecutor(count) as pool:
+        list(pool.map(work, parts))
+
+
+def in_parts(count: int, size: int) -> list[slice]:
+    """Slices of at most `size` that cover 0 to count."""
+    return [slice(start, min(start + size, count)) for start in range(0, count, size)]

@@ -21,8 +21,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem.arrays import FloatArray, IntArray
-from fem.linear_solver.multigrid import CoarseSpace, ElementSum, MultigridCycle, parts
+from fem.arrays import FloatArray
+from fem.linear_solver.factory import in_parts, in_threads
+from fem.linear_solver.multigrid import AT_ONCE, CoarseSpace, ElementSum, MultigridCycle
 from fem.linear_solver.symmetric import SingularMatrixError, SymmetricSolver, flexible_gmres, require_finite
 
 TOLERANCE = 1e-7  # unbalanced over given forces; displacements are then 1e-8 to 1e-10 from those of a direct solver
@@ -41,10 +42,8 @@ class ElementTangent:
 
     Attributes
     ----------
-    packed
-        Packed element stiffness (entries, E) in N/m with at most the shear modulus as bulk modulus of the pressure.
-    places
-        Row and column (entries,) of each packed entry.
+    matrices
+        Element matrices (E, k, k) in N/m with at most the shear modulus as bulk modulus of the pressure.
     coupling
         Volume changes (k, p, E) of the pressure shapes by the displacements, in m2 over the root of the volume.
     modulus
@@ -55,21 +54,11 @@ class ElementTangent:
         Gives the entries (nnz,) of the condensed upper triangle, for a direct solver.
     """
 
-    packed: FloatArray
-    places: tuple[IntArray, IntArray]
+    matrices: FloatArray
     coupling: FloatArray
     modulus: FloatArray
     shear_modulus: FloatArray
     assembled: Callable[[], FloatArray]
-
-    def matrices(self) -> FloatArray:
-        """Element matrices (E, k, k) in N/m of the packed stiffness."""
-        size, count = len(self.coupling), self.packed.shape[1]
-        rows, columns = self.places
-        out = np.empty((count, size, size))
-        for part in parts(count):
-            out[part, rows, columns] = out[part, columns, rows] = self.packed[:, part].T
-        return out
 
 
 class SaddlePoint:
@@ -86,7 +75,7 @@ class SaddlePoint:
     """
 
     def __init__(self, tangent: ElementTangent, elements: ElementSum, count: int) -> None:
-        self.matrices, self._elements, self.count = tangent.matrices(), elements, count
+        self.matrices, self._elements, self.count = tangent.matrices, elements, count
         self._coupling = np.ascontiguousarray((tangent.coupling * np.sqrt(tangent.modulus)).transpose(2, 1, 0))
         # Rows of the pressure weigh as the forces that what they leave gives once the pressure is condensed.
         self._scale = np.linalg.norm(self._coupling, axis=2).ravel()
@@ -115,10 +104,15 @@ class SaddlePoint:
 
     def round_off(self, u: FloatArray) -> float:
         """Norm in N of the forces that round-off leaves unbalanced: eps |K| |u| of displacements u (n,), a bound."""
-        size = np.abs(self._elements.gather(u))
-        element = np.einsum("eij,ej->ei", np.abs(self.matrices), size)
-        coupling = np.abs(self._coupling)
-        element += np.einsum("epk,ep->ek", coupling, np.einsum("epk,ek->ep", coupling, size))
+        size, coupling = np.abs(self._elements.gather(u)), self._coupling
+        element = np.empty_like(size)
+
+        def bound(part: slice) -> None:
+            volume = np.abs(coupling[part])
+            np.einsum("eij,ej->ei", np.abs(self.matrices[part]), size[part], out=element[part])
+            element[part] += np.einsum("epk,ep->ek", volume, np.einsum("epk,ek->ep", volume, size[part]))
+
+        in_threads(bound, in_parts(len(size), AT_ONCE))
         return float(np.finfo(np.float64).eps * np.linalg.norm(self._elements.scatter(element)))
 
     def times(self, x: FloatArray) -> FloatArray:

@@ -1,7 +1,7 @@
 """One multigrid cycle on quadratic elements: column smoothing, and the linear elements of the same mesh below.
 
 The matrix is kept as the elements' own matrices and never assembled. Layers are thin and their elements flat, so that
-nodes are bound far more strongly to those above and below than to those beside: the smoother inverts whole columns of
+nodes are bound far more strongly to those above and below than to those beside: the smoother solves whole columns of
 nodes through the thickness, and Chebyshev polynomials damp what is left (M. Adams and others, Parallel multigrid
 smoothing: polynomial versus Gauss-Seidel, Journal of Computational Physics 188 (2003) 593). What is smooth is
 corrected on linear elements (p-multigrid; J. J. Heys and others, Algebraic multigrid for higher-order finite elements,
@@ -13,34 +13,36 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias, TypeVar
+from typing import TypeVar
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fem.arrays import FloatArray, IndexArray, IntArray
+from fem.linear_solver.columns import ColumnPlaces, Columns, Single
+from fem.linear_solver.factory import in_parts, in_threads
 from fem.linear_solver.symmetric import SingularMatrixError, SymmetricSolver
 
 DEGREE = 3  # of the Chebyshev polynomial; 2 and 4 take 5 to 10 % more products with the matrix
 DAMPED = 25.0  # largest eigenvalue over the smallest that the polynomial damps
 POWER_STEPS = 20
+BELOW = 1e-3  # of the linear elements' forces that their solution may leave
 MARGIN = 1.1  # on the largest eigenvalue, which the power iteration finds from below
-AT_ONCE = 256  # elements or columns of which copies in double precision are made at a time
-Single: TypeAlias = NDArray[np.float32]
+PARTS = 8  # of a product, so that a thread beside a busy program is not waited for
+AT_ONCE = 256  # elements of which copies in double precision are made at a time
 Array = TypeVar("Array", FloatArray, Single)
 
 
 @dataclass(frozen=True)
 class CoarseSpace:
-    """The linear elements below quadratic ones, and the columns of unknowns that are smoothed together.
+    """The linear elements below quadratic ones, and the columns of unknowns.
 
     Attributes
     ----------
     unknowns
         Unknowns of each quadratic element (k, E), component by component; fixed ones are n.
-    column
-        Column (n,) of each unknown, numbered from 0.
+    places
+        Columns of unknowns that are smoothed together.
     element_transfer
         Displacements of a quadratic element from those of the linear one, (k, c).
     transfer
@@ -54,7 +56,7 @@ class CoarseSpace:
     """
 
     unknowns: IntArray
-    column: IntArray
+    places: ColumnPlaces
     element_transfer: FloatArray
     transfer: sp.csr_array
     packed: tuple[IntArray, IntArray]
@@ -65,20 +67,20 @@ class CoarseSpace:
     @property
     def count(self) -> int:
         """Number of unknowns n."""
-        return len(self.column)
+        return len(self.places.column)
 
     def coarse_entries(self, matrices: FloatArray) -> FloatArray:
         """Entries (nnz,) of the linear elements' upper triangle, T^T K T of element matrices (E, k, k)."""
         rows, columns = self.packed
         packed = np.empty((len(rows), len(matrices)))
-        for part in parts(len(matrices)):
+        for part in in_parts(len(matrices), AT_ONCE):
             small = self.element_transfer.T @ matrices[part] @ self.element_transfer
             packed[:, part] = small[:, rows, columns].T
         return self.matrix_sum(packed)
 
 
 class ElementSum:
-    """Products with a matrix that is a sum over elements.
+    """Products with a matrix that is a sum over elements, on as many threads as there are.
 
     Parameters
     ----------
@@ -91,9 +93,10 @@ class ElementSum:
     def __init__(self, unknowns: IntArray, count: int) -> None:
         self._gathered = np.ascontiguousarray(unknowns.T)
         self._count = count
-        flat = self._gathered.ravel()
-        ends = np.arange(flat.size + 1)
-        self._sums = sp.csc_array((np.ones(flat.size, np.float32), flat, ends), shape=(count + 1, flat.size)).tocsr()
+        flat = self._gathered.ravel().astype(np.int32)
+        ends = np.arange(flat.size + 1, dtype=np.int32)
+        sums = sp.csc_array((np.ones(flat.size, np.float32), flat, ends), shape=(count + 1, flat.size)).tocsr()
+        self._sums = {dtype: sums.astype(dtype) for dtype in (np.dtype(np.float32), np.dtype(np.float64))}
 
     def gather(self, x: Array) -> Array:
         """Values (E, k) on the elements of unknowns (n,)."""
@@ -102,66 +105,21 @@ class ElementSum:
 
     def scatter(self, element: Array) -> Array:
         """Sums (n,) of values (E, k)."""
-        out: Array = (self._sums @ element.ravel())[: self._count]
+        out: Array = (self._sums[element.dtype] @ element.ravel())[: self._count]
         return out
 
     def product(self, matrices: Array, x: Array) -> Array:
         """Sum (n,) of element matrices (E, k, k) times unknowns (n,)."""
-        return self.scatter(np.einsum("eij,ej->ei", matrices, self.gather(x)))
+        return self.scatter(self.on_elements(matrices, self.gather(x)))
 
+    def on_elements(self, matrices: Array, values: Array) -> Array:
+        """Element matrices (E, j, k) times values (E, k) on the elements, (E, j)."""
+        out = np.empty(matrices.shape[:2], dtype=matrices.dtype)
 
-class ColumnInverses:
-    """Inverses of the blocks of all columns.
+        def multiply(part: slice) -> None:
+            np.einsum("eij,ej->ei", matrices[part], values[part], out=out[part])
 
-    Parameters
-    ----------
-    matrices
-        Element matrices (E, k, k).
-    unknowns
-        Unknowns of each element (k, E); fixed ones are n.
-    column
-        Column (n,) of each unknown.
-
-    Raises
-    ------
-    SingularMatrixError
-        If a block has no inverse.
-    """
-
-    def __init__(self, matrices: FloatArray, unknowns: IntArray, column: IntArray) -> None:
-        sizes = np.bincount(column)
-        order = np.argsort(column, kind="stable")
-        within = np.empty(len(column), dtype=np.int64)
-        within[order] = np.arange(len(column)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
-        self._shape, width = (len(sizes), int(sizes.max())), int(sizes.max())
-        self._slot = column * width + within
-        blocks = self._blocks(matrices, unknowns, np.append(column, -1), np.append(within, 0))
-        empty, place = np.nonzero(np.arange(width) >= sizes[:, None])
-        blocks[empty, place, place] = 1.0
-        try:
-            for part in parts(len(blocks)):
-                blocks[part] = np.linalg.inv(blocks[part].astype(np.float64))
-        except np.linalg.LinAlgError as error:
-            raise SingularMatrixError(f"a column of nodes: {error}") from error
-        self._inverses = blocks
-
-    def _blocks(self, matrices: FloatArray, unknowns: IntArray, column: IntArray, within: IntArray) -> Single:
-        width = self._shape[1]
-        blocks = np.zeros((*self._shape, width), dtype=np.float32)
-        flat = blocks.reshape(-1)
-        for part in parts(len(matrices), 8 * AT_ONCE):
-            u = unknowns[:, part].T
-            c = column[u]
-            e, i, j = np.nonzero((c[:, :, None] == c[:, None, :]) & (c >= 0)[:, :, None])
-            place = (c[e, i] * width + within[u[e, i]]) * width + within[u[e, j]]
-            np.add.at(flat, place, matrices[part][e, i, j].astype(np.float32))
-        return blocks
-
-    def __call__(self, residual: Single) -> Single:
-        """Corrections (n,) of residuals (n,)."""
-        padded = np.zeros(self._shape[0] * self._shape[1], dtype=np.float32)
-        padded[self._slot] = residual
-        out: Single = np.einsum("cij,cj->ci", self._inverses, padded.reshape(self._shape)).ravel()[self._slot]
+        in_threads(multiply, in_parts(len(matrices), max(AT_ONCE, len(matrices) // PARTS)))
         return out
 
 
@@ -186,7 +144,7 @@ class MultigridCycle:
     def __init__(self, matrices: FloatArray, space: CoarseSpace, coarse: SymmetricSolver) -> None:
         self._sum = ElementSum(space.unknowns, space.count)
         self._matrices = matrices.astype(np.float32)
-        self._columns = ColumnInverses(matrices, space.unknowns, space.column)
+        self._columns = Columns(matrices, space.unknowns, space.places)
         self._up = space.transfer.astype(np.float32)
         self._down = self._up.T.tocsr()
         self._coarse = coarse
@@ -198,8 +156,8 @@ class MultigridCycle:
         size = float(np.abs(force).max()) or 1.0
         residual: Single = (force / size).astype(np.float32)
         x, residual = self._smoothed(np.zeros_like(residual), residual)
-        lifted = self._up @ self._coarse.solve((self._down @ residual).astype(np.float64)[:, None])[:, 0]
-        correction: Single = lifted.astype(np.float32)
+        below = self._coarse.solve((self._down @ residual).astype(np.float64)[:, None], BELOW)[:, 0]
+        correction: Single = self._up @ below.astype(np.float32)
         x, _ = self._smoothed(x + correction, residual - self._times(correction), last=True)
         out: FloatArray = size * x.astype(np.float64)
         return out
@@ -223,8 +181,7 @@ class MultigridCycle:
         return x, residual
 
     def _times(self, x: Single) -> Single:
-        out: Single = self._sum.product(self._matrices, x).astype(np.float32, copy=False)
-        return out
+        return self._sum.product(self._matrices, x)
 
     def _largest_eigenvalue(self, count: int) -> float:
         """Of the matrix smoothed once, by the power iteration."""
@@ -235,8 +192,3 @@ class MultigridCycle:
         if not np.isfinite(size) or size == 0.0:
             raise SingularMatrixError("the columns of nodes do not bound the stiffness matrix")
         return MARGIN * size
-
-
-def parts(count: int, size: int = AT_ONCE) -> list[slice]:
-    """Slices of at most `size` that cover 0 to count."""
-    return [slice(start, min(start + size, count)) for start in range(0, count, size)]

@@ -30,7 +30,7 @@ from fem.setup.items import make_items, sliding_nodes
 from fem.setup.layout import lay_out
 from fem.setup.supports import SUPPORT_MODELS
 
-ITERATIVE_FROM = {"linear": 70_000, "finite": 230_000}
+ITERATIVE_FROM = {"linear": 70_000, "finite": 100_000}
 """Unknowns from which on the iterative solver is faster, by kinematics: it does more for each Newton correction."""
 
 

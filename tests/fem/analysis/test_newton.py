@@ -5,7 +5,9 @@ import pytest
 
 import fem
 from fem.analysis.equilibrium import State
-from fem.analysis.newton import NewtonSettings, solve_newton
+from fem.analysis.newton import FORCING, MOST_FORCING, NewtonSettings, solve_newton
+from fem.linear_solver import IterativeSolver
+from tests.fem.linear_solver.test_iterative import block
 
 SETTINGS = NewtonSettings()
 
@@ -56,6 +58,8 @@ def test_a_guess_inside_out_is_a_reason(problem):
 class Counting:
     """A linear solver that counts its factorisations."""
 
+    tolerance = 0.0
+
     def __init__(self, solver):
         self.solver, self.count, self.solve = solver, 0, solver.solve
 
@@ -98,3 +102,23 @@ def test_held_factors_that_do_not_serve_are_replaced(problem, sign):
     anew, wanted = counted(problem, close.state, None)
     assert (result.success, count) == (True, wanted)
     np.testing.assert_allclose(result.state.y, anew.state.y, atol=1e-8 * np.abs(anew.state.y).max())
+
+
+def test_an_iterative_solver_is_not_asked_for_more_than_is_needed(monkeypatch):
+    """Each correction leaves a thousandth, the last one what may be left; all end within the solver's tolerance."""
+    asked = []
+    solve = IterativeSolver.solve
+
+    def note(self, right, tolerance=0.0):
+        asked.append(tolerance)
+        return solve(self, right, tolerance)
+
+    monkeypatch.setattr(IterativeSolver, "solve", note)
+    problem = fem.prepare(block(law=fem.NeoHookean), "iterative").equilibrium
+    result = solve_newton(problem, rest(problem), "force", 0.1, 0.0, SETTINGS)
+    assert result.success
+    assert result.iterations == len(asked) > 2
+    assert asked[0] == FORCING < asked[-1] <= MOST_FORCING
+    found = problem.system.evaluate(result.state.y, result.state.pressure)
+    left = np.linalg.norm(found.residual - 0.1 * problem.unit_load)
+    assert 1e-3 * problem.solver.tolerance < left / 0.1 <= problem.solver.tolerance

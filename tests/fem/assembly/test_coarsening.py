@@ -28,9 +28,11 @@ def test_a_column_holds_the_nodes_above_each_other():
     space, numbering, nodes = model.equilibrium.solver._space, model.equilibrium.system.numbering, model.mesh.nodes
     for unknown in numbering.unknown:
         free = np.flatnonzero(unknown >= 0)
-        column = space.column[unknown[free]]
+        column, slot = space.places.column[unknown[free]], space.places.slot[unknown[free]]
         for n in np.unique(column)[::50]:
             assert np.ptp(nodes[free[column == n], :2], axis=0).max() < 1e-9
+            upwards = np.argsort(nodes[free[column == n], 2])
+            assert (np.diff(slot[column == n][upwards]) > 0).all()
 
 
 def test_what_is_tied_is_one_unknown_below():

@@ -7,7 +7,16 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from fem.linear_solver import make_solver
-from fem.linear_solver.factory import NUMPY_LIBRARIES, SMALL, VARIABLE, name_library, suited_threads
+from fem.linear_solver.factory import (
+    NUMPY_LIBRARIES,
+    SMALL,
+    VARIABLE,
+    in_parts,
+    in_threads,
+    name_library,
+    suited_threads,
+    usable_threads,
+)
 
 
 @pytest.fixture
@@ -59,3 +68,36 @@ def test_small_systems_get_one_thread_and_large_ones_one_in_numpy_alone():
             expected = {key: 1 if key[0] in NUMPY_LIBRARIES else count for key, count in before.items()}
             assert threads() == expected
         assert threads() == before
+
+
+def test_threads_are_the_processors_or_fewer_where_that_is_said(monkeypatch):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1, 2}, raising=False)
+    for told, wanted in (("", 3), ("2", 2), ("8", 3), ("0", 3), ("2,1", 3)):
+        monkeypatch.setenv("OMP_NUM_THREADS", told)
+        assert usable_threads() == wanted
+
+
+@pytest.mark.parametrize("count", [0, 1, 63, 64, 65, 640])
+@pytest.mark.parametrize("threads", ["1", "3"])
+def test_each_part_is_worked_on_once(monkeypatch, threads, count):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1, 2}, raising=False)
+    monkeypatch.setenv("OMP_NUM_THREADS", threads)
+    done = np.zeros(count, dtype=int)
+
+    def work(part):
+        done[part] += 1
+
+    in_threads(work, in_parts(count, 64))
+    assert (done == 1).all()
+
+
+@pytest.mark.parametrize("threads", ["1", "3"])
+def test_what_fails_in_a_thread_fails(monkeypatch, threads):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1, 2}, raising=False)
+    monkeypatch.setenv("OMP_NUM_THREADS", threads)
+
+    def work(part):
+        raise ValueError(part.start)
+
+    with pytest.raises(ValueError, match="0"):
+        in_threads(work, in_parts(200, 64))

@@ -100,8 +100,33 @@ def test_a_solution_is_as_close_as_wanted(pardiso):
     solver = pardiso.PardisoSolver(indptr, indices, single_from=0)
     solver.factorise(data)
     right = np.random.default_rng(16).normal(size=(60, 1))
-    loose, close = (np.linalg.norm(full @ solver.solve(right, tolerance) - right) for tolerance in (1e-3, 1e-12))
+    loose, close = (np.linalg.norm(full @ solver.solve(right, tolerance) - right) for tolerance in (1e-5, 1e-12))
     assert close < 1e-11 * np.linalg.norm(right) < 0.1 * loose
+
+
+def test_a_preconditioner_has_single_factors_as_they_are(pardiso, monkeypatch):
+    def refuse(*_):
+        raise AssertionError("refined")
+
+    monkeypatch.setattr(pardiso, "flexible_gmres", refuse)
+    full, indptr, indices, data = tridiagonal(60, np.full(60, 2.5))
+    solver = pardiso.PardisoSolver(indptr, indices, single_from=0)
+    solver.factorise(data)
+    right = np.random.default_rng(17).normal(size=(60, 2))
+    found = solver.solve(right, pardiso.ALONE)
+    left = np.linalg.norm(full @ found - right, axis=0) / np.linalg.norm(right, axis=0)
+    assert (left < pardiso.ALONE).all()
+    assert (left > 1e-12).all()
+
+
+def test_single_factors_without_an_answer_are_not_taken_as_they_are(pardiso, monkeypatch):
+    _, indptr, indices, data = tridiagonal(60, np.full(60, 2.5))
+    solver = pardiso.PardisoSolver(indptr, indices, single_from=0)
+    solver.factorise(data)
+    monkeypatch.setattr(type(solver._factors), "solve", lambda *_: np.full((60, 1), np.nan))
+    with pytest.raises(SingularMatrixError):
+        solver.solve(np.ones((60, 1)), pardiso.ALONE)
+    assert not solver.is_single
 
 
 def test_where_single_factors_do_not_suffice_double_ones_are_made(pardiso, monkeypatch):

@@ -3,8 +3,9 @@ import pytest
 import scipy.sparse as sp
 
 import fem
-from fem.linear_solver import SingularMatrixError, make_solver
-from fem.linear_solver.multigrid import ColumnInverses, ElementSum, MultigridCycle
+from fem.linear_solver import SingularMatrixError, make_solver, multigrid
+from fem.linear_solver.columns import Columns
+from fem.linear_solver.multigrid import ElementSum, MultigridCycle
 from tests.fem.linear_solver.test_iterative import block
 
 
@@ -15,9 +16,10 @@ def parts():
     system, solver = model.equilibrium.system, model.equilibrium.solver
     tangent = system.element_tangent(system.evaluate(*system.rest()))
     space, n = solver._space, model.unknowns
-    entries = system.scatter.matrix(tangent.packed)
+    rows, columns = system.elements.geometry.packed
+    entries = system.scatter.matrix(tangent.matrices[:, rows, columns].T)
     upper = sp.csr_array((entries, system.scatter.indices, system.scatter.indptr), shape=(n, n))
-    return tangent.matrices(), space, (upper + sp.triu(upper, 1).T).tocsr()
+    return tangent.matrices, space, (upper + sp.triu(upper, 1).T).tocsr()
 
 
 def test_products_are_those_of_the_assembled_matrix(parts):
@@ -27,22 +29,47 @@ def test_products_are_those_of_the_assembled_matrix(parts):
     np.testing.assert_allclose(found, assembled @ x, atol=1e-9 * np.abs(assembled @ x).max())
 
 
-def test_columns_are_inverted_exactly(parts):
+@pytest.mark.parametrize("threads", ["1", "2"])
+def test_threads_change_no_digit_of_a_product(parts, monkeypatch, threads):
+    matrices, space, _ = parts
+    x = np.random.default_rng(5).normal(size=space.count)
+    monkeypatch.setattr(multigrid, "AT_ONCE", 7)
+    monkeypatch.setenv("OMP_NUM_THREADS", threads)
+    elements = ElementSum(space.unknowns, space.count)
+    np.testing.assert_array_equal(
+        elements.on_elements(matrices, elements.gather(x)), np.einsum("eij,ej->ei", matrices, elements.gather(x))
+    )
+
+
+def test_columns_are_solved_exactly_and_leave_the_others(parts):
     matrices, space, assembled = parts
-    inverses = ColumnInverses(matrices, space.unknowns, space.column)
-    members = np.flatnonzero(space.column == 7)
-    wanted = np.random.default_rng(6).normal(size=len(members))
-    residual = np.zeros(space.count)
-    residual[members] = assembled[members][:, members] @ wanted
-    found = inverses(residual.astype(np.float32))
-    np.testing.assert_allclose(found[members], wanted, rtol=2e-3, atol=2e-3)
-    assert not found[space.column != 7].any()
+    columns, of_column = Columns(matrices, space.unknowns, space.places), space.places.column
+    assert columns.blocks > 3
+    for column in (0, 7, of_column.max()):
+        members = np.flatnonzero(of_column == column)
+        wanted = np.random.default_rng(6).normal(size=len(members))
+        residual = np.zeros(space.count)
+        residual[members] = assembled[members][:, members] @ wanted
+        found = columns(residual.astype(np.float32))
+        np.testing.assert_allclose(found[members], wanted, rtol=2e-3, atol=2e-3)
+        assert not found[of_column != column].any()
+
+
+def test_unknowns_of_one_element_and_column_lie_in_one_block_or_in_neighbours(parts):
+    _, space, _ = parts
+    places = space.places
+    assert len(set(zip(places.column, places.slot, strict=True))) == space.count
+    for unknowns in space.unknowns.T:
+        free = unknowns[unknowns < space.count]
+        same = places.column[free][:, None] == places.column[free]
+        block = places.slot[free] // places.reach
+        assert np.abs(block[:, None] - block)[same].max() <= 1
 
 
 def test_a_column_without_stiffness_is_said(parts):
     matrices, space, _ = parts
     with pytest.raises(SingularMatrixError, match="a column of nodes"):
-        ColumnInverses(0.0 * matrices, space.unknowns, space.column)
+        Columns(0.0 * matrices, space.unknowns, space.places)
 
 
 def test_the_linear_elements_are_the_quadratic_ones_between_their_corners(parts):
