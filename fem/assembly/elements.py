@@ -14,17 +14,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from fem.arrays import FloatArray
 from fem.assembly.element_geometry import ElementGeometry
-from fem.linear_solver.factory import in_parts, in_threads
+from fem.linear_solver.factory import do_in_threads, in_parts, in_threads
 from fem.materials.deformation import Deformation
 from fem.materials.element_laws import ElementLaws
 from fem.materials.prony import Memory
 
 ELEMENTS_AT_ONCE = 64  # so that their pulled back moduli stay in the cache
+THREADS_FROM = 32  # parts of so many elements; fewer are done before threads have begun
 
 
 @dataclass(frozen=True)
@@ -127,8 +129,9 @@ class Elements:
     def stiffness_parts(self, state: ElementState) -> Iterator[tuple[slice, FloatArray]]:
         """Elements and their packed stiffness (entries, part) in N/m, the pressure condensed, part by part."""
         moduli, slope = self._moduli(state), self.pressure_slope(state)
-        for part in in_parts(len(slope), ELEMENTS_AT_ONCE):
-            yield part, self._stiffness(moduli, state, slope, part)
+        parts = in_parts(len(slope), ELEMENTS_AT_ONCE)
+        worked_on = map if len(parts) < THREADS_FROM else in_threads
+        yield from zip(parts, worked_on(partial(self._stiffness, moduli, state, slope), parts), strict=True)
 
     def soft_matrices(self, state: ElementState) -> tuple[FloatArray, FloatArray]:
         """Stiffness (E, 18, 18) with at most the shear modulus as derivative of the pressure; the rest (E,)."""
@@ -141,7 +144,7 @@ class Elements:
             packed = self._stiffness(moduli, state, soft, part)
             out[part, rows, columns] = out[part, columns, rows] = packed.T
 
-        in_threads(fill, in_parts(len(slope), ELEMENTS_AT_ONCE))
+        do_in_threads(fill, in_parts(len(slope), ELEMENTS_AT_ONCE))
         return out, slope - soft
 
     def _moduli(self, state: ElementState) -> FloatArray:

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import os
 import sys
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TypeVar
 
 from threadpoolctl import threadpool_limits
 
@@ -23,7 +25,9 @@ LINEAR_SOLVERS = ("auto", "pardiso", "superlu", "iterative")
 DIRECT = LINEAR_SOLVERS[:3]
 VARIABLE = "PYPARDISO_MKL_RT"
 SMALL = 10_000
+AHEAD = 4  # parts of a work for each thread
 NUMPY_LIBRARIES = ("libopenblas", "libscipy_openblas", "openblas")
+Result = TypeVar("Result")
 
 
 def make_solver(choice: str, indptr: IndexArray, indices: IndexArray) -> SymmetricSolver:
@@ -79,15 +83,26 @@ def usable_threads() -> int:
     return min(int(told), usable) if told.isdigit() and int(told) > 0 else usable
 
 
-def in_threads(work: Callable[[slice], None], parts: Sequence[slice]) -> None:
-    """Do the work on all parts, on as many threads as may be used; what it writes must not overlap."""
+def in_threads(work: Callable[[slice], Result], parts: Sequence[slice]) -> Iterator[Result]:
+    """Results of the work on all parts in their order, on as many threads as may be used, few ahead of their use."""
     count = min(usable_threads(), len(parts))
     if count <= 1:
-        for part in parts:
-            work(part)
+        yield from map(work, parts)
         return
     with ThreadPoolExecutor(count) as pool:
-        list(pool.map(work, parts))
+        ahead: deque[Future[Result]] = deque()
+        for part in parts:
+            ahead.append(pool.submit(work, part))
+            if len(ahead) > AHEAD * count:
+                yield ahead.popleft().result()
+        while ahead:
+            yield ahead.popleft().result()
+
+
+def do_in_threads(work: Callable[[slice], None], parts: Sequence[slice]) -> None:
+    """Do the work on all parts, on as many threads as may be used; what it writes must not overlap."""
+    for _ in in_threads(work, parts):
+        pass
 
 
 def in_parts(count: int, size: int) -> list[slice]:

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.linear_solver.factory import in_parts, in_threads
+from fem.linear_solver.factory import do_in_threads, in_parts
 from fem.linear_solver.multigrid import AT_ONCE, CoarseSpace, ElementSum, MultigridCycle
 from fem.linear_solver.symmetric import SingularMatrixError, SymmetricSolver, flexible_gmres, require_finite
 
@@ -112,7 +112,7 @@ class SaddlePoint:
             np.einsum("eij,ej->ei", np.abs(self.matrices[part]), size[part], out=element[part])
             element[part] += np.einsum("epk,ep->ek", volume, np.einsum("epk,ek->ep", volume, size[part]))
 
-        in_threads(bound, in_parts(len(size), AT_ONCE))
+        do_in_threads(bound, in_parts(len(size), AT_ONCE))
         return float(np.finfo(np.float64).eps * np.linalg.norm(self._elements.scatter(element)))
 
     def times(self, x: FloatArray) -> FloatArray:

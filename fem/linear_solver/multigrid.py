@@ -20,7 +20,7 @@ import scipy.sparse as sp
 
 from fem.arrays import FloatArray, IndexArray, IntArray
 from fem.linear_solver.columns import ColumnPlaces, Columns, Single
-from fem.linear_solver.factory import in_parts, in_threads
+from fem.linear_solver.factory import do_in_threads, in_parts
 from fem.linear_solver.symmetric import SingularMatrixError, SymmetricSolver
 
 DEGREE = 3  # of the Chebyshev polynomial; 2 and 4 take 5 to 10 % more products with the matrix
@@ -119,7 +119,7 @@ class ElementSum:
         def multiply(part: slice) -> None:
             np.einsum("eij,ej->ei", matrices[part], values[part], out=out[part])
 
-        in_threads(multiply, in_parts(len(matrices), max(AT_ONCE, len(matrices) // PARTS)))
+        do_in_threads(multiply, in_parts(len(matrices), max(AT_ONCE, len(matrices) // PARTS)))
         return out
 
 

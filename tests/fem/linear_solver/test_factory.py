@@ -11,6 +11,7 @@ from fem.linear_solver.factory import (
     NUMPY_LIBRARIES,
     SMALL,
     VARIABLE,
+    do_in_threads,
     in_parts,
     in_threads,
     name_library,
@@ -77,7 +78,7 @@ def test_threads_are_the_processors_or_fewer_where_that_is_said(monkeypatch):
         assert usable_threads() == wanted
 
 
-@pytest.mark.parametrize("count", [0, 1, 63, 64, 65, 640])
+@pytest.mark.parametrize("count", [0, 1, 63, 64, 65, 2000])
 @pytest.mark.parametrize("threads", ["1", "3"])
 def test_each_part_is_worked_on_once(monkeypatch, threads, count):
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1, 2}, raising=False)
@@ -86,8 +87,10 @@ def test_each_part_is_worked_on_once(monkeypatch, threads, count):
 
     def work(part):
         done[part] += 1
+        return part.start
 
-    in_threads(work, in_parts(count, 64))
+    parts = in_parts(count, 64)
+    assert list(in_threads(work, parts)) == [part.start for part in parts]
     assert (done == 1).all()
 
 
@@ -100,4 +103,4 @@ def test_what_fails_in_a_thread_fails(monkeypatch, threads):
         raise ValueError(part.start)
 
     with pytest.raises(ValueError, match="0"):
-        in_threads(work, in_parts(200, 64))
+        do_in_threads(work, in_parts(200, 64))
