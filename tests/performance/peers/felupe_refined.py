@@ -30,7 +30,10 @@ STEPS, SHORTEST, TURNS, TOLERANCE = 8, 1.0 / 1024.0, 25, 1e-7
 
 @dataclass(frozen=True)
 class Press:
-    """Layers (thickness in m, modulus in Pa), ratio, tool and hole in m; no edge: it sticks; no hole: a rigid base."""
+    """Layers (thickness in m, modulus in Pa), ratio, tool and hole in m; no edge: it sticks; no hole: a rigid base.
+
+    The clamp of a hole is the plate outside it, or its rim, at which the sheet ends.
+    """
 
     layers: tuple[tuple[float, float], ...]
     poisson_ratio: float
@@ -38,6 +41,7 @@ class Press:
     depth: float
     edge: float | None = None
     hole: float | None = None
+    clamp: str = "plate"
 
     @property
     def decay(self) -> float:
@@ -52,7 +56,7 @@ class Press:
             for number, (h, modulus) in enumerate(self.layers)
         )
         tool = fem.Tool(self.radius, "rigid_bonded" if self.edge is None else "rigid_frictionless", self.edge)
-        support = fem.Support("bonded") if self.hole is None else fem.Support("hole", self.hole)
+        support = fem.Support("bonded") if self.hole is None else fem.Support("hole", self.hole, clamp=self.clamp)
         problem = fem.Problem(layers, tool, support, discretisation=fem.Discretisation(mesh))
         share = np.arange(1, 21) / 20.0
         return float(fem.prepare(problem).run(fem.Load("depth", share, self.depth * share)).force[-1])
@@ -65,6 +69,10 @@ PRESSES = {
     "sheet": Press(SHEET, 0.49, 6 * MM, 2.5 * MM, hole=25 * MM),
     "sheet, slides": Press(SHEET, 0.49, 6 * MM, 3.0 * MM, 1 * MM, 25 * MM),
     "sheet, sphere": Press(SHEET, 0.49, 6 * MM, 3.0 * MM, 6 * MM, 25 * MM),
+    "rim, small": Press(SHEET, 0.49, 6 * MM, 0.3 * MM, hole=25 * MM, clamp="rim"),
+    "rim": Press(SHEET, 0.49, 6 * MM, 2.5 * MM, hole=25 * MM, clamp="rim"),
+    "rim, slides": Press(SHEET, 0.49, 6 * MM, 3.0 * MM, 1 * MM, 25 * MM, "rim"),
+    "rim, three layers, sphere": Press((*SKIN[:2], (2 * MM, 25e3)), 0.48, 6 * MM, 3.0 * MM, 6 * MM, 20 * MM, "rim"),
     "base, sphere": Press(((12 * MM, 40e3),), 0.48, 6 * MM, 3.0 * MM, 6 * MM),
     "skin": Press(SKIN, 0.48, 5 * MM, 2.5 * MM),
     "stiff on soft": Press(STIFF_ON_SOFT, 0.48, 5 * MM, 3.0 * MM, hole=15 * MM),
@@ -84,7 +92,8 @@ def lines(press: Press, scale: float) -> tuple[np.ndarray, np.ndarray]:
         middle, hole = 0.5 * (near + press.hole), press.hole
         r.append(line(near, middle, 0.15 * size, 0.22, 0.9 * size))
         r.append(line(middle, hole, 0.1 * size, 0.25, 0.9 * size, at_end=True))
-        r.append(line(hole, hole + REACH * press.decay, 0.1 * size, 0.3, 1.5 * size))
+        if press.clamp == "plate":
+            r.append(line(hole, hole + REACH * press.decay, 0.1 * size, 0.3, 1.5 * size))
     faces = np.concatenate([[0.0], np.cumsum([h for h, _ in press.layers])])
     ends = [0.15, *[0.3] * (len(press.layers) - 1), 0.4 if press.hole is None else 0.15]
     z = []
@@ -128,7 +137,10 @@ class Judge:
         """Components (N, 2) that are given."""
         z, r = self.points.T
         low, end = z <= z.min() + 1e-9, r >= r.max() - 1e-9
-        fixed = low | end if self.press.hole is None else low & (r >= self.press.hole - 1e-9)
+        if self.press.clamp == "rim":
+            fixed = end
+        else:
+            fixed = low | end if self.press.hole is None else low & (r >= self.press.hole - 1e-9)
         held = np.stack([fixed] * 2, axis=1)
         held[r < 1e-12, 1] = True
         if self.press.edge is None:
