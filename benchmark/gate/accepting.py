@@ -81,7 +81,7 @@ def accept(request: CheckRequest, listener: Listener) -> Accepted:
     check_file(request.baseline_path, "--baseline", BASELINE_SIGN, "a baseline")
     check_file(request.history_path, "--history", HISTORY_SIGN, "a history of checks")
     origin = origin_of(plan, request.seed)
-    old, warnings = _old(request.baseline_path)
+    old, warnings = _old(request.baseline_path, plan.file.name)
     new = _measured(plan, origin, listener)
     _put_down(request, new)
     return Accepted(request.baseline_path, _steps(old, new), tuple(warnings))
@@ -101,14 +101,16 @@ def _put_down(request: CheckRequest, new: Baseline) -> None:
         ) from error
 
 
-def _old(path: Path) -> tuple[Baseline | None, list[str]]:
-    """The baseline that is replaced; one that cannot be read is replaced too, with a warning."""
+def _old(path: Path, gate: str) -> tuple[Baseline | None, list[str]]:
+    """The baseline that is replaced; one that cannot be read, or of another gate, is replaced too, with a warning."""
     if not path.exists():
         return None, []
     try:
-        return read_baseline(path), []
+        old = read_baseline(path)
     except TissuebenchError as error:
         return None, [f"the old baseline is replaced without a comparison: {error}"]
+    other = f"the baseline of another gate, {old.gate!r}, is replaced by one of {gate!r}"
+    return old, [] if old.gate == gate else [other]
 
 
 def _measured(plan: GatePlan, origin: Origin, listener: Listener) -> Baseline:
