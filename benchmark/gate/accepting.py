@@ -23,6 +23,7 @@ from benchmark.gate.baseline import (
 from benchmark.gate.history.history_file import HISTORY_SIGN, HistoryEntry, append
 from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
 from benchmark.gate.processes import measure
+from benchmark.gate.verdict import counted
 from benchmark.gate.versions import Origin, gated_values, origin_of, this_version
 from benchmark.runs.options import Listener
 from benchmark.runs.output.destination import check_file, check_ready
@@ -115,14 +116,14 @@ def _old(path: Path, gate: str) -> tuple[Baseline | None, list[str]]:
 
 def _measured(plan: GatePlan, origin: Origin, listener: Listener) -> Baseline:
     head, file = this_version(plan), plan.file
-    listener.say(f"gate {file.name}: values of {len(plan.cases)} cases")
+    listener.say(f"gate {file.name}: values of {counted(len(plan.cases), 'case')}")
     values = gated_values(head)
     missing = [f"{name} ({value.reason})" for name, value in values.items() if value.value is None]
     if missing:
         raise SolverError(f"no baseline was made: there is no value of {', '.join(missing)}")
     for name, value in values.items():
         tolerance_of(name, value.unit, file.tolerances)  # a check must be able to use the file
-    with listener.progress(f"gate {file.name}: {len(file.timed)} times") as advance:
+    with listener.progress(f"gate {file.name}: {counted(len(file.timed), 'time')}") as advance:
         measured = measure((head,), lambda _: False, lambda done, most: advance("processes", done, most, ""))
     return Baseline(
         gate=file.name,

@@ -153,6 +153,14 @@ def test_a_baseline_with_another_gates_name_is_told_by_both(tiny_gate, request_o
     assert check(request_of(gate), Said()).verdict.passed
 
 
+def test_one_case_is_one_case(tiny_gate, request_of) -> None:
+    request, said = request_of(tiny_gate(timed=True)), Said()
+    accept(request, said)
+    check(request, said)
+    assert said.lines[:2] == ["gate tiny: values of 1 case", "gate tiny: 1 time"]
+    assert said.lines[3].startswith("gate tiny: 1 time against")
+
+
 def test_a_layer_more_cannot_be_compared(tiny_gate, request_of) -> None:
     gate = tiny_gate()
     accept(request_of(gate), Said())
