@@ -68,7 +68,8 @@ class CheckVerdict:
         if self.passed:
             faster = len(self.improvements())
             better = f" {counted(faster, 'timing')} got faster." if faster else ""
-            return f"Nothing got worse: {counted(values, 'value')} and {counted(times, 'timing')} are within limits.{better}"
+            both = f"{counted(values, 'value')} and {counted(times, 'timing')}"
+            return f"Nothing got worse: {both} are within limits.{better}"
         bad_values = sum(not row.passed for row in self.accuracy)
         bad_times = sum(not row.passed for row in self.timing)
         return f"{bad_values} of {counted(values, 'value')} changed, {bad_times} of {counted(times, 'timing')} slower."
