@@ -144,9 +144,8 @@ def remarks(measured: Measured, timing: Sequence[TimingRow]) -> list[str]:
 def _record(request: CheckRequest, origin: Origin, verdict: CheckVerdict) -> list[str]:
     """Add the check to the history; what goes wrong there is a warning, since the verdict stands without it."""
     _, unread = read_history(request.history_path)
-    warnings = (
-        [f"{request.history_path}: {unread} lines of this history cannot be read, left as they are"] if unread else []
-    )
+    lines = f"{request.history_path}: {counted(unread, 'line')} of this history cannot be read, left in place"
+    warnings = [lines] if unread else []
     entry = HistoryEntry(
         made=origin.made,
         revision=origin.revision,
