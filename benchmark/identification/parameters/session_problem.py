@@ -213,7 +213,6 @@ def check_wish(wish: FitTable, setup: SetUp) -> None:
     InputError
         Names table and key, and what is allowed.
     """
-    _discrepancy(wish)
     setup = with_values(setup, _fixed(setup, wish))
     for key in _free_keys(wish):
         if key != EDGE_RADIUS:
