@@ -51,18 +51,13 @@ def find_litter(folder: Path) -> Iterator[Litter]:
         folders[:] = [name for name in folders if not (BESIDE.fullmatch(name) or PART.fullmatch(name))]
 
 
-def cut_recordings(folder: Path) -> list[Path]:
-    """Recordings in a folder and below that were cut off, which are not litter."""
-    return [path for path in _recordings(folder) if not in_use(path.parent)]
-
-
-def live_recordings(folder: Path) -> list[Path]:
-    """Recordings in a folder and below where a capture is at work."""
-    return [path for path in _recordings(folder) if in_use(path.parent)]
-
-
-def _recordings(folder: Path) -> list[Path]:
-    return sorted(path for path in folder.rglob(f"*{RECORDING}") if path.is_file())
+def unclosed_recordings(folder: Path) -> tuple[list[Path], list[Path]]:
+    """Recordings in a folder and below that were cut off (no litter), and those where a capture is at work."""
+    cut: list[Path] = []
+    live: list[Path] = []
+    for path in sorted(path for path in folder.rglob(f"*{RECORDING}") if path.is_file()):
+        (live if in_use(path.parent) else cut).append(path)
+    return cut, live
 
 
 def remove(litter: Litter) -> bool:

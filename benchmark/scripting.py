@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Literal
 
 from benchmark.discovery.discovery_request import DiscoverRequest, answer
+from benchmark.errors import InputError
 from benchmark.results import ComparisonResult, DiscoveryResult, FitResult, RunResult, SweepResult
 from benchmark.runs.finished.carrying_out import set_side_by_side
 from benchmark.runs.fit_run import FitRequest, carry_out_fit
@@ -90,6 +91,10 @@ def run(
         _path(model),
         _path(effects),
     )
+    if fields not in ("peak", "all"):
+        raise InputError(f"fields = {fields!r}: allowed are 'peak' and 'all'")
+    if repeats < 1:
+        raise InputError(f"repeats = {repeats!r}: allowed are 1 or more")
     options = RunOptions(every_field=fields == "all", repeats=repeats, refine=refine, seed=seed)
     return RunResult(computed(request, options, listener or Unheard()))
 

@@ -51,6 +51,8 @@ class SessionFolder:
         if order.append and order.specimen:
             self._check_same(order.specimen)
         check_session(_keys_of(order), "--set")
+        if order.append:
+            self._check_keys(order)
         self._log: list[dict[str, Any]] = []
         if not order.append and self.path.exists():
             self._check_empty()
@@ -167,6 +169,19 @@ class SessionFolder:
         if told not in (specimen, Path(specimen).name):
             its = f"this session's is {told}" if told else "this session names none, and another is not put in"
             raise InputError(f"--specimen {specimen}: {its}; leave it out with --append, or give another --out")
+
+    def _check_keys(self, order: CaptureOrder) -> None:
+        """Refuse keys that the session's file has otherwise, or not: it stays as it is."""
+        for key, value in order.session_keys.items():
+            told: Any = self._session
+            for part in key.split("."):
+                told = told.get(part) if isinstance(told, dict) else None
+            if told != _plain(value):
+                its = f"{self.path / SESSION_FILE} has " + (f"{told!r}" if told is not None else "none")
+                raise InputError(
+                    f"--set {key}={value}: {its}, which stays with --append; leave it out, change that file, or give "
+                    "another --out"
+                )
 
     def _check_empty(self) -> None:
         if not self.path.is_dir():

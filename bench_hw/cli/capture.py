@@ -37,7 +37,7 @@ def capture(
     pause_s: Annotated[float, typer.Option(help="Rest between two trials, s.", min=0.0)] = 0.0,
     seed: Annotated[int | None, typer.Option(help="Of simulated devices; the rig's by default.", min=0)] = None,
     settings: Annotated[
-        list[str] | None, typer.Option("--set", help='KEY=VALUE for session.toml, such as tool.radius="5 mm".')
+        list[str] | None, typer.Option("--set", help='KEY=VALUE for a new session.toml, such as tool.radius="5 mm".')
     ] = None,
     as_json: Json = False,
     quiet: Quiet = False,

@@ -63,8 +63,18 @@ def check(
     console = Console(quiet=quiet)
     request = CheckRequest(baseline, against, gate, history, out, seed, junit, markdown)
     if accept:
+        _refuse_reports({"--junit": junit, "--markdown": markdown, "--out": out})
         return _show_accepted(accepting.accept(request, console), console, as_json=json)
     return _show_check(checking.check(request, console), console, as_json=json)
+
+
+def _refuse_reports(given: dict[str, Path | None]) -> None:
+    """Refuse files that are written of a check alone; raises InputError."""
+    from benchmark.errors import InputError
+
+    asked = [option for option, path in given.items() if path is not None]
+    if asked:
+        raise InputError(f"--accept makes a baseline and no report: leave out {', '.join(asked)}, or check afterwards")
 
 
 def _show_accepted(accepted: Accepted, console: Console, *, as_json: bool) -> int:

@@ -23,6 +23,7 @@ from benchmark.gate.baseline import (
 from benchmark.gate.history.history_file import HISTORY_SIGN, HistoryEntry, append
 from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
 from benchmark.gate.processes import measure
+from benchmark.gate.verdict import counted
 from benchmark.gate.versions import Origin, gated_values, origin_of, this_version
 from benchmark.runs.options import Listener
 from benchmark.runs.output.destination import check_file, check_ready
@@ -81,7 +82,7 @@ def accept(request: CheckRequest, listener: Listener) -> Accepted:
     check_file(request.baseline_path, "--baseline", BASELINE_SIGN, "a baseline")
     check_file(request.history_path, "--history", HISTORY_SIGN, "a history of checks")
     origin = origin_of(plan, request.seed)
-    old, warnings = _old(request.baseline_path)
+    old, warnings = _old(request.baseline_path, plan.file.name)
     new = _measured(plan, origin, listener)
     _put_down(request, new)
     return Accepted(request.baseline_path, _steps(old, new), tuple(warnings))
@@ -101,26 +102,28 @@ def _put_down(request: CheckRequest, new: Baseline) -> None:
         ) from error
 
 
-def _old(path: Path) -> tuple[Baseline | None, list[str]]:
-    """The baseline that is replaced; one that cannot be read is replaced too, with a warning."""
+def _old(path: Path, gate: str) -> tuple[Baseline | None, list[str]]:
+    """The baseline that is replaced; one that cannot be read, or of another gate, is replaced too, with a warning."""
     if not path.exists():
         return None, []
     try:
-        return read_baseline(path), []
+        old = read_baseline(path)
     except TissuebenchError as error:
         return None, [f"the old baseline is replaced without a comparison: {error}"]
+    other = f"the baseline of another gate, {old.gate!r}, is replaced by one of {gate!r}"
+    return old, [] if old.gate == gate else [other]
 
 
 def _measured(plan: GatePlan, origin: Origin, listener: Listener) -> Baseline:
     head, file = this_version(plan), plan.file
-    listener.say(f"gate {file.name}: values of {len(plan.cases)} cases")
+    listener.say(f"gate {file.name}: values of {counted(len(plan.cases), 'case')}")
     values = gated_values(head)
     missing = [f"{name} ({value.reason})" for name, value in values.items() if value.value is None]
     if missing:
         raise SolverError(f"no baseline was made: there is no value of {', '.join(missing)}")
     for name, value in values.items():
         tolerance_of(name, value.unit, file.tolerances)  # a check must be able to use the file
-    with listener.progress(f"gate {file.name}: {len(file.timed)} times") as advance:
+    with listener.progress(f"gate {file.name}: {counted(len(file.timed), 'time')}") as advance:
         measured = measure((head,), lambda _: False, lambda done, most: advance("processes", done, most, ""))
     return Baseline(
         gate=file.name,

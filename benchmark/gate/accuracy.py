@@ -85,7 +85,11 @@ def compare_values(
         No tolerance fits a quantity, or its atol has another dimension.
     """
     apart = [name for name in {**now, **baseline} if name not in now or name not in baseline]
-    apart += [name for name in now if name in baseline and now[name].unit != baseline[name].unit]
+    apart += [
+        f"{name} (in {baseline[name].unit or '1'} there, in {value.unit or '1'} here)"
+        for name, value in now.items()
+        if name in baseline and value.unit != baseline[name].unit
+    ]
     if apart:
         raise NotComparableError(
             f"{source} and this version do not have the same gated quantities: {', '.join(apart)}; "

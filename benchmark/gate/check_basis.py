@@ -97,6 +97,11 @@ def stored_baseline(request: CheckRequest, plan: GatePlan) -> Baseline | None:
     if request.against is not None and request.baseline is None and not path.exists():
         return None
     baseline = read_baseline(path, request.gate)
+    if baseline.gate != plan.file.name:
+        raise NotComparableError(
+            f"{path} was made with another gate: {baseline.gate!r}, and this one is {plan.file.name!r}; "
+            f"give its own --baseline, or {how_to(path, request.gate)}"
+        )
     names = [timed.name for timed in plan.file.timed]
     if request.against is None and not _same_gate(baseline, plan.fingerprint, names):
         raise NotComparableError(

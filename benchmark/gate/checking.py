@@ -17,7 +17,7 @@ from benchmark.gate.history.history_file import HISTORY_SIGN, HistoryEntry, appe
 from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
 from benchmark.gate.processes import Measured, Party, measure
 from benchmark.gate.timing import Judge, TimingRow
-from benchmark.gate.verdict import CheckVerdict
+from benchmark.gate.verdict import CheckVerdict, counted
 from benchmark.gate.versions import Origin, gated_values, origin_of, rival, this_version
 from benchmark.runs.options import Listener
 from benchmark.runs.output.destination import check_file, claimed, destination
@@ -86,7 +86,7 @@ def _verdict(
 ) -> tuple[CheckVerdict, Measured]:
     """Measure and compare."""
     head, file = this_version(plan), plan.file
-    listener.say(f"gate {file.name}: values of {len(plan.cases)} cases")
+    listener.say(f"gate {file.name}: values of {counted(len(plan.cases), 'case')}")
     values = gated_values(head)
     accuracy = compare_values(values, basis.values(), file.tolerances, basis.values_from)
     measured, timing = _times(head, basis, origin, seed, listener)
@@ -111,7 +111,9 @@ def _times(
     file, same = head.plan.file, basis.same_machine(origin)
     judge = Judge(file.timed, file.timing, paired=basis.rival is not None, same_machine=same, seed=seed)
     parties = (head,) if basis.rival is None else (head, basis.rival.party)
-    with listener.progress(f"gate {file.name}: {len(file.timed)} times against {basis.times_from}") as advance:
+    with listener.progress(
+        f"gate {file.name}: {counted(len(file.timed), 'time')} against {basis.times_from}"
+    ) as advance:
         measured = measure(
             parties,
             lambda found: judge.clear(found.ratios[0], basis.ratios(found)),
@@ -142,9 +144,8 @@ def remarks(measured: Measured, timing: Sequence[TimingRow]) -> list[str]:
 def _record(request: CheckRequest, origin: Origin, verdict: CheckVerdict) -> list[str]:
     """Add the check to the history; what goes wrong there is a warning, since the verdict stands without it."""
     _, unread = read_history(request.history_path)
-    warnings = (
-        [f"{request.history_path}: {unread} lines of this history cannot be read, left as they are"] if unread else []
-    )
+    lines = f"{request.history_path}: {counted(unread, 'line')} of this history cannot be read, left in place"
+    warnings = [lines] if unread else []
     entry = HistoryEntry(
         made=origin.made,
         revision=origin.revision,

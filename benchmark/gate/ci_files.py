@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 from benchmark.gate.accuracy import AccuracyRow
 from benchmark.gate.timing import TimingRow
-from benchmark.gate.verdict import CheckVerdict, time_words, value_words
+from benchmark.gate.verdict import CheckVerdict, counted, time_words, value_words
 
 SUITE = "tissuebench check"
 HEADING = "Regression check `"
@@ -90,7 +90,7 @@ def _values(rows: Sequence[AccuracyRow]) -> str:
         for row in rows
     ]
     table = "\n".join([head, *lines])
-    return f"<details><summary>{len(rows)} gated values</summary>\n\n{table}\n\n</details>"
+    return f"<details><summary>{counted(len(rows), 'gated value')}</summary>\n\n{table}\n\n</details>"
 
 
 def _number(value: float | None) -> str:

@@ -144,7 +144,10 @@ def _job(work: GatedWork, gate: Path) -> dict[str, Any]:
 
 def _scenario(work: GatedWork, name: str, gate: Path) -> str:
     path = find(name, "scenario", gate.parent).resolve()
-    load_scenario(path, work.set)
+    try:
+        load_scenario(path, work.set)
+    except InputError as error:
+        raise InputError(f"{gate}, {work.name}: {str(error).replace('--set ', 'set ', 1)}") from None
     return str(path)
 
 

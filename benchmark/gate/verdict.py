@@ -67,13 +67,12 @@ class CheckVerdict:
         values, times = len(self.accuracy), len(self.timing)
         if self.passed:
             faster = len(self.improvements())
-            better = f" {_count(faster, 'timing')} got faster." if faster else ""
-            return (
-                f"Nothing got worse: {_count(values, 'value')} and {_count(times, 'timing')} are within limits.{better}"
-            )
+            better = f" {counted(faster, 'timing')} got faster." if faster else ""
+            both = f"{counted(values, 'value')} and {counted(times, 'timing')}"
+            return f"Nothing got worse: {both} are within limits.{better}"
         bad_values = sum(not row.passed for row in self.accuracy)
         bad_times = sum(not row.passed for row in self.timing)
-        return f"{bad_values} of {_count(values, 'value')} changed, {bad_times} of {_count(times, 'timing')} slower."
+        return f"{bad_values} of {counted(values, 'value')} changed, {bad_times} of {counted(times, 'timing')} slower."
 
     def to_dict(self) -> dict[str, Any]:
         """The content of `check.json`."""
@@ -108,5 +107,6 @@ def time_words(row: TimingRow) -> str:
     )
 
 
-def _count(number: int, what: str) -> str:
+def counted(number: int, what: str) -> str:
+    """A number of things, one or many."""
     return f"{number} {what}{'' if number == 1 else 's'}"

@@ -304,6 +304,24 @@ def profile_radii(tool_radius: float) -> Array:
     return np.asarray(tool_radius / PER_RADIUS * np.arange(int(REACH * PER_RADIUS) + 1), dtype=np.float64)
 
 
+def slips(force: Array, top: Array, thickness: float, unit: str) -> tuple[str, ...]:
+    """What looks like a slip of sign or unit in deflections (n, L), m, that somebody else worked out.
+
+    `force` (n,) N may be empty of values (NaN) as the deflections may; `thickness` (m) is the tissue's, and `unit` says
+    in words what deflections are given in.
+    """
+    said = []
+    if float(np.nansum(force * top[:, 0])) < 0.0:
+        said.append("its deflections point out of the tissue under a press; both are positive into the tissue")
+    largest = float(np.abs(top[np.isfinite(top)]).max(initial=0.0))
+    if largest > thickness:
+        said.append(
+            f"its largest deflection, {1e3 * largest:.4g} mm, is more than the thickness of the tissue, "
+            f"{1e3 * thickness:.4g} mm; {unit}"
+        )
+    return tuple(said)
+
+
 @dataclass(frozen=True)
 class LowerFace:
     """Displacement of the lower face at each depth of a ramp; SI.

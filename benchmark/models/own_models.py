@@ -13,7 +13,7 @@ from benchmark.errors import InputError
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel
 from benchmark.models.fea_results import READERS
-from benchmark.models.model_result import ModelResult, profile_radii
+from benchmark.models.model_result import ModelResult, profile_radii, slips
 from benchmark.models.prepare import scenario_drive
 from benchmark.models.reference_table import check_layers, history, parted, profile, read_rows, template
 from benchmark.models.user_file import UserFile
@@ -70,7 +70,10 @@ def read_reference(path: Path, scenario: Scenario) -> Reference:
         peak_step=peak,
         unknowns=None,
         notes=_notes(path, found.how),
-        warnings=(EMPTY if np.isnan(shape).all() else NO_TIME,),
+        warnings=(
+            EMPTY if np.isnan(shape).all() else NO_TIME,
+            *slips(found.force, found.top, scenario.tissue.thickness, "fem_mm is in mm"),
+        ),
     )
     return Reference(f"FEA of {path.name}", result)
 

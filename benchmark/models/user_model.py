@@ -18,6 +18,7 @@ from benchmark.models.model_result import (
     UncoveredError,
     profile_radii,
     silent,
+    slips,
 )
 from benchmark.models.user_file import UserCode, UserFile
 
@@ -203,15 +204,7 @@ class UserModel:
         said = []
         if not self._code.has(PROFILE):
             said.append(f"no profile: {self._file.path} has no function {PROFILE}, those columns are empty")
-        if float(np.sum(force * top[:, 0])) < 0.0:
-            said.append("its deflections point out of the tissue under a press; both are positive into the tissue")
-        largest, thickness = float(np.abs(top).max()), self._scenario.tissue.thickness
-        if largest > thickness:
-            said.append(
-                f"its largest deflection, {1e3 * largest:.4g} mm, is more than the thickness of the tissue, "
-                f"{1e3 * thickness:.4g} mm; deflections are in m"
-            )
-        return tuple(said)
+        return (*said, *slips(force, top, self._scenario.tissue.thickness, "deflections are in m"))
 
 
 def _numbers(given: Any) -> Array | None:

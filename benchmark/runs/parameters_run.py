@@ -12,8 +12,9 @@ from benchmark.experiments.parameters_answer import ParametersAnswer
 from benchmark.files import Session
 from benchmark.files.schema import validated
 from benchmark.files.sessions.fit_table import FitTable
+from benchmark.files.sessions.session_folder import SESSION_FILE
 from benchmark.files.sources import Source, read_toml
-from benchmark.identification.parameters.free_parameters import COMMON, EDGE_RADIUS, MODULUS, parameters_of
+from benchmark.identification.parameters.free_parameters import COMMON, EDGE_RADIUS, MODULUS, SetUp, parameters_of
 from benchmark.identification.parameters.identifiability import directions
 from benchmark.identification.parameters.identified import Identified, identify
 from benchmark.identification.parameters.law_selection import scores, simplest
@@ -21,7 +22,7 @@ from benchmark.identification.parameters.law_shapes import law_shape
 from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit, begun, fit_layers
 from benchmark.identification.parameters.other_answers import other_answers
 from benchmark.identification.parameters.posterior import posterior
-from benchmark.identification.parameters.session_problem import Assembled, FittedBase, assembled
+from benchmark.identification.parameters.session_problem import Assembled, FittedBase, assembled, check_wish
 from benchmark.response.least_squares import least_squares
 from benchmark.response.ramp_table import EVERYWHERE
 from benchmark.runs.fitted_session import FittedSession
@@ -93,11 +94,22 @@ class ParameterWish:
         for name in self.laws or ():
             law_shape(name)
         table, first = self.table(session.fit), session.trials[0]
+        setup = (session.specimen, first.tool, first.support)
         if not table.free and (self.sessions or table.law is not None or self.posterior):
             raise InputError("several sessions, a law or a posterior need free parameters: give --free KEY,KEY")
         for key in (key for key in table.free if key != EDGE_RADIUS):
             for law in self.laws or (table.law,):
-                parameters_of(key, (session.specimen, first.tool, first.support), law)
+                parameters_of(key, setup, law)
+        if table.free:
+            self._check_told(table, setup, session.folder / SESSION_FILE if self.file is None else self.file)
+
+    def _check_told(self, table: FitTable, setup: SetUp, file: Path) -> None:
+        """Refuse what a file tells of a fit that does not fit; raises InputError that names the file."""
+        for law in self.laws or (table.law,):
+            try:
+                check_wish(table.model_copy(update={"law": law}), setup)
+            except InputError as error:
+                raise InputError(f"{file}: {error}") from None
 
 
 def answer_of(

@@ -84,7 +84,7 @@ def computed(request: RunRequest, options: RunOptions, listener: Listener) -> Ru
     if request.scenario is None or len(request.tissues) > 1:
         raise InputError("give a scenario or trials, and at most one tissue")
     scenario = _chosen(request, request.scenario)
-    return run_scenario(scenario, options, listener, own=_own(request, scenario))
+    return run_scenario(scenario, options, listener, warnings=_idle(request), own=_own(request, scenario))
 
 
 def _check_together(request: RunRequest) -> None:
@@ -128,6 +128,21 @@ def _own(request: RunRequest, scenario: Scenario | None = None) -> Own:
     return NOTHING if wave is None and reference is None and repair is None else Own(wave, reference, repair)
 
 
+IDLE = {"--wave": ("wave.",), "--reference": ("fem.mesh", "fem.radius")}
+"""Beginnings of the keys that nothing reads where a user's own model stands in the place of ours."""
+
+
+def _idle(request: RunRequest) -> tuple[str, ...]:
+    """What is set of a model of ours in whose place the user's own stands, a sentence each."""
+    given = [name for name, path in (("--wave", request.wave), ("--reference", request.reference)) if path is not None]
+    return tuple(
+        f"--set {key} has no effect: what {name} names stands in that model's place"
+        for name in given
+        for key in request.settings or {}
+        if key.startswith(IDLE[name])
+    )
+
+
 def _shipped(request: RunRequest, options: RunOptions, listener: Listener) -> list[RunOutcome]:
     """The phantom session and the 5 N press, each in a folder of its own."""
     outs = [None if request.out is None else request.out / name for name in (DEFAULT_SESSION, DEFAULT_SCENARIO)]
@@ -142,7 +157,8 @@ def _scenario(request: RunRequest, name: str, out: Path | None, options: RunOpti
     folder = destination(out, scenario.name, needed=room(scenario, options))
     own = _own(request, scenario)
     with unfinished(folder) as keep:
-        return write_run(run_scenario(scenario, replace(options, keep=keep), listener, own=own), folder)
+        options = replace(options, keep=keep)
+        return write_run(run_scenario(scenario, options, listener, warnings=_idle(request), own=own), folder)
 
 
 STEP = {"axisymmetric": 500_000, "block": 8_000_000, "surface": 8_000_000}

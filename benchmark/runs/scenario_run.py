@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from benchmark.comparison import ComparisonError
 from benchmark.errors import TissuebenchError
 from benchmark.exchange import export_text
 from benchmark.files import Scenario
-from benchmark.models import NOTHING, Own, StepProgress, scenario_drive
+from benchmark.models import NOTHING, Array, Own, StepProgress, scenario_drive
 from benchmark.runs.options import Listener, RunOptions
 from benchmark.runs.record import RunRecord, compare_layers, deflections, gather_warnings
 from benchmark.runs.refinement import refine
@@ -16,6 +18,9 @@ from benchmark.runs.small_strain import beside_small_strain
 from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.side_by_side import NAMES, SideBySide, run_side_by_side
 from benchmark.side_by_side.parameter_bands import ParameterBands, parameter_bands
+
+FAR_APART = 100.0
+"""Models this many times apart are not in the same unit, rather than wrong: mm and m, or um and mm, are 1000."""
 
 
 def run_scenario(
@@ -62,6 +67,8 @@ def run_scenario(
     layers = len(scenario.tissue.layers)
     fem, wave = (deflections(run.result, drive.time.size, layers) for run in (pair.fem, pair.wave))
     said = [*warnings, *unknown]
+    if own.wave is not None or own.reference is not None:
+        said += _far_apart(fem, wave)
     try:
         comparisons = compare_layers(scenario, drive.value, fem, wave)
     except ComparisonError as error:
@@ -83,6 +90,19 @@ def run_scenario(
         exported=exported,
         bands=bands,
     )
+
+
+def _far_apart(fem: Array, wave: Array) -> tuple[str, ...]:
+    """What deflections (n, L), m, of two models look like whose units differ, one of them not ours."""
+    largest = [float(np.abs(each[np.isfinite(each)]).max(initial=0.0)) for each in (fem, wave)]
+    if 0.0 < FAR_APART * min(largest) < max(largest):
+        told, other = (f"{1e3 * each:.3g} mm" for each in largest)
+        times = max(largest) / min(largest)
+        return (
+            f"the largest deflections of the two models, {told} and {other}, are {times:.0f} times apart: "
+            "see whether one is in another unit (fem_mm of a table is in mm, what a model file returns in m)",
+        )
+    return ()
 
 
 def _bands(scenario: Scenario, own: Own, listener: Listener) -> tuple[ParameterBands | None, tuple[str, ...]]:

@@ -3,6 +3,7 @@
 import os
 import re
 import time
+from pathlib import Path
 
 import pytest
 
@@ -10,7 +11,7 @@ from bench_hw.storage.folder_lock import locked
 from benchmark.cli.folders.results import clean
 from benchmark.errors import InputError
 from benchmark.files.sessions.session_folder import session_table
-from benchmark.litter import cut_recordings, find_litter, live_recordings, remove
+from benchmark.litter import find_litter, remove, unclosed_recordings
 from reports import whole_folder
 
 
@@ -51,7 +52,8 @@ def test_each_kind_is_found_and_removed_and_nothing_else(place):
     assert sorted(path.name for path in place.iterdir()) == [
         ".theirs.lock", ".theirs.unfinished", "good", "notes.part", "session",
     ]  # fmt: skip
-    assert [path.name for path in cut_recordings(place)] == ["trial_001.mcap.part"]
+    cut, live = unclosed_recordings(place)
+    assert ([path.name for path in cut], live) == (["trial_001.mcap.part"], [])
 
 
 def test_what_is_at_work_is_left_alone(place):
@@ -62,14 +64,21 @@ def test_what_is_at_work_is_left_alone(place):
 def test_a_recording_whose_capture_is_at_work_was_not_cut_off(place, capsys):
     session = place / "session"
     with locked(session, "capture"):
-        assert (cut_recordings(place), live_recordings(place)) == ([], [session / "trial_001.mcap.part"])
+        assert unclosed_recordings(place) == ([], [session / "trial_001.mcap.part"])
         with pytest.raises(InputError, match=r"trial_001\.mcap\.part is still being recorded$"):
             session_table(session)
         clean(place)
         said = capsys.readouterr().out
     assert f"{session / 'trial_001.mcap.part'}: is being recorded, left alone" in said
     assert "cut off" not in said
-    assert live_recordings(place) == []
+    assert unclosed_recordings(place) == ([session / "trial_001.mcap.part"], [])
+
+
+def test_recordings_are_looked_for_once(place, monkeypatch):
+    walked, whole = [], Path.rglob
+    monkeypatch.setattr(Path, "rglob", lambda self, pattern: walked.append(pattern) or whole(self, pattern))
+    clean(place, dry_run=True)
+    assert walked.count("*.mcap.part") == 1
 
 
 def test_a_file_that_is_just_being_written_is_left_alone(tmp_path):

@@ -5,12 +5,13 @@ from dataclasses import replace
 import pytest
 
 from benchmark.cli.console import Console
+from benchmark.errors import InputError
 from benchmark.files import load_scenario
 from benchmark.results import RunResult
 from benchmark.runs.options import RunOptions
 from benchmark.runs.output.pressed import Drawn
 from benchmark.runs.scenario_run import run_scenario
-from benchmark.scripting import compare
+from benchmark.scripting import compare, run
 
 QUICK = {"fem.mesh": "coarse", "load.observations": "10", "wave.large_press": "linear"}
 
@@ -18,6 +19,13 @@ QUICK = {"fem.mesh": "coarse", "load.observations": "10", "wave.large_press": "l
 @pytest.fixture(scope="module")
 def record(in_threads):
     return run_scenario(load_scenario("skin-5N", QUICK), RunOptions(repeats=1), Console(quiet=True))
+
+
+@pytest.mark.parametrize(("given", "says"), [({"fields": "some"}, "'peak' and 'all'"), ({"repeats": 0}, "1 or more")])
+def test_what_cannot_be_is_refused_in_a_script(given, says):
+    """The first was taken for 'peak' and the second left the timing out, without a word."""
+    with pytest.raises(InputError, match=says):
+        run("skin-5N", set=QUICK, **given)
 
 
 def labels(result):

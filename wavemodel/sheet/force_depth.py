@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from wavemodel.arrays import FloatArray
-from wavemodel.errors import WaveError
+from wavemodel.errors import NotCoveredError
 from wavemodel.integrators.equilibrium_path import EquilibriumState, RisingCurve, follow, straight_on
 from wavemodel.integrators.load_history import Load
 from wavemodel.sheet.faces import Faces
@@ -221,15 +221,17 @@ class LocalTension:
         The sheet, by the plate's theory or in layers.
     reach
         Depth up to which equilibria are found now, m.
+    name
+        Of the sheet, for messages.
 
     Raises
     ------
-    WaveError
+    NotCoveredError
         If the sheet has no equilibrium up to there.
     """
 
-    def __init__(self, body: SheetBody, reach: float) -> None:
-        self._body, self._rigid = body, body.rigid
+    def __init__(self, body: SheetBody, reach: float, name: str = "this sheet") -> None:
+        self._body, self._rigid, self._name = body, body.rigid, name
         self._path: tuple[EquilibriumState, ...] = (EquilibriumState(0.0, np.zeros(body.unknowns)),)
         self._curve = self._loaded(reach if self._rigid else body.first_load)
         self._extend("depth", reach)
@@ -273,7 +275,7 @@ class LocalTension:
 
         Raises
         ------
-        WaveError
+        NotCoveredError
             If the sheet has no equilibrium up to there.
         """
         last = self._path[-1].load
@@ -285,10 +287,10 @@ class LocalTension:
             share = share**CROWDING
         path = sheet_path(self._body, self._path, share * load)
         if path[-1].load < load:
-            unit, scale = ("mm", 1e3) if self._rigid else ("N", 1.0)
-            raise WaveError(
-                f"load = {load * scale:.4g} {unit} is not allowed: this sheet's equilibrium was followed up to "
-                f"{path[-1].load * scale:.4g} {unit}"
+            unit, scale, what = ("mm", 1e3, "depth") if self._rigid else ("N", 1.0, "force")
+            raise NotCoveredError(
+                f"{self._name}: its equilibrium was followed up to a {what} of {path[-1].load * scale:.4g} {unit}, and "
+                f"{load * scale:.4g} {unit} are needed"
             )
         self._path = path
         return self._splines()

@@ -167,7 +167,13 @@ class PlateWave:
             body, self._modes = PlateBody(self._faces), settings.functions
         self.unknowns: int = body.unknowns
         reach = REACH * hole if settings.reach is None else settings.reach
-        self._statics: Statics = self._moving if self.tension == "uniform" else LocalTension(body, reach)
+        self._statics: Statics = self._moving if self.tension == "uniform" else LocalTension(body, reach, self._name)
+
+    @property
+    def _name(self) -> str:
+        """The sheet with what it is given by, for messages."""
+        total, hole = (1e3 * size for size in (sum(layer.thickness for layer in self.layers), self.hole_radius))
+        return f"a sheet with a thickness of {total:.4g} mm over a hole (hole_radius) of {hole:.4g} mm"
 
     @cached_property
     def _faces(self) -> Faces:

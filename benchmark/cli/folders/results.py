@@ -95,13 +95,13 @@ def clean(
     from benchmark.cli.show import print_json
     from benchmark.errors import InputError
     from benchmark.files.sessions.session_folder import recover_command
-    from benchmark.litter import cut_recordings, find_litter, live_recordings, remove
+    from benchmark.litter import find_litter, remove, unclosed_recordings
 
     if not folder.is_dir():
         raise InputError(f"{folder}: there is no such folder to clean")
     found = list(find_litter(folder))
     gone = [] if dry_run else [litter for litter in found if remove(litter)]
-    cut, live = cut_recordings(folder), live_recordings(folder)
+    cut, live = unclosed_recordings(folder)
     if json:
         rows = [{"path": str(each.path), "what": each.what, "bytes": each.size} for each in found]
         paths = {"removed": [each.path for each in gone], "recordings": cut, "being_recorded": live}

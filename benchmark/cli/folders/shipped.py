@@ -127,13 +127,17 @@ def session(what: What, folder: Folder, json: Json = False, quiet: Quiet = False
     Conditions come from speeds, depths and holds, tool and thickness from headers and the first touch. What a person
     must say is marked SAY in the files. Files that are there are never replaced.
     """
+    from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
     from benchmark.files.sessions.proposal import propose, write_proposal
 
     found = propose(folder)
     written = write_proposal(folder, found)
+    for warning in found.warnings:
+        Console(quiet=quiet).say(f"  warning: {warning}")
     if json:
-        print_json({"schema": 1, "files": [str(path) for path in written], "to_say": list(found.to_say)})
+        said = {"to_say": list(found.to_say), "warnings": list(found.warnings)}
+        print_json({"schema": 1, "files": [str(path) for path in written], **said})
     else:
         print("\n".join(map(str, written)))
         if not quiet:

@@ -81,6 +81,17 @@ def bent(fitted: Fit, slugs: Sequence[str]) -> Fit:
     return one_step(model, at, TrialColumns(vector, fitted.columns.nuisance), mean, precision)
 
 
+def straight(fitted: Fit) -> Fit:
+    """The fit with the forms as they are, to be refitted: bends are one step, of which the model knows no more."""
+    model = fitted.model
+    if not isinstance(model, BentModel):
+        return fitted
+    first = len(model.problem.shapes)
+    kept = np.delete(np.arange(fitted.vector.size), np.s_[first : first + model.bends])
+    plain = EffectModel(model.problem, model.effects, model.pinned)
+    return replace(fitted, model=plain, vector=fitted.vector[kept], prior_mean=fitted.prior_mean[kept])
+
+
 def _bends(fitted: Fit, effect: Effect) -> list[Array]:
     """White bends (N, b) of one effect in each trial: those of other conditions are zero."""
     model, problem = fitted.model, fitted.model.problem

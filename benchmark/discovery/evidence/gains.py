@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.discovery import criteria
+from benchmark.discovery.base.bent_form import straight
 from benchmark.discovery.base.effect_model import Fit, fit, settled
 from benchmark.discovery.base.trials_problem import only
 from benchmark.discovery.discovery_result import Array
@@ -68,6 +69,7 @@ def held_out(fitted: Fit) -> Array:
 
     To first order, but where that step away from a trial costs the trial more than `TOO_FAR`: there the fit converges
     without it, since a curved effect, such as a limit that one trial reaches more than the others, is stepped over.
+    Of a fit that is bent that is the fit with its forms as they are.
     """
     count = len(fitted.model.problem.trials)
     with_all, out = fitted.log_density(fitted.vector), np.empty(count)
@@ -106,6 +108,7 @@ def refitted_conditions(fitted: Fit) -> Array:
 
 def _refitted(fitted: Fit, left: NDArray[np.bool_]) -> Array:
     """Log density of the trials `left` (R,) under the fit to the others, converged."""
+    fitted = straight(fitted)
     model, places = fitted.model, (np.flatnonzero(~left), np.flatnonzero(left))
     others, unseen = (replace(model, problem=only(model.problem, some.tolist())) for some in places)
     found = least_squares(others, fitted.vector, fitted.nuisance[~left], around=fitted.prior_mean)

@@ -18,7 +18,7 @@ from benchmark.errors import InputError
 from benchmark.files.schema import validated
 from benchmark.files.sessions.description import SessionFile
 from benchmark.files.sessions.recordings import Recording, read_recordings, told_heights, with_headers
-from benchmark.files.sessions.session_folder import SESSION_FILE, inside, session_table
+from benchmark.files.sessions.session_folder import SESSION_FILE, inside, session_table, unclosed_recordings
 from benchmark.files.sessions.session_loading import assumed_specimen
 from benchmark.files.sources import is_file
 
@@ -63,10 +63,11 @@ def motion_of(table: TrialTable) -> Motion:
 
 @dataclass(frozen=True)
 class Proposal:
-    """The two files to write, by their names, and what a person must say."""
+    """The two files to write, by their names, what a person must say, and what was left aside in the folder."""
 
     texts: dict[str, str]
     to_say: tuple[str, ...]
+    warnings: tuple[str, ...] = ()
 
 
 def propose(folder: Path) -> Proposal:
@@ -107,7 +108,8 @@ def propose(folder: Path) -> Proposal:
     body = f"# SAY: layers, thickness and modulus; until then: {why}\n{specimen.to_toml()}"
     if not _holds(folder / SPECIMEN_FILE, body):
         _refuse_existing(folder / SPECIMEN_FILE)
-    return Proposal({SPECIMEN_FILE: body, SESSION_FILE: "\n".join([*head, *trials]) + "\n"}, to_say)
+    texts = {SPECIMEN_FILE: body, SESSION_FILE: "\n".join([*head, *trials]) + "\n"}
+    return Proposal(texts, to_say, tuple(unclosed_recordings(source)))
 
 
 def write_proposal(folder: Path, proposal: Proposal) -> list[Path]:

@@ -10,6 +10,7 @@ from typing import Any
 from benchmark.errors import InputError
 from benchmark.gate.history.history_file import HistoryEntry, read_history
 from benchmark.gate.history.trend import Trend, trend_figure, trends, value_trends
+from benchmark.gate.verdict import counted
 from benchmark.runs.output.destination import claimed, destination, file_name
 from benchmark.runs.output.document import describe_environment
 from reports import (
@@ -105,7 +106,7 @@ def history_page(
     environment = describe_environment(seed=0)
     page = Page(
         title=f"Regression history: {name}",
-        subtitle=f"{len(entries)} checks, {entries[0].made[:10]} to {entries[-1].made[:10]}",
+        subtitle=f"{counted(len(entries), 'check')}, {entries[0].made[:10]} to {entries[-1].made[:10]}",
         verdict=_verdict(entries, rows),
         notices=_notices(unread),
         sections=[_step_section(rows), *_time_sections(times), _value_section(values), _checks(entries)],
@@ -122,7 +123,7 @@ def history_page(
 
 
 def _notices(unread: int) -> tuple[Notice, ...]:
-    words = f"{unread} lines of the file cannot be read and are left out."
+    words = f"{counted(unread, 'line')} of the file cannot be read: left out here."
     return (Notice("warning", words, ()),) if unread else ()
 
 
@@ -148,7 +149,7 @@ def _times(entries: Sequence[HistoryEntry]) -> list[Alike]:
 
 def _verdict(entries: Sequence[HistoryEntry], rows: Sequence[tuple[Any, ...]]) -> Verdict:
     red = sum(each.passed is False for each in entries)
-    headline = f"{len(rows)} steps in {len(entries)} checks, {red} of them red."
+    headline = f"{counted(len(rows), 'step')} in {counted(len(entries), 'check')}, {red} of them red."
     named = sorted(rows, key=lambda row: row[3], reverse=True)[:MOST_NAMED]
     points = [f"{quantity}: {change:+.3g} % at {commit}" for quantity, commit, change, *_ in named]
     return Verdict("finding" if rows else "good", headline, points)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import TypeAlias
 
 import numpy as np
@@ -137,9 +138,6 @@ def parameters_of(key: str, setup: SetUp, law: str | None) -> tuple[Parameter, .
         return (_shape(key, law),)
     if key in (COMMON, THICKNESS):
         return (Parameter(key, 1.0, 1.0 / FAR, FAR),)
-    head = key.partition(".")[0]
-    if head in ("tool", "support") and head not in setup[0].layer_names and key not in SETUP_KEYS:
-        raise _no_key(key, setup[0])
     value = value_of(key, setup)
     if not value > 0.0 or math.isinf(value):
         raise InputError(f"--free {key}: {value:g} is nothing to vary by shares; allowed: values above 0")
@@ -168,20 +166,20 @@ def _shape(key: str, law: str | None) -> Parameter:
     return Parameter(key, shape.start, shape.low, shape.high)
 
 
-def value_of(key: str, setup: SetUp) -> float:
-    """The value of a key in a set-up, SI; raises InputError."""
+def value_of(key: str, setup: SetUp, given: str = "--free") -> float:
+    """The value of a key in a set-up, SI; raises InputError, which says that the key came from `given`."""
     tissue, tool, support = setup
     head, _, name = key.partition(".")
     parts = {"tool": tool, "support": support}
     if head in parts and head not in tissue.layer_names:
-        found = getattr(parts[head], name, None)
+        found = getattr(parts[head], name, None) if key in SETUP_KEYS else None
     else:
         path = layer_path(key, tissue.layer_names)
         if path is None:
-            raise _no_key(key, tissue)
+            raise _no_key(key, tissue, given)
         found = _layer_value(tissue.layers[int(path[1])], [str(part) for part in path[2:]])
     if not isinstance(found, float | int) or isinstance(found, bool):
-        raise _no_key(key, tissue)
+        raise _no_key(key, tissue, given)
     return float(found)
 
 
@@ -194,12 +192,16 @@ def _layer_value(layer: Layer, path: list[str]) -> object:
     return node
 
 
-def _no_key(key: str, tissue: Tissue) -> InputError:
+def _no_key(key: str, tissue: Tissue, given: str = "--free") -> InputError:
     layers = ", ".join(tissue.layer_names)
+    names = (MODULUS, POISSON, RELAXATION, THICKNESS)
+    of_layers = [f"{layer}.{name}" for layer in tissue.layer_names for name in names]
+    near = get_close_matches(key, [*of_layers, *SETUP_KEYS, *names, COMMON], n=1)
+    meant = f"did you mean {near[0]}? " if near else ""
     return InputError(
-        f"--free {key}: this specimen and set-up have no such number; allowed: LAYER.youngs_modulus, LAYER.thickness, "
-        f"LAYER.poisson_ratio, LAYER.relaxation, LAYER.hyperelastic.NAME for the layers {layers}; thickness, "
-        f"relaxation, {', '.join(SETUP_KEYS)}, and a law's constant of shape"
+        f"{given} {key}: this specimen and set-up have no such number; {meant}allowed: LAYER.youngs_modulus, "
+        f"LAYER.thickness, LAYER.poisson_ratio, LAYER.relaxation, LAYER.hyperelastic.NAME for the layers {layers}; "
+        f"thickness, relaxation, {', '.join(SETUP_KEYS)}, and a law's constant of shape"
     )
 
 

@@ -11,11 +11,13 @@ import numpy as np
 
 from benchmark.errors import InputError
 from benchmark.files import Session, Tool
+from benchmark.files.schema import nearest
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.files.units import QuantityError, parse_quantity, relative_uncertainty, split_uncertainty
 from benchmark.identification.parameters.fit_problem import FitProblem
 from benchmark.identification.parameters.free_parameters import (
     COMMON,
+    EDGE_RADIUS,
     MODULUS,
     POISSON,
     RELAXATION,
@@ -201,15 +203,40 @@ def _press(specimen: int, base: FittedBase, setup: Setup, wanted: float) -> tupl
     return Press(specimen, base.session, (base.session.specimen, tool, support), reach), said
 
 
-def _free(bases: Sequence[FittedBase], presses: Sequence[Press], wish: FitTable) -> tuple[Parameter, ...]:
-    """The free parameters, shared ones once and per-specimen ones for each session that has them."""
+def check_wish(wish: FitTable, setup: SetUp) -> None:
+    """Refuse keys and values that a fit to presses of a set-up would refuse, before anything is computed.
+
+    A tool's edge is left to the fit, which may give one to a tool that was told without.
+
+    Raises
+    ------
+    InputError
+        Names table and key, and what is allowed.
+    """
+    setup = with_values(setup, _fixed(setup, wish))
+    for key in _free_keys(wish):
+        if key != EDGE_RADIUS:
+            for one in parameters_of(key, setup, wish.law):
+                _informed(one, wish)
+
+
+def _free_keys(wish: FitTable) -> list[str]:
+    """What is free, a law's constant of shape among it; raises InputError for a key that is told of and not free."""
     keys = list(dict.fromkeys(wish.free))
     shape = "" if wish.law is None else law_shape(wish.law).key
     if shape and shape not in keys and not any(".hyperelastic." in key for key in keys):
         keys.append(shape)
-    stray = [key for key in (*wish.per_specimen, *wish.bounds, *wish.priors) if not _covers(keys, key)]
-    if stray:
-        raise InputError(f"[fit]: {stray[0]} is not among what is free; allowed: {', '.join(keys)}")
+    told = {"[fit] per_specimen": wish.per_specimen, "[fit.bounds]": wish.bounds, "[fit.priors]": wish.priors}
+    for table, given in told.items():
+        for key in given:
+            if not _covers(keys, key):
+                raise InputError(f"{table} {key}: this is not among what is free (--free); {nearest(key, keys)}")
+    return keys
+
+
+def _free(bases: Sequence[FittedBase], presses: Sequence[Press], wish: FitTable) -> tuple[Parameter, ...]:
+    """The free parameters, shared ones once and per-specimen ones for each session that has them."""
+    keys = _free_keys(wish)
     out: list[Parameter] = []
     for key in keys:
         own = key in wish.per_specimen and len(bases) > 1
@@ -222,7 +249,7 @@ def _free(bases: Sequence[FittedBase], presses: Sequence[Press], wish: FitTable)
 def _fixed(setup: SetUp, wish: FitTable) -> dict[str, float]:
     """Values that `[fit.fixed]` states, SI; raises InputError for a key that the set-up does not have."""
     for key in wish.fixed:
-        value_of(key, setup)
+        value_of(key, setup, "[fit.fixed]")
     return {key: quantity(key, text) for key, text in wish.fixed.items()}
 
 

@@ -86,7 +86,8 @@ def _document(folder: Path, name: str) -> dict[str, Any]:
     try:
         found = json.loads(read_regular(path, DOCUMENT).decode("utf-8-sig"))
     except (OSError, ValueError, RecursionError) as error:
-        raise InputError(f"{path} cannot be read ({error}); needed: the result folder of a run") from None
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{path} cannot be read ({reason}); needed: the result folder of a run") from None
     if not isinstance(found, dict) or found.get("schema") != SCHEMA:
         schema = found.get("schema") if isinstance(found, dict) else None
         raise InputError(f"{path}: schema is {schema!r}; allowed: {SCHEMA}")

@@ -119,6 +119,20 @@ def test_a_specimens_file_is_copied_into_the_session(run, quick, rig, tmp_path):
     assert f"--specimen {other}: this session's is mine.toml" in ran.stderr
 
 
+def test_keys_that_would_be_passed_over_are_refused_where_trials_are_appended(run, quick, rig, tmp_path):
+    out = tmp_path / "s"
+    arguments = ("capture", quick, "--rig", rig(), "--out", out, "--fast", "--quiet")
+    assert run(*arguments, "--set", 'tool.radius="4 mm"').exit_code == 0
+    before = (out / "session.toml").read_text()
+    for given, its in (("tool.radius=5 mm", "'4 mm'"), ("tool.tilt=1 deg", "none")):
+        ran = run(*arguments, "--append", "--set", given)
+        assert ran.exit_code == 2
+        assert f"--set {given}: {out / 'session.toml'} has {its}, which stays with --append" in ran.stderr
+    assert (out / "session.toml").read_text() == before
+    assert run(*arguments, "--append", "--set", "tool.radius=4 mm").exit_code == 0
+    assert len(tomllib.loads((out / "session.toml").read_text())["trials"]) == 2
+
+
 def test_a_specimen_that_is_told_comes_before_the_rigs(run, quick, tmp_path):
     arguments = ("--rig", "simulated_phantom", "--out", tmp_path / "s", "--fast", "--quiet")
     assert run("capture", quick, *arguments, "--specimen", "skin_forearm").exit_code == 0

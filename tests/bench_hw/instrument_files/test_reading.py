@@ -7,8 +7,10 @@ import pytest
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files import Told, preview, read_instrument_file
+from bench_hw.instrument_files.press_record import first_touch
 from bench_hw.instrument_files.told import asking_key
 from bench_hw.instrument_files.vocabulary import label_and_unit, role_of
+from bench_hw.tables import TrialTable
 from tests.instruments import samples
 from tests.instruments.samples import SAMPLES, press
 
@@ -311,6 +313,19 @@ def test_the_touch_is_found_after_little_air_as_well(tmp_path, lead, law):
     record = ramp(tmp_path / "a.csv", lead=lead, law=law)
     assert record.table.depth.max() == pytest.approx(2e-3, abs=0.04e-3)
     assert record.table.force.max() == pytest.approx(1.0, abs=4e-3)
+
+
+@pytest.mark.parametrize(("law", "off"), [(1.0, 0.03e-3), (1.5, 0.1e-3), (2.0, 0.2e-3)])
+@pytest.mark.parametrize("lead", [0.3, 1.0])
+def test_the_touch_is_found_through_noise(lead, law, off):
+    """A hundredth of the peak of noise hid the touch of a force that begins flat by 0.1, 0.3 and 0.5 mm."""
+    depth = np.concatenate([np.linspace(-lead, 2.0, 4000), np.linspace(2.0, -lead, 4000)]) * 1e-3
+    clean = np.clip(depth / 2e-3, 0.0, None) ** law
+    for seed in range(5):
+        force = clean + 0.01 * np.random.default_rng(seed).normal(size=depth.size)
+        row, level = first_touch(TrialTable(0.01 * np.arange(depth.size), depth, force, {}, "press", {}))
+        assert abs(depth[row]) < off
+        assert level == pytest.approx(0.0, abs=2e-3)
 
 
 @pytest.mark.parametrize(

@@ -125,6 +125,15 @@ def test_accept_then_check(call) -> None:
     assert "checks" not in checked.err
 
 
+@pytest.mark.parametrize("option", ["--junit", "--markdown", "--out"])
+def test_a_report_is_not_made_where_a_baseline_is(call, option: str) -> None:
+    """It was passed over without a word."""
+    called = call("--accept", option, "x")
+    assert called.code == 2
+    assert f"--accept makes a baseline and no report: leave out {option}, or check afterwards" in paragraph(called)
+    assert not Path(BASELINE).exists()
+
+
 def test_a_deflection_off_by_one_per_cent_is_exit_one(call, baseline) -> None:
     change("tissuebench-baseline.json", lambda table: table["timing"]["spring.history"].update(ratios=[1e9]))
     Path("my_model.py").write_text(MODEL.replace("1e-3", "1.01e-3"))

@@ -77,6 +77,25 @@ def test_a_users_fea_stands_in_the_fems_place(benchmark_cli, tmp_path: Path) -> 
     assert not (second / "fields").exists()
 
 
+def test_a_table_in_metres_is_said_to_be_far_from_the_model(benchmark_cli, tmp_path: Path) -> None:
+    model, table = tmp_path / "springs.py", tmp_path / "fea.csv"
+    model.write_text(
+        "import numpy as np\n"
+        "def deform(layers, tool, support, time, force):\n    return 1e-3 * np.outer(force, np.ones(len(layers)))\n"
+    )
+    rows = (f"{layer},{{}}\n" for layer in ("epidermis", "dermis", "subcutaneous_fat"))
+    table.write_text("layer,fem_mm\n" + "".join(row.format(5e-3) for row in rows))
+    called = benchmark_cli(
+        "run", "skin-5N", *SMALL, "--wave", model, "--reference", table, "--out", tmp_path / "r", "--json"
+    )
+    assert called.code == 0, called.err
+    said = "two models, 0.005 mm and 5 mm, are 1000 times apart: see whether one is in another unit"
+    warnings = json.loads(called.out)["warnings"]
+    assert any(said in warning for warning in warnings)
+    idle = [warning.partition(":")[0] for warning in warnings if "no effect" in warning]
+    assert idle == ["--set wave.large_press has no effect", "--set fem.mesh has no effect"]
+
+
 @pytest.mark.slow
 def test_own_model_against_own_fea_needs_none_of_ours(benchmark_cli, tmp_path: Path) -> None:
     first = tmp_path / "a"

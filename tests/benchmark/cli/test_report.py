@@ -96,9 +96,11 @@ def test_a_stopped_run_keeps_its_failure(benchmark_cli, tmp_path: Path) -> None:
     assert (out / "report.html").read_text() == before
 
 
-@pytest.mark.parametrize("what", ["missing", "not a run", "broken table"])
+@pytest.mark.parametrize("what", ["missing", "a file", "not a run", "broken table"])
 def test_what_is_no_run_is_refused_and_left_alone(benchmark_cli, tmp_path: Path, runs, what: str) -> None:
     folder = tmp_path / "r"
+    if what == "a file":
+        folder.write_text("layer,fem_mm\n")
     if what == "not a run":
         folder.mkdir()
         (folder / "results.json").write_text('{"schema": 1}')
@@ -110,6 +112,7 @@ def test_what_is_no_run_is_refused_and_left_alone(benchmark_cli, tmp_path: Path,
     called = benchmark_cli("report", folder)
     assert called.code == 2
     assert str(folder) in called.err.replace("\n", "")
+    assert "Errno" not in called.err
     assert not (folder / "report.html").exists()
 
 

@@ -73,6 +73,11 @@ def test_other_quantities_cannot_be_compared(now: dict, base: dict) -> None:
         compare_values(now, base, SHIPPED, "the baseline")
 
 
+def test_a_quantity_in_another_unit_is_said_to_be() -> None:
+    with pytest.raises(NotComparableError, match=r"a \(in mm there, in N here\)"):
+        compare_values({"a": StoredValue(value=1, unit="N")}, {"a": mm(1.0)}, SHIPPED, "the baseline")
+
+
 def test_the_first_pattern_that_fits_holds() -> None:
     rules = [
         Tolerance(quantity="*.skin", rtol=0.02, atol="0.5 mm"),

@@ -139,6 +139,28 @@ def test_a_baseline_of_another_gate_cannot_be_compared_with(tiny_gate, request_o
         check(request_of(gate), Said())
 
 
+@pytest.mark.parametrize("against", [None, "HEAD"])
+def test_a_baseline_with_another_gates_name_is_told_by_both(tiny_gate, request_of, against) -> None:
+    """Gates of the same quantities and scenarios have the same fingerprint, whatever they are called."""
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    gate.change("gate.toml", 'name = "tiny"', 'name = "mine"')
+    with pytest.raises(NotComparableError, match="another gate: 'tiny', and this one is 'mine'") as refused:
+        check(request_of(gate, against=against), Said())
+    assert refused.value.exit_code == 3
+    accepted = accept(request_of(gate), Said())
+    assert accepted.warnings == ("the baseline of another gate, 'tiny', is replaced by one of 'mine'",)
+    assert check(request_of(gate), Said()).verdict.passed
+
+
+def test_one_case_is_one_case(tiny_gate, request_of) -> None:
+    request, said = request_of(tiny_gate(timed=True)), Said()
+    accept(request, said)
+    check(request, said)
+    assert said.lines[:2] == ["gate tiny: values of 1 case", "gate tiny: 1 time"]
+    assert said.lines[3].startswith("gate tiny: 1 time against")
+
+
 def test_a_layer_more_cannot_be_compared(tiny_gate, request_of) -> None:
     gate = tiny_gate()
     accept(request_of(gate), Said())

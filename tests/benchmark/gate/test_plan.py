@@ -19,6 +19,14 @@ def test_paths_are_absolute_and_relative_to_the_gate_file(tiny_gate, monkeypatch
     assert not plan.shipped
 
 
+def test_a_value_put_into_a_scenario_is_refused_by_its_gate_and_case(tiny_gate) -> None:
+    """It was said to be of `--set`, which nobody had given."""
+    gate = tiny_gate()
+    gate.change("gate.toml", 'own = "my_model.py"', 'own = "my_model.py"\nset = { "load.peek" = "1 N" }')
+    with pytest.raises(InputError, match=r"gate\.toml, springs: set load\.peek: this key is not known"):
+        load_plan(gate.path)
+
+
 def test_a_session_is_a_shipped_name_or_a_folder(tiny_gate) -> None:
     gate = tiny_gate()
     gate.change(

@@ -42,6 +42,18 @@ def test_values_come_through_in_si(tmp_path: Path) -> None:
     assert any("profile" in warning and "timing" in warning for warning in found.result.warnings)
 
 
+def test_slips_of_sign_and_unit_are_pointed_out(tmp_path: Path) -> None:
+    """Of a model file they were, of a table not."""
+    for factor, said in (
+        (-1.0, "out of the tissue"),
+        (1e3, "more than the thickness of the tissue, 11.6 mm; fem_mm is"),
+    ):
+        frame = table()
+        found = read_reference(written(frame.assign(fem_mm=factor * frame.fem_mm), tmp_path), SCENARIO)
+        assert any(said in warning for warning in found.result.warnings)
+    assert len(read_reference(written(table(), tmp_path), SCENARIO).result.warnings) == 1
+
+
 def test_order_of_rows_and_more_columns_do_not_matter(tmp_path: Path) -> None:
     shuffled = table(wave_mm=[None] * 12, remark="mine").sample(frac=1.0, random_state=1)
     found = read_reference(written(shuffled, tmp_path), SCENARIO)

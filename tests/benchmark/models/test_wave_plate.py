@@ -101,3 +101,22 @@ def test_layers_over_a_hole_that_relax_each_in_its_own_way_are_left_elastic_and_
 def test_what_it_cannot_answer(settings: dict[str, str], error: type[Exception], word: str) -> None:
     with pytest.raises(error, match=word):
         prepare("wave", load_scenario("phantom", {"wave.model": "plate", **settings}))
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"silicone.thickness": "1.2 m"}, ["thickness of 1200 mm", "radius of 5 mm", "3.3 times"]),
+        (
+            {"support.hole_radius": "4 m", "tool.contact": "uniform_pressure"},
+            ["thickness of 4 mm", "hole (hole_radius) of 4000 mm", "up to a force of 0 N"],
+        ),
+    ],
+    ids=["too thick", "no equilibrium at all"],
+)
+def test_a_sheet_that_is_not_covered_is_told_by_what_was_given(settings: dict[str, str], words: list[str]) -> None:
+    """The first took all memory; the second was a load that nobody had given."""
+    with pytest.raises(UncoveredError) as refused:
+        prepare("wave", load_scenario("phantom", settings))
+    assert all(word in str(refused.value) for word in words)
+    assert "load =" not in str(refused.value)

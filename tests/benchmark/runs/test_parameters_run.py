@@ -130,6 +130,47 @@ def test_what_is_mistyped_is_refused_before_anything_is_computed(session, tmp_pa
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize(
+    ("table", "says"),
+    [
+        (
+            '[fit.fixed]\n"silicone.youngs_module" = "50 kPa"\n',
+            r"\[fit.fixed\] silicone.youngs_module: .* did you mean silicone.youngs_modulus\? allowed: LAYER",
+        ),
+        ('[fit.fixed]\n"tool.tilt" = "3 deg"\n', r"\[fit.fixed\] tool.tilt: this specimen and set-up have no such"),
+        (
+            '[fit.bounds]\n"silicon.youngs_modulus" = ["5 kPa", "200 kPa"]\n',
+            r"\[fit.bounds\] silicon.youngs_modulus: .* is free \(--free\); did you mean silicone.youngs_modulus\?",
+        ),
+        (
+            '[fit.bounds]\n"silicone.youngs_modulus" = ["200 kPa", "5 kPa"]\n',
+            r"\[fit.bounds\] silicone.youngs_modulus: allowed are two values above 0, the lower one first",
+        ),
+        (
+            '[fit.priors]\n"silicone.thicknes" = { value = "12 mm +/- 5 %", source = "gauge" }\n',
+            r"\[fit.priors\] silicone.thicknes: this is not among what is free \(--free\); known: silicone.youngs_mod",
+        ),
+        (
+            '[fit.priors]\n"silicone.youngs_modulus" = { value = "12 kPa", source = "gauge" }\n',
+            r"\[fit.priors\] silicone.youngs_modulus: give a value with its uncertainty",
+        ),
+    ],
+)
+def test_what_a_session_tells_of_a_fit_is_refused_before_anything_is_computed(
+    session, tmp_path, nothing_computed, table, says
+):
+    file = session / "session.toml"
+    text = file.read_text().replace("[[trials]]", f"{table}[[trials]]", 1)
+    file.write_text(text)
+    with pytest.raises(InputError, match=f"^{file}: {says}"):
+        fit(session, tmp_path / "out")
+    other = tmp_path / "fit.toml"
+    other.write_text("[fit]\nfree = ['silicone.youngs_modulus']\n" + table)
+    file.write_text(SESSION + text[text.index("[[trials]]") :])
+    with pytest.raises(InputError, match=f"^{other}: {says}"):
+        fit(session, tmp_path / "out", ParameterWish(file=other))
+
+
 MODEL = """schema = 1
 [base]
 tissue = "layer"

@@ -14,6 +14,7 @@ from typing import TypeAlias
 import numpy as np
 
 from wavemodel.arrays import FloatArray
+from wavemodel.errors import NotCoveredError
 from wavemodel.layered.finite_strain.deformation_state import Deformed
 from wavemodel.layered.finite_strain.modal_body import ModalBody
 from wavemodel.sheet.layered.held_faces import STIFFNESS, Amplitudes, HeldFaces, bonded_tool, border, plate, pressure_on
@@ -30,6 +31,8 @@ AT_TOOL_BY_LAW = 0.015
 """The second under a rigid tool on layers with laws of their own: where those stiffen, its edge weighs more."""
 MOST_SIZES = 40.0
 """Of them over the hole's radius away from the edges: a thin sheet needs no more."""
+MOST_UNKNOWNS = 10_000
+"""Beyond them one tangent, which is a full matrix, has more than 0.8 GB."""
 _Terms: TypeAlias = tuple[tuple[int, FloatArray, FloatArray], ...]
 """Component of the gradient, its radial table and its table through the thickness."""
 
@@ -122,6 +125,11 @@ def layered_sheet(layers: Sequence[WaveLayer], tool: DiscTool, hole: float, clam
         Radius, m.
     clamp
         "plate": the lower face is held outside the hole; "rim": the whole border, at the hole.
+
+    Raises
+    ------
+    NotCoveredError
+        If the sheet takes more unknowns than `MOST_UNKNOWNS`: it is very thick, or its pull goes far, beside the tool.
     """
     total = sum(layer.thickness for layer in layers)
     size = min(total, tool.radius)
@@ -131,9 +139,23 @@ def layered_sheet(layers: Sequence[WaveLayer], tool: DiscTool, hole: float, clam
         max(FAR * size, hole / MOST_SIZES),
         ((tool.radius, at_tool * size), (hole, AT_HOLE * total)),
     )
-    modes, thickness = stretched_modes(around), sheet_thickness(layers)
+    thickness = sheet_thickness(layers)
+    _refuse_many(2.0 * around.resolved * thickness.shape.shape[1], layers, tool)
+    modes = stretched_modes(around)
     place = Amplitudes(modes, int(thickness.shape.shape[1]))
     return LayeredSheet(modes.tables(), thickness, place, _held(place, layers, tool, hole, clamp), tool)
+
+
+def _refuse_many(unknowns: float, layers: Sequence[WaveLayer], tool: DiscTool) -> None:
+    """Refuse a sheet that takes too many unknowns, before any of its matrices is made."""
+    if unknowns > MOST_UNKNOWNS:
+        total, far = sum(layer.thickness for layer in layers), decay_length(layers)
+        raise NotCoveredError(
+            f"the layered sheet over a hole does not cover layers with a thickness of {total * 1e3:.4g} mm, in which a "
+            f"pull decays over {far * 1e3:.4g} mm, under a tool with a radius of {tool.radius * 1e3:.4g} mm: they take "
+            f"{unknowns / MOST_UNKNOWNS:.2g} times the {MOST_UNKNOWNS} unknowns that are allowed; a wider tool, "
+            "thinner layers or layers of less different stiffness take fewer"
+        )
 
 
 def decay_length(layers: Sequence[WaveLayer]) -> float:

@@ -1,9 +1,11 @@
 """What `session new` proposes: conditions by motion, tool and thickness from the files, and what a person must say."""
 
+import json
 from pathlib import Path
 
 import pytest
 
+from benchmark.cli.folders.shipped import session
 from benchmark.errors import InputError
 from benchmark.files import load_session
 from benchmark.files.sessions.proposal import SPECIMEN_FILE, motion_of, propose, write_proposal
@@ -63,6 +65,16 @@ def test_tests_of_one_file_are_named_one_by_one(tmp_path):
         session.trials
     ) == 2
     assert {trial.tool.radius for trial in session.trials} == {5e-3}
+
+
+def test_a_recording_that_was_cut_off_is_said_to_be_left_aside(folder, capsys):
+    (folder / "deep_3.mcap.part").write_bytes(b"half")
+    (said,) = propose(folder).warnings
+    assert said.startswith("deep_3.mcap.part is a recording that was cut off and is left aside; save what is whole")
+    session("new", folder, json=True)
+    printed = capsys.readouterr()
+    assert json.loads(printed.out)["warnings"] == [said]
+    assert "warning: deep_3.mcap.part is a recording that was cut off" in printed.err
 
 
 def test_nothing_is_replaced(folder):

@@ -49,4 +49,4 @@ def test_lines_that_cannot_be_read_are_said(history: Path, tmp_path: Path) -> No
         stream.write("{}\n")
     outcome = write_history(history, tmp_path / "page")
     assert outcome.document["unread_lines"] == 1
-    assert "1 lines of the file cannot be read" in outcome.folder.joinpath("report.html").read_text()
+    assert "1 line of the file cannot be read" in outcome.folder.joinpath("report.html").read_text()
