@@ -190,6 +190,9 @@ sees the touch by a force. The phantom session's touches scatter by 0.1 mm and w
 LARGE_SHARE, MOST_LARGE = 0.05, 4
 """Of peak force or depth, from which a trial's own zero or depth at touch is warned of, and how many are shown. First
 choice."""
+TOGETHER, FREE_TRAVEL = 4.0, 0.01
+"""Standard errors of their mean, and share of the press, from which touches that are late together are warned of: a gap
+that their scatter hides. First choice."""
 LATE = 1.5
 """Trials of a condition are late where their time shift is this many times its scatter. Development seeds."""
 STARTS, SECOND_START = 2, 0.7

@@ -85,8 +85,21 @@ def large_remarks(problem: TrialsProblem, nuisance: Array) -> tuple[str, ...]:
             found.append(f"{own.trial}: touches at {1e3 * own.touch:.3g} mm")
         if "shift" in own.at_bound:
             found.append(f"{own.trial}: force and frames late by {1e3 * own.late:.3g} ms, as far as allowed")
+    together = _late_together(problem, nuisance[:, OWN.index("height")])
     if not found:
-        return ()
+        return together
     shown = "; ".join(found[: criteria.MOST_LARGE])
     more = f"; and {len(found) - criteria.MOST_LARGE} more" if len(found) > criteria.MOST_LARGE else ""
-    return (f"trials have large values of their own, which may hide an effect: {shown}{more}",)
+    return (f"trials have large values of their own, which may hide an effect: {shown}{more}", *together)
+
+
+def _late_together(problem: TrialsProblem, touch: Array) -> tuple[str, ...]:
+    """A warning of touches (R,), m, that are late in the mean and scatter: one trial foretells no gap of another."""
+    press = float(np.median([problem.study.conditions[trial.condition].around.peak_depth for trial in problem.trials]))
+    mean, error = float(touch.mean()), float(np.std(touch, ddof=1)) / np.sqrt(touch.size) if touch.size > 1 else np.inf
+    if mean <= max(criteria.TOGETHER * error, criteria.FREE_TRAVEL * press):
+        return ()
+    return (
+        f"the tool touches {1e3 * mean:.2g} mm behind its zero in the mean of the trials, give or take "
+        f"{1e3 * error:.1g} mm: either the zeros are early, or there is a gap before contact that their scatter hides",
+    )

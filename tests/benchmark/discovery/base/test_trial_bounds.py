@@ -75,6 +75,24 @@ def test_what_is_small_is_not_warned_of(problem):
     assert large_remarks(problem, np.zeros((6, len(OWN)))) == ()
 
 
+def test_touches_that_are_late_together_are_said(problem):
+    def said(touch):
+        own = np.zeros((6, len(OWN)))
+        own[:, OWN.index("height")] = touch
+        return large_remarks(problem, own)
+
+    size = 0.01 * min(condition.around.peak_depth for condition in problem.study.conditions)
+    scatter = size * np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0])
+    late = 2.2 * size + 0.8 * scatter
+    (text,) = said(late)
+    assert f"touches {2.2e3 * size:.2g} mm behind its zero in the mean of the trials, give or take" in text
+    for other in (-late, size + scatter, 0.1 * size + 0.01 * scatter):
+        assert said(other) == ()
+    large, together = said(late + np.array([4.0 * size, 0.0, 0.0, 0.0, 0.0, 0.0]))
+    assert "touches at" in large
+    assert together.startswith("the tool touches")
+
+
 def _later(trial):
     shifted = np.interp(trial.motion.time - LATE, trial.motion.time, trial.signals[:, 0])
     return shifted[:, None]
