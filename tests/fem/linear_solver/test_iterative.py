@@ -103,6 +103,23 @@ def test_an_old_cycle_is_kept_while_it_serves():
     assert solver._cycle is cycle
 
 
+def test_a_load_that_comes_again_is_solved_from_what_it_moved_before():
+    """As that of 1 N under a prescribed depth; any other from rest."""
+    equilibrium = fem.prepare(block(), "iterative").equilibrium
+    solver, load = equilibrium.solver, equilibrium.unit_load[:, None]
+    other = np.random.default_rng(4).normal(size=load.shape)
+    equilibrium.factorise(equilibrium.system.evaluate(*equilibrium.system.rest()))
+    rough, first = solver.solve(np.hstack((other, load)), 1e-3)[:, 1], solver.iterations
+    again, more = solver.solve(load, 1e-6)[:, 0], solver.iterations
+    solver.solve(other, 1e-6)
+    anew, whole = solver.solve(load, 1e-6)[:, 0], solver.iterations
+    assert 0 < more < whole
+    assert first < whole
+    size = np.abs(anew).max()
+    np.testing.assert_allclose(again, anew, rtol=0.0, atol=1e-5 * size)
+    assert 1e-7 * size < np.abs(rough - anew).max() < 1e-1 * size
+
+
 def test_it_is_refused_where_there_is_none():
     axisymmetric = dataclasses.replace(block(), geometry="axisymmetric")
     with pytest.raises(fem.FemError, match="only with geometry = 'block'"):
