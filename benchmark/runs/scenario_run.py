@@ -10,7 +10,7 @@ from benchmark.comparison import ComparisonError
 from benchmark.errors import TissuebenchError
 from benchmark.exchange import export_text
 from benchmark.files import Scenario
-from benchmark.models import NOTHING, Array, Own, StepProgress, scenario_drive
+from benchmark.models import NOTHING, Array, ModelResult, Own, StepProgress, scenario_drive
 from benchmark.runs.options import Listener, RunOptions
 from benchmark.runs.record import RunRecord, compare_layers, deflections, gather_warnings
 from benchmark.runs.refinement import refine
@@ -66,7 +66,7 @@ def run_scenario(
     levels = refine(scenario, pair, listener) if options.refine else ()
     layers = len(scenario.tissue.layers)
     fem, wave = (deflections(run.result, drive.time.size, layers) for run in (pair.fem, pair.wave))
-    said = [*warnings, *unknown]
+    said = [*warnings, *unknown, *_too_coarse(scenario, pair.fem.result)]
     if own.wave is not None or own.reference is not None:
         said += _far_apart(fem, wave)
     try:
@@ -89,6 +89,18 @@ def run_scenario(
         levels=levels,
         exported=exported,
         bands=bands,
+    )
+
+
+def _too_coarse(scenario: Scenario, result: ModelResult | None) -> tuple[str, ...]:
+    """That the finite elements are estimated to be farther from their own limit than the models may be apart."""
+    found, margin = None if result is None else result.mesh_error, 100.0 * scenario.comparison.equivalence_margin
+    if found is None or abs(found.percent) <= margin:
+        return ()
+    finer = "" if scenario.fem.mesh == "fine" else "; a finer mesh: --set fem.mesh=fine"
+    return (
+        f"the FEM's own mesh is estimated {abs(found.percent):.2g} % off, more than the {margin:g} % within which the "
+        f"models are compared{finer}",
     )
 
 

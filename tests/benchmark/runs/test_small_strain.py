@@ -47,3 +47,16 @@ def test_under_friction_there_is_none_and_the_run_goes_on():
     assert record.pair.wave.result is not None
     assert NOTE not in record.pair.wave.result.notes
     assert any("the way back" in one for one in record.pair.wave.result.warnings)
+
+
+def test_a_mesh_that_is_farther_off_than_the_models_may_be_apart_is_said():
+    def said(margin, **more):
+        settings = QUICK | {"comparison.equivalence_margin": str(margin)} | more
+        record = run_scenario(load_scenario("skin-5N", settings), OPTIONS, QUIET)
+        found = [each for each in record.warnings if "the FEM's own mesh is estimated" in each]
+        return abs(record.pair.fem.result.mesh_error.percent), found
+
+    off, (text,) = said(1e-6)
+    assert f"estimated {off:.2g} % off, more than the 0.0001 % within which" in text
+    assert text.endswith("--set fem.mesh=fine")
+    assert said(0.01 * off * 1.01) == (off, [])
