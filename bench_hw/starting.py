@@ -5,8 +5,9 @@ come before ours. `leave_current_folder` puts it last: a user's own modules are 
 
 A program may be started with its standard input, output or error closed. The next file it opens then has the number of
 that stream, and what a library says there would stand in the file: `open_streams`. One that is full, or whose reader
-went away, is told by name: `end`. Ctrl-C before the verb or after it ends the program in one line. Nothing is imported
-here at the top that is not there since the start of Python.
+went away, is told by name: `end`. An option of one value that is given twice is refused: `refuse_repeats`. Ctrl-C
+before the verb or after it ends the program in one line. Nothing is imported here at the top that is not there since
+the start of Python.
 """
 
 from __future__ import annotations
@@ -17,6 +18,12 @@ import io
 import os
 import sys
 import time
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    import typer
 
 EXIT_UNSAID = 2
 EXIT_INTERRUPTED = 130
@@ -162,6 +169,26 @@ def _wrapped(old: object, raw: _Raw, *, line_buffering: bool = False) -> io.Text
         line_buffering=line_buffering or raw.isatty(),
         write_through=bool(getattr(old, "write_through", False)),
     )
+
+
+def refuse_repeats(app: typer.Typer) -> None:
+    """Have every verb refuse an option that takes one value and is given twice: the first was passed over."""
+    from typer.core import TyperCommand, TyperOption
+
+    class Verb(TyperCommand):
+        def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+            given = self.make_parser(ctx).parse_args(args=[*args])[2]
+            single = [each for each in given if isinstance(each, TyperOption) and not (each.multiple or each.is_flag)]
+            for option in single:
+                if single.count(option) > 1:
+                    ctx.fail(f"{option.opts[0]} is given {single.count(option)} times; it takes one value")
+            return super().parse_args(ctx, args)
+
+    for command in app.registered_commands:
+        command.cls = Verb
+    for group in app.registered_groups:
+        if group.typer_instance is not None:
+            refuse_repeats(group.typer_instance)
 
 
 def end(code: int) -> int:

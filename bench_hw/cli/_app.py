@@ -16,6 +16,7 @@ from typing import Annotated
 import typer
 
 from bench_hw.cli._report import EXIT_MISSING, report_unexpected, say_error
+from bench_hw.starting import refuse_repeats
 
 
 def make_app() -> typer.Typer:
@@ -32,6 +33,7 @@ def make_app() -> typer.Typer:
     for module in sorted(pkgutil.iter_modules([str(Path(__file__).parent)]), key=lambda info: info.name):
         if not module.name.startswith("_"):
             importlib.import_module(f"bench_hw.cli.{module.name}").register(application)
+    refuse_repeats(application)
     return application
 
 

@@ -14,7 +14,7 @@ from typing import Annotated, Any
 
 import typer
 
-from bench_hw.starting import unsaid
+from bench_hw.starting import refuse_repeats, unsaid
 from benchmark.cli import (
     blind,
     check,
@@ -54,6 +54,7 @@ for verb in (
     hands_on,
 ):
     verb.register(app)
+refuse_repeats(app)
 
 
 def _show_version(wanted: bool) -> None:

@@ -218,6 +218,10 @@ _SENTENCES: Final[Mapping[str, str]] = {
     "dict_type": "{input} is no table of keys and values",
     "mapping_type": "{input} is no table of keys and values",
     "tuple_type": "{input} is no list",
+    "list_type": "{input} is no list",
+    "float_type": "{input} is no number",
+    "finite_number": "{input} is not finite",
+    "greater_than": "{input} is not allowed; allowed: more than {gt:g}",
     "too_short": "it has {actual_length} entries; allowed: at least {min_length}",
     "too_long": "it has too many entries; allowed: at most {max_length}",
 }

@@ -9,10 +9,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
 from bench_hw.storage.regular_file import DOCUMENT, read_regular
 from benchmark.errors import InputError, NotComparableError
+from benchmark.files.schema import validated
+from benchmark.files.sources import Source
 from reports import write_json
 
 SCHEMA = 1
@@ -135,12 +137,9 @@ def read_baseline(path: Path, gate: Path | None = None) -> Baseline:
             f"{how_to(path, gate)}"
         )
     try:
-        return Baseline.model_validate(table)
-    except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        place = ".".join(str(part) for part in first["loc"])
-        problem = f"{path}, {place}: {first['msg']}; the file is no whole baseline"
-        raise InputError(f"{problem}; {how_to(path, gate)}") from None
+        return validated(Baseline, table, Source(str(path)))
+    except InputError as error:
+        raise InputError(f"{str(error).rstrip('.')}; the file is no whole baseline; {how_to(path, gate)}") from None
 
 
 def how_to(path: Path, gate: Path | None = None) -> str:

@@ -20,7 +20,7 @@ from benchmark.gate.timing import Judge, TimingRow
 from benchmark.gate.verdict import CheckVerdict, counted
 from benchmark.gate.versions import Origin, gated_values, origin_of, rival, this_version
 from benchmark.runs.options import Listener
-from benchmark.runs.output.destination import check_file, claimed, destination
+from benchmark.runs.output.destination import check_file, claimed, destination, remove_earlier
 from reports import write_csv, write_json, write_page, write_text, write_whole
 
 
@@ -41,6 +41,8 @@ class CheckOutcome:
 def check(request: CheckRequest, listener: Listener) -> CheckOutcome:
     """Compare this version with a baseline or another revision, write a report, and add to the history.
 
+    An earlier check's files for a CI service are removed first: one that ends with an error leaves none.
+
     Raises
     ------
     NotComparableError
@@ -52,6 +54,8 @@ def check(request: CheckRequest, listener: Listener) -> CheckOutcome:
     OSError
         Where the file system refuses; no report is written then.
     """
+    remove_earlier(request.junit, JUNIT_SIGN)
+    remove_earlier(request.markdown, MARKDOWN_SIGN)
     with claimed(request.out, "check"):
         inputs = (request.baseline_path, request.gate, request.history_path)
         return _checked(request, destination(request.out, "check", inputs), listener)

@@ -111,6 +111,8 @@ def specimen_of(scenario: Scenario) -> Specimen:
 
 
 DEFORM, SET_UP, PROFILE, PRESS = "deform", "set_up", "profile", "press"
+UNITS = {DEFORM: "m", PROFILE: "m", PRESS: "N"}
+"""Of what the functions return."""
 
 
 class UserModel:
@@ -186,10 +188,12 @@ class UserModel:
         given = self._code.call(function, *self._specimen, *copies, **self._keywords)
         found = _numbers(given)
         if found is None or found.shape != shape:
-            what = f"a {type(given).__name__} without numbers" if found is None else f"an array of shape {found.shape}"
+            what = _no_numbers(given) if found is None else f"an array of shape {found.shape}"
             axes = {1: "one number a step", 2: "one row a step and one column a layer"}[len(shape)]
             axes = "one row a layer and one column a radius" if function == PROFILE else axes
-            raise self._code.fault(function, f"it returned {what}; allowed: numbers of shape {shape}, {axes}")
+            raise self._code.fault(
+                function, f"it returned {what}; allowed: real numbers of shape {shape}, {axes}, in {UNITS[function]}"
+            )
         bad = np.isinf(found) if may_be_nan else ~np.isfinite(found)
         if bad.any():
             place = np.argwhere(bad)[0]
@@ -205,6 +209,16 @@ class UserModel:
         if not self._code.has(PROFILE):
             said.append(f"no profile: {self._file.path} has no function {PROFILE}, those columns are empty")
         return (*said, *slips(force, top, self._scenario.tissue.thickness, "deflections are in m"))
+
+
+def _no_numbers(given: Any) -> str:
+    """What was returned that is no array of real numbers, in words."""
+    try:
+        if np.iscomplexobj(np.asarray(given)):
+            return "complex numbers"
+    except ValueError:
+        pass
+    return f"a {type(given).__name__} without numbers"
 
 
 def _numbers(given: Any) -> Array | None:

@@ -22,7 +22,13 @@ from benchmark.identification.parameters.law_shapes import law_shape
 from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit, begun, fit_layers
 from benchmark.identification.parameters.other_answers import other_answers
 from benchmark.identification.parameters.posterior import posterior
-from benchmark.identification.parameters.session_problem import Assembled, FittedBase, assembled, check_wish
+from benchmark.identification.parameters.session_problem import (
+    Assembled,
+    FittedBase,
+    assembled,
+    check_exact,
+    check_wish,
+)
 from benchmark.response.least_squares import least_squares
 from benchmark.response.ramp_table import EVERYWHERE
 from benchmark.runs.fitted_session import FittedSession
@@ -100,8 +106,28 @@ class ParameterWish:
         for key in (key for key in table.free if key != EDGE_RADIUS):
             for law in self.laws or (table.law,):
                 parameters_of(key, setup, law)
-        if table.free:
-            self._check_told(table, setup, session.folder / SESSION_FILE if self.file is None else self.file)
+        file = session.folder / SESSION_FILE if self.file is None else self.file
+        if not table.free:
+            self._refuse_unused(table, file)
+            return
+        self._check_told(table, setup, file)
+        if not self.sessions:  # of several, the others' layers are known later
+            setups = [(session.specimen, one.tool, one.support) for one in session.trials]
+            check_exact(table.exact, setups, f"{file}: [fit] exact" if self.exact is None else "--exact")
+
+    def _refuse_unused(self, table: FitTable, file: Path) -> None:
+        """Refuse what a fit is told that has no free parameters, since it would be passed over."""
+        told = {
+            f"{file}: [fit] exact" if self.exact is None else "--exact": table.exact,
+            f"{file}: [fit] per_specimen": table.per_specimen,
+            f"{file}: [fit.fixed]": table.fixed,
+            f"{file}: [fit.bounds]": table.bounds,
+            f"{file}: [fit.priors]": table.priors,
+        }
+        for place, keys in told.items():
+            if keys:
+                needed = "give free = [...] in [fit], or --free KEY,KEY"
+                raise InputError(f"{place} {next(iter(keys))}: without free parameters this is of no use; {needed}")
 
     def _check_told(self, table: FitTable, setup: SetUp, file: Path) -> None:
         """Refuse what a file tells of a fit that does not fit; raises InputError that names the file."""

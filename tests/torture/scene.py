@@ -67,7 +67,7 @@ max_force = "5 N"
 GATE = """schema = 1
 name = "small"
 [timing]
-rounds = [1, 1]
+rounds = [1, 5]
 blocks = 1
 margin = "90 %"
 [[tolerances]]

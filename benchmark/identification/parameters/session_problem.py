@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -97,6 +97,7 @@ def assembled(bases: Sequence[FittedBase], wish: FitTable) -> Assembled:
         A key that a specimen does not have, or values that cannot be used.
     """
     discrepancy = _discrepancy(wish)
+    check_exact(wish.exact, _setups(bases), "[fit] exact")
     presses, trials, keys, warnings = _presses(bases, wish)
     if not trials:
         raise InputError("no trial is left for a fit of parameters: none reaches into the model's range")
@@ -107,6 +108,10 @@ def assembled(bases: Sequence[FittedBase], wish: FitTable) -> Assembled:
     own = [bases[specimen].fit.trial(*key) for specimen, key in keys]
     touches, zeros = np.array([one.onset for one in own]), np.array([one.zero for one in own])
     return Assembled(problem, touches, zeros, warnings)
+
+
+def _setups(bases: Sequence[FittedBase]) -> list[SetUp]:
+    return [(base.session.specimen, one.tool, one.support) for base in bases for one in base.session.trials]
 
 
 def _discrepancy(wish: FitTable) -> float:
@@ -218,6 +223,16 @@ def check_wish(wish: FitTable, setup: SetUp) -> None:
         if key != EDGE_RADIUS:
             for one in parameters_of(key, setup, wish.law):
                 _informed(one, wish)
+
+
+def check_exact(keys: Iterable[str], setups: Iterable[SetUp], place: str) -> None:
+    """Refuse keys of `exact` that are told by no set-up; raises InputError that begins with the place."""
+    known = list(dict.fromkeys(key for setup in setups for key in _tellable(setup, set())))
+    for key in keys:
+        if key not in ("all", *known):
+            raise InputError(
+                f"{place} {key}: nothing of that name is told of these trials; {nearest(key, ['all', *known])}"
+            )
 
 
 def _free_keys(wish: FitTable) -> list[str]:

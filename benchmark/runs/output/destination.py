@@ -116,11 +116,27 @@ def check_file(path: Path | None, option: str, sign: bytes, kind: str) -> None:
     if path.is_dir():
         raise InputError(f"{option} {path} is a folder; give a file")
     _check_writable(path, f"{option} {path}", PROBE)
-    if path.is_file():
-        with path.open("rb") as stream:
-            beginning = stream.read(BEGINNING)
-        if beginning and sign not in beginning:
-            raise InputError(f"{option} {path} is there and is not {kind}; nothing else is replaced, give another name")
+    beginning = _beginning(path)
+    if beginning and sign not in beginning:
+        raise InputError(f"{option} {path} is there and is not {kind}; nothing else is replaced, give another name")
+
+
+def remove_earlier(path: Path | None, sign: bytes) -> None:
+    """Remove a file that carries the sign of its kind, so that it is not taken for what a command that failed wrote.
+
+    Anything else stays, and so does a file that cannot be read or removed, which `check_file` tells of.
+    """
+    with suppress(OSError):
+        if path is not None and sign in _beginning(path):
+            path.unlink()
+
+
+def _beginning(path: Path) -> bytes:
+    """The bytes in which a sign must stand; none where there is no file."""
+    if not path.is_file():
+        return b""
+    with path.open("rb") as stream:
+        return stream.read(BEGINNING)
 
 
 def fresh(name: str) -> Path:

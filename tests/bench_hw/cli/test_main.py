@@ -47,6 +47,14 @@ def test_a_wrong_use_is_exit_two():
         assert "Error: " in ran.stderr
 
 
+@pytest.mark.parametrize(("verb", "option"), [(("recover", "a"), "--out"), (("simulate", "netft"), "--seed")])
+def test_an_option_of_one_value_is_given_once(run, verb, option):
+    """The first was passed over."""
+    ran = run(*verb, option, "1", option, "2")
+    assert ran.exit_code == 2
+    assert f"{option} is given 2 times; it takes one value" in ran.stderr
+
+
 @pytest.mark.parametrize("debug", [False, True])
 def test_an_error_nobody_foresaw_is_one_line_without_debug(monkeypatch, capsys, debug):
     def broken() -> None:

@@ -154,6 +154,9 @@ def test_every_verb_has_the_options_that_scripts_pass_everywhere(verb: str) -> N
          "error: Invalid value for '--sample': 'foo' is not one of 'lhs', 'sobol'. See python -m benchmark sweep"),
         (("reference",), "error: Missing argument 'new'. See python -m benchmark reference --help."),
         (("tissues", "new"), "tissues new NAME. See python -m benchmark tissues --help."),
+        (("run", "skin-5N", "--reference", "a.csv", "--reference=b.csv"),
+         "error: --reference is given 2 times; it takes one value. See python -m benchmark run --help."),
+        (("fit", "phantom", "--seed", "1", "--seed", "1"), "error: --seed is given 2 times"),
         (("nosuch",), "error: No such command 'nosuch'. See python -m benchmark --help."),
     ],
 )  # fmt: skip
@@ -161,3 +164,11 @@ def test_what_is_typed_wrong_is_said_with_the_help_of_its_verb(benchmark_cli, ty
     called = benchmark_cli(*typed)
     assert called.code == app.EXIT_USAGE
     assert said in " ".join(called.err.split())
+
+
+def test_what_may_be_repeated_is(benchmark_cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A setting for each value, and a flag, which says the same again."""
+    given = {}
+    monkeypatch.setattr("benchmark.runs.fit_to_folder", lambda request, *_: given.update(request.settings) or 1 / 0)
+    benchmark_cli("fit", "phantom", "--set", "fem.mesh=fine", "--set", "tool.radius=4 mm", "--quiet", "--quiet")
+    assert given == {"fem.mesh": "fine", "tool.radius": "4 mm"}

@@ -39,7 +39,7 @@ GATE = """\
 schema = 1
 name = "tiny"
 [timing]
-rounds = [1, 1]
+rounds = [1, 5]
 blocks = 2
 [[tolerances]]
 quantity = "*"

@@ -1,6 +1,8 @@
 """Baselines on disk: whole, refused with the way out."""
 
 import json
+import math
+import re
 from pathlib import Path
 
 import pytest
@@ -61,13 +63,34 @@ def test_what_is_no_baseline_is_bad_input(tmp_path: Path, text: str) -> None:
         read_baseline(path)
 
 
-@pytest.mark.parametrize("ratios", [[], [0.0], [-1.0], ["2"], [None]])
-def test_ratios_must_be_positive_numbers(baseline: Baseline, tmp_path: Path, ratios: list) -> None:
+@pytest.mark.parametrize(
+    ("ratios", "says"),
+    [
+        ([], ": it has 0 entries; allowed: at least 1"),
+        (3, ": 3 is no list"),
+        ([1.0, 0.0], "[#2]: 0.0 is not allowed; allowed: more than 0"),
+        ([-1.0], "[#1]: -1.0 is not allowed; allowed: more than 0"),
+        (["2"], "[#1]: '2' is no number"),
+        ([None], "[#1]: None is no number"),
+        ([math.inf], "[#1]: inf is not finite"),
+    ],
+)
+def test_ratios_must_be_positive_numbers(baseline: Baseline, tmp_path: Path, ratios: object, says: str) -> None:
     path = write_baseline(tmp_path / "b.json", baseline)
     table = json.loads(path.read_text())
     table["timing"]["frame"]["ratios"] = ratios
     path.write_text(json.dumps(table))
-    with pytest.raises(InputError, match=r"timing\.frame\.ratios"):
+    said = f"{path}, timing.frame.ratios{says}; the file is no whole baseline; make one from this version with: "
+    with pytest.raises(InputError, match=re.escape(said)):
+        read_baseline(path)
+
+
+def test_a_mistyped_key_is_told_with_the_nearest(baseline: Baseline, tmp_path: Path) -> None:
+    path = write_baseline(tmp_path / "b.json", baseline)
+    table = json.loads(path.read_text())
+    table["timing"]["frame"]["ratio"] = table["timing"]["frame"].pop("ratios")
+    path.write_text(json.dumps(table))
+    with pytest.raises(InputError, match=r"timing\.frame\.ratio: this key is not known; did you mean ratios\?"):
         read_baseline(path)
 
 

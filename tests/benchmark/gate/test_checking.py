@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Self
 
@@ -129,6 +130,28 @@ def test_without_a_baseline_nothing_is_measured_or_written(tiny_gate, request_of
     with pytest.raises(NotComparableError, match="--accept"):
         check(request_of(tiny_gate()), Said())
     assert {path.name for path in tmp_path.iterdir()} == {"gate"}
+
+
+def test_a_check_that_fails_leaves_no_earlier_files_for_a_ci_service(tiny_gate, request_of, tmp_path: Path) -> None:
+    """CI showed the verdict of the check before as this one's."""
+    gate, files = tiny_gate(), {"junit": tmp_path / "gate.xml", "markdown": tmp_path / "gate.md"}
+    accept(request_of(gate), Said())
+    refused = (
+        (NotComparableError, {"baseline": tmp_path / "none.json"}),
+        (InputError, {"gate": tmp_path / "none.toml"}),
+        (InputError, {"out": gate.folder}),
+    )
+    for error, options in refused:
+        check(request_of(gate, **files), Said())
+        assert all(path.is_file() for path in files.values())
+        with pytest.raises(error):
+            check(replace(request_of(gate, **files), **options), Said())
+        assert not any(path.exists() for path in files.values())
+    files["junit"].write_text("<testsuites name='mine'/>")
+    files["markdown"].write_text("# mine")
+    with pytest.raises(InputError, match="nothing else is replaced"):
+        check(request_of(gate, **files), Said())
+    assert [path.read_text() for path in files.values()] == ["<testsuites name='mine'/>", "# mine"]
 
 
 def test_a_baseline_of_another_gate_cannot_be_compared_with(tiny_gate, request_of) -> None:

@@ -109,7 +109,7 @@ def test_depth_control_needs_press(user_file) -> None:
         (returning("np.zeros(6)"), ["(6,)", "(6, 3)"]),
         (returning("None"), ["NoneType"]),
         (returning("[[1, 2], [3]]"), ["list", "(6, 3)"]),
-        (returning("np.zeros((6, 3), complex)"), ["ndarray without numbers"]),
+        (returning("np.zeros((6, 3), complex)"), ["complex numbers; allowed: real numbers of shape (6, 3)", "in m"]),
         (returning("np.full((6, 3), np.nan)"), ["nan at [0, 0]", "finite"]),
         (returning("np.array([[0, 0, 0]] * 5 + [[0, np.inf, 0]])"), ["inf at [5, 1]"]),
         (returning("time / 0 + missing"), ["line 4", "NameError", "missing"]),

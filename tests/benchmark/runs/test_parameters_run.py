@@ -2,13 +2,15 @@
 
 import csv
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from benchmark.errors import InputError
-from benchmark.files import load_scenario, load_tissue
+from benchmark.files import load_scenario, load_session, load_tissue
 from benchmark.files.sessions.fit_table import FitTable
+from benchmark.identification.parameters.session_problem import assembled
 from benchmark.runs.fit_run import FitRequest, fit_to_folder
 from benchmark.runs.parameters_run import ParameterWish
 from benchmark.scripting import Unheard
@@ -169,6 +171,43 @@ def test_what_a_session_tells_of_a_fit_is_refused_before_anything_is_computed(
     file.write_text(SESSION + text[text.index("[[trials]]") :])
     with pytest.raises(InputError, match=f"^{other}: {says}"):
         fit(session, tmp_path / "out", ParameterWish(file=other))
+
+
+def test_a_mistyped_key_of_what_is_exact_is_refused(session, tmp_path, nothing_computed) -> None:
+    """It was passed over, and the value kept its uncertainty."""
+    file = session / "session.toml"
+    file.write_text(file.read_text().replace('exact = ["all"]', 'exact = ["tool.radius", "silicone.thicknes"]'))
+    says = r"exact silicone.thicknes: nothing of that name is told of these trials; did you mean silicone.thickness"
+    with pytest.raises(InputError, match=rf"^{file}: \[fit\] {says}"):
+        fit(session, tmp_path / "out")
+    with pytest.raises(InputError, match=r"^--exact tool.radios: nothing of that name .* did you mean tool.radius"):
+        fit(session, tmp_path / "out", ParameterWish(exact=("tool.radios",)))
+    ParameterWish(exact=("tool.radius", "silicone.poisson_ratio", "all")).check(load_session(session))
+    both = [SimpleNamespace(session=load_session(session))] * 2  # of several sessions the keys are known later
+    with pytest.raises(InputError, match=r"^\[fit\] exact silicone.thicknes: nothing of that name"):
+        assembled(both, FitTable(free=("silicone.youngs_modulus",), exact=("silicone.thicknes",)))
+
+
+@pytest.mark.parametrize(
+    ("table", "says"),
+    [
+        ('exact = ["tool.radius"]', r"\[fit\] exact tool.radius"),
+        ('[fit.fixed]\n"silicone.poisson_ratio" = 0.48', r"\[fit.fixed\] silicone.poisson_ratio"),
+        ('[fit.bounds]\n"tool.radius" = ["4 mm", "6 mm"]', r"\[fit.bounds\] tool.radius"),
+        ('[fit.priors]\n"tool.radius" = { value = "5 mm +/- 5 %", source = "x" }', r"\[fit.priors\] tool.radius"),
+    ],
+)
+def test_what_only_a_fit_of_parameters_uses_is_refused_without_any(session, tmp_path, nothing_computed, table, says):
+    """It was passed over without a word."""
+    file = session / "session.toml"
+    free, text = 'free = ["silicone.youngs_modulus"]\nexact = ["all"]\n', file.read_text()
+    assert free in text
+    file.write_text(text.replace(free, f"{table}\n"))
+    with pytest.raises(InputError, match=rf"^{file}: {says}: without free parameters this is of no use; give free"):
+        fit(session, tmp_path / "out")
+    file.write_text(text.replace(f"[fit]\n{free}", ""))
+    with pytest.raises(InputError, match=r"^--exact all: without free parameters"):
+        fit(session, tmp_path / "out", ParameterWish(exact=("all",)))
 
 
 MODEL = """schema = 1
