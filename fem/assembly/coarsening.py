@@ -9,8 +9,7 @@ from fem.arrays import BoolArray, FloatArray, IntArray
 from fem.assembly.element_geometry import packed_positions
 from fem.assembly.scatter import Numbering, Scatter, build_scatter
 from fem.assembly.solid import SOLID_ELEMENTS
-from fem.linear_solver.columns import ColumnPlaces
-from fem.linear_solver.multigrid import CoarseSpace
+from fem.linear_solver.multigrid import CoarseSpace, ColumnPlaces
 from fem.mesh.solid import SolidMesh
 
 LINEAR = {"hex27": "hex8", "hex20": "hex8", "tet10": "tet4"}

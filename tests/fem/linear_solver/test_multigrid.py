@@ -4,8 +4,7 @@ import scipy.sparse as sp
 
 import fem
 from fem.linear_solver import SingularMatrixError, make_solver, multigrid
-from fem.linear_solver.columns import Columns
-from fem.linear_solver.multigrid import ElementSum, MultigridCycle
+from fem.linear_solver.multigrid import Columns, ElementSum, MultigridCycle
 from tests.fem.linear_solver.test_iterative import block
 
 
