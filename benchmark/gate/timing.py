@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from benchmark.gate.gate_file import DECISIVE, Timed, Timing
+from benchmark.gate.gate_file import Timed, Timing
 from benchmark.gate.statistics import Change, caught, change
 
 Ratios = Mapping[str, Sequence[float]]
@@ -18,6 +18,9 @@ SURE = 2.0
 USUAL_SCATTER, USUAL_ROUNDS = 0.03, 4
 """Scatter between processes (logarithm) on a shared machine: a few processes that agree by chance count as so many more
 of this scatter."""
+DECISIVE = 5
+"""Rounds before anything is called slower, as long as the gate file allows as many: from five on, the mean of the
+processes leaves the highest and the lowest out."""
 
 
 @dataclass(frozen=True)

@@ -67,7 +67,7 @@ max_force = "5 N"
 GATE = """schema = 1
 name = "small"
 [timing]
-rounds = [1, 5]
+rounds = [1, 1]
 blocks = 1
 margin = "90 %"
 [[tolerances]]

@@ -50,7 +50,7 @@ GATE = """\
 schema = 1
 name = "tiny"
 [timing]
-rounds = [1, 5]
+rounds = [1, 1]
 blocks = 2
 [[tolerances]]
 quantity = "*"

@@ -297,3 +297,7 @@ def test_what_a_reader_must_know_of_the_measurement() -> None:
     assert "CPU times" in said[0]
     assert "fit (31 % instead of 25 %)" in said[1]
     assert "frame" not in said[1]
+    slow = TimingRow("frame", 2.0, 2.5, 2.24, (2.4, 2.6), 0.14, 0.01, False)
+    (few,) = remarks(Measured(({},), 4, True), [quiet, slow])
+    assert few.startswith("slower by 4 rounds of processes, of which the gate file allows no more: only from 5 on")
+    assert remarks(Measured(({},), 5, True), [quiet, slow]) == []

@@ -62,7 +62,7 @@ def test_the_example_in_the_docstring_is_a_gate_file() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("rounds = [1, 5]", "rounds = [3, 2]", "rounds"),
+        ("rounds = [1, 1]", "rounds = [3, 2]", "rounds"),
         ("blocks = 2", "blocks = 0", "blocks"),
         ("blocks = 2", "block = 2", "block"),
         ('rtol = "0.1 %"', 'rtol = "1 mm"', "rtol"),
@@ -121,15 +121,3 @@ def test_defaults_are_those_of_the_shipped_gate() -> None:
 def test_a_tolerance_is_a_quantity(atol):
     with pytest.raises(ValidationError, match=r"tolerance|name"):
         Tolerance.model_validate({"quantity": "*", "rtol": "1 %", "atol": atol}, context={"from_file": True})
-
-
-def test_fewer_than_five_processes_are_refused_where_something_is_timed(tiny_gate) -> None:
-    """With [3, 4] an unchanged model was red, 18 % slower."""
-    gate = tiny_gate(timed=True)
-    assert load_plan(gate.path).file.timing.rounds == (1, 5)
-    gate.change("gate.toml", "rounds = [1, 5]", "rounds = [3, 4]")
-    with pytest.raises(InputError, match=r"gate\.toml, line 4, timing\.rounds: \[3, 4\]: .* as in \[3, 5\]"):
-        load_plan(gate.path)
-    text = gate.path.read_text()
-    gate.path.write_text(text[: text.index("[[timed]]")])  # values are computed once
-    assert load_plan(gate.path).file.timing.rounds == (3, 4)
