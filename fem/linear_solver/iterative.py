@@ -227,7 +227,9 @@ class IterativeSolver:
     def _step(self, matrix: SaddlePoint, force: FloatArray, tolerance: float) -> tuple[FloatArray, int]:
         """Displacements (n,) under forces (n,), and iterations made."""
         is_new = self._cycle is None
-        cycle = self._cycle = self._cycle or MultigridCycle(matrix.matrices, self._space, self._coarse)
+        if self._cycle is None:
+            self._cycle = MultigridCycle(matrix.matrices, self._space, self._elements, self._coarse)
+        cycle = self._cycle
         right = np.concatenate((force, np.zeros(matrix.size - matrix.count)))
         x, made, left = flexible_gmres(
             matrix.times, lambda residual: matrix.preconditioned(cycle, residual), right, tolerance, RESTART

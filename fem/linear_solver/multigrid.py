@@ -235,6 +235,8 @@ class MultigridCycle:
         Element matrices (E, k, k) in N/m.
     space
         Linear elements and columns.
+    elements
+        Sums over the elements.
     coarse
         Direct solver of the linear elements' pattern.
 
@@ -244,8 +246,8 @@ class MultigridCycle:
         If a column or the linear elements have no inverse.
     """
 
-    def __init__(self, matrices: FloatArray, space: CoarseSpace, coarse: SymmetricSolver) -> None:
-        self._sum = ElementSum(space.unknowns, space.count)
+    def __init__(self, matrices: FloatArray, space: CoarseSpace, elements: ElementSum, coarse: SymmetricSolver) -> None:
+        self._sum = elements
         self._matrices = matrices.astype(np.float32)
         self._columns = Columns(matrices, space.unknowns, space.places)
         self._up = space.transfer.astype(np.float32)

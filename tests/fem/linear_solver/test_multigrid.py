@@ -81,7 +81,8 @@ def test_the_linear_elements_are_the_quadratic_ones_between_their_corners(parts)
 
 def test_the_cycle_is_symmetric_and_positive_and_near_the_inverse(parts):
     matrices, space, assembled = parts
-    cycle = MultigridCycle(matrices, space, make_solver("auto", space.indptr, space.indices))
+    elements = ElementSum(space.unknowns, space.count)
+    cycle = MultigridCycle(matrices, space, elements, make_solver("auto", space.indptr, space.indices))
     rng = np.random.default_rng(8)
     a, b = rng.normal(size=(2, space.count))
     assert a @ cycle(b) == pytest.approx(b @ cycle(a), rel=1e-3, abs=1e-4 * np.sqrt((a @ cycle(a)) * (b @ cycle(b))))
