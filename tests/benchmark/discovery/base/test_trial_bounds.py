@@ -88,6 +88,8 @@ def test_touches_that_are_late_together_are_said(problem):
     assert f"touches {2.2e3 * size:.2g} mm behind its zero in the mean of the trials, give or take" in text
     for other in (-late, size + scatter, 0.1 * size + 0.01 * scatter):
         assert said(other) == ()
+    scattered = 2.2 * size + 1.5 * scatter  # 3.3 standard errors
+    assert not any("in the mean" in each for each in said(scattered))
     large, together = said(late + np.array([4.0 * size, 0.0, 0.0, 0.0, 0.0, 0.0]))
     assert "touches at" in large
     assert together.startswith("the tool touches")
