@@ -125,12 +125,13 @@ def ring_areas(r: FloatArray) -> FloatArray:
 
 
 def along_row(place: FloatArray, values: FloatArray, r: FloatArray) -> FloatArray:
-    """Quadratic interpolation over a row of nodes.
+    """Interpolation over a row of nodes by the elements' own shape functions, of values as of places.
 
     Parameters
     ----------
     place
-        Distances (2 n + 1,) in m of the nodes from the row's start, increasing.
+        Distances (2 n + 1,) in m of the nodes from the row's start, increasing; middle nodes in the middle or nearer to
+        an end, as close as a quarter of the way.
     values
         Values (2 n + 1,) at the nodes.
     r
@@ -143,10 +144,19 @@ def along_row(place: FloatArray, values: FloatArray, r: FloatArray) -> FloatArra
     """
     lines = place[::2]
     column = np.clip(np.searchsorted(lines, r, side="right") - 1, 0, len(lines) - 2)
-    s = (r - lines[column]) / (lines[column + 1] - lines[column])
+    s = _along_element(place[2 * column], place[2 * column + 1], place[2 * column + 2], r)
     first, middle, last = values[2 * column], values[2 * column + 1], values[2 * column + 2]
     inside = first * (1 - s) * (1 - 2 * s) + middle * 4 * s * (1 - s) + last * s * (2 * s - 1)
     return np.where(r <= lines[-1] * (1 + 1e-12), inside, np.nan)
+
+
+def _along_element(start: FloatArray, middle: FloatArray, end: FloatArray, r: FloatArray) -> FloatArray:
+    """Element coordinates (m,) from 0 to 1 of places: the root of start + slope s + bend s^2 = r."""
+    slope, bend = 4.0 * middle - 3.0 * start - end, 2.0 * (start + end - 2.0 * middle)
+    beyond = np.maximum(r - start, 0.0)
+    root = slope + np.sqrt(np.maximum(slope**2 + 4.0 * bend * beyond, 0.0))
+    s: FloatArray = np.divide(2.0 * beyond, root, out=np.zeros_like(beyond), where=root > 0.0)
+    return s
 
 
 def split_interfaces(mesh: Mesh, above: Collection[int]) -> Mesh:

@@ -4,8 +4,7 @@ Radially the lines gather at the tool's edge and at what the support names; vert
 top face. The stress is singular at the edge of a stuck tool and where a clamp begins: the element size there sets
 the accuracy. In linear kinematics the edge elements may be tiny. In finite strain they fold under a tool stuck to a
 thick soft layer, where the material turns round the edge: there they form a fan whose rings become smaller towards the
-edge, as few as a deep press bears. The rim of a hole, round which the material hardly turns, has a fan that holds the
-square root of the distance.
+edge, as few as a deep press bears. It holds the square root of the distance, as the fan at the rim of a hole does.
 """
 
 from __future__ import annotations
@@ -30,12 +29,21 @@ FAN_HALF_WIDTH = 0.1
 FAN_ELEMENT = 0.05
 FAN_LEAST_LAYER = 0.06
 LARGEST_FAN = 4.0  # times the usual one; a larger one would come near the axis
-TOOL_RINGS = 3  # each half as large as the one round it; with a fourth a tool no longer goes 7 mm into soft 15 mm
+TOOL_RINGS = 2  # each half as large as the one round it; with a third a tool no longer goes 7 mm into soft 15 mm
 FEWER_RINGS = 2.0  # up to this factor on the size at the edge the fan has fewer rings, beyond it is larger
 
 
 def lay_out(problem: Problem) -> Mesh:
     """Mesh of a problem whose contact is available."""
+    return _layout(problem).mesh()
+
+
+def has_tool_fan(problem: Problem) -> bool:
+    """Whether a fan of elements round the tool's edge holds the square root of the distance from it."""
+    return _layout(problem).tool_fan is not None
+
+
+def _layout(problem: Problem) -> _Layout:
     return _Layout(
         radius=problem.support.specimen_radius or problem.tool.radius,
         extent=SUPPORT_MODELS[problem.support.kind].extent(problem),
@@ -43,7 +51,7 @@ def lay_out(problem: Problem) -> Mesh:
         density=DENSITY[problem.discretisation.density],
         edge=problem.discretisation.edge,
         halved=problem.discretisation.halved,
-    ).mesh()
+    )
 
 
 @dataclass(frozen=True)
@@ -58,7 +66,7 @@ class _Layout:
     halved: bool
 
     def mesh(self) -> Mesh:
-        tool = self._tool_fan()
+        tool = self.tool_fan
         fans = self._support_fans(tool)
         r_lines = self._radial_lines(tool, fans)
         return build_mesh(
@@ -80,7 +88,8 @@ class _Layout:
         factor = self.extent.edge_factor * max(self.edge / FEWER_RINGS, 1.0)
         return FAN_ELEMENT * min(factor, LARGEST_FAN) * self.radius
 
-    def _tool_fan(self) -> Fan | None:
+    @property
+    def tool_fan(self) -> Fan | None:
         """The fan at the tool's edge; None where the edge needs none or there is no room."""
         first = self.extent.thickness[0]
         wanted = self._fan_element * FAN_HALF_WIDTH / FAN_ELEMENT
@@ -90,7 +99,7 @@ class _Layout:
         if not self.resolution.fan or not room or in_the_way:
             return None
         fewer = round(math.log2(min(self.edge, FEWER_RINGS)))
-        return Fan(self.radius, half_width, self._rings(TOOL_RINGS - fewer))
+        return Fan(self.radius, half_width, self._rings(TOOL_RINGS - fewer), square_root=True)
 
     def _support_fans(self, tool: Fan | None) -> tuple[Fan, ...]:
         """The fans of the support for which there is room; on the upper face they are as high as the tool's."""

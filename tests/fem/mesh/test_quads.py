@@ -5,7 +5,7 @@ import pytest
 
 from fem.assembly.axisymmetric import gauss_geometry
 from fem.mesh.fan import Fan
-from fem.mesh.quads import build_mesh, ring_areas, split_interfaces
+from fem.mesh.quads import along_row, build_mesh, ring_areas, split_interfaces
 
 WHOLE = build_mesh(np.array([0.0, 1.0, 3.0]), np.array([0.0, 1.0, 2.0, 4.0]), np.array([0.0, 1.0, 2.0]))
 
@@ -34,6 +34,23 @@ def test_nothing_else_changes():
     np.testing.assert_array_equal(parted.nodes[parted.elements], WHOLE.nodes[WHOLE.elements])
     np.testing.assert_array_equal(parted.undersides[0], WHOLE.interfaces[1])
     assert split_interfaces(WHOLE, ()) is WHOLE
+
+
+@pytest.mark.parametrize("middle", [0.25, 0.4, 0.5, 0.75])
+def test_a_row_is_interpolated_by_its_elements_own_places(middle):
+    """Values that are quadratic in the element's coordinate s, along places 1 + (4 m - 1) s + 2 (1 - 2 m) s^2."""
+    s = np.linspace(0.0, 1.0, 21)
+    value = 2.0 - s + 3.0 * s**2
+    place = np.array([0.0, 0.5, 1.0, 1.0 + middle, 2.0])
+    nodal = np.array([0.0, 1.0, value[0], value[10], value[-1]])
+    found = along_row(place, nodal, 1.0 + (4.0 * middle - 1.0) * s + 2.0 * (1.0 - 2.0 * middle) * s**2)
+    np.testing.assert_allclose(found, value, rtol=1e-12)
+    np.testing.assert_allclose(along_row(place, nodal, place), nodal, rtol=1e-12)
+
+
+def test_quarter_points_hold_the_square_root():
+    r, place = np.linspace(0.0, 4.0, 33), np.array([0.0, 1.0, 4.0])
+    np.testing.assert_allclose(along_row(place, np.sqrt(place), r), np.sqrt(r), atol=1e-12)
 
 
 def test_ring_areas_fill_the_ring():
