@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from fem.results.solution import Failure, Resumed, Solution, StepReport
     from fem.sensitivity.differentiate import differentiate
     from fem.sensitivity.problem_change import DifferentiatedSolution, ProblemChange, SolutionDerivative
-    from fem.setup.mesh_error import MeshError, estimate_mesh_error
+    from fem.setup.mesh_error import MeshError, error_at_edge, estimate_mesh_error
     from fem.setup.prepare import prepare
 
 __all__ = [
@@ -70,6 +70,7 @@ __all__ = [
     "Tool",
     "Yeoh",
     "differentiate",
+    "error_at_edge",
     "estimate_mesh_error",
     "prepare",
     "read_surface",
@@ -86,7 +87,7 @@ _HOMES = {
     "results.solution": "Failure Resumed Solution StepReport",
     "sensitivity.differentiate": "differentiate",
     "sensitivity.problem_change": "DifferentiatedSolution ProblemChange SolutionDerivative",
-    "setup.mesh_error": "MeshError estimate_mesh_error",
+    "setup.mesh_error": "MeshError error_at_edge estimate_mesh_error",
     "setup.prepare": "prepare",
 }
 

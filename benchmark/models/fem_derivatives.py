@@ -69,6 +69,8 @@ class DifferentiatedPress:
     mesh_error : float or None
         Estimated error of the quantity that the largest load leaves free, a share of it; None where it was not asked
         for or has no estimate.
+    at_edge : (n,) array
+        The part of that error that goes with the depth, at a stuck edge: shares of the force.
     """
 
     depth: Array
@@ -76,7 +78,8 @@ class DifferentiatedPress:
     face: LowerFace | None
     by: Mapping[str, PressDerivative]
     failure: RunFailure | None
-    mesh_error: float | None = None
+    mesh_error: float | None
+    at_edge: Array
 
 
 def differentiated_press(
@@ -135,6 +138,7 @@ def differentiated_press(
         {key: _derivative(solution, each, row, model) for key, each in found[id(model)].by.items()},
         run_failure(solution, load),
         _mesh_error(model, load, solution) if judge_mesh else None,
+        fem.error_at_edge(model, solution),
     )
 
 

@@ -81,6 +81,8 @@ class DifferentiatedRamp:
         Where the model stopped before the depth asked for.
     mesh_error : float or None
         Estimated error of the largest depth's force, a share of it; None where it was not asked for or has no estimate.
+    at_edge : (k,) array or None
+        The part of that error that goes with the depth, shares of the force; None: none does.
     """
 
     depth: Array
@@ -89,6 +91,7 @@ class DifferentiatedRamp:
     by: Mapping[str, RampDerivative] = field(default_factory=lambda: MappingProxyType({}))
     failure: RunFailure | None = None
     mesh_error: float | None = None
+    at_edge: Array | None = None
 
     @property
     def ramp(self) -> Ramp:
@@ -194,7 +197,8 @@ def _direct(
     if face is not None:
         face = LowerFace(depths, face.radius, _from_rest(face.outward), _from_rest(face.sunk))
     by = {key: _ramp_derivative(each) for key, each in press.by.items()}
-    return DifferentiatedRamp(depths, np.append(0.0, press.force), face, by, press.failure, press.mesh_error)
+    force, at_edge = np.append(0.0, press.force), np.append(0.0, press.at_edge)
+    return DifferentiatedRamp(depths, force, face, by, press.failure, press.mesh_error, at_edge)
 
 
 def _ramp_derivative(press: PressDerivative) -> RampDerivative:

@@ -4,7 +4,7 @@ Radially the lines gather at the tool's edge and at what the support names; vert
 top face. The stress is singular at the edge of a stuck tool and where a clamp begins: the element size there sets
 the accuracy. In linear kinematics the edge elements may be tiny. In finite strain they fold under a tool stuck to a
 thick soft layer, where the material turns round the edge: there they form a fan whose rings become smaller towards the
-edge, as few as a deep press bears. It holds the square root of the distance, as the fan at the rim of a hole does.
+edge, as few as a deep press bears. Over a hole it holds the square root of the distance, as that at the rim does.
 """
 
 from __future__ import annotations
@@ -29,7 +29,9 @@ FAN_HALF_WIDTH = 0.1
 FAN_ELEMENT = 0.05
 FAN_LEAST_LAYER = 0.06
 LARGEST_FAN = 4.0  # times the usual one; a larger one would come near the axis
-TOOL_RINGS = 2  # each half as large as the one round it; with a third a tool no longer goes 7 mm into soft 15 mm
+# Each half as large as the one round it. With a fourth a tool no longer goes 7 mm into soft 15 mm; in a ring that holds
+# the square root of the distance the next node is half as far away.
+TOOL_RINGS, SQUARE_ROOT_RINGS = 3, 2
 FEWER_RINGS = 2.0  # up to this factor on the size at the edge the fan has fewer rings, beyond it is larger
 
 
@@ -38,9 +40,10 @@ def lay_out(problem: Problem) -> Mesh:
     return _layout(problem).mesh()
 
 
-def has_tool_fan(problem: Problem) -> bool:
+def holds_edge(problem: Problem) -> bool:
     """Whether a fan of elements round the tool's edge holds the square root of the distance from it."""
-    return _layout(problem).tool_fan is not None
+    fan = _layout(problem).tool_fan
+    return fan is not None and fan.square_root
 
 
 def _layout(problem: Problem) -> _Layout:
@@ -99,7 +102,9 @@ class _Layout:
         if not self.resolution.fan or not room or in_the_way:
             return None
         fewer = round(math.log2(min(self.edge, FEWER_RINGS)))
-        return Fan(self.radius, half_width, self._rings(TOOL_RINGS - fewer), square_root=True)
+        root = self.extent.square_root
+        rings = self._rings((SQUARE_ROOT_RINGS if root else TOOL_RINGS) - fewer)
+        return Fan(self.radius, half_width, rings, square_root=root)
 
     def _support_fans(self, tool: Fan | None) -> tuple[Fan, ...]:
         """The fans of the support for which there is room; on the upper face they are as high as the tool's."""

@@ -3,9 +3,10 @@
 With errors that go with the power p of the element size (L. F. Richardson, Philosophical Transactions of the Royal
 Society A 210 (1911) 307) the finer of two solutions is off by their difference over 2^p - 1. Where a face is held up to
 an edge, the energy's error goes with the element size at the edge: its order is twice the exponent of the displacement
-there, which is 1/2 in small strain. Further solutions with larger elements at the edge alone tell its share.
+there, which is 1/2 in small strain. In deep presses, where the material turns round the edge, it is lower. There
+further solutions with larger elements at the edge alone tell it, and the share of the edge.
 
-In a fan, whose elements hold the square root of the distance, the order is that of smooth solutions. What they do not
+In a fan whose elements hold the square root of the distance, the order is that of smooth solutions. What they do not
 hold is the region of large strain round the edge, where displacements are something else. Like the region of
 small-scale yielding round a crack (J. R. Rice, Journal of Applied Mechanics 35 (1968) 379) it is ruled by the field
 round it: where that is |u|^2 = l r at a distance r, it is some l wide, and its energy is some mu l^2 along each length
@@ -33,7 +34,7 @@ from fem.mesh.quads import Mesh
 from fem.problem.parts import LARGEST_EDGE
 from fem.problem.problem import Problem
 from fem.results.solution import Solution
-from fem.setup.layout import has_tool_fan
+from fem.setup.layout import holds_edge
 from fem.setup.prepare import prepare
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ class MeshError:
     error
         Estimated value less limit of refinement (m or N).
     order
-        Order of convergence that is assumed, that of smooth solutions but at a stuck edge without a fan.
+        Order of convergence that is assumed, at a stuck edge of straight elements that which was observed.
     unknowns
         Of the solution with half as many elements in each direction.
     seconds
@@ -108,9 +109,9 @@ def estimate_mesh_error(model: Model, load: Load, solution: Solution, *, first_o
     solution
         What it found; of a run that stopped early what it reached.
     first_order
-        For an error to correct by: of what a fan may leave at a stuck edge half; without a fan the order of small
-        strain instead of the observed one, and that of smooth solutions where the edge changes nothing. Otherwise the
-        error is rather a bound, too large by up to three, without a fan by up to seven.
+        Take the order of small strain at a stuck edge of straight elements instead of the observed one, and where there
+        is no fan the order of smooth solutions for the whole. Otherwise the order is rather too low, and the error too
+        large by up to three, without a fan by up to seven: for a bound, not to correct by.
 
     Returns
     -------
@@ -123,8 +124,8 @@ def estimate_mesh_error(model: Model, load: Load, solution: Solution, *, first_o
         return None
     began = clock.process_time()
     quantity = "depth" if load.control == "force" else "force"
-    fan = model.problem.geometry == "axisymmetric" and has_tool_fan(model.problem)
-    edges = EDGES[: 1 if fan else 2 if first_order else 3]
+    held = model.problem.geometry == "axisymmetric" and holds_edge(model.problem)
+    edges = EDGES[: 1 if held else 2 if first_order else 3]
     for step, follow in _judged_steps(model, reached):
         pressed = _Pressed.of(solution, step)
         further = list(_coarser(model.problem, _shortened(model.problem, load, step), pressed, edges, follow=follow))
@@ -134,15 +135,46 @@ def estimate_mesh_error(model: Model, load: Load, solution: Solution, *, first_o
         return None
     value = pressed.value(load.control)
     # Without a fan a third mesh showed orders of 2.1 to 4.9 under twelve stuck tools on thin first layers.
-    stuck = _is_stuck(model.problem) and not fan and not (first_order and len(further) == 1)
+    stuck = _is_stuck(model.problem) and not held and not (first_order and len(further) == 1)
     error, order = _judged(value, [found for found, _ in further], stuck)
-    if fan:
-        left = _left_at_edge(model, pressed) * (0.5 if first_order else 1.0)
-        error += left * (value if quantity == "force" else -value)
+    if held:
+        error += float(error_at_edge(model, solution)[step]) * (value if quantity == "force" else -value)
     halved, unknowns = further[0]
     return MeshError(
         quantity, float(reached[step]), value, halved, error, order, unknowns, clock.process_time() - began
     )
+
+
+def error_at_edge(model: Model, solution: Solution) -> FloatArray:
+    """What elements that hold the edge of a stuck tool leave of the force at each step, without a further solution.
+
+    The length l goes with the square of the depth: |u|^2 = l r is taken at the free node next to the edge.
+
+    Parameters
+    ----------
+    model
+        The model that ran.
+    solution
+        What it found.
+
+    Returns
+    -------
+    ndarray
+        Shares (n,) of the force; 0 without such elements and at rest.
+    """
+    work = np.abs(solution.depth * solution.force)
+    out: FloatArray = np.zeros(len(work))
+    if model.problem.geometry != "axisymmetric" or not holds_edge(model.problem):
+        return out
+    edge, nodes = np.array([model.problem.tool.radius, 0.0]), solution.mesh.nodes
+    away = np.linalg.norm(nodes - edge, axis=1)
+    at, free = int(away.argmin()), np.flatnonzero(model.mesh.top & (nodes[:, 0] > edge[0]))
+    near = int(free[away[free].argmin()])
+    moved = solution.displacement[:, near] - solution.displacement[:, at]
+    length = (moved**2).sum(axis=1) / away[near]
+    energy = AT_EDGE * model.problem.layers[0].material.shear_modulus * length * np.minimum(length, away[near])
+    np.divide(2.0 * math.pi * edge[0] * energy, work, out=out, where=work > 0.0)
+    return out
 
 
 def _judged_steps(model: Model, reached: FloatArray) -> list[tuple[int, bool]]:
@@ -250,21 +282,6 @@ def _judged(value: float, coarser: list[float], stuck: bool) -> tuple[float, flo
         order = float(np.clip(np.log2((coarser[2] - coarser[1]) / first), LEAST_ORDER, SINGULAR_ORDER))
     at_edge = first / 2.0**order
     return at_edge / (2.0**order - 1.0) + (difference - at_edge) / (2.0**SMOOTH_ORDER - 1.0), order
-
-
-def _left_at_edge(model: Model, pressed: _Pressed) -> float:
-    """What the elements of the tool's fan leave of the force, as a share of it.
-
-    The length l goes with the square of the depth: |u|^2 = l r is taken at the free node next to the edge.
-    """
-    edge = np.array([model.problem.tool.radius, 0.0])
-    away = np.linalg.norm(pressed.nodes - edge, axis=1)
-    at, free = int(away.argmin()), np.flatnonzero(model.mesh.top & (pressed.nodes[:, 0] > edge[0]))
-    near = int(free[away[free].argmin()])
-    moved = pressed.displacement[near] - pressed.displacement[at]
-    length = float(moved @ moved) / away[near]
-    energy = AT_EDGE * model.problem.layers[0].material.shear_modulus * length * min(length, away[near])
-    return float(2.0 * math.pi * edge[0] * energy / abs(pressed.depth * pressed.force))
 
 
 def _shortened(problem: Problem, load: Load, peak: int) -> Load:

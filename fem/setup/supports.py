@@ -45,6 +45,10 @@ class Extent:
         Distance in m from the tool beyond which only a decaying far field is left.
     edge_factor
         Factor on the size of the fan at the tool's edge.
+    square_root
+        Whether the fan at the tool's edge holds the square root of the distance: below a sheet that gives way the
+        region of large strain is smaller than its elements, on a rigid base soon larger, where elements that hold it
+        snap one after another.
     fans
         Fans of elements that are wanted besides that at the tool's edge.
     """
@@ -55,6 +59,7 @@ class Extent:
     vertical: tuple[Feature, ...] = ()
     far: float = math.inf
     edge_factor: float = 1.0
+    square_root: bool = False
     fans: tuple[Fan, ...] = ()
 
 
@@ -138,7 +143,7 @@ class Hole:
         smaller = 1.0 if fans else SLIDING_RIM
         rim = Feature(hole, smaller * size, 0.4)
         underside = Feature(total, 2.0 * smaller * size, 0.5)
-        return Extent(radius, thickness, (rim,), (underside,), edge_factor=EDGE_FACTOR, fans=fans)
+        return Extent(radius, thickness, (rim,), (underside,), edge_factor=EDGE_FACTOR, square_root=True, fans=fans)
 
     def fixed(self, mesh: AnyMesh, problem: Problem) -> BoolArray:
         """Lower face outside the hole, rim included, and the outer border."""

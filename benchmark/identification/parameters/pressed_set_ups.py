@@ -10,7 +10,7 @@ import numpy as np
 from benchmark.errors import SolverError
 from benchmark.identification.parameters.fit_problem import FitProblem, relaxing_layers
 from benchmark.identification.parameters.layer_model import ForceTable
-from benchmark.identification.parameters.presses.model_error import COUNT, SHARE_TAKEN, functions
+from benchmark.identification.parameters.presses.model_error import COUNT, functions, taken
 from benchmark.identification.parameters.presses.press_atlas import PressAtlas
 from benchmark.identification.parameters.presses.press_surrogate import PressSurrogate, StopsError, surrogate
 from benchmark.response.force_curve import Array
@@ -24,7 +24,8 @@ def followed(problem: FitProblem, start: Array) -> tuple[FitProblem, tuple[Press
     """The presses where a fit begins, as deep as the model follows them, with the trials' rows so deep.
 
     The model estimates the error of its mesh there, which the problem's presses then have; the usual part of it is
-    taken off the force of these presses and of all further ones (Richardson's extrapolation).
+    taken off the force of these presses and of all further ones (Richardson's extrapolation), and what goes with the
+    depth as it does.
     """
     surrogates = []
     for number in range(len(problem.presses)):
@@ -62,7 +63,7 @@ def _surrogate(problem: FitProblem, number: int, vector: Array, *, judge_mesh: b
     values = vector[:count]
     found = surrogate(press, problem.parameters, values, problem.law, relaxing, problem.forward, judge_mesh=judge_mesh)
     wrong = found.mesh_error if judge_mesh else press.mesh_error
-    found = replace(found, force=found.force * (1.0 - SHARE_TAKEN * (wrong or 0.0)))
+    found = replace(found, force=found.force * (1.0 - taken(wrong, found.at_edge)))
     own, first = np.zeros((problem.size - count, found.depth.size)), number * problem.block
     own[first : first + COUNT] = functions(found.depth.size)
     at = np.concatenate([found.at, np.zeros(own.shape[0])])

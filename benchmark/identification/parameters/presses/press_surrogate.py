@@ -63,6 +63,8 @@ class PressSurrogate:
         Coordinates.
     mesh_error : float or None
         Estimated error of the force at the press's depth, a share of it; None where it was not estimated.
+    at_edge : float or (k,) array
+        The part of that error that goes with the depth, shares of the force.
     rings : (s, k) array
         Motion of the markers' rings, m; without markers of no ring.
     rings_by : (p, s, k) array or None
@@ -75,6 +77,7 @@ class PressSurrogate:
     layers: Mapping[str, Array]
     at: Array
     mesh_error: float | None = None
+    at_edge: float | Array = 0.0
     rings: Array = field(default_factory=lambda: np.zeros((0, GRID)))
     rings_by: Array | None = None
 
@@ -160,9 +163,9 @@ def surrogate(
     grid = np.linspace(0.0, press.depth, GRID)
     layers = {name: _logarithmic(ramp, {f"{name}.stiffness": 1.0}) for name in relaxing}
     force = np.asarray(CubicSpline(ramp.depth, ramp.force)(grid))
-    return PressSurrogate(
-        grid, force, by, layers, vector.copy(), ramp.mesh_error, *_rings(press, ramp, chains, len(parameters))
-    )
+    at_edge = 0.0 if ramp.at_edge is None else np.interp(grid, ramp.depth, ramp.at_edge)
+    rings = _rings(press, ramp, chains, len(parameters))
+    return PressSurrogate(grid, force, by, layers, vector.copy(), ramp.mesh_error, at_edge, *rings)
 
 
 def _rings(

@@ -10,6 +10,7 @@ from benchmark.files.sessions.fit_table import FitTable
 from benchmark.identification.parameters.identifiability import directions, discrepancy_use
 from benchmark.identification.parameters.identified import identify
 from benchmark.identification.parameters.layer_fit import begun, fit_layers
+from benchmark.identification.parameters.pressed_set_ups import followed, press_all
 from benchmark.identification.parameters.presses import press_surrogate
 from benchmark.identification.parameters.presses.model_error import (
     COUNT,
@@ -22,6 +23,7 @@ from benchmark.identification.parameters.presses.model_error import (
     ModelError,
     functions,
     model_error,
+    taken,
 )
 from benchmark.identification.parameters.session_problem import assembled
 from tests.benchmark.identification.parameters.conftest import MODULI, TRUTH, zeros_of
@@ -69,6 +71,30 @@ def test_the_estimated_error_of_the_mesh_is_taken_off_every_press(toy, monkeypat
         found = fit_layers(begun(problem, np.zeros(len(problem.trials)), zeros_of(problem)))
         values.append([found.value(k) for k in problem.free])
     assert values[1] == pytest.approx(values[0], rel=1e-3)
+
+
+def test_what_goes_with_the_depth_is_taken_off_as_it_does() -> None:
+    growing = np.array([0.0, 0.001, 0.004])
+    np.testing.assert_allclose(taken(0.01, growing), growing + SHARE_TAKEN * 0.006)
+    assert taken(0.01, 0.0) == pytest.approx(0.01 * SHARE_TAKEN)
+    assert taken(None, growing) == 0.0
+
+
+def test_a_press_has_what_the_finite_elements_leave_at_the_edge_at_each_depth(toy, monkeypatch) -> None:
+    told = press_surrogate.differentiated_ramp
+
+    def held(*args, judge_mesh=False):
+        ramp = told(*args, judge_mesh=judge_mesh)
+        return replace(ramp, mesh_error=0.01 if judge_mesh else None, at_edge=0.01 * (ramp.depth / ramp.depth[-1]) ** 2)
+
+    problem, pressed = toy(), []
+    for ramp in (told, held):
+        monkeypatch.setattr(press_surrogate, "differentiated_ramp", ramp)
+        judged, (found, *_) = followed(problem, np.zeros(problem.size))
+        pressed.append((found, press_all(judged, np.zeros(problem.size))[0]))
+    for plain, taken_off in zip(*pressed, strict=True):
+        share = 1.0 - taken_off.force[1:] / plain.force[1:]
+        np.testing.assert_allclose(share, 0.01 * (plain.depth[1:] / plain.depth[-1]) ** 2, atol=3e-5)
 
 
 @pytest.fixture
