@@ -237,7 +237,7 @@ def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> tuple[Fi
     forms: list[Scored] = []
     while len(current.model.effects) > 1:
         owns = [_own(base, current, effect, work) for effect in current.model.effects[:-1]]
-        idle = [own for own in owns if own.gain.z < settings.accept_z or own.under.objective <= current.objective]
+        idle = [o for o in owns if not _over_trials(o.gain, settings) or o.under.objective <= current.objective]
         others = [own for own in owns if own not in idle and _is_form_of_others(own, settings)]
         if not idle and not others:
             break

@@ -333,6 +333,18 @@ def test_an_effect_that_another_makes_needless_is_dropped(known_densities, monke
     assert selection._pruned(fitted(), both, SETTINGS, Work(worse)) == (both, ())
 
 
+def test_an_effect_accepted_by_all_trials_but_the_best_is_not_dropped_for_its_scatter(known_densities, monkeypatch):
+    """An inertia that shows in the fast presses alone, of which one speaks against it (session 47007)."""
+    monkeypatch.setattr(selection, "bent", lambda fit, forms: fit)
+    gained = np.array([1.0, 1.0, 1.4, -0.3, 39.0, -13.3, 37.6, 40.9])
+    both, alone = fitted(effect("a"), effect("b"), density=gained, objective=50.0), fitted(effect("b"), objective=140.0)
+    own = selection._own(fitted(), both, both.model.effects[0], Work(alone))
+    assert own.gain.z < SETTINGS.accept_z
+    assert selection._pruned(fitted(), both, SETTINGS, Work(alone)) == (both, ())
+    carried = fitted(effect("a"), effect("b"), density=np.where(gained < 40.0, 0.0, gained), objective=50.0)
+    assert selection._pruned(fitted(), carried, SETTINGS, Work(alone)) == (alone, ())
+
+
 @pytest.mark.parametrize(("loose", "beside", "dropped"), [(20.0, 20.5, True), (20.0, 26.0, False), (9.0, 9.5, False)])
 def test_an_effect_that_is_another_form_of_a_later_one_is_withheld(
     known_densities, monkeypatch, loose, beside, dropped
