@@ -16,6 +16,9 @@ PLACED = ("x", "y", "tangential")
 """Combinations that tell where the camera stands, which has a zero of its own in each trial."""
 CENTRAL = 0.2
 """Markers nearer to the axis than this share of the spacing have no direction."""
+LEAST_OWN = 0.1
+"""Of its norm, which a combination must have beside the others to be one of its own: first choice. On 3 x 6 markers it
+is 0.54 and 0.62, on 3 x 3 0.32, where all radii are one it is none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +93,9 @@ def layout(rest: Array, spacing: float) -> Layout:
     """Combinations for markers at rest positions (m, 2).
 
     Radial by ring and tangential, translations, the radial part along x and along y (an axis beside the centre), cos 2
-    theta radially and sin 2 theta tangentially (unlike axes), free of what rings and translations already hold.
+    theta radially and sin 2 theta tangentially (unlike axes), free of what rings and translations already hold. The
+    radial parts count once more by the square of the radius: a camera that looks down askew moves markers along x and y
+    as an axis beside the centre does, but otherwise farther out.
     """
     radius = np.hypot(rest[:, 0], rest[:, 1])
     outside = radius > CENTRAL * spacing
@@ -104,9 +109,12 @@ def layout(rest: Array, spacing: float) -> Layout:
     rows += [(name, f"marker_{name}", shift) for name, shift in zip("xy", shifts, strict=True)]
     plain = [*rings, *shifts]
     others = [(f"radial_{name}", "marker_radial", unit * unit[:, k, None]) for k, name in enumerate("xy")]
+    halves = [pattern for _, _, pattern in others]
+    outer = [(f"outer_{name}", _farther(halves[k], radius, plain + halves)) for k, name in enumerate("xy")]
     others.append(("cos_2", "marker_radial", unit * np.cos(angle)[:, None]))
     others.append(("sin_2", "marker_tangential", around * np.sin(angle)[:, None]))
     rows += [(name, channel, _free_of(plain, pattern)) for name, channel, pattern in others]
+    rows += [(name, "marker_radial", pattern) for name, pattern in outer if pattern.any()]
     names, channels, weights = zip(*rows, strict=True)
     return Layout(rest, np.array(weights), tuple(names), tuple(channels), PLACED, np.zeros(2))
 
@@ -116,6 +124,13 @@ def _rings(radius: Array, outside: np.ndarray) -> Sequence[Array]:
     levels = np.unique(np.round(radius[outside], 6))
     groups = np.array_split(levels, min(RINGS, levels.size))
     return [(outside & (radius >= g[0] - 1e-6) & (radius <= g[-1] + 1e-6)).astype(float) for g in groups]
+
+
+def _farther(pattern: Array, radius: Array, others: Sequence[Array]) -> Array:
+    """A pattern (m, 2) by the square of the radius (m,), free of others; none where the grid has too few radii."""
+    weighted = pattern * (radius[:, None] / radius.max()) ** 2
+    own = _free_of(others, weighted)
+    return own if np.linalg.norm(own) * len(own) > LEAST_OWN * np.linalg.norm(weighted) else np.zeros_like(own)
 
 
 def _free_of(others: Sequence[Array], pattern: Array) -> Array:
