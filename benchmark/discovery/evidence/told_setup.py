@@ -69,14 +69,22 @@ def setup_first(told: Selection) -> bool:
     return first is not None and setup_key(first.slug) is not None and broad(first.gain) > criteria.BROAD
 
 
+def _instead(told: Selection) -> list[str]:
+    """The effect that does best in the place of each set-up entry, where one does as well."""
+    entries = [effect.slug for effect in told.chosen.model.effects if setup_key(effect.slug) is not None]
+    alike = ([slug for slug in told.lookalikes[entry] if setup_key(slug) is None] for entry in entries)
+    return list(dict.fromkeys(each[0] for each in alike if each))
+
+
 def taken_up(told: Selection, moving: Selection) -> tuple[str, ...]:
     """A remark where effects that the set-up as told would need are gone on one that moves: neither is shown.
 
-    Where another effect came in, that may have taken their place.
+    Where another effect came in, that may have taken their place. A set-up exactly as told would need what looks like
+    one of its entries in that one's place.
     """
     needed = [effect.slug for effect in told.chosen.model.effects if setup_key(effect.slug) is None]
     found = [effect.slug for effect in moving.chosen.model.effects]
-    gone = [slug for slug in needed if slug not in found]
+    gone = [slug for slug in (*needed, *_instead(told)) if slug not in found]
     if not gone or not set(found) <= set(needed):
         return ()
     base, names = moving.base, " and ".join(slug.replace("_", " ") for slug in gone)

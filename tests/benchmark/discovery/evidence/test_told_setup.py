@@ -81,9 +81,14 @@ def test_a_set_up_that_is_surely_another_is_an_answer(slug, each, first):
     assert not setup_first(SimpleNamespace(steps=()))
 
 
-def chosen(fit, *slugs):
-    effects = tuple(effect for effect in catalogue() if effect.slug in slugs)
-    return SimpleNamespace(chosen=SimpleNamespace(model=SimpleNamespace(effects=effects)), base=fit)
+def chosen(fit, *slugs, **alike):
+    """A selection of effects, and of set-up entries with what looks like each."""
+    entries = [SimpleNamespace(slug=f"setup.tool.{key}") for key in alike]
+    effects = (*(effect for effect in catalogue() if effect.slug in slugs), *entries)
+    lookalikes = {entry.slug: rivals for entry, rivals in zip(entries, alike.values(), strict=True)}
+    return SimpleNamespace(
+        chosen=SimpleNamespace(model=SimpleNamespace(effects=effects)), base=fit, lookalikes=lookalikes
+    )
 
 
 def test_what_a_set_up_that_moves_takes_up_is_told_of():
@@ -96,10 +101,11 @@ def test_what_a_set_up_that_moves_takes_up_is_told_of():
     assert "would need machine compliance" in remark
     assert "(layer.thickness)" in remark
     assert taken_up(chosen(base), chosen(base)) == ()
-    entry = SimpleNamespace(slug="setup.tool.radius")
-    assert (
-        taken_up(SimpleNamespace(chosen=SimpleNamespace(model=SimpleNamespace(effects=(entry,)))), chosen(base)) == ()
-    )
+    assert taken_up(chosen(base, radius=("setup.layer.thickness",)), chosen(base)) == ()
+    alike = ("setup.layer.thickness", "perspective", "pretension")
+    (remark,) = taken_up(chosen(base, "adhesion", radius=alike), chosen(base, "adhesion"))
+    assert "would need perspective beside adhesion;" in remark
+    assert taken_up(chosen(base, "adhesion", radius=alike), chosen(base, "adhesion", "perspective")) == ()
     assert taken_up(chosen(base, "adhesion"), chosen(base, "adhesion")) == ()
     (remark,) = taken_up(chosen(base, "adhesion", "machine_compliance"), chosen(base, "adhesion"))
     assert "would need machine compliance beside adhesion;" in remark
