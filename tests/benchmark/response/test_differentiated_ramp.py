@@ -34,6 +34,16 @@ def test_the_force_goes_with_the_stiffness_and_the_face_does_not(sheet) -> None:
     assert ramp.by[key].sunk.shape == ramp.face.sunk.shape == (7, ramp.face.radius.size)
 
 
+def test_what_the_elements_leave_at_the_tools_edge_grows_with_the_depth(sheet) -> None:
+    trial = sheet.trials[0]
+    key = f"{sheet.specimen.layer_names[0]}.stiffness"
+    setup = (sheet.specimen, trial.tool, trial.support, 1e-3)
+    ramp = differentiated_ramp(sheet, *setup, [key], steps=4, judge_mesh=True)
+    assert ramp.at_edge[0] == 0.0
+    assert ramp.at_edge[1:] == pytest.approx(ramp.at_edge[-1] * (ramp.depth[1:] / 1e-3) ** 2, rel=0.2)
+    assert 1e-4 < ramp.at_edge[-1] < ramp.mesh_error < 0.01
+
+
 def test_a_stated_pretension_stiffens_and_what_is_not_there_is_refused(sheet) -> None:
     trial = sheet.trials[0]
     tight = replace(sheet, settings={**sheet.settings, "physics.pretension": "5 kPa"})

@@ -62,6 +62,10 @@ def test_what_is_left_at_the_edge_goes_with_the_square_of_the_depth(ramp):
     left = fem.error_at_edge(model, model.run(load))
     np.testing.assert_allclose(left[:3] / left[3], (np.arange(1.0, 4.0) / 4.0) ** 2, rtol=0.1)
     assert left[3] > 1e-4
+    soft = replace(sheet("rigid_bonded"), layers=(fem.Layer("a", 5e-3, 1000.0, fem.NeoHookean(1e5, 0.49)),))
+    deep, steps = fem.prepare(soft), ramp("depth", 3e-3, 6)
+    grown = fem.error_at_edge(deep, deep.run(steps))
+    assert 0.5 < grown[5] / grown[2] < 1.5  # not 4: the region is larger than the elements
     for other in (sheet("uniform_pressure"), replace(sheet("rigid_bonded"), support=fem.Support("bonded"))):
         model = fem.prepare(other)
         np.testing.assert_array_equal(fem.error_at_edge(model, model.run(load)), np.zeros(4))
