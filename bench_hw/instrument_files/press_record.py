@@ -15,6 +15,7 @@ import numpy as np
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.blocks import Block
 from bench_hw.instrument_files.column_choice import Taken, header_line, takes
+from bench_hw.instrument_files.text_sheet import is_absent
 from bench_hw.instrument_files.told import AUTOMATIC, KEPT, Told, asking, asking_key
 from bench_hw.instrument_files.vocabulary import COMPRESSION, TENSION
 from bench_hw.tables.columns import check_increasing, check_row_count
@@ -159,7 +160,7 @@ def _rows(block: Block, found: Mapping[str, Taken], told: Told, notes: list[str]
 def _empty(block: Block, found: Mapping[str, Taken], row: int) -> bool:
     """Whether a row holds nothing in the columns that are needed."""
     cells = [block.columns[taken.column][row] for taken in found.values()]
-    return all(cell == "" or (not isinstance(cell, str) and not np.isfinite(cell)) for cell in cells)
+    return all(cell == "" or is_absent(cell) for cell in cells)
 
 
 def _times(path: Path, time: FloatArray, lines: np.ndarray, notes: list[str]) -> FloatArray:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import codecs
 import csv
+import math
 import re
 from collections import Counter
 from collections.abc import Sequence
@@ -41,6 +42,10 @@ _NUMBER: Final = {
     ",": re.compile(r"[+-]?(?:\d{1,3}(?:\.\d{3})+|\d+)?(?:,\d*)?(?:[eE][+-]?\d+)?", re.ASCII),
 }
 CLOCK: Final = re.compile(r"(?:(\d+):)?(\d{1,2}):(\d{2}(?:[.,]\d+)?)", re.ASCII)
+_INFINITE: Final = ("inf", "+inf", "-inf", "infinity", "-infinity", "1.#inf", "-1.#inf")
+_ERRORS: Final = ("#n/a", "#nv", "#div/0!", "#num!", "#zahl!", "#value!", "#wert!", "1.#ind", "-1.#ind", "1.#qnan")
+ABSENT: Final = frozenset(("nan", "-nan", "n/a", "null", "--", "---", *_INFINITE, *_ERRORS))
+"""What stands, in any case of letters, where a program had no number: a cell of a column, never the name of one."""
 _TERNARY = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}", re.ASCII)
 
 
@@ -81,6 +86,11 @@ def is_number(cell: Cell, decimal: str) -> bool:
         return False
     digits = any(letter.isdigit() for letter in cell[:4])
     return bool(digits and _NUMBER[decimal].fullmatch(cell)) or bool(CLOCK.fullmatch(cell))
+
+
+def is_absent(cell: Cell) -> bool:
+    """Whether a cell says that there is no number."""
+    return not math.isfinite(cell) if not isinstance(cell, str) else cell.casefold() in ABSENT
 
 
 def number_text(cell: Cell, decimal: str) -> str:

@@ -340,3 +340,16 @@ def test_the_touch_is_found_through_noise(lead, law, off):
 def test_what_is_asked_for_can_be_typed_as_it_stands(key, example, asked):
     """It named options that `bench_hw import` has not, and values with blanks that a shell takes apart."""
     assert asking_key(key, example) == asked
+
+
+def test_rows_without_a_number_do_not_end_a_record(tmp_path):
+    """A row of NaN amid a press was taken for the names of another table: all behind it was left aside."""
+    press = samples.press(rate=20.0, hold=0.5)
+    rows = samples.rows(press.time, press.depth, press.force, digits=(3, 5, 6))
+    path = tmp_path / "a.csv"
+    path.write_text(
+        "\n".join(["Time (s),Distance (mm),Force (N)", *rows[:30], "NaN,NaN,NaN", *rows[31:], "NaN,NaN,NaN"])
+    )
+    (record,) = read_instrument_file(path, Told(drop_empty=True)).records
+    assert len(record.table.time) == len(rows) - 1
+    assert record.table.force.max() == pytest.approx(press.force.max(), rel=1e-3)
