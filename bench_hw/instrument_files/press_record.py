@@ -19,7 +19,7 @@ from bench_hw.instrument_files.text_sheet import is_absent
 from bench_hw.instrument_files.told import AUTOMATIC, KEPT, Told, asking, asking_key
 from bench_hw.instrument_files.vocabulary import COMPRESSION, TENSION
 from bench_hw.tables.columns import check_increasing, check_row_count
-from bench_hw.tables.measurement import TrialTable
+from bench_hw.tables.measurement import TrialTable, calm
 from bench_hw.tables.units import FloatArray
 
 SURE: Final = 6.0
@@ -201,8 +201,8 @@ def _pressing(
     moved, pushed = found.get("depth", found.get("strain")), found.get("force", found.get("stress"))
     assert moved is not None
     assert pushed is not None
-    way_f = pushed.sign or _force_sign(block, pushed, force)
-    way_d = moved.sign or _travel_sign(block, moved, travel, way_f * force)
+    way_f = pushed.sign or _force_sign(block, pushed, calm(force))
+    way_d = moved.sign or _travel_sign(block, moved, travel, way_f * calm(force))
     if way_f < 0:
         notes.append(f"the force falls as the tool presses: {pushed.shown} is turned")
     if way_d < 0:
@@ -249,7 +249,8 @@ def _from_touch(table: TrialTable, role: str, way: int, told: Told, notes: list[
     """Depth and force counted from the first touch, where the record begins in air and the zero is not there yet."""
     if told.touch != AUTOMATIC:
         return table
-    row, level = first_touch(table)
+    quiet = replace(table, force=calm(table.force))
+    row, level = first_touch(quiet)
     span = float(np.ptp(table.depth))
     at = float(table.depth[row])
     in_air = at - float(table.depth[: row + 1].min()) > IN_AIR * span
@@ -259,7 +260,7 @@ def _from_touch(table: TrialTable, role: str, way: int, told: Told, notes: list[
         at = at if in_air else float(table.depth[0])
         notes.append(f"depth is counted from {where}, at {1e3 * way * at:.4g} mm of the file")
         table = replace(table, depth=table.depth - at)
-    peak = float(table.force.max())
+    peak = float(quiet.force.max())
     if in_air and abs(level) > 0.02 * max(peak - level, 1e-12):
         notes.append(f"the force reads {level:.4g} N in air: counted from there")
         table = replace(table, force=table.force - level)

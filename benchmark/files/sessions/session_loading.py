@@ -40,6 +40,7 @@ from benchmark.files.sessions.session_folder import fingerprint, inside, session
 from benchmark.files.sessions.trials import (
     Session,
     Trial,
+    doubtful_forces,
     is_synthetic,
     read_markers,
     trial_names,
@@ -179,6 +180,8 @@ def _trials(
     named = dict(zip(map(id, file.trials), trial_names(files, source.folder), strict=True))
     names = recorded_names(read, [named[id(each.entry)] for each in read])
     warnings += _copied(read, names)
+    if file.drive.channel == "depth":
+        warnings += doubtful_forces(names, [each.table for each in read])
     tables, counts = even_depths([each.table for each in read])
     trials = []
     for name, each, path, table in zip(names, read, paths, tables, strict=True):

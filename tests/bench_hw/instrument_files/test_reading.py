@@ -353,3 +353,15 @@ def test_rows_without_a_number_do_not_end_a_record(tmp_path):
     (record,) = read_instrument_file(path, Told(drop_empty=True)).records
     assert len(record.table.time) == len(rows) - 1
     assert record.table.force.max() == pytest.approx(press.force.max(), rel=1e-3)
+
+
+def test_a_glitch_of_one_row_does_not_tell_which_way_is_pressing(tmp_path):
+    """A row of 9999.9 N on the way back turned nothing here, but put the touch there: 2 mm of depth were 0.3."""
+    press = samples.press(rate=20.0, hold=0.5)
+    force = press.force.copy()
+    force[int(0.7 * len(force))] = 9999.9
+    path = tmp_path / "a.csv"
+    rows = samples.rows(press.time, press.depth, force, digits=(3, 5, 6))
+    path.write_text("\n".join(["Time (s),Distance (mm),Force (N)", *rows]))
+    (record,) = read_instrument_file(path).records
+    assert record.table.depth.max() == pytest.approx(press.depth.max() * 1e-3, rel=0.02)
