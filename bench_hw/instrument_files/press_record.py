@@ -11,14 +11,15 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.blocks import Block
 from bench_hw.instrument_files.column_choice import Taken, header_line, takes
 from bench_hw.instrument_files.text_sheet import is_absent
-from bench_hw.instrument_files.told import AUTOMATIC, KEPT, Told, asking, asking_key
-from bench_hw.instrument_files.vocabulary import COMPRESSION, TENSION
-from bench_hw.tables.columns import check_increasing, check_row_count
+from bench_hw.instrument_files.told import AUTOMATIC, KEPT, Told, asking, asking_key, parse_source
+from bench_hw.instrument_files.vocabulary import COMPRESSION, DIMENSIONS, TENSION, role_of, unit_scale
+from bench_hw.tables.columns import LARGEST, check_increasing, check_row_count
 from bench_hw.tables.measurement import TrialTable, calm
 from bench_hw.tables.units import FloatArray
 
@@ -79,7 +80,7 @@ def record_of(block: Block, told: Told) -> PressRecord:
         there are fewer than 20 rows.
     """
     found = takes(block, told)
-    notes: list[str] = []
+    notes = _told_otherwise(block, found, told)
     if "force" not in found or "depth" not in found:
         found = _of_stress(block, found, told)
     if "time" not in found and not told.rate:
@@ -89,6 +90,7 @@ def record_of(block: Block, told: Told) -> PressRecord:
     check_row_count(block.path, len(rows))
     lines = block.lines[rows]
     values = {role: block.numbers(taken.column, rows) * taken.scale for role, taken in found.items()}
+    _check_sizes(block, found, values, lines)
     time = np.arange(len(rows)) / told.rate if told.rate else _times(block.path, values["time"], lines, notes)
     kind = _kind(block, found, told)
     if kind != "press":
@@ -100,6 +102,37 @@ def record_of(block: Block, told: Told) -> PressRecord:
         table = replace(table, depth=table.depth - table.depth[0])
     shown = {role: taken.shown for role, taken in found.items()}
     return PressRecord(block.name, table, shown, tuple(notes), kind)
+
+
+def _told_otherwise(block: Block, found: Mapping[str, Taken], told: Told) -> list[str]:
+    """What a person told of times and units where the file says something else itself."""
+    notes = []
+    times = [name for name in block.names if name and (meaning := role_of(name)) and meaning[0] == "time"]
+    if told.rate and times:
+        notes.append(
+            f"times are counted at {told.rate:g} Hz, as told, not read from the file's own column {times[0]!r}"
+        )
+    for role in sorted(found.keys() & told.columns.keys()):
+        unit, own = parse_source(role, told.columns[role]).unit, block.units[found[role].column]
+        if unit and own and unit_scale(own, DIMENSIONS[found[role].role]) not in (None, found[role].scale):
+            notes.append(f"the {role} is read in {unit}, as told, where the file says {own}")
+    return notes
+
+
+def _check_sizes(
+    block: Block, found: Mapping[str, Taken], values: Mapping[str, FloatArray], lines: NDArray[np.int64]
+) -> None:
+    """Refuse times, lengths and forces that no bench measures, as a wrong unit makes them."""
+    for role, taken in found.items():
+        dimension = DIMENSIONS[taken.role]
+        wrong = np.flatnonzero(np.abs(values[role]) > LARGEST.get(dimension, np.inf))
+        if len(wrong):
+            name = block.names[taken.column]
+            allowed = (
+                f"up to {LARGEST[dimension]:g} {dimension}; or the unit that was meant, {asking(role, f'{name}:UNIT')}"
+            )
+            row, value = int(lines[wrong[0]]), f"{values[role][wrong[0]]:g} {dimension}"
+            raise TableError(block.path, f"the {role} is too large", allowed, row=row, column=name, value=value)
 
 
 def _kind(block: Block, found: Mapping[str, Taken], told: Told) -> str:

@@ -365,3 +365,16 @@ def test_a_glitch_of_one_row_does_not_tell_which_way_is_pressing(tmp_path):
     path.write_text("\n".join(["Time (s),Distance (mm),Force (N)", *rows]))
     (record,) = read_instrument_file(path).records
     assert record.table.depth.max() == pytest.approx(press.depth.max() * 1e-3, rel=0.02)
+
+
+def test_what_is_told_beside_what_the_file_says_is_shown(tmp_path):
+    """A rate beside a column of times halved them, a unit beside the header's took its place, without a word."""
+    one = press()
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(["Time (s),Distance (mm),Force (N)",
+                               *samples.rows(one.time, one.depth, one.force, digits=(3, 5, 6))]))  # fmt: skip
+    (record,) = read_instrument_file(path, Told({"force": "Force:mN", "depth": "Distance:mm"}, rate=100.0)).records
+    assert record.notes[:2] == (
+        "times are counted at 100 Hz, as told, not read from the file's own column 'Time'",
+        "the force is read in mN, as told, where the file says N",
+    )
