@@ -19,7 +19,7 @@ def test_a_session_file_is_read(session_folder):
 
 
 def test_without_one_the_folder_is_a_condition(tmp_path, write_trial):
-    for name in ("t_10.csv", "t_2.csv", "t_1.CSV", ".hidden.csv"):
+    for name in ("t_10.csv", "t_2.csv", "t_1.CSV", ".hidden.csv", "~$t_2.csv"):
         write_trial(tmp_path / "day" / name)
     (tmp_path / "day" / "README.md").write_text("text")
     (tmp_path / "day" / "odd.csv").mkdir()

@@ -10,6 +10,7 @@ from bench_hw.trial_file import DepthRecord, ForceRecord, TrialHeader, open_tria
 from benchmark.errors import InputError
 from benchmark.files import load_session, load_tissue
 from benchmark.files.load import Load
+from benchmark.files.sessions.proposal import propose, write_proposal
 from benchmark.files.sessions.session_loading import assumed_specimen
 from benchmark.files.tool import Support, Tool
 from tests.instruments.samples import jpk
@@ -401,3 +402,25 @@ def test_the_tool_of_an_atomic_force_curve_is_asked_for(tmp_path):
         curve, {"tool.radius": "5 um", "tool.edge_radius": "5 um", "tool.contact": "rigid_frictionless"}
     )
     assert told.tool.radius == 5e-6
+
+
+def test_a_trial_that_is_added_but_not_listed_is_told_of(session_folder, write_trial):
+    """It was passed over without a word."""
+    assert not any("not listed" in each for each in load_session(session_folder).warnings)
+    for name in ("three.csv", ".four.csv", "~$one.csv", "one_markers.csv", "notes.txt"):
+        write_trial(session_folder / name)
+    (said,) = [each for each in load_session(session_folder).warnings if "not listed" in each]
+    assert said.startswith("not listed in session.toml and left aside: three.csv; ")
+
+
+def test_what_a_proposal_assumed_is_told_until_somebody_says_it(tmp_path, write_trial):
+    """With the proposed files in the folder nothing was said to be assumed any more."""
+    write_trial(tmp_path / "one.csv")
+    write_proposal(tmp_path, propose(tmp_path))
+    (said,) = [each for each in load_session(tmp_path).warnings if "still assumed" in each]
+    assert said.endswith(": tool.radius, tool.contact, support.kind, the specimen (specimen.toml)")
+    text = (tmp_path / "session.toml").read_text().replace('radius = "5 mm"', 'radius = "4 mm"')
+    (tmp_path / "session.toml").write_text(text)
+    told = {"support.kind": "half_space"}
+    (said,) = [each for each in load_session(tmp_path, told, "skin_forearm").warnings if "still assumed" in each]
+    assert said.endswith(": tool.contact")
