@@ -42,6 +42,8 @@ _NUMBER: Final = {
     ",": re.compile(r"[+-]?(?:\d{1,3}(?:\.\d{3})+|\d+)?(?:,\d*)?(?:[eE][+-]?\d+)?", re.ASCII),
 }
 CLOCK: Final = re.compile(r"(?:(\d+):)?(\d{1,2}):(\d{2}(?:[.,]\d+)?)", re.ASCII)
+MINUS: Final = "\N{MINUS SIGN}"
+"""What Scandinavian settings write before a number."""
 _INFINITE: Final = ("inf", "+inf", "-inf", "infinity", "-infinity", "1.#inf", "-1.#inf")
 _ERRORS: Final = ("#n/a", "#nv", "#div/0!", "#num!", "#zahl!", "#value!", "#wert!", "1.#ind", "-1.#ind", "1.#qnan")
 ABSENT: Final = frozenset(("nan", "-nan", "n/a", "null", "--", "---", *_INFINITE, *_ERRORS))
@@ -114,7 +116,7 @@ def text_sheet(path: Path, told: Told) -> Sheet:
         The file is missing, unreadable, empty, in no known encoding, or its commas can mean two things.
     """
     text, encoding = _decoded(path, _bytes(path), told.encoding)
-    lines = [line.rstrip("\r\n") for line in text.splitlines()]
+    lines = [line.rstrip("\r\n") for line in text.replace(MINUS, "-").splitlines()]
     if not any(line.strip() for line in lines):
         raise NoNumbersError(path, "the file is empty", "a header and rows of numbers")
     delimiter, decimal = _signs(path, lines, told)
@@ -216,7 +218,7 @@ def _signs(path: Path, lines: Sequence[str], told: Told) -> tuple[str, str]:
     ]
     best = max(scored)
     if best[0] == 0:
-        _no_numbers(path, lines)
+        _no_numbers(path, lines, told)
     _check_one_comma(path, lines, best[2], told)
     return best[2], best[3]
 
@@ -243,9 +245,11 @@ def _score(sample: Sequence[str], delimiter: str, decimal: str) -> int:
     return max(0, sum(numeric for each, numeric in rows if each == width))
 
 
-def _no_numbers(path: Path, lines: Sequence[str]) -> None:
+def _no_numbers(path: Path, lines: Sequence[str], told: Told) -> None:
     first = next(number for number, line in enumerate(lines, start=1) if line.strip())
-    problem = "no rows of numbers were found"
+    options = {"the delimiter": told.delimiter, "the decimal sign": told.decimal}
+    said = " and ".join(f"{option} {value!r}" for option, value in options.items() if value)
+    problem = f"no rows of numbers were found{f' with {said}, as told' if said else ''}"
     allowed = f"rows of at least two numbers, separated by tab, semicolon, comma or blanks; or {_ASK_DELIMITER}"
     raise NoNumbersError(path, problem, allowed, row=first, value=lines[first - 1].strip())
 

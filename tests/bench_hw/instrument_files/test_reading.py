@@ -204,6 +204,9 @@ def test_the_number_of_a_column_is_no_unit():
         ("つかみ具間変位", "displacement"),
         ("応力", "stress"),
         ("Spostamento [mm]", "displacement"),
+        ("Weg/mm", "displacement"),
+        ("Kraft/mN", "force"),
+        ("Spannung/N/mm2", "stress"),
         ("Allongement", "displacement"),
     ],
 )
@@ -378,3 +381,23 @@ def test_what_is_told_beside_what_the_file_says_is_shown(tmp_path):
         "times are counted at 100 Hz, as told, not read from the file's own column 'Time'",
         "the force is read in mN, as told, where the file says N",
     )
+
+
+def test_a_minus_sign_of_typesetting_is_a_minus(tmp_path):
+    """Programs write it under Scandinavian settings: all rows above the touch were no numbers."""
+    one = press()
+    rows = samples.rows(one.time, one.depth, one.force, digits=(3, 5, 6), sign=",", between=";")
+    path = tmp_path / "a.csv"
+    text = "\n".join(["Time (s);Distance (mm);Force (N)", *(row.replace("-", "\N{MINUS SIGN}") for row in rows)])
+    path.write_text(text, encoding="utf-8")
+    (record,) = read_instrument_file(path).records
+    assert len(record.table.time) == one.time.size
+
+
+def test_where_no_row_is_one_as_told_what_was_told_is_named(tmp_path):
+    one = press()
+    rows = samples.rows(one.time, one.depth, one.force, digits=(3, 5, 6), sign=",", between=";")
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(["Time (s);Distance (mm);Force (N)", *rows]))
+    with pytest.raises(TableError, match=r"no rows of numbers were found with the decimal sign '\.', as told"):
+        read_instrument_file(path, Told(decimal="."))
