@@ -15,7 +15,7 @@ from benchmark.errors import InputError
 from benchmark.files.loading import read_file
 from benchmark.files.schema import SCHEMA
 from benchmark.files.shipped import session_folder, shipped_sessions
-from benchmark.files.sources import Source, is_file
+from benchmark.files.sources import Source, is_file, result_of
 
 SESSION_FILE = "session.toml"
 TRIAL_SUFFIXES = ENDINGS
@@ -67,6 +67,9 @@ def session_table(path: Path) -> tuple[dict[str, Any], Source]:
             raise InputError(f"{path}: {other if path.exists() else missing}.")
         if (path / SESSION_FILE).exists():
             return read_file(path / SESSION_FILE, "session")
+        if verb := result_of(path):
+            allowed = "the folder of trials that it was made from, or another"
+            raise InputError(f"{path}: this is a result of `{verb}`, not a session; allowed: {allowed}.")
         name = path.resolve().name or "session"
         return _made(name, _entries(path, name)), Source(str(path), "", path)
     except OSError as error:
