@@ -177,17 +177,16 @@ def _rows(block: Block, found: Mapping[str, Taken], told: Told, notes: list[str]
     kept = np.arange(block.rows - len(ended))
     if not len(within):
         return kept
-    if told.drop_empty:
-        notes.append(f"{len(within)} rows without a number in a column that is needed are left out, as told")
-        return np.setdiff1d(kept, within)
     row = int(within[0])
     taken = next(each for each in found.values() if block.lacking(each.column)[row])
-    cell = block.columns[taken.column][row]
+    cell, line = block.columns[taken.column][row], int(block.lines[row])
+    if told.drop_empty:
+        first = f"row {line}, {block.names[taken.column]!r} {str(cell)!r}"
+        notes.append(f"{len(within)} rows without a number in a column that is needed are left out, as told ({first})")
+        return np.setdiff1d(kept, within)
     problem = "the cell is empty" if cell == "" else "the cell is no finite number"
     allowed = f"a number; or leave such rows out, {asking_key('drop_empty', 'true')}"
-    raise TableError(
-        block.path, problem, allowed, row=int(block.lines[row]), column=block.names[taken.column], value=str(cell)
-    )
+    raise TableError(block.path, problem, allowed, row=line, column=block.names[taken.column], value=str(cell))
 
 
 def _empty(block: Block, found: Mapping[str, Taken], row: int) -> bool:

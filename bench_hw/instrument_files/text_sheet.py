@@ -37,9 +37,17 @@ _BOMS: Final = (
 NANOSCOPE: Final = re.compile(rb"\\\*(?:Force )?[Ff]ile list")
 """How the header of Bruker's NanoScope begins, before counts of its own."""
 _BYTE_ENCODINGS: Final = ("gb18030", "shift_jis", "cp1250", "cp1252")
+_MARKS: Final = "'\N{RIGHT SINGLE QUOTATION MARK}\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}"
+"""What stands between thousands besides the other decimal sign, in Switzerland and France."""
 _NUMBER: Final = {
-    ".": re.compile(r"[+-]?(?:\d{1,3}(?:,\d{3})+|\d+)?(?:\.\d*)?(?:[eE][+-]?\d+)?", re.ASCII),
-    ",": re.compile(r"[+-]?(?:\d{1,3}(?:\.\d{3})+|\d+)?(?:,\d*)?(?:[eE][+-]?\d+)?", re.ASCII),
+    decimal: re.compile(
+        rf"[+-]?(?:\d{{1,3}}(?:[{other}{_MARKS}]\d{{3}})+|\d+)?(?:[{decimal}]\d*)?(?:[eE][+-]?\d+)?", re.ASCII
+    )
+    for decimal, other in ((".", ","), (",", "."))
+}
+_UNMARKED: Final = {
+    decimal: str.maketrans({",": "."} | dict.fromkeys(f"{other}{_MARKS}"))
+    for decimal, other in ((".", ","), (",", "."))
 }
 CLOCK: Final = re.compile(r"(?:(\d+):)?(\d{1,2}):(\d{2}(?:[.,]\d+)?)", re.ASCII)
 MINUS: Final = "\N{MINUS SIGN}"
@@ -104,7 +112,7 @@ def number_text(cell: Cell, decimal: str) -> str:
         return repr(3600.0 * int(hours or 0) + 60.0 * int(minutes) + float(seconds.replace(",", ".")))
     if not _NUMBER[decimal].fullmatch(cell):
         return cell
-    return cell.replace("." if decimal == "," else ",", "").replace(",", ".")
+    return cell.translate(_UNMARKED[decimal])
 
 
 def text_sheet(path: Path, told: Told) -> Sheet:

@@ -401,3 +401,19 @@ def test_where_no_row_is_one_as_told_what_was_told_is_named(tmp_path):
     path.write_text("\n".join(["Time (s);Distance (mm);Force (N)", *rows]))
     with pytest.raises(TableError, match=r"no rows of numbers were found with the decimal sign '\.', as told"):
         read_instrument_file(path, Told(decimal="."))
+
+
+@pytest.mark.parametrize(
+    "mark", ["'", "\N{RIGHT SINGLE QUOTATION MARK}", "\N{NARROW NO-BREAK SPACE}", "\N{NO-BREAK SPACE}"]
+)
+def test_marks_between_thousands_are_passed_over(tmp_path, mark):
+    """Such numbers were called none, and the way out that was named left out all rows above 1000 mN."""
+    one = press()
+    rows = [
+        f"{t:.2f};{d:.4f};{1e3 * f:,.1f}".replace(",", mark)
+        for t, d, f in zip(one.time, one.depth, one.force, strict=True)
+    ]
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(["Time (s);Distance (mm);Force (mN)", *rows]), encoding="utf-8")
+    (record,) = read_instrument_file(path).records
+    assert record.table.force.max() == pytest.approx(one.force.max(), rel=1e-3)
