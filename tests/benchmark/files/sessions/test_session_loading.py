@@ -13,7 +13,7 @@ from benchmark.files.load import Load
 from benchmark.files.sessions.proposal import propose, write_proposal
 from benchmark.files.sessions.session_loading import assumed_specimen
 from benchmark.files.tool import Support, Tool
-from tests.instruments.samples import jpk
+from tests.instruments.samples import jpk, press, rows
 
 DATA = os.environ.get("TISSUEBENCH_DATA")
 
@@ -424,3 +424,17 @@ def test_what_a_proposal_assumed_is_told_until_somebody_says_it(tmp_path, write_
     told = {"support.kind": "half_space"}
     (said,) = [each for each in load_session(tmp_path, told, "skin_forearm").warnings if "still assumed" in each]
     assert said.endswith(": tool.contact")
+
+
+def test_a_stated_tool_settles_what_headers_tell_otherwise(tmp_path):
+    """The refusal of two tools named `--set tool.radius`, which was refused in the same words."""
+    one = press()
+    lines = rows(one.time, one.depth, one.force, digits=(3, 5, 6))
+    for name, diameter in (("a", 8), ("b", 10)):
+        head = f"Punch diameter,{diameter},mm\n\nTime (s),Distance (mm),Force (N)"
+        (tmp_path / f"{name}.csv").write_text("\n".join([head, *lines]))
+    assert "different tools (4 mm, 5 mm)" in refusal(tmp_path)
+    session = load_session(tmp_path, {"tool.radius": "5 mm +/- 1 %"})
+    assert session.tool.radius == 5e-3
+    (said,) = [each for each in session.warnings if "another tool" in each]
+    assert said.endswith("which is used: a.csv: 4 mm, stated 5 mm +/- 1 %")
