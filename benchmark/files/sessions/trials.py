@@ -102,14 +102,23 @@ def read_table(path: Path) -> TrialTable:
 
 STANDS: Final = 0.1
 """Share of the travel over which a force that does not change by one digit is no tissue's."""
+TURNED: Final = 0.2
+"""Of the way down that a press with its signs turned goes up at most."""
 LEVELS: Final = 20
 """Values of the upper half of a force, below which its digits are too coarse to tell that it stands."""
 
 
 def doubtful_forces(names: Sequence[str], tables: Sequence[TrialTable]) -> list[str]:
-    """A warning for each trial whose force no tissue makes: single rows far beyond all, or a sensor at its end."""
+    """A warning for each trial whose force no tissue makes: a glitch of single rows, a sensor's end, signs turned."""
     said = []
     for name, table in zip(names, tables, strict=True):
+        if _upside_down(table):
+            force, depth = float(table.force.min()), float(table.depth.min())
+            said.append(
+                f"{name}: force and depth only fall, to {force:.4g} N and {1e3 * depth:.4g} mm, as where pressing is "
+                "negative; allowed: press positive. It is used as it is; turn both columns of its file"
+            )
+            continue
         lone = np.flatnonzero(calm(table.force) != table.force)
         if len(lone):
             row = int(lone[0])
@@ -123,6 +132,13 @@ def doubtful_forces(names: Sequence[str], tables: Sequence[TrialTable]) -> list[
                 f"{1e3 * way:.3g} mm: at the end of the sensor's range? What is fitted is then too soft"
             )
     return said
+
+
+def _upside_down(table: TrialTable) -> bool:
+    """Whether force and depth leave where they began downwards, and not a fifth as far upwards."""
+    few = max(5, len(table.force) // 50)
+    moved = [values - float(np.median(values[:few])) for values in (table.force, table.depth)]
+    return all(float(each.max()) < TURNED * -float(each.min()) for each in moved)
 
 
 def _standing(table: TrialTable) -> float:

@@ -115,3 +115,15 @@ def test_a_force_that_no_tissue_makes_is_told():
     end, lone = doubtful_forces(["whole", "end", "lone", "coarse"], tables)
     assert "end: the force stands at 1.5 N" in end
     assert "lone: the force is 9999.9 N at 1.4 s, in a single row" in lone
+
+
+def test_a_press_upside_down_is_told():
+    """Among others it went into the fit as one that touches at its deepest, without a word."""
+    one = press()
+    turned = TrialTable(one.time, -one.depth, -one.force, {}, "b.csv", {})
+    pulled = TrialTable(
+        one.time, one.depth, one.force - 0.2 * np.exp(-(((one.time - 4.6) / 0.1) ** 2)), {}, "c.csv", {}
+    )
+    (said,) = doubtful_forces(["up", "down", "pulled"], [one, turned, pulled])
+    assert said.startswith("down: force and depth only fall, to -2.8")
+    assert "-2 mm" in said
