@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
-from bench_hw.instrument_files.text_sheet import Cell, Sheet, is_number, number_text
+from bench_hw.instrument_files.text_sheet import Cell, Sheet, is_absent, is_number, number_text
 from bench_hw.instrument_files.vocabulary import HeaderFact, label_and_unit, plain, role_of, unit_of
 from bench_hw.tables.columns import numbers_of
 from bench_hw.tables.units import FloatArray
@@ -120,8 +120,8 @@ def block_of_arrays(
 
 
 def _is_data(row: Sequence[Cell], decimal: str) -> bool:
-    """Two numbers or more, and no less of them than of other cells that hold anything."""
-    numeric = sum(is_number(cell, decimal) for cell in row)
+    """Two numbers or more, or words that there is none, and no less of them than of other cells that hold anything."""
+    numeric = sum(is_number(cell, decimal) or is_absent(cell) for cell in row)
     return numeric >= 2 and 2 * numeric >= sum(cell != "" for cell in row)
 
 

@@ -11,14 +11,16 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.blocks import Block
 from bench_hw.instrument_files.column_choice import Taken, header_line, takes
-from bench_hw.instrument_files.told import AUTOMATIC, KEPT, Told, asking, asking_key
-from bench_hw.instrument_files.vocabulary import COMPRESSION, TENSION
-from bench_hw.tables.columns import check_increasing, check_row_count
-from bench_hw.tables.measurement import TrialTable
+from bench_hw.instrument_files.text_sheet import is_absent
+from bench_hw.instrument_files.told import AUTOMATIC, KEPT, Told, asking, asking_key, parse_source
+from bench_hw.instrument_files.vocabulary import COMPRESSION, DIMENSIONS, TENSION, role_of, unit_scale
+from bench_hw.tables.columns import LARGEST, check_increasing, check_row_count
+from bench_hw.tables.measurement import TrialTable, calm
 from bench_hw.tables.units import FloatArray
 
 SURE: Final = 6.0
@@ -78,7 +80,7 @@ def record_of(block: Block, told: Told) -> PressRecord:
         there are fewer than 20 rows.
     """
     found = takes(block, told)
-    notes: list[str] = []
+    notes = _told_otherwise(block, found, told)
     if "force" not in found or "depth" not in found:
         found = _of_stress(block, found, told)
     if "time" not in found and not told.rate:
@@ -88,6 +90,7 @@ def record_of(block: Block, told: Told) -> PressRecord:
     check_row_count(block.path, len(rows))
     lines = block.lines[rows]
     values = {role: block.numbers(taken.column, rows) * taken.scale for role, taken in found.items()}
+    _check_sizes(block, found, values, lines)
     time = np.arange(len(rows)) / told.rate if told.rate else _times(block.path, values["time"], lines, notes)
     kind = _kind(block, found, told)
     if kind != "press":
@@ -99,6 +102,37 @@ def record_of(block: Block, told: Told) -> PressRecord:
         table = replace(table, depth=table.depth - table.depth[0])
     shown = {role: taken.shown for role, taken in found.items()}
     return PressRecord(block.name, table, shown, tuple(notes), kind)
+
+
+def _told_otherwise(block: Block, found: Mapping[str, Taken], told: Told) -> list[str]:
+    """What a person told of times and units where the file says something else itself."""
+    notes = []
+    times = [name for name in block.names if name and (meaning := role_of(name)) and meaning[0] == "time"]
+    if told.rate and times:
+        notes.append(
+            f"times are counted at {told.rate:g} Hz, as told, not read from the file's own column {times[0]!r}"
+        )
+    for role in sorted(found.keys() & told.columns.keys()):
+        unit, own = parse_source(role, told.columns[role]).unit, block.units[found[role].column]
+        if unit and own and unit_scale(own, DIMENSIONS[found[role].role]) not in (None, found[role].scale):
+            notes.append(f"the {role} is read in {unit}, as told, where the file says {own}")
+    return notes
+
+
+def _check_sizes(
+    block: Block, found: Mapping[str, Taken], values: Mapping[str, FloatArray], lines: NDArray[np.int64]
+) -> None:
+    """Refuse times, lengths and forces that no bench measures, as a wrong unit makes them."""
+    for role, taken in found.items():
+        dimension = DIMENSIONS[taken.role]
+        wrong = np.flatnonzero(np.abs(values[role]) > LARGEST.get(dimension, np.inf))
+        if len(wrong):
+            name = block.names[taken.column]
+            allowed = (
+                f"up to {LARGEST[dimension]:g} {dimension}; or the unit that was meant, {asking(role, f'{name}:UNIT')}"
+            )
+            row, value = int(lines[wrong[0]]), f"{values[role][wrong[0]]:g} {dimension}"
+            raise TableError(block.path, f"the {role} is too large", allowed, row=row, column=name, value=value)
 
 
 def _kind(block: Block, found: Mapping[str, Taken], told: Told) -> str:
@@ -143,23 +177,22 @@ def _rows(block: Block, found: Mapping[str, Taken], told: Told, notes: list[str]
     kept = np.arange(block.rows - len(ended))
     if not len(within):
         return kept
-    if told.drop_empty:
-        notes.append(f"{len(within)} rows without a number in a column that is needed are left out, as told")
-        return np.setdiff1d(kept, within)
     row = int(within[0])
     taken = next(each for each in found.values() if block.lacking(each.column)[row])
-    cell = block.columns[taken.column][row]
+    cell, line = block.columns[taken.column][row], int(block.lines[row])
+    if told.drop_empty:
+        first = f"row {line}, {block.names[taken.column]!r} {str(cell)!r}"
+        notes.append(f"{len(within)} rows without a number in a column that is needed are left out, as told ({first})")
+        return np.setdiff1d(kept, within)
     problem = "the cell is empty" if cell == "" else "the cell is no finite number"
     allowed = f"a number; or leave such rows out, {asking_key('drop_empty', 'true')}"
-    raise TableError(
-        block.path, problem, allowed, row=int(block.lines[row]), column=block.names[taken.column], value=str(cell)
-    )
+    raise TableError(block.path, problem, allowed, row=line, column=block.names[taken.column], value=str(cell))
 
 
 def _empty(block: Block, found: Mapping[str, Taken], row: int) -> bool:
     """Whether a row holds nothing in the columns that are needed."""
     cells = [block.columns[taken.column][row] for taken in found.values()]
-    return all(cell == "" or (not isinstance(cell, str) and not np.isfinite(cell)) for cell in cells)
+    return all(cell == "" or is_absent(cell) for cell in cells)
 
 
 def _times(path: Path, time: FloatArray, lines: np.ndarray, notes: list[str]) -> FloatArray:
@@ -200,8 +233,8 @@ def _pressing(
     moved, pushed = found.get("depth", found.get("strain")), found.get("force", found.get("stress"))
     assert moved is not None
     assert pushed is not None
-    way_f = pushed.sign or _force_sign(block, pushed, force)
-    way_d = moved.sign or _travel_sign(block, moved, travel, way_f * force)
+    way_f = pushed.sign or _force_sign(block, pushed, calm(force))
+    way_d = moved.sign or _travel_sign(block, moved, travel, way_f * calm(force))
     if way_f < 0:
         notes.append(f"the force falls as the tool presses: {pushed.shown} is turned")
     if way_d < 0:
@@ -248,7 +281,8 @@ def _from_touch(table: TrialTable, role: str, way: int, told: Told, notes: list[
     """Depth and force counted from the first touch, where the record begins in air and the zero is not there yet."""
     if told.touch != AUTOMATIC:
         return table
-    row, level = first_touch(table)
+    quiet = replace(table, force=calm(table.force))
+    row, level = first_touch(quiet)
     span = float(np.ptp(table.depth))
     at = float(table.depth[row])
     in_air = at - float(table.depth[: row + 1].min()) > IN_AIR * span
@@ -258,7 +292,7 @@ def _from_touch(table: TrialTable, role: str, way: int, told: Told, notes: list[
         at = at if in_air else float(table.depth[0])
         notes.append(f"depth is counted from {where}, at {1e3 * way * at:.4g} mm of the file")
         table = replace(table, depth=table.depth - at)
-    peak = float(table.force.max())
+    peak = float(quiet.force.max())
     if in_air and abs(level) > 0.02 * max(peak - level, 1e-12):
         notes.append(f"the force reads {level:.4g} N in air: counted from there")
         table = replace(table, force=table.force - level)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import codecs
 import csv
+import math
 import re
 from collections import Counter
 from collections.abc import Sequence
@@ -36,11 +37,25 @@ _BOMS: Final = (
 NANOSCOPE: Final = re.compile(rb"\\\*(?:Force )?[Ff]ile list")
 """How the header of Bruker's NanoScope begins, before counts of its own."""
 _BYTE_ENCODINGS: Final = ("gb18030", "shift_jis", "cp1250", "cp1252")
+_MARKS: Final = "'\N{RIGHT SINGLE QUOTATION MARK}\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}"
+"""What stands between thousands besides the other decimal sign, in Switzerland and France."""
 _NUMBER: Final = {
-    ".": re.compile(r"[+-]?(?:\d{1,3}(?:,\d{3})+|\d+)?(?:\.\d*)?(?:[eE][+-]?\d+)?", re.ASCII),
-    ",": re.compile(r"[+-]?(?:\d{1,3}(?:\.\d{3})+|\d+)?(?:,\d*)?(?:[eE][+-]?\d+)?", re.ASCII),
+    decimal: re.compile(
+        rf"[+-]?(?:\d{{1,3}}(?:[{other}{_MARKS}]\d{{3}})+|\d+)?(?:[{decimal}]\d*)?(?:[eE][+-]?\d+)?", re.ASCII
+    )
+    for decimal, other in ((".", ","), (",", "."))
+}
+_UNMARKED: Final = {
+    decimal: str.maketrans({",": "."} | dict.fromkeys(f"{other}{_MARKS}"))
+    for decimal, other in ((".", ","), (",", "."))
 }
 CLOCK: Final = re.compile(r"(?:(\d+):)?(\d{1,2}):(\d{2}(?:[.,]\d+)?)", re.ASCII)
+MINUS: Final = "\N{MINUS SIGN}"
+"""What Scandinavian settings write before a number."""
+_INFINITE: Final = ("inf", "+inf", "-inf", "infinity", "-infinity", "1.#inf", "-1.#inf")
+_ERRORS: Final = ("#n/a", "#nv", "#div/0!", "#num!", "#zahl!", "#value!", "#wert!", "1.#ind", "-1.#ind", "1.#qnan")
+ABSENT: Final = frozenset(("nan", "-nan", "n/a", "null", "--", "---", *_INFINITE, *_ERRORS))
+"""What stands, in any case of letters, where a program had no number: a cell of a column, never the name of one."""
 _TERNARY = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}", re.ASCII)
 
 
@@ -83,6 +98,11 @@ def is_number(cell: Cell, decimal: str) -> bool:
     return bool(digits and _NUMBER[decimal].fullmatch(cell)) or bool(CLOCK.fullmatch(cell))
 
 
+def is_absent(cell: Cell) -> bool:
+    """Whether a cell says that there is no number."""
+    return not math.isfinite(cell) if not isinstance(cell, str) else cell.casefold() in ABSENT
+
+
 def number_text(cell: Cell, decimal: str) -> str:
     """A cell as a number with a point, thousands unmarked, a clock in seconds; other text as it is."""
     if not isinstance(cell, str):
@@ -92,7 +112,7 @@ def number_text(cell: Cell, decimal: str) -> str:
         return repr(3600.0 * int(hours or 0) + 60.0 * int(minutes) + float(seconds.replace(",", ".")))
     if not _NUMBER[decimal].fullmatch(cell):
         return cell
-    return cell.replace("." if decimal == "," else ",", "").replace(",", ".")
+    return cell.translate(_UNMARKED[decimal])
 
 
 def text_sheet(path: Path, told: Told) -> Sheet:
@@ -104,7 +124,7 @@ def text_sheet(path: Path, told: Told) -> Sheet:
         The file is missing, unreadable, empty, in no known encoding, or its commas can mean two things.
     """
     text, encoding = _decoded(path, _bytes(path), told.encoding)
-    lines = [line.rstrip("\r\n") for line in text.splitlines()]
+    lines = [line.rstrip("\r\n") for line in text.replace(MINUS, "-").splitlines()]
     if not any(line.strip() for line in lines):
         raise NoNumbersError(path, "the file is empty", "a header and rows of numbers")
     delimiter, decimal = _signs(path, lines, told)
@@ -206,7 +226,7 @@ def _signs(path: Path, lines: Sequence[str], told: Told) -> tuple[str, str]:
     ]
     best = max(scored)
     if best[0] == 0:
-        _no_numbers(path, lines)
+        _no_numbers(path, lines, told)
     _check_one_comma(path, lines, best[2], told)
     return best[2], best[3]
 
@@ -233,9 +253,11 @@ def _score(sample: Sequence[str], delimiter: str, decimal: str) -> int:
     return max(0, sum(numeric for each, numeric in rows if each == width))
 
 
-def _no_numbers(path: Path, lines: Sequence[str]) -> None:
+def _no_numbers(path: Path, lines: Sequence[str], told: Told) -> None:
     first = next(number for number, line in enumerate(lines, start=1) if line.strip())
-    problem = "no rows of numbers were found"
+    options = {"the delimiter": told.delimiter, "the decimal sign": told.decimal}
+    said = " and ".join(f"{option} {value!r}" for option, value in options.items() if value)
+    problem = f"no rows of numbers were found{f' with {said}, as told' if said else ''}"
     allowed = f"rows of at least two numbers, separated by tab, semicolon, comma or blanks; or {_ASK_DELIMITER}"
     raise NoNumbersError(path, problem, allowed, row=first, value=lines[first - 1].strip())
 

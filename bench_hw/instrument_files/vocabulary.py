@@ -67,7 +67,7 @@ def unit_scale(text: str, dimension: str) -> float | None:
 
 
 _BRACKETS = re.compile(r"(?P<label>.*?)\s*[(\[{](?P<unit>[^()\[\]{}]*)[)\]}]\s*")
-_AFTER = re.compile(r"(?P<label>.+?)\s*(?:\s/\s|,\s*|\sin\s|_|\s)\s*(?P<unit>[^\s,_]+)\s*")
+_AFTER = re.compile(r"(?P<label>.+?)\s*(?:\s/\s|/|,\s*|\sin\s|_|\s)\s*(?P<unit>[^\s,_]+)\s*")
 
 
 def label_and_unit(header: str) -> tuple[str, str]:

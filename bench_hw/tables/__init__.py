@@ -5,6 +5,7 @@ from bench_hw.tables.columns import MINIMUM_ROWS
 from bench_hw.tables.measurement import (
     MarkerTable,
     TrialTable,
+    calm,
     read_marker_csv,
     read_trial_csv,
     write_marker_csv,
@@ -16,6 +17,7 @@ __all__ = [
     "MarkerTable",
     "TableError",
     "TrialTable",
+    "calm",
     "read_marker_csv",
     "read_trial_csv",
     "write_marker_csv",

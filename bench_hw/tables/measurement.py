@@ -80,6 +80,19 @@ class MarkerTable:
     source: str = ""
 
 
+LONE = 3.0
+"""Times the range of all other rows by which a single row stands out that no press makes."""
+
+
+def calm(force: FloatArray) -> FloatArray:
+    """A force with single rows replaced that stand beyond all others by far more than those reach: glitches."""
+    if len(force) < 3:
+        return force
+    before, after = np.append(force[1], force[:-1]), np.append(force[1:], force[-2])
+    middle = np.clip(force, np.minimum(before, after), np.maximum(before, after))
+    return np.where(np.abs(force - middle) > LONE * float(np.ptp(middle)), middle, force)
+
+
 def read_trial_csv(path: Path | str) -> TrialTable:
     """Read a trial from a CSV file.
 

@@ -213,6 +213,7 @@ _SENTENCES: Final[Mapping[str, str]] = {
     "union_tag_not_found": 'it must name its law, such as law = "yeoh"',
     "string_type": "{input} is not text; write it in quotes",
     "bool_type": "{input} is not allowed; allowed: true, false",
+    "bool_parsing": "{input} is not allowed; allowed: true, false",
     "model_type": "{input} is no table of keys and values",
     "model_attributes_type": "{input} is no table of keys and values",
     "dict_type": "{input} is no table of keys and values",

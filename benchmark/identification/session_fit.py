@@ -248,14 +248,20 @@ def _misfit(trials: Sequence[TrialFit]) -> str:
     )
 
 
+OTHER_UNIT = 4.0
+"""Fold in stiffness between trials from which on one may be in another unit (N and lbf, the nearest two, are 4.4)."""
+
+
 def _scatter(trials: Sequence[TrialFit], pooled: PooledStiffness) -> str:
     if pooled.log_std is None or pooled.log_std <= SCATTER or pooled.next_trial is None:
         return ""
-    logs = [trial.log_stiffness for trial in trials]
+    ordered = sorted(trials, key=lambda trial: trial.log_stiffness)
+    fold = math.exp(ordered[-1].log_stiffness - ordered[0].log_stiffness)
+    unit = ", or of other units" if fold > OTHER_UNIT else ""
     return (
-        f"the trials' stiffness differs up to {math.exp(max(logs) - min(logs)):.3g}-fold: they may be "
-        "different specimens; the interval is for their mean, a further trial has a stiffness factor of "
-        f"{pooled.next_trial[0]:.3g} to {pooled.next_trial[1]:.3g} (95 %)"
+        f"the trials' stiffness differs up to {fold:.3g}-fold: they may be different specimens{unit} (the softest is "
+        f"{ordered[0].name}, the stiffest {ordered[-1].name}); the interval is for their mean, a "
+        f"further trial has a stiffness factor of {pooled.next_trial[0]:.3g} to {pooled.next_trial[1]:.3g} (95 %)"
     )
 
 

@@ -32,7 +32,7 @@ from bench_hw.tables import TrialTable
 from benchmark.errors import InputError
 from benchmark.files.sessions.description import ConditionKeys, SessionFile, TrialEntry
 from benchmark.files.sessions.trials import read_table
-from benchmark.files.units import LENGTH, format_quantity
+from benchmark.files.units import LENGTH, format_quantity, parse_quantity, split_uncertainty
 
 NOTES = (".txt", ".dat", ".asc", ".tab", ".tsv")
 """Endings of text that need not be a trial: without rows of numbers it is left aside where nobody listed it."""
@@ -165,15 +165,16 @@ def with_headers(file: SessionFile, trials: Sequence[Recording]) -> tuple[Sessio
         The headers of one condition contradict each other.
     """
     file, plates = _between_plates(file, trials)
-    told = {name: _tool(name, trials) for name in dict.fromkeys(trial.entry.condition for trial in trials)}
-    told = {name: keys for name, keys in told.items() if keys and "radius" not in file.tool}
+    stated = {name: _stated(file, name) for name in dict.fromkeys(trial.entry.condition for trial in trials)}
+    plates += _other_tools(stated, trials)
+    told = {name: _tool(name, trials) for name, radius in stated.items() if radius is None}
+    told = {name: keys for name, keys in told.items() if keys}
     if not told:
         return file, plates
     conditions = dict(file.conditions)
     for name, keys in told.items():
         own = conditions.get(name, ConditionKeys())
-        if "radius" not in own.tool:
-            conditions[name] = own.model_copy(update={"tool": {**keys, **own.tool}})
+        conditions[name] = own.model_copy(update={"tool": {**keys, **own.tool}})
     common = next(iter(told.values()))
     alike = all(keys == common for keys in told.values()) and len(told) == len({t.entry.condition for t in trials})
     update: dict[str, Any] = {"conditions": conditions}
@@ -184,6 +185,35 @@ def with_headers(file: SessionFile, trials: Sequence[Recording]) -> tuple[Sessio
         *plates,
         f"tool and specimen as the files' headers tell: {'; '.join(said)}",
     ]
+
+
+def _stated(file: SessionFile, condition: str) -> Any:
+    """The tool's radius as a person states it for a condition; None where nobody does."""
+    own = file.conditions.get(condition, ConditionKeys()).tool
+    return own.get("radius", file.tool.get("radius"))
+
+
+def _other_tools(stated: Mapping[str, Any], trials: Sequence[Recording]) -> list[str]:
+    """A warning of files whose headers tell of another tool than is stated."""
+    found: dict[str, str] = {}
+    for trial in trials:
+        radius, text = trial.header.tool_radius, stated[trial.entry.condition]
+        said = None if radius is None or not isinstance(text, str) else _metres(text)
+        if radius is not None and said is not None and abs(radius - said) > 1e-3 * said:
+            found.setdefault(trial.entry.file, f"{format_quantity(radius, LENGTH)}, stated {text}")
+    if not found:
+        return []
+    listed = "; ".join(f"{file}: {tools}" for file, tools in list(found.items())[:5])
+    more = f"; and {len(found) - 5} more" if len(found) > 5 else ""
+    return [f"headers tell of another tool's radius than is stated, which is used: {listed}{more}"]
+
+
+def _metres(text: str) -> float | None:
+    """A length as text in m; None where it is none, which is refused where the tool is made of it."""
+    try:
+        return parse_quantity(split_uncertainty(text)[0], LENGTH)
+    except ValueError:
+        return None
 
 
 CYLINDER: Final[Mapping[str, tuple[str, str]]] = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 import shlex
-from collections.abc import Iterable
+from collections.abc import Container, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from benchmark.errors import InputError
 from benchmark.files.loading import read_file
 from benchmark.files.schema import SCHEMA
 from benchmark.files.shipped import session_folder, shipped_sessions
-from benchmark.files.sources import Source, is_file
+from benchmark.files.sources import Source, is_file, result_of
 
 SESSION_FILE = "session.toml"
 TRIAL_SUFFIXES = ENDINGS
@@ -23,6 +23,8 @@ TRIAL_SUFFIXES = ENDINGS
 _ENDINGS = ", ".join(TRIAL_SUFFIXES)
 RECORDING = ".mcap.part"
 """Of a recording that was not closed: it was cut off, or is still being made."""
+NO_TRIALS = (".", "~$")
+"""How names of hidden files begin, and of the locks that an office program lays beside what it has open."""
 MARKERS = "_markers.csv"
 """In a folder without a session file, NAME_markers.csv holds the marker tracks of the trial NAME."""
 
@@ -65,6 +67,9 @@ def session_table(path: Path) -> tuple[dict[str, Any], Source]:
             raise InputError(f"{path}: {other if path.exists() else missing}.")
         if (path / SESSION_FILE).exists():
             return read_file(path / SESSION_FILE, "session")
+        if verb := result_of(path):
+            allowed = "the folder of trials that it was made from, or another"
+            raise InputError(f"{path}: this is a result of `{verb}`, not a session; allowed: {allowed}.")
         name = path.resolve().name or "session"
         return _made(name, _entries(path, name)), Source(str(path), "", path)
     except OSError as error:
@@ -153,6 +158,59 @@ def unclosed_recordings(source: Source) -> list[str]:
     return _said_of_unclosed(source.folder, " and is left aside")
 
 
+def said_of_folder(source: Source, listed: Sequence[Path], specimen: Path | None, told: Container[str]) -> list[str]:
+    """What stands beside a session's trials, or is left open in its files, and would pass without a word.
+
+    Parameters
+    ----------
+    source : Source
+        Of the session.
+    listed : sequence of Path
+        All files that it names: trials first of all, their markers and films.
+    specimen : Path or None
+        The specimen's file inside the folder, where that is used.
+    told : container of str
+        Keys that `--set` tells.
+    """
+    return [*_unsaid(source, specimen, told), *unclosed_recordings(source), *_unlisted(source, listed)]
+
+
+def _unlisted(source: Source, listed: Sequence[Path]) -> list[str]:
+    """A warning of files that look like trials, beside those that session.toml lists."""
+    if not source.text:
+        return []
+    known, endings = {path.resolve() for path in listed}, {ending_of(path) for path in listed}
+    places = dict.fromkeys([source.folder, *(path.parent for path in listed)])
+    beside = [file for place in places for file in sorted(place.iterdir(), key=_natural) if file.resolve() not in known]
+    found = [
+        file.relative_to(source.folder).as_posix()
+        for file in beside
+        if ending_of(file) in endings and not file.name.startswith(NO_TRIALS) and not _of_trial(file) and is_file(file)
+    ]
+    if not found:
+        return []
+    more = f" and {len(found) - 5} more" if len(found) > 5 else ""
+    return [
+        f"not listed in {SESSION_FILE} and left aside: {', '.join(found[:5])}{more}; what belongs to the session needs "
+        "a [[trials]] of its own there"
+    ]
+
+
+_PROPOSED = re.compile(r'^(?:(radius) = "5 mm"|(contact) = "rigid_bonded"|(kind) = "bonded")\s+# SAY', re.MULTILINE)
+_KEYS = {"radius": "tool.radius", "contact": "tool.contact", "kind": "support.kind"}
+
+
+def _unsaid(source: Source, specimen: Path | None, told: Container[str]) -> list[str]:
+    """A warning of what `session new` assumed and nobody has said since."""
+    found = [_KEYS[str(each.group(each.lastindex or 0))] for each in _PROPOSED.finditer(source.text)]
+    unsaid = [key for key in dict.fromkeys(found) if key not in told]
+    if specimen is not None and specimen.read_text("utf-8-sig").startswith("# SAY:"):
+        unsaid.append(f"the specimen ({specimen.name})")
+    if not unsaid:
+        return []
+    return [f"still assumed, as {SESSION_FILE} was proposed (marked SAY there): {', '.join(unsaid)}"]
+
+
 def _said_of_unclosed(folder: Path, aside: str) -> list[str]:
     """A sentence for each recording in a folder and its conditions that was not closed."""
     places = [folder, *(each for each in folder.iterdir() if each.is_dir() and not each.name.startswith("."))]
@@ -174,7 +232,7 @@ def recover_command(path: Path) -> str:
 def _trial_files(folder: Path) -> list[dict[str, str]]:
     """The names of each trial's `file`, and of its `markers` where it has any."""
     files = (file for file in folder.iterdir() if ending_of(file) in TRIAL_SUFFIXES and not file.is_dir())
-    shown = sorted((file for file in files if not file.name.startswith(".")), key=_natural)
+    shown = sorted((file for file in files if not file.name.startswith(NO_TRIALS)), key=_natural)
     markers = {_of_trial(file): file.name for file in shown if _of_trial(file)}
     trials = [file for file in shown if not _of_trial(file)]
     for stem in markers.keys() - {file.stem for file in trials}:

@@ -36,10 +36,11 @@ from benchmark.files.sessions.recordings import (
     told_heights,
     with_headers,
 )
-from benchmark.files.sessions.session_folder import fingerprint, inside, session_table, unclosed_recordings
+from benchmark.files.sessions.session_folder import fingerprint, inside, said_of_folder, session_table
 from benchmark.files.sessions.trials import (
     Session,
     Trial,
+    doubtful_forces,
     is_synthetic,
     read_markers,
     trial_names,
@@ -99,6 +100,8 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
     tissue, assumed, tissue_file = _specimen(file, source, chosen, read.trials, of_tissue)
     base = base_setup(file, source)
     files = [*_files(trials), *_other_files(file, source, tissue_file)]
+    listed = [*paths_of, *(path for path in (*marker_paths, *film_paths) if path is not None)]
+    beside = said_of_folder(source, listed, tissue_file, inner)
     session = Session(
         name=file.name,
         folder=source.folder,
@@ -110,7 +113,7 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
         camera=file.camera,
         synthetic=file.synthetic or any(is_synthetic(trial.path) for trial in trials),
         trials=tuple(trials),
-        warnings=(*told, *read.warnings, *warnings, *([assumed] if assumed else []), *unclosed_recordings(source)),
+        warnings=(*told, *read.warnings, *warnings, *([assumed] if assumed else []), *beside),
         shown=read.shown,
         settings=settings,
         fingerprint=fingerprint(source.folder, files),
@@ -179,6 +182,8 @@ def _trials(
     named = dict(zip(map(id, file.trials), trial_names(files, source.folder), strict=True))
     names = recorded_names(read, [named[id(each.entry)] for each in read])
     warnings += _copied(read, names)
+    if file.drive.channel == "depth":
+        warnings += doubtful_forces(names, [each.table for each in read])
     tables, counts = even_depths([each.table for each in read])
     trials = []
     for name, each, path, table in zip(names, read, paths, tables, strict=True):

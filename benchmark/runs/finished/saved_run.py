@@ -13,6 +13,7 @@ import numpy as np
 from bench_hw.storage.regular_file import DOCUMENT, read_regular
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
+from benchmark.files.sources import result_of
 from benchmark.models import Array, ModelResult, RunFailure, scenario_drive
 from benchmark.runs.finished.saved_tables import MM, SavedTables, Table, saved_trials
 from benchmark.runs.output.document import SCHEMA
@@ -87,6 +88,12 @@ def _document(folder: Path, name: str) -> dict[str, Any]:
         found = json.loads(read_regular(path, DOCUMENT).decode("utf-8-sig"))
     except (OSError, ValueError, RecursionError) as error:
         reason = getattr(error, "strerror", None) or error
+        verb = result_of(folder)
+        if verb not in ("", "run") and not path.exists():
+            shown = f"its own page is {folder / 'report.html'}"
+            raise InputError(
+                f"{folder} is a result of `{verb}` ({shown}); needed: the result folder of a run"
+            ) from None
         raise InputError(f"{path} cannot be read ({reason}); needed: the result folder of a run") from None
     if not isinstance(found, dict) or found.get("schema") != SCHEMA:
         schema = found.get("schema") if isinstance(found, dict) else None

@@ -75,7 +75,9 @@ def _followed(session: Session, setup: Setup, depth: float, on_step: OnStep) -> 
     try:
         return nearest_curve(setup[0], ramp_of)
     except SolverError as error:
-        raise SolverError(f"session {session.name}: {error}") from None
+        thick = session.specimen.thickness
+        deeper = f"; asked for {1e3 * depth:.4g} mm of a specimen {1e3 * thick:.4g} mm thick: is another unit meant?"
+        raise SolverError(f"session {session.name}: {error}{deeper if depth > thick else ''}") from None
 
 
 def session_sheets(

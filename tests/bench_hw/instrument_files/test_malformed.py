@@ -71,6 +71,8 @@ TEXTS = {
     "an empty cell": (with_row(9, f"{T[9]:.3f},{D[9]:.4f},"), "row 11, column 'Force'.*the cell is empty.*drop_empty"),
     "a dash": (with_row(9, f"{T[9]:.3f},{D[9]:.4f},---"), "row 11, column 'Force', value '---'"),
     "nan": (with_row(9, f"{T[9]:.3f},{D[9]:.4f},nan"), "row 11, column 'Force', value 'nan'"),
+    "meganewtons": (table("Time (s),Distance (mm),Force (MN)", [*lines()[:40], f"{T[40]:.3f},1,4000", *lines()[41:]]), "row 42, column 'Force', value '4e.09 N'.*up to 1e.09 N.*Force:UNIT"),
+    "a row of nan": (with_row(30, "NaN,NaN,NaN"), "row 32, column 'Time', value 'NaN'.*drop_empty"),
     "inf": (with_row(9, f"{T[9]:.3f},inf,{F[9]:.4f}"), "row 11, column 'Distance', value 'inf'"),
     "a short row": (with_row(9, f"{T[9]:.3f},{D[9]:.4f}"), "row 11, column 'Force'"),
     "beyond a double": (with_row(9, f"{T[9]:.3f},{D[9]:.4f},1e999"), "row 11.*beyond what a double holds"),

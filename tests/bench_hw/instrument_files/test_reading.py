@@ -204,6 +204,9 @@ def test_the_number_of_a_column_is_no_unit():
         ("つかみ具間変位", "displacement"),
         ("応力", "stress"),
         ("Spostamento [mm]", "displacement"),
+        ("Weg/mm", "displacement"),
+        ("Kraft/mN", "force"),
+        ("Spannung/N/mm2", "stress"),
         ("Allongement", "displacement"),
     ],
 )
@@ -340,3 +343,77 @@ def test_the_touch_is_found_through_noise(lead, law, off):
 def test_what_is_asked_for_can_be_typed_as_it_stands(key, example, asked):
     """It named options that `bench_hw import` has not, and values with blanks that a shell takes apart."""
     assert asking_key(key, example) == asked
+
+
+def test_rows_without_a_number_do_not_end_a_record(tmp_path):
+    """A row of NaN amid a press was taken for the names of another table: all behind it was left aside."""
+    press = samples.press(rate=20.0, hold=0.5)
+    rows = samples.rows(press.time, press.depth, press.force, digits=(3, 5, 6))
+    path = tmp_path / "a.csv"
+    path.write_text(
+        "\n".join(["Time (s),Distance (mm),Force (N)", *rows[:30], "NaN,NaN,NaN", *rows[31:], "NaN,NaN,NaN"])
+    )
+    (record,) = read_instrument_file(path, Told(drop_empty=True)).records
+    assert len(record.table.time) == len(rows) - 1
+    assert record.table.force.max() == pytest.approx(press.force.max(), rel=1e-3)
+
+
+def test_a_glitch_of_one_row_does_not_tell_which_way_is_pressing(tmp_path):
+    """A row of 9999.9 N on the way back turned nothing here, but put the touch there: 2 mm of depth were 0.3."""
+    press = samples.press(rate=20.0, hold=0.5)
+    force = press.force.copy()
+    force[int(0.7 * len(force))] = 9999.9
+    path = tmp_path / "a.csv"
+    rows = samples.rows(press.time, press.depth, force, digits=(3, 5, 6))
+    path.write_text("\n".join(["Time (s),Distance (mm),Force (N)", *rows]))
+    (record,) = read_instrument_file(path).records
+    assert record.table.depth.max() == pytest.approx(press.depth.max() * 1e-3, rel=0.02)
+
+
+def test_what_is_told_beside_what_the_file_says_is_shown(tmp_path):
+    """A rate beside a column of times halved them, a unit beside the header's took its place, without a word."""
+    one = press()
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(["Time (s),Distance (mm),Force (N)",
+                               *samples.rows(one.time, one.depth, one.force, digits=(3, 5, 6))]))  # fmt: skip
+    (record,) = read_instrument_file(path, Told({"force": "Force:mN", "depth": "Distance:mm"}, rate=100.0)).records
+    assert record.notes[:2] == (
+        "times are counted at 100 Hz, as told, not read from the file's own column 'Time'",
+        "the force is read in mN, as told, where the file says N",
+    )
+
+
+def test_a_minus_sign_of_typesetting_is_a_minus(tmp_path):
+    """Programs write it under Scandinavian settings: all rows above the touch were no numbers."""
+    one = press()
+    rows = samples.rows(one.time, one.depth, one.force, digits=(3, 5, 6), sign=",", between=";")
+    path = tmp_path / "a.csv"
+    text = "\n".join(["Time (s);Distance (mm);Force (N)", *(row.replace("-", "\N{MINUS SIGN}") for row in rows)])
+    path.write_text(text, encoding="utf-8")
+    (record,) = read_instrument_file(path).records
+    assert len(record.table.time) == one.time.size
+
+
+def test_where_no_row_is_one_as_told_what_was_told_is_named(tmp_path):
+    one = press()
+    rows = samples.rows(one.time, one.depth, one.force, digits=(3, 5, 6), sign=",", between=";")
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(["Time (s);Distance (mm);Force (N)", *rows]))
+    with pytest.raises(TableError, match=r"no rows of numbers were found with the decimal sign '\.', as told"):
+        read_instrument_file(path, Told(decimal="."))
+
+
+@pytest.mark.parametrize(
+    "mark", ["'", "\N{RIGHT SINGLE QUOTATION MARK}", "\N{NARROW NO-BREAK SPACE}", "\N{NO-BREAK SPACE}"]
+)
+def test_marks_between_thousands_are_passed_over(tmp_path, mark):
+    """Such numbers were called none, and the way out that was named left out all rows above 1000 mN."""
+    one = press()
+    rows = [
+        f"{t:.2f};{d:.4f};{1e3 * f:,.1f}".replace(",", mark)
+        for t, d, f in zip(one.time, one.depth, one.force, strict=True)
+    ]
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(["Time (s);Distance (mm);Force (mN)", *rows]), encoding="utf-8")
+    (record,) = read_instrument_file(path).records
+    assert record.table.force.max() == pytest.approx(one.force.max(), rel=1e-3)

@@ -65,6 +65,11 @@ def test_an_unknown_key_with_nothing_near_lists_what_is_known():
     assert refusal({"zzz": 1}) == "f.toml, zzz: this key is not known; known: kind, parts, flag."
 
 
+def test_a_text_that_is_neither_yes_nor_no_is_told_in_plain_words():
+    for value in ("ja", 3.5):
+        assert refusal({"flag": value}) == f"f.toml, flag: {value!r} is not allowed; allowed: true, false."
+
+
 def test_an_unknown_key_of_a_law_is_compared_with_that_law():
     said = refusal({"parts": [{"law": {"law": "gent", "mu": "1 kPa", "jm": 2.0, "jmm": 3.0}}]})
     assert said == "f.toml, parts[#1].law.jmm: this key is not known; did you mean jm?"

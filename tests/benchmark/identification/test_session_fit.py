@@ -175,6 +175,8 @@ def test_large_scatter_is_said_with_the_range_of_a_further_trial(session, silico
     text = " ".join(fit.warnings)
     assert re.search(r"differs up to [\d.]+-fold: they may be different specimens", text)
     assert f"{fit.stiffness.next_trial[1]:.3g}" in text
+    ordered = sorted(fit.trials, key=lambda trial: trial.log_stiffness)
+    assert f"(the softest is {ordered[0].name}, the stiffest {ordered[-1].name})" in text
 
 
 @pytest.mark.parametrize(("trials", "found"), [(1, "a single trial"), (2, "two trials")])

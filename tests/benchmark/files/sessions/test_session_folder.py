@@ -19,7 +19,7 @@ def test_a_session_file_is_read(session_folder):
 
 
 def test_without_one_the_folder_is_a_condition(tmp_path, write_trial):
-    for name in ("t_10.csv", "t_2.csv", "t_1.CSV", ".hidden.csv"):
+    for name in ("t_10.csv", "t_2.csv", "t_1.CSV", ".hidden.csv", "~$t_2.csv"):
         write_trial(tmp_path / "day" / name)
     (tmp_path / "day" / "README.md").write_text("text")
     (tmp_path / "day" / "odd.csv").mkdir()
@@ -121,3 +121,13 @@ def test_a_fingerprint_is_of_names_and_contents_in_any_order(session_folder):
     assert fingerprint(session_folder, [one]) != first
     two.write_text(two.read_text() + "\n")
     assert fingerprint(session_folder, [one, two]) != first
+
+
+@pytest.mark.parametrize(("document", "verb"), [("fit.json", "fit"), ("results.json", "run")])
+def test_a_result_is_no_session(tmp_path, document, verb):
+    """Its tables were taken for trials, and the refusal asked for their columns."""
+    for name in (document, "tables/candidates.csv"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("x,y\n1,2\n")
+    with pytest.raises(InputError, match=f"this is a result of `{verb}`, not a session"):
+        session_table(tmp_path)

@@ -10,9 +10,10 @@ from bench_hw.trial_file import DepthRecord, ForceRecord, TrialHeader, open_tria
 from benchmark.errors import InputError
 from benchmark.files import load_session, load_tissue
 from benchmark.files.load import Load
+from benchmark.files.sessions.proposal import propose, write_proposal
 from benchmark.files.sessions.session_loading import assumed_specimen
 from benchmark.files.tool import Support, Tool
-from tests.instruments.samples import jpk
+from tests.instruments.samples import jpk, press, rows
 
 DATA = os.environ.get("TISSUEBENCH_DATA")
 
@@ -401,3 +402,39 @@ def test_the_tool_of_an_atomic_force_curve_is_asked_for(tmp_path):
         curve, {"tool.radius": "5 um", "tool.edge_radius": "5 um", "tool.contact": "rigid_frictionless"}
     )
     assert told.tool.radius == 5e-6
+
+
+def test_a_trial_that_is_added_but_not_listed_is_told_of(session_folder, write_trial):
+    """It was passed over without a word."""
+    assert not any("not listed" in each for each in load_session(session_folder).warnings)
+    for name in ("three.csv", ".four.csv", "~$one.csv", "one_markers.csv", "notes.txt"):
+        write_trial(session_folder / name)
+    (said,) = [each for each in load_session(session_folder).warnings if "not listed" in each]
+    assert said.startswith("not listed in session.toml and left aside: three.csv; ")
+
+
+def test_what_a_proposal_assumed_is_told_until_somebody_says_it(tmp_path, write_trial):
+    """With the proposed files in the folder nothing was said to be assumed any more."""
+    write_trial(tmp_path / "one.csv")
+    write_proposal(tmp_path, propose(tmp_path))
+    (said,) = [each for each in load_session(tmp_path).warnings if "still assumed" in each]
+    assert said.endswith(": tool.radius, tool.contact, support.kind, the specimen (specimen.toml)")
+    text = (tmp_path / "session.toml").read_text().replace('radius = "5 mm"', 'radius = "4 mm"')
+    (tmp_path / "session.toml").write_text(text)
+    told = {"support.kind": "half_space"}
+    (said,) = [each for each in load_session(tmp_path, told, "skin_forearm").warnings if "still assumed" in each]
+    assert said.endswith(": tool.contact")
+
+
+def test_a_stated_tool_settles_what_headers_tell_otherwise(tmp_path):
+    """The refusal of two tools named `--set tool.radius`, which was refused in the same words."""
+    one = press()
+    lines = rows(one.time, one.depth, one.force, digits=(3, 5, 6))
+    for name, diameter in (("a", 8), ("b", 10)):
+        head = f"Punch diameter,{diameter},mm\n\nTime (s),Distance (mm),Force (N)"
+        (tmp_path / f"{name}.csv").write_text("\n".join([head, *lines]))
+    assert "different tools (4 mm, 5 mm)" in refusal(tmp_path)
+    session = load_session(tmp_path, {"tool.radius": "5 mm +/- 1 %"})
+    assert session.tool.radius == 5e-3
+    (said,) = [each for each in session.warnings if "another tool" in each]
+    assert said.endswith("which is used: a.csv: 4 mm, stated 5 mm +/- 1 %")

@@ -1,10 +1,19 @@
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from bench_hw.tables import TrialTable
 from benchmark.errors import InputError
 from benchmark.files.sessions.description import TrialEntry
-from benchmark.files.sessions.trials import is_synthetic, read_markers, read_table, trial_names, trial_paths
+from benchmark.files.sessions.trials import (
+    doubtful_forces,
+    is_synthetic,
+    read_markers,
+    read_table,
+    trial_names,
+    trial_paths,
+)
 from benchmark.files.sources import Source
 
 FOLDER = Path("s")
@@ -88,3 +97,33 @@ def test_a_native_file_that_is_none_is_an_input_error(tmp_path):
     path.write_bytes(b"not a trial")
     with pytest.raises(InputError, match=r"bad\.mcap"):
         read_table(path)
+
+
+def press(force=None):
+    depth = np.concatenate([np.linspace(-0.3, 2.0, 120), np.linspace(2.0, -0.3, 120)]) * 1e-3
+    clean = np.clip(1e3 * depth, 0.0, None) ** 1.5 + 1e-3 * np.random.default_rng(1).normal(size=depth.size)
+    return TrialTable(0.02 * np.arange(depth.size), depth, clean if force is None else force(clean), {}, "a.csv", {})
+
+
+def glitch(force):
+    return np.where(np.arange(force.size) == 70, 9999.9, force)
+
+
+def test_a_force_that_no_tissue_makes_is_told():
+    """A sensor at its end and a glitch of one row went into the fit without a word."""
+    tables = [press(), press(lambda force: np.minimum(force, 1.5)), press(glitch), press(lambda force: force.round(1))]
+    end, lone = doubtful_forces(["whole", "end", "lone", "coarse"], tables)
+    assert "end: the force stands at 1.5 N" in end
+    assert "lone: the force is 9999.9 N at 1.4 s, in a single row" in lone
+
+
+def test_a_press_upside_down_is_told():
+    """Among others it went into the fit as one that touches at its deepest, without a word."""
+    one = press()
+    turned = TrialTable(one.time, -one.depth, -one.force, {}, "b.csv", {})
+    pulled = TrialTable(
+        one.time, one.depth, one.force - 0.2 * np.exp(-(((one.time - 4.6) / 0.1) ** 2)), {}, "c.csv", {}
+    )
+    (said,) = doubtful_forces(["up", "down", "pulled"], [one, turned, pulled])
+    assert said.startswith("down: force and depth only fall, to -2.8")
+    assert "-2 mm" in said

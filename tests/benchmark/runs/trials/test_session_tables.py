@@ -5,6 +5,7 @@ from contextlib import nullcontext
 import numpy as np
 import pytest
 
+from benchmark.errors import SolverError
 from benchmark.files import Tool, load_session, scaled_tissue
 from benchmark.models import prepare
 from benchmark.models.prepare import scenario_drive
@@ -72,6 +73,14 @@ def test_a_flat_tool_that_slides_is_followed_by_the_nearest_tools(pad) -> None:
     tools = [tool for tool, _ in found.followed[setup]]
     assert tools[0] == setup[0]
     assert len(tools) > 1
+
+
+def test_a_press_through_the_specimen_is_asked_about(pad) -> None:
+    """Micrometres under `depth_mm` ended in how far the elements come, without the depth that was asked for."""
+    session = pad('contact = "rigid_bonded"')
+    setup = (session.trials[0].tool, session.trials[0].support)
+    with pytest.raises(SolverError, match=r"asked for 3300 mm of a specimen 6 mm thick: is another unit meant\?"):
+        base_curves(session, {setup: 3.3}, Quiet())
 
 
 @pytest.mark.slow
