@@ -174,7 +174,9 @@ RESULTS: Final = {
 
 
 def result_of(folder: Path) -> str:
-    """The verb whose result a folder is; empty for any other."""
+    """The verb whose result a folder is, with the manifest that all have; empty for any other."""
+    if not is_file(folder / "manifest.json"):
+        return ""
     return next((verb for name, verb in RESULTS.items() if is_file(folder / name)), "")
 
 
