@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 from pydantic_core.core_schema import ValidationInfo
 
@@ -160,24 +160,6 @@ def is_file(path: Path) -> bool:
         return path.is_file()
     except (OSError, ValueError):
         return False
-
-
-RESULTS: Final = {
-    "fit.json": "fit",
-    "discovery.json": "discover",
-    "sweep.json": "sweep",
-    "dossier.json": "dossier",
-    "report.json": "report",
-    "results.json": "run",
-}
-"""The verbs by the document that each writes into its result's folder."""
-
-
-def result_of(folder: Path) -> str:
-    """The verb whose result a folder is, with the manifest that all have; empty for any other."""
-    if not is_file(folder / "manifest.json"):
-        return ""
-    return next((verb for name, verb in RESULTS.items() if is_file(folder / name)), "")
 
 
 def read_toml(path: Path, what: str) -> tuple[dict[str, Any], Source]:

@@ -42,6 +42,8 @@ def lay_out(problem: Problem) -> Mesh:
 
 def holds_edge(problem: Problem) -> bool:
     """Whether a fan of elements round the tool's edge holds the square root of the distance from it."""
+    if problem.geometry != "axisymmetric":
+        return False
     fan = _layout(problem).tool_fan
     return fan is not None and fan.square_root
 

@@ -124,7 +124,7 @@ def estimate_mesh_error(model: Model, load: Load, solution: Solution, *, first_o
         return None
     began = clock.process_time()
     quantity = "depth" if load.control == "force" else "force"
-    held = model.problem.geometry == "axisymmetric" and holds_edge(model.problem)
+    held = holds_edge(model.problem)
     edges = EDGES[: 1 if held else 2 if first_order else 3]
     for step, follow in _judged_steps(model, reached):
         pressed = _Pressed.of(solution, step)
@@ -164,7 +164,7 @@ def error_at_edge(model: Model, solution: Solution) -> FloatArray:
     """
     work = np.abs(solution.depth * solution.force)
     out: FloatArray = np.zeros(len(work))
-    if model.problem.geometry != "axisymmetric" or not holds_edge(model.problem):
+    if not holds_edge(model.problem):
         return out
     edge, nodes = np.array([model.problem.tool.radius, 0.0]), solution.mesh.nodes
     away = np.linalg.norm(nodes - edge, axis=1)

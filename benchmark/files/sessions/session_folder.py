@@ -7,7 +7,7 @@ import re
 import shlex
 from collections.abc import Container, Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from bench_hw.instrument_files import ENDINGS, ending_of
 from bench_hw.storage.folder_lock import in_use
@@ -15,7 +15,7 @@ from benchmark.errors import InputError
 from benchmark.files.loading import read_file
 from benchmark.files.schema import SCHEMA
 from benchmark.files.shipped import session_folder, shipped_sessions
-from benchmark.files.sources import Source, is_file, result_of
+from benchmark.files.sources import Source, is_file
 
 SESSION_FILE = "session.toml"
 TRIAL_SUFFIXES = ENDINGS
@@ -156,6 +156,26 @@ def unclosed_recordings(source: Source) -> list[str]:
     if given.name != SESSION_FILE and is_file(given):
         return []
     return _said_of_unclosed(source.folder, " and is left aside")
+
+
+RESULTS: Final = {
+    "fit.json": "fit",
+    "discovery.json": "discover",
+    "sweep.json": "sweep",
+    "dossier.json": "dossier",
+    "report.json": "report",
+    "results.json": "run",
+}
+"""The verbs by the document that each writes into its result's folder."""
+
+
+def result_of(folder: Path) -> str:
+    """The verb whose result a folder is, with the manifest that all have; empty for any other."""
+    from reports.manifest import read_manifest  # pages and their pictures, which reading a session does not need
+
+    if read_manifest(folder) is None:
+        return ""
+    return next((verb for name, verb in RESULTS.items() if is_file(folder / name)), "")
 
 
 def said_of_folder(source: Source, listed: Sequence[Path], specimen: Path | None, told: Container[str]) -> list[str]:

@@ -13,7 +13,7 @@ import numpy as np
 from bench_hw.storage.regular_file import DOCUMENT, read_regular
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
-from benchmark.files.sources import result_of
+from benchmark.files.sessions.session_folder import result_of
 from benchmark.models import Array, ModelResult, RunFailure, scenario_drive
 from benchmark.runs.finished.saved_tables import MM, SavedTables, Table, saved_trials
 from benchmark.runs.output.document import SCHEMA

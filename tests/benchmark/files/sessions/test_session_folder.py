@@ -130,6 +130,6 @@ def test_a_result_is_no_session(tmp_path, document, verb):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("x,y\n1,2\n")
     assert session_table(tmp_path)[0]["trials"]  # a document of that name may be anybody's
-    (tmp_path / "manifest.json").write_text("{}")
+    (tmp_path / "manifest.json").write_text('{"program": "tissuebench", "schema": 1}')
     with pytest.raises(InputError, match=f"this is a result of `{verb}`, not a session"):
         session_table(tmp_path)
