@@ -149,10 +149,20 @@ def how_to(path: Path, gate: Path | None = None) -> str:
     return f"make one from this version with: {made}"
 
 
+def _each_key_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A JSON object; raises ValueError where a key is there twice, as after a merge that kept both sides."""
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for index, name in enumerate(names) if name in names[:index])
+        raise ValueError(f"the key {twice!r} is there twice, as after a merge that kept both sides")
+    return table
+
+
 def _table(path: Path, gate: Path | None) -> dict[str, Any]:
     away = f"move it away and {how_to(path, gate)}"
     try:
-        table = json.loads(read_regular(path, DOCUMENT).decode("utf-8-sig"))
+        table = json.loads(read_regular(path, DOCUMENT).decode("utf-8-sig"), object_pairs_hook=_each_key_once)
     except FileNotFoundError:
         raise NotComparableError(f"there is no baseline {path} to compare with; {how_to(path, gate)}") from None
     except OSError as error:

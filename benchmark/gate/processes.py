@@ -20,6 +20,7 @@ from benchmark.errors import InputError, NotComparableError, SolverError, Tissue
 from benchmark.gate.measuring.costs import KEPT_MEMORY
 from benchmark.gate.plan import MEASURING, GatePlan
 from benchmark.gate.statistics import log_ratio
+from benchmark.models.user_file import NOT_FROM
 
 PATIENCE = 5.0
 LAST_LINES = 3
@@ -36,6 +37,8 @@ class Side:
         Folder with the packages to measure.
     revision
         What the tree is of, for messages; None for the version that runs this check.
+    moved
+        For a user's own models of another revision: their repository, and the folder with that revision's files.
 
     Raises
     ------
@@ -45,7 +48,7 @@ class Side:
         The same of another revision.
     """
 
-    def __init__(self, tree: Path, revision: str | None = None):
+    def __init__(self, tree: Path, revision: str | None = None, moved: tuple[Path, Path] | None = None):
         self._revision = revision
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115 (closed on leaving)
         command = [sys.executable, "-P", str(MEASURING / "child.py"), str(MEASURING.parent), str(tree)]
@@ -54,7 +57,7 @@ class Side:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._errors,
-            env=_environment(tree, temporary=revision is not None),
+            env=_environment(tree, temporary=revision is not None, moved=moved),
             text=True,
         )
 
@@ -121,23 +124,36 @@ class Side:
         self._errors.close()
 
 
-def _environment(tree: Path, *, temporary: bool) -> dict[str, str]:
+def _environment(tree: Path, *, temporary: bool, moved: tuple[Path, Path] | None = None) -> dict[str, str]:
     """One thread in every library, kept memory, no film kept from before, and the packages of `tree` first.
 
     A tree that is where packages are installed is found anyway, and must not go before the standard library.
     Code of a temporary tree is compiled once for all its processes, whatever the caller wants for other folders.
+    What `moved` models import from folders of their repository comes from the other revision, too.
     """
     first = [] if str(tree) == sysconfig.get_path("purelib") else [str(tree)]
-    paths = os.pathsep.join([*first, *filter(None, [os.environ.get("PYTHONPATH")])])
+    moved_paths = [] if moved is None else _moved_paths(*moved, apart=tree)
+    paths = os.pathsep.join([*first, *moved_paths, *filter(None, [os.environ.get("PYTHONPATH")])])
     fixed = {
         "PYTHONPATH": paths,
         "PYTHONHASHSEED": "0",
         "TISSUEBENCH_CACHE": "",
+        NOT_FROM: "" if moved is None else str(moved[0]),
         **KEPT_MEMORY,
         **dict.fromkeys(THREAD_VARIABLES, "1"),
     }
     left_out = {"PYTHONDONTWRITEBYTECODE"} if temporary else set()
     return {**{name: value for name, value in os.environ.items() if name not in left_out}, **fixed}
+
+
+def _moved_paths(source: Path, target: Path, *, apart: Path) -> list[str]:
+    """Folders in `target` in the place of those in `source` that modules are imported from; `apart` stays."""
+    told = os.environ.get("PYTHONPATH", "").split(os.pathsep)
+    here = [entry for entry in sys.path if entry and Path(entry).resolve() != Path.cwd()]
+    folders = [Path(entry).resolve() for entry in (*filter(None, told), *here)]
+    inside = [each for each in folders if each.is_relative_to(source) and each != apart.resolve()]
+    moved = dict.fromkeys(target / each.relative_to(source) for each in inside)
+    return [str(each) for each in moved if each.is_dir()]
 
 
 @dataclass(frozen=True)

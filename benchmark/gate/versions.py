@@ -124,7 +124,8 @@ def rival(plan: GatePlan, revision: str) -> Iterator[OtherRevision]:
             packages = tree / PRODUCT.relative_to(repository.resolve())
             yield OtherRevision(commit, Party(partial(Side, packages, revision), plan))
         else:
-            yield OtherRevision(commit, Party(partial(Side, PRODUCT, revision), plan.moved(repository.resolve(), tree)))
+            moved = (repository.resolve(), tree)
+            yield OtherRevision(commit, Party(partial(Side, PRODUCT, revision, moved), plan.moved(*moved)))
 
 
 def gated_values(party: Party) -> dict[str, StoredValue]:

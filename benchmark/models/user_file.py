@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import hashlib
 import inspect
+import os
 import sys
 import traceback
 from collections.abc import Callable, Iterator
@@ -24,6 +25,10 @@ from benchmark.models.model_result import UncoveredError
 
 NAME = "NAME"
 LONGEST_NAME = 60
+NOT_FROM = "TISSUEBENCH_NOT_FROM"
+"""Environment variable: a folder that a user's file must import nothing from, since another revision of it is meant."""
+LIBRARIES = frozenset({"site-packages", "dist-packages"})
+PRODUCT = frozenset({"bench_hw", "benchmark", "fem", "reports", "wavemodel"})
 
 
 @dataclass(frozen=True)
@@ -84,6 +89,20 @@ def _name(tree: ast.Module, path: Path) -> str:
     return path.stem
 
 
+def modules_of(folder: Path) -> dict[str, Path]:
+    """Imported modules whose files lie in a folder, by name; neither installed libraries nor this product's own."""
+    files = {
+        name: Path(file)
+        for name, module in tuple(sys.modules.items())
+        if (file := getattr(module, "__file__", None)) and name.partition(".")[0] not in PRODUCT
+    }
+    return {
+        name: file
+        for name, file in files.items()
+        if (whole := file.resolve()).is_relative_to(folder) and not LIBRARIES & set(whole.parts)
+    }
+
+
 class UserCode:
     """The functions of a user's file, its top level run once.
 
@@ -93,7 +112,7 @@ class UserCode:
     Raises
     ------
     InputError
-        Any other exception in the file, with its line.
+        Any other exception in the file, with its line; a module from the folder `NOT_FROM`.
     """
 
     def __init__(self, file: UserFile):
@@ -101,9 +120,11 @@ class UserCode:
         self._module = ModuleType(f"user_model_{Path(file.path).stem}")
         self._module.__file__ = file.path
         sys.modules[self._module.__name__] = self._module
+        self._known = len(sys.modules)
         forbid_ending(file.path)
         with self._guarded(1):
             exec(compile(file.text, file.path, "exec"), self._module.__dict__)
+        self._see_imports()
 
     def has(self, function: str) -> bool:
         """Whether the file has a callable of that name."""
@@ -113,7 +134,23 @@ class UserCode:
         """Call a function that the file has and return what it returns."""
         called: Callable[..., Any] = getattr(self._module, function)
         with self._guarded(self._line(function)):
-            return called(*arguments, **keywords)
+            found = called(*arguments, **keywords)
+        self._see_imports()
+        return found
+
+    def _see_imports(self) -> None:
+        """Refuse modules of the folder `NOT_FROM`; looked at only where new ones came."""
+        if len(sys.modules) == self._known:
+            return
+        self._known = len(sys.modules)
+        away = os.environ.get(NOT_FROM)
+        found = {} if not away else modules_of(Path(away).resolve())
+        if found:
+            name, place = next(iter(found.items()))
+            raise InputError(
+                f"{self._file.path} imports {name} from {place}, not the other revision's; let the file find "
+                "it from its own place (sys.path, __file__), or give its folder in PYTHONPATH"
+            )
 
     def fault(self, function: str, text: str) -> InputError:
         """The error for what a function returned, or for one that is missing."""

@@ -108,3 +108,37 @@ def test_a_revision_is_the_products_unless_the_gate_has_own_models(tiny_gate) ->
     assert subject(load_plan(gate.path)) == gate.folder
     gate.change("gate.toml", '\nown = "my_model.py"', "")
     assert subject(load_plan(gate.path)) == PRODUCT
+
+
+def test_a_package_of_the_users_repository_comes_from_the_revision_too(
+    repository, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with_package(repository)
+    monkeypatch.setenv("PYTHONPATH", str(repository.folder / "src"))
+    outcome = run(repository, tmp_path)
+    assert [row.baseline for row in outcome.verdict.accuracy] == pytest.approx([5.0, 4.0])
+    assert [row.now for row in outcome.verdict.accuracy] == pytest.approx([5.7, 4.56])
+
+
+def test_a_module_that_only_this_version_can_give_cannot_be_compared(
+    repository, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package = with_package(repository)
+    finder = f'import sys\nsys.path.insert(0, "{package.parent}")\n'
+    repository.model.write_text(finder + repository.model.read_text())
+    git(repository.folder, *AUTHOR, "commit", "--quiet", "--all", "-m", "finder")
+    with pytest.raises(NotComparableError, match=r"imports springs_own from .*gate/src/springs_own\.py"):
+        run(repository, tmp_path)
+
+
+def with_package(repository) -> Path:
+    """Give the model a module of its own repository, committed, and 14 % off since."""
+    package = repository.folder / "src" / "springs_own.py"
+    package.parent.mkdir()
+    package.write_text("FACTOR = 1.0\n")
+    repository.change("my_model.py", "import numpy as np", "import numpy as np\nfrom springs_own import FACTOR")
+    repository.change("my_model.py", "np.outer(force,", "np.outer(FACTOR * force,")
+    git(repository.folder, "add", ".")
+    git(repository.folder, *AUTHOR, "commit", "--quiet", "-m", "package")
+    package.write_text("FACTOR = 1.14\n")
+    return package

@@ -116,3 +116,12 @@ def test_ratios_carry_over_to_the_same_processor_and_python() -> None:
     assert not here.same_as(here.model_copy(update={"processor": "B"}))
     assert here.differences(here) == []
     assert here.differences(here.model_copy(update={"packages": {"numpy": "2.5"}})) == ["numpy 2.4.6 (here 2.5)"]
+
+
+def test_a_merge_that_kept_both_sides_is_refused(baseline: Baseline, tmp_path: Path) -> None:
+    path = write_baseline(tmp_path / "b.json", baseline)
+    text = path.read_text()
+    assert '"value": 5.0,' in text
+    path.write_text(text.replace('"value": 5.0,', '"value": 5.1,\n"value": 5.0,'))
+    with pytest.raises(InputError, match=r"the key 'value' is there twice.*--accept"):
+        read_baseline(path)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from benchmark.cli.app import main
+from benchmark.gate.accuracy import tolerance_of
 from benchmark.gate.plan import load_plan
 from benchmark.gate.versions import PRODUCT
 
@@ -20,6 +21,8 @@ def test_the_gate_file_can_be_used(tmp_path: Path) -> None:
     plan = load_plan(tmp_path / "gate.toml")
     assert plan.file.timing.margin == pytest.approx(0.15)
     assert plan.jobs[0]["calls"] == tomllib.loads(block)["timed"][0]["calls"]
+    for name, unit in (("max_deformation_mm.skin", "mm"), ("surface_at_2_radii_mm", "mm"), ("peak_force_N", "N")):
+        assert tolerance_of(f"press.{name}", unit, plan.file.tolerances)[0] == pytest.approx(1e-3)
 
 
 def test_every_option_it_names_exists(capfd: pytest.CaptureFixture[str]) -> None:
