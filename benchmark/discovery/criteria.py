@@ -6,13 +6,13 @@ first choice
     Chosen when the method was first written, from the reason given, and not tuned since.
 development seeds, or seed 51, or pig tissue
     Answers there made the value what it is: seeds 21 to 24, 31 and 33 of the blind generator, whose hidden forms the
-    author knew; the misses of seed 51; measured indentations of pig tissue (`docs/blind.md`).
+    author knew; the misses of seed 51; measured indentations of pig tissue (`docs/blind.md`, "What was tuned on what").
 
 cost
     Keeps the search short; not tuned for what is found.
 
-The table in `docs/blind.md` (seed 71) was made with these values and has changed none of them. Numerical choices that
-decide nothing (steps of differences, grids, how finely a trial is read) stand where they are used.
+The table in `docs/blind-record.md` (seed 71) was made with these values and has changed none of them. Numerical choices
+that decide nothing (steps of differences, grids, how finely a trial is read) stand where they are used.
 """
 
 from __future__ import annotations
@@ -241,7 +241,7 @@ FORM_OFF = 0.3
 (a standard deviation). A further effect must foretell trials better than the first one so bent.
 
 What other forms of one effect differ by: its parameters may differ by as much between conditions (`SAME_SHARE`). Chosen
-on sessions that had been looked at (docs/blind.md, "False second effects").
+on sessions that had been looked at (docs/blind-record.md, "False second effects").
 """
 MOSTLY_OWN = 0.5
 """Share of its gain that a further effect keeps beside forms that are bent, from which it is its own: most of it. Set
