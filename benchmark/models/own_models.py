@@ -15,7 +15,7 @@ from benchmark.model_file import RepairedModel
 from benchmark.models.fea_results import READERS
 from benchmark.models.model_result import ModelResult, profile_radii, slips
 from benchmark.models.prepare import scenario_drive
-from benchmark.models.reference_table import check_layers, history, parted, profile, read_rows, template
+from benchmark.models.reference_table import check_at_peak, check_layers, history, parted, profile, read_rows, template
 from benchmark.models.user_file import UserFile
 from reports import write_csv
 
@@ -56,6 +56,7 @@ def read_reference(path: Path, scenario: Scenario) -> Reference:
     drive, names = scenario_drive(scenario), scenario.tissue.layer_names
     check_layers(axis, names)
     found = history(axis, drive, names)
+    check_at_peak(off, drive, "with a radius above 0; that is the profile at the peak load", unsaid=0.0)
     peak, radii = int(np.abs(drive.value).argmax()), profile_radii(scenario.tool.radius)
     shape = profile(off, names, radii, found.top[peak])
     result = ModelResult(

@@ -65,7 +65,7 @@ class ReferenceHistory:
 
 
 def read_rows(path: Path) -> ReferenceRows:
-    """The columns as numbers; empty cells only in `radius_mm`.
+    """The columns as numbers; empty cells only in `radius_mm`, and in steps, times and loads beside a radius above 0.
 
     Raises
     ------
@@ -78,8 +78,9 @@ def read_rows(path: Path) -> ReferenceRows:
         cells, at = dict(zip(source.names, texts, strict=True)), np.array(lines, dtype=np.int64)
         known = [name for name in NUMBERS if name in cells]
         columns: dict[str, Array] = {
-            name: numbers_of(path, name, cells[name], at, empty=name == "radius_mm") for name in known
+            name: numbers_of(path, name, cells[name], at, empty=name != "fem_mm") for name in known
         }
+        _check_empty(path, columns, at)
     except TableError as error:
         raise InputError(f"{error}") from None
     if not lines:
@@ -87,10 +88,25 @@ def read_rows(path: Path) -> ReferenceRows:
     return ReferenceRows(path, columns, cells["layer"], at)
 
 
+def _check_empty(path: Path, columns: Mapping[str, Array], lines: Places) -> None:
+    """Refuse an empty step, time or load of a row on the axis; rows of the profile may leave them out."""
+    off = _off(columns, lines.size)
+    for name, column in columns.items():
+        empty = np.flatnonzero(np.isnan(column) & ~off)
+        if empty.size and name != "radius_mm":
+            raise TableError(
+                path, "the cell is empty", "a finite number", row=int(lines[empty[0]]), column=name, value=""
+            )
+
+
+def _off(columns: Mapping[str, Array], count: int) -> NDArray[np.bool_]:
+    """(k,) whether a row is off the axis: its `radius_mm` is there and not 0."""
+    return np.asarray(np.nan_to_num(columns.get("radius_mm", np.zeros(count))) != 0.0)
+
+
 def parted(rows: ReferenceRows) -> tuple[ReferenceRows, ReferenceRows]:
     """Rows on the axis, and those of the profile at peak load, which have a `radius_mm` above 0."""
-    radius = rows.columns.get("radius_mm", np.zeros(rows.line.size))
-    off = np.nan_to_num(radius) != 0.0
+    off = _off(rows.columns, rows.line.size)
     return rows.chosen(~off), rows.chosen(off)
 
 
@@ -127,16 +143,8 @@ def history(rows: ReferenceRows, drive: Drive, names: tuple[str, ...]) -> Refere
 
 def _peak_alone(rows: ReferenceRows, drive: Drive, names: tuple[str, ...]) -> ReferenceHistory:
     """The one row of each layer at the largest load; the other steps have no deflection (NaN)."""
-    peak, (column, size) = int(np.abs(drive.value).argmax()), LOADS[drive.control]
-    expected = {"step": (peak + 1.0, 0.0), column: (drive.value[peak] / size, SAME_LOAD)}
-    for name, (value, share) in expected.items():
-        found = rows.columns.get(name, np.full(len(names), value))
-        apart = np.abs(found - value) > share * abs(value)
-        if apart.any():
-            raise InputError(
-                f"{rows.where(int(apart.argmax()), name)}: {found[apart][0]:.6g}, with one row a layer; that is the "
-                f"peak load alone, allowed: {value:.6g}, to {100 * share:g} %. Other steps need a row of their own"
-            )
+    peak = int(np.abs(drive.value).argmax())
+    check_at_peak(rows, drive, "with one row a layer; that is the peak load alone")
     top = np.full((drive.time.size, len(names)), np.nan)
     top[peak] = [1e-3 * float(rows.columns["fem_mm"][rows.of_layer(name)][0]) for name in names]
     force = drive.value
@@ -147,14 +155,46 @@ def _peak_alone(rows: ReferenceRows, drive: Drive, names: tuple[str, ...]) -> Re
     return ReferenceHistory(top, force, "the peak load alone, one row a layer: nothing at the other steps")
 
 
+def check_at_peak(rows: ReferenceRows, drive: Drive, what: str, *, unsaid: float = np.nan) -> None:
+    """Refuse rows of another step or load than the peak's; a time counts where neither is told (a static FEA has any).
+
+    `what` says in words which rows are those of the peak. A cell that is empty or `unsaid` tells nothing.
+    """
+    peak, (column, size) = int(np.abs(drive.value).argmax()), LOADS[drive.control]
+    expected = {"step": (peak + 1.0, 0.0), column: (drive.value[peak] / size, SAME_LOAD)}
+    if not expected.keys() & rows.columns.keys():
+        expected = {"time_s": (drive.time[peak], SAME_LOAD)}
+    for name, (value, share) in expected.items():
+        found = rows.columns.get(name, np.full(rows.line.size, value))
+        apart = (np.abs(found - value) > share * abs(value)) & (found != unsaid)
+        if apart.any():
+            near = f", to {100 * share:g} %" if share else ""
+            raise InputError(
+                f"{rows.where(int(apart.argmax()), name)}: {found[apart][0]:.6g}, {what}, allowed: {value:.6g}{near}. "
+                "Other steps need a row of their own"
+            )
+
+
 def _by_step(rows: ReferenceRows, drive: Drive, names: tuple[str, ...]) -> ReferenceHistory:
     places = _places(rows, drive.time.size, names)
     for column in ("time_s", "force_N"):
         if column not in rows.columns:
             raise InputError(f"{rows.path}: the column {column} is missing; a table with steps needs it")
     _check_steps(rows, drive)
-    first = rows.columns["force_N"][places[:, 0]]
-    return ReferenceHistory(1e-3 * rows.columns["fem_mm"][places], first, "")
+    return ReferenceHistory(1e-3 * rows.columns["fem_mm"][places], _one_force(rows, places), "")
+
+
+def _one_force(rows: ReferenceRows, places: Places) -> Array:
+    """(n,) N of the steps; refuses layers that are told of different forces at the same step."""
+    force = rows.columns["force_N"][places]
+    apart = np.argwhere(np.abs(force - force[:, :1]) > TOLERANCE * np.abs(force).max())
+    if apart.size:
+        step, layer = (int(each) for each in apart[0])
+        raise InputError(
+            f"{rows.where(int(places[step, layer]), 'force_N')}: {force[step, layer]:.6g} N in step {step + 1}, where "
+            f"{rows.layer[places[step, 0]]} has {force[step, 0]:.6g} N; allowed: one force in all layers of a step"
+        )
+    return force[:, 0]
 
 
 def _places(rows: ReferenceRows, steps: int, names: tuple[str, ...]) -> Places:
@@ -179,10 +219,11 @@ def _places(rows: ReferenceRows, steps: int, names: tuple[str, ...]) -> Places:
 
 
 def _check_steps(rows: ReferenceRows, drive: Drive) -> None:
-    """Refuse times, and loads under force control, of steps that are not the scenario's."""
+    """Refuse times and loads of steps that are not the scenario's."""
+    column, size = LOADS[drive.control]
     wanted = [("time_s", "s", drive.time)]
-    if drive.control == "force":
-        wanted.append(("force_N", "N", drive.value))
+    if column in rows.columns:
+        wanted.append((column, column.rpartition("_")[2], drive.value / size))
     step = rows.columns["step"].astype(np.int64) - 1
     for column, unit, expected in wanted:
         found = rows.columns[column]
@@ -198,12 +239,28 @@ def _check_steps(rows: ReferenceRows, drive: Drive) -> None:
 def _interpolated(rows: ReferenceRows, drive: Drive, names: tuple[str, ...], over: str) -> ReferenceHistory:
     column, size = LOADS[drive.control]
     at = drive.time if over == "time_s" else np.abs(drive.value) / size
+    if over != "time_s":
+        _check_one_way(rows, names, over)
     curves = [_curve(rows, name, over, "fem_mm", at) for name in names]
     if over == "time_s" and column in rows.columns:
-        _check_load(rows, size * _curve(rows, names[0], over, column, at), drive)
+        for name in names:
+            _check_load(rows, name, size * _curve(rows, name, over, column, at), drive)
     counted = f"{int(rows.of_layer(names[0]).sum())} rows a layer, interpolated over {over}"
     how = counted if over == "time_s" else f"{counted}: one value a load, so nothing that depends on time"
     return ReferenceHistory(1e-3 * np.column_stack(curves), _forces(rows, drive, names[0], over, at), how)
+
+
+def _check_one_way(rows: ReferenceRows, names: tuple[str, ...], over: str) -> None:
+    """Refuse a load that first rises and then falls, row by row: sorted by load, both ways would be taken for one."""
+    for name in names:
+        mine = np.flatnonzero(rows.of_layer(name))
+        load = np.abs(rows.columns[over][mine])
+        top = int(load.argmax())
+        if 0 < top < load.size - 1 and (np.diff(load[: top + 1]) > 0.0).all() and (np.diff(load[top:]) < 0.0).all():
+            raise InputError(
+                f"{rows.where(int(mine[top + 1]), over)}: the load of {name} falls here after it has risen; without "
+                "time_s the table is a curve over a rising load. Leave the way back out, or give time_s"
+            )
 
 
 def _forces(rows: ReferenceRows, drive: Drive, layer: str, over: str, at: Array) -> Array:
@@ -245,14 +302,14 @@ def _between_turns(x: Array, y: Array, at: Array) -> Array:
     return np.asarray(out)
 
 
-def _check_load(rows: ReferenceRows, found: Array, drive: Drive) -> None:
-    """Refuse another load history."""
+def _check_load(rows: ReferenceRows, layer: str, found: Array, drive: Drive) -> None:
+    """Refuse a layer's rows under another load history."""
     apart = np.abs(found - drive.value) / np.abs(drive.value).max()
     if apart.max() > SAME_LOAD:
         step = int(apart.argmax())
         column, size = LOADS[drive.control]
         raise InputError(
-            f"{rows.path}, column {column}: at {drive.time[step]:g} s the table is at {found[step] / size:.4g}, the "
+            f"{rows.path}, column {column}: at {drive.time[step]:g} s {layer} is at {found[step] / size:.4g}, the "
             f"scenario at {drive.value[step] / size:.4g}; they must press alike, to {100 * SAME_LOAD:g} % of the peak"
         )
 

@@ -29,6 +29,8 @@ NOT_FROM = "TISSUEBENCH_NOT_FROM"
 """Environment variable: a folder that a user's file must import nothing from, since another revision of it is meant."""
 LIBRARIES = frozenset({"site-packages", "dist-packages"})
 PRODUCT = frozenset({"bench_hw", "benchmark", "fem", "reports", "wavemodel"})
+TAKEN = "fem"
+"""The other model's name in tables and reports."""
 
 
 @dataclass(frozen=True)
@@ -78,15 +80,18 @@ def read_user_file(path: Path) -> UserFile:
 def _name(tree: ast.Module, path: Path) -> str:
     """The text that the file assigns to `NAME`, its own name otherwise."""
     for node in tree.body:
-        if not isinstance(node, ast.Assign) or not isinstance(node.value, ast.Constant):
+        if not isinstance(node, ast.Assign | ast.AnnAssign) or not isinstance(node.value, ast.Constant):
             continue
-        if any(isinstance(target, ast.Name) and target.id == NAME for target in node.targets):
+        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+        if any(isinstance(target, ast.Name) and target.id == NAME for target in targets):
             value = node.value.value
             if not isinstance(value, str) or not value.isprintable() or not 0 < len(value.strip()) <= LONGEST_NAME:
                 allowed = f"allowed: 1 to {LONGEST_NAME} printable characters"
                 raise InputError(f"{path}, line {node.lineno}: {NAME} = {value!r} is no name; {allowed}")
+            if value.strip().lower() == TAKEN:
+                raise InputError(f"{path}, line {node.lineno}: {NAME} = {value!r} is what reports call the FEM's place")
             return value.strip()
-    return path.stem
+    return path.name if path.stem.lower() == TAKEN else path.stem
 
 
 def modules_of(folder: Path) -> dict[str, Path]:

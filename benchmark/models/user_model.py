@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -39,6 +40,9 @@ class UserLayer:
     poisson_ratio : float
     relaxation : tuple of (g, tau)
         Fading fractions of the stiffness with their time constants in s; empty for an elastic layer.
+    hyperelastic : mapping
+        The law of finite strain as in a tissue file, `law` and its parameters in SI units; a neo-Hookean law without
+        `c10` follows the moduli.
     """
 
     name: str
@@ -47,6 +51,7 @@ class UserLayer:
     youngs_modulus: float
     poisson_ratio: float
     relaxation: tuple[tuple[float, float], ...]
+    hyperelastic: Mapping[str, Any] = field(default_factory=lambda: {"law": "neo_hookean"})
 
 
 @dataclass(frozen=True)
@@ -98,6 +103,7 @@ def specimen_of(scenario: Scenario) -> Specimen:
             youngs_modulus=layer.youngs_modulus,
             poisson_ratio=layer.poisson_ratio,
             relaxation=tuple((term.g, term.tau) for term in layer.relaxation),
+            hyperelastic=layer.hyperelastic.model_dump(exclude_none=True),
         )
         for layer in scenario.tissue.layers
     )
@@ -186,6 +192,7 @@ class UserModel:
         """What a function returns, checked: numbers of this shape, finite."""
         copies = [argument.copy() for argument in arguments]
         given = self._code.call(function, *self._specimen, *copies, **self._keywords)
+        self._check_columns(function, given)
         found = _numbers(given)
         if found is None or found.shape != shape:
             what = _no_numbers(given) if found is None else f"an array of shape {found.shape}"
@@ -202,6 +209,14 @@ class UserModel:
                 function, f"it returned {found[tuple(place)]} at [{index}]; allowed: finite numbers in SI units"
             )
         return found
+
+    def _check_columns(self, function: str, given: Any) -> None:
+        """Refuse a data frame whose columns are the layers in another order; they are taken by their place."""
+        names, columns = self._scenario.tissue.layer_names, list(getattr(given, "columns", ()))
+        if function == DEFORM and set(columns) == set(names) and columns != list(names):
+            raise self._code.fault(
+                function, f"its columns are {', '.join(columns)}; allowed: the layers downwards, {', '.join(names)}"
+            )
 
     def _warnings(self, force: Array, top: Array) -> tuple[str, ...]:
         """What a reader must know, and what looks like a slip of sign or unit."""
@@ -222,9 +237,11 @@ def _no_numbers(given: Any) -> str:
 
 
 def _numbers(given: Any) -> Array | None:
-    """What was returned as an array of doubles of its own; None where it is no real numbers."""
+    """What was returned as an array of doubles of its own, masked values as NaN; None where it is no real numbers."""
     try:
-        array = np.asarray(given)
+        array = np.asanyarray(given)
     except ValueError:
         return None
-    return np.array(array, dtype=np.float64) if array.dtype.kind in "iuf" else None
+    if array.dtype.kind not in "iuf":
+        return None
+    return np.array(np.ma.filled(array.astype(np.float64), np.nan))

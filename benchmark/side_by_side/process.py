@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import signal
 from pathlib import Path
 from types import TracebackType
 
@@ -12,6 +13,20 @@ from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel
 from benchmark.models import UserFile
 from benchmark.side_by_side.worker import Answer, Crashed, Message, ModelJob, RunCommand, serve
+
+KILLED = -9
+"""Exit code of a process that the system killed, on Linux mostly for want of memory."""
+
+
+def ended_by(code: int | None) -> str:
+    """How a process ended, in words: its exit code, or the signal that a negative one stands for."""
+    if code is None or code >= 0:
+        return f"exit code {code}"
+    try:
+        name = signal.Signals(-code).name
+    except ValueError:
+        name = f"signal {-code}"
+    return f"exit code {code}, {name}" + ("; usually memory ran out" if code == KILLED else "")
 
 
 class ModelProcess:
@@ -32,6 +47,7 @@ class ModelProcess:
     ):
         context = multiprocessing.get_context("spawn")
         self.model = model
+        self._who = f"your model {own.path}" if isinstance(own, UserFile) else f"the {model} model"
         self.connection, far_end = context.Pipe()
         arguments = (far_end, ModelJob(model, scenario, every_field, own, keep), core)
         self._process = context.Process(target=serve, args=arguments, daemon=True, name=f"tissuebench-{model}")
@@ -57,8 +73,7 @@ class ModelProcess:
         except EOFError:
             self._process.join(5)
             raise SolverError(
-                f"the process of the {self.model} model ended unexpectedly (exit code {self._process.exitcode}); "
-                "on Linux -9 usually means that memory ran out"
+                f"the process of {self._who} ended unexpectedly ({ended_by(self._process.exitcode)})"
             ) from None
         if isinstance(message, Crashed):
             failure = (

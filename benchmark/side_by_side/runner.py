@@ -12,7 +12,7 @@ import os
 import statistics
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing.connection import wait
 from pathlib import Path
 
@@ -222,6 +222,26 @@ def _in_turn(processes: list[ModelProcess], first: Mapping[str, Answer], repeats
     return found
 
 
+SAME_ANSWER = 1e-6
+"""How far repeats of a model may be apart, of its largest deflection: single precision and other orders of sums."""
+
+
+def _doubted(first: ModelResult | None, repeats: Sequence[ModelResult]) -> ModelResult | None:
+    """The first answer of a model, with a warning where its repeats are others: random numbers without a seed."""
+    if first is None or not repeats:
+        return first
+    apart = max(float(np.abs(each.top_deflection - first.top_deflection).max()) for each in repeats)
+    largest = float(np.abs(first.top_deflection).max())
+    if apart <= SAME_ANSWER * largest:
+        return first
+    share = f", {100.0 * apart / largest:.3g} % of the largest," if largest else ""
+    said = (
+        f"it answers differently each time: repeats are up to {1e3 * apart:.3g} mm{share} off the first, which stands "
+        "in this report; a model with random numbers needs a seed"
+    )
+    return replace(first, warnings=(*first.warnings, said))
+
+
 def _model_run(model: str, answer: Answer | None, repeats: list[Finished], own: Own) -> ModelRun:
     """Join the first answer of a model with its timing; without an answer it is the user's reference."""
     name = own.name(model)
@@ -231,6 +251,7 @@ def _model_run(model: str, answer: Answer | None, repeats: list[Finished], own: 
         frames = [each.frame for each in repeats if each.frame is not None]
         frame = statistics.median(frames) if frames else None
         seconds = tuple(each.seconds for each in repeats)
-        return ModelRun(model, answer.result, None, seconds, name, answer.peak_memory, frame)
+        result = _doubted(answer.result, [each.result for each in repeats if each.result is not None])
+        return ModelRun(model, result, None, seconds, name, answer.peak_memory, frame)
     reason = answer.reason if isinstance(answer, Declined) else answer.message
     return ModelRun(model, None, reason, (), name)

@@ -30,7 +30,7 @@ from benchmark.response.model_with_effects import prepare_with_effects
 
 @dataclass(frozen=True)
 class RunCommand:
-    """Set the model up and follow the load history; `keep_result` False returns the timing alone."""
+    """Set the model up and follow the load history; `keep_result` False is a timed repeat."""
 
     keep_result: bool
 
@@ -63,7 +63,7 @@ class Finished:
     seconds
         What it took.
     result
-        None where it was not asked for.
+        None where it was not asked for; a user's own model gives it every time, to be compared with the first.
     peak_memory
         Of its process in bytes where it is known.
     frame
@@ -160,7 +160,7 @@ def _run(connection: Connection, command: RunCommand, job: ModelJob) -> Finished
     ready, cpu_ready = time.perf_counter(), time.process_time()
     reading = prepared.follow(drive, report if command.keep_result else silent)
     wall, cpu = time.perf_counter() - ready, time.process_time() - cpu_ready
-    result = reading() if command.keep_result else None
+    result = reading() if command.keep_result or isinstance(job.own, UserFile) else None
     memory = peak_memory()
     frame = None if command.keep_result else frame_seconds(prepared, drive)
     return Finished(Seconds(ready - started, wall, cpu), result, memory, frame)

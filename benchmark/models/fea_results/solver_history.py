@@ -56,9 +56,8 @@ class SolverHistory:
                 )
         keys = [(time, k) for k, own in enumerate(times) for time in own if time > 0.0]
         edge = [(1e3 * radius, k) for k, radius in sorted(self.profile)]
-        peak = max((time for time, _ in keys), default=0.0)
         columns = {
-            "time_s": np.array([time for time, _ in keys] + [peak] * len(edge)),
+            "time_s": np.array([time for time, _ in keys] + [np.nan] * len(edge)),
             "fem_mm": 1e3
             * np.array([self.deflection[key] for key in keys] + [self.profile[k] for k in sorted(self.profile)]),
             "radius_mm": np.array([0.0] * len(keys) + [radius for radius, _ in edge]),

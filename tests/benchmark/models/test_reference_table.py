@@ -69,7 +69,10 @@ def peak_alone(**columns) -> pd.DataFrame:
     return pd.DataFrame({"layer": LAYERS, "fem_mm": [law(2.0, number) for number in range(len(LAYERS))], **columns})
 
 
-@pytest.mark.parametrize("columns", [{}, {"force_N": 2.0}, {"step": 20}, {"step": 20, "time_s": 5.0, "force_N": 2.0}])
+@pytest.mark.parametrize(
+    "columns",
+    [{}, {"force_N": 2.0}, {"force_N": 2.0, "time_s": 1.0}, {"step": 20}, {"step": 20, "time_s": 5.0, "force_N": 2.0}],
+)
 def test_one_row_a_layer_is_the_peak_load_and_nothing_else(columns, tmp_path: Path) -> None:
     found = read(peak_alone(**columns), tmp_path)
     peak = int(DRIVE.value.argmax())
@@ -80,7 +83,13 @@ def test_one_row_a_layer_is_the_peak_load_and_nothing_else(columns, tmp_path: Pa
 
 
 @pytest.mark.parametrize(
-    ("columns", "word"), [({"force_N": 1.0}, "force_N: 1, with one row"), ({"step": 3}, "step: 3")]
+    ("columns", "word"),
+    [
+        ({"force_N": 1.0}, "force_N: 1, with one row"),
+        ({"force_N": 0.0}, "force_N: 0, with one row"),
+        ({"step": 3}, "step: 3"),
+        ({"time_s": 2.5}, "time_s: 2.5"),
+    ],
 )
 def test_one_row_of_another_load_is_refused(columns, word, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=word):
@@ -120,6 +129,60 @@ def test_a_profile_at_peak_load_comes_with_its_radii(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.profile[0, inside], expected, atol=1e-5)
     assert np.isnan(found.profile[0, ~inside]).all()
     assert np.isnan(found.profile[1:]).all()
+
+
+def test_rows_of_a_profile_may_leave_time_and_load_empty(tmp_path: Path) -> None:
+    off = pd.DataFrame({"radius_mm": [1.0, 30.0], "layer": LAYERS[0], "fem_mm": [0.5, 0.0]})
+    found = read(pd.concat([by_time(radius_mm=np.nan), off]), tmp_path)
+    assert found.profile[0, found.profile_radii == 1e-3] == pytest.approx(5e-4)
+    with pytest.raises(InputError, match=r"row 2, column 'time_s'.*empty"):
+        read(by_time(time_s=np.nan), tmp_path)
+
+
+@pytest.mark.parametrize("columns", [{"step": 10}, {"force_N": 1.0}])
+def test_a_profile_of_another_step_is_refused(columns, tmp_path: Path) -> None:
+    off = pd.DataFrame({"radius_mm": [1.0, 30.0], "layer": LAYERS[0], "fem_mm": [0.5, 0.0], **columns})
+    steps = pd.concat([by_step(SCENARIO), off])
+    with pytest.raises(InputError, match=r"line 122.*that is the profile at the peak load"):
+        read(steps, tmp_path)
+
+
+def by_step(scenario, **columns) -> pd.DataFrame:
+    """A table of the scenario's own steps."""
+    drive = scenario_drive(scenario)
+    load = {"force_N": drive.value} if drive.control == "force" else {"depth_mm": 1e3 * drive.value, "force_N": 1.0}
+    rest = {"step": np.arange(drive.time.size) + 1, "time_s": drive.time, **load, "fem_mm": drive.value}
+    return pd.concat([pd.DataFrame({**rest, "layer": layer}) for layer in LAYERS], ignore_index=True).assign(**columns)
+
+
+DEPTH = load_scenario("skin-5N", {"load.observations": "9", "load.control": "depth", "load.peak": "2 mm"})
+
+
+def test_steps_of_other_depths_are_refused_under_depth_control(tmp_path: Path) -> None:
+    assert read(by_step(DEPTH), tmp_path, DEPTH).force[0] == 1.0
+    with pytest.raises(InputError, match=r"depth_mm: step 1 is at 9 mm, in the scenario at 0\.444444 mm"):
+        read(by_step(DEPTH, depth_mm=9.0), tmp_path, DEPTH)
+
+
+def test_layers_told_of_different_forces_in_a_step_are_refused(tmp_path: Path) -> None:
+    table = by_step(DEPTH)
+    table.loc[table["layer"] == "dermis", "force_N"] = 2.0
+    with pytest.raises(InputError, match=r"line 11, column force_N: 2 N in step 1, where epidermis has 1 N"):
+        read(table, tmp_path, DEPTH)
+
+
+def test_each_layer_must_be_under_the_scenarios_load(tmp_path: Path) -> None:
+    table = by_time()
+    table.loc[table["layer"] == "dermis", "force_N"] *= 2.0
+    with pytest.raises(InputError, match="force_N: at 5 s dermis is at 4, the scenario at 2"):
+        read(table, tmp_path)
+
+
+def test_the_way_back_is_not_taken_for_the_way_in(tmp_path: Path) -> None:
+    force = np.array([0.5, 1.0, 2.0, 1.7, 0.2])
+    frames = [pd.DataFrame({"force_N": force, "layer": layer, "fem_mm": law(force, 0)}) for layer in LAYERS]
+    with pytest.raises(InputError, match=r"line 5, column force_N: the load of epidermis falls here"):
+        read(pd.concat(frames), tmp_path)
 
 
 @given(st.permutations(range(3 * 11)))

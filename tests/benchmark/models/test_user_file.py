@@ -11,7 +11,9 @@ from benchmark.models.user_file import UserCode
 
 def test_the_name_is_the_users_or_the_files(user_file) -> None:
     assert user_file("NAME = 'spring bed'\n").name == "spring bed"
+    assert user_file("NAME: str = 'spring bed'\n").name == "spring bed"
     assert user_file("x = 1\n").name == "my_model"
+    assert user_file("x = 1\n", "FEM.py").name == "FEM.py", "tables call the other model fem"
 
 
 def test_reading_runs_nothing(user_file) -> None:
@@ -30,6 +32,7 @@ def test_the_fingerprint_follows_the_text(user_file) -> None:
         ("NAME = 5\n", ["line 1", "NAME = 5", "60"]),
         ("x = 1\nNAME = ''\n", ["line 2", "NAME"]),
         ("NAME = 'a\\nb'\n", ["printable"]),
+        ("NAME = 'fem'\n", ["line 1", "the FEM's place"]),
         ("x = '\0'\n", ["my_model.py"]),
     ],
 )

@@ -57,6 +57,24 @@ def deform(layers, tool, support, time, force):
     assert drive.value.max() == 0.5, "the user's function must not reach our arrays"
 
 
+def test_the_function_is_told_of_the_law(user_file) -> None:
+    yeoh = {"law": "yeoh", "c10": 8.4e3, "c20": 2.5e3, "c30": 0.0}
+    given = 'law = "yeoh", c10 = "8.4 kPa", c20 = "2.5 kPa"'
+    scenario = load_scenario("skin-5N", {"dermis.hyperelastic": f"{{ {given} }}", "load.observations": "6"})
+    text = f"""
+def deform(layers, tool, support, time, force):
+    assert layers[0].hyperelastic == {{"law": "neo_hookean"}}
+    assert layers[1].hyperelastic == {yeoh}
+    return [[0.0] * 3] * 6
+"""
+    assert not answer(scenario, user_file(text)).top_deflection.any()
+
+
+def test_a_data_frame_with_the_layers_downwards_will_do(scenario, user_file) -> None:
+    frame = returning("__import__('pandas').DataFrame(np.ones((6, 3)), columns=[l.name for l in layers])")
+    assert answer(scenario, user_file(frame)).top_deflection.shape == (6, 3)
+
+
 def test_set_up_happens_once_and_is_handed_on(scenario, user_file) -> None:
     text = """
 import numpy as np
@@ -110,6 +128,11 @@ def test_depth_control_needs_press(user_file) -> None:
         (returning("None"), ["NoneType"]),
         (returning("[[1, 2], [3]]"), ["list", "(6, 3)"]),
         (returning("np.zeros((6, 3), complex)"), ["complex numbers; allowed: real numbers of shape (6, 3)", "in m"]),
+        (returning("np.ma.masked_less(np.ones((6, 3)), 2.0)"), ["nan at [0, 0]", "finite"]),
+        (
+            returning("__import__('pandas').DataFrame(np.zeros((6, 3)), columns=[l.name for l in layers][::-1])"),
+            ["line 3", "subcutaneous_fat, dermis, epidermis; allowed", "epidermis, dermis, subcutaneous_fat"],
+        ),
         (returning("np.full((6, 3), np.nan)"), ["nan at [0, 0]", "finite"]),
         (returning("np.array([[0, 0, 0]] * 5 + [[0, np.inf, 0]])"), ["inf at [5, 1]"]),
         (returning("time / 0 + missing"), ["line 4", "NameError", "missing"]),

@@ -5,8 +5,9 @@ import pytest
 
 from benchmark.errors import InputError, SolverError
 from benchmark.files import Scenario, load_scenario
-from benchmark.models import StepProgress, prepare, scenario_drive
+from benchmark.models import Own, StepProgress, prepare, read_user_file, scenario_drive
 from benchmark.side_by_side import ModelProcess, run_side_by_side
+from benchmark.side_by_side.process import ended_by
 from benchmark.side_by_side.runner import cores, median_seconds, speedup
 from benchmark.side_by_side.worker import Seconds
 
@@ -107,6 +108,39 @@ def test_a_dead_process_is_said_to_be_dead(scenario: Scenario) -> None:
         process._process.kill()
         with pytest.raises(SolverError, match="ended unexpectedly"):
             process.receive()
+
+
+@pytest.mark.parametrize(
+    ("code", "words"),
+    [(0, "exit code 0"), (-11, "exit code -11, SIGSEGV"), (-9, "exit code -9, SIGKILL; usually memory ran out")],
+)
+def test_how_a_process_ended_is_said_in_words(code: int, words: str) -> None:
+    assert ended_by(code) == words
+
+
+UNSEEDED = """
+import numpy as np
+def deform(layers, tool, support, time, force):
+    return np.outer(force, np.ones(len(layers))) * (1e-4 + SIZE * np.random.default_rng().random())
+"""
+
+
+@pytest.mark.parametrize(("size", "count"), [("1e-5", 1), ("1e-12", 0)])
+def test_a_model_that_answers_differently_each_time_is_told_of(scenario, tmp_path, size: str, count: int) -> None:
+    path = tmp_path / "mine.py"
+    path.write_text(UNSEEDED.replace("SIZE", size))
+    own = Own(wave=read_user_file(path))
+    pair = run_side_by_side(scenario, repeats=3, seed=0, every_field=False, on_progress=lambda *_: None, own=own)
+    assert sum("differently each time" in each for each in pair.wave.result.warnings) == count
+
+
+def test_a_users_model_that_dies_is_named(scenario: Scenario, tmp_path) -> None:
+    path = tmp_path / "mine.py"
+    path.write_text("import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)\n")
+    with ModelProcess("wave", scenario, own=read_user_file(path)) as process:
+        process.command(keep_result=True)
+        with pytest.raises(SolverError, match=r"your model .*mine\.py ended unexpectedly \(exit code -11, SIGSEGV\)"):
+            process.answer()
 
 
 def test_no_core_is_chosen_where_there_are_too_few() -> None:
