@@ -101,6 +101,10 @@ REVERSAL = 0.1
 """Share of the travel by which the depth must come back to count as a reversal, far over noise. First choice."""
 LEVEL_WIDTH = 0.03
 """Share of the travel within which a depth stands still. First choice."""
+COUNTED_AIR = 1.0
+"""Of the peak depth, up to which the way through air counts to the travel. First choice: as much as the press itself,
+more than the 0.6 that blind trials have, whose rows stay as they were.
+"""
 LEAST_REST = 3.0
 """A rest lasts at least this many times as long as the motion beside it takes to cross the level. First choice."""
 DEEP = 0.5

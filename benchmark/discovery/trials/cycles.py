@@ -58,6 +58,8 @@ def _borders(time: NDArray[np.float64], depth: NDArray[np.float64]) -> list[int]
         if piece.kind != "press" or piece.cycle < 2:
             continue
         before = pieces[number - 1]
+        if before.cycle == piece.cycle:
+            continue
         marks.append((before.first + before.last) // 2 if before.kind == "rest" else piece.first)
     return [*marks, depth.size]
 

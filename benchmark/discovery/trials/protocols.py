@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.trials.rows import RawTrial
-from benchmark.discovery.trials.segments import Segment
+from benchmark.discovery.trials.segments import Segment, without_dwells
 from benchmark.errors import InputError
 from benchmark.files.sessions.proposal import Motion, motion_of
 
@@ -57,7 +57,7 @@ def by_protocol(name: str, group: Sequence[RawTrial], warnings: list[str]) -> li
 
 def _alike(group: Sequence[RawTrial], most: float) -> list[RawTrial]:
     """The trials with the motion of most, their segments made alike; none if more than `most` have another."""
-    alike = _with_like_rests(group)
+    alike = _with_like_rests(_with_like_dwells(group))
     usual = Counter(_kinds(raw) for raw in alike).most_common(1)[0][0]
     model = next(raw for raw in alike if _kinds(raw) == usual)
     timed = [raw if _kinds(raw) == usual else _timed_like(raw, model) for raw in alike]
@@ -130,6 +130,14 @@ def _rests(raw: RawTrial) -> dict[int, Segment]:
         else:
             strokes += 1
     return found
+
+
+def _with_like_dwells(group: Sequence[RawTrial]) -> Sequence[RawTrial]:
+    """Trials whose dwells inside strokes count to these where not all trials of one motion show the same."""
+    whole = [replace(raw, pieces=without_dwells(raw.pieces)) for raw in group]
+    usual = Counter(_strokes(raw) for raw in whole).most_common(1)[0][0]
+    found = {_strokes(raw) for raw, joined in zip(group, whole, strict=True) if _strokes(joined) == usual}
+    return group if len(found) == 1 else whole
 
 
 def _with_like_rests(group: Sequence[RawTrial]) -> list[RawTrial]:
@@ -234,9 +242,11 @@ def _height(raw: RawTrial) -> float:
 
 
 def _speed(raw: RawTrial) -> float:
-    piece = next(piece for piece in raw.pieces if piece.kind == "press")
-    last = min(piece.last, raw.time.size - 1)
-    return float(abs(raw.depth[last] - raw.depth[piece.first]) / max(raw.time[last] - raw.time[piece.first], 1e-9))
+    """Of the longest way in of the first press, m/s."""
+    strokes = [piece for piece in raw.pieces if piece.kind == "press" and piece.cycle == 1]
+    ends = [(piece.first, min(piece.last, raw.time.size - 1)) for piece in strokes]
+    first, last = max(ends, key=lambda each: abs(raw.depth[each[1]] - raw.depth[each[0]]))
+    return float(abs(raw.depth[last] - raw.depth[first]) / max(raw.time[last] - raw.time[first], 1e-9))
 
 
 def _timed_like(raw: RawTrial, model: RawTrial) -> RawTrial | None:

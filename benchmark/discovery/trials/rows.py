@@ -66,7 +66,7 @@ def _sizes(rows: int, largest: int) -> list[int]:
         step = min(int(size), largest, left)
         side.append(step)
         left -= step
-        size *= GROWTH
+        size = min(size * GROWTH, float(largest))
     middle = [1] if rows % 2 else []
     return [*side, *middle, *side[::-1]]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -45,8 +45,12 @@ def reversals(depth: Array, threshold: float) -> list[int]:
 
 
 def segments(time: Array, depth: Array) -> list[Segment]:
-    """Segments of a motion: time (n,) s, depth (n,) m; empty where nothing moves."""
-    travel = float(np.ptp(depth))
+    """Segments of a motion: time (n,) s, depth (n,) m; empty where nothing moves.
+
+    Widths are shares of the travel, of which a long way through air does not count: beside 20 mm of it, a press of 3 mm
+    that was held for 10 s seemed to have no hold.
+    """
+    travel = float(depth.max() - max(depth.min(), -criteria.COUNTED_AIR * depth.max()))
     if travel <= 0.0:
         return []
     turns = reversals(depth, criteria.REVERSAL * travel)
@@ -54,8 +58,22 @@ def segments(time: Array, depth: Array) -> list[Segment]:
     pieces: list[tuple[int, int, str]] = []
     for first, last in pairwise(edges):
         if last > first:
-            pieces += _with_rests(time, depth, first, last, criteria.LEVEL_WIDTH * travel)
+            for piece in _with_rests(time, depth, first, last, criteria.LEVEL_WIDTH * travel):
+                pieces += _with_dwells(time, depth, piece, criteria.LEVEL_WIDTH * travel)
     return _numbered(_joined(pieces))
+
+
+def without_dwells(pieces: Sequence[Segment]) -> tuple[Segment, ...]:
+    """The same motion with the dwells inside its strokes counted to these."""
+    out: list[Segment] = []
+    for number, piece in enumerate(pieces):
+        stroke = next((each.kind for each in pieces[number + 1 :] if each.kind != "rest"), None)
+        inside = out and out[-1].kind != "rest" and stroke == out[-1].kind and pieces[number].kind == "rest"
+        if inside or (out and out[-1].kind == piece.kind):
+            out[-1] = replace(out[-1], last=piece.last)
+        else:
+            out.append(piece)
+    return tuple(out)
 
 
 def _with_rests(time: Array, depth: Array, first: int, last: int, width: float) -> list[tuple[int, int, str]]:
@@ -86,6 +104,52 @@ def _with_rests(time: Array, depth: Array, first: int, last: int, width: float) 
     return out
 
 
+def _with_dwells(time: Array, depth: Array, piece: tuple[int, int, str], width: float) -> list[tuple[int, int, str]]:
+    """A stroke with the dwells inside it cut out: steps of a staircase, a pause after the touch.
+
+    A dwell takes longer to cross than the stroke takes beside it, on either side: where the speed changes for good, as
+    from the way through air to the press, there is none.
+    """
+    first, last, kind = piece
+    if kind == "rest":
+        return [piece]
+    way = depth[first : last + 1] if kind == "press" else depth[first : last + 1][::-1]
+    stamps = time[first : last + 1] if kind == "press" else -time[first : last + 1][::-1]
+    dwells = [(a, b) for a, b in _dwells(stamps, way, width) if way[a] > criteria.IN_AIR * float(depth.max())]
+    if kind == "retract":
+        dwells = [(way.size - 1 - b, way.size - 1 - a) for a, b in reversed(dwells)]
+    out, start = [], first
+    for a, b in dwells:
+        out += [(start, first + a, kind), (first + a, first + b, "rest")]
+        start = first + b
+    return [*out, (start, last, kind)]
+
+
+def _dwells(time: Array, way: Array, width: float) -> list[tuple[int, int]]:
+    """First and last rows of the dwells inside a way that rises; time (n,) s, way (n,) m."""
+    levels = np.arange(way[0] + 4.0 * width, way[-1] - 4.0 * width, 0.25 * width)
+    if not levels.size:
+        return []
+    risen = np.maximum.accumulate(way)
+
+    def crossing(centre: Array) -> Array:
+        edges = np.searchsorted(risen, [centre - width, centre + width])
+        stamps = time[np.minimum(edges, way.size - 1)]
+        return np.asarray(stamps[1] - stamps[0])
+
+    beside = np.maximum(crossing(levels - 2.0 * width), crossing(levels + 2.0 * width))
+    least = float(np.median(np.diff(time)))
+    slow = crossing(levels) > criteria.LEAST_REST * np.maximum(beside, least)
+    found = []
+    for group in np.split(np.flatnonzero(slow), np.flatnonzero(np.diff(np.flatnonzero(slow)) > 1) + 1):
+        if group.size:
+            inside = np.searchsorted(risen, [levels[group[0]], levels[group[-1]]])
+            level = float(np.median(way[inside[0] : max(inside[1], inside[0] + 1)]))
+            near = np.flatnonzero(np.abs(way - level) <= width)
+            found.append((int(near[0]), int(near[-1])))
+    return [(a, b) for a, b in found if b > a]
+
+
 def _near(piece: Array, level: float, width: float) -> int:
     away = np.flatnonzero(np.abs(piece - level) > width)
     return int(away[0]) if away.size else piece.size
@@ -102,9 +166,11 @@ def _joined(pieces: list[tuple[int, int, str]]) -> list[tuple[int, int, str]]:
 
 
 def _numbered(pieces: list[tuple[int, int, str]]) -> list[Segment]:
-    cycle, out = 0, []
+    """Segments with their cycles; a press that goes on after a dwell is of the same."""
+    cycle, out, stroke = 0, [], "retract"
     for number, (first, last, kind) in enumerate(pieces):
-        cycle += kind == "press"
+        cycle += kind == "press" and stroke == "retract"
+        stroke = kind if kind != "rest" else stroke
         end = last + 1 if number == len(pieces) - 1 else last
         if end > first:
             out.append(Segment(first, end, kind, cycle))

@@ -60,3 +60,18 @@ def test_enough_records_stay_whole_and_few_presses_are_still_too_few(session) ->
     assert by_cycles(whole) == (whole, ())
     with pytest.raises(InputError, match="at least 3"):
         prepare(session(2), 100)
+
+
+def test_a_pause_within_a_press_parts_no_trial(tmp_path) -> None:
+    knots, depth = [0.0], [-0.3]
+    for _ in range(6):
+        knots += (knots[-1] + np.cumsum([1.0, 0.7, 5.0, 1.0, 2.0, 1.5])).tolist()
+        depth += [-0.3, 1.0, 1.0, 3.0, 3.0, -0.3]
+    time = np.arange(0.0, knots[-1] + 0.5, 0.04)
+    way = np.interp(time, knots, depth)
+    table = np.column_stack([time, way, np.maximum(way, 0.0) ** 1.5])
+    np.savetxt(tmp_path / "r.csv", table, delimiter=",", header="time_s,depth_mm,force_N", comments="")
+    (tmp_path / "session.toml").write_text(f'{SESSION}[[trials]]\nfile = "r.csv"\ncondition = "slow"\n')
+    split, _ = by_cycles(load_session(tmp_path))
+    assert len(split.trials) == 6
+    assert sum(trial.table.time.size for trial in split.trials) == time.size

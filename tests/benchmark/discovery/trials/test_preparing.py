@@ -70,3 +70,18 @@ def test_very_many_rows_are_reduced(tmp_path, quick_session):
 
     rewrite(folder, dense)
     assert prepare(load_session(folder), 100).conditions[0].time.shape[1] < 400
+
+
+def test_a_long_hold_leaves_a_fast_press_its_rows(tmp_path):
+    knots, depths = [0.0, 0.5, 0.85, 120.0], [-0.5, -0.5, 3.0, 3.0]  # s, mm: at 10 mm/s, 1 kHz
+    time = np.arange(0.0, 120.0, 1e-3)
+    depth = np.interp(time, knots, depths)
+    table = np.column_stack([time, depth, np.maximum(depth, 0.0) ** 1.5])
+    lines = ['schema = 1\nname = "long hold"\n[tool]\nradius = "5 mm"\n[support]\nkind = "bonded"\n']
+    for number in range(3):
+        np.savetxt(tmp_path / f"t{number}.csv", table, delimiter=",", header="time_s,depth_mm,force_N", comments="")
+        lines.append(f'[[trials]]\nfile = "t{number}.csv"\ncondition = "press"\n')
+    (tmp_path / "session.toml").write_text("\n".join(lines))
+    condition = prepare(load_session(tmp_path), 220).conditions[0]
+    measured, depth = condition.signals[0, :, 0], 1e3 * condition.depth[0]
+    assert measured == pytest.approx(np.maximum(depth, 0.0) ** 1.5, abs=0.002 * 3.0**1.5)

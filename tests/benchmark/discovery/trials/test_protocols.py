@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from benchmark.discovery.discovery_result import PHASES
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.errors import InputError
 from benchmark.files import load_session
@@ -46,6 +47,28 @@ def test_a_short_dwell_that_shows_in_some_trials_refuses_none(session) -> None:
     assert not any("left out" in text for text in study.warnings)
     deepest = [depth.max() for depth in study.conditions[0].depth]
     assert 1e3 * np.array(deepest) == pytest.approx(peaks, abs=0.1)
+
+
+def paused(pause, peak=3.0, rate=25.0):
+    """A press at 1 mm/s that pauses at 1 mm for so many seconds, with a hold of 2 s."""
+    knots = np.cumsum([0.0, 1.3, max(pause, 1e-6), 2.0, 2.0, 3.3])
+    time = np.arange(0.0, knots[-1], 1.0 / rate)
+    depth = np.interp(time, knots, [-0.3, 1.0, 1.0, peak, peak, -0.3])
+    return time, depth, np.maximum(depth, 0.0) ** 1.5, None
+
+
+def holds(study):
+    return int((np.diff(study.conditions[0].phase == PHASES.index("hold"), prepend=0) == 1).sum())
+
+
+def test_a_pause_of_all_presses_is_a_hold(session) -> None:
+    assert holds(prepare(session([paused(8.0)] * 6), 100)) == 2
+
+
+def test_a_pause_that_shows_in_some_trials_refuses_none(session) -> None:
+    study = prepare(session([paused(0.45, peak) for peak in np.linspace(2.0, 5.0, 12)]), 100)
+    assert study.trial_count == 12
+    assert holds(study) == 1
 
 
 def test_a_long_hold_of_single_trials_is_another_motion(session) -> None:

@@ -5,7 +5,7 @@ import pytest
 
 from benchmark.discovery.discovery_result import PHASES
 from benchmark.discovery.trials.rows import bin_means, bin_sizes, fractions
-from benchmark.discovery.trials.segments import reversals, segments, stages
+from benchmark.discovery.trials.segments import reversals, segments, stages, without_dwells
 
 
 def test_reversals_are_found_through_noise():
@@ -35,6 +35,56 @@ def test_a_triangle_has_no_hold():
 
 def test_nothing_moving_has_no_segments():
     assert segments(np.arange(5.0), np.zeros(5)) == []
+
+
+def way(*knots, rate=50.0):
+    """Time (n,) s and depth (n,) m through knots (s, mm), with an encoder's 2 um."""
+    times, depths = np.array(knots, dtype=float).T
+    time = np.arange(0.0, times[-1], 1.0 / rate)
+    return time, 2e-6 * np.round(500.0 * np.interp(time, times, depths))
+
+
+def kinds(pieces):
+    return [piece.kind for piece in pieces]
+
+
+STAIRS = ((0, 0), (1, 1), (11, 1), (12, 2), (22, 2), (23, 3), (33, 3))
+
+
+def test_steps_of_a_staircase_are_rests_of_one_press():
+    pieces = segments(*way(*STAIRS))
+    assert kinds(pieces) == ["press", "rest"] * 3
+    assert {piece.cycle for piece in pieces} == {1}
+    assert [0.02 * piece.first for piece in pieces[1:]] == pytest.approx([1, 11, 12, 22, 23], abs=0.2)
+
+
+def test_steps_on_the_way_back_are_rests_where_they_are():
+    pieces = segments(*way(*STAIRS, (34, 1.5), (44, 1.5), (46, -0.2)))
+    assert kinds(pieces) == [*["press", "rest"] * 3, "retract", "rest", "retract"]
+    assert 0.02 * pieces[-2].first == pytest.approx(34, abs=0.2)
+    assert 0.02 * pieces[-1].first == pytest.approx(44, abs=0.2)
+    assert all(a.last == b.first for a, b in pairwise(pieces))
+
+
+@pytest.mark.parametrize("slow", [0.2, 1.0], ids=["to the press", "in the press"])
+def test_a_change_of_speed_is_no_dwell(slow):
+    assert kinds(segments(*way((0, -2), (0.5, slow - 1), (20, 3), (22, -2)))) == ["press", "retract"]
+
+
+def test_a_pause_in_air_is_no_hold():
+    assert kinds(segments(*way((0, -3), (2, -1), (10, -1), (14, 3), (18, -1)))) == ["press", "retract"]
+
+
+def test_dwells_count_to_their_strokes_again():
+    time, depth = way(*STAIRS, (34, 1.5), (44, 1.5), (46, -0.2))
+    whole = without_dwells(segments(time, depth))
+    assert kinds(whole) == ["press", "rest", "retract"]
+    assert whole[0].first == 0
+    assert whole[-1].last == time.size
+
+
+def test_a_way_through_air_hides_no_hold():
+    assert kinds(segments(*way((0, -20), (46, 3), (51, 3), (67, -5)))) == ["press", "rest", "retract"]
 
 
 def test_phases_follow_the_depth(quick_session):
