@@ -13,21 +13,16 @@ DESCRIPTION = EffectDescription(
     slug="camera_latency",
     acts_on="observation",
     sentence="Frames carry the wrong time: the markers move later than force and depth say.",
-    equation="x(t) -> x(t - latency - clock_error t), t from the start of the record",
-    source="time stamps at the arrival of a frame; frames counted at a rate told (30 a second) that is another "
-    "(30/1.001, SMPTE ST 12-1) are 0.1 % wrong",
-    parameters=(
-        linear("latency", "s", 0.0, 2.0, "of the frames against the force", 0.02),
-        linear("clock_error", "", -0.01, 0.01, "how much later the frames get in a second, by a clock that runs wrong"),
-    ),
-    may_lack=("clock_error",),
+    equation="x(t) -> x(t - latency)",
+    source="time stamps at the arrival of a frame",
+    parameters=(linear("latency", "s", 0.0, 2.0, "of the frames against the force", 0.02),),
 )
 
 
 def _observe(values: Values, readings: Readings, motion: Motion, context: TrialContext) -> Readings:
     if readings.markers is None:
         return readings
-    late = motion.time - values["latency"] - values.get("clock_error", 0.0) * (motion.time - motion.time[0])
+    late = motion.time - values["latency"]
     at = np.clip(np.searchsorted(motion.time, late) - 1, 0, motion.time.size - 2)
     share = np.clip((late - motion.time[at]) / (motion.time[at + 1] - motion.time[at]), 0.0, 1.0)[:, None, None]
     seen = readings.markers[at] * (1.0 - share) + readings.markers[at + 1] * share

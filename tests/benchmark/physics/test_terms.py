@@ -319,14 +319,6 @@ def test_late_frames_show_the_past():
     assert made.force == pytest.approx(PLAIN.force)
 
 
-def test_frames_by_a_slow_clock_get_later_and_later():
-    slow = readings(MOTION, camera_latency={"latency": 0.0, "clock_error": 0.01})
-    time = np.linspace(0.0, PLAIN.markers.shape[0] - 1.0, PLAIN.markers.shape[0])
-    expected = np.interp(time * (1.0 - 0.01), time, PLAIN.markers[:, 0, 0])
-    assert slow.markers[:, 0, 0] == pytest.approx(expected, abs=1e-12)
-    assert slow.force == pytest.approx(PLAIN.force)
-
-
 def test_perspective_magnifies_what_came_nearer():
     made = readings(MOTION, perspective={"nearness": 4.0})
     assert made.markers[DEEP[0]] == pytest.approx(PLAIN.markers[DEEP[0]] / (1.0 - 4.0 * 0.5 * PEAK))
