@@ -119,8 +119,7 @@ class TrialPipeline:
             A depth or a value that the body's options do not cover.
         """
         if shift or height:
-            late = motion.time - shift
-            motion = replace(motion, depth=np.interp(late, motion.time, motion.depth) - height)
+            motion = replace(motion, depth=motion.depth_before(shift) - height)
         added = [(effect, values[effect.slug]) for effect in self.effects]
         clock = motion.time - motion.time[0] + FIRST_STEP
         body = PressedBody(lambda depth: gain * elastic.force(depth), clock, physics_of(added, self.around))
