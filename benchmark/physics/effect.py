@@ -63,25 +63,11 @@ class TrialContext:
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """What the rig reports: time (n,) s, depth (n,) m, and the acceleration (n,) m/s2 of the tool.
-
-    Where rows are means of many samples, `before` has the same means of the depth some time before: times (k,) s that
-    rise, depths (k, n) m.
-    """
+    """What the rig reports: time (n,) s, depth (n,) m, and the acceleration (n,) m/s2 of the tool."""
 
     time: Array
     depth: Array
     acceleration: Array
-    before: tuple[Array, Array] | None = None
-
-    def depth_before(self, seconds: float) -> Array:
-        """(n,) depths so many seconds before each row; between rows where nothing finer is known."""
-        if self.before is None:
-            return np.interp(self.time - seconds, self.time, self.depth)
-        times, depths = self.before
-        place = int(np.clip(np.searchsorted(times, seconds) - 1, 0, times.size - 2))
-        share = float(np.clip((seconds - times[place]) / (times[place + 1] - times[place]), 0.0, 1.0))
-        return np.asarray((1.0 - share) * depths[place] + share * depths[place + 1])
 
 
 class BodyResponse(Protocol):

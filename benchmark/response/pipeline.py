@@ -119,7 +119,8 @@ class TrialPipeline:
             A depth or a value that the body's options do not cover.
         """
         if shift or height:
-            motion = replace(motion, depth=motion.depth_before(shift) - height)
+            late = motion.time - shift
+            motion = replace(motion, depth=np.interp(late, motion.time, motion.depth) - height)
         added = [(effect, values[effect.slug]) for effect in self.effects]
         clock = motion.time - motion.time[0] + FIRST_STEP
         body = PressedBody(lambda depth: gain * elastic.force(depth), clock, physics_of(added, self.around))

@@ -12,7 +12,6 @@ from benchmark.discovery import criteria
 from benchmark.discovery.base.trials_problem import OWN, TrialRef, TrialsProblem
 from benchmark.discovery.discovery_result import PHASES
 from benchmark.discovery.own_values import TrialValues
-from benchmark.discovery.trials.rows import latest
 from benchmark.response.force_curve import Array
 
 APPROACH = PHASES.index("approach")
@@ -23,7 +22,7 @@ def trial_bounds(problem: TrialsProblem) -> tuple[Array, Array]:
     count = len(OWN) + len(problem.zeros)
     low, high = np.full((len(problem.trials), count), -np.inf), np.full((len(problem.trials), count), np.inf)
     thicker = (-criteria.FAR_SETUP, criteria.FAR_SETUP)
-    late = latest(problem.study.raw_interval)
+    late = max(criteria.LATEST, criteria.LATE_ROWS * problem.study.raw_interval)
     for index, trial in enumerate(problem.trials):
         noise = float(problem.noise.scale[index, 0])
         zero, touch = zero_range(problem, trial, noise), touch_range(problem, trial, noise)

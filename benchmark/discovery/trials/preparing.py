@@ -19,8 +19,6 @@ from benchmark.discovery.trials.rows import (
     acceleration,
     bin_plan,
     binned,
-    depths_before,
-    latest,
     marker_frames,
     resting_grid,
 )
@@ -36,8 +34,6 @@ MOST_RAW = 4000
 LEAST_IN_PRESS = 50
 """But not below so many between a fifth and four fifths of the peak: a hold of minutes took all rows, and a press of
 0.3 s before it, at 1 kHz, was left with four, over whose bend the mean force is not that of the mean depth."""
-TIMES_BEFORE = 13
-"""Times by which the depth may be late or early at which it is read, evenly over what is allowed."""
 MOST_IN_ALL, LEAST_IN_TRIAL = 2400, 40
 """Rows of all trials together, and of a trial where there are very many."""
 
@@ -67,12 +63,10 @@ def prepare(session: Session, rows: int) -> Study:
     camera, seen = session.camera, _seen(kept)
     grid = None if camera is None else _grid(camera, kept, seen, warnings)
     order = {trial.name: number for number, trial in enumerate(session.trials)}
-    interval = float(np.median([np.median(np.diff(r.time)) for r in raw]))
-    before = np.linspace(-1.0, 1.0, TIMES_BEFORE) * latest(interval)
     conditions = tuple(
-        _condition(session, group, grid, seen, np.array([order[r.trial.name] for r in group]), rows, before)
-        for group in kept
+        _condition(session, group, grid, seen, np.array([order[r.trial.name] for r in group]), rows) for group in kept
     )
+    interval = float(np.median([np.median(np.diff(r.time)) for r in raw]))
     return Study(conditions, grid, camera.distance if camera else None, interval, tuple(warnings))
 
 
@@ -188,9 +182,8 @@ def _condition(
     seen: NDArray[np.bool_] | None,
     numbers: NDArray[np.int64],
     rows: int,
-    before: Array,
 ) -> ConditionData:
-    """The trials of a condition row by row; `numbers` are their places in the session, `before` (k,) is in s."""
+    """The trials of a condition row by row; `numbers` are their places in the session."""
     plan = bin_plan(group, rows)
     means = [binned(raw, plan, grid, seen) for raw in group]
     data = np.array([one.rows for one in means])
@@ -206,8 +199,6 @@ def _condition(
         time=data[..., 0] - data[:, :1, 0],
         depth=data[..., 1],
         acceleration=data[..., 2],
-        before=before,
-        depth_before=np.array([depths_before(raw, plan, before) for raw in group]),
         signals=data[..., 3:],
         count=np.array([one.count for one in means]),
         frame_time=np.array([one.frame_time for one in means]) - data[:, :1, 0],

@@ -196,36 +196,6 @@ class Binned:
     frame_time: Array
 
 
-def latest(interval: float) -> float:
-    """By how much force and frames may be late against depth, s, with so many seconds between raw rows."""
-    return max(criteria.LATEST, criteria.LATE_ROWS * interval)
-
-
-def depths_before(raw: RawTrial, plan: BinPlan, times: Array) -> Array:
-    """(k, n) means in the bins of a plan of the depth so many seconds (k,) before each raw row.
-
-    Of the means themselves no depth between them is known: read there, a press that changes its speed within a row is
-    late by a sixth more or less than it is, which looks like damping.
-    """
-    time, depth = _with_ends(raw, float(np.abs(times).max()))
-    table = np.column_stack([np.interp(raw.time - each, time, depth) for each in times])
-    parts = [bin_means(table, raw.pieces[k].first, raw.pieces[k].last, edges)[0] for k, edges in plan]
-    return np.asarray(np.concatenate(parts).T)
-
-
-def _with_ends(raw: RawTrial, seconds: float) -> tuple[Array, Array]:
-    """Times and depths with one more at each end, so many seconds away: a record that ends in motion goes on evenly."""
-    out = [raw.time, raw.depth]
-    for rows, way in ((slice(None, FITTED), -seconds), (slice(-FITTED, None), seconds)):
-        time, depth = raw.time[rows], raw.depth[rows]
-        slope = float(np.polyfit(time - time.mean(), depth, 1)[0])
-        end = 0 if way < 0.0 else -1
-        added = (np.array([time[end] + way]), np.array([depth[end] + slope * way]))
-        pairs = zip(added, out, strict=True) if way < 0.0 else zip(out, added, strict=True)
-        out = [np.concatenate(pair) for pair in pairs]
-    return out[0], out[1]
-
-
 def binned(raw: RawTrial, plan: BinPlan, layout: Layout | None, seen: NDArray[np.bool_] | None) -> Binned:
     """A trial's means in the bins of a plan: force, and the combinations of the markers (m,) that were seen."""
     table = np.column_stack([raw.time, raw.depth, raw.acceleration, raw.force])

@@ -27,10 +27,6 @@ class ConditionData:
         Place of each trial in the session.
     time, depth, acceleration : (R, n)
         s, m, m/s2.
-    before : (k,)
-        Times by which the depth may be late or early, s.
-    depth_before : (R, k, n)
-        The rows' depths so long before, m.
     signals : (R, n, C)
         Force in N, then marker combinations in m; NaN where nothing was measured.
     count : (R, n, C)
@@ -52,8 +48,6 @@ class ConditionData:
     time: Array
     depth: Array
     acceleration: Array
-    before: Array
-    depth_before: Array
     signals: Array
     count: Array
     frame_time: Array
