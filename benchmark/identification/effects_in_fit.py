@@ -155,4 +155,5 @@ def trial_context(session: Session, trial: TrialData, depth: Array) -> TrialCont
         hole_radius=open_radius(support),
         layers=specimen_layers(session.specimen.layers),
         contact=measured.tool.contact,
+        edge_radius=measured.tool.edge_radius or 0.0,
     )

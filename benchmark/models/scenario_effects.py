@@ -104,6 +104,7 @@ def scenario_context(scenario: Scenario) -> TrialContext:
         hole_radius=open_radius(scenario.support),
         layers=layers,
         contact=scenario.tool.contact,
+        edge_radius=scenario.tool.edge_radius or 0.0,
         control=control,
     )
 

@@ -44,6 +44,8 @@ class TrialContext:
         The specimen from the surface down; empty where it is taken as one layer of `thickness`.
     contact : str
         Of the tool, as in a scenario.
+    edge_radius : float
+        Of the tool's rounded edge, m: 0 is a sharp flat face, the tool's radius a ball.
     control : str
         What is given, "force" up to `peak_force` or "depth" up to `peak_depth`.
     """
@@ -58,6 +60,7 @@ class TrialContext:
     hole_radius: float = math.inf
     layers: tuple[WaveLayer, ...] = ()
     contact: str = "rigid_bonded"
+    edge_radius: float = 0.0
     control: Literal["force", "depth"] = "depth"
 
 

@@ -12,7 +12,8 @@ from wavemodel.physics.load_segment import LoadSegment, Memory
 
 TERMS = 12
 SMALLEST = 0.05
-"""A dome's contact is taken as no smaller than this share of the tool's radius."""
+"""A contact is taken as no smaller than this share of the tool's radius."""
+CONTACTS = 512
 
 
 @dataclass(frozen=True)
@@ -55,29 +56,35 @@ class PoroelasticDrainage:
     diffusivity
         D in m2/s, 1e-15 to 1.
     radius
-        a in m, 1e-6 to 1: of the tool's flat face.
-    dome
-        Radius of curvature of a domed tool, m; its contact is a = sqrt(2 dome d), up to `radius`. None: flat.
+        Of the tool, m, 1e-6 to 1: the largest a.
+    edge
+        Radius of the tool's rounded edge, m, 0 to `radius`: 0 is a sharp flat face, which touches whole, `radius` a
+        ball.
     """
 
     strength: float
     diffusivity: float
     radius: float
-    dome: float | None = None
+    edge: float = 0.0
 
     def __post_init__(self) -> None:
         require_between("drainage", "strength", self.strength, "", 0.0, 0.99)
         require_between("drainage", "diffusivity", self.diffusivity, "m2/s", 1e-15, 1.0)
         require_between("drainage", "radius", self.radius, "m", 1e-6, 1.0)
-        if self.dome is not None:
-            require_between("drainage", "dome", self.dome, "m", 1e-6, 1e3)
+        require_between("drainage", "edge", self.edge, "m", 0.0, self.radius)
 
     def contact_radius(self, depth: FloatArray) -> FloatArray:
-        """(n,) a in m at depths (n,), m."""
-        if self.dome is None:
+        """(n,) a in m at depths (n,), m.
+
+        Under a flat face of radius b with a rounded edge e, on a half-space, d = a int_b^a f' / sqrt(a^2 - r^2) dr with
+        f = (r - b)^2 / 2 e (I. N. Sneddon 1965, Int J Eng Sci 3:47): of a ball, b = 0, Hertz's a^2 = e d.
+        """
+        if self.edge <= 0.0:
             return np.full_like(depth, self.radius)
-        contact = np.sqrt(2.0 * self.dome * np.maximum(depth, 0.0))
-        return np.asarray(np.clip(contact, SMALLEST * self.radius, self.radius))
+        flat = self.radius - self.edge
+        contact = np.linspace(max(flat, SMALLEST * self.radius), self.radius, CONTACTS)
+        sunk = contact / self.edge * (np.sqrt(contact**2 - flat**2) - flat * np.arccos(flat / contact))
+        return np.asarray(np.interp(np.sqrt(np.maximum(depth, 0.0)), np.sqrt(sunk), contact))
 
     def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
         """(n,) force; exact for f linear in xi within each step."""

@@ -96,6 +96,7 @@ def _case(run: FinishedRun, fitted: NDArray[np.bool_], held: NDArray[np.bool_]) 
         hole_radius=open_radius(run.scenario.support),
         layers=specimen_layers(run.scenario.tissue.layers),
         contact=run.scenario.tool.contact,
+        edge_radius=run.scenario.tool.edge_radius or 0.0,
     )
     return RunCase(run, Ramp(layers[:, 0], np.append(0.0, run.force[rising]), layers), context, fitted, held)
 

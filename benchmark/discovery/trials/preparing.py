@@ -223,6 +223,7 @@ def _context(session: Session, first: Trial, data: Array, grid: Layout | None) -
         hole_radius=open_radius(first.support),
         layers=specimen_layers(session.specimen.layers),
         contact=first.tool.contact,
+        edge_radius=first.tool.edge_radius or 0.0,
     )
 
 

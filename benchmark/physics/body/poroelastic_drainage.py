@@ -12,7 +12,8 @@ DESCRIPTION = EffectDescription(
     slug="poroelastic_drainage",
     acts_on="body",
     sentence="Fluid leaves the pressed tissue: the force decays over a time that grows with the contact size squared.",
-    equation="F = int (1 - g (1 - phi(xi - xi'))) df, xi = int D / a^2 dt, phi of one-dimensional consolidation",
+    equation="F = int (1 - g (1 - phi(xi - xi'))) df, xi = int D / a^2 dt, "
+    "a of the contact, phi of one-dimensional consolidation",
     needs=(("hold", "second_rate"),),
     source="H. F. Wang, Theory of Linear Poroelasticity, section 6.3; Hu et al. 2010, Appl Phys Lett 96:121904",
     parameters=(
@@ -41,11 +42,12 @@ DESCRIPTION = EffectDescription(
 
 
 def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
+    from benchmark.files.tool import TOUCHING
     from wavemodel.physics import PoroelasticDrainage
 
-    return {
-        "drainage": PoroelasticDrainage(values["drainage_share"], values["drainage_diffusivity"], context.tool_radius)
-    }
+    edge = context.edge_radius if context.contact in TOUCHING else 0.0
+    share, diffusivity = values["drainage_share"], values["drainage_diffusivity"]
+    return {"drainage": PoroelasticDrainage(share, diffusivity, context.tool_radius, edge)}
 
 
 def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:

@@ -178,6 +178,19 @@ def test_drainage_goes_faster_under_a_smaller_tool():
     assert left(2.5e-3) < left(5e-3) < PLAIN.force[DEEP[50]]
 
 
+def test_drainage_follows_the_contact_of_a_ball_and_not_of_a_bonded_tool():
+    values = {"poroelastic_drainage": {"drainage_share": 0.4, "drainage_diffusivity": 5e-7}}
+
+    def left(contact: str, depth: float) -> float:
+        around = replace(AROUND, contact=contact, edge_radius=AROUND.tool_radius)
+        press = Motion(np.arange(0.0, 8.0, 0.02), np.full(400, depth), np.zeros(400))
+        force = TrialPipeline(around, (BY_SLUG["poroelastic_drainage"],)).readings(linear_table(), values, press).force
+        return float(force[-1] / force[0])
+
+    assert left("rigid_frictionless", 1e-3) < 0.97 * left("rigid_frictionless", 4e-3)
+    assert left("rigid_bonded", 1e-3) == pytest.approx(left("rigid_bonded", 4e-3), rel=1e-9)
+
+
 def test_anisotropy_moves_x_and_y_apart():
     made = readings(MOTION, anisotropy={"log_ratio": 0.2})
     x, y = made.markers[DEEP[0], 0, 0] - 6e-3, made.markers[DEEP[0], 1, 1] - 6e-3

@@ -60,10 +60,23 @@ def test_takes_longer_by_the_square_of_the_contact_size():
     np.testing.assert_allclose(hold(4.0 * time, 4e-3), hold(time, 2e-3), rtol=1e-7)
 
 
-def test_a_dome_drains_slower_as_it_sinks_in():
-    domed = PoroelasticDrainage(0.4, 1e-8, 5e-3, dome=10e-3)
-    np.testing.assert_allclose(domed.contact_radius(np.array([-1.0, 0.2e-3, 1.0])), [0.25e-3, 2e-3, 5e-3])
-    press = QuasiStaticPress(lambda d: 500.0 * d, Physics(drainage=domed))
+def test_a_ball_touches_as_hertz_says():
+    ball = PoroelasticDrainage(0.4, 1e-8, 5e-3, 5e-3)
+    depth = np.array([-1.0, 0.2e-3, 1e-3, 1.0])
+    np.testing.assert_allclose(ball.contact_radius(depth), [0.25e-3, 1e-3, np.sqrt(5.0) * 1e-3, 5e-3], rtol=1e-9)
+
+
+@pytest.mark.parametrize("touched", [3.2e-3, 4.0e-3, 4.9e-3])
+def test_a_rounded_edge_touches_as_sneddon_says(touched):
+    flat, edge = 3e-3, 2e-3
+    angle = np.linspace(np.arcsin(flat / touched), 0.5 * np.pi, 20001)
+    sunk = touched * np.trapezoid((touched * np.sin(angle) - flat) / edge, angle)
+    contact = PoroelasticDrainage(0.4, 1e-8, flat + edge, edge).contact_radius(np.array([0.0, sunk]))
+    np.testing.assert_allclose(contact, [flat, touched], rtol=1e-5)
+
+
+def test_a_ball_drains_slower_as_it_sinks_in():
+    press = QuasiStaticPress(lambda d: 500.0 * d, Physics(drainage=PoroelasticDrainage(0.4, 1e-8, 5e-3, 5e-3)))
     time = np.array([1e-6, 10.0, 20.0])
     kept = [press.force(time, np.full(3, depth))[1] / depth for depth in (0.2e-3, 1e-3)]
     assert kept[0] < 0.99 * kept[1]
@@ -73,7 +86,7 @@ def test_drainage_is_off_at_zero():
     np.testing.assert_allclose(hold(np.array([1.0, 100.0]), 2e-3, strength=0.0), 0.5, rtol=1e-14)
 
 
-@pytest.mark.parametrize("wrong", [(1.0, 1e-8, 1e-3), (0.3, 0.0, 1e-3), (0.3, 1e-8, 0.0), (0.3, 1e-8, 1e-3, 0.0)])
+@pytest.mark.parametrize("wrong", [(1.0, 1e-8, 1e-3), (0.3, 0.0, 1e-3), (0.3, 1e-8, 0.0), (0.3, 1e-8, 1e-3, 1.1e-3)])
 def test_drainage_refuses(wrong):
     with pytest.raises(WaveError, match="drainage"):
         PoroelasticDrainage(*wrong)
