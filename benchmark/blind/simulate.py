@@ -120,7 +120,8 @@ def _contact_force(
     for effect in effects:
         strained = effect.indent(moved.time, strained)
     elastic = gain * body.force(strained)
-    pushed = elastic + sum((effect.push(moved.time, strained, elastic) for effect in effects), np.zeros_like(elastic))
+    pushes = ((gain if effect.stiffens else 1.0) * effect.push(moved.time, strained, elastic) for effect in effects)
+    pushed = elastic + sum(pushes, np.zeros_like(elastic))
     touching = np.where(strained > 0.0, np.clip(pushed, 0.0, None), 0.0)  # a tool that lifts off cannot pull
     return touching + sum((effect.pull(moved.time, strained) for effect in effects), np.zeros_like(elastic))
 

@@ -23,6 +23,7 @@ class HiddenStrainStiffening(Hidden):
     """Extra force e^(k s) - 1 - k s over the share s of the deepest press."""
 
     slug = "strain_stiffening"
+    stiffens = True
     steepness: float
 
     @classmethod

@@ -48,11 +48,14 @@ class Hidden:
     scale : SessionScale
     amplitude : float
         0 is nothing, 1 is so large that nobody could miss it.
+    stiffens : bool
+        Whether its push is the tissue's own stiffness, which a stiffer specimen has more of.
     """
 
     slug: ClassVar[str]
     only_markers: ClassVar[bool] = False
     gives_way: ClassVar[bool] = False
+    stiffens: ClassVar[bool] = False
     largest: ClassVar[float] = 30.0
 
     scale: SessionScale

@@ -18,6 +18,7 @@ class LockingStiffening(Hidden):
     """Extra force s^3 / (1 - s / `limit`) over the share s of the deepest press: fibres that become straight."""
 
     slug = "strain_stiffening"
+    stiffens = True
     limit: float
 
     @classmethod

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from benchmark.blind.cases import CaseName, draw_scene, generator, layout, make_case
+from benchmark.blind.cases import FORMS, CaseName, draw_scene, generator, layout, make_case
 from benchmark.blind.hidden import CATALOGUE, OUTSIDE, Hidden
+from benchmark.blind.motion import Array
 from benchmark.blind.scene import Scene
-from benchmark.blind.simulate import Signals
+from benchmark.blind.simulate import Signals, simulate
 
 SLUGS = (*CATALOGUE, *OUTSIDE)
 
@@ -86,3 +87,17 @@ def test_hooks_of_hysteresis() -> None:
     moved = backlash.of_size(0.2).travel(np.arange(400.0), depth, depth)
     lost = np.interp(1e-3, moved[:200], depth[:200]) - np.interp(1e-3, moved[:199:-1], depth[:199:-1])
     assert lost == pytest.approx(0.2 * 0.3 * scene.scale.shallow, rel=0.02)
+
+
+@pytest.mark.parametrize("family", FORMS)
+def test_what_stiffens_does_so_with_the_specimen(family: str) -> None:
+    name = CaseName("effect", "strain_stiffening", 0, family=family)
+    rng = generator(name, "case")
+    scene = draw_scene(name, rng)
+    effect = FORMS[family]["strain_stiffening"].draw(scene.scale, rng)
+    moved = scene.motion(scene.plans[-1])
+
+    def force(gain: float) -> Array:
+        return simulate(scene.body, None, moved, [effect], gain).force
+
+    np.testing.assert_allclose(force(1.4), 1.4 * force(1.0), rtol=1e-12)
