@@ -179,7 +179,7 @@ def _answered(
         tissue=session.specimen.name,
         model=request.model,
         found=replace(found.discovery, warnings=warnings),
-        cards={effect.slug: (effect.richer or effect).description for effect in (*effects, *found.entries)},
+        cards={effect.slug: effect.forms[-1].description for effect in (*effects, *found.entries)},
         seed=request.seed,
         proposal=proposal,
         large_press="corrected",

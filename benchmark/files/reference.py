@@ -45,7 +45,7 @@ def reference() -> str:
     """The whole page as Markdown."""
     done: set[type[FileModel]] = set()
     sections = [HEAD, *(line for title, model in ROOTS for line in _section(title, model, done))]
-    effects = (line for effect in catalogue() for line in _effect((effect.richer or effect).description))
+    effects = (line for effect in catalogue() for line in _effect(effect.forms[-1].description))
     return "\n".join([*sections, EFFECTS, *effects])
 
 

@@ -95,7 +95,7 @@ def _effect(effect: _Effect, place: int, known: Mapping[str, EffectDescription],
             raise _wrong(source, where, f"{effect.name} has {parameter.name} already; give one of the two")
         values[parameter.name] = _value(given, parameter, where, source)
     missing = [name for name in parameters if name not in values]
-    if missing and set(missing) != set(description.may_lack):
+    if missing and not description.may_end_before(missing):
         raise _wrong(source, (*at, "parameters"), f"{effect.name} needs the parameter {missing[0]}; it is missing")
     return AddedEffect(effect.name, values)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal, TypeAlias
@@ -117,8 +118,9 @@ class EffectDescription:
         Parameters of older model files that cannot be converted, and what to do instead.
     needs : tuple of tuples of str
         What trials must have to show it, one of each tuple; without it nothing tells it from the base's own form.
-    may_lack : tuple of str
-        Parameters of its richer form, which a model file leaves out together where the plain one is meant.
+    may_lack : tuple of tuples of str
+        Parameters of each further term of its richer forms; a model file leaves out the last ones, each whole, where a
+        plainer form is meant.
     """
 
     slug: str
@@ -132,7 +134,12 @@ class EffectDescription:
     in_fem: str = ""
     retired: tuple[tuple[str, str], ...] = ()
     needs: tuple[tuple[Sign, ...], ...] = ()
-    may_lack: tuple[str, ...] = ()
+    may_lack: tuple[tuple[str, ...], ...] = ()
+
+    def may_end_before(self, missing: Collection[str]) -> bool:
+        """Whether a plainer form has all but these parameters."""
+        tails = [[name for term in self.may_lack[first:] for name in term] for first in range(len(self.may_lack))]
+        return any(set(missing) == set(tail) for tail in tails)
 
     @property
     def keys(self) -> dict[str, EffectParameter]:

@@ -213,6 +213,8 @@ class Effect:
         The parameter by which it shows in markers too, where there are some: what they do not show is another effect.
     richer : Effect or None
         The same effect with one more term, tried where this one is accepted.
+    further_terms_of : str
+        Slug of the effect whose further terms it may be where the data do not tell the two apart.
     origin : str or None
         File of an own effect.
     fem : FemTerm or None
@@ -234,6 +236,7 @@ class Effect:
     remembers: bool = False
     seen_by: str = ""
     richer: Effect | None = None
+    further_terms_of: str = ""
     origin: str | None = None
     amplitudes: tuple[str, ...] = ()
     form: tuple[str, ...] = ()
@@ -250,6 +253,11 @@ class Effect:
     def names(self) -> tuple[str, ...]:
         """Names of the parameters."""
         return tuple(parameter.name for parameter in self.description.parameters)
+
+    @property
+    def forms(self) -> tuple[Effect, ...]:
+        """Itself and its richer forms, one term more each."""
+        return (self, *(self.richer.forms if self.richer is not None else ()))
 
     def from_origin(self, path: str) -> Effect:
         """Copy with the file that it came from."""

@@ -81,7 +81,7 @@ def load_effects(path: str | Path) -> tuple[Effect, ...]:
     except (Exception, SystemExit) as error:
         raise InputError(f"{file}: this effects file does not run ({type(error).__name__}: {error}).") from error
     found = [value for value in vars(module).values() if isinstance(value, Effect)]
-    shared = {each.richer for each in found if each.richer is not None}
+    shared = {form for each in found for form in each.forms[1:]}
     own = [each for each in found if each not in shared]
     _check(own, file)
     return tuple(each.from_origin(str(file.resolve())) for each in own)

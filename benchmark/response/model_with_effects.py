@@ -74,7 +74,7 @@ class SwitchedOn:
 def load_repair(path: Path, own_effects: Path | None = None) -> RepairedModel:
     """Read a model file, with the effects of a user's own file known beside the catalogue; raises InputError."""
     own = () if own_effects is None else load_effects(own_effects)
-    cards = {effect.slug: (effect.richer or effect).description for effect in (*catalogue(), *own)}
+    cards = {effect.slug: effect.forms[-1].description for effect in (*catalogue(), *own)}
     return replace(read_model(path, cards), own_effects=own_effects)
 
 
@@ -175,8 +175,7 @@ def effects_of(repair: RepairedModel) -> tuple[Added, ...]:
 
 
 def _variant(effect: Effect, values: Mapping[str, float]) -> Effect:
-    richer = effect.richer
-    return richer if richer is not None and set(richer.names) == set(values) else effect
+    return next((form for form in effect.forms if set(form.names) == set(values)), effect)
 
 
 def _left_out(effect: Effect, repair: RepairedModel, scenario: Scenario, model: str) -> str | None:

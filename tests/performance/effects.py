@@ -63,7 +63,7 @@ class Row:
 
 def rows(observations: int = 40, mesh: str = "default") -> Iterator[Row]:
     """A row for each specimen and effect, the elastic answer first."""
-    known = {effect.slug: effect.richer or effect for effect in catalogue()}
+    known = {effect.slug: effect.forms[-1] for effect in catalogue()}
     for specimen, (name, peak) in SPECIMENS.items():
         settings = {"load.peak": peak, "load.observations": str(observations), "fem.mesh": mesh}
         scenario = load_scenario(name, settings)

@@ -89,10 +89,14 @@ def select(
         current = steps[-1].fit
     current, forms = _pruned(base, current, settings, work)
     current = _told(base, _swapped(base, current, rounds, settings, work), effects, settings, work)
+    current, apart = _as_further_terms(base, current, settings, work)
     places = [_in_place(base, current, effect, rounds, settings, work) for effect in current.model.effects]
     tried = tuple(scored for each in rounds for scored in each)
-    lookalikes = {slug: tuple(fit.model.effects[-1].slug for fit in fits) for slug, fits, _ in places}
-    rivals, own = {slug: fits for slug, fits, _ in places}, {slug: gained for slug, _, gained in places}
+    rivals = {slug: (*apart.get(slug, ()), *fits) for slug, fits, _ in places}
+    lookalikes = {
+        slug: tuple(dict.fromkeys(fit.model.effects[-1].slug for fit in fits)) for slug, fits in rivals.items()
+    }
+    own = {slug: gained for slug, _, gained in places}
     return Selection(base, current, tuple(steps), tried, first_screen, lookalikes, rivals, own, (*withheld, *forms))
 
 
@@ -338,6 +342,30 @@ def _other_pairs(
         pairs += [(base.objective - start.fit.objective + s.won, start.fit, s.effect) for s in seconds[:1]]
     pairs.sort(key=lambda pair: -pair[0])
     return [(fit, [effect]) for _, fit, effect in pairs[: criteria.OTHER_PAIRS]]
+
+
+def _as_further_terms(
+    base: Fit, current: Fit, settings: Settings, work: Pool
+) -> tuple[Fit, dict[str, tuple[Fit, ...]]]:
+    """One effect with more terms in place of it and another that the data do not tell from such terms.
+
+    Fluid that leaves under tools of one size is a fading memory like any other. Beside the fit stands the one of both
+    effects, by the slug of the one that stays.
+    """
+    chosen = {effect.slug: effect for effect in current.model.effects}
+    for effect in chosen.values():
+        whole = chosen.get(effect.further_terms_of)
+        if whole is None:
+            continue
+        others = [other for other in chosen.values() if other not in (effect, whole)]
+        groups, now = conditions(current), held_out(current)
+        own = gain(now, held_out(rebuilt(base, [*others, whole], work, "further terms")), groups)
+        for form in whole.forms[1:]:
+            instead = rebuilt(base, [*others, form], work, "further terms")
+            lead = gain(now, held_out(instead), groups)
+            if lead.z < settings.lookalike_z or lead.mean < criteria.CLOSE * own.mean:
+                return instead, {whole.slug: (rebuilt(base, [*others, whole, effect], work, "further terms"),)}
+    return current, {}
 
 
 def _in_place(

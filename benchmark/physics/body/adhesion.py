@@ -39,7 +39,7 @@ DESCRIPTION = EffectDescription(
             formerly="pull_off",
         ),
     ),
-    may_lack=("rise",),
+    may_lack=(("rise",),),
     in_wave="on top of its elastic law",
     in_fem="the contact of a rigid_frictionless or rigid_frictional tool in finite strain lets go at that pull",
 )

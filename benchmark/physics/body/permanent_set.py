@@ -56,7 +56,7 @@ DELAYED = replace(
         *FIRST_TERMS,
         logarithmic("permanent_set_delay", "s", 1e-2, 1e3, "time in which the surface sinks to its set"),
     ),
-    may_lack=("permanent_set_delay",),
+    may_lack=(("permanent_set_delay",),),
 )
 
 

@@ -55,4 +55,4 @@ def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     return tuple({"drainage_share": 0.2, "drainage_diffusivity": factor * scale} for factor in (0.5, 4.0, 30.0))
 
 
-EFFECT = Effect(DESCRIPTION, "drainage_share", body=_body, starts=_starts)
+EFFECT = Effect(DESCRIPTION, "drainage_share", body=_body, starts=_starts, further_terms_of="viscoelastic_relaxation")

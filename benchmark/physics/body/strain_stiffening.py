@@ -46,7 +46,7 @@ EXPONENTIAL = replace(
     equation="F = f(d) (1 + (b_1 x + b_2 x^2) e^(b_3 x^2)), x = d / thickness",
     source=f"{DESCRIPTION.source}; Y. C. Fung 1967, Am J Physiol 213:1532 (exponential law)",
     parameters=(*FIRST_TERMS, logarithmic("b_3", "", 1e-3, 1e3, "exponent b_3 with which those grow")),
-    may_lack=("b_3",),
+    may_lack=(("b_3",),),
 )
 
 

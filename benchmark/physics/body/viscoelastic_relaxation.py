@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -14,22 +14,22 @@ if TYPE_CHECKING:
 
 
 def _description(terms: int) -> EffectDescription:
-    parameters = []
+    parameters, fading, left = [], [], ""
     for term in range(1, terms + 1):
-        of = "the stiffness" if term == 1 else "what the first leaves"
+        of = "the stiffness" if term == 1 else "what the terms before leave"
         parameters.append(linear(f"g_{term}", "", 0.0, 0.95, f"share of {of} that fades with tau_{term}"))
         parameters.append(logarithmic(f"tau_{term}", "s", 0.01, 1e3, f"relaxation time {term}"))
+        fading.append(f"{left}g_{term} (1 - exp(-t / tau_{term}))")
+        left += f"(1 - g_{term}) "
     return EffectDescription(
         slug="viscoelastic_relaxation",
         acts_on="body",
         sentence="The tissue's stiffness fades with time: the force decays in a hold, and fast presses are stiffer.",
-        equation="F(t) = int G(t - t') df(t'), G = 1 - g_1 (1 - exp(-t / tau_1)) - (1 - g_1) g_2 (1 - exp(-t / tau_2))"
-        if terms > 1
-        else "F(t) = int G(t - t') df(t'), G = 1 - g_1 (1 - exp(-t / tau_1))",
+        equation=f"F(t) = int G(t - t') df(t'), G = 1 - {' - '.join(fading)}",
         needs=(("hold", "second_rate"),),
         source="Y. C. Fung, Biomechanics: Mechanical Properties of Living Tissues, section 7.6",
         parameters=tuple(parameters),
-        may_lack=("g_2", "tau_2") if terms > 1 else (),
+        may_lack=tuple((f"g_{term}", f"tau_{term}") for term in range(2, terms + 1)),
         in_wave="Prony series on top of its elastic law; a scenario's layers have series of their own (`relaxation`)",
         in_fem="a Prony series of every layer's shear, identified so that the force fades as much; else quasi-linear",
     )
@@ -79,21 +79,29 @@ def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
 
 def _two_starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     slow = 0.2 * context.duration
-    return tuple({"g_1": 0.15, "tau_1": max(share * slow, 0.02), "g_2": 0.15, "tau_2": slow} for share in (0.02, 0.1))
+    return tuple(_spread(slow, share) for share in ((0.02, 1.0), (0.1, 1.0)))
 
 
-TWO = Effect(
-    _description(2),
-    "g_1",
-    body=_body,
-    starts=_two_starts,
-    fem=FemTerm(("g_1", "tau_1", "g_2", "tau_2"), _in_fem, elastic=False),
-)
-EFFECT = Effect(
-    _description(1),
-    "g_1",
-    body=_body,
-    starts=_starts,
-    richer=TWO,
-    fem=FemTerm(("g_1", "tau_1"), _in_fem, elastic=False),
-)
+def _three_starts(context: TrialContext) -> tuple[dict[str, float], ...]:
+    slow = 0.3 * context.duration
+    return tuple(_spread(slow, share) for share in ((0.01, 0.1, 1.0), (0.03, 0.17, 1.0), (0.003, 0.05, 1.0)))
+
+
+def _spread(slow: float, shares: tuple[float, ...]) -> dict[str, float]:
+    """Terms of like strength whose times are these shares of the slowest one, s."""
+    found: dict[str, float] = {}
+    for term, share in enumerate(shares, start=1):
+        found |= {f"g_{term}": 0.15, f"tau_{term}": max(share * slow, 0.02)}
+    return found
+
+
+def _effect(
+    terms: int, starts: Callable[[TrialContext], tuple[dict[str, float], ...]], richer: Effect | None
+) -> Effect:
+    description = _description(terms)
+    names = tuple(parameter.name for parameter in description.parameters)
+    fem = FemTerm(names, _in_fem, elastic=False)
+    return Effect(description, "g_1", body=_body, starts=starts, richer=richer, fem=fem)
+
+
+EFFECT = _effect(1, _starts, _effect(2, _two_starts, _effect(3, _three_starts, None)))

@@ -33,7 +33,7 @@ DESCRIPTION = EffectDescription(
         linear("drag_growth", "s/m", 0.0, 1e4, "growth lambda of that resistance with the force"),
         linear("power", "", 0.5, 1.0, "power n of the speed in that resistance", stated=(0.5, 1.5)),
     ),
-    may_lack=("drag_growth",),
+    may_lack=(("drag_growth",),),
     in_wave="on top of its elastic law",
     in_fem="quasi-linear: on top of its elastic answer, in `run --model` only",
 )

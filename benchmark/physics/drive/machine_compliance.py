@@ -21,7 +21,7 @@ def _description(*, curved: bool = False) -> EffectDescription:
         source="springs in series; ISO 14577-1, section on frame compliance"
         + ("; K. L. Johnson, Contact Mechanics, section 4.2 (n = 2/3)" if curved else ""),
         parameters=(COMPLIANCE, POWER) if curved else (COMPLIANCE,),
-        may_lack=("power",) if curved else (),
+        may_lack=(("power",),) if curved else (),
     )
 
 

@@ -35,7 +35,7 @@ RELAXATION = EffectDescription(
         EffectParameter("g_2", "", (0.1,), 0.0, 0.95, False, "second share"),
         EffectParameter("tau_2", "s", (10.0,), 0.01, 1e3, True, "second time"),
     ),
-    may_lack=("g_2", "tau_2"),
+    may_lack=(("g_2", "tau_2"),),
 )
 COMPLIANCE = EffectDescription(
     slug="machine_compliance",

@@ -3,7 +3,7 @@ import pytest
 from benchmark.files.units import dimension_of, format_quantity, parse_quantity, shown
 from benchmark.physics import catalogue
 
-UNITS = sorted({p.unit for effect in catalogue() for p in (effect.richer or effect).description.parameters})
+UNITS = sorted({p.unit for effect in catalogue() for p in effect.forms[-1].description.parameters})
 
 
 @pytest.mark.parametrize("unit", UNITS)

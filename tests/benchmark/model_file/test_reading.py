@@ -6,7 +6,7 @@ from benchmark.errors import InputError
 from benchmark.model_file import AddedEffect, RepairedModel, Value, model_toml, read_model
 from benchmark.physics import catalogue
 
-KNOWN = {effect.slug: (effect.richer or effect).description for effect in catalogue()}
+KNOWN = {effect.slug: effect.forms[-1].description for effect in catalogue()}
 MODEL = RepairedModel(
     "model.toml",
     "skin_forearm",
@@ -46,6 +46,18 @@ def test_units_are_read_and_a_value_may_stand_alone(tmp_path: Path) -> None:
     (effect,) = read_model(_written(tmp_path, text), KNOWN).effects
     assert effect.values() == {"g_1": pytest.approx(0.3), "tau_1": pytest.approx(0.25)}
     assert effect.parameters["g_1"].ci95 is None
+
+
+@pytest.mark.parametrize(("terms", "missing"), [(1, ""), (2, ""), (3, ""), (2, "tau_2"), (3, "tau_3"), (3, "g_2")])
+def test_a_file_may_end_before_a_further_term_and_not_within_one(tmp_path: Path, terms: int, missing: str) -> None:
+    keys = [f"{name}_{term}" for term in range(1, terms + 1) for name in ("g", "tau") if f"{name}_{term}" != missing]
+    lines = [f'{key} = "{"10 %" if key[0] == "g" else "2 s"}"' for key in keys]
+    text = HEAD + "\n".join(['[[effects]]\nname = "viscoelastic_relaxation"\n[effects.parameters]', *lines])
+    if not missing:
+        assert list(read_model(_written(tmp_path, text), KNOWN).effects[0].parameters) == keys
+        return
+    with pytest.raises(InputError, match=f"viscoelastic_relaxation needs the parameter {missing}; it is missing"):
+        read_model(_written(tmp_path, text), KNOWN)
 
 
 def test_a_file_may_state_more_than_a_fit_searches(tmp_path: Path) -> None:

@@ -96,14 +96,17 @@ def test_relaxation_decays_in_the_hold_to_its_long_term():
     assert made.force[last] == pytest.approx(0.7 * STIFFNESS * PEAK, rel=1e-4)
 
 
-def test_the_second_term_fades_what_the_first_leaves():
+@pytest.mark.parametrize("terms", [2, 3])
+def test_a_further_term_fades_what_those_before_leave(terms):
     motion = press(hold=60.0)
-    two = replace(BY_SLUG["viscoelastic_relaxation"].richer)
-    pipeline = TrialPipeline(AROUND, (two,))
-    values = {two.slug: {"g_1": 0.2, "tau_1": 0.2, "g_2": 0.3, "tau_2": 2.0}}
-    made = pipeline.readings(linear_table(), values, motion)
+    form = BY_SLUG["viscoelastic_relaxation"].forms[terms - 1]
+    values = {"g_1": 0.2, "tau_1": 0.2, "g_2": 0.3, "tau_2": 2.0, "g_3": 0.4, "tau_3": 1.0}
+    made = TrialPipeline(AROUND, (form,)).readings(
+        linear_table(), {form.slug: {name: values[name] for name in form.names}}, motion
+    )
     last = np.flatnonzero(motion.depth > PEAK - 1e-9)[-2]
-    assert made.force[last] == pytest.approx(0.8 * 0.7 * STIFFNESS * PEAK, rel=1e-3)
+    left = 0.8 * 0.7 * (0.6 if terms == 3 else 1.0)
+    assert made.force[last] == pytest.approx(left * STIFFNESS * PEAK, rel=1e-3)
 
 
 def test_damping_adds_with_speed_and_not_in_the_hold():

@@ -32,7 +32,9 @@ SETTINGS = Settings()
 def effect(slug, parameters=1, richer=None, acts_on="body"):
     description = SimpleNamespace(acts_on=acts_on, parameters=())
     names = ("p",) * parameters
-    return SimpleNamespace(slug=slug, names=names, richer=richer, description=description, seen_by="")
+    made = SimpleNamespace(slug=slug, names=names, richer=richer, description=description, seen_by="")
+    made.further_terms_of, made.forms = "", (made,) if richer is None else (made, *richer.forms)
+    return made
 
 
 def fitted(*effects, density=0.0, objective=0.0, conditions=(0,) * 8):
@@ -716,3 +718,30 @@ def test_the_least_p_counts_how_many_were_tried():
 def test_the_rules_are_those_of_the_criteria():
     assert (criteria.TIE, criteria.FORM_OFF, criteria.CLOSE) == (0.03, 0.3, 0.1)
     assert (criteria.ACCEPT_BIC, criteria.RICHER_BIC, SETTINGS.accept_z, SETTINGS.lookalike_z) == (-4.0, -6.0, 3.0, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("with_terms", "alone"),
+    [(100.0, True), (91.5, True), (89.0, False)],  # of 100 with both effects, of which the flow gains 90 to 10
+)
+def test_a_flow_that_further_terms_stand_for_is_a_lookalike_of_them(known_densities, with_terms, alone):
+    flow, memory, other = effect("flow"), effect("memory", 2, richer=effect("memory", 4)), effect("other")
+    flow.further_terms_of = "memory"
+    both = fitted(flow, other, memory, density=100.0)
+    longer, apart = fitted(other, memory.richer, density=with_terms), fitted(other, memory, flow, density=100.0)
+    known = (fitted(other), fitted(other, memory, density=10.0), longer, apart)
+
+    class Fits:
+        def fits(self, stage, jobs):
+            return [self.of([*base.model.effects, added]) for base, added in jobs]
+
+        def of(self, asked):
+            return next(fit for fit in known if [*map(id, fit.model.effects)] == [*map(id, asked)])
+
+    found = selection._as_further_terms(fitted(), both, SETTINGS, Fits())
+    assert found == ((longer, {"memory": (apart,)}) if alone else (both, {}))
+
+
+def test_effects_that_are_no_terms_of_each_other_stay(known_densities):
+    both = fitted(effect("flow"), effect("memory", 2, richer=effect("memory", 4)), density=100.0)
+    assert selection._as_further_terms(fitted(), both, SETTINGS, Work()) == (both, {})
