@@ -209,6 +209,8 @@ class Effect:
         Whether it shows in the markers alone.
     remembers : bool
         Whether the way back may be another than the way in, though a fit may find them alike.
+    like_delay : bool
+        Whether a force that is late by a moment looks like it.
     seen_by : str
         The parameter by which it shows in markers too, where there are some: what they do not show is another effect.
     richer : Effect or None
@@ -234,6 +236,7 @@ class Effect:
     starts: Callable[[TrialContext], tuple[dict[str, float], ...]] | None = None
     needs_markers: bool = False
     remembers: bool = False
+    like_delay: bool = False
     seen_by: str = ""
     richer: Effect | None = None
     further_terms_of: str = ""

@@ -100,7 +100,7 @@ def _bends(fitted: Fit, effect: Effect) -> list[Array]:
     turns = [between(condition) for condition in problem.study.conditions]
     ends = np.cumsum([0, *(len(problem.study.names[:2]) * len(each) for each in turns)])
     out = []
-    for index, (trial, added) in enumerate(zip(problem.trials, _added(fitted, effect.slug), strict=True)):
+    for index, (trial, added) in enumerate(zip(problem.trials, added_by(fitted, effect.slug), strict=True)):
         rows = np.zeros((added.size, ends[-1]))
         patterns = _patterns(added, problem.noise.scale[index], felt)
         shapes = [share[:, None] * pattern for pattern in patterns for share in turns[trial.condition]]
@@ -127,7 +127,7 @@ def _patterns(added: Array, scale: Array, felt: bool) -> list[Array]:
     return [force, markers if sizes[:, 1:].max() > LEAST_MOVED else np.zeros(scale.size)]
 
 
-def _added(fitted: Fit, slug: str) -> list[Array]:
+def added_by(fitted: Fit, slug: str) -> list[Array]:
     """What an effect adds to the signals (n, C) of each trial."""
     model = fitted.model
     kept = [k for k, (of, _) in enumerate(model.parameters, start=model.shape_count) if of != slug]
@@ -144,7 +144,7 @@ def _knots_of(fitted: Fit, effect: Effect) -> Callable[[ConditionData], Array]:
     mine = [k for k, (slug, _) in enumerate(model.parameters, start=model.shape_count) if slug == effect.slug]
     vector = fitted.vector[[*range(len(model.problem.shapes)), *mine]]
     none = np.zeros_like(fitted.nuisance)  # a trial's own delay would part the way in from the way back
-    by_itself = _added(replace(fitted, model=alone, vector=vector, nuisance=none), effect.slug)
+    by_itself = added_by(replace(fitted, model=alone, vector=vector, nuisance=none), effect.slug)
     trials = [
         (t.motion, a / s) for t, a, s in zip(model.problem.trials, by_itself, model.problem.noise.scale, strict=True)
     ]

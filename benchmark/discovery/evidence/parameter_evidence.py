@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,6 +10,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from benchmark.discovery import criteria
+from benchmark.discovery.base.bent_form import added_by
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.discovery_result import Array, ConditionEstimate, Estimate
 from benchmark.discovery.evidence.gains import conditions
@@ -187,10 +189,24 @@ def _added_force(fitted: Fit, grown: Sequence[_Strength], vector: Array) -> floa
 
 
 def seen(fitted: Fit, effect: Effect) -> bool:
-    """Whether markers show an effect that must show in them, where there are any."""
+    """Whether it is more than a moment's delay, and markers show it if it must show in them, where there are any."""
+    if effect.like_delay and delay(fitted, effect) < criteria.NO_LATER:
+        return False
     if not effect.seen_by or fitted.model.problem.study.layout is None:
         return True
     return determined(fitted, effect, (effect.seen_by,))
+
+
+def delay(fitted: Fit, effect: Effect) -> float:
+    """By how much later, in s, the force without an effect would change as much as by the effect."""
+    model = fitted.model
+    signals, more = model.signals(fitted.vector, fitted.nuisance), added_by(fitted, effect.slug)
+    added = rate = 0.0
+    for trial, whole, part in zip(model.problem.trials, signals, more, strict=True):
+        count, force = trial.count[:, 0], part[:, 0]
+        added += float(count @ force**2)
+        rate += float(count @ np.gradient(whole[:, 0] - force, trial.motion.time) ** 2)
+    return math.sqrt(added / rate) if rate > 0.0 else math.inf
 
 
 def terms_told(fitted: Fit, plain: Effect) -> bool:

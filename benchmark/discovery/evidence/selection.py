@@ -81,7 +81,8 @@ def select(
         scored = score(current, work.fits(f"round {number}", [(current, s.effect) for s in promising]))
         rounds.append(_enriched(current, scored, work))
         evident = [s for s in rounds[-1] if _evident(s, steps, settings)]
-        accepted = further(current, evident, settings) if steps else evident
+        within = criteria.FORM_OFF**2 * max((step.gain.mean for step in steps), default=0.0)
+        accepted = further(current, evident, settings, within) if steps else evident
         if not accepted:
             withheld = tuple(evident)
             break
@@ -153,14 +154,14 @@ def _over_trials(gained: Gain, settings: Settings) -> bool:
     return gained.z >= settings.accept_z or broad(gained) > criteria.BROAD
 
 
-def further(current: Fit, evident: Sequence[Scored], settings: Settings) -> list[Scored]:
+def further(current: Fit, evident: Sequence[Scored], settings: Settings, within: float = 0.0) -> list[Scored]:
     """Those of a round's candidates that carry over and are more than what the forms of the effects before miss.
 
-    What those forms miss at most is worked out once.
+    What those forms miss at most is worked out once; `within` is the gain that they may miss.
     """
     carried, forms = [s for s in evident if carries_over(s)], _own_forms(current)
     instead = held_out(bent(current, forms)) if carried and forms else None
-    return [s for s in carried if beats_bent(s, settings, instead)]
+    return [s for s in carried if beats_bent(s, settings, instead, within)]
 
 
 def _own_forms(fitted: Fit) -> list[str]:
@@ -168,12 +169,13 @@ def _own_forms(fitted: Fit) -> list[str]:
     return [effect.slug for effect in fitted.model.effects if setup_key(effect.slug) is None]
 
 
-def beats_bent(scored: Scored, settings: Settings, instead: Array | None = None) -> bool:
+def beats_bent(scored: Scored, settings: Settings, instead: Array | None = None, within: float = 0.0) -> bool:
     """Whether a further effect is more than what the forms of those before miss of the true ones.
 
     It must foretell trials surely better than they do by being off without it (`instead` (R,), where it is known). Or
     it must have its evidence where those forms may be off; that must be most of what it gains where they may not, or it
-    must not foretell trials surely worse than they do without it.
+    must not foretell trials surely worse than they do without it. What gains no more than `within` has the first way
+    alone: a form that is off by a share of what it adds misses the square of that share of what it gains.
     """
     forms = _own_forms(scored.under)
     if not forms:
@@ -184,6 +186,8 @@ def beats_bent(scored: Scored, settings: Settings, instead: Array | None = None)
     straight = gain(held_out(scored.fit), instead, groups)
     if straight.z > settings.accept_z and straight.mean > 0.0:
         return True
+    if scored.gain.mean <= within:
+        return False
     beside = gain(held_out(bent(scored.fit, forms)), instead, groups)
     if not _over_trials(beside, settings):
         return False

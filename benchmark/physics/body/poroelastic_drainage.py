@@ -42,10 +42,9 @@ DESCRIPTION = EffectDescription(
 
 
 def _body(values: Values, context: TrialContext) -> Mapping[str, Any]:
-    from benchmark.files.tool import TOUCHING
     from wavemodel.physics import PoroelasticDrainage
 
-    edge = context.edge_radius if context.contact in TOUCHING else 0.0
+    edge = 0.0 if context.contact == "rigid_bonded" else context.edge_radius
     share, diffusivity = values["drainage_share"], values["drainage_diffusivity"]
     return {"drainage": PoroelasticDrainage(share, diffusivity, context.tool_radius, edge)}
 

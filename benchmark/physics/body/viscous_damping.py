@@ -71,5 +71,11 @@ def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
 
 
 EFFECT = Effect(
-    DESCRIPTION, "damping_time", body=_body, observe=_observe, starts=_starts, amplitudes=("drag", "drag_growth")
+    DESCRIPTION,
+    "damping_time",
+    body=_body,
+    observe=_observe,
+    starts=_starts,
+    amplitudes=("drag", "drag_growth"),
+    like_delay=True,
 )

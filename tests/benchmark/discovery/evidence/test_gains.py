@@ -1,5 +1,6 @@
 """Gains over trials: what one trial can do to them, and when they are evidence without z."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,6 +19,7 @@ from benchmark.discovery.evidence.gains import (
     strain,
     tissue_gain,
 )
+from benchmark.discovery.evidence.parameter_evidence import delay, seen
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
 
@@ -95,3 +97,17 @@ def test_tests_share_the_level():
     assert combined(0.07, 1.0, 1.0) == pytest.approx(0.1)
     assert combined(1.0, 0.015, 1.0) == pytest.approx(0.1)
     assert combined(1.0, 1.0) == 1.0
+
+
+def test_a_damping_that_is_like_a_moments_delay_is_not_seen(session_of):
+    session = session_of(noise=0.003)
+    damping = BY_SLUG["viscous_damping"]
+    found = fit_candidate(calibrate(session, prepare(session, 40)).base, damping)
+
+    def late(seconds):
+        values = {"damping_time": seconds, "drag": 0.0, "drag_growth": 0.0, "power": 1.0}
+        shape = found.vector[: found.model.shape_count]
+        return replace(found, vector=found.model.vector(shape, {damping.slug: {k: values[k] for k in damping.names}}))
+
+    assert delay(late(0.02), damping) == pytest.approx(0.02, rel=0.2)
+    assert [seen(late(seconds), damping) for seconds in (0.003, 0.02)] == [False, True]

@@ -33,6 +33,7 @@ def effect(slug, parameters=1, richer=None, acts_on="body"):
     description = SimpleNamespace(acts_on=acts_on, parameters=())
     names = ("p",) * parameters
     made = SimpleNamespace(slug=slug, names=names, richer=richer, description=description, seen_by="")
+    made.like_delay = False
     made.further_terms_of, made.forms = "", (made,) if richer is None else (made, *richer.forms)
     return made
 
@@ -126,6 +127,25 @@ def test_a_further_effect_must_be_more_than_what_the_form_of_the_first_misses(
 
 
 @pytest.mark.parametrize(
+    ("gained", "instead", "accepted"),
+    [
+        (20.0, 23.0, False),  # no more than the form of the first may miss
+        (20.1, 23.0, True),
+        (20.0, 12.0, True),  # but it foretells surely better than that form
+    ],
+)
+def test_what_gains_no_more_than_a_form_may_miss_must_foretell_better_than_it(
+    gained, instead, accepted, monkeypatch, known_densities
+):
+    a, b = effect("a"), effect("b")
+    under, made = fitted(a), fitted(a, b, density=20.0)
+    more = Scored(made, "b", Gain(np.full(8, gained), gained, 1.0, 9.0), None, -50.0, under)
+    beside = {True: 34.0, False: instead + np.array([2.0, -2.0] * 4)}
+    monkeypatch.setattr(selection, "bent", lambda fit, forms: fitted(*fit.model.effects, density=beside[fit is made]))
+    assert selection.further(under, [more], SETTINGS, within=20.0) == ([more] if accepted else [])
+
+
+@pytest.mark.parametrize(
     ("each", "kept", "refitted", "agrees", "expected"),
     [
         ([9.0] * 8, 2.7, 0.0, False, True),
@@ -158,7 +178,7 @@ def test_a_further_effect_that_does_not_carry_over_is_withheld(monkeypatch, know
     first = Scored(one, "a", Gain(np.full(8, 100.0), 100.0, 1.0, 9.0), None, -50.0, fitted())
     monkeypatch.setattr(selection, "usable", lambda base, effect: True)
     ranked = [Screened(each, 9.0, np.zeros((1, 8))) for each in (a, b)]
-    monkeypatch.setattr(selection, "beats_bent", lambda scored, settings, instead: True)
+    monkeypatch.setattr(selection, "beats_bent", lambda scored, settings, instead, within: True)
     monkeypatch.setattr(selection, "bent", lambda fit, forms: fit)
     monkeypatch.setattr(selection, "refitted_conditions", lambda fit: np.full(8, kept if fit is both else 0.0))
     monkeypatch.setattr(
@@ -549,7 +569,8 @@ class Told:
 
 
 def strong(amplitude, amplitudes=(), form=(), **more):
-    return SimpleNamespace(slug="one", amplitude=amplitude, amplitudes=amplitudes, form=form, **more)
+    named = {"slug": "one", "amplitude": amplitude, "amplitudes": amplitudes, "form": form, "like_delay": False}
+    return SimpleNamespace(**named, **more)
 
 
 SHARE = EffectParameter("share", "", (0.2,), 0.0, 0.95, False, "share")
@@ -660,7 +681,7 @@ def test_what_must_show_in_markers_shows_in_them_where_there_are_some(layout, sh
     made = Told((0.2, shown), (0.01**2, 0.05**2), SHARE, WHOLE)
     made.model.problem = SimpleNamespace(study=SimpleNamespace(layout=layout))
     assert seen(made, slip) is expected
-    assert seen(made, SimpleNamespace(slug="one", seen_by=""))
+    assert seen(made, SimpleNamespace(slug="one", seen_by="", like_delay=False))
 
 
 def test_a_slip_that_no_marker_shows_is_neither_named_nor_a_look_alike(monkeypatch, known_densities):
