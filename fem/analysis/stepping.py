@@ -294,12 +294,18 @@ class Stepper:
         return replace(result, iterations=iterations), system
 
     def _beginnings(self, value: float, time: float) -> Iterator[tuple[State, System]]:
-        """Predictions with the equations to begin with; on the way back, last, those of a lighter press."""
-        system = self._problem.system.advanced(time - self._time)
+        """Predictions with the equations to begin with: under more force those of as much more press.
+
+        On the way back, last, those of a lighter press.
+        """
+        system, force = self._problem.system.advanced(time - self._time), self._state.force
         for guess in self._guesses(value, time):
+            heavier = system.at_press(guess.force / force) if guess.force > force > 0.0 else None
+            if heavier is not None:
+                yield guess, heavier
             yield guess, system
         if abs(value) < abs(self._value):
-            lighter = system.lightened(max(value / self._value, 0.0))
+            lighter = system.at_press(max(value / self._value, 0.0))
             if lighter is not None:
                 yield next(self._guesses(value, time)), lighter
 
