@@ -78,13 +78,27 @@ def test_a_sphere_meets_soft_tissue_by_its_force_as_by_its_depth(contact, fricti
     assert lowered.force[-1] == pytest.approx(0.2, rel=1e-6 if friction is None else 1e-2)
 
 
-def test_under_more_force_friction_begins_with_limits_of_as_much_more_press(monkeypatch):
-    """And on the way back with those of the last step."""
+def gel_with_friction():
     gel = (fem.Layer("gel", 6e-3, 1000.0, fem.NeoHookean(50e3, 0.48)),)
     tool = fem.Tool(5e-3, "rigid_frictional", 1e-3, friction_coefficient=0.3)
     coarse = fem.Discretisation("coarse")
-    problem = fem.prepare(fem.Problem(gel, tool, fem.Support("bonded"), discretisation=coarse)).equilibrium
-    begun, solve = [], stepping.solve_newton
+    return fem.prepare(fem.Problem(gel, tool, fem.Support("bonded"), discretisation=coarse)).equilibrium
+
+
+def test_friction_limits_may_be_off_by_the_misfit_that_is_allowed():
+    made = {}
+    for misfit in (0.0, 1e-3, 1e-2):
+        stepper = Stepper(gel_with_friction(), "force", 1e-3, dataclasses.replace(SETTINGS, misfit=misfit))
+        made[misfit] = stepper.advance(1.0), stepper.problem
+    (exact, problem), *loose = made.values()
+    assert exact.iterations > loose[0][0].iterations > loose[1][0].iterations
+    for advance, _ in loose:
+        assert problem.depth(advance.state.y) == pytest.approx(problem.depth(exact.state.y), rel=1e-3)
+
+
+def test_under_more_force_friction_begins_with_limits_of_as_much_more_press(monkeypatch):
+    """And on the way back with those of the last step."""
+    problem, begun, solve = gel_with_friction(), [], stepping.solve_newton
 
     def solved(ahead, *given):
         begun.append(ahead.system.items[0].friction.limit.sum())
