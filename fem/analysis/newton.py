@@ -50,6 +50,9 @@ class NewtonSettings:
         Growth of the unbalanced forces over the best so far that counts as divergence.
     beyond_limits
         Whether a press may be followed over limit points; see :mod:`fem.analysis.limit_points`.
+    misfit
+        Allowed change of the limits that follow the pressure, over the force, where that is more than they allow
+        themselves.
     """
 
     tolerance: float = 1e-9
@@ -57,6 +60,7 @@ class NewtonSettings:
     halvings: int = 5
     divergence: float = 1e6
     beyond_limits: bool = True
+    misfit: float = 0.0
 
 
 def solve_newton(

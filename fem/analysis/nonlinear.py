@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,7 @@ from fem.analysis.equilibrium import Equilibrium, State
 from fem.analysis.limit_points import Account
 from fem.analysis.linear import unit_state
 from fem.analysis.newton import NewtonSettings
+from fem.analysis.prediction import GuidedStates
 from fem.analysis.record import Record, largest_strain
 from fem.analysis.stepping import Advance, Control, Stepper, Watch, settle
 from fem.assembly.system import System
@@ -133,6 +134,32 @@ def equilibrium_near(
     scale = LEAST_SHARE_OF_PEAK * abs(guess.force)
     found = Stepper(problem, control, scale, settings).found_near(guess, value)
     return found.state if found.success else None
+
+
+def equilibrium_along(
+    problem: Equilibrium, load: Load, guides: Sequence[State] | None, way: NewtonSettings, end: NewtonSettings
+) -> State | None:
+    """The last state of a load history, of a body with a memory; None where the way leads nowhere.
+
+    Each step begins with the increment of its guide, another mesh's state there; without guides with the usual
+    prediction. `way` and `end` are the limits of Newton's method up to the last step and in it.
+    """
+    scale = LEAST_SHARE_OF_PEAK * force_scale(problem, load)
+    start, reason = settle(problem, scale, end)
+    if reason:
+        return None
+    guided = None
+    if guides is not None:
+        value = 0.0 if load.control == "force" else problem.depth(start.y)
+        guided = GuidedStates(problem, value, start, np.append(load.start, load.time), (start, *guides))
+    stepper = Stepper(problem, load.control, scale, way, start, load.start, guided=guided)
+    for time, target in zip(load.time.tolist(), load.value.tolist(), strict=True):
+        if time == load.time[-1]:
+            stepper.limit(end)
+        advance = stepper.advance(target, time)
+        if advance.reason:
+            return None
+    return advance.state
 
 
 def force_scale(problem: Equilibrium, load: Load) -> float:

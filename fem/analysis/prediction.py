@@ -9,10 +9,12 @@ Over time, for a body with a memory, whose states of the way up say nothing abou
 at one rate the last three states are extrapolated; after a change of rate the last increment is scaled with the load.
 
 From another mesh of the same body: its displacements at these nodes. Round a sharp edge they may turn a larger element
-inside out, which then gets straight sides.
+inside out, which then gets straight sides. Along a history the other mesh's increment is added to the last state.
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -114,6 +116,15 @@ class RecentStates:
         """Remember a state."""
         self._known = [*self._known[1 - KEPT :], (value, time, state)]
 
+    @property
+    def last(self) -> tuple[float, State]:
+        """Time in s of the last state, and the state."""
+        return self._known[-1][1:]
+
+    def predictions(self, value: float, time: float) -> Iterator[State]:
+        """States at a load value and a time in s, the best first."""
+        yield self.predict(value, time)
+
     def predict(self, value: float, time: float) -> State:
         """State at a load value and a time in s."""
         values = np.array([*(v for v, _, _ in self._known), value])
@@ -126,6 +137,50 @@ class RecentStates:
             return combined(lagrange(times[:-1], time), states)
         ratio = steps[-1] / steps[-2] if steps[-2] != 0.0 else 0.0
         return combined(np.array([-ratio, 1.0 + ratio]), states[-2:])
+
+
+class GuidedStates(RecentStates):
+    """The last states, with increments of those that another mesh has at given times, linear between them.
+
+    Parameters
+    ----------
+    problem
+        The equations.
+    value, start
+        Load value (N or m) and state to start from.
+    times
+        Times (k,) in s, rising, that of the start first.
+    guides
+        States (k) there, see :func:`from_displacement`, the start first.
+    """
+
+    def __init__(
+        self, problem: Equilibrium, value: float, start: State, times: FloatArray, guides: Sequence[State]
+    ) -> None:
+        super().__init__(value, float(times[0]), start)
+        self._times, self._forces = times, np.array([guide.force for guide in guides])
+        self._y = np.stack([guide.y for guide in guides])
+        moved = np.zeros(len(start.y) + 1, dtype=np.bool_)
+        moved[problem.system.numbering.unknown] = moved[problem.probe] = True
+        self._multipliers = np.flatnonzero(~moved[:-1])
+
+    def predictions(self, value: float, time: float) -> Iterator[State]:
+        """The last state with the guides' increment and multipliers that go with the force; then the plain one."""
+        before, last = self.last
+        y = last.y + self._at(time) - self._at(before)
+        force = last.force + float(np.diff(np.interp([before, time], self._times, self._forces))[0])
+        if last.force > 0.0:
+            y[self._multipliers] *= force / last.force
+        yield State(y, last.pressure, force)
+        yield self.predict(value, time)
+
+    def _at(self, time: float) -> FloatArray:
+        """Unknowns (n,) of the guides at a time in s."""
+        after = int(np.searchsorted(self._times, time).clip(1, len(self._times) - 1))
+        start, end = self._times[after - 1 : after + 1]
+        share = (time - start) / (end - start) if end > start else 1.0  # a sudden press
+        out: FloatArray = (1.0 - share) * self._y[after - 1] + share * self._y[after]
+        return out
 
 
 def from_displacement(problem: Equilibrium, mesh: Mesh, nodal: FloatArray, force: float, depth: float) -> State:

@@ -12,7 +12,7 @@ import numpy as np
 from fem.analysis.equilibrium import Equilibrium, NewtonResult, State
 from fem.analysis.limit_points import GIVES_WAY, Account, creep
 from fem.analysis.newton import NewtonSettings, solve_newton
-from fem.analysis.prediction import LOWEST_ORDER, KnownStates, RecentStates
+from fem.analysis.prediction import LOWEST_ORDER, GuidedStates, KnownStates, RecentStates
 from fem.arrays import FloatArray
 from fem.assembly.system import Evaluation, System
 from fem.linear_solver import IterativeSolver, SingularMatrixError
@@ -24,8 +24,8 @@ MOST_HALVINGS = 40
 """Of the depth with which a tool first touches where its force leads nowhere."""
 FIRST_TOLERANCE = 1e-2
 """Unbalanced forces over the force with which equations whose limits are only guessed are solved."""
-HELD_BELOW = 5e-4
-"""Tolerance below which such a round begins with the factors of the one before: hardly a node changes any more."""
+HELD_BELOW = 2e-3
+"""Tolerance below which such a round, from the second on, begins with the factors of the one before."""
 MOST_OVER = 30  # limit points in a press; five were the most that was seen
 AHEAD = (1.0 / 64.0, 1.0 / 8.0)
 """How far beyond the last equilibrium, of the way to a step, the next one is looked for behind a limit point."""
@@ -129,6 +129,8 @@ class Stepper:
         Time in s of the start; matters to equations with a memory only.
     watch
         Told of each state of equilibrium that is found.
+    guided
+        Predictions from another mesh, with the same start; None for those from the states that are found.
     """
 
     def __init__(
@@ -140,6 +142,7 @@ class Stepper:
         start: State | None = None,
         time: float = 0.0,
         watch: Watch | None = None,
+        guided: GuidedStates | None = None,
     ) -> None:
         self._problem = problem
         self._control: Control = control
@@ -151,7 +154,8 @@ class Stepper:
         self._time = time
         self._times, self._settled = [time], [problem.system.settled]
         self._known = KnownStates(self._value, self._state)
-        self._recent = RecentStates(self._value, self._time, self._state) if problem.system.remembers else None
+        recent = RecentStates(self._value, self._time, self._state) if problem.system.remembers else None
+        self._recent = guided or recent
         self._accounts = [Account()]
 
     @property
@@ -187,6 +191,10 @@ class Stepper:
     def problem(self) -> Equilibrium:
         """The equations, which remember the states up to the last one."""
         return self._problem
+
+    def limit(self, settings: NewtonSettings) -> None:
+        """Limits of each Newton run from here on."""
+        self._settings = settings
 
     def advance(self, target: float, time: float | None = None) -> Advance:
         """Go to the load value `target` at a time in s (None: at once), halving the way as often as needed."""
@@ -294,19 +302,25 @@ class Stepper:
         return replace(result, iterations=iterations), system
 
     def _beginnings(self, value: float, time: float) -> Iterator[tuple[State, System]]:
-        """Predictions with the equations to begin with; on the way back, last, those of a lighter press."""
-        system = self._problem.system.advanced(time - self._time)
+        """Predictions with the equations to begin with: under more force those of as much more press.
+
+        On the way back, last, those of a lighter press.
+        """
+        system, force = self._problem.system.advanced(time - self._time), self._state.force
         for guess in self._guesses(value, time):
+            heavier = system.at_press(guess.force / force) if guess.force > force > 0.0 else None
+            if heavier is not None:
+                yield guess, heavier
             yield guess, system
         if abs(value) < abs(self._value):
-            lighter = system.lightened(max(value / self._value, 0.0))
+            lighter = system.at_press(max(value / self._value, 0.0))
             if lighter is not None:
                 yield next(self._guesses(value, time)), lighter
 
     def _guesses(self, value: float, time: float) -> Iterator[State]:
         """Predictions at a load value and a time, the best first."""
         if self._recent is not None:
-            yield self._recent.predict(value, time)
+            yield from self._recent.predictions(value, time)
             return
         yield self._known.predict(value)
         if len(self._times) > LOWEST_ORDER + 1:
@@ -331,13 +345,21 @@ class Stepper:
                 iterations += result.iterations
                 result = solve()
             iterations += result.iterations
-            other = system.corrected(result.state.y, result.state.force) if result.success else None
+            other = self._corrected(system, result.state) if result.success else None
             if other is None and (tolerance <= wanted or not result.success):
                 return self._judged(replace(result, iterations=iterations), system), system
             tolerance = max(wanted, 0.1 * tolerance) if other is not None else wanted
             system, guess = other or system, result.state
             held = result.round_off if tolerance < HELD_BELOW and direct else None
         return NewtonResult(guess, iterations, f"friction does not settle in {MOST_CORRECTIONS} rounds"), system
+
+    def _corrected(self, system: System, state: State) -> System | None:
+        """The equations that fit a state, where these do not, or not well enough for the settings."""
+        other = system.corrected(state.y, state.force)
+        if other is None or not self._settings.misfit:
+            return other
+        change = float(np.abs(other.settled - system.settled).sum())
+        return None if change <= self._settings.misfit * abs(state.force) else other
 
     def _accept(self, state: State, value: float, time: float, system: System, account: Account | None = None) -> None:
         """Take a state of equilibrium as the last one, with its account where a straight way there tells another."""

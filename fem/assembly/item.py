@@ -100,8 +100,8 @@ class EquationItem(ABC):
         del active
         return self
 
-    def lightened(self, share: float) -> Self | None:
-        """The item to begin with where a share of the press is left; None if it is this one."""
+    def at_press(self, share: float) -> Self | None:
+        """The item to begin with under a share of the last press, above 1 under more; None if it is this one."""
         del share
         return None
 

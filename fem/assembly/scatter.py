@@ -19,6 +19,7 @@ from fem.assembly.element_geometry import packed_positions
 
 FIXED = -1
 PLACED_AT_ONCE = 512  # elements whose places are found together, so that what is made of them stays in the cache
+ROWS_AT_ONCE = 16_384  # of the tangent, whose sizes are taken together: all at once would be as much memory again
 Index: TypeAlias = NDArray[np.int32]  # half the memory of the pattern's large arrays
 
 
@@ -155,10 +156,15 @@ class Scatter:
 
     def round_off(self, tangent: FloatArray, y: FloatArray) -> float:
         """Norm of the forces that round-off leaves unbalanced: eps |A| |y| of entries (nnz,), unknowns (n,)."""
-        n = len(y)
-        upper = sp.csr_array((np.abs(tangent), self.indices, self.indptr), shape=(n, n))
-        size = np.abs(y)
-        bound = upper @ size + upper.T @ size - upper.diagonal() * size
+        n, size = len(y), np.abs(y)
+        bound: FloatArray = -np.abs(tangent[self.indptr[:-1]]) * size
+        for start in range(0, n, ROWS_AT_ONCE):
+            rows, ends = slice(start, start + ROWS_AT_ONCE), self.indptr[start : start + ROWS_AT_ONCE + 1]
+            part = slice(ends[0], ends[-1])
+            entries = np.abs(tangent[part]), self.indices[part], ends - ends[0]
+            upper = sp.csr_array(entries, shape=(len(ends) - 1, n))
+            bound[rows] += upper @ size
+            bound += upper.T @ size[rows]
         return float(np.finfo(np.float64).eps * np.linalg.norm(bound))
 
     def matrix(self, packed: FloatArray) -> FloatArray:

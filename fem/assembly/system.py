@@ -193,9 +193,9 @@ class System:
         held = (mine.holding(theirs.active(y)) for mine, theirs in zip(self.items, other.items, strict=True))
         return replace(self, items=tuple(held))
 
-    def lightened(self, share: float) -> System | None:
-        """The equations to begin with where a share of the press is left; None if they are these."""
-        return self._with([item.lightened(share) for item in self.items])
+    def at_press(self, share: float) -> System | None:
+        """The equations to begin with under a share of the last press, above 1 under more; None if they are these."""
+        return self._with([item.at_press(share) for item in self.items])
 
     def _with(self, others: list[EquationItem | None]) -> System | None:
         if all(other is None for other in others):

@@ -227,7 +227,7 @@ class ToolContact(EquationItem):
         if touch is None:
             return self
         limit = self.punch.friction * np.maximum(touch.push, 0.0)
-        return replace(self, friction=replace(self.friction, limit=limit))
+        return replace(self, friction=self.friction.with_limit(limit))
 
     @property
     def settled(self) -> FloatArray:
@@ -237,7 +237,7 @@ class ToolContact(EquationItem):
     def as_settled(self, chosen: FloatArray) -> ToolContact:
         """The contact with these."""
         pressed, joined = bool(chosen[0]), bool(chosen[1])
-        return replace(self, pressed=pressed, joined=joined, friction=replace(self.friction, limit=chosen[2:]))
+        return replace(self, pressed=pressed, joined=joined, friction=self.friction.with_limit(chosen[2:]))
 
     def active(self, y: FloatArray) -> BoolArray | None:
         """Which nodes (m,) touch at unknowns y (n,)."""
@@ -281,9 +281,11 @@ class ToolContact(EquationItem):
         """The contact with these nodes in touch, whatever the state."""
         return replace(self, held=active)
 
-    def lightened(self, share: float) -> ToolContact | None:
+    def at_press(self, share: float) -> ToolContact | None:
         """The contact with a share of the friction limits; None without friction."""
-        return replace(self, friction=self.friction.lightened(share)) if self.punch.friction > 0.0 else None
+        if self.punch.friction == 0.0:
+            return None
+        return replace(self, friction=self.friction.with_limit(share * self.friction.limit))
 
 
 def with_punch(rate: FloatArray) -> FloatArray:

@@ -1,10 +1,12 @@
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fem.analysis.equilibrium import State
-from fem.analysis.prediction import HIGHEST_ORDER, LOWEST_ORDER, KnownStates
+from fem.analysis.prediction import HIGHEST_ORDER, LOWEST_ORDER, GuidedStates, KnownStates
 
 
 def quadratic(v):
@@ -66,3 +68,31 @@ def test_behind_a_kink_the_order_stays_low():
     path = lambda v: State(np.array([v + 5.0 * max(v - 5.0, 0.0)]), np.zeros((1, 1)), v)  # noqa: E731
     states = states_of(path, np.arange(7.0))
     np.testing.assert_allclose(states.predict(7.0).y, states.predict(7.0, LOWEST_ORDER).y)
+
+
+def guided(times, guides):
+    """Of two displacements, the second one the probe's, and a multiplier; all states with one pressure."""
+    numbering = SimpleNamespace(unknown=np.array([[0, -1]]))
+    problem = SimpleNamespace(system=SimpleNamespace(numbering=numbering), probe=1)
+    states = [State(np.array([*y, 0.0]), np.zeros((1, 1)), force) for y, force in guides]
+    return GuidedStates(problem, 0.0, states[0], np.array(times), states)
+
+
+def test_a_guide_adds_its_increment_and_multipliers_go_with_the_force():
+    known = guided([0.0, 1.0, 3.0], [((0.0, 0.0), 0.0), ((2.0, -1.0), 4.0), ((4.0, -3.0), 8.0)])
+    first, plain = known.predictions(4.0, 1.0)
+    np.testing.assert_allclose(first.y, [2.0, -1.0, 0.0])
+    assert first.force == 4.0
+    np.testing.assert_array_equal(plain.y, np.zeros(3))
+    known.add(4.0, 1.0, State(np.array([2.5, -1.0, 7.0]), np.ones((1, 1)), 5.0))
+    half, _ = known.predictions(6.0, 2.0)  # the step was cut
+    np.testing.assert_allclose(half.y, [3.5, -2.0, 7.0 * 7.0 / 5.0])
+    assert half.force == 7.0
+    np.testing.assert_array_equal(half.pressure, [[1.0]])
+
+
+def test_a_sudden_press_is_predicted_by_the_last_state():
+    known = guided([0.0, 0.0, 1.0], [((0.0, 0.0), 0.0), ((2.0, -1.0), 4.0), ((3.0, -1.0), 5.0)])
+    np.testing.assert_array_equal(next(known.predictions(4.0, 0.0)).y[:2], [0.0, 0.0])
+    known.add(4.0, 0.0, State(np.array([2.0, -1.0, 1.0]), np.zeros((1, 1)), 4.0))
+    np.testing.assert_allclose(next(known.predictions(5.0, 1.0)).y, [3.0, -1.0, 1.25])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import fem
+from fem.analysis import stepping
 from fem.analysis.newton import NewtonSettings
 from fem.analysis.prediction import HIGHEST_ORDER, LOWEST_ORDER, KnownStates
 from fem.analysis.stepping import Stepper
@@ -75,3 +76,38 @@ def test_a_sphere_meets_soft_tissue_by_its_force_as_by_its_depth(contact, fricti
     lowered = model.run(fem.Load("depth", parts, parts * pressed.depth[-1]))
     assert lowered.complete
     assert lowered.force[-1] == pytest.approx(0.2, rel=1e-6 if friction is None else 1e-2)
+
+
+def gel_with_friction():
+    gel = (fem.Layer("gel", 6e-3, 1000.0, fem.NeoHookean(50e3, 0.48)),)
+    tool = fem.Tool(5e-3, "rigid_frictional", 1e-3, friction_coefficient=0.3)
+    coarse = fem.Discretisation("coarse")
+    return fem.prepare(fem.Problem(gel, tool, fem.Support("bonded"), discretisation=coarse)).equilibrium
+
+
+def test_friction_limits_may_be_off_by_the_misfit_that_is_allowed():
+    made = {}
+    for misfit in (0.0, 1e-3, 1e-2):
+        stepper = Stepper(gel_with_friction(), "force", 1e-3, dataclasses.replace(SETTINGS, misfit=misfit))
+        made[misfit] = stepper.advance(1.0), stepper.problem
+    (exact, problem), *loose = made.values()
+    assert exact.iterations > loose[0][0].iterations > loose[1][0].iterations
+    for advance, _ in loose:
+        assert problem.depth(advance.state.y) == pytest.approx(problem.depth(exact.state.y), rel=1e-3)
+
+
+def test_under_more_force_friction_begins_with_limits_of_as_much_more_press(monkeypatch):
+    """And on the way back with those of the last step."""
+    problem, begun, solve = gel_with_friction(), [], stepping.solve_newton
+
+    def solved(ahead, *given):
+        begun.append(ahead.system.items[0].friction.limit.sum())
+        return solve(ahead, *given)
+
+    monkeypatch.setattr(stepping, "solve_newton", solved)
+    stepper = Stepper(problem, "force", 1e-3, SETTINGS)
+    for value, share in ((0.5, 0.0), (1.0, 2.0), (0.8, 1.0)):
+        before = stepper.problem.system.items[0].friction.limit.sum()
+        begun.clear()
+        assert stepper.advance(value).cuts == 0
+        assert begun[0] == pytest.approx(share * before, rel=1e-12)

@@ -105,7 +105,7 @@ def test_an_accepted_or_corrected_state_makes_new_items_and_leaves_the_old(plain
     assert [item.used for item in system.accepted(y).items] == [1, 1]
     assert [item.used for item in system.items] == [0, 0]
     assert system.corrected(y, 1.0) is None
-    assert system.lightened(0.5) is None
+    assert system.at_press(0.5) is None
     assert [item.stiffness for item in system.corrected(y, 5.0).items] == [5.0, 9.0]
     assert system.warnings(y) == ()
     y[3] = 0.1

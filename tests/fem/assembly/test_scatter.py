@@ -1,8 +1,11 @@
+import tracemalloc
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fem.assembly import scatter as scatter_module
 from fem.assembly.scatter import build_scatter, number_unknowns, packed_positions
 
 
@@ -97,9 +100,26 @@ def test_pattern_has_the_diagonal_first(block):
     np.testing.assert_array_equal(scatter.indices[scatter.indptr[:-1]], np.arange(numbering.count))
 
 
-def test_round_off_is_eps_times_the_sizes(block, system_of):
+@pytest.mark.parametrize("rows", [scatter_module.ROWS_AT_ONCE, 7, 1])
+def test_round_off_is_eps_times_the_sizes(block, system_of, rows, monkeypatch):
+    monkeypatch.setattr(scatter_module, "ROWS_AT_ONCE", rows)
     system = system_of(block())
     y = np.random.default_rng(7).normal(size=system.numbering.count)
     tangent = system.tangent(system.evaluate(*system.rest()))
     bound = np.abs(dense(system.scatter, tangent, len(y))) @ np.abs(y)
     assert system.scatter.round_off(tangent, y) == pytest.approx(np.finfo(float).eps * np.linalg.norm(bound))
+
+
+def test_round_off_makes_no_second_tangent(monkeypatch):
+    """At its full size it is new memory, which costs more than the products."""
+    monkeypatch.setattr(scatter_module, "ROWS_AT_ONCE", 16)
+    elements = (np.arange(500) + 7 * np.arange(8)[:, None]) % 500
+    numbering = number_unknowns(np.zeros((2, 500), dtype=bool), np.zeros(500, dtype=bool))
+    scatter = build_scatter(elements, numbering)
+    tangent, y = np.ones(len(scatter.indices)), np.ones(numbering.count)
+    tracemalloc.start()
+    scatter.round_off(tangent, y)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(tangent) > 10 * len(y)
+    assert peak < 0.8 * tangent.nbytes

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import fem
+from fem.analysis import stepping
+from fem.analysis.newton import NewtonSettings
 from fem.mesh.fan import Fan
 from fem.setup import layout, mesh_error
 from fem.setup.supports import SUPPORT_MODELS
@@ -214,3 +216,58 @@ def test_where_larger_elements_fold_the_error_is_told_at_half_of_the_load(ramp):
     assert found.load == 2.5
     assert found.value == solution.depth[4]
     assert abs(found.percent) < 1.0
+
+
+def counted_corrections(monkeypatch):
+    """Newton's corrections, one entry a Newton run."""
+    made, solve = [], stepping.solve_newton
+
+    def solved(*given):
+        made.append(solve(*given))
+        return made[-1]
+
+    monkeypatch.setattr(stepping, "solve_newton", solved)
+    return lambda: sum(result.iterations for result in made)
+
+
+def test_with_friction_the_estimate_is_led_along_the_run_and_costs_half_of_its_corrections(ramp, monkeypatch):
+    """On a mesh with a third of the unknowns; what is found is what the usual limits find from rest."""
+    layers = tuple(
+        fem.Layer(f"{n}", h, 1000.0, fem.NeoHookean(E, 0.48)) for n, (h, E) in enumerate(zip(SKIN, SOFT, strict=True))
+    )
+    tool = fem.Tool(5e-3, "rigid_frictional", edge_radius=1e-3, friction_coefficient=0.3)
+    problem, load = fem.Problem(layers, tool, fem.Support("bonded"), "finite"), ramp("force", 4.0, 8)
+    made = counted_corrections(monkeypatch)
+    model = fem.prepare(problem)
+    solution = model.run(load)
+    run = made()
+    led = fem.estimate_mesh_error(model, load, solution)
+    estimate = made() - run
+    along = mesh_error.equilibrium_along
+    monkeypatch.setattr(
+        mesh_error, "equilibrium_along", lambda problem, load, _, *limits: along(problem, load, None, *limits)
+    )
+    fem.estimate_mesh_error(model, load, solution)
+    unled = made() - run - estimate
+    for name in ("WAY", "END"):
+        monkeypatch.setattr(mesh_error, name, NewtonSettings(beyond_limits=False))
+    usual = fem.estimate_mesh_error(model, load, solution)
+    assert led.halved == pytest.approx(usual.halved, rel=3e-5)
+    assert led.error == pytest.approx(usual.error, rel=0.02)
+    assert estimate < 0.55 * run
+    assert estimate < 0.95 * unled
+    assert unled < 0.7 * (made() - run - estimate - unled)
+
+
+def test_a_body_that_relaxes_is_followed_as_by_the_usual_limits(slab, triangle, monkeypatch):
+    problem = slab("rigid_bonded")
+    layer = replace(problem.layers[0], relaxation=(fem.PronyTerm(0.5, 0.2),))
+    model, load = fem.prepare(replace(problem, layers=(layer,))), triangle("depth", 2e-3, 8)
+    solution, made = model.run(load), counted_corrections(monkeypatch)
+    loose = fem.estimate_mesh_error(model, load, solution)
+    few = made()
+    for name in ("WAY", "END"):
+        monkeypatch.setattr(mesh_error, name, NewtonSettings(beyond_limits=False))
+    usual = fem.estimate_mesh_error(model, load, solution)
+    assert loose.error == pytest.approx(usual.error, rel=0.01)
+    assert few < 0.8 * (made() - few)
