@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError, SolverError, TissuebenchError
-from benchmark.gate.accuracy import tolerance_of
+from benchmark.gate.accuracy import CURVE, farthest_step, tolerance_of
 from benchmark.gate.baseline import (
     BASELINE_SIGN,
     Baseline,
@@ -164,7 +164,19 @@ def _steps(old: Baseline | None, new: Baseline) -> tuple[Step, ...]:
     ]
     times = {} if old is None else {name: typical(each) for name, each in old.timing.items()}
     now = {name: typical(each) for name, each in new.timing.items()}
-    return (*steps, *(Step(name, TIMING_UNIT, times.get(name), now.get(name)) for name in {**now, **times}))
+    timed = [Step(name, TIMING_UNIT, times.get(name), now.get(name)) for name in {**now, **times}]
+    return (*steps, *_curve_steps(before, new.accuracy), *timed)
+
+
+def _curve_steps(old: Mapping[str, StoredValue], new: Mapping[str, StoredValue]) -> list[Step]:
+    """The load step of each curve that changed at which it changed most."""
+    found = []
+    for name in old.keys() & new.keys():
+        step = farthest_step(new[name], old[name])
+        one, other = ((old[name].curve or {}).get(step or ""), (new[name].curve or {}).get(step or ""))
+        if one != other:
+            found.append(Step(f"{name}{CURVE} at {step}", new[name].unit, one, other))
+    return sorted(found, key=lambda each: each.quantity)
 
 
 def _unit(name: str, old: Mapping[str, StoredValue], new: Mapping[str, StoredValue]) -> str:

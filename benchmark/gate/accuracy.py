@@ -1,4 +1,8 @@
-"""The verdict on accuracy: each gated value against the baseline's, |now - baseline| <= rtol |baseline| + atol."""
+"""The verdict on accuracy: each gated value against the baseline's, |now - baseline| <= rtol |baseline| + atol.
+
+A value with a curve over the load steps is gated at each step, too: a model that is right at the peak may be wrong on
+the way there. A curve is allowed rtol of its largest value, so that next to nothing at small loads is not magnified.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +17,8 @@ from benchmark.files.units import FORCE, FRACTION, LENGTH, Dimension, QuantityEr
 from benchmark.gate.baseline import StoredValue
 from benchmark.gate.gate_file import Tolerance
 
+CURVE = ".curve"
+"""What the name of a value's curve has behind the value's own."""
 UNITS: Mapping[str, tuple[Dimension, float]] = {"mm": (LENGTH, 1e-3), "N": (FORCE, 1.0), "": (FRACTION, 1.0)}
 """Units of gated values, each with its dimension and its size in SI units."""
 
@@ -33,6 +39,8 @@ class AccuracyRow:
         Whether they are that close.
     reason
         Why there is no value now; None where there is one.
+    at
+        Of a curve the load step that is farthest from the baseline's, in words; None for a plain value.
     """
 
     quantity: str
@@ -42,6 +50,12 @@ class AccuracyRow:
     allowed: float
     passed: bool
     reason: str | None = None
+    at: str | None = None
+
+    @property
+    def label(self) -> str:
+        """The quantity, of a curve with the load step."""
+        return self.quantity if self.at is None else f"{self.quantity} at {self.at}"
 
     @property
     def share(self) -> float:
@@ -60,13 +74,14 @@ class AccuracyRow:
             "allowed": self.allowed,
             "passed": self.passed,
             "reason": self.reason,
+            "at": self.at,
         }
 
 
 def compare_values(
     now: Mapping[str, StoredValue], baseline: Mapping[str, StoredValue], tolerances: Sequence[Tolerance], source: str
 ) -> tuple[AccuracyRow, ...]:
-    """Compare each value with the baseline's.
+    """Compare each value with the baseline's, and the curves of those that are as they were.
 
     Parameters
     ----------
@@ -95,7 +110,9 @@ def compare_values(
             f"{source} and this version do not have the same gated quantities: {', '.join(apart)}; "
             "after a wanted change make a new baseline with --accept"
         )
-    return tuple(_row(name, value, baseline[name], tolerances) for name, value in now.items())
+    rows = [_row(name, value, baseline[name], tolerances) for name, value in now.items()]
+    kept = [row.quantity for row in rows if row.passed]
+    return (*rows, *(row for name in kept if (row := _curve_row(name, now[name], baseline[name], tolerances))))
 
 
 def _row(name: str, now: StoredValue, base: StoredValue, tolerances: Sequence[Tolerance]) -> AccuracyRow:
@@ -105,6 +122,60 @@ def _row(name: str, now: StoredValue, base: StoredValue, tolerances: Sequence[To
         neither = now.value is None and base.value is None
         return AccuracyRow(name, now.unit, base.value, now.value, allowed, neither, now.reason)
     return AccuracyRow(name, now.unit, base.value, now.value, allowed, abs(now.value - base.value) <= allowed)
+
+
+def _curve_row(name: str, now: StoredValue, base: StoredValue, tolerances: Sequence[Tolerance]) -> AccuracyRow | None:
+    """The step of a curve that is farthest from the baseline's; None without two curves over the same steps."""
+    farthest = farthest_step(now, base)
+    if farthest is None or base.curve is None or now.curve is None:
+        return None
+    rtol, atol = _curve_tolerance(name, now.unit, tolerances)
+    allowed = rtol * max((abs(each) for each in base.curve.values() if each is not None), default=0.0) + atol
+    one, other = now.curve[farthest], base.curve[farthest]
+    passed = one == other or (one is not None and other is not None and abs(one - other) <= allowed)
+    reason = "it is not a finite number" if one is None else None
+    return AccuracyRow(name + CURVE, now.unit, other, one, allowed, passed, reason, farthest)
+
+
+def farthest_step(now: StoredValue, base: StoredValue) -> str | None:
+    """The step at which two curves differ most, that of the largest value where nowhere; None without two of a kind."""
+    if now.curve is None or base.curve is None or not now.curve or now.curve.keys() != base.curve.keys():
+        return None
+    pairs = {step: (now.curve[step], base.curve[step]) for step in now.curve}
+
+    def apart(step: str) -> tuple[float, float]:
+        one, other = pairs[step]
+        if one is None or other is None:
+            return (0.0, 0.0) if one == other else (math.inf, 0.0)
+        return abs(one - other), abs(other)
+
+    return max(pairs, key=apart)
+
+
+def curve_remarks(now: Mapping[str, StoredValue], baseline: Mapping[str, StoredValue], source: str) -> list[str]:
+    """What a reader must know of curves that cannot be compared, in one line each."""
+    mine = [name for name, value in now.items() if value.curve is not None and name in baseline]
+    lacking = [name for name in mine if baseline[name].curve is None]
+    other = [name for name in mine if name not in lacking and farthest_step(now[name], baseline[name]) is None]
+    found = []
+    if lacking:
+        found.append(
+            f"{source} is from before values had curves: of {len(lacking)} of them only the largest is gated, not the "
+            "way there over the load, until it is made anew with --accept"
+        )
+    if other:
+        found.append(
+            f"the load steps of {', '.join(other)} are others than in {source}: only the largest values are gated, not "
+            "the way there, until it is made anew with --accept"
+        )
+    return found
+
+
+def _curve_tolerance(name: str, unit: str, tolerances: Sequence[Tolerance]) -> tuple[float, float]:
+    """What a tolerance for curves alone says (its pattern ends with .curve), else what holds for the value itself."""
+    own = [each for each in tolerances if each.quantity.endswith(CURVE)]
+    fits = any(fnmatch.fnmatchcase(name + CURVE, each.quantity) for each in own)
+    return tolerance_of(name + CURVE, unit, own) if fits else tolerance_of(name, unit, tolerances)
 
 
 def tolerance_of(name: str, unit: str, tolerances: Sequence[Tolerance]) -> tuple[float, float]:

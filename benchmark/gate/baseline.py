@@ -31,11 +31,16 @@ class _Stored(BaseModel):
 
 
 class StoredValue(_Stored):
-    """A gated value with its unit; `reason` says why there is none."""
+    """A gated value with its unit; `reason` says why there is none.
+
+    `curve` has it at each load step, by the words for the step (None: no finite number there); None of what is no
+    load history, and of baselines from before there were curves.
+    """
 
     value: Finite | None
     unit: str
     reason: str | None = None
+    curve: Mapping[str, Finite | None] | None = None
 
 
 class StoredTiming(_Stored):
@@ -97,7 +102,11 @@ class Baseline(_Stored):
 
 def write_baseline(path: Path, baseline: Baseline) -> Path:
     """Write a baseline, whole or not at all; raises OSError where the file system refuses."""
-    return write_json(path, baseline.model_dump(by_alias=True))
+    table = baseline.model_dump(by_alias=True)
+    for value in table["accuracy"].values():
+        if value["curve"] is None:
+            del value["curve"]
+    return write_json(path, table)
 
 
 @contextmanager

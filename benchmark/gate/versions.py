@@ -132,7 +132,10 @@ def gated_values(party: Party) -> dict[str, StoredValue]:
     """The gated values of a party, from a process of its own; raises as `side.Side`."""
     with party.start() as side:
         found = side.values(party.plan)
-    return {each["name"]: StoredValue(value=each["value"], unit=each["unit"], reason=each["reason"]) for each in found}
+    return {
+        each["name"]: StoredValue(value=each["value"], unit=each["unit"], reason=each["reason"], curve=each["curve"])
+        for each in found
+    }
 
 
 def _has_own(plan: GatePlan) -> bool:

@@ -78,6 +78,53 @@ def test_a_quantity_in_another_unit_is_said_to_be() -> None:
         compare_values({"a": StoredValue(value=1, unit="N")}, {"a": mm(1.0)}, SHIPPED, "the baseline")
 
 
+def with_curve(*values: float | None) -> StoredValue:
+    return StoredValue(value=5.0, unit="mm", curve={f"step {k}": value for k, value in enumerate(values, start=1)})
+
+
+def curve_row(now: StoredValue, base: StoredValue, tolerances=SHIPPED):
+    name = "press.max_deformation_mm.skin"
+    return compare_values({name: now}, {name: base}, tolerances, "the baseline")[1]
+
+
+def test_a_curve_is_allowed_a_share_of_its_largest_value() -> None:
+    base = with_curve(0.0, 1.0, 5.0)
+    row = curve_row(with_curve(0.0, 1.004, 5.0), base)
+    assert row.passed
+    assert row.allowed == pytest.approx(5e-3 + 1e-6)
+    row = curve_row(with_curve(0.0, 1.006, 5.0), base)
+    assert not row.passed
+    assert (row.label, row.baseline, row.now) == ("press.max_deformation_mm.skin.curve at step 2", 1.0, 1.006)
+    assert curve_row(base, base).at == "step 3"
+
+
+def test_a_step_without_a_number_fails_where_there_was_one() -> None:
+    row = curve_row(with_curve(1.0, None), with_curve(1.0, 2.0))
+    assert not row.passed
+    assert row.reason == "it is not a finite number"
+    assert not curve_row(with_curve(1.0, 2.0), with_curve(1.0, None)).passed
+    assert curve_row(with_curve(1.0, None), with_curve(1.0, None)).passed
+
+
+def test_a_curve_follows_its_value_unless_a_tolerance_is_for_curves() -> None:
+    """Gate files from before there were curves have a tolerance for each value, and may have none that fits a curve."""
+    base, now = with_curve(1.0, 5.0), with_curve(1.2, 5.0)
+    for_values = Tolerance(quantity="*.max_deformation_mm.skin", rtol=0.05, atol="0 mm")
+    last = Tolerance(quantity="*", rtol=1e-9, atol="1e-9")
+    assert curve_row(now, base, [for_values]).passed
+    assert curve_row(now, base, [for_values, last]).passed
+    for_curves = Tolerance(quantity="*.curve", rtol=0.01, atol="0 mm")
+    assert not curve_row(now, base, [for_values, for_curves]).passed
+
+
+def test_a_curve_is_not_judged_where_its_value_changed() -> None:
+    """One change would be red twice."""
+    now = with_curve(1.0, 6.0).model_copy(update={"value": 6.0})
+    name = "press.max_deformation_mm.skin"
+    rows = compare_values({name: now}, {name: with_curve(1.0, 5.0)}, SHIPPED, "the baseline")
+    assert [(row.quantity, row.passed) for row in rows] == [(name, False)]
+
+
 def test_the_first_pattern_that_fits_holds() -> None:
     rules = [
         Tolerance(quantity="*.skin", rtol=0.02, atol="0.5 mm"),

@@ -88,8 +88,11 @@ def test_unchanged_passes_and_is_written_whole(tiny_gate, request_of, tmp_path: 
     assert outcome.document == json.loads((tmp_path / "out" / "check.json").read_text())
     assert outcome.document["accuracy"][0] == {
         "quantity": "springs.max_deformation_mm.skin", "unit": "mm", "baseline": 5.0, "now": 5.0,
-        "allowed": pytest.approx(5e-3 + 1e-6), "passed": True, "reason": None,
+        "allowed": pytest.approx(5e-3 + 1e-6), "passed": True, "reason": None, "at": None,
     }  # fmt: skip
+    curve = outcome.document["accuracy"][2]
+    assert (curve["quantity"], curve["at"]) == ("springs.max_deformation_mm.skin.curve", "step 5 (5 N)")
+    assert outcome.verdict.headline() == "Nothing got worse: 2 values, 2 curves and 0 timings are within limits."
     names = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*") if path.is_file()}
     assert names == {
         "manifest.json",
@@ -110,6 +113,71 @@ def test_one_per_cent_in_one_deflection_fails(tiny_gate, request_of, factor: str
     verdict = check(request_of(gate), Said()).verdict
     assert [row.quantity for row in verdict.accuracy if not row.passed] == ["springs.max_deformation_mm.skin"]
     assert "baseline 5 mm" in verdict.failures()[0]
+
+
+SOFT_AT_FIRST = "(np.where(force < 1.7, 1.3, 1.0) * force, [1e-3"
+"""A model 30 % too soft in the first third of the load, and right at the peak."""
+
+
+def test_a_model_that_is_wrong_on_the_way_to_the_peak_fails(tiny_gate, request_of) -> None:
+    """The largest deflection alone was gated, and such a model was green."""
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    gate.change("my_model.py", "(force, [1e-3", SOFT_AT_FIRST)
+    verdict = check(request_of(gate), Said()).verdict
+    assert not verdict.passed
+    assert verdict.failures()[0] == (
+        "springs.max_deformation_mm.skin.curve at step 1 (1 N): baseline 1 mm, now 1.3 mm, "
+        "allowed a difference of 0.005 mm"
+    )
+    assert verdict.headline() == "0 of 2 values changed, 2 of 2 curves changed, 0 of 0 timings slower."
+    changes = [step.words() for step in accept(request_of(gate), Said()).steps]
+    assert "springs.max_deformation_mm.skin.curve at step 1 (1 N): 1 -> 1.3 mm" in changes
+    assert check(request_of(gate), Said()).verdict.passed
+
+
+def test_under_depth_control_the_force_is_gated_over_the_depth(tiny_gate, request_of) -> None:
+    gate, press = tiny_gate(), "def press(layers, tool, support, time, depth):\n    return 1e3 * depth\n"
+    gate.change("my_model.py", "def deform", f"{press}\n\ndef deform")
+    gate.change("gate.toml", 'own = "', 'set = { "load.control" = "depth", "load.peak" = "2 mm" }\nown = "')
+    gate.change("gate.toml", "[[cases]]", '[[tolerances]]\nquantity = "*_N"\nrtol = 0.001\natol = "1e-6 N"\n[[cases]]')
+    gate.change("gate.toml", 'quantity = "*"', 'quantity = "*_mm*"')
+    accept(request_of(gate), Said())
+    gate.change("my_model.py", "return 1e3 * depth", "return 1e3 * depth * np.where(depth < 1e-3, 1.01, 1.0)")
+    said = check(request_of(gate), Said()).verdict.failures()[-1]
+    assert said.startswith("springs.peak_force_N.curve at step 2 (0.8 mm): baseline 0.8 N, now 0.808 N")
+
+
+def test_a_baseline_from_before_there_were_curves_holds_and_says_so(tiny_gate, request_of, tmp_path: Path) -> None:
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    rewrite(tmp_path / "b.json", lambda table: [value.pop("curve") for value in table["accuracy"].values()])
+    gate.change("my_model.py", "(force, [1e-3", SOFT_AT_FIRST)
+    verdict = check(request_of(gate), Said()).verdict
+    assert verdict.passed
+    assert len(verdict.accuracy) == 2
+    (said,) = verdict.warnings
+    assert "of 2 of them only the largest is gated" in said
+    assert "--accept" in said
+    accept(request_of(gate), Said())
+    assert check(request_of(gate), Said()).verdict.warnings == ()
+
+
+def test_other_load_steps_are_said_and_no_misfit(tiny_gate, request_of) -> None:
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    gate.change("press.toml", "observations = 10", "observations = 20")
+    verdict = check(request_of(gate), Said()).verdict
+    assert verdict.passed
+    assert verdict.warnings[0].startswith("the load steps of springs.max_deformation_mm.skin, springs.max")
+
+
+def test_the_history_has_the_largest_values_alone(tiny_gate, request_of, tmp_path: Path) -> None:
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    check(request_of(gate), Said())
+    entries, _ = read_history(tmp_path / "b.history.jsonl")
+    assert set(entries[1].accuracy) == {f"springs.max_deformation_mm.{layer}" for layer in ("skin", "fat")}
 
 
 def test_slower_than_the_baseline_fails_and_faster_does_not(tiny_gate, request_of, tmp_path: Path) -> None:
