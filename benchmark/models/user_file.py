@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import hashlib
 import inspect
+import io
 import os
 import sys
 import traceback
@@ -163,6 +164,12 @@ class UserCode:
         place = f"{self._file.path}, line {line}" if line else self._file.path
         return InputError(f"{place}, {function}: {text}")
 
+    def _raises(self, frame: traceback.FrameSummary) -> bool:
+        """Whether a place is a `raise` statement, so that nobody pressed Ctrl-C there."""
+        own = frame.filename == self._file.path
+        code = self._file.text.splitlines()[(frame.lineno or 1) - 1] if own else frame.line or ""
+        return code.strip().startswith("raise")
+
     def _line(self, function: str) -> int:
         """Where a function begins; 0 where it is not the file's own."""
         called = getattr(self._module, function, None)
@@ -175,14 +182,39 @@ class UserCode:
         folder = str(Path(self._file.path).absolute().parent)
         sys.path.insert(0, folder)
         try:
-            with redirect_stdout(sys.stderr):
+            with redirect_stdout(sys.stderr), _no_input():
                 yield
         except NotImplementedError as error:
             raise UncoveredError(str(error) or f"{self._file.path} raised NotImplementedError") from None
-        except (Exception, SystemExit) as error:
-            lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == self._file.path]
+        except BaseException as error:
+            frames = traceback.extract_tb(error.__traceback__)
+            if _is_interrupt(error) and not self._raises(frames[-1]):
+                raise
+            lines = [frame.lineno for frame in frames if frame.filename == self._file.path]
             place = f"{self._file.path}, line {lines[-1] if lines else line}"
-            raise InputError(f"{place}: {type(error).__name__}: {error}") from error
+            raise InputError(f"{place}: {_in_words(error)}") from (None if _is_interrupt(error) else error)
         finally:
             if folder in sys.path:
                 sys.path.remove(folder)
+
+
+@contextmanager
+def _no_input() -> Iterator[None]:
+    """An empty stdin: nobody can answer a model, and the commands of a measured process are not for it."""
+    before, sys.stdin = sys.stdin, io.StringIO()
+    try:
+        yield
+    finally:
+        sys.stdin = before
+
+
+def _is_interrupt(error: BaseException) -> bool:
+    return isinstance(error, KeyboardInterrupt)
+
+
+def _in_words(error: BaseException) -> str:
+    """An exception as the end of a message; the command line takes Ctrl-C's own name for Ctrl-C."""
+    if _is_interrupt(error):
+        return "the model ends itself as Ctrl-C would, by the exception of a keyboard interrupt"
+    hint = " (a model has no input to read)" if isinstance(error, EOFError) else ""
+    return f"{type(error).__name__}: {error}{hint}"

@@ -1,5 +1,6 @@
 """Reading a user's file without running it, and running it so that every fault names file and line."""
 
+import io
 import sys
 
 import pytest
@@ -100,3 +101,30 @@ def test_decorators_and_dataclasses_work(user_file) -> None:
     )
     with pytest.raises(InputError, match="line 11: ZeroDivisionError"):
         UserCode(user_file(text)).call("deform", 1.0)
+
+
+def test_a_model_that_reads_its_input_finds_none(user_file, monkeypatch) -> None:
+    """In a check it read the commands of its process, and the check waited for ever."""
+    code = UserCode(
+        user_file("import sys\ndef deform():\n    return input('go? ')\ndef rest():\n    return sys.stdin.read()\n")
+    )
+    monkeypatch.setattr("sys.stdin", io.StringIO("commands\n"))
+    with pytest.raises(InputError, match=r"my_model\.py, line 3: EOFError: .*no input to read"):
+        code.call("deform")
+    assert code.call("rest") == ""
+    assert sys.stdin.read() == "commands\n"
+
+
+@pytest.mark.parametrize("raised", ["KeyboardInterrupt", "asyncio.CancelledError('later')", "GeneratorExit"])
+def test_whatever_a_model_raises_is_told_with_its_line(user_file, raised: str) -> None:
+    """A keyboard interrupt of its own ended as exit code 0 of its process."""
+    code = UserCode(user_file(f"import asyncio\ndef deform():\n    raise {raised}\n"))
+    with pytest.raises(InputError, match=r"my_model\.py, line 3: ") as caught:
+        code.call("deform")
+    assert "KeyboardInterrupt" not in str(caught.value), "the command line would take it for Ctrl-C"
+
+
+def test_ctrl_c_while_a_model_runs_is_ctrl_c(user_file) -> None:
+    code = UserCode(user_file("import signal\ndef deform():\n    signal.raise_signal(signal.SIGINT)\n"))
+    with pytest.raises(KeyboardInterrupt):
+        code.call("deform")
