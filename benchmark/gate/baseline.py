@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from bench_hw.storage.regular_file import DOCUMENT, read_regular
 from benchmark.errors import InputError, NotComparableError
 from benchmark.files.schema import validated
-from benchmark.files.sources import Source
+from benchmark.files.sources import Source, merge_conflict
 from reports import write_json
 
 SCHEMA = 1
@@ -170,14 +170,18 @@ def _each_key_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _table(path: Path, gate: Path | None) -> dict[str, Any]:
     away = f"move it away and {how_to(path, gate)}"
+    text = ""
     try:
-        table = json.loads(read_regular(path, DOCUMENT).decode("utf-8-sig"), object_pairs_hook=_each_key_once)
+        text = read_regular(path, DOCUMENT).decode("utf-8-sig")
+        table = json.loads(text, object_pairs_hook=_each_key_once)
     except FileNotFoundError:
         raise NotComparableError(f"there is no baseline {path} to compare with; {how_to(path, gate)}") from None
     except OSError as error:
         raise InputError(f"{path}: this baseline cannot be read ({error.strerror or error})") from None
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: this baseline is no JSON ({error}); {away}") from None
+        conflict = merge_conflict(text)
+        settle = f"settle it, or {how_to(path, gate)}" if conflict else away
+        raise InputError(f"{path}: this baseline is no JSON ({conflict or error}); {settle}") from None
     if not isinstance(table, dict):
         raise InputError(f"{path}: this baseline is no JSON object; {away}")
     return table

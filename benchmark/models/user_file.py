@@ -22,6 +22,7 @@ from typing import Any
 from bench_hw.storage.regular_file import read_regular
 from benchmark.child_processes import forbid_ending
 from benchmark.errors import InputError
+from benchmark.files.sources import merge_conflict
 from benchmark.models.model_result import UncoveredError
 
 NAME = "NAME"
@@ -70,7 +71,8 @@ def read_user_file(path: Path) -> UserFile:
         text = read_regular(path).decode("utf-8-sig")
         tree = ast.parse(text, str(path))
     except SyntaxError as error:
-        raise InputError(f"{path}, line {error.lineno}: this is no valid Python ({error.msg})") from None
+        why = merge_conflict(text) or error.msg
+        raise InputError(f"{path}, line {error.lineno}: this is no valid Python ({why})") from None
     except OSError as error:
         raise InputError(f"{path}: this model file cannot be read ({error.strerror or error})") from None
     except ValueError as error:

@@ -30,6 +30,7 @@ def test_the_fingerprint_follows_the_text(user_file) -> None:
     [
         ("def deform(:\n", ["line 1", "no valid Python"]),
         ("x = 1\n\ny = (\n", ["line 3", "no valid Python"]),
+        ("x = 1\n<<<<<<< HEAD\ny = 2\n", ["line 2", "conflict marker of git"]),
         ("NAME = 5\n", ["line 1", "NAME = 5", "60"]),
         ("x = 1\nNAME = ''\n", ["line 2", "NAME"]),
         ("NAME = 'a\\nb'\n", ["printable"]),
