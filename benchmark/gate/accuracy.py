@@ -19,6 +19,10 @@ from benchmark.gate.gate_file import Tolerance
 
 CURVE = ".curve"
 """What the name of a value's curve has behind the value's own."""
+WIDE = 0.05
+"""A tolerance beyond this share of a value is warned of. A choice: it is five times the change of 1 % that the shipped
+gate is made to catch, and 0.5 written for 0.5 % is far beyond it."""
+MOST_TOLD = 3
 UNITS: Mapping[str, tuple[Dimension, float]] = {"mm": (LENGTH, 1e-3), "N": (FORCE, 1.0), "": (FRACTION, 1.0)}
 """Units of gated values, each with its dimension and its size in SI units."""
 
@@ -169,6 +173,30 @@ def curve_remarks(now: Mapping[str, StoredValue], baseline: Mapping[str, StoredV
             "the way there, until it is made anew with --accept"
         )
     return found
+
+
+def wide_remarks(values: Mapping[str, StoredValue], tolerances: Sequence[Tolerance]) -> list[str]:
+    """A warning of tolerances so wide that they gate little (`WIDE`), one line; raises as `tolerance_of`.
+
+    An atol counts where a value is the largest of a load history; others, such as a force zero, may be next to nothing.
+    """
+    wide: dict[str, float] = {}
+    for name, value in values.items():
+        rtol, atol = tolerance_of(name, value.unit, tolerances)
+        size = abs(value.value or 0.0) if value.curve is not None else 0.0
+        wide[name] = rtol + (atol / size if size else 0.0)
+        own = rtol if value.curve is None else _curve_tolerance(name, value.unit, tolerances)[0]
+        if own != rtol:
+            wide[name + CURVE] = own
+    wide = {name: share for name, share in wide.items() if share > WIDE}
+    if not wide:
+        return []
+    told = [f"{name} ({100 * share:.3g} %)" for name, share in list(wide.items())[:MOST_TOLD]]
+    more = f" and {len(wide) - MOST_TOLD} more" if len(wide) > MOST_TOLD else ""
+    return [
+        f"tolerances so wide that they gate little: {', '.join(told)}{more}; beyond {100 * WIDE:g} % a model can be "
+        'plainly wrong and pass (0.5 is 50 %, half a per cent is "0.5 %")'
+    ]
 
 
 def _curve_tolerance(name: str, unit: str, tolerances: Sequence[Tolerance]) -> tuple[float, float]:

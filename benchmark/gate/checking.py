@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from benchmark.gate.accuracy import compare_values, curve_remarks
+from benchmark.gate.accuracy import compare_values, curve_remarks, wide_remarks
 from benchmark.gate.check_basis import CheckBasis, stored_baseline
 from benchmark.gate.check_page import check_page
 from benchmark.gate.ci_files import JUNIT_SIGN, MARKDOWN_SIGN, junit_text, markdown_text
@@ -97,6 +97,7 @@ def _verdict(
     measured, timing = _times(head, basis, origin, seed, listener)
     warnings = (
         *curve_remarks(values, compared, basis.values_from),
+        *wide_remarks(values, file.tolerances),
         *basis.remarks(origin, file.timing.other_machine_margin),
         *remarks(measured, timing),
     )

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmark.errors import InputError, NotComparableError
-from benchmark.gate.accuracy import compare_values, tolerance_of
+from benchmark.gate.accuracy import WIDE, compare_values, tolerance_of, wide_remarks
 from benchmark.gate.baseline import StoredValue
 from benchmark.gate.gate_file import Tolerance
 from benchmark.gate.plan import load_plan
@@ -115,6 +115,20 @@ def test_a_curve_follows_its_value_unless_a_tolerance_is_for_curves() -> None:
     assert curve_row(now, base, [for_values, last]).passed
     for_curves = Tolerance(quantity="*.curve", rtol=0.01, atol="0 mm")
     assert not curve_row(now, base, [for_values, for_curves]).passed
+
+
+def test_a_tolerance_that_gates_little_is_warned_of() -> None:
+    """0.5 for half a per cent let half of a deflection pass, without a word."""
+    values = {"a.max_deformation_mm.skin": with_curve(1.0, 5.0), "fit.zero_N": StoredValue(value=1e-6, unit="N")}
+    assert wide_remarks(values, SHIPPED) == []
+    (said,) = wide_remarks(values, [Tolerance(quantity="*_mm*", rtol=0.5, atol="1 nm"), *SHIPPED])
+    assert "a.max_deformation_mm.skin (50 %)" in said
+    assert "zero_N" not in said
+    (said,) = wide_remarks(values, [Tolerance(quantity="*_mm*", rtol=0.001, atol="1 mm"), *SHIPPED])
+    assert "skin (20.1 %)" in said
+    (said,) = wide_remarks(values, [Tolerance(quantity="*.curve", rtol=0.06, atol="1 nm"), *SHIPPED])
+    assert "a.max_deformation_mm.skin.curve (6 %)" in said
+    assert wide_remarks(values, [Tolerance(quantity="*_mm*", rtol=WIDE, atol="0 mm"), *SHIPPED]) == []
 
 
 def test_a_curve_is_not_judged_where_its_value_changed() -> None:

@@ -252,6 +252,17 @@ def test_one_case_is_one_case(tiny_gate, request_of) -> None:
     assert said.lines[3].startswith("gate tiny: 1 time against")
 
 
+def test_a_wide_tolerance_is_obeyed_and_said(tiny_gate, request_of) -> None:
+    gate = tiny_gate()
+    gate.change("gate.toml", 'rtol = "0.1 %"', "rtol = 0.5")
+    (said,) = accept(request_of(gate), Said()).warnings
+    assert "gate little: springs.max_deformation_mm.skin (50 %), springs.max_deformation_mm.fat (50 %)" in said
+    gate.change("my_model.py", "[1e-3", "[1.4e-3")
+    verdict = check(request_of(gate), Said()).verdict
+    assert verdict.passed
+    assert verdict.warnings == (said,)
+
+
 def test_a_layer_more_cannot_be_compared(tiny_gate, request_of) -> None:
     gate = tiny_gate()
     accept(request_of(gate), Said())
