@@ -6,6 +6,8 @@ over its time, or over its load where it has no time; one row a layer is the pea
 
 from __future__ import annotations
 
+import codecs
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
@@ -17,11 +19,15 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from bench_hw.errors import TableError
+from bench_hw.instrument_files.importing import ForeignFormat, read_foreign
+from bench_hw.storage.regular_file import TABLE, open_regular
 from bench_hw.tables.columns import numbers_of, read_source, text_columns
 from benchmark.errors import InputError
 from benchmark.models.model_result import Array, Drive
 
 NEEDED = ("layer", "fem_mm")
+_LONGEST_HEADER = 10_000
+_TWO_BYTES = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 NUMBERS: tuple[str, ...] = ("step", "time_s", "force_N", "depth_mm", "radius_mm", "fem_mm")
 LOADS = {"force": ("force_N", 1.0), "depth": ("depth_mm", 1e-3)}
 """Column of what is prescribed, and its size in SI, by the scenario's control."""
@@ -29,6 +35,8 @@ TOLERANCE = 1e-4
 """How far times and loads of a scenario's steps may be from the scenario's, as a part of their largest."""
 SAME_LOAD = 1e-2
 """The same for an FEA's own history at the scenario's times."""
+NARROW, WIDE = 0.1, 500.0
+"""A profile ends beyond this share of the tool's radius, and within this multiple of the set-up's widest one."""
 Places: TypeAlias = NDArray[np.int64]
 
 
@@ -64,6 +72,47 @@ class ReferenceHistory:
     how: str
 
 
+def header_sign(path: Path) -> str | None:
+    """What stands between the names of a table's header: a comma, a semicolon or a tab; None of what is no table."""
+    try:
+        with open_regular(path, TABLE) as stream:
+            head = stream.read(_LONGEST_HEADER)
+    except OSError:
+        return None
+    text = head.decode("utf-16" if head.startswith(_TWO_BYTES) else "utf-8-sig", errors="replace")
+    names = text.removeprefix(_told_sign(text)).partition("\n")[0]
+    signs = (sign for sign in ",;\t" if set(NEEDED) <= {name.strip(' "\r') for name in names.split(sign)})
+    return next(signs, None)
+
+
+def _told_sign(text: str) -> str:
+    """The line before a header in which spreadsheets tell the sign, `sep=;`; "" where there is none."""
+    found = re.match(r"\"?sep=.\"?\r?\n", text)
+    return found[0] if found else ""
+
+
+def _table(path: Path) -> tuple[dict[str, tuple[str, ...]], Places]:
+    """The cells (k,) of each column, and the lines of the file; raises TableError.
+
+    A table with commas between its cells is read strictly, one of a spreadsheet with semicolons or tabs, decimal commas
+    and other encodings as files of instruments are.
+    """
+    if header_sign(path) in (None, ","):
+        source = read_source(path, NEEDED)
+        columns, lines = text_columns(source)
+        return dict(zip(source.names, columns, strict=True)), np.array(lines, dtype=np.int64)
+    with open_regular(path, TABLE) as stream:
+        head = stream.read(_LONGEST_HEADER)
+    told = _told_sign(head.decode("utf-8-sig", errors="replace"))
+    found = read_foreign(path, ForeignFormat(skip_lines=1 if told else 0))
+    for line, row in zip(found.lines, found.rows, strict=True):
+        if len(row) != len(found.names):
+            allowed = f"{len(found.names)} cells, as in the header"
+            raise TableError(path, f"the row has {len(row)} cells", allowed, row=line)
+    columns = list(zip(*found.rows, strict=True)) or [() for _ in found.names]
+    return dict(zip(found.names, columns, strict=True)), np.array(found.lines, dtype=np.int64)
+
+
 def read_rows(path: Path) -> ReferenceRows:
     """The columns as numbers; empty cells only in `radius_mm`, and in steps, times and loads beside a radius above 0.
 
@@ -73,9 +122,7 @@ def read_rows(path: Path) -> ReferenceRows:
         File, line and column of what is missing or no number.
     """
     try:
-        source = read_source(path, NEEDED)
-        texts, lines = text_columns(source)
-        cells, at = dict(zip(source.names, texts, strict=True)), np.array(lines, dtype=np.int64)
+        cells, at = _table(path)
         known = [name for name in NUMBERS if name in cells]
         columns: dict[str, Array] = {
             name: numbers_of(path, name, cells[name], at, empty=name != "fem_mm") for name in known
@@ -83,7 +130,7 @@ def read_rows(path: Path) -> ReferenceRows:
         _check_empty(path, columns, at)
     except TableError as error:
         raise InputError(f"{error}") from None
-    if not lines:
+    if not at.size:
         raise InputError(f"{path}: the table has no rows; needed: one for each step and layer")
     return ReferenceRows(path, columns, cells["layer"], at)
 
@@ -311,6 +358,23 @@ def _check_load(rows: ReferenceRows, layer: str, found: Array, drive: Drive) -> 
         raise InputError(
             f"{rows.path}, column {column}: at {drive.time[step]:g} s {layer} is at {found[step] / size:.4g}, the "
             f"scenario at {drive.value[step] / size:.4g}; they must press alike, to {100 * SAME_LOAD:g} % of the peak"
+        )
+
+
+def check_radii(rows: ReferenceRows, tool: float, widest: float) -> None:
+    """Refuse a profile whose radii are of another size than the tool's (m) and the set-up's widest radius (m).
+
+    One that ends within a tenth of the tool shows nothing of it, and none goes hundreds of times as far as all else.
+    """
+    radii = np.abs(rows.columns["radius_mm"]) if "radius_mm" in rows.columns else np.zeros(0)
+    if not radii.size:
+        return
+    row = int(radii.argmax())
+    if not NARROW * tool <= 1e-3 * radii[row] <= WIDE * widest:
+        raise InputError(
+            f"{rows.where(row, 'radius_mm')}: the profile ends at {radii[row]:.6g} mm, where the tool has a radius of "
+            f"{1e3 * tool:.6g} mm; allowed: {1e3 * NARROW * tool:.6g} to {1e3 * WIDE * widest:.6g} mm. Is it in "
+            f"{'m' if 1e-3 * radii[row] < NARROW * tool else 'um'}?"
         )
 
 
