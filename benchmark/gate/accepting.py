@@ -170,12 +170,12 @@ def _steps(old: Baseline | None, new: Baseline) -> tuple[Step, ...]:
 
 
 def _curve_steps(old: Mapping[str, StoredValue], new: Mapping[str, StoredValue]) -> list[Step]:
-    """The load step of each curve that changed at which it changed most."""
+    """The load step of each curve that changed at which it changed most, where that is not told of the value itself."""
     found = []
     for name in old.keys() & new.keys():
         step = farthest_step(new[name], old[name])
         one, other = ((old[name].curve or {}).get(step or ""), (new[name].curve or {}).get(step or ""))
-        if one != other:
+        if one != other and (one, other) != (old[name].value, new[name].value):
             found.append(Step(f"{name}{CURVE} at {step}", new[name].unit, one, other))
     return sorted(found, key=lambda each: each.quantity)
 

@@ -19,8 +19,8 @@ from reports import write_json
 
 SCHEMA = 1
 DEFAULT = Path("tissuebench-baseline.json")
-BASELINE_SIGN = b'"gate"'
-"""What tells it from files that must not be replaced."""
+BASELINE_SIGN = b'"fingerprint"'
+"""What tells it from files that must not be replaced, such as a check's own `check.json`."""
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Ratio = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]

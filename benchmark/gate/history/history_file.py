@@ -14,8 +14,8 @@ from typing import Any
 from benchmark.errors import InputError
 
 HISTORY_SCHEMA = 1
-HISTORY_SIGN = b'"revision"'
-"""What tells it from files that nothing must be added to."""
+HISTORY_SIGN = b'"machine": "'
+"""What tells it from files that nothing must be added to, such as a baseline, whose machine is a table."""
 IN_FOLDER = "history.jsonl"
 """Its name in a folder that is given for it."""
 

@@ -134,6 +134,12 @@ def test_a_model_that_is_wrong_on_the_way_to_the_peak_fails(tiny_gate, request_o
     changes = [step.words() for step in accept(request_of(gate), Said()).steps]
     assert "springs.max_deformation_mm.skin.curve at step 1 (1 N): 1 -> 1.3 mm" in changes
     assert check(request_of(gate), Said()).verdict.passed
+    gate.change("my_model.py", "[1e-3", "[1.1e-3")
+    changes = [step.words() for step in accept(request_of(gate), Said()).steps]
+    assert changes == [
+        "springs.max_deformation_mm.skin: 5 -> 5.5 mm",
+        "springs.max_deformation_mm.fat: 4 -> 4 mm",
+    ], "the peak of a curve is the value, told already"
 
 
 def test_under_depth_control_the_force_is_gated_over_the_depth(tiny_gate, request_of) -> None:
@@ -361,6 +367,26 @@ def test_a_baseline_needs_every_value(tiny_gate, request_of, tmp_path: Path) -> 
     with pytest.raises(SolverError, match=r"max_deformation_mm\.skin.*stopped early"):
         accept(request_of(gate), Said())
     assert not (tmp_path / "b.json").exists()
+
+
+def test_a_check_writes_over_no_file_of_another_kind(tiny_gate, request_of, tmp_path: Path) -> None:
+    """A JSON file with a key "gate" was replaced by --accept, a baseline that was given as history had a line added."""
+    gate, foreign = tiny_gate(), tmp_path / "package.json"
+    foreign.write_text('{"name": "mine", "gate": 3, "revision": "abc"}')
+    accept(request_of(gate), Said())
+    check(request_of(gate), Said())
+    for kept in (foreign, tmp_path / "out" / "check.json"):
+        before = kept.read_bytes()
+        for options in ({"baseline": kept}, {"history": kept}):
+            with pytest.raises(InputError, match="nothing else is replaced"):
+                accept(request_of(gate, **options), Said())
+        assert kept.read_bytes() == before
+    before = (tmp_path / "b.json").read_bytes()
+    with pytest.raises(InputError, match="is not a history of checks"):
+        check(request_of(gate, history=tmp_path / "b.json"), Said())
+    with pytest.raises(InputError, match="is not a baseline"):
+        accept(request_of(gate, baseline=tmp_path / "b.history.jsonl"), Said())
+    assert (tmp_path / "b.json").read_bytes() == before
 
 
 def test_accept_and_against_exclude_each_other(tiny_gate, request_of) -> None:
