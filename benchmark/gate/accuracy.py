@@ -16,6 +16,7 @@ from benchmark.errors import InputError, NotComparableError
 from benchmark.files.units import FORCE, FRACTION, LENGTH, Dimension, QuantityError, parse_quantity
 from benchmark.gate.baseline import StoredValue
 from benchmark.gate.gate_file import Tolerance
+from benchmark.side_by_side.runner import SAME_ANSWER
 
 CURVE = ".curve"
 """What the name of a value's curve has behind the value's own."""
@@ -173,6 +174,27 @@ def curve_remarks(now: Mapping[str, StoredValue], baseline: Mapping[str, StoredV
             "the way there, until it is made anew with --accept"
         )
     return found
+
+
+def unsteady_remarks(first: Mapping[str, StoredValue], again: Mapping[str, StoredValue]) -> list[str]:
+    """A warning where values of a user's model, measured once more, are others (`SAME_ANSWER`), one line."""
+    apart = {name: _apart(first[name], value) for name, value in again.items()}
+    farthest = max(apart, key=lambda name: apart[name], default="")
+    if apart.get(farthest, 0.0) <= SAME_ANSWER:
+        return []
+    return [
+        f"your model answers differently each time: measured once more, {farthest} is {100 * apart[farthest]:.3g} % of "
+        "itself off; a model with random numbers needs a seed before it can be gated"
+    ]
+
+
+def _apart(one: StoredValue, other: StoredValue) -> float:
+    """The largest difference between two values and their curves as a share of the largest value."""
+    pairs = [(one.value or 0.0, other.value or 0.0)]
+    if farthest := farthest_step(one, other):
+        pairs.append(((one.curve or {})[farthest] or 0.0, (other.curve or {})[farthest] or 0.0))
+    size = max(abs(each) for pair in pairs for each in pair)
+    return max(abs(a - b) for a, b in pairs) / size if size else 0.0
 
 
 def wide_remarks(values: Mapping[str, StoredValue], tolerances: Sequence[Tolerance]) -> list[str]:

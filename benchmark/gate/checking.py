@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from benchmark.gate.accuracy import compare_values, curve_remarks, wide_remarks
+from benchmark.gate.accuracy import AccuracyRow, compare_values, curve_remarks, unsteady_remarks, wide_remarks
+from benchmark.gate.baseline import StoredValue
 from benchmark.gate.check_basis import CheckBasis, stored_baseline
 from benchmark.gate.check_page import check_page
 from benchmark.gate.ci_files import JUNIT_SIGN, MARKDOWN_SIGN, junit_text, markdown_text
@@ -98,6 +99,7 @@ def _verdict(
     warnings = (
         *curve_remarks(values, compared, basis.values_from),
         *wide_remarks(values, file.tolerances),
+        *unsteady_remarks(values, _once_more(head, accuracy)),
         *basis.remarks(origin, file.timing.other_machine_margin),
         *remarks(measured, timing),
     )
@@ -112,6 +114,14 @@ def _verdict(
         warnings=warnings,
     )
     return verdict, measured
+
+
+def _once_more(head: Party, rows: Sequence[AccuracyRow]) -> Mapping[str, StoredValue]:
+    """The values of users' models with a red row, measured again: a model may answer differently each time."""
+    red = [row.quantity for row in rows if not row.passed]
+    own = [case for case in head.plan.cases if case["own"] is not None]
+    cases = tuple(case for case in own if any(name.startswith(f"{case['name']}.") for name in red))
+    return gated_values(replace(head, plan=replace(head.plan, cases=cases))) if cases else {}
 
 
 def _times(

@@ -142,6 +142,18 @@ def test_a_model_that_is_wrong_on_the_way_to_the_peak_fails(tiny_gate, request_o
     ], "the peak of a curve is the value, told already"
 
 
+def test_a_red_model_that_answers_differently_each_time_is_told_to_be_one(tiny_gate, request_of) -> None:
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    gate.change("my_model.py", "(force, [1e-3", "(force, [1.1e-3")
+    assert check(request_of(gate), Said()).verdict.warnings == ()
+    gate.change("my_model.py", "(force, [1.1e-3", "(force * np.random.default_rng().uniform(0.9, 1.1), [1.1e-3")
+    verdict = check(request_of(gate), Said()).verdict
+    assert not verdict.passed
+    (said,) = verdict.warnings
+    assert said.startswith("your model answers differently each time: measured once more, springs.max_deformation_mm.")
+
+
 def test_under_depth_control_the_force_is_gated_over_the_depth(tiny_gate, request_of) -> None:
     gate, press = tiny_gate(), "def press(layers, tool, support, time, depth):\n    return 1e3 * depth\n"
     gate.change("my_model.py", "def deform", f"{press}\n\ndef deform")
