@@ -7,6 +7,7 @@ over its time, or over its load where it has no time; one row a layer is the pea
 from __future__ import annotations
 
 import codecs
+import csv
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -19,14 +20,16 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from bench_hw.errors import TableError
-from bench_hw.instrument_files.importing import ForeignFormat, read_foreign
-from bench_hw.storage.regular_file import TABLE, open_regular
+from bench_hw.instrument_files.text_sheet import number_text
+from bench_hw.storage.regular_file import TABLE, open_regular, read_regular
 from bench_hw.tables.columns import numbers_of, read_source, text_columns
 from benchmark.errors import InputError
 from benchmark.models.model_result import Array, Drive
 
 NEEDED = ("layer", "fem_mm")
 _LONGEST_HEADER = 10_000
+_TOLD_SIGN = re.compile(r'"?sep=.?"?')
+_DECIMAL = re.compile(r"[+-]?\d*([.,])\d+(?:[eE][+-]?\d+)?", re.ASCII)
 _TWO_BYTES = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 NUMBERS: tuple[str, ...] = ("step", "time_s", "force_N", "depth_mm", "radius_mm", "fem_mm")
 LOADS = {"force": ("force_N", 1.0), "depth": ("depth_mm", 1e-3)}
@@ -79,38 +82,54 @@ def header_sign(path: Path) -> str | None:
             head = stream.read(_LONGEST_HEADER)
     except OSError:
         return None
-    text = head.decode("utf-16" if head.startswith(_TWO_BYTES) else "utf-8-sig", errors="replace")
-    names = text.removeprefix(_told_sign(text)).partition("\n")[0]
-    signs = (sign for sign in ",;\t" if set(NEEDED) <= {name.strip(' "\r') for name in names.split(sign)})
+    names = next(iter(_lines(head).values()), "")
+    signs = (sign for sign in ",;\t" if set(NEEDED) <= {name.strip(' "') for name in names.split(sign)})
     return next(signs, None)
 
 
-def _told_sign(text: str) -> str:
-    """The line before a header in which spreadsheets tell the sign, `sep=;`; "" where there is none."""
-    found = re.match(r"\"?sep=.\"?\r?\n", text)
-    return found[0] if found else ""
+def _lines(data: bytes) -> dict[int, str]:
+    """The lines of a spreadsheet's text by their numbers, without blank ones, and without `sep=;` above the header."""
+    try:
+        text = data.decode("utf-16" if data.startswith(_TWO_BYTES) else "utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("cp1252", errors="replace")
+    numbered = enumerate(text.splitlines(), start=1)
+    return {number: line for number, line in numbered if line.strip(' ;,\t"') and not _TOLD_SIGN.fullmatch(line)}
 
 
-def _table(path: Path) -> tuple[dict[str, tuple[str, ...]], Places]:
+def _cells(path: Path) -> tuple[dict[str, tuple[str, ...]], Places]:
     """The cells (k,) of each column, and the lines of the file; raises TableError.
 
-    A table with commas between its cells is read strictly, one of a spreadsheet with semicolons or tabs, decimal commas
-    and other encodings as files of instruments are.
+    A table with commas between its cells is read strictly, with semicolons or tabs as spreadsheets write it: with
+    decimal commas, too, in UTF-16 and cp1252, and with empty rows.
     """
-    if header_sign(path) in (None, ","):
+    sign = header_sign(path)
+    if sign in (None, ","):
         source = read_source(path, NEEDED)
         columns, lines = text_columns(source)
         return dict(zip(source.names, columns, strict=True)), np.array(lines, dtype=np.int64)
-    with open_regular(path, TABLE) as stream:
-        head = stream.read(_LONGEST_HEADER)
-    told = _told_sign(head.decode("utf-8-sig", errors="replace"))
-    found = read_foreign(path, ForeignFormat(skip_lines=1 if told else 0))
-    for line, row in zip(found.lines, found.rows, strict=True):
-        if len(row) != len(found.names):
-            allowed = f"{len(found.names)} cells, as in the header"
-            raise TableError(path, f"the row has {len(row)} cells", allowed, row=line)
-    columns = list(zip(*found.rows, strict=True)) or [() for _ in found.names]
-    return dict(zip(found.names, columns, strict=True)), np.array(found.lines, dtype=np.int64)
+    written = _lines(read_regular(path, TABLE))
+    records = [[cell.strip() for cell in row] for row in csv.reader(written.values(), delimiter=str(sign))]
+    names, rows, at = records[0], records[1:], list(written)[1:]
+    for line, row in zip(at, rows, strict=False):
+        if len(row) != len(names):
+            raise TableError(path, f"the row has {len(row)} cells", f"{len(names)} cells, as in the header", row=line)
+    decimal = _decimal(path, rows, at)
+    columns = [tuple(number_text(row[k], decimal) for row in rows) for k in range(len(names))]
+    return dict(zip(names, columns, strict=True)), np.array(at, dtype=np.int64)
+
+
+def _decimal(path: Path, rows: list[list[str]], lines: list[int]) -> str:
+    """The decimal sign of a spreadsheet's numbers; raises TableError where both signs are there."""
+    found: dict[str, tuple[int, str]] = {}
+    for line, row in zip(lines, rows, strict=False):
+        marked = (mark for cell in row if (mark := _DECIMAL.fullmatch(cell)))
+        found |= {mark[1]: (line, mark[0]) for mark in marked if mark[1] not in found}
+    if len(found) == 2:
+        (line, cell), (other, first) = found[","], found["."]
+        problem = f"the comma in numbers, where line {other} has a point in {first!r}"
+        raise TableError(path, problem, "one decimal sign in a table", row=line, value=cell)
+    return next(iter(found), ".")
 
 
 def read_rows(path: Path) -> ReferenceRows:
@@ -122,7 +141,7 @@ def read_rows(path: Path) -> ReferenceRows:
         File, line and column of what is missing or no number.
     """
     try:
-        cells, at = _table(path)
+        cells, at = _cells(path)
         known = [name for name in NUMBERS if name in cells]
         columns: dict[str, Array] = {
             name: numbers_of(path, name, cells[name], at, empty=name != "fem_mm") for name in known

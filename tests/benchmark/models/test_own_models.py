@@ -85,12 +85,29 @@ def test_tables_of_other_countries_spreadsheets_are_read(tmp_path: Path, sign, d
 
 
 def test_the_line_in_which_a_spreadsheet_tells_its_sign_is_passed_over(tmp_path: Path) -> None:
-    path = as_a_spreadsheet_writes(table(fem_mm=[1.0] * 11 + ["x"]), tmp_path / "excel.csv", ";", ",")
+    path = as_a_spreadsheet_writes(table(fem_mm=["1"] * 11 + ["x"]), tmp_path / "excel.csv", ";", ",")
     path.write_text("sep=;\n" + path.read_text())
     with pytest.raises(InputError, match=r"excel\.csv \(row 14, column 'fem_mm', value 'x'\)"):
         read_reference(path, SCENARIO)
     path.write_text(path.read_text().replace(";x\n", ";1,5\n"))
     assert read_reference(path, SCENARIO).result.top_deflection[-1, -1] == pytest.approx(1.5e-3)
+
+
+def test_the_peak_alone_of_a_spreadsheet_is_read(tmp_path: Path) -> None:
+    frame = pd.DataFrame({"layer": LAYERS, "fem_mm": [1.5, 1.25, 0.5]})
+    path = as_a_spreadsheet_writes(frame, tmp_path / "excel.csv", ";", ",")
+    path.write_text(path.read_text() + ";\n;\n")
+    np.testing.assert_allclose(read_reference(path, SCENARIO).result.max_deformation(), [1.5e-3, 1.25e-3, 0.5e-3])
+
+
+def test_a_spreadsheet_with_both_decimal_signs_is_refused(tmp_path: Path) -> None:
+    """One of them would be taken for a mark between thousands."""
+    path = as_a_spreadsheet_writes(table(), tmp_path / "excel.csv", ";", ",")
+    path.write_text(path.read_text().replace("2,5;", "2.5;", 1))
+    with pytest.raises(
+        InputError, match=r"row \d+, value '\d,\d+'\): the comma in numbers, where line 2 has a point in '2.5'"
+    ):
+        read_reference(path, SCENARIO)
 
 
 def test_a_row_of_a_spreadsheet_that_is_cut_is_refused_by_its_line(tmp_path: Path) -> None:
