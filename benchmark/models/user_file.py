@@ -8,16 +8,16 @@ from __future__ import annotations
 import ast
 import hashlib
 import inspect
-import io
 import os
 import sys
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, TextIO
 
 from bench_hw.storage.regular_file import read_regular
 from benchmark.child_processes import forbid_ending
@@ -200,10 +200,18 @@ class UserCode:
                 sys.path.remove(folder)
 
 
+@cache
+def _nothing() -> TextIO:
+    """A file without content, with a handle that programs which a model starts can be given."""
+    return Path(os.devnull).open(encoding="utf-8")
+
+
 @contextmanager
 def _no_input() -> Iterator[None]:
     """An empty stdin: nobody can answer a model, and the commands of a measured process are not for it."""
-    before, sys.stdin = sys.stdin, io.StringIO()
+    if _nothing().closed:
+        _nothing.cache_clear()
+    before, sys.stdin = sys.stdin, _nothing()
     try:
         yield
     finally:

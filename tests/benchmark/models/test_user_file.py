@@ -107,12 +107,17 @@ def test_decorators_and_dataclasses_work(user_file) -> None:
 
 def test_a_model_that_reads_its_input_finds_none(user_file, monkeypatch) -> None:
     """In a check it read the commands of its process, and the check waited for ever."""
-    code = UserCode(
-        user_file("import sys\ndef deform():\n    return input('go? ')\ndef rest():\n    return sys.stdin.read()\n")
+    text = (
+        "import subprocess, sys\ndef deform():\n    return input('go? ')\ndef rest():\n    return sys.stdin.read()\n"
+        "def started():\n    found = subprocess.check_output('cat', stdin=sys.stdin)\n    sys.stdin.close()\n"
+        "    return found\n"
     )
+    code = UserCode(user_file(text))
     monkeypatch.setattr("sys.stdin", io.StringIO("commands\n"))
     with pytest.raises(InputError, match=r"my_model\.py, line 3: EOFError: .*no input to read"):
         code.call("deform")
+    assert code.call("rest") == ""
+    assert code.call("started") == b""
     assert code.call("rest") == ""
     assert sys.stdin.read() == "commands\n"
 
