@@ -214,6 +214,9 @@ def without_uncertainty(text: str, dimension: Dimension) -> tuple[str, float | N
     plain, uncertain = split_uncertainty(text)
     if uncertain is None:
         return text, None
+    unit = uncertain.lstrip("+-.0123456789eE ")
+    if dimension.si and unit not in ("", "%") and plain and plain[-1].isdigit():
+        raise problem(f"{text!r}: the value {plain!r} has no unit; write it to both, '{plain} {unit} +/- {uncertain}'")
     try:
         return plain, relative_uncertainty(parse_quantity(plain, dimension), uncertain, dimension)
     except QuantityError as error:

@@ -14,7 +14,7 @@ from benchmark.files.quantities import AutoLength, Bounds, Margin, Number, probl
 from benchmark.files.schema import FileModel, Name, Schema
 from benchmark.files.sources import folder_of, is_file
 from benchmark.files.tissue import Layer, Tissue
-from benchmark.files.tool import TOUCHING, Support, Tool, check_hole, oversized, setup_uncertainties
+from benchmark.files.tool import TOUCHING, Support, Tool, check_hole, implausible, setup_uncertainties
 
 Modes = Annotated[
     int | None,
@@ -188,7 +188,7 @@ _ALIKE = 0.02
 
 def scenario_notes(scenario: Scenario) -> tuple[str, ...]:
     """Say what of a scenario has no effect, not the one that its file suggests, or no bench's size; a sentence each."""
-    found: list[str | None] = [*oversized(scenario.tissue, scenario.tool, scenario.support)]
+    found: list[str | None] = [*implausible(scenario.tissue, scenario.tool, scenario.support)]
     found += [_law_apart(layer) for layer in scenario.tissue.layers]
     found += [_undetermined(key, scenario.tissue.name) for key in scenario.tissue.not_determined or ()]
     found += [_stepped_over(scenario.load), _unused_hold(scenario.load), _unused_position(scenario)]

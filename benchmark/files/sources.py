@@ -162,6 +162,13 @@ def is_file(path: Path) -> bool:
         return False
 
 
+def merge_conflict(text: str) -> str | None:
+    """What says that a merge was left unsettled in a text, with the line; None where nothing does."""
+    marks = (number for number, line in enumerate(text.splitlines(), start=1) if re.match(r"(<{7}|>{7})( |$)", line))
+    first = next(marks, None)
+    return None if first is None else f"line {first} has a conflict marker of git, so a merge was not settled"
+
+
 def read_toml(path: Path, what: str) -> tuple[dict[str, Any], Source]:
     """Read a TOML file.
 
@@ -192,7 +199,7 @@ def read_toml(path: Path, what: str) -> tuple[dict[str, Any], Source]:
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: this {what} file is not UTF-8 text (byte {error.start}).") from None
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{path}: this {what} file is no valid TOML: {error}.") from None
+        raise InputError(f"{path}: this {what} file is no valid TOML: {merge_conflict(text) or error}.") from None
     except (RecursionError, ValueError) as error:
         raise InputError(f"{path}: this {what} file cannot be read ({error}).") from None
     return table, Source(str(path), text, path.parent)

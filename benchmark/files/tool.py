@@ -9,8 +9,8 @@ from pydantic import model_validator
 
 from benchmark.files.quantities import Length, SignedLength, Tilt, problem
 from benchmark.files.schema import FileModel
-from benchmark.files.tissue import Tissue
-from benchmark.files.units import LENGTH, shown_quantity
+from benchmark.files.tissue import Layer, Tissue
+from benchmark.files.units import DENSITY, LENGTH, PRESSURE, shown_quantity
 
 Contact = Literal["uniform_pressure", "rigid_bonded", "rigid_frictionless", "rigid_frictional"]
 
@@ -23,6 +23,9 @@ COVERING = 0.9
 
 WIDEST, THICKEST = 0.5, 1.0
 """Radii and thicknesses of layers (m) up to which nothing is asked: no bench for tissue or phantoms has larger ones."""
+STIFF, DENSE = (10.0, 1e10), (100.0, 3000.0)
+"""Young's modulus (Pa) and density (kg/m^3) of layers within which nothing is asked. Wide on purpose: from the softest
+gels, or an inflated lung, to beyond tendon and cortical bone."""
 
 
 class Tool(FileModel):
@@ -115,8 +118,8 @@ def setup_uncertainties(tissue: Tissue, tool: Tool, support: Support) -> dict[st
     return {**tissue.uncertainties, **own}
 
 
-def oversized(tissue: Tissue, tool: Tool, support: Support) -> list[str]:
-    """A sentence for each length that no bench has, as where a unit was left short ("4 m" for "4 mm").
+def implausible(tissue: Tissue, tool: Tool, support: Support) -> list[str]:
+    """A sentence for each length, stiffness and density that no bench has, as where a unit is another than was meant.
 
     The bounds of the files are wider: problems of verification and of other scales are allowed.
     """
@@ -129,11 +132,26 @@ def oversized(tissue: Tissue, tool: Tool, support: Support) -> list[str]:
     }
     lengths = [(key, value, WIDEST) for key, value in radii.items() if value is not None]
     lengths += [(f"{each.name}.thickness", each.thickness, THICKEST) for each in tissue.layers]
-    return [
+    long = [
         f"{key} is {shown_quantity(value, LENGTH)}, more than any bench has ({shown_quantity(most, LENGTH)}): "
         f'is another unit meant, such as "{value:.6g} mm"?'
         for key, value, most in lengths
         if most < value < math.inf
+    ]
+    return long + [said for layer in tissue.layers for said in _odd_material(layer)]
+
+
+def _odd_material(layer: Layer) -> list[str]:
+    """A sentence for a stiffness ("500 mPa") and a density ("1.1 kg/m^3") that no soft tissue or phantom has."""
+    asked = (
+        ("youngs_modulus", layer.youngs_modulus, PRESSURE, STIFF, "mPa is a thousandth of a pascal, MPa a million"),
+        ("density", layer.density, DENSITY, DENSE, "1.1 g/cm^3 is 1100 kg/m^3"),
+    )
+    return [
+        f"{layer.name}.{key} is {shown_quantity(value, dimension)}; soft tissue and phantoms have "
+        f"{shown_quantity(low, dimension)} to {shown_quantity(high, dimension)}: is another unit meant ({hint})?"
+        for key, value, dimension, (low, high), hint in asked
+        if not low <= value <= high
     ]
 
 

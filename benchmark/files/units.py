@@ -128,6 +128,11 @@ def parse_quantity(text: str, dimension: Dimension) -> float:
     QuantityError
         When the text is no number with a unit, is not finite, or is of another dimension.
     """
+    if split_uncertainty(text)[1] is not None:
+        raise QuantityError(
+            f"{text!r} has an uncertainty, which is not read here; give {dimension.article} alone, such as "
+            f"{dimension.example!r}"
+        )
     number, unit = _split(text, dimension)
     if not unit and dimension.si:
         raise QuantityError(

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError, SolverError, TissuebenchError
-from benchmark.gate.accuracy import tolerance_of
+from benchmark.gate.accuracy import CURVE, farthest_step, wide_remarks
 from benchmark.gate.baseline import (
     BASELINE_SIGN,
     Baseline,
@@ -83,9 +83,9 @@ def accept(request: CheckRequest, listener: Listener) -> Accepted:
     check_file(request.history_path, "--history", HISTORY_SIGN, "a history of checks")
     origin = origin_of(plan, request.seed)
     old, warnings = _old(request.baseline_path, plan.file.name)
-    new = _measured(plan, origin, listener)
+    new, wide = _measured(plan, origin, listener)
     _put_down(request, new)
-    return Accepted(request.baseline_path, _steps(old, new), tuple(warnings))
+    return Accepted(request.baseline_path, _steps(old, new), (*warnings, *wide))
 
 
 def _put_down(request: CheckRequest, new: Baseline) -> None:
@@ -114,18 +114,18 @@ def _old(path: Path, gate: str) -> tuple[Baseline | None, list[str]]:
     return old, [] if old.gate == gate else [other]
 
 
-def _measured(plan: GatePlan, origin: Origin, listener: Listener) -> Baseline:
+def _measured(plan: GatePlan, origin: Origin, listener: Listener) -> tuple[Baseline, list[str]]:
+    """The baseline of this version, and warnings of the gate file's tolerances."""
     head, file = this_version(plan), plan.file
     listener.say(f"gate {file.name}: values of {counted(len(plan.cases), 'case')}")
     values = gated_values(head)
     missing = [f"{name} ({value.reason})" for name, value in values.items() if value.value is None]
     if missing:
         raise SolverError(f"no baseline was made: there is no value of {', '.join(missing)}")
-    for name, value in values.items():
-        tolerance_of(name, value.unit, file.tolerances)  # a check must be able to use the file
+    wide = wide_remarks(values, file.tolerances)  # refuses what a check could not use
     with listener.progress(f"gate {file.name}: {counted(len(file.timed), 'time')}") as advance:
         measured = measure((head,), lambda _: False, lambda done, most: advance("processes", done, most, ""))
-    return Baseline(
+    found = Baseline(
         gate=file.name,
         fingerprint=plan.fingerprint,
         made=origin.made,
@@ -133,9 +133,10 @@ def _measured(plan: GatePlan, origin: Origin, listener: Listener) -> Baseline:
         machine=origin.machine,
         accuracy=values,
         timing={
-            name: StoredTiming(ratios=[math.exp(each) for each in found]) for name, found in measured.ratios[0].items()
+            name: StoredTiming(ratios=[math.exp(each) for each in times]) for name, times in measured.ratios[0].items()
         },
     )
+    return found, wide
 
 
 def _entry(baseline: Baseline) -> HistoryEntry:
@@ -164,7 +165,19 @@ def _steps(old: Baseline | None, new: Baseline) -> tuple[Step, ...]:
     ]
     times = {} if old is None else {name: typical(each) for name, each in old.timing.items()}
     now = {name: typical(each) for name, each in new.timing.items()}
-    return (*steps, *(Step(name, TIMING_UNIT, times.get(name), now.get(name)) for name in {**now, **times}))
+    timed = [Step(name, TIMING_UNIT, times.get(name), now.get(name)) for name in {**now, **times}]
+    return (*steps, *_curve_steps(before, new.accuracy), *timed)
+
+
+def _curve_steps(old: Mapping[str, StoredValue], new: Mapping[str, StoredValue]) -> list[Step]:
+    """The load step of each curve that changed at which it changed most, where that is not told of the value itself."""
+    found = []
+    for name in old.keys() & new.keys():
+        step = farthest_step(new[name], old[name])
+        one, other = ((old[name].curve or {}).get(step or ""), (new[name].curve or {}).get(step or ""))
+        if one != other and (one, other) != (old[name].value, new[name].value):
+            found.append(Step(f"{name}{CURVE} at {step}", new[name].unit, one, other))
+    return sorted(found, key=lambda each: each.quantity)
 
 
 def _unit(name: str, old: Mapping[str, StoredValue], new: Mapping[str, StoredValue]) -> str:

@@ -14,13 +14,13 @@ from pydantic import BaseModel, ConfigDict, Field
 from bench_hw.storage.regular_file import DOCUMENT, read_regular
 from benchmark.errors import InputError, NotComparableError
 from benchmark.files.schema import validated
-from benchmark.files.sources import Source
+from benchmark.files.sources import Source, merge_conflict
 from reports import write_json
 
 SCHEMA = 1
 DEFAULT = Path("tissuebench-baseline.json")
-BASELINE_SIGN = b'"gate"'
-"""What tells it from files that must not be replaced."""
+BASELINE_SIGN = b'"fingerprint"'
+"""What tells it from files that must not be replaced, such as a check's own `check.json`."""
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Ratio = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
@@ -31,11 +31,16 @@ class _Stored(BaseModel):
 
 
 class StoredValue(_Stored):
-    """A gated value with its unit; `reason` says why there is none."""
+    """A gated value with its unit; `reason` says why there is none.
+
+    `curve` has it at each load step, by the words for the step (None: no finite number there); None of what is no
+    load history, and of baselines from before there were curves.
+    """
 
     value: Finite | None
     unit: str
     reason: str | None = None
+    curve: Mapping[str, Finite | None] | None = None
 
 
 class StoredTiming(_Stored):
@@ -97,7 +102,11 @@ class Baseline(_Stored):
 
 def write_baseline(path: Path, baseline: Baseline) -> Path:
     """Write a baseline, whole or not at all; raises OSError where the file system refuses."""
-    return write_json(path, baseline.model_dump(by_alias=True))
+    table = baseline.model_dump(by_alias=True)
+    for value in table["accuracy"].values():
+        if value["curve"] is None:
+            del value["curve"]
+    return write_json(path, table)
 
 
 @contextmanager
@@ -161,14 +170,18 @@ def _each_key_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _table(path: Path, gate: Path | None) -> dict[str, Any]:
     away = f"move it away and {how_to(path, gate)}"
+    text = ""
     try:
-        table = json.loads(read_regular(path, DOCUMENT).decode("utf-8-sig"), object_pairs_hook=_each_key_once)
+        text = read_regular(path, DOCUMENT).decode("utf-8-sig")
+        table = json.loads(text, object_pairs_hook=_each_key_once)
     except FileNotFoundError:
         raise NotComparableError(f"there is no baseline {path} to compare with; {how_to(path, gate)}") from None
     except OSError as error:
         raise InputError(f"{path}: this baseline cannot be read ({error.strerror or error})") from None
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: this baseline is no JSON ({error}); {away}") from None
+        conflict = merge_conflict(text)
+        settle = f"settle it, or {how_to(path, gate)}" if conflict else away
+        raise InputError(f"{path}: this baseline is no JSON ({conflict or error}); {settle}") from None
     if not isinstance(table, dict):
         raise InputError(f"{path}: this baseline is no JSON object; {away}")
     return table

@@ -109,7 +109,7 @@ def _accuracy_section(verdict: CheckVerdict) -> Section:
         "verdict",
     )
     rows = [
-        (row.quantity, row.unit, row.baseline, row.now, row.allowed, "within limits" if row.passed else "changed")
+        (row.label, row.unit, row.baseline, row.now, row.allowed, "within limits" if row.passed else "changed")
         for row in verdict.accuracy
     ]
     return Section("Accuracy", (Table("Gated values", columns, rows, folded=False),))

@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from benchmark.gate.accuracy import compare_values
+from benchmark.gate.accuracy import AccuracyRow, compare_values, curve_remarks, unsteady_remarks, wide_remarks
+from benchmark.gate.baseline import StoredValue
 from benchmark.gate.check_basis import CheckBasis, stored_baseline
 from benchmark.gate.check_page import check_page
 from benchmark.gate.ci_files import JUNIT_SIGN, MARKDOWN_SIGN, junit_text, markdown_text
@@ -92,9 +93,16 @@ def _verdict(
     head, file = this_version(plan), plan.file
     listener.say(f"gate {file.name}: values of {counted(len(plan.cases), 'case')}")
     values = gated_values(head)
-    accuracy = compare_values(values, basis.values(), file.tolerances, basis.values_from)
+    compared = basis.values()
+    accuracy = compare_values(values, compared, file.tolerances, basis.values_from)
     measured, timing = _times(head, basis, origin, seed, listener)
-    warnings = (*basis.remarks(origin, file.timing.other_machine_margin), *remarks(measured, timing))
+    warnings = (
+        *curve_remarks(values, compared, basis.values_from),
+        *wide_remarks(values, file.tolerances),
+        *unsteady_remarks(values, _once_more(head, accuracy)),
+        *basis.remarks(origin, file.timing.other_machine_margin),
+        *remarks(measured, timing),
+    )
     verdict = CheckVerdict(
         gate=file.name,
         accuracy=accuracy,
@@ -106,6 +114,14 @@ def _verdict(
         warnings=warnings,
     )
     return verdict, measured
+
+
+def _once_more(head: Party, rows: Sequence[AccuracyRow]) -> Mapping[str, StoredValue]:
+    """The values of users' models with a red row, measured again: a model may answer differently each time."""
+    red = [row.quantity for row in rows if not row.passed]
+    own = [case for case in head.plan.cases if case["own"] is not None]
+    cases = tuple(case for case in own if any(name.startswith(f"{case['name']}.") for name in red))
+    return gated_values(replace(head, plan=replace(head.plan, cases=cases))) if cases else {}
 
 
 def _times(
@@ -162,7 +178,7 @@ def _record(request: CheckRequest, origin: Origin, verdict: CheckVerdict) -> lis
         machine=origin.machine.processor,
         against=verdict.against,
         passed=verdict.passed,
-        accuracy={row.quantity: row.now for row in verdict.accuracy},
+        accuracy={row.quantity: row.now for row in verdict.accuracy if row.at is None},
         timing={
             row.quantity: {"ratio": row.now, "ci95": list(row.ci95), "allowed": row.allowed} for row in verdict.timing
         },

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -65,6 +66,7 @@ class CheckRequest:
 
 
 MEASURING = Path(__file__).parent / "measuring"
+NO_TIME = re.compile(r"^ *# no time: begin\n.*?^ *# no time: end\n", re.DOTALL | re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -170,9 +172,17 @@ def _fingerprint(jobs: tuple[Mapping[str, Any], ...], references: tuple[str, ...
     described = [{**job, "scenario": _text(job["scenario"]), "session": _text(job["session"])} for job in jobs]
     for job, table in zip(jobs, described, strict=True):
         table["own"] = job["own"] is not None
-    code = {path.name: path.read_text(encoding="utf-8") for path in sorted(MEASURING.glob("*.py"))}
+    code = {path.name: timed_text(path.read_text(encoding="utf-8")) for path in sorted(MEASURING.glob("*.py"))}
     whole = json.dumps([described, references, code], sort_keys=True)
     return hashlib.sha256(whole.encode()).hexdigest()
+
+
+def timed_text(code: str) -> str:
+    """Measuring code without the lines that decide no time, from `# no time: begin` to `# no time: end`.
+
+    They may change without making the times of every baseline worthless.
+    """
+    return NO_TIME.sub("", code)
 
 
 def _text(path: str | None) -> str:

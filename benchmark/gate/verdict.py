@@ -46,6 +46,19 @@ class CheckVerdict:
         """Whether nothing got worse."""
         return all(row.passed for row in self.accuracy) and all(row.passed for row in self.timing)
 
+    @property
+    def _values(self) -> list[AccuracyRow]:
+        return [row for row in self.accuracy if row.at is None]
+
+    @property
+    def _curves(self) -> list[AccuracyRow]:
+        return [row for row in self.accuracy if row.at is not None]
+
+    @property
+    def _kinds(self) -> list[tuple[list[AccuracyRow], str]]:
+        """Rows of accuracy by what they are; curves where there are any."""
+        return [(self._values, "value"), *([(self._curves, "curve")] if self._curves else [])]
+
     def failures(self) -> list[str]:
         """One line for each quantity that got worse: what, baseline, now, allowed."""
         values = [value_words(row) for row in self.accuracy if not row.passed]
@@ -59,20 +72,19 @@ class CheckVerdict:
         """One line for the values and one for each time."""
         worst = max((row.share for row in self.accuracy), default=0.0)
         farthest = f"the farthest at {100 * worst:.3g} % of its allowance"
-        first = f"values: {len(self.accuracy)} against {self.accuracy_source}, {farthest}"
+        curves = f" and {counted(len(self._curves), 'curve')} over the load" if self._curves else ""
+        first = f"values: {len(self._values)}{curves} against {self.accuracy_source}, {farthest}"
         return [first, *(f"time: {time_words(row)}" for row in self.timing)]
 
     def headline(self) -> str:
         """The verdict in one sentence."""
-        values, times = len(self.accuracy), len(self.timing)
         if self.passed:
             faster = len(self.improvements())
             better = f" {counted(faster, 'timing')} got faster." if faster else ""
-            both = f"{counted(values, 'value')} and {counted(times, 'timing')}"
-            return f"Nothing got worse: {both} are within limits.{better}"
-        bad_values = sum(not row.passed for row in self.accuracy)
-        bad_times = sum(not row.passed for row in self.timing)
-        return f"{bad_values} of {counted(values, 'value')} changed, {bad_times} of {counted(times, 'timing')} slower."
+            values = ", ".join(counted(len(rows), what) for rows, what in self._kinds)
+            return f"Nothing got worse: {values} and {counted(len(self.timing), 'timing')} are within limits.{better}"
+        bad = [f"{_bad(rows)} of {counted(len(rows), what)} changed" for rows, what in self._kinds]
+        return f"{', '.join(bad)}, {_bad(self.timing)} of {counted(len(self.timing), 'timing')} slower."
 
     def to_dict(self) -> dict[str, Any]:
         """The content of `check.json`."""
@@ -95,7 +107,7 @@ def value_words(row: AccuracyRow) -> str:
     unit = f" {row.unit}" if row.unit else ""
     now = f"{row.now:.9g}{unit}" if row.now is not None else f"without a value ({row.reason})"
     base = f"{row.baseline:.9g}{unit}" if row.baseline is not None else "without a value"
-    return f"{row.quantity}: baseline {base}, now {now}, allowed a difference of {row.allowed:.3g}{unit}"
+    return f"{row.label}: baseline {base}, now {now}, allowed a difference of {row.allowed:.3g}{unit}"
 
 
 def time_words(row: TimingRow) -> str:
@@ -105,6 +117,10 @@ def time_words(row: TimingRow) -> str:
         f"{row.quantity}: baseline {row.baseline:.4g} x the reference workload, now {row.now:.4g} "
         f"(95 % interval {low:.4g} to {high:.4g}; {100 * row.slowdown:+.1f} %), allowed {row.allowed:.4g}"
     )
+
+
+def _bad(rows: Sequence[AccuracyRow] | Sequence[TimingRow]) -> int:
+    return sum(not row.passed for row in rows)
 
 
 def counted(number: int, what: str) -> str:

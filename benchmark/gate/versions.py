@@ -72,7 +72,7 @@ def checked_out(repository: Path, commit: str) -> Iterator[Path]:
 
 def _git(folder: Path, *arguments: str, index: Path | None = None) -> str:
     """What a git command prints, with an index of its own where one is given; InputError where it fails."""
-    own = {} if index is None else {"GIT_INDEX_FILE": str(index)}
+    own = {"LC_ALL": "C"} if index is None else {"LC_ALL": "C", "GIT_INDEX_FILE": str(index)}
     command = ["git", "-C", str(folder), *arguments]
     try:
         done = subprocess.run(command, env={**os.environ, **own}, capture_output=True, text=True, check=False)
@@ -117,7 +117,7 @@ def rival(plan: GatePlan, revision: str) -> Iterator[OtherRevision]:
     folder = subject(plan)
     repository = repository_of(folder)
     if repository is None:
-        raise InputError(f"--against {revision}: {folder} is not in a git repository, so there are no revisions of it")
+        raise InputError(f"--against {revision}: {_why_no_repository(folder)}")
     commit = commit_of(repository, revision)
     with checked_out(repository, commit) as tree:
         if subject(plan) == PRODUCT:
@@ -128,11 +128,24 @@ def rival(plan: GatePlan, revision: str) -> Iterator[OtherRevision]:
             yield OtherRevision(commit, Party(partial(Side, PRODUCT, revision, moved), plan.moved(*moved)))
 
 
+def _why_no_repository(folder: Path) -> str:
+    """Why git tells no repository of a folder: there is none, git cannot be run, or does not trust another user's."""
+    try:
+        _git(folder, "rev-parse", "--show-toplevel")
+    except InputError as error:
+        if "not a git repository" not in str(error):
+            return f"git tells no repository of {folder}: {error}"
+    return f"{folder} is not in a git repository, so there are no revisions of it"
+
+
 def gated_values(party: Party) -> dict[str, StoredValue]:
     """The gated values of a party, from a process of its own; raises as `side.Side`."""
     with party.start() as side:
         found = side.values(party.plan)
-    return {each["name"]: StoredValue(value=each["value"], unit=each["unit"], reason=each["reason"]) for each in found}
+    return {
+        each["name"]: StoredValue(value=each["value"], unit=each["unit"], reason=each["reason"], curve=each["curve"])
+        for each in found
+    }
 
 
 def _has_own(plan: GatePlan) -> bool:

@@ -15,7 +15,17 @@ from benchmark.model_file import RepairedModel
 from benchmark.models.fea_results import READERS
 from benchmark.models.model_result import ModelResult, profile_radii, slips
 from benchmark.models.prepare import scenario_drive
-from benchmark.models.reference_table import check_at_peak, check_layers, history, parted, profile, read_rows, template
+from benchmark.models.reference_table import (
+    check_at_peak,
+    check_layers,
+    check_radii,
+    header_sign,
+    history,
+    parted,
+    profile,
+    read_rows,
+    template,
+)
 from benchmark.models.user_file import UserFile
 from reports import write_csv
 
@@ -40,8 +50,9 @@ def read_reference(path: Path, scenario: Scenario) -> Reference:
         A CSV file with the columns `layer, fem_mm` (deflection of the layer's top face on the tool axis, press
         positive) and either `step, time_s, force_N` (one row for each step, from 1, and layer), or `time_s`, or the
         load (`force_N`, `depth_mm`) alone, over which the FEA's own steps are interpolated. Rows with a `radius_mm`
-        above 0 are the profile at peak load. More columns are allowed. Or what a solver printed, by its ending: `.dat`
-        and `.frd` of CalculiX, `.log` and `.txt` of FEBio (see `benchmark.models.fea_results`).
+        above 0 are the profile at peak load. More columns are allowed; semicolons and decimal commas are read, too. Or
+        what a solver printed, where it is no such table by its ending: `.dat` and `.frd` of CalculiX, `.log` and `.txt`
+        of FEBio (see `benchmark.models.fea_results`).
     scenario : Scenario
         What it is the FEA of: its layers, and the times and loads of its steps.
 
@@ -51,12 +62,13 @@ def read_reference(path: Path, scenario: Scenario) -> Reference:
         File, line and column: a column or a cell that is missing or no number, layers, steps or loads that differ from
         the scenario's.
     """
-    reader = READERS.get(path.suffix.lower())
+    reader = None if header_sign(path) else READERS.get(path.suffix.lower())
     axis, off = parted(read_rows(path) if reader is None else reader(path, scenario))
     drive, names = scenario_drive(scenario), scenario.tissue.layer_names
     check_layers(axis, names)
     found = history(axis, drive, names)
     check_at_peak(off, drive, "with a radius above 0; that is the profile at the peak load", unsaid=0.0)
+    check_radii(off, scenario.tool.radius, _widest(scenario))
     peak, radii = int(np.abs(drive.value).argmax()), profile_radii(scenario.tool.radius)
     shape = profile(off, names, radii, found.top[peak])
     result = ModelResult(
@@ -77,6 +89,13 @@ def read_reference(path: Path, scenario: Scenario) -> Reference:
         ),
     )
     return Reference(f"FEA of {path.name}", result)
+
+
+def _widest(scenario: Scenario) -> float:
+    """The largest radius of tool, hole and specimen, or the thickness where that is more, in m."""
+    support, thickness = scenario.support, scenario.tissue.thickness
+    sizes = (scenario.tool.radius, support.hole_radius, support.specimen_radius, thickness)
+    return max(size for size in sizes if size is not None and np.isfinite(size))
 
 
 def write_template(path: Path, scenario: Scenario) -> None:

@@ -6,6 +6,9 @@ over its time, or over its load where it has no time; one row a layer is the pea
 
 from __future__ import annotations
 
+import codecs
+import csv
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
@@ -17,11 +20,17 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from bench_hw.errors import TableError
+from bench_hw.instrument_files.text_sheet import number_text
+from bench_hw.storage.regular_file import TABLE, open_regular, read_regular
 from bench_hw.tables.columns import numbers_of, read_source, text_columns
 from benchmark.errors import InputError
 from benchmark.models.model_result import Array, Drive
 
 NEEDED = ("layer", "fem_mm")
+_LONGEST_HEADER = 10_000
+_TOLD_SIGN = re.compile(r'"?sep=.?"?')
+_DECIMAL = re.compile(r"[+-]?\d*([.,])\d+(?:[eE][+-]?\d+)?", re.ASCII)
+_TWO_BYTES = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 NUMBERS: tuple[str, ...] = ("step", "time_s", "force_N", "depth_mm", "radius_mm", "fem_mm")
 LOADS = {"force": ("force_N", 1.0), "depth": ("depth_mm", 1e-3)}
 """Column of what is prescribed, and its size in SI, by the scenario's control."""
@@ -29,6 +38,8 @@ TOLERANCE = 1e-4
 """How far times and loads of a scenario's steps may be from the scenario's, as a part of their largest."""
 SAME_LOAD = 1e-2
 """The same for an FEA's own history at the scenario's times."""
+NARROW, WIDE = 0.1, 500.0
+"""A profile ends beyond this share of the tool's radius, and within this multiple of the set-up's widest one."""
 Places: TypeAlias = NDArray[np.int64]
 
 
@@ -64,6 +75,63 @@ class ReferenceHistory:
     how: str
 
 
+def header_sign(path: Path) -> str | None:
+    """What stands between the names of a table's header: a comma, a semicolon or a tab; None of what is no table."""
+    try:
+        with open_regular(path, TABLE) as stream:
+            head = stream.read(_LONGEST_HEADER)
+    except OSError:
+        return None
+    names = next(iter(_lines(head).values()), "")
+    signs = (sign for sign in ",;\t" if set(NEEDED) <= {name.strip(' "') for name in names.split(sign)})
+    return next(signs, None)
+
+
+def _lines(data: bytes) -> dict[int, str]:
+    """The lines of a spreadsheet's text by their numbers, without blank ones, and without `sep=;` above the header."""
+    try:
+        text = data.decode("utf-16" if data.startswith(_TWO_BYTES) else "utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("cp1252", errors="replace")
+    numbered = enumerate(text.splitlines(), start=1)
+    return {number: line for number, line in numbered if line.strip(' ;,\t"') and not _TOLD_SIGN.fullmatch(line)}
+
+
+def _cells(path: Path) -> tuple[dict[str, tuple[str, ...]], Places]:
+    """The cells (k,) of each column, and the lines of the file; raises TableError.
+
+    A table with commas between its cells is read strictly, with semicolons or tabs as spreadsheets write it: with
+    decimal commas, too, in UTF-16 and cp1252, and with empty rows.
+    """
+    sign = header_sign(path)
+    if sign in (None, ","):
+        source = read_source(path, NEEDED)
+        columns, lines = text_columns(source)
+        return dict(zip(source.names, columns, strict=True)), np.array(lines, dtype=np.int64)
+    written = _lines(read_regular(path, TABLE))
+    records = [[cell.strip() for cell in row] for row in csv.reader(written.values(), delimiter=str(sign))]
+    names, rows, at = records[0], records[1:], list(written)[1:]
+    for line, row in zip(at, rows, strict=False):
+        if len(row) != len(names):
+            raise TableError(path, f"the row has {len(row)} cells", f"{len(names)} cells, as in the header", row=line)
+    decimal = _decimal(path, rows, at)
+    columns = [tuple(number_text(row[k], decimal) for row in rows) for k in range(len(names))]
+    return dict(zip(names, columns, strict=True)), np.array(at, dtype=np.int64)
+
+
+def _decimal(path: Path, rows: list[list[str]], lines: list[int]) -> str:
+    """The decimal sign of a spreadsheet's numbers; raises TableError where both signs are there."""
+    found: dict[str, tuple[int, str]] = {}
+    for line, row in zip(lines, rows, strict=False):
+        marked = (mark for cell in row if (mark := _DECIMAL.fullmatch(cell)))
+        found |= {mark[1]: (line, mark[0]) for mark in marked if mark[1] not in found}
+    if len(found) == 2:
+        (line, cell), (other, first) = found[","], found["."]
+        problem = f"the comma in numbers, where line {other} has a point in {first!r}"
+        raise TableError(path, problem, "one decimal sign in a table", row=line, value=cell)
+    return next(iter(found), ".")
+
+
 def read_rows(path: Path) -> ReferenceRows:
     """The columns as numbers; empty cells only in `radius_mm`, and in steps, times and loads beside a radius above 0.
 
@@ -73,9 +141,7 @@ def read_rows(path: Path) -> ReferenceRows:
         File, line and column of what is missing or no number.
     """
     try:
-        source = read_source(path, NEEDED)
-        texts, lines = text_columns(source)
-        cells, at = dict(zip(source.names, texts, strict=True)), np.array(lines, dtype=np.int64)
+        cells, at = _cells(path)
         known = [name for name in NUMBERS if name in cells]
         columns: dict[str, Array] = {
             name: numbers_of(path, name, cells[name], at, empty=name != "fem_mm") for name in known
@@ -83,7 +149,7 @@ def read_rows(path: Path) -> ReferenceRows:
         _check_empty(path, columns, at)
     except TableError as error:
         raise InputError(f"{error}") from None
-    if not lines:
+    if not at.size:
         raise InputError(f"{path}: the table has no rows; needed: one for each step and layer")
     return ReferenceRows(path, columns, cells["layer"], at)
 
@@ -311,6 +377,23 @@ def _check_load(rows: ReferenceRows, layer: str, found: Array, drive: Drive) -> 
         raise InputError(
             f"{rows.path}, column {column}: at {drive.time[step]:g} s {layer} is at {found[step] / size:.4g}, the "
             f"scenario at {drive.value[step] / size:.4g}; they must press alike, to {100 * SAME_LOAD:g} % of the peak"
+        )
+
+
+def check_radii(rows: ReferenceRows, tool: float, widest: float) -> None:
+    """Refuse a profile whose radii are of another size than the tool's (m) and the set-up's widest radius (m).
+
+    One that ends within a tenth of the tool shows nothing of it, and none goes hundreds of times as far as all else.
+    """
+    radii = np.abs(rows.columns["radius_mm"]) if "radius_mm" in rows.columns else np.zeros(0)
+    if not radii.size:
+        return
+    row = int(radii.argmax())
+    if not NARROW * tool <= 1e-3 * radii[row] <= WIDE * widest:
+        raise InputError(
+            f"{rows.where(row, 'radius_mm')}: the profile ends at {radii[row]:.6g} mm, where the tool has a radius of "
+            f"{1e3 * tool:.6g} mm; allowed: {1e3 * NARROW * tool:.6g} to {1e3 * WIDE * widest:.6g} mm. Is it in "
+            f"{'m' if 1e-3 * radii[row] < NARROW * tool else 'um'}?"
         )
 
 

@@ -14,13 +14,15 @@ import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, TextIO
 
 from bench_hw.storage.regular_file import read_regular
 from benchmark.child_processes import forbid_ending
 from benchmark.errors import InputError
+from benchmark.files.sources import merge_conflict
 from benchmark.models.model_result import UncoveredError
 
 NAME = "NAME"
@@ -69,7 +71,8 @@ def read_user_file(path: Path) -> UserFile:
         text = read_regular(path).decode("utf-8-sig")
         tree = ast.parse(text, str(path))
     except SyntaxError as error:
-        raise InputError(f"{path}, line {error.lineno}: this is no valid Python ({error.msg})") from None
+        why = merge_conflict(text) or error.msg
+        raise InputError(f"{path}, line {error.lineno}: this is no valid Python ({why})") from None
     except OSError as error:
         raise InputError(f"{path}: this model file cannot be read ({error.strerror or error})") from None
     except ValueError as error:
@@ -163,6 +166,12 @@ class UserCode:
         place = f"{self._file.path}, line {line}" if line else self._file.path
         return InputError(f"{place}, {function}: {text}")
 
+    def _raises(self, frame: traceback.FrameSummary) -> bool:
+        """Whether a place is a `raise` statement, so that nobody pressed Ctrl-C there."""
+        own = frame.filename == self._file.path
+        code = self._file.text.splitlines()[(frame.lineno or 1) - 1] if own else frame.line or ""
+        return code.strip().startswith("raise")
+
     def _line(self, function: str) -> int:
         """Where a function begins; 0 where it is not the file's own."""
         called = getattr(self._module, function, None)
@@ -175,14 +184,47 @@ class UserCode:
         folder = str(Path(self._file.path).absolute().parent)
         sys.path.insert(0, folder)
         try:
-            with redirect_stdout(sys.stderr):
+            with redirect_stdout(sys.stderr), _no_input():
                 yield
         except NotImplementedError as error:
             raise UncoveredError(str(error) or f"{self._file.path} raised NotImplementedError") from None
-        except (Exception, SystemExit) as error:
-            lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == self._file.path]
+        except BaseException as error:
+            frames = traceback.extract_tb(error.__traceback__)
+            if _is_interrupt(error) and not self._raises(frames[-1]):
+                raise
+            lines = [frame.lineno for frame in frames if frame.filename == self._file.path]
             place = f"{self._file.path}, line {lines[-1] if lines else line}"
-            raise InputError(f"{place}: {type(error).__name__}: {error}") from error
+            raise InputError(f"{place}: {_in_words(error)}") from (None if _is_interrupt(error) else error)
         finally:
             if folder in sys.path:
                 sys.path.remove(folder)
+
+
+@cache
+def _nothing() -> TextIO:
+    """A file without content, with a handle that programs which a model starts can be given."""
+    return Path(os.devnull).open(encoding="utf-8")
+
+
+@contextmanager
+def _no_input() -> Iterator[None]:
+    """An empty stdin: nobody can answer a model, and the commands of a measured process are not for it."""
+    if _nothing().closed:
+        _nothing.cache_clear()
+    before, sys.stdin = sys.stdin, _nothing()
+    try:
+        yield
+    finally:
+        sys.stdin = before
+
+
+def _is_interrupt(error: BaseException) -> bool:
+    return isinstance(error, KeyboardInterrupt)
+
+
+def _in_words(error: BaseException) -> str:
+    """An exception as the end of a message; the command line takes Ctrl-C's own name for Ctrl-C."""
+    if _is_interrupt(error):
+        return "the model ends itself as Ctrl-C would, by the exception of a keyboard interrupt"
+    hint = " (a model has no input to read)" if isinstance(error, EOFError) else ""
+    return f"{type(error).__name__}: {error}{hint}"

@@ -49,7 +49,7 @@ from benchmark.files.sessions.trials import (
 from benchmark.files.shipped import find, shipped_tissues
 from benchmark.files.sources import KeyPath, Source
 from benchmark.files.tissue import Layer, Tissue
-from benchmark.files.tool import Support, Tool, oversized
+from benchmark.files.tool import Support, Tool, implausible
 
 _NO_OVERRIDES: Overrides = {}
 
@@ -141,7 +141,7 @@ def _checked_presses(session: Session) -> list[str]:
     said: list[str] = []
     for tool, support in dict.fromkeys((trial.tool, trial.support) for trial in session.trials):
         session.scenario(session.specimen, tool, support, Load(peak=1.0))
-        said += oversized(session.specimen, tool, support)
+        said += implausible(session.specimen, tool, support)
     return list(dict.fromkeys(said))
 
 

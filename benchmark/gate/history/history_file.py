@@ -14,8 +14,8 @@ from typing import Any
 from benchmark.errors import InputError
 
 HISTORY_SCHEMA = 1
-HISTORY_SIGN = b'"revision"'
-"""What tells it from files that nothing must be added to."""
+HISTORY_SIGN = b'"machine": "'
+"""What tells it from files that nothing must be added to, such as a baseline, whose machine is a table."""
 IN_FOLDER = "history.jsonl"
 """Its name in a folder that is given for it."""
 
@@ -101,15 +101,18 @@ def _entry(line: bytes) -> HistoryEntry | None:
 
 def _is_whole(entry: HistoryEntry) -> bool:
     """Whether everything in an entry is of its kind; raises for what is of no such kind at all."""
-    words = (entry.made, entry.machine, entry.revision or "", entry.against or "")
+    words = (entry.made, entry.machine, *(each for each in (entry.revision, entry.against) if each is not None))
     numbers = [value for value in entry.accuracy.values() if value is not None]
+    intervals = [each["ci95"] for each in entry.timing.values() if each.get("ci95") is not None]
     for each in entry.timing.values():
-        numbers += [each["ratio"], *(each.get("ci95") or ()), each.get("allowed") or 0.0]
+        numbers += [each["ratio"], *([] if each.get("allowed") is None else [each["allowed"]])]
+    numbers += [end for interval in intervals for end in interval]
     return (
         all(isinstance(word, str) for word in words)
         and (entry.passed is None or isinstance(entry.passed, bool))
         and all(isinstance(number, int | float) and math.isfinite(number) for number in numbers)
-        and all(each["ratio"] > 0.0 and len(each.get("ci95") or (0, 0)) == 2 for each in entry.timing.values())
+        and all(each["ratio"] > 0.0 for each in entry.timing.values())
+        and all(len(interval) == 2 for interval in intervals)
     )
 
 

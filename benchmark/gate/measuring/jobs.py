@@ -51,6 +51,9 @@ class GatedValue:
     value: float | None
     unit: str
     reason: str | None = None
+    # no time: begin
+    curve: Mapping[str, float | None] | None = None  # the value at each load step, by the words for it
+    # no time: end
 
     def to_dict(self) -> dict[str, Any]:
         """As plain types."""
@@ -101,9 +104,41 @@ def press_values(case: Mapping[str, Any]) -> list[GatedValue]:
     if scenario.load.control == "depth":
         peak = float(result.force[result.peak_step]) if result.force.size else np.nan
         values.append(_value("peak_force_N", peak, "N", reason))
+    # no time: begin
+    if reason is None:
+        curves = _curves(result, scenario)
+        values = [GatedValue(each.name, each.value, each.unit, each.reason, curves.get(each.name)) for each in values]
+    # no time: end
     return values
 
 
+# no time: begin
+MOST_STEPS = 200
+"""Of longer load histories that many steps are kept in a curve, evenly spaced, the peak's among them."""
+
+
+def _curves(result: ModelResult, scenario: Scenario) -> dict[str, dict[str, float | None]]:
+    """The deflection of each layer over the load steps, under depth control the force as well, by gated value.
+
+    A step is called by its number from 1 and its load; None stands where a curve has no finite number.
+    """
+    drive = scenario_drive(scenario)
+    size, unit = (1.0, "N") if drive.control == "force" else (MM, "mm")
+    kept = np.linspace(0, drive.time.size - 1, min(drive.time.size, MOST_STEPS)).round().astype(int)
+    kept = np.unique(np.append(kept, result.peak_step))
+    words = [f"step {k + 1} ({size * drive.value[k] + 0.0:.6g} {unit})" for k in kept]
+
+    def curve(values: Any) -> dict[str, float | None]:
+        return {
+            word: float(value) if np.isfinite(value) else None for word, value in zip(words, values[kept], strict=True)
+        }
+
+    deflections = zip(result.layers, MM * result.top_deflection.T, strict=True)
+    found = {f"max_deformation_mm.{layer}": curve(values) for layer, values in deflections}
+    return found if drive.control == "force" else {**found, "peak_force_N": curve(result.force)}
+
+
+# no time: end
 def _far(result: ModelResult, radius: float) -> float:
     return float(np.interp(FAR * radius, result.profile_radii, result.profile[0]))
 

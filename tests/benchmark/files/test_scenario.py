@@ -194,6 +194,16 @@ def test_the_shipped_scenario_has_nothing_to_note():
         ),
         ({"dermis__thickness": "1.5 m"}, "dermis.thickness is 1.5 m, more than any bench has (1 m)"),
         ({"support__kind": "hole", "support__hole_radius": "30 m"}, "support.hole_radius is 30 m"),
+        (
+            {"dermis__youngs_modulus": "500 mPa"},
+            "dermis.youngs_modulus is 0.5 Pa; soft tissue and phantoms have 10 Pa to 10000 MPa: is another unit meant "
+            "(mPa is a thousandth of a pascal, MPa a million)?",
+        ),
+        ({"dermis__youngs_modulus": "120 GPa"}, "dermis.youngs_modulus is 120000 MPa; soft tissue"),
+        (
+            {"dermis__density": "1.1 kg/m^3"},
+            "dermis.density is 1.1 kg/m^3; soft tissue and phantoms have 100 kg/m^3 to",
+        ),
     ],
 )
 def test_what_is_easily_misread_is_said(overrides, says):

@@ -98,6 +98,9 @@ def test_reads_a_table_and_its_folder(tmp_path):
     [
         (b"x = ", "no valid TOML"),
         (b"x = 1\nx = 2\n", "no valid TOML"),
+        (b"<<<<<<< HEAD\nx = 1\n=======\nx = 2\n>>>>>>> main\n", "line 1 has a conflict marker of git"),
+        (b"x = 1\r\n>>>>>>> main\r\n", "line 2 has a conflict marker of git"),
+        (b'x = 1\n"<<<<<<< x"\n', "no valid TOML: Expected"),
         (b"\xff\xfe", "not UTF-8"),
         (b"x = " + b"[" * 20000, "cannot be read"),
         (b"x = 1" + b"0" * 5000, "cannot be read"),

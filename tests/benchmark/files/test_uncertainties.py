@@ -79,6 +79,9 @@ def test_set_gives_one_in_a_scenario():
         ("5 mm +/- 0.05", "has no unit"),
         ("5 mm +/-", "is not a finite number with a unit"),
         ("5 +/- 1 %", "has no unit"),
+        ("5 +/- 0.05 mm", "the value '5' has no unit; write it to both, '5 mm +/- 0.05 mm'"),
+        ("5.e0±1e-1mm", "write it to both, '5.e0 mm +/- 1e-1mm'"),
+        ("5 mm +/- 1 mm +/- 1 mm", "has an uncertainty, which is not read here"),
     ],
 )
 def test_one_that_cannot_be_is_refused_at_its_key(text, why):
@@ -88,6 +91,10 @@ def test_one_that_cannot_be_is_refused_at_its_key(text, why):
 
 
 def test_a_key_that_takes_none_says_so():
-    table = {"name": "press", "tissue": TISSUE, "tool": {"radius": "5 mm"}, "load": {"peak": "1 N +/- 1 %"}}
-    with pytest.raises(InputError, match=r"load\.peak"):
-        scenario_from_table(table, Source("press.toml"), {})
+    """It said that the unit N +/- 1 % is not known."""
+    for peak in ("1 N +/- 1 %", "500 +/- 20 N", "1 N ± 0.1 N"):
+        table = {"name": "press", "tissue": TISSUE, "tool": {"radius": "5 mm"}, "load": {"peak": peak}}
+        with pytest.raises(
+            InputError, match=r"load\.peak.*has an uncertainty, which is not read here; give a force alone"
+        ):
+            scenario_from_table(table, Source("press.toml"), {})

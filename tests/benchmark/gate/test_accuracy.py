@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmark.errors import InputError, NotComparableError
-from benchmark.gate.accuracy import compare_values, tolerance_of
+from benchmark.gate.accuracy import WIDE, compare_values, tolerance_of, wide_remarks
 from benchmark.gate.baseline import StoredValue
 from benchmark.gate.gate_file import Tolerance
 from benchmark.gate.plan import load_plan
@@ -76,6 +76,67 @@ def test_other_quantities_cannot_be_compared(now: dict, base: dict) -> None:
 def test_a_quantity_in_another_unit_is_said_to_be() -> None:
     with pytest.raises(NotComparableError, match=r"a \(in mm there, in N here\)"):
         compare_values({"a": StoredValue(value=1, unit="N")}, {"a": mm(1.0)}, SHIPPED, "the baseline")
+
+
+def with_curve(*values: float | None) -> StoredValue:
+    return StoredValue(value=5.0, unit="mm", curve={f"step {k}": value for k, value in enumerate(values, start=1)})
+
+
+def curve_row(now: StoredValue, base: StoredValue, tolerances=SHIPPED):
+    name = "press.max_deformation_mm.skin"
+    return compare_values({name: now}, {name: base}, tolerances, "the baseline")[1]
+
+
+def test_a_curve_is_allowed_a_share_of_its_largest_value() -> None:
+    base = with_curve(0.0, 1.0, 5.0)
+    row = curve_row(with_curve(0.0, 1.004, 5.0), base)
+    assert row.passed
+    assert row.allowed == pytest.approx(5e-3 + 1e-6)
+    row = curve_row(with_curve(0.0, 1.006, 5.0), base)
+    assert not row.passed
+    assert (row.label, row.baseline, row.now) == ("press.max_deformation_mm.skin.curve at step 2", 1.0, 1.006)
+    assert curve_row(base, base).at == "step 3"
+
+
+def test_a_step_without_a_number_fails_where_there_was_one() -> None:
+    row = curve_row(with_curve(1.0, None), with_curve(1.0, 2.0))
+    assert not row.passed
+    assert row.reason == "it is not a finite number"
+    assert not curve_row(with_curve(1.0, 2.0), with_curve(1.0, None)).passed
+    assert curve_row(with_curve(1.0, None), with_curve(1.0, None)).passed
+
+
+def test_a_curve_follows_its_value_unless_a_tolerance_is_for_curves() -> None:
+    """Gate files from before there were curves have a tolerance for each value, and may have none that fits a curve."""
+    base, now = with_curve(1.0, 5.0), with_curve(1.2, 5.0)
+    for_values = Tolerance(quantity="*.max_deformation_mm.skin", rtol=0.05, atol="0 mm")
+    last = Tolerance(quantity="*", rtol=1e-9, atol="1e-9")
+    assert curve_row(now, base, [for_values]).passed
+    assert curve_row(now, base, [for_values, last]).passed
+    for_curves = Tolerance(quantity="*.curve", rtol=0.01, atol="0 mm")
+    assert not curve_row(now, base, [for_values, for_curves]).passed
+
+
+def test_a_tolerance_that_gates_little_is_warned_of() -> None:
+    """0.5 for half a per cent let half of a deflection pass, without a word."""
+    values = {"a.max_deformation_mm.skin": with_curve(1.0, 5.0), "fit.zero_N": StoredValue(value=1e-6, unit="N")}
+    assert wide_remarks(values, SHIPPED) == []
+    (said,) = wide_remarks(values, [Tolerance(quantity="*_mm*", rtol=0.5, atol="1 nm"), *SHIPPED])
+    assert "a.max_deformation_mm.skin (50 %)" in said
+    assert "zero_N" not in said
+    (said,) = wide_remarks(values, [Tolerance(quantity="*_mm*", rtol=0.001, atol="1 mm"), *SHIPPED])
+    assert "skin (20.1 %)" in said
+    (said,) = wide_remarks(values, [Tolerance(quantity="*.curve", rtol=0.06, atol="1 nm"), *SHIPPED])
+    assert "a.max_deformation_mm.skin.curve (6 %)" in said
+    assert wide_remarks(values, [Tolerance(quantity="*_mm*", rtol=WIDE, atol="0 mm"), *SHIPPED]) == []
+
+
+def test_a_curve_is_not_judged_where_its_value_changed() -> None:
+    """One change would be red twice."""
+    now = with_curve(1.0, 6.0).model_copy(update={"value": 6.0})
+    name = "press.max_deformation_mm.skin"
+    rows = compare_values({name: now}, {name: with_curve(1.0, 5.0)}, SHIPPED, "the baseline")
+    assert [(row.quantity, row.passed) for row in rows] == [(name, False)]
 
 
 def test_the_first_pattern_that_fits_holds() -> None:

@@ -118,6 +118,15 @@ def test_ratios_carry_over_to_the_same_processor_and_python() -> None:
     assert here.differences(here.model_copy(update={"packages": {"numpy": "2.5"}})) == ["numpy 2.4.6 (here 2.5)"]
 
 
+def test_a_merge_that_was_not_settled_is_told_by_its_line(baseline: Baseline, tmp_path: Path) -> None:
+    """The refusal was of JSON, and advised to make a new baseline."""
+    path = write_baseline(tmp_path / "b.json", baseline)
+    text = path.read_text().replace('"schema": 1,\n', '"schema": 1,\n<<<<<<< HEAD\n', 1)
+    path.write_text(text.replace('"gate"', '=======\n"gate"').replace('"made"', '>>>>>>> main\n"made"'))
+    with pytest.raises(InputError, match=r"line 3 has a conflict marker of git.*settle it, or make one"):
+        read_baseline(path)
+
+
 def test_a_merge_that_kept_both_sides_is_refused(baseline: Baseline, tmp_path: Path) -> None:
     path = write_baseline(tmp_path / "b.json", baseline)
     text = path.read_text()

@@ -88,8 +88,11 @@ def test_unchanged_passes_and_is_written_whole(tiny_gate, request_of, tmp_path: 
     assert outcome.document == json.loads((tmp_path / "out" / "check.json").read_text())
     assert outcome.document["accuracy"][0] == {
         "quantity": "springs.max_deformation_mm.skin", "unit": "mm", "baseline": 5.0, "now": 5.0,
-        "allowed": pytest.approx(5e-3 + 1e-6), "passed": True, "reason": None,
+        "allowed": pytest.approx(5e-3 + 1e-6), "passed": True, "reason": None, "at": None,
     }  # fmt: skip
+    curve = outcome.document["accuracy"][2]
+    assert (curve["quantity"], curve["at"]) == ("springs.max_deformation_mm.skin.curve", "step 5 (5 N)")
+    assert outcome.verdict.headline() == "Nothing got worse: 2 values, 2 curves and 0 timings are within limits."
     names = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*") if path.is_file()}
     assert names == {
         "manifest.json",
@@ -110,6 +113,89 @@ def test_one_per_cent_in_one_deflection_fails(tiny_gate, request_of, factor: str
     verdict = check(request_of(gate), Said()).verdict
     assert [row.quantity for row in verdict.accuracy if not row.passed] == ["springs.max_deformation_mm.skin"]
     assert "baseline 5 mm" in verdict.failures()[0]
+
+
+SOFT_AT_FIRST = "(np.where(force < 1.7, 1.3, 1.0) * force, [1e-3"
+"""A model 30 % too soft in the first third of the load, and right at the peak."""
+
+
+def test_a_model_that_is_wrong_on_the_way_to_the_peak_fails(tiny_gate, request_of) -> None:
+    """The largest deflection alone was gated, and such a model was green."""
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    gate.change("my_model.py", "(force, [1e-3", SOFT_AT_FIRST)
+    verdict = check(request_of(gate), Said()).verdict
+    assert not verdict.passed
+    assert verdict.failures()[0] == (
+        "springs.max_deformation_mm.skin.curve at step 1 (1 N): baseline 1 mm, now 1.3 mm, "
+        "allowed a difference of 0.005 mm"
+    )
+    assert verdict.headline() == "0 of 2 values changed, 2 of 2 curves changed, 0 of 0 timings slower."
+    changes = [step.words() for step in accept(request_of(gate), Said()).steps]
+    assert "springs.max_deformation_mm.skin.curve at step 1 (1 N): 1 -> 1.3 mm" in changes
+    assert check(request_of(gate), Said()).verdict.passed
+    gate.change("my_model.py", "[1e-3", "[1.1e-3")
+    changes = [step.words() for step in accept(request_of(gate), Said()).steps]
+    assert changes == [
+        "springs.max_deformation_mm.skin: 5 -> 5.5 mm",
+        "springs.max_deformation_mm.fat: 4 -> 4 mm",
+    ], "the peak of a curve is the value, told already"
+
+
+def test_a_red_model_that_answers_differently_each_time_is_told_to_be_one(tiny_gate, request_of) -> None:
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    gate.change("my_model.py", "(force, [1e-3", "(force, [1.1e-3")
+    assert check(request_of(gate), Said()).verdict.warnings == ()
+    gate.change("my_model.py", "(force, [1.1e-3", "(force * np.random.default_rng().uniform(0.9, 1.1), [1.1e-3")
+    verdict = check(request_of(gate), Said()).verdict
+    assert not verdict.passed
+    (said,) = verdict.warnings
+    assert said.startswith("your model answers differently each time: measured once more, springs.max_deformation_mm.")
+
+
+def test_under_depth_control_the_force_is_gated_over_the_depth(tiny_gate, request_of) -> None:
+    gate, press = tiny_gate(), "def press(layers, tool, support, time, depth):\n    return 1e3 * depth\n"
+    gate.change("my_model.py", "def deform", f"{press}\n\ndef deform")
+    gate.change("gate.toml", 'own = "', 'set = { "load.control" = "depth", "load.peak" = "2 mm" }\nown = "')
+    gate.change("gate.toml", "[[cases]]", '[[tolerances]]\nquantity = "*_N"\nrtol = 0.001\natol = "1e-6 N"\n[[cases]]')
+    gate.change("gate.toml", 'quantity = "*"', 'quantity = "*_mm*"')
+    accept(request_of(gate), Said())
+    gate.change("my_model.py", "return 1e3 * depth", "return 1e3 * depth * np.where(depth < 1e-3, 1.01, 1.0)")
+    said = check(request_of(gate), Said()).verdict.failures()[-1]
+    assert said.startswith("springs.peak_force_N.curve at step 2 (0.8 mm): baseline 0.8 N, now 0.808 N")
+
+
+def test_a_baseline_from_before_there_were_curves_holds_and_says_so(tiny_gate, request_of, tmp_path: Path) -> None:
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    rewrite(tmp_path / "b.json", lambda table: [value.pop("curve") for value in table["accuracy"].values()])
+    gate.change("my_model.py", "(force, [1e-3", SOFT_AT_FIRST)
+    verdict = check(request_of(gate), Said()).verdict
+    assert verdict.passed
+    assert len(verdict.accuracy) == 2
+    (said,) = verdict.warnings
+    assert "of 2 of them only the largest is gated" in said
+    assert "--accept" in said
+    accept(request_of(gate), Said())
+    assert check(request_of(gate), Said()).verdict.warnings == ()
+
+
+def test_other_load_steps_are_said_and_no_misfit(tiny_gate, request_of) -> None:
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    gate.change("press.toml", "observations = 10", "observations = 20")
+    verdict = check(request_of(gate), Said()).verdict
+    assert verdict.passed
+    assert verdict.warnings[0].startswith("the load steps of springs.max_deformation_mm.skin, springs.max")
+
+
+def test_the_history_has_the_largest_values_alone(tiny_gate, request_of, tmp_path: Path) -> None:
+    gate = tiny_gate()
+    accept(request_of(gate), Said())
+    check(request_of(gate), Said())
+    entries, _ = read_history(tmp_path / "b.history.jsonl")
+    assert set(entries[1].accuracy) == {f"springs.max_deformation_mm.{layer}" for layer in ("skin", "fat")}
 
 
 def test_slower_than_the_baseline_fails_and_faster_does_not(tiny_gate, request_of, tmp_path: Path) -> None:
@@ -182,6 +268,17 @@ def test_one_case_is_one_case(tiny_gate, request_of) -> None:
     check(request, said)
     assert said.lines[:2] == ["gate tiny: values of 1 case", "gate tiny: 1 time"]
     assert said.lines[3].startswith("gate tiny: 1 time against")
+
+
+def test_a_wide_tolerance_is_obeyed_and_said(tiny_gate, request_of) -> None:
+    gate = tiny_gate()
+    gate.change("gate.toml", 'rtol = "0.1 %"', "rtol = 0.5")
+    (said,) = accept(request_of(gate), Said()).warnings
+    assert "gate little: springs.max_deformation_mm.skin (50 %), springs.max_deformation_mm.fat (50 %)" in said
+    gate.change("my_model.py", "[1e-3", "[1.4e-3")
+    verdict = check(request_of(gate), Said()).verdict
+    assert verdict.passed
+    assert verdict.warnings == (said,)
 
 
 def test_a_layer_more_cannot_be_compared(tiny_gate, request_of) -> None:
@@ -282,6 +379,26 @@ def test_a_baseline_needs_every_value(tiny_gate, request_of, tmp_path: Path) -> 
     with pytest.raises(SolverError, match=r"max_deformation_mm\.skin.*stopped early"):
         accept(request_of(gate), Said())
     assert not (tmp_path / "b.json").exists()
+
+
+def test_a_check_writes_over_no_file_of_another_kind(tiny_gate, request_of, tmp_path: Path) -> None:
+    """A JSON file with a key "gate" was replaced by --accept, a baseline that was given as history had a line added."""
+    gate, foreign = tiny_gate(), tmp_path / "package.json"
+    foreign.write_text('{"name": "mine", "gate": 3, "revision": "abc"}')
+    accept(request_of(gate), Said())
+    check(request_of(gate), Said())
+    for kept in (foreign, tmp_path / "out" / "check.json"):
+        before = kept.read_bytes()
+        for options in ({"baseline": kept}, {"history": kept}):
+            with pytest.raises(InputError, match="nothing else is replaced"):
+                accept(request_of(gate, **options), Said())
+        assert kept.read_bytes() == before
+    before = (tmp_path / "b.json").read_bytes()
+    with pytest.raises(InputError, match="is not a history of checks"):
+        check(request_of(gate, history=tmp_path / "b.json"), Said())
+    with pytest.raises(InputError, match="is not a baseline"):
+        accept(request_of(gate, baseline=tmp_path / "b.history.jsonl"), Said())
+    assert (tmp_path / "b.json").read_bytes() == before
 
 
 def test_accept_and_against_exclude_each_other(tiny_gate, request_of) -> None:

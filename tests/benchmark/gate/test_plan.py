@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from benchmark.errors import InputError
-from benchmark.gate.plan import CheckRequest, load_plan
+from benchmark.gate.plan import MEASURING, CheckRequest, load_plan, timed_text
 from benchmark.sessions import SHIPPED
 
 
@@ -74,3 +74,13 @@ def test_a_history_is_a_file_a_folder_or_beside_the_baseline(tmp_path: Path) -> 
     assert CheckRequest(baseline).history_path == tmp_path / "b.history.jsonl"
     assert CheckRequest(baseline, history=tmp_path / "h").history_path == tmp_path / "h"
     assert CheckRequest(baseline, history=tmp_path).history_path == tmp_path / "history.jsonl"
+
+
+def test_lines_that_decide_no_time_are_not_in_the_fingerprint() -> None:
+    """Curves came into the measuring code, and no baseline's times were worth less for it."""
+    code = "a\n    # no time: begin\n    b\n\n    # no time: end\nc\n# no time: begin\nd\n# no time: end\ne\n"
+    assert timed_text(code) == "a\nc\ne\n"
+    jobs = timed_text((MEASURING / "jobs.py").read_text(encoding="utf-8"))
+    assert "def press_values" in jobs
+    assert "_curves(" not in jobs
+    assert "no time" not in jobs

@@ -53,6 +53,25 @@ def test_what_the_code_prints_does_not_disturb(tiny_gate) -> None:
         assert value(side, load_plan(gate.path)) == pytest.approx(5.0)
 
 
+def test_what_the_code_starts_finds_an_empty_stdin(tiny_gate) -> None:
+    """It was the commands of the process: a solver that reads took them, and the check waited for ever."""
+    gate = tiny_gate()
+    gate.change("my_model.py", "import numpy as np\n", "import os, subprocess\nimport numpy as np\n")
+    gate.change(
+        "my_model.py", "    return", "    assert os.read(0, 1) == subprocess.check_output(['cat']) == b''\n    return"
+    )
+    plan = load_plan(gate.path)
+    with Side(PRODUCT) as side:
+        assert value(side, plan) == value(side, plan) == pytest.approx(5.0)
+
+
+def test_a_model_that_asks_ends_with_an_error_of_its_own(tiny_gate) -> None:
+    gate = tiny_gate()
+    gate.change("my_model.py", "    return", "    input('go? ')\n    return")
+    with Side(PRODUCT) as side, pytest.raises(InputError, match=r"my_model\.py, line 7: EOFError"):
+        side.values(load_plan(gate.path))
+
+
 def test_a_mistake_in_the_input_is_bad_input(tiny_gate) -> None:
     gate = tiny_gate()
     plan = load_plan(gate.path)

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from benchmark.errors import InputError
-from benchmark.gate.versions import checked_out, commit_of, describe_revision, repository_of
+from benchmark.gate.plan import load_plan
+from benchmark.gate.versions import checked_out, commit_of, describe_revision, repository_of, rival
 
 AUTHOR = ("-c", "user.name=test", "-c", "user.email=test@localhost")
 
@@ -79,6 +80,26 @@ def test_outside_a_repository_there_is_none(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
     assert repository_of(tmp_path) is None
     assert describe_revision(tmp_path) is None
+
+
+def test_a_repository_that_git_does_not_trust_is_told_in_its_words(tiny_gate, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a container the files are another user's; the refusal said that there is no repository."""
+    gate = tiny_gate()
+    git(gate.folder, "init", "--quiet")
+    monkeypatch.setenv("GIT_TEST_ASSUME_DIFFERENT_OWNER", "1")
+    with pytest.raises(InputError, match=r"--against HEAD: git tells no repository of .*dubious ownership"):
+        rival(load_plan(gate.path), "HEAD").__enter__()
+    monkeypatch.setenv("PATH", str(gate.folder))
+    with pytest.raises(InputError, match=r"git cannot be run \(No such file"):
+        rival(load_plan(gate.path), "HEAD").__enter__()
+
+
+def test_outside_a_repository_no_revision_can_be_measured(tiny_gate, monkeypatch: pytest.MonkeyPatch) -> None:
+    gate = tiny_gate()
+    monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(gate.folder.parent))
+    monkeypatch.setenv("LC_ALL", "de_DE.UTF-8")
+    with pytest.raises(InputError, match=r"gate is not in a git repository, so there are no revisions of it$"):
+        rival(load_plan(gate.path), "HEAD").__enter__()
 
 
 def test_without_git_there_is_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

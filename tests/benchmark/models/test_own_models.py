@@ -69,6 +69,75 @@ def test_any_numbers_read_back(tmp_path_factory, values: list[float]) -> None:
     np.testing.assert_allclose(found.ravel(), values, rtol=1e-12, atol=1e-300)
 
 
+def as_a_spreadsheet_writes(frame: pd.DataFrame, path: Path, sign: str, decimal: str, encoding: str = "utf-8") -> Path:
+    path.write_text(frame.to_csv(index=False, sep=sign, decimal=decimal), encoding=encoding)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("sign", "decimal", "encoding"),
+    [(";", ",", "utf-8"), (";", ",", "utf-8-sig"), (";", ".", "utf-8"), ("\t", ",", "utf-16"), ("\t", ".", "utf-8")],
+)
+def test_tables_of_other_countries_spreadsheets_are_read(tmp_path: Path, sign, decimal, encoding) -> None:
+    plain = read_reference(written(table(), tmp_path), SCENARIO).result
+    path = as_a_spreadsheet_writes(table(), tmp_path / "excel.csv", sign, decimal, encoding)
+    np.testing.assert_array_equal(read_reference(path, SCENARIO).result.top_deflection, plain.top_deflection)
+
+
+def test_the_line_in_which_a_spreadsheet_tells_its_sign_is_passed_over(tmp_path: Path) -> None:
+    path = as_a_spreadsheet_writes(table(fem_mm=["1"] * 11 + ["x"]), tmp_path / "excel.csv", ";", ",")
+    path.write_text("sep=;\n" + path.read_text())
+    with pytest.raises(InputError, match=r"excel\.csv \(row 14, column 'fem_mm', value 'x'\)"):
+        read_reference(path, SCENARIO)
+    path.write_text(path.read_text().replace(";x\n", ";1,5\n"))
+    assert read_reference(path, SCENARIO).result.top_deflection[-1, -1] == pytest.approx(1.5e-3)
+
+
+def test_the_peak_alone_of_a_spreadsheet_is_read(tmp_path: Path) -> None:
+    frame = pd.DataFrame({"layer": LAYERS, "fem_mm": [1.5, 1.25, 0.5]})
+    path = as_a_spreadsheet_writes(frame, tmp_path / "excel.csv", ";", ",")
+    path.write_text(path.read_text() + ";\n;\n")
+    np.testing.assert_allclose(read_reference(path, SCENARIO).result.max_deformation(), [1.5e-3, 1.25e-3, 0.5e-3])
+
+
+def test_a_spreadsheet_with_both_decimal_signs_is_refused(tmp_path: Path) -> None:
+    """One of them would be taken for a mark between thousands."""
+    path = as_a_spreadsheet_writes(table(), tmp_path / "excel.csv", ";", ",")
+    path.write_text(path.read_text().replace("2,5;", "2.5;", 1))
+    with pytest.raises(
+        InputError, match=r"row \d+, value '\d,\d+'\): the comma in numbers, where line 2 has a point in '2.5'"
+    ):
+        read_reference(path, SCENARIO)
+
+
+def test_a_row_of_a_spreadsheet_that_is_cut_is_refused_by_its_line(tmp_path: Path) -> None:
+    path = as_a_spreadsheet_writes(table(), tmp_path / "excel.csv", ";", ",")
+    lines = path.read_text().splitlines()
+    path.write_text("\n".join([*lines[:5], lines[5].rpartition(";")[0], *lines[6:]]))
+    with pytest.raises(InputError, match=r"row 6.*the row has 4 cells.*5 cells"):
+        read_reference(path, SCENARIO)
+
+
+@pytest.mark.parametrize("ending", [".txt", ".log", ".dat", ".frd", ".TXT"])
+def test_a_table_is_known_by_its_header_not_by_its_ending(tmp_path: Path, ending: str) -> None:
+    """A .txt was taken for a log of FEBio."""
+    path = written(table(), tmp_path).rename(tmp_path / f"mine{ending}")
+    assert np.isfinite(read_reference(path, SCENARIO).result.top_deflection).all()
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(1e-3, "m"), (1e3, "um")])
+def test_a_profile_of_another_size_than_the_tools_is_refused(tmp_path: Path, factor: float, unit: str) -> None:
+    """Radii in metres under radius_mm gave a profile that ended within the tool, without a word."""
+    radii = np.array([1.0, 5.0, 20.0])
+    edge = pd.concat([pd.DataFrame({"radius_mm": radii, "layer": layer, "fem_mm": 0.1}) for layer in LAYERS])
+    whole = pd.concat([table(radius_mm=0.0), edge])
+    assert np.isfinite(read_reference(written(whole, tmp_path), SCENARIO).result.profile[:, 10]).all()
+    with pytest.raises(
+        InputError, match=rf"column radius_mm: the profile ends at .* radius of 5 mm.*Is it in {unit}\?"
+    ):
+        read_reference(written(whole.assign(radius_mm=factor * whole.radius_mm), tmp_path), SCENARIO)
+
+
 BAD = {
     "a column is missing": (table().drop(columns="fem_mm"), ["fem_mm", "missing"]),
     "text in a number": (table(fem_mm=["x"] * 12), ["fem_mm", "'x'"]),

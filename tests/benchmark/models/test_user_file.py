@@ -1,5 +1,7 @@
 """Reading a user's file without running it, and running it so that every fault names file and line."""
 
+import io
+import signal
 import sys
 
 import pytest
@@ -29,6 +31,7 @@ def test_the_fingerprint_follows_the_text(user_file) -> None:
     [
         ("def deform(:\n", ["line 1", "no valid Python"]),
         ("x = 1\n\ny = (\n", ["line 3", "no valid Python"]),
+        ("x = 1\n<<<<<<< HEAD\ny = 2\n", ["line 2", "conflict marker of git"]),
         ("NAME = 5\n", ["line 1", "NAME = 5", "60"]),
         ("x = 1\nNAME = ''\n", ["line 2", "NAME"]),
         ("NAME = 'a\\nb'\n", ["printable"]),
@@ -100,3 +103,39 @@ def test_decorators_and_dataclasses_work(user_file) -> None:
     )
     with pytest.raises(InputError, match="line 11: ZeroDivisionError"):
         UserCode(user_file(text)).call("deform", 1.0)
+
+
+def test_a_model_that_reads_its_input_finds_none(user_file, monkeypatch) -> None:
+    """In a check it read the commands of its process, and the check waited for ever."""
+    text = (
+        "import subprocess, sys\ndef deform():\n    return input('go? ')\ndef rest():\n    return sys.stdin.read()\n"
+        "def started():\n    found = subprocess.check_output('cat', stdin=sys.stdin)\n    sys.stdin.close()\n"
+        "    return found\n"
+    )
+    code = UserCode(user_file(text))
+    monkeypatch.setattr("sys.stdin", io.StringIO("commands\n"))
+    with pytest.raises(InputError, match=r"my_model\.py, line 3: EOFError: .*no input to read"):
+        code.call("deform")
+    assert code.call("rest") == ""
+    assert code.call("started") == b""
+    assert code.call("rest") == ""
+    assert sys.stdin.read() == "commands\n"
+
+
+@pytest.mark.parametrize("raised", ["KeyboardInterrupt", "asyncio.CancelledError('later')", "GeneratorExit"])
+def test_whatever_a_model_raises_is_told_with_its_line(user_file, raised: str) -> None:
+    """A keyboard interrupt of its own ended as exit code 0 of its process."""
+    code = UserCode(user_file(f"import asyncio\ndef deform():\n    raise {raised}\n"))
+    with pytest.raises(InputError, match=r"my_model\.py, line 3: ") as caught:
+        code.call("deform")
+    assert "KeyboardInterrupt" not in str(caught.value), "the command line would take it for Ctrl-C"
+
+
+def test_ctrl_c_while_a_model_runs_is_ctrl_c(user_file) -> None:
+    code = UserCode(user_file("import signal\ndef deform():\n    signal.raise_signal(signal.SIGINT)\n"))
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where tests run in the background
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            code.call("deform")
+    finally:
+        signal.signal(signal.SIGINT, before)

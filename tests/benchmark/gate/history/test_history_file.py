@@ -62,7 +62,9 @@ def test_lines_of_something_else_are_counted(tmp_path: Path, line: str) -> None:
     "odd",
     [
         {"passed": -0.05}, {"made": 3}, {"machine": None}, {"against": ["5 mm"]},
-        {"accuracy": {"skin_mm": "/dev/zero"}},
+        {"accuracy": {"skin_mm": "/dev/zero"}}, {"revision": -0.0}, {"against": 0}, {"revision": False},
+        {"timing": {"frame": {"ratio": 2.0, "ci95": 0.0}}}, {"timing": {"frame": {"ratio": 2.0, "ci95": []}}},
+        {"timing": {"frame": {"ratio": 2.0, "allowed": ""}}},
         {"accuracy": {"skin_mm": float("inf")}}, {"accuracy": 7}, {"timing": {"frame": {"ratio": "2"}}},
         {"timing": {"frame": {"ratio": 2.0, "ci95": [1.0], "allowed": None}}},
         {"timing": {"frame": {"ratio": 2.0, "ci95": 7, "allowed": None}}}, {"accuracy": {"skin_mm": 10**400}},

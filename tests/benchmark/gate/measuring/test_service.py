@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from benchmark.gate.measuring.costs import CostClock
-from benchmark.gate.measuring.jobs import first_of
+from benchmark.gate.measuring.jobs import MOST_STEPS, first_of
 from benchmark.gate.measuring.references import CALLS, REFERENCES
 from benchmark.gate.measuring.service import Service
 from benchmark.gate.plan import GatePlan, load_plan
@@ -29,7 +29,16 @@ def test_values_of_a_users_model(service: Service, tiny_gate) -> None:
     assert found["springs.max_deformation_mm.skin"]["value"] == pytest.approx(5.0)
     assert found["springs.max_deformation_mm.fat"] == {
         "name": "springs.max_deformation_mm.fat", "value": pytest.approx(4.0), "unit": "mm", "reason": None,
+        "curve": {f"step {k} ({n} N)": pytest.approx(0.8 * n) for k, n in enumerate([1, 2, 3, 4, 5, 4, 3, 2, 1, 0], 1)},
     }  # fmt: skip
+
+
+def test_of_a_long_history_some_steps_are_kept_the_peak_among_them(service: Service, tiny_gate) -> None:
+    gate = tiny_gate()
+    gate.change("press.toml", "observations = 10", "observations = 1234")
+    curve = values_of(service, load_plan(gate.path))["springs.max_deformation_mm.skin"]["curve"]
+    assert MOST_STEPS <= len(curve) <= MOST_STEPS + 1
+    assert {"step 1 (0.00810373 N)", "step 617 (5 N)", "step 1234 (0 N)"} <= curve.keys()
 
 
 def test_values_of_the_shipped_gate(service: Service) -> None:
