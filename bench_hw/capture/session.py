@@ -210,7 +210,11 @@ def _loop_context(
             f"is {_LARGEST_LATENCY:g} of safety.force_stale ({rig.safety.force_stale * 1e3:g} ms): use realtime mode"
         )
     limits = SafetyLimits(
-        rig.safety.force_limit, rig.safety.force_stale, bench.travel, tuple(bench.force.ranges.tolist())
+        rig.safety.force_limit,
+        rig.safety.force_stale,
+        bench.travel,
+        tuple(bench.force.ranges.tolist()),
+        rig.force_frozen,
     )
     return LoopContext(clock, limits, stop, progress, _SIMULATED_TURN if order.fast else _TURN)
 

@@ -77,6 +77,18 @@ def test_repeating_force_data(record, session):
     assert_safe(record(rig=timed("force_freeze", "1.5 s")), session, "force_stale")
 
 
+def test_a_reading_that_stays_the_same_under_new_numbers(record, session):
+    trial = assert_safe(record(rig=timed("force_constant", "1.5 s")), session, "force_frozen")
+    last_change = trial.time[np.flatnonzero(np.diff(trial.force))[-1] + 1]
+    events = inspect_trial(session / "trial_001.mcap").events
+    fault = next(event for event in events if event["level"] == "fault")
+    assert fault["time_s"] - last_change == pytest.approx(0.25, abs=0.01)
+
+
+def test_a_simulated_sensor_without_noise_may_stay_the_same(record):
+    assert record(rig={"force": {"noise": "0 N"}}).fault is None
+
+
 def test_a_saturated_sensor(record, session):
     assert_safe(record(rig=timed("force_saturated", "1.5 s", duration="0.2 s")), session, "force_saturated")
 
