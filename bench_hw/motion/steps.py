@@ -144,7 +144,7 @@ def _check_direction(segment: Approach, now: Observation) -> None:
     if now.press <= -segment.touch_force:
         raise MotionError(
             f"approach: the press force is {now.press:.3f} N at position {now.position * 1e3:.2f} mm, negative where "
-            "the tool presses: turn the sign of force.press_axis in the rig file, or zero the sensor (force.bias = true)"
+            "the tool presses: turn the sign of force.press_axis in the rig file, or zero the sensor (force.bias)"
         )
 
 
