@@ -231,6 +231,16 @@ def test_an_existing_session_is_not_touched(record, session):
     assert {path.name: path.read_bytes() for path in session.iterdir()} == before
 
 
+def test_pictures_of_a_camera_calibrated_otherwise_are_not_appended(record, session):
+    record(camera=True)
+    before = sorted(path.name for path in session.iterdir())
+    with pytest.raises(InputError, match=r"camera\.toml is another calibration than that of the rig's camera"):
+        record(camera=True, rig={"camera": {"distance": "90 mm"}}, append=True)
+    assert sorted(path.name for path in session.iterdir()) == before
+    record(camera=True, append=True)
+    record(append=True)  # without a camera there is nothing to read by it
+
+
 def test_appending_needs_a_session(record):
     with pytest.raises(InputError, match="no session to append to; leave --append out"):
         record(append=True)
