@@ -2,7 +2,7 @@
 
 Checked on each sample of force: that it is a number and not the same one for long, the force limit, the sensor's
 ranges, saturation, faults in its status word. Checked at each turn of the capture's loop: force data that is stale
-(silent, or repeating one sample), a position outside the travel, a camera that fell silent.
+(silent, or repeating one sample), a position outside the travel, a camera that fell silent or repeats one picture.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from bench_hw.devices.rdt import describe, is_fault, is_saturated
 from bench_hw.errors import DeviceError
 
 CAMERA_SILENT = 1.0
-"""Time without a frame after which the camera counts as lost, s."""
+"""Time without a frame after which the camera counts as lost, s; of a slow one, as many periods as `MISSED`."""
+MISSED = 3
 FROZEN = 0.25
 """How long all six components may stay the same to the last digit, s: a live sensor's noise moves them."""
 FEWEST_FROZEN = 20
@@ -31,7 +32,7 @@ class SafetyError(DeviceError):
     ----------
     kind : str
         A short name: `force_limit`, `force_range`, `force_saturated`, `force_status`, `force_invalid`,
-        `force_frozen`, `force_stale`, `travel`, `camera_lost`.
+        `force_frozen`, `force_stale`, `travel`, `camera_lost`, `camera_frozen`.
     message : str
         One sentence with values and units.
     time : float
@@ -60,6 +61,9 @@ class SafetyLimits:
         Largest magnitudes of Fx..Tz of the sensor, N and N m; NaN where unknown.
     force_frozen : float
         Longest time in which no component of the force changes, s; infinite where that is no sign of a fault.
+    camera_silent, camera_frozen : float
+        Longest time without a picture, and with none but repeated ones, s; the second is infinite where that is no
+        sign of a fault.
     """
 
     force_limit: float = 6.0
@@ -67,6 +71,8 @@ class SafetyLimits:
     travel: tuple[float, float] = (0.0, 0.050)
     ranges: tuple[float, ...] = (np.nan,) * 6
     force_frozen: float = FROZEN
+    camera_silent: float = CAMERA_SILENT
+    camera_frozen: float = np.inf
 
 
 class SafetyMonitor:
@@ -85,7 +91,7 @@ class SafetyMonitor:
     def __init__(self, limits: SafetyLimits, started: float, tolerance: float = 0.0) -> None:
         self._limits, self._tolerance = limits, tolerance
         self._ranges = np.where(np.isnan(limits.ranges), np.inf, limits.ranges)
-        self._fresh = self._camera = started
+        self._fresh = self._camera = self._picture = started
         self._sample: int | None = None
         self._same = np.full(6, np.nan)
         self._same_since, self._same_count = started, 0
@@ -147,18 +153,32 @@ class SafetyMonitor:
                 now,
             )
 
-    def check_camera(self, frames: int, now: float) -> None:
-        """Check that the camera still gives frames; `frames` came since the last call.
+    def check_camera(self, frames: int, now: float, repeated: int = 0) -> None:
+        """Check that the camera still gives pictures.
+
+        Parameters
+        ----------
+        frames : int
+            How many came since the last call.
+        now : float
+            Reading of the clock, s.
+        repeated : int
+            How many of them are the one before to the byte.
 
         Raises
         ------
         SafetyError
-            None came for a second.
+            None came for a second, or none that differed.
         """
         if frames:
             self._camera = now
-        elif now - self._camera > CAMERA_SILENT:
+        elif now - self._camera > self._limits.camera_silent:
             raise SafetyError("camera_lost", f"no frame for {now - self._camera:.1f} s", now)
+        if frames > repeated:
+            self._picture = now
+        elif now - self._picture > self._limits.camera_frozen:
+            still = f"each picture has been the one before to the byte for {now - self._picture:.1f} s"
+            raise SafetyError("camera_frozen", f"{still}: the camera hangs, or is covered", now)
 
     def _note_fresh(self, block: ForceBlock) -> None:
         """Data is fresh while its sample numbers move: a box that repeats one sample is stale."""

@@ -12,6 +12,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import pairwise
 
 from bench_hw.capture.progress import CaptureState, ProgressDisplay
 from bench_hw.clock import Clock
@@ -135,6 +136,7 @@ class Loop:
         self._target: float | None = None
         self._monitor = SafetyMonitor(context.limits, self._began, bench.actuator.uncertainty)
         self._pictures: deque[float] = deque(maxlen=_PICTURES)
+        self._seen: bytes | None = None
         self.now = Observation(self._began, 0.0, 0.0, zero, bench.actuator.uncertainty, context.limits.travel)
 
     def run(self, script: Iterator[Action]) -> None:
@@ -197,7 +199,7 @@ class Loop:
         self._confirmed(lambda: self._monitor.check_fresh(self._clock.now()), self._force)
         self._monitor.check_position(self._record_position(), self._clock.now())
         if self._bench.camera is not None:
-            self._confirmed(lambda: self._monitor.check_camera(self._record_frames(), self._clock.now()), lambda: None)
+            self._confirmed(self._camera, lambda: None)
         self.now.time = self._clock.now()
         self._show()
 
@@ -242,15 +244,22 @@ class Loop:
             self._recorder.position(time, self.now.position, actuator.counts, self._target)
         return self.now.position
 
-    def _record_frames(self) -> int:
+    def _camera(self) -> None:
+        frames, repeated = self._record_frames()
+        self._monitor.check_camera(frames, self._clock.now(), repeated)
+
+    def _record_frames(self) -> tuple[int, int]:
+        """Record the pictures that have come: how many, and how many of them are the one before to the byte."""
         if self._bench.camera is None:
-            return 0
+            return 0, 0
         with self._blaming("camera_lost"):
             frames = self._bench.camera.read()
         if self._recorder is not None:
             self._recorder.frames(frames)
         self._pictures.extend(frame.time for frame in frames)
-        return len(frames)
+        seen = [self._seen, *(frame.data for frame in frames)]
+        self._seen = seen[-1]
+        return len(frames), sum(one == other for one, other in pairwise(seen))
 
     def _obey(self, script: Iterator[Action]) -> bool:
         """Do what the script says until it waits; False at its end."""

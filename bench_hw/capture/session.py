@@ -215,6 +215,8 @@ def _loop_context(
         bench.travel,
         tuple(bench.force.ranges.tolist()),
         rig.force_frozen,
+        rig.camera_silent,
+        rig.camera_frozen,
     )
     return LoopContext(clock, limits, stop, progress, _SIMULATED_TURN if order.fast else _TURN)
 

@@ -163,7 +163,7 @@ def _(device: rig_file.WebcamConfig, context: Opening) -> protocols.CameraDriver
 def _(device: rig_file.HttpCameraConfig, context: Opening) -> protocols.CameraDriver:
     from bench_hw.devices.http_camera import HttpCamera
 
-    return HttpCamera(device.url, rate=device.rate, clock=context.clock)
+    return HttpCamera(device.url, rate=device.rate, clock=context.clock, size=device.size)
 
 
 @open_camera.register

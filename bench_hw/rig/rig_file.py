@@ -22,7 +22,7 @@ from bench_hw.configuration import (
     shipped_files,
     validated,
 )
-from bench_hw.safety import FROZEN
+from bench_hw.safety import CAMERA_SILENT, FROZEN, MISSED
 
 Axis = Literal["+x", "-x", "+y", "-y", "+z", "-z"]
 Port = Annotated[int, Field(ge=1, le=65_535, strict=True)]
@@ -241,6 +241,19 @@ class Rig(StrictModel):
         """Longest time in which the force may stay the same, s; infinite of a sensor that has no noise of its own."""
         without = self.force.kind == "replay" or (self.force.kind == "simulated" and self.force.noise == 0.0)
         return math.inf if without else self.safety.force_frozen
+
+    @property
+    def camera_silent(self) -> float:
+        """Longest time without a picture, s: a second, or three periods of a slow camera."""
+        return CAMERA_SILENT if self.camera is None else max(CAMERA_SILENT, MISSED / self.camera.rate)
+
+    @property
+    def camera_frozen(self) -> float:
+        """Longest time with none but repeated pictures, s; infinite of a camera that has no noise of its own."""
+        camera = self.camera
+        live = isinstance(camera, WebcamConfig | HttpCameraConfig)
+        live |= isinstance(camera, SimulatedCameraConfig) and camera.noise > 0.0
+        return self.camera_silent if live else math.inf
 
     @property
     def simulated(self) -> bool:

@@ -126,6 +126,21 @@ def test_a_frozen_camera_is_counted_and_no_fault(record, session):
     assert log["trials"][0]["camera"]["frozen"] >= 8
 
 
+def test_a_camera_that_stays_frozen_is_a_fault(record, session):
+    outcome = record(rig=timed("camera_freeze", "0.8 s"), camera=True)
+    assert_safe(outcome, session, "camera_frozen")
+    assert "the one before to the byte for 1.0 s" in outcome.fault.message
+
+
+def test_a_simulated_camera_without_noise_may_repeat_its_picture(record):
+    assert record(rig={"camera": {"noise": 0.0}} | timed("camera_freeze", "0.8 s"), camera=True).fault is None
+
+
+def test_a_slow_camera_is_not_lost_between_two_pictures(record, session):
+    assert record(rig={"camera": {"rate": "0.6 Hz"}}, camera=True).fault is None
+    assert inspect_trial(session / "trial_001.mcap").to_dict()["channels"]["camera"]["rows"] >= 1
+
+
 def test_ctrl_c(record, session, watcher):
     def press_ctrl_c(snapshot):
         if snapshot.depth > 1.5e-3 and not pressed:
