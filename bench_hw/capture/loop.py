@@ -199,7 +199,7 @@ class Loop:
         self._confirmed(lambda: self._monitor.check_fresh(self._clock.now()), self._force)
         self._monitor.check_position(self._record_position(), self._clock.now())
         if self._bench.camera is not None:
-            self._confirmed(self._camera, lambda: None)
+            self._camera()
         self.now.time = self._clock.now()
         self._show()
 
@@ -245,8 +245,12 @@ class Loop:
         return self.now.position
 
     def _camera(self) -> None:
-        frames, repeated = self._record_frames()
-        self._monitor.check_camera(frames, self._clock.now(), repeated)
+        """Record pictures and check that they come; a fault of the camera itself is none of what may come late."""
+        found = [self._record_frames()]
+        self._confirmed(
+            lambda: self._monitor.check_camera(found[-1][0], self._clock.now(), found[-1][1]),
+            lambda: found.append(self._record_frames()),
+        )
 
     def _record_frames(self) -> tuple[int, int]:
         """Record the pictures that have come: how many, and how many of them are the one before to the byte."""

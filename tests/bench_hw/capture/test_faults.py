@@ -10,6 +10,7 @@ import pytest
 from bench_hw.capture import trial as trial_module
 from bench_hw.capture.progress import stop_on_signals
 from bench_hw.capture.session_folder import SessionFolder
+from bench_hw.devices.http_camera import HttpCamera
 from bench_hw.devices.lac import LacActuator
 from bench_hw.errors import DeviceError, TrialFileError
 from bench_hw.simulated.netft_box import NetFTBox
@@ -124,6 +125,21 @@ def test_a_frozen_camera_is_counted_and_no_fault(record, session):
     assert outcome.fault is None
     log = json.loads((session / "capture.json").read_text())
     assert log["trials"][0]["camera"]["frozen"] >= 8
+
+
+def test_what_a_camera_complains_of_once_is_no_delay(record, session, monkeypatch):
+    read, turns = HttpCamera.read, []
+
+    def complain_once(self):
+        turns.append(1)
+        if len(turns) == 500:
+            raise DeviceError("gives 320 x 240 pixels")
+        return read(self)
+
+    monkeypatch.setattr(HttpCamera, "read", complain_once)
+    outcome = record(camera=True)
+    assert_safe(outcome, session, "camera_lost")
+    assert "gives 320 x 240 pixels" in outcome.fault.message
 
 
 def test_a_camera_that_stays_frozen_is_a_fault(record, session):
