@@ -7,7 +7,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,10 +15,17 @@ from typing import TYPE_CHECKING
 from bench_hw.capture.loop import LoopContext
 from bench_hw.capture.order import CaptureOrder, check_order, check_replay
 from bench_hw.capture.progress import CaptureState, ProgressDisplay, stop_on_signals
-from bench_hw.capture.session_folder import CAMERA_FILE, SessionFolder, camera_place, camera_text
+from bench_hw.capture.session_folder import (
+    CAMERA_FILE,
+    LOG_FILE,
+    SESSION_FILE,
+    SessionFolder,
+    camera_place,
+    camera_text,
+)
 from bench_hw.capture.trial import Fault, TrialOutcome, find_zero, go_home, record_trial
 from bench_hw.clock import Clock, MonotonicClock, SimulatedClock, wait_until
-from bench_hw.errors import DeviceError, InputError
+from bench_hw.errors import DeviceError, InputError, system_words
 from bench_hw.motion.plan import plan
 from bench_hw.rig.bench import Bench
 from bench_hw.rig.opening import open_bench
@@ -134,7 +141,14 @@ class _Session:
         self._bench.begin_trial(header.clock_epoch)
         snapshot = CaptureState(number, self._order.trials, planned=plan(protocol).duration)
         outcome = record_trial(self._bench, protocol, writer, zero, self._context, snapshot)
-        self._note(outcome, header)
+        try:
+            self._note(outcome, header)
+        except OSError as error:
+            if outcome.fault is None:
+                error.add_note(f"{outcome.path} is whole; what stands beside it ({SESSION_FILE}, {LOG_FILE}) is behind")
+                raise
+            words = f"{outcome.fault.message}; {LOG_FILE} cannot be written either ({system_words(error)})"
+            return replace(outcome, fault=replace(outcome.fault, message=words))
         return outcome
 
     def _note(self, outcome: TrialOutcome, header: TrialHeader) -> None:

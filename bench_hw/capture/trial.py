@@ -75,12 +75,21 @@ def record_trial(
     try:
         loop.run(carry_out(protocol, loop.now))
     except BaseException as error:
-        fault = end_safely(loop, error, recorder, context)
+        fault = _ended(loop, error, recorder, context, writer)
         if not isinstance(error, BenchError | OSError):
             _close(writer)
             raise
     path, problem = _close(writer)
     return TrialOutcome(path, fault or problem)
+
+
+def _ended(loop: Loop, error: BaseException, recorder: Recorder, context: LoopContext, writer: TrialWriter) -> Fault:
+    """End a trial safely; a second Ctrl-C meanwhile closes its file at once, so that nothing has to be recovered."""
+    try:
+        return end_safely(loop, error, recorder, context)
+    except KeyboardInterrupt:
+        _close(writer)
+        raise
 
 
 def end_safely(loop: Loop, error: BaseException, recorder: Recorder | None, context: LoopContext) -> Fault:

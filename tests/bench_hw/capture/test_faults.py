@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from bench_hw.capture import trial as trial_module
+from bench_hw.capture.loop import Loop
 from bench_hw.capture.progress import stop_on_signals
 from bench_hw.capture.session_folder import SessionFolder
 from bench_hw.devices.http_camera import HttpCamera
@@ -199,10 +200,50 @@ def test_a_session_file_that_cannot_be_written_leaves_the_trial_and_no_tool_in_t
     retract = LacActuator.retract
     monkeypatch.setattr(LacActuator, "retract", lambda self: (sent.append("back"), retract(self)))
     monkeypatch.setattr("bench_hw.capture.session_folder.write_text", refuse_session_file)
-    with pytest.raises(OSError, match="No space left"):
+    with pytest.raises(OSError, match="No space left") as caught:
         record(trials=2)
+    assert caught.value.__notes__ == [
+        f"{session / 'trial_001.mcap'} is whole; what stands beside it (session.toml, capture.json) is behind"
+    ]
     assert sent
     assert inspect_trial(session / "trial_001.mcap").to_dict()["complete"]
+
+
+def test_a_full_disk_is_told_with_the_trial_it_ended(record, session, monkeypatch):
+    """Neither the trial nor the log finds room: the fault is the answer, not the log."""
+
+    def refuse(self, record):
+        raise TrialFileError(session / "trial_001.mcap.part", "the disk is full")
+
+    def full(path, text, check=None):
+        raise OSError(28, "No space left on device")
+
+    from bench_hw.trial_file.writer import McapTrialWriter
+
+    monkeypatch.setattr(McapTrialWriter, "write_depth", refuse)
+    monkeypatch.setattr("bench_hw.capture.session_folder.write_text", full)
+    fault = record().fault
+    assert (fault.kind, fault.retracted) == ("disk", True)
+    assert "trial_001.mcap.part: the disk is full" in fault.message
+    assert "capture.json cannot be written either (No space left on device)" in fault.message
+
+
+def test_a_second_ctrl_c_closes_the_file_with_its_fault(record, session, watcher):
+    def press_ctrl_c_twice(snapshot):
+        if snapshot.depth > 1.5e-3:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    def interrupt(self, duration):
+        raise KeyboardInterrupt
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Loop, "coast", interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            record(progress=watcher(press_ctrl_c_twice))
+    assert not list(session.glob("*.part"))
+    inspection = inspect_trial(session / "trial_001.mcap")
+    assert inspection.complete
+    assert "interrupted" in inspection.faults[0]
 
 
 def refuse_session_file(path, text, check=None):
