@@ -152,6 +152,9 @@ class _Session:
         return outcome
 
     def _note(self, outcome: TrialOutcome, header: TrialHeader) -> None:
+        health = self._health()
+        for said in _missing(health):
+            self._context.progress.say(f"{header.name}: {said}")
         if outcome.path is not None and outcome.fault is None:
             self._done.append(outcome.path)
             self._folder.add_trial(outcome.path, self._condition)
@@ -159,7 +162,7 @@ class _Session:
             "file": outcome.path.name if outcome.path else f"{header.name}.mcap.part",
             "condition": self._condition,
             "started": header.started,
-            **self._health(),
+            **health,
             "fault": None if outcome.fault is None else asdict(outcome.fault),
         }
         self._folder.write_log(self._order, self._bench.infos(), entry)
@@ -212,6 +215,17 @@ class _Session:
     def _rest(self) -> bool:
         """Wait between two trials; False if that was interrupted."""
         return not wait_until(self._context.clock, self._context.stop.is_set, self._order.pause, interval=0.05)
+
+
+def _missing(health: dict[str, dict[str, int]]) -> Iterator[str]:
+    """Say what of a trial's samples and pictures did not come, or came for nothing."""
+    force, camera = health["force"], health.get("camera", {})
+    if lost := force["lost"]:
+        yield f"{lost} of {force['received'] + lost} force records are lost"
+    if dropped := camera.get("dropped", 0):
+        yield f"{dropped} of {camera['received'] + dropped} pictures are lost"
+    if frozen := camera.get("frozen", 0):
+        yield f"{frozen} of {camera['received']} pictures are the one before to the byte"
 
 
 def _loop_context(

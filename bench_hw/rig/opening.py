@@ -239,7 +239,10 @@ def sheet_of(loaded: LoadedRig) -> TabulatedSpecimen | None:
     name = loaded.rig.simulation.specimen
     if name is None or _is_file(loaded, name):
         return None
-    return TabulatedSpecimen(read_sheet(name), scatter=Scatter())
+    try:
+        return TabulatedSpecimen(read_sheet(name), scatter=Scatter())
+    except InputError as error:
+        raise InputError(f"{loaded.path}: key simulation.specimen: {error}") from None
 
 
 def specimen_of(loaded: LoadedRig) -> VirtualSpecimen | None:

@@ -231,6 +231,18 @@ def test_an_existing_session_is_not_touched(record, session):
     assert {path.name: path.read_bytes() for path in session.iterdir()} == before
 
 
+def test_what_is_lost_is_said_after_each_trial(record, watcher):
+    seen = watcher()
+    faults = [{"kind": "camera_freeze", "at": "1 s", "duration": "0.3 s"}]
+    rig = {"force": {"loss": 0.2}, "camera": {"loss": 0.2}, "simulation": {"faults": faults}}
+    record(progress=seen, rig=rig, camera=True, trials=2)
+    said = [each for each in seen.said if each.startswith("trial_00")]
+    words = ("force records are lost", "pictures are lost", "pictures are the one before to the byte")
+    assert [sum(word in each for each in said) for word in words] == [2, 2, 1]
+    lost, whole = map(int, said[0].removeprefix("trial_001: ").split(" force")[0].split(" of "))
+    assert lost / whole == pytest.approx(0.2, abs=0.03)
+
+
 def test_pictures_of_a_camera_calibrated_otherwise_are_not_appended(record, session):
     record(camera=True)
     before = sorted(path.name for path in session.iterdir())
