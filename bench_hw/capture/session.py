@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 
 _TURN, _SIMULATED_TURN = 1e-3, 2e-3
 _LARGEST_LATENCY = 0.5
+_SAME_RATE, _LEAST_TIME = 0.1, 0.5
+"""Relative difference of two rates of the force that are one, and the time (s) from which it is told."""
 _SWITCH_INTERVAL = 5e-4
 """How often threads take turns while trials are recorded, s: the loop must not wait for a drawing."""
 
@@ -135,6 +137,7 @@ class _Session:
         if self._bench.twins is not None:
             self._bench.twins.lay_anew()
         self._bench.zero_force()
+        self._count_from_here()
         name = self._folder.next_trial()
         header = self._header(name, zero)
         writer = open_trial(self._folder.path / f"{name}.mcap", header, background=not self._order.fast)
@@ -153,8 +156,7 @@ class _Session:
 
     def _note(self, outcome: TrialOutcome, header: TrialHeader) -> None:
         health = self._health()
-        for said in _missing(health):
-            self._context.progress.say(f"{header.name}: {said}")
+        self._tell(header, health)
         if outcome.path is not None and outcome.fault is None:
             self._done.append(outcome.path)
             self._folder.add_trial(outcome.path, self._condition)
@@ -166,6 +168,22 @@ class _Session:
             "fault": None if outcome.fault is None else asdict(outcome.fault),
         }
         self._folder.write_log(self._order, self._bench.infos(), entry)
+
+    def _tell(self, header: TrialHeader, health: dict[str, dict[str, int]]) -> None:
+        """Say what a trial lacks; of a replayed one it was said when it was recorded."""
+        if self._bench.replay is not None:
+            return
+        elapsed = self._context.clock.now() - header.clock_epoch
+        for said in (*_missing(health), *_other_rate(health["force"], elapsed, self._bench.force.rate)):
+            self._context.progress.say(f"{header.name}: {said}")
+
+    def _count_from_here(self) -> None:
+        """Take what waits since the trial before: what was lost of it, where nobody read, is none of this trial's."""
+        for device in (self._bench.force, self._bench.camera):
+            with suppress(DeviceError):  # the trial will meet it
+                if device is not None:
+                    device.read()
+        self._health()
 
     def _health(self) -> dict[str, dict[str, int]]:
         """Counts of each stream since the last time this was asked."""
@@ -226,6 +244,16 @@ def _missing(health: dict[str, dict[str, int]]) -> Iterator[str]:
         yield f"{dropped} of {camera['received'] + dropped} pictures are lost"
     if frozen := camera.get("frozen", 0):
         yield f"{frozen} of {camera['received']} pictures are the one before to the byte"
+
+
+def _other_rate(force: dict[str, int], elapsed: float, rate: float) -> Iterator[str]:
+    """Say where the sensor's samples came at another rate (Hz) than it tells; `elapsed` in s."""
+    came = (force["received"] + force["lost"]) / elapsed if elapsed > _LEAST_TIME else rate
+    if abs(came - rate) > _SAME_RATE * rate:
+        yield (
+            f"force came at {came:.4g} Hz, and the sensor tells of {rate:g} Hz; samples have their time of arrival, "
+            "those of one datagram are spaced by what it tells"
+        )
 
 
 def _loop_context(

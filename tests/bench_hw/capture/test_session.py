@@ -10,6 +10,8 @@ import pytest
 
 from bench_hw.capture.order import check_order
 from bench_hw.capture.session import capture
+from bench_hw.devices.netft import NetFTSensor
+from bench_hw.devices.netft_network import RdtSocket
 from bench_hw.errors import DeviceError, InputError
 from bench_hw.motion.protocol_file import load_protocol
 from bench_hw.rig.rig_file import load_rig
@@ -241,6 +243,32 @@ def test_what_is_lost_is_said_after_each_trial(record, watcher):
     assert [sum(word in each for each in said) for word in words] == [2, 2, 1]
     lost, whole = map(int, said[0].removeprefix("trial_001: ").split(" force")[0].split(" of "))
     assert lost / whole == pytest.approx(0.2, abs=0.03)
+
+
+def test_what_is_lost_while_nobody_reads_is_none_of_the_next_trial(record, session, watcher, monkeypatch):
+    """A pause is longer than the socket's buffer holds: here, of a hundred datagrams at a time ten are kept."""
+    receive = RdtSocket.receive
+
+    def overflow(self):
+        datagrams = receive(self)
+        return datagrams[:5] + datagrams[-5:] if len(datagrams) > 100 else datagrams
+
+    monkeypatch.setattr(RdtSocket, "receive", overflow)
+    seen = watcher()
+    record(progress=seen, trials=2, pause=5.0)
+    log = json.loads((session / "capture.json").read_text())["trials"]
+    assert [trial["force"]["lost"] for trial in log] == [0, 0]
+    rows = channels(session / "trial_002.mcap")["force"]["rows"]
+    assert log[1]["force"]["received"] == pytest.approx(rows, abs=5)
+    assert not [each for each in seen.said if "trial_002" in each]
+
+
+def test_another_rate_than_the_sensor_tells_is_said(record, watcher, monkeypatch):
+    monkeypatch.setattr(NetFTSensor, "rate", 500.0)
+    seen = watcher()
+    record(progress=seen)
+    (said,) = (each for each in seen.said if each.startswith("trial_001"))
+    assert said.startswith("trial_001: force came at 1000 Hz, and the sensor tells of 500 Hz")
 
 
 def test_pictures_of_a_camera_calibrated_otherwise_are_not_appended(record, session):
