@@ -44,6 +44,7 @@ class Recorder:
 
     def __init__(self, writer: TrialWriter, zero: float) -> None:
         self._writer, self._zero = writer, zero
+        self.positions = 0
 
     def force(self, block: ForceBlock) -> None:
         """Write each sample of a block."""
@@ -72,6 +73,7 @@ class Recorder:
 
     def position(self, time: float, position: float, counts: int | None, target: float | None) -> None:
         """Write one position of the actuator (m) and where it was sent."""
+        self.positions += 1
         depth_of_target = None if target is None else target - self._zero
         self._writer.write_depth(DepthRecord(time, position - self._zero, counts, depth_of_target))
 

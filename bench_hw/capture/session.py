@@ -41,6 +41,8 @@ _TURN, _SIMULATED_TURN = 1e-3, 2e-3
 _LARGEST_LATENCY = 0.5
 _SAME_RATE, _LEAST_TIME = 0.1, 0.5
 """Relative difference of two rates of the force that are one, and the time (s) from which it is told."""
+_LATE = 0.5
+"""Share of the readings of position that a rig asks for, below which it is told."""
 _SWITCH_INTERVAL = 5e-4
 """How often threads take turns while trials are recorded, s: the loop must not wait for a drawing."""
 
@@ -156,7 +158,7 @@ class _Session:
 
     def _note(self, outcome: TrialOutcome, header: TrialHeader) -> None:
         health = self._health()
-        self._tell(header, health)
+        self._tell(header, health, outcome.positions)
         if outcome.path is not None and outcome.fault is None:
             self._done.append(outcome.path)
             self._folder.add_trial(outcome.path, self._condition)
@@ -169,13 +171,20 @@ class _Session:
         }
         self._folder.write_log(self._order, self._bench.infos(), entry)
 
-    def _tell(self, header: TrialHeader, health: dict[str, dict[str, int]]) -> None:
+    def _tell(self, header: TrialHeader, health: dict[str, dict[str, int]], positions: int) -> None:
         """Say what a trial lacks; of a replayed one it was said when it was recorded."""
         if self._bench.replay is not None:
             return
         elapsed = self._context.clock.now() - header.clock_epoch
-        for said in (*_missing(health), *_other_rate(health["force"], elapsed, self._bench.force.rate)):
-            self._context.progress.say(f"{header.name}: {said}")
+        rates = self._bench.force.rate, self._bench.rig.actuator.rate
+        said = [*_missing(health), *_other_rate(health["force"], elapsed, rates[0])]
+        if elapsed > _LEAST_TIME and positions < _LATE * rates[1] * elapsed:
+            said.append(
+                f"depth came at {positions / elapsed:.3g} Hz, and the rig asks for {rates[1]:g} Hz (actuator.rate): "
+                "the board answers late"
+            )
+        for each in said:
+            self._context.progress.say(f"{header.name}: {each}")
 
     def _count_from_here(self) -> None:
         """Take what waits since the trial before: what was lost of it, where nobody read, is none of this trial's."""

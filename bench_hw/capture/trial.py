@@ -38,10 +38,11 @@ class Fault:
 
 @dataclass(frozen=True, slots=True)
 class TrialOutcome:
-    """How a trial ended: its file (None if that could not be finished) and its fault, if any."""
+    """How a trial ended: its file (None if that could not be finished), its fault, if any, and readings of position."""
 
     path: Path | None
     fault: Fault | None = None
+    positions: int = 0
 
 
 def record_trial(
@@ -80,7 +81,7 @@ def record_trial(
             _close(writer)
             raise
     path, problem = _close(writer)
-    return TrialOutcome(path, fault or problem)
+    return TrialOutcome(path, fault or problem, recorder.positions)
 
 
 def _ended(loop: Loop, error: BaseException, recorder: Recorder, context: LoopContext, writer: TrialWriter) -> Fault:

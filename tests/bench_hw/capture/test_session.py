@@ -1,6 +1,7 @@
 """Whole sessions with simulated devices, in simulated time."""
 
 import json
+import re
 import tomllib
 from dataclasses import replace
 from typing import ClassVar
@@ -10,6 +11,8 @@ import pytest
 
 from bench_hw.capture.order import check_order
 from bench_hw.capture.session import capture
+from bench_hw.clock import SimulatedClock
+from bench_hw.devices.lac import LacActuator
 from bench_hw.devices.netft import NetFTSensor
 from bench_hw.devices.netft_network import RdtSocket
 from bench_hw.errors import DeviceError, InputError
@@ -269,6 +272,29 @@ def test_another_rate_than_the_sensor_tells_is_said(record, watcher, monkeypatch
     record(progress=seen)
     (said,) = (each for each in seen.said if each.startswith("trial_001"))
     assert said.startswith("trial_001: force came at 1000 Hz, and the sensor tells of 500 Hz")
+
+
+def test_a_board_that_answers_late_is_said(record, watcher, monkeypatch):
+    """On a clock that passes while the board is asked."""
+    position = LacActuator.position
+
+    def late(self):
+        clock.sleep(0.04)
+        return position(self)
+
+    class Noted(SimulatedClock):
+        def __init__(self, **options):
+            nonlocal clock
+            super().__init__(**options)
+            clock = self
+
+    clock = SimulatedClock()
+    monkeypatch.setattr("bench_hw.capture.session.SimulatedClock", Noted)
+    monkeypatch.setattr(LacActuator, "position", late)
+    seen = watcher()
+    record(progress=seen)
+    (said,) = (each for each in seen.said if each.startswith("trial_001"))
+    assert re.match(r"trial_001: depth came at 2\d(\.\d)? Hz, and the rig asks for 100 Hz \(actuator\.rate\)", said)
 
 
 def test_pictures_of_a_camera_calibrated_otherwise_are_not_appended(record, session):
