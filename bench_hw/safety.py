@@ -70,7 +70,7 @@ class SafetyLimits:
     force_stale: float = 0.050
     travel: tuple[float, float] = (0.0, 0.050)
     ranges: tuple[float, ...] = (np.nan,) * 6
-    force_frozen: float = FROZEN
+    force_frozen: float = np.inf
     camera_silent: float = CAMERA_SILENT
     camera_frozen: float = np.inf
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench_hw.devices.protocols import ForceBlock
-from bench_hw.safety import SafetyError, SafetyLimits, SafetyMonitor
+from bench_hw.safety import FROZEN, SafetyError, SafetyLimits, SafetyMonitor
 
 
 def block(force, time=0.001, sample=7, status=0):
@@ -19,7 +19,7 @@ def block(force, time=0.001, sample=7, status=0):
 
 @pytest.fixture
 def monitor():
-    limits = SafetyLimits(6.0, 0.05, (0.0, 0.02), (25.0, 25.0, 35.0, 0.25, 0.25, 0.25))
+    limits = SafetyLimits(6.0, 0.05, (0.0, 0.02), (25.0, 25.0, 35.0, 0.25, 0.25, 0.25), FROZEN)
     return SafetyMonitor(limits, started=0.0, tolerance=1e-4)
 
 
