@@ -12,6 +12,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import pairwise
 
 from bench_hw.capture.progress import CaptureState, ProgressDisplay
 from bench_hw.clock import Clock
@@ -43,6 +44,7 @@ class Recorder:
 
     def __init__(self, writer: TrialWriter, zero: float) -> None:
         self._writer, self._zero = writer, zero
+        self.positions = 0
 
     def force(self, block: ForceBlock) -> None:
         """Write each sample of a block."""
@@ -71,6 +73,7 @@ class Recorder:
 
     def position(self, time: float, position: float, counts: int | None, target: float | None) -> None:
         """Write one position of the actuator (m) and where it was sent."""
+        self.positions += 1
         depth_of_target = None if target is None else target - self._zero
         self._writer.write_depth(DepthRecord(time, position - self._zero, counts, depth_of_target))
 
@@ -135,6 +138,7 @@ class Loop:
         self._target: float | None = None
         self._monitor = SafetyMonitor(context.limits, self._began, bench.actuator.uncertainty)
         self._pictures: deque[float] = deque(maxlen=_PICTURES)
+        self._seen: bytes | None = None
         self.now = Observation(self._began, 0.0, 0.0, zero, bench.actuator.uncertainty, context.limits.travel)
 
     def run(self, script: Iterator[Action]) -> None:
@@ -197,7 +201,7 @@ class Loop:
         self._confirmed(lambda: self._monitor.check_fresh(self._clock.now()), self._force)
         self._monitor.check_position(self._record_position(), self._clock.now())
         if self._bench.camera is not None:
-            self._confirmed(lambda: self._monitor.check_camera(self._record_frames(), self._clock.now()), lambda: None)
+            self._camera()
         self.now.time = self._clock.now()
         self._show()
 
@@ -242,15 +246,26 @@ class Loop:
             self._recorder.position(time, self.now.position, actuator.counts, self._target)
         return self.now.position
 
-    def _record_frames(self) -> int:
+    def _camera(self) -> None:
+        """Record pictures and check that they come; a fault of the camera itself is none of what may come late."""
+        found = [self._record_frames()]
+        self._confirmed(
+            lambda: self._monitor.check_camera(found[-1][0], self._clock.now(), found[-1][1]),
+            lambda: found.append(self._record_frames()),
+        )
+
+    def _record_frames(self) -> tuple[int, int]:
+        """Record the pictures that have come: how many, and how many of them are the one before to the byte."""
         if self._bench.camera is None:
-            return 0
+            return 0, 0
         with self._blaming("camera_lost"):
             frames = self._bench.camera.read()
         if self._recorder is not None:
             self._recorder.frames(frames)
         self._pictures.extend(frame.time for frame in frames)
-        return len(frames)
+        seen = [self._seen, *(frame.data for frame in frames)]
+        self._seen = seen[-1]
+        return len(frames), sum(one == other for one, other in pairwise(seen))
 
     def _obey(self, script: Iterator[Action]) -> bool:
         """Do what the script says until it waits; False at its end."""

@@ -7,7 +7,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,10 +15,17 @@ from typing import TYPE_CHECKING
 from bench_hw.capture.loop import LoopContext
 from bench_hw.capture.order import CaptureOrder, check_order, check_replay
 from bench_hw.capture.progress import CaptureState, ProgressDisplay, stop_on_signals
-from bench_hw.capture.session_folder import CAMERA_FILE, SessionFolder, camera_place, camera_text
+from bench_hw.capture.session_folder import (
+    CAMERA_FILE,
+    LOG_FILE,
+    SESSION_FILE,
+    SessionFolder,
+    camera_place,
+    camera_text,
+)
 from bench_hw.capture.trial import Fault, TrialOutcome, find_zero, go_home, record_trial
 from bench_hw.clock import Clock, MonotonicClock, SimulatedClock, wait_until
-from bench_hw.errors import DeviceError, InputError
+from bench_hw.errors import DeviceError, InputError, system_words
 from bench_hw.motion.plan import plan
 from bench_hw.rig.bench import Bench
 from bench_hw.rig.opening import open_bench
@@ -32,6 +39,10 @@ if TYPE_CHECKING:
 
 _TURN, _SIMULATED_TURN = 1e-3, 2e-3
 _LARGEST_LATENCY = 0.5
+_SAME_RATE, _LEAST_TIME = 0.1, 0.5
+"""Relative difference of two rates of the force that are one, and the time (s) from which it is told."""
+_LATE = 0.5
+"""Share of the readings of position that a rig asks for, below which it is told."""
 _SWITCH_INTERVAL = 5e-4
 """How often threads take turns while trials are recorded, s: the loop must not wait for a drawing."""
 
@@ -128,16 +139,26 @@ class _Session:
         if self._bench.twins is not None:
             self._bench.twins.lay_anew()
         self._bench.zero_force()
+        self._count_from_here()
         name = self._folder.next_trial()
         header = self._header(name, zero)
         writer = open_trial(self._folder.path / f"{name}.mcap", header, background=not self._order.fast)
         self._bench.begin_trial(header.clock_epoch)
         snapshot = CaptureState(number, self._order.trials, planned=plan(protocol).duration)
         outcome = record_trial(self._bench, protocol, writer, zero, self._context, snapshot)
-        self._note(outcome, header)
+        try:
+            self._note(outcome, header)
+        except OSError as error:
+            if outcome.fault is None:
+                error.add_note(f"{outcome.path} is whole; what stands beside it ({SESSION_FILE}, {LOG_FILE}) is behind")
+                raise
+            words = f"{outcome.fault.message}; {LOG_FILE} cannot be written either ({system_words(error)})"
+            return replace(outcome, fault=replace(outcome.fault, message=words))
         return outcome
 
     def _note(self, outcome: TrialOutcome, header: TrialHeader) -> None:
+        health = self._health()
+        self._tell(header, health, outcome.positions)
         if outcome.path is not None and outcome.fault is None:
             self._done.append(outcome.path)
             self._folder.add_trial(outcome.path, self._condition)
@@ -145,10 +166,33 @@ class _Session:
             "file": outcome.path.name if outcome.path else f"{header.name}.mcap.part",
             "condition": self._condition,
             "started": header.started,
-            **self._health(),
+            **health,
             "fault": None if outcome.fault is None else asdict(outcome.fault),
         }
         self._folder.write_log(self._order, self._bench.infos(), entry)
+
+    def _tell(self, header: TrialHeader, health: dict[str, dict[str, int]], positions: int) -> None:
+        """Say what a trial lacks; of a replayed one it was said when it was recorded."""
+        if self._bench.replay is not None:
+            return
+        elapsed = self._context.clock.now() - header.clock_epoch
+        rates = self._bench.force.rate, self._bench.rig.actuator.rate
+        said = [*_missing(health), *_other_rate(health["force"], elapsed, rates[0])]
+        if elapsed > _LEAST_TIME and positions < _LATE * rates[1] * elapsed:
+            said.append(
+                f"depth came at {positions / elapsed:.3g} Hz, and the rig asks for {rates[1]:g} Hz (actuator.rate): "
+                "the board answers late"
+            )
+        for each in said:
+            self._context.progress.say(f"{header.name}: {each}")
+
+    def _count_from_here(self) -> None:
+        """Take what waits since the trial before: what was lost of it, where nobody read, is none of this trial's."""
+        for device in (self._bench.force, self._bench.camera):
+            with suppress(DeviceError):  # the trial will meet it
+                if device is not None:
+                    device.read()
+        self._health()
 
     def _health(self) -> dict[str, dict[str, int]]:
         """Counts of each stream since the last time this was asked."""
@@ -200,6 +244,27 @@ class _Session:
         return not wait_until(self._context.clock, self._context.stop.is_set, self._order.pause, interval=0.05)
 
 
+def _missing(health: dict[str, dict[str, int]]) -> Iterator[str]:
+    """Say what of a trial's samples and pictures did not come, or came for nothing."""
+    force, camera = health["force"], health.get("camera", {})
+    if lost := force["lost"]:
+        yield f"{lost} of {force['received'] + lost} force records are lost"
+    if dropped := camera.get("dropped", 0):
+        yield f"{dropped} of {camera['received'] + dropped} pictures are lost"
+    if frozen := camera.get("frozen", 0):
+        yield f"{frozen} of {camera['received']} pictures are the one before to the byte"
+
+
+def _other_rate(force: dict[str, int], elapsed: float, rate: float) -> Iterator[str]:
+    """Say where the sensor's samples came at another rate (Hz) than it tells; `elapsed` in s."""
+    came = (force["received"] + force["lost"]) / elapsed if elapsed > _LEAST_TIME else rate
+    if abs(came - rate) > _SAME_RATE * rate:
+        yield (
+            f"force came at {came:.4g} Hz, and the sensor tells of {rate:g} Hz; samples have their time of arrival, "
+            "those of one datagram are spaced by what it tells"
+        )
+
+
 def _loop_context(
     order: CaptureOrder, bench: Bench, clock: Clock, stop: threading.Event, progress: ProgressDisplay
 ) -> LoopContext:
@@ -210,7 +275,13 @@ def _loop_context(
             f"is {_LARGEST_LATENCY:g} of safety.force_stale ({rig.safety.force_stale * 1e3:g} ms): use realtime mode"
         )
     limits = SafetyLimits(
-        rig.safety.force_limit, rig.safety.force_stale, bench.travel, tuple(bench.force.ranges.tolist())
+        rig.safety.force_limit,
+        rig.safety.force_stale,
+        bench.travel,
+        tuple(bench.force.ranges.tolist()),
+        rig.force_frozen,
+        rig.camera_silent,
+        rig.camera_frozen,
     )
     return LoopContext(clock, limits, stop, progress, _SIMULATED_TURN if order.fast else _TURN)
 

@@ -53,6 +53,7 @@ class SessionFolder:
         check_session(_keys_of(order), "--set")
         if order.append:
             self._check_keys(order)
+            self._check_camera(order.rig)
         self._log: list[dict[str, Any]] = []
         if not order.append and self.path.exists():
             self._check_empty()
@@ -183,6 +184,19 @@ class SessionFolder:
                     "another --out"
                 )
 
+    def _check_camera(self, loaded: LoadedRig) -> None:
+        """Refuse pictures of a camera that is calibrated otherwise than the session's, by which all are read."""
+        told = self._session.get("camera")
+        path = self.path / (told.get("file", CAMERA_FILE) if isinstance(told, dict) else CAMERA_FILE)
+        text = None
+        with suppress(OSError):  # one that cannot be read is told of where the bench is opened
+            text = camera_text(loaded) if path.is_file() else None
+        if text is not None and _tables(text) != read_toml(path)[0]:
+            raise InputError(
+                f"--append: {path} is another calibration than that of the rig's camera ({loaded.path}, [camera]), and "
+                "the markers of all trials are read by it; give another --out, or the rig the session's calibration"
+            )
+
     def _check_empty(self) -> None:
         if not self.path.is_dir():
             raise InputError(f"{self.path}: is no folder; give another --out")
@@ -245,6 +259,14 @@ def _merge(into: dict[str, Any], more: dict[str, Any]) -> None:
             _merge(into[key], value)
         else:
             into[key] = value
+
+
+def _tables(text: str) -> dict[str, Any] | None:
+    """The tables of a TOML text; None where it is none."""
+    try:
+        return tomllib.loads(text)
+    except ValueError:
+        return None
 
 
 def camera_text(loaded: LoadedRig) -> str | None:

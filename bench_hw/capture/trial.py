@@ -38,10 +38,11 @@ class Fault:
 
 @dataclass(frozen=True, slots=True)
 class TrialOutcome:
-    """How a trial ended: its file (None if that could not be finished) and its fault, if any."""
+    """How a trial ended: its file (None if that could not be finished), its fault, if any, and readings of position."""
 
     path: Path | None
     fault: Fault | None = None
+    positions: int = 0
 
 
 def record_trial(
@@ -75,12 +76,21 @@ def record_trial(
     try:
         loop.run(carry_out(protocol, loop.now))
     except BaseException as error:
-        fault = end_safely(loop, error, recorder, context)
+        fault = _ended(loop, error, recorder, context, writer)
         if not isinstance(error, BenchError | OSError):
             _close(writer)
             raise
     path, problem = _close(writer)
-    return TrialOutcome(path, fault or problem)
+    return TrialOutcome(path, fault or problem, recorder.positions)
+
+
+def _ended(loop: Loop, error: BaseException, recorder: Recorder, context: LoopContext, writer: TrialWriter) -> Fault:
+    """End a trial safely; a second Ctrl-C meanwhile closes its file at once, so that nothing has to be recovered."""
+    try:
+        return end_safely(loop, error, recorder, context)
+    except KeyboardInterrupt:
+        _close(writer)
+        raise
 
 
 def end_safely(loop: Loop, error: BaseException, recorder: Recorder | None, context: LoopContext) -> Fault:

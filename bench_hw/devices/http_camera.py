@@ -2,8 +2,8 @@
 
 A frame is stamped when its last byte has been read or, where the stream runs on the bench's own clock, as its part says
 (`X-Timestamp`, s). Where the stream numbers its frames (`X-Frame` in a part's
-header), dropped frames are known for certain; see `grabbing` for the others. `MultipartParser` cuts the stream and
-knows no sockets.
+header), dropped frames are known for certain; see `grabbing` for the others. Where a size is asked for, what is no JPEG
+is no frame, and a frame of another size ends the stream. `MultipartParser` cuts the stream and knows no sockets.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from urllib.parse import SplitResult, urlsplit
 
-from bench_hw.clock import Clock, MonotonicClock
+from bench_hw.clock import Clock, MonotonicClock, wait_until
 from bench_hw.devices.grabbing import FrameCounter
 from bench_hw.devices.protocols import CameraFrame, CameraHealth, Connection, DeviceInfo
 from bench_hw.errors import DeviceError
@@ -100,6 +100,24 @@ class MultipartParser:
             raise StreamError(f"{problem} within {most} bytes")
 
 
+_SIZED = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
+_BARE = frozenset(range(0xD0, 0xD9)) | {0x01}
+
+
+def jpeg_size(data: bytes) -> tuple[int, int] | None:
+    """Width and height of a JPEG picture by its frame header (ITU-T T.81, annex B); None where it is none."""
+    at = 2
+    if data[:2] != b"\xff\xd8":
+        return None
+    while at + 4 <= len(data) and data[at] == 0xFF:
+        marker = data[at + 1]
+        if marker in _SIZED and at + 9 <= len(data):
+            return int.from_bytes(data[at + 7 : at + 9], "big"), int.from_bytes(data[at + 5 : at + 7], "big")
+        fill = marker == 0xFF
+        at += 1 if fill else 2 if marker in _BARE else 2 + int.from_bytes(data[at + 2 : at + 4], "big")
+    return None
+
+
 def _header(head: bytes) -> dict[str, str]:
     lines = head.decode("latin-1").split("\r\n")
     pairs = (line.partition(":") for line in lines if ":" in line)
@@ -121,6 +139,8 @@ class HttpCamera(Connection):
         Longest wait for the connection and its header, s.
     same_clock : bool
         Whether the stream's `X-Timestamp` is on this clock, as a simulated camera's is; another machine's is not.
+    size : tuple of 2 ints, optional
+        Width and height that its pictures must have, pixels; without it any will do.
     """
 
     def __init__(
@@ -131,7 +151,9 @@ class HttpCamera(Connection):
         clock: Clock | None = None,
         timeout: float = 2.0,
         same_clock: bool = False,
+        size: tuple[int, int] | None = None,
     ) -> None:
+        self._size = size
         self._url, self._rate, self._timeout, self._same_clock = url, rate, timeout, same_clock
         self._clock = clock or MonotonicClock()
         self._socket: socket.socket | None = None
@@ -178,15 +200,21 @@ class HttpCamera(Connection):
         self._socket = opened
 
     def start(self) -> None:
-        """Throw away what has come so far and number frames from 0.
+        """Throw away what has come so far and number frames from 0; wait for a picture where a size is asked for.
 
         Raises
         ------
         DeviceError
-            Not connected, or the stream ended.
+            Not connected, the stream ended, no picture in time, or one of another size.
         """
         self._streaming = True
-        self.read()
+        patience = self._timeout + 1.0 / self._rate
+        if (
+            not self.read()
+            and self._size is not None
+            and not wait_until(self._clock, lambda: bool(self.read()), patience)
+        ):
+            raise DeviceError(f"camera at {self._url}: no JPEG picture within {patience:g} s")
         self._counter = FrameCounter(1.0 / self._rate)
 
     def read(self) -> list[CameraFrame]:
@@ -273,7 +301,18 @@ class HttpCamera(Connection):
         return [
             self._counter.frame(self._taken(part, now), part.body, "jpeg", _sequence(part.header.get("x-frame")))
             for part in parts
+            if self._is_picture(part.body)
         ]
+
+    def _is_picture(self, body: bytes) -> bool:
+        """Whether a part is a JPEG picture; refuse one of another size. Where none is asked for, anything will do."""
+        if self._size is None:
+            return True
+        found = jpeg_size(body)
+        if found is not None and found != tuple(self._size):
+            wanted, shown = (f"{width} x {height}" for width, height in (self._size, found))
+            raise DeviceError(f"camera at {self._url}: gives {shown} pixels; the rig asks for {wanted} (camera.size)")
+        return found is not None
 
     def _taken(self, part: Part, now: float) -> float:
         """When a frame was taken, as far as can be told at `now`, s."""

@@ -116,7 +116,10 @@ def _(segment: Wait, now: Observation) -> Iterator[Action]:
 @_steps.register
 def _(segment: Approach, now: Observation) -> Iterator[Action]:
     target = min(now.zero + segment.max_depth, now.travel[1])
-    yield from _go(now, target, segment.speed, until=segment.touch_force)
+    _check_in_air(segment, now)
+    for action in _go(now, target, segment.speed, until=segment.touch_force):
+        yield action
+        _check_direction(segment, now)
     if now.press < segment.touch_force:
         raise MotionError(
             f"approach: no touch of {segment.touch_force:g} N down to {(target - now.zero) * 1e3:.2f} mm "
@@ -124,6 +127,25 @@ def _(segment: Approach, now: Observation) -> Iterator[Action]:
         )
     now.zero = now.position
     yield Note("touch", f"touched at position {now.position * 1e3:.3f} mm with {now.press:.4f} N")
+
+
+def _check_in_air(segment: Approach, now: Observation) -> None:
+    """Refuse a touch before the tool has moved: where it stands would be taken for the specimen's surface."""
+    if now.press >= segment.touch_force:
+        raise MotionError(
+            f"approach: the press force is {now.press:.3f} N before the tool moves, at position "
+            f"{now.position * 1e3:.2f} mm; allowed is less than touch_force ({segment.touch_force:g} N): zero the "
+            "sensor (force.bias = true in the rig file), or let the tool begin in air"
+        )
+
+
+def _check_direction(segment: Approach, now: Observation) -> None:
+    """End an approach that would press on and on: the force grows the wrong way."""
+    if now.press <= -segment.touch_force:
+        raise MotionError(
+            f"approach: the press force is {now.press:.3f} N at position {now.position * 1e3:.2f} mm, negative where "
+            "the tool presses: turn the sign of force.press_axis in the rig file, or zero the sensor (force.bias)"
+        )
 
 
 @_steps.register

@@ -163,7 +163,7 @@ def _(device: rig_file.WebcamConfig, context: Opening) -> protocols.CameraDriver
 def _(device: rig_file.HttpCameraConfig, context: Opening) -> protocols.CameraDriver:
     from bench_hw.devices.http_camera import HttpCamera
 
-    return HttpCamera(device.url, rate=device.rate, clock=context.clock)
+    return HttpCamera(device.url, rate=device.rate, clock=context.clock, size=device.size)
 
 
 @open_camera.register
@@ -239,7 +239,10 @@ def sheet_of(loaded: LoadedRig) -> TabulatedSpecimen | None:
     name = loaded.rig.simulation.specimen
     if name is None or _is_file(loaded, name):
         return None
-    return TabulatedSpecimen(read_sheet(name), scatter=Scatter())
+    try:
+        return TabulatedSpecimen(read_sheet(name), scatter=Scatter())
+    except InputError as error:
+        raise InputError(f"{loaded.path}: key simulation.specimen: {error}") from None
 
 
 def specimen_of(loaded: LoadedRig) -> VirtualSpecimen | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +22,7 @@ from bench_hw.configuration import (
     shipped_files,
     validated,
 )
+from bench_hw.safety import CAMERA_SILENT, FROZEN, MISSED
 
 Axis = Literal["+x", "-x", "+y", "-y", "+z", "-z"]
 Port = Annotated[int, Field(ge=1, le=65_535, strict=True)]
@@ -175,6 +177,7 @@ class Safety(StrictModel):
 
     force_limit: Annotated[Force, Field(gt=0.0, le=1000.0)] = 6.0
     force_stale: Annotated[Duration, Field(ge=0.005, le=5.0)] = 0.050
+    force_frozen: Annotated[Duration, Field(ge=0.02, le=3600.0)] = FROZEN
     travel: tuple[Length, Length] | None = None
 
 
@@ -184,6 +187,7 @@ class ScheduledFault(StrictModel):
     kind: Literal[
         "force_stall",
         "force_freeze",
+        "force_constant",
         "force_restart",
         "force_saturated",
         "usb_unplug",
@@ -231,6 +235,25 @@ class Rig(StrictModel):
     def travel(self) -> tuple[float, float]:
         """Lowest and highest position of the actuator allowed, m."""
         return self.safety.travel or (0.0, self.actuator.stroke)
+
+    @property
+    def force_frozen(self) -> float:
+        """Longest time in which the force may stay the same, s; infinite of a sensor that has no noise of its own."""
+        without = self.force.kind == "replay" or (self.force.kind == "simulated" and self.force.noise == 0.0)
+        return math.inf if without else self.safety.force_frozen
+
+    @property
+    def camera_silent(self) -> float:
+        """Longest time without a picture, s: a second, or three periods of a slow camera."""
+        return CAMERA_SILENT if self.camera is None else max(CAMERA_SILENT, MISSED / self.camera.rate)
+
+    @property
+    def camera_frozen(self) -> float:
+        """Longest time with none but repeated pictures, s; infinite of a camera that has no noise of its own."""
+        camera = self.camera
+        live = isinstance(camera, WebcamConfig | HttpCameraConfig)
+        live |= isinstance(camera, SimulatedCameraConfig) and camera.noise > 0.0
+        return self.camera_silent if live else math.inf
 
     @property
     def simulated(self) -> bool:

@@ -156,6 +156,8 @@ class NetFTBox:
         self._rate, self._buffer = settings.rate, settings.records_per_datagram
         self._bias = np.zeros(6)
         self._status = 0
+        self._last = np.zeros(6, np.int32)
+        self._held: NDArray[np.int32] | None = None
         self._stalled_until = -np.inf
         self._client: tuple[str, int] | None = None
         self._stream: RdtStream | None = None
@@ -209,6 +211,11 @@ class NetFTBox:
         with self._lock:
             if self._stream is not None:
                 self._stream.freeze(frozen)
+
+    def hold_reading(self, held: bool = True) -> None:
+        """Give the last reading again and again under new sample numbers, as a box whose analogue part hangs."""
+        with self._lock:
+            self._held = self._last if held else None
 
     def restart(self) -> None:
         """Restart the counters while the stream continues."""
@@ -273,6 +280,9 @@ class NetFTBox:
         scale = np.repeat([self._settings.counts_per_force, self._settings.counts_per_torque], 3)
         counts = np.clip(np.rint((wrench - self._bias) * scale), -_LARGEST_COUNT, _LARGEST_COUNT)
         flagged = np.where(saturated, Status.ERROR | Status.SATURATED, 0)
+        if self._held is not None:
+            counts = np.broadcast_to(self._held, counts.shape)
+        self._last = counts[-1].astype(np.int32)
         return counts.astype(np.int32), (flagged | self._status).astype(np.uint32)
 
     def _page(self, path: str, query: dict[str, str]) -> str | None:

@@ -135,6 +135,7 @@ class Twins:
             faults |= {
                 "force_stall": (lambda: box.stall(duration), nothing),
                 "force_freeze": (lambda: box.freeze(True), lambda: box.freeze(False)),
+                "force_constant": (lambda: box.hold_reading(True), lambda: box.hold_reading(False)),
                 "force_restart": (box.restart, nothing),
                 "force_saturated": (
                     lambda: box.set_status(Status.ERROR | Status.SATURATED),

@@ -1,6 +1,6 @@
 """Native trial files: one `.mcap` a trial, written to survive a kill, read without inventing anything."""
 
-from bench_hw.trial_file.reading import read_trial_mcap
+from bench_hw.trial_file.reading import Ending, ending_of_trial, read_trial_mcap
 from bench_hw.trial_file.records import (
     DepthRecord,
     EventRecord,
@@ -13,11 +13,13 @@ from bench_hw.trial_file.writer import open_trial
 
 __all__ = [
     "DepthRecord",
+    "Ending",
     "EventRecord",
     "ForceRecord",
     "FrameRecord",
     "TrialHeader",
     "TrialWriter",
+    "ending_of_trial",
     "open_trial",
     "read_trial_mcap",
 ]

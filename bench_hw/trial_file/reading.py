@@ -229,6 +229,37 @@ def read_trial_mcap(path: Path | str) -> TrialTable:
     return table
 
 
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How a recording ended.
+
+    Parameters
+    ----------
+    fault : str
+        What ended it before its protocol was over, with kind and time; empty where nothing did.
+    recovered : str
+        What the recording had lost that this file was recovered from; empty where it is the recording itself.
+    """
+
+    fault: str
+    recovered: str
+
+
+def ending_of_trial(path: Path) -> Ending:
+    """Say whether a native trial came to its end.
+
+    Raises
+    ------
+    TrialFileError
+        As `read_contents`.
+    """
+    contents = read_contents(path, (EVENTS.topic,))
+    faults = [
+        f"{event.kind} at {event.time:.3f} s: {event.message}" for event in contents.events if event.level == "fault"
+    ]
+    return Ending("; ".join(faults), (contents.scan.recovery or {}).get("reason", ""))
+
+
 def trial_rows(contents: TrialContents, press_axis: PressAxis | None = None) -> TrialTable:
     """Join force and depth of a trial; as `read_trial_mcap`, for any number of rows of any file.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -15,6 +16,9 @@ from benchmark.files.units import DIMENSIONS, Dimension, QuantityError, parse_qu
 SCALES = ("lin", "log")
 DIGITS = 10
 """Significant digits of values that are computed, so that the same command gives the same points everywhere."""
+
+SAME = 1e-12
+"""Relative difference of two numbers that are one value in different units."""
 
 Scale = Literal["lin", "log"]
 
@@ -114,7 +118,18 @@ def parse_parameter(text: str) -> Parameter:
         raise InputError(f"--vary {key}: {values!r} has an empty or a repeated value; allowed: different ones")
     unit = _common_unit(texts)
     numbers = None if unit is None else _numbers_of(key, texts, unit)
+    if numbers is not None and (twice := _one_twice(texts, numbers)):
+        raise InputError(f"--vary {key}: {twice} are one value; allowed: different ones")
     return Parameter(key, texts, numbers, unit or "")
+
+
+def _one_twice(texts: tuple[str, ...], numbers: tuple[float, ...]) -> str:
+    """Two texts that say the same number, as `4 mm and 0.004 m`; empty where there are none."""
+    order = sorted(range(len(numbers)), key=numbers.__getitem__)
+    same = next(
+        (pair for pair in pairwise(order) if math.isclose(numbers[pair[0]], numbers[pair[1]], rel_tol=SAME)), None
+    )
+    return "" if same is None else " and ".join(texts[at] for at in sorted(same))
 
 
 def _range(key: str, values: str) -> Parameter:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import metadata
+from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError
@@ -17,6 +18,8 @@ from benchmark.sweeps.parameter import Parameter
 
 SCHEMA = 1
 MOST_DIFFERENCES = 3
+READ = ("tissue", "load.file")
+"""Keys whose values name files."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,7 @@ class SweepPlan:
     def document(self) -> dict[str, Any]:
         """`sweep.json`: what tells one sweep from another."""
         drawn = json.dumps(self.points, ensure_ascii=False).encode()
+        files = self._files()
         return {
             "schema": SCHEMA,
             "program": metadata.version("tissuebench"),
@@ -55,7 +59,22 @@ class SweepPlan:
             "points": len(self.points),
             "seed": self.design.seed,
             "points_sha256": hashlib.sha256(drawn).hexdigest(),
+            **({"files": files} if files else {}),
         }
+
+    def _files(self) -> dict[str, str]:
+        """SHA-256 of what points read from files that no table above holds: varied tissues and loads, and surfaces."""
+        found: dict[str, str] = {}
+        for point, scenario in zip(self.points, self.scenarios, strict=True):
+            if isinstance(scenario, str):
+                continue
+            for parameter, text in zip(self.parameters, point, strict=True):
+                if parameter.key in READ and (name := f"{parameter.key} {text}") not in found:
+                    found[name] = hashlib.sha256(json.dumps(scenario.to_table()).encode()).hexdigest()
+            surface = scenario.fem.surface
+            if surface is not None and surface not in found:
+                found[surface] = _digest(Path(surface))
+        return found
 
 
 def make_plan(scenario: str, settings: Mapping[str, str], parameters: Sequence[Parameter], design: Design) -> SweepPlan:
@@ -88,6 +107,14 @@ def _scenario(name: str, settings: Mapping[str, str], keys: Sequence[str], point
         for key in keys:
             text = text.replace(f"--set {key}", f"--vary {key}")
         return text
+
+
+def _digest(path: Path) -> str:
+    try:
+        with path.open("rb") as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
+    except OSError as error:
+        raise InputError(f"{path} cannot be read ({error.strerror or error})") from None
 
 
 def differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> list[str]:

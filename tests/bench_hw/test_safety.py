@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench_hw.devices.protocols import ForceBlock
-from bench_hw.safety import SafetyError, SafetyLimits, SafetyMonitor
+from bench_hw.safety import FROZEN, SafetyError, SafetyLimits, SafetyMonitor
 
 
 def block(force, time=0.001, sample=7, status=0):
@@ -19,7 +19,7 @@ def block(force, time=0.001, sample=7, status=0):
 
 @pytest.fixture
 def monitor():
-    limits = SafetyLimits(6.0, 0.05, (0.0, 0.02), (25.0, 25.0, 35.0, 0.25, 0.25, 0.25))
+    limits = SafetyLimits(6.0, 0.05, (0.0, 0.02), (25.0, 25.0, 35.0, 0.25, 0.25, 0.25), FROZEN)
     return SafetyMonitor(limits, started=0.0, tolerance=1e-4)
 
 
@@ -103,3 +103,32 @@ def test_a_silent_camera_is_lost_after_a_second(monitor):
     with pytest.raises(SafetyError, match="no frame") as caught:
         monitor.check_camera(0, 1.6)
     assert caught.value.kind == "camera_lost"
+
+
+@pytest.mark.parametrize(("value", "shown"), [(np.nan, "nan"), (-np.inf, "-inf")])
+def test_a_force_that_is_no_number_is_a_fault(monitor, value, shown):
+    with pytest.raises(SafetyError, match=f"gives Fz = {shown}; allowed are finite numbers") as caught:
+        monitor.check_force(block([[0, 0, 0], [0, 0, value]], time=1.0))
+    assert caught.value.kind == "force_invalid"
+    assert caught.value.time == pytest.approx(1.001)
+
+
+def test_a_reading_that_never_changes_is_a_fault_though_samples_are_numbered_on(monitor):
+    monitor.check_force(block([[0, 0, -1.0], [0, 0, -1.1]], time=1.0))
+    for k in range(1, 251):
+        monitor.check_force(block([[0, 0, -1.1]], time=1.001 + 1e-3 * k, sample=7 + 7 * k))
+    with pytest.raises(SafetyError, match=r"changed by one digit for 251 ms; allowed are 250 ms") as caught:
+        monitor.check_force(block([[0, 0, -1.1]], time=1.252, sample=7 * 400))
+    assert caught.value.kind == "force_frozen"
+
+
+def test_one_component_that_moves_is_enough(monitor):
+    for k in range(600):
+        monitor.check_force(block([[0, 0, -1.1, 0, 1e-6 * (k % 2), 0]], time=1e-3 * k, sample=7 * k))
+
+
+def test_few_equal_samples_of_a_slow_sensor_are_no_fault(monitor):
+    for k in range(19):
+        monitor.check_force(block([[0, 0, -1.1]], time=float(k), sample=7 * k))
+    with pytest.raises(SafetyError, match="repeats one value"):
+        monitor.check_force(block([[0, 0, -1.1]], time=19.0, sample=7 * 19))

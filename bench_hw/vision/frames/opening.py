@@ -34,6 +34,8 @@ USUAL_RATE = 30.0
 """Pictures per second where none is given, Hz: the paper's webcam."""
 _NUMBERED = re.compile(r"%0?\d*d")
 _RATES = (0.01, 100_000.0)
+_SAME_RATE = 1e-3
+"""Relative difference of two rates that are one, as 29.97 and 30000/1001."""
 _GREY = cv2.VideoWriter.fourcc(*"Y800")
 """FFmpeg's pixels of one byte of grey: they need no way through colour and back."""
 _TRIALS = (".mcap", ".mcap.part")
@@ -159,7 +161,8 @@ class VideoFrames:
         if not path.is_file():
             raise InputError(f"{path}: no such file; allowed: a trial, a video, or a folder of pictures")
         video = self._opened()
-        self.rate = rate or float(video.get(cv2.CAP_PROP_FPS))
+        self._own = float(video.get(cv2.CAP_PROP_FPS))
+        self.rate = rate or self._own
         count = video.get(cv2.CAP_PROP_FRAME_COUNT)
         video.release()
         self.expected = int(count) if 0 < count < 1e9 else None
@@ -190,10 +193,13 @@ class VideoFrames:
             raise InputError(f"{self._path}: the video has no picture that can be read")
 
     def notes(self) -> tuple[str, ...]:
-        """Say if the video ended early."""
-        if self._given is None or self.expected is None or self._given >= self.expected:
-            return ()
-        return (f"the video ends after {self._given} of the {self.expected} pictures it should have",)
+        """Say if the video ended early, or tells of another rate than is used."""
+        said = []
+        if self._given is not None and self.expected is not None and self._given < self.expected:
+            said.append(f"the video ends after {self._given} of the {self.expected} pictures it should have")
+        if _RATES[0] <= self._own <= _RATES[1] and abs(self._own - self.rate) > _SAME_RATE * self.rate:
+            said.append(f"the video tells of {self._own:.6g} pictures a second; {self.rate:.6g} as told are used")
+        return tuple(said)
 
     def _opened(self) -> cv2.VideoCapture:
         if any(

@@ -113,7 +113,7 @@ def track(order: TrackOrder, progress: Progress | None = None) -> TrackOutcome:
                 progress(pipeline.tally.frames, source.expected)
         if still is not None and order.still is not None:
             still.write(order.still)
-    warnings = [*_about_camera(camera), *source.notes(), *pipeline.tally.warnings()]
+    warnings = [*_about_camera(camera), *source.notes(), *pipeline.tally.warnings(), *pipeline.knocks.warnings()]
     return TrackOutcome(order.out, order.method, beginning.grid, pipeline.tally, source.synthetic, tuple(warnings))
 
 

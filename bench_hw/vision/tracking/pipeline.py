@@ -18,6 +18,12 @@ from bench_hw.vision.tracking.places import Places, RowWriter
 
 SCHEMA = 1
 _LISTED = 6
+KNOCK = 0.1
+"""Share of the spacing by which all markers must move together, from a picture to the next, to be told of."""
+_UNUSUAL = 10.0
+"""Times the usual common step that it must be."""
+_FEWEST = 6
+"""Markers seen in both pictures."""
 
 
 class Tally:
@@ -32,7 +38,7 @@ class Tally:
     """
 
     def __init__(self, markers: int, strays: int) -> None:
-        self.frames = self.undecoded = self.other_size = self.before = 0
+        self.frames = self.undecoded = self.other_size = self.before = self.repeated = 0
         self.strays = strays
         self.missing: IntArray = np.zeros(markers, dtype=np.int64)
         self.unplaced = 0
@@ -60,6 +66,7 @@ class Tally:
             (self.before, f"pictures before the first one with the whole grid: {gone}"),
             (self.undecoded, f"pictures cannot be decoded: {gone}"),
             (self.other_size, f"pictures have another size: {gone}"),
+            (self.repeated, "pictures are the one before to the last grey level: no marker can have moved in them"),
             (self.strays, "spots of a marker's size beside the grid are left out"),
             (self.unplaced, "places are left empty: how far the marker had sunk is not known"),
             (int(self.missing.sum()), self._missing_sentence()),
@@ -70,6 +77,45 @@ class Tally:
         worst = np.argsort(-self.missing, kind="stable")[:_LISTED]
         listed = ", ".join(f"marker {k} in {self.missing[k]}" for k in worst if self.missing[k])
         return f"of {self.frames * len(self.missing)} sightings are missing: {listed} pictures"
+
+
+class Knocks:
+    """Finds pictures before which all markers moved together, as no press moves them.
+
+    Parameters
+    ----------
+    spacing : float
+        Distance of neighbours, pixels.
+    """
+
+    def __init__(self, spacing: float) -> None:
+        self._spacing = spacing
+        self._last: FloatArray | None = None
+        self._ways: list[tuple[float, int, float]] = []
+
+    def add(self, frame: Frame, pixels: FloatArray) -> None:
+        """Take down how far the markers, (m, 2) pixels with NaN for those unseen, moved together."""
+        if self._last is not None:
+            ways = pixels - self._last
+            seen = np.isfinite(ways).all(axis=1)
+            if seen.sum() >= _FEWEST:
+                way = float(np.hypot(*np.median(ways[seen], axis=0)))
+                self._ways.append((way, frame.number, frame.time))
+        self._last = pixels
+
+    def warnings(self) -> list[str]:
+        """Name the picture of the largest common step, where that is large and far beyond the usual one."""
+        if not self._ways:
+            return []
+        way, number, time = max(self._ways)
+        usual = float(np.median([each[0] for each in self._ways]))
+        if way < KNOCK * self._spacing or way < _UNUSUAL * usual:
+            return []
+        return [
+            f"picture {number} at {time:.3f} s: all markers moved together by {way:.1f} px from the picture before "
+            f"(usual: {usual:.2g} px); was the camera knocked, or the specimen shifted? Places before and after do not "
+            "compare"
+        ]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -155,6 +201,8 @@ class Pipeline:
         self._tracker, self._places, self._sinks = tracker, places, sinks
         self._label = "synthetic" if source.synthetic else ""
         self.tally = Tally(len(grid.centres), grid.strays)
+        self.knocks = Knocks(grid.spacing)
+        self._grey: Picture | None = None
 
     def pass_over(self, frame: Frame) -> None:
         """Take a picture from before the beginning: no marker is seen in it."""
@@ -178,6 +226,9 @@ class Pipeline:
             sighting = self._tracker.step(frame.grey)
         except JumpError as error:
             raise JumpError(f"{self._source.name}: picture {frame.number} at {frame.time:.3f} s: {error}") from error
+        self.tally.repeated += self._grey is not None and np.array_equal(frame.grey, self._grey)
+        self._grey = frame.grey
+        self.knocks.add(frame, sighting.pixels)
         self._finish(frame, sighting)
 
     def _finish(self, frame: Frame, sighting: Sighting) -> None:

@@ -109,7 +109,7 @@ def propose(folder: Path) -> Proposal:
     if not _holds(folder / SPECIMEN_FILE, body):
         _refuse_existing(folder / SPECIMEN_FILE)
     texts = {SPECIMEN_FILE: body, SESSION_FILE: "\n".join([*head, *trials]) + "\n"}
-    return Proposal(texts, to_say, tuple(unclosed_recordings(source)))
+    return Proposal(texts, to_say, (*read.aside, *unclosed_recordings(source)))
 
 
 def write_proposal(folder: Path, proposal: Proposal) -> list[Path]:

@@ -29,8 +29,10 @@ from bench_hw.instrument_files import (
 )
 from bench_hw.instrument_files.mcap_topics import is_foreign
 from bench_hw.tables import TrialTable
+from bench_hw.trial_file import ending_of_trial
 from benchmark.errors import InputError
 from benchmark.files.sessions.description import ConditionKeys, SessionFile, TrialEntry
+from benchmark.files.sessions.session_folder import SESSION_FILE
 from benchmark.files.sessions.trials import read_table
 from benchmark.files.units import LENGTH, format_quantity, parse_quantity, split_uncertainty
 
@@ -72,11 +74,24 @@ class Recording:
 
 @dataclass(frozen=True, eq=False)
 class Recordings:
-    """All trials of a session as their files hold them, what was read for people to see, and what was left aside."""
+    """All trials of a session as their files hold them, and what people must know of them.
+
+    Attributes
+    ----------
+    trials : tuple of Recording
+        In the order of the files.
+    shown : tuple of str
+        What was read, for people to see.
+    warnings : tuple of str
+        What was found out in reading, and `aside`.
+    aside : tuple of str
+        Files that were left aside, or that a fault ended.
+    """
 
     trials: tuple[Recording, ...]
     shown: tuple[str, ...]
     warnings: tuple[str, ...]
+    aside: tuple[str, ...] = ()
 
 
 def is_instruments(path: Path) -> bool:
@@ -96,7 +111,8 @@ def read_recordings(file: SessionFile, paths: Sequence[Path], *, listed: bool) -
     paths : sequence of Path
         Of its entries.
     listed : bool
-        Whether somebody listed the files; what is no table is left aside where nobody did.
+        Whether somebody listed the files; what is no table, or a recording that a fault ended, is left aside where
+        nobody did.
     """
     trials: list[Recording] = []
     shown: list[str] = []
@@ -104,7 +120,9 @@ def read_recordings(file: SessionFile, paths: Sequence[Path], *, listed: bool) -
     for entry, path in zip(file.trials, paths, strict=True):
         told = _told(file, entry, path)
         if told is None:
-            trials.append(Recording(entry, "", read_table(path)))
+            ending, used = _ending(path, listed=listed)
+            aside += ending
+            trials += [Recording(entry, "", read_table(path))] if used else []
             continue
         try:
             read = read_instrument_file(path, told)
@@ -125,8 +143,25 @@ def read_recordings(file: SessionFile, paths: Sequence[Path], *, listed: bool) -
         ]
         shown += preview(read)
     if not trials:
-        raise InputError(f"{paths[0].parent}: no file holds a trial; allowed: tables with time, depth and force.")
-    return Recordings(tuple(trials), tuple(shown), (*_warnings(trials), *aside))
+        said = "".join(f" {each}." for each in aside)
+        raise InputError(f"{paths[0].parent}: no file holds a trial; allowed: tables with time, depth and force.{said}")
+    return Recordings(tuple(trials), tuple(shown), (*_warnings(trials), *aside), tuple(aside))
+
+
+def _ending(path: Path, *, listed: bool) -> tuple[list[str], bool]:
+    """What is said of a recording of the bench that did not come to its end or was mended, and whether it is used."""
+    if path.suffix.lower() != ".mcap":
+        return [], True
+    try:
+        ending = ending_of_trial(path)
+    except BenchError as error:
+        raise InputError(f"{error}.") from None
+    if ending.fault:
+        used = "is used as it is" if listed else f"is left aside; where it is wanted, list it in a {SESSION_FILE}"
+        return [f"{path.name} was ended by a fault ({ending.fault}) and {used}"], listed
+    if ending.recovered:
+        return [f"{path.name} was recovered from a recording that had lost something ({ending.recovered})"], True
+    return [], True
 
 
 def _told(file: SessionFile, entry: TrialEntry, path: Path) -> Told | None:

@@ -47,7 +47,7 @@ from benchmark.files.sessions.trials import (
     trial_paths,
 )
 from benchmark.files.shipped import find, shipped_tissues
-from benchmark.files.sources import KeyPath, Source
+from benchmark.files.sources import KeyPath, Source, is_file
 from benchmark.files.tissue import Layer, Tissue
 from benchmark.files.tool import Support, Tool, implausible
 
@@ -90,7 +90,7 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
     file = validated(SessionFile, changed, source)
     paths_of, marker_paths, film_paths = trial_paths(file.trials, source)
     _check_films(file, source, film_paths)
-    read = read_recordings(file, paths_of, listed=bool(source.text))
+    read = read_recordings(file, paths_of, listed=bool(source.text) or is_file(Path(source.name)))
     file, told = with_headers(file, read.trials)
     check_tool_is_told(file, read.trials)
     trials, warnings = _trials(file, source, read.trials, paths_of, marker_paths)

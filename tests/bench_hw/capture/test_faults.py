@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from bench_hw.capture import trial as trial_module
+from bench_hw.capture.loop import Loop
 from bench_hw.capture.progress import stop_on_signals
 from bench_hw.capture.session_folder import SessionFolder
+from bench_hw.devices.http_camera import HttpCamera
 from bench_hw.devices.lac import LacActuator
 from bench_hw.errors import DeviceError, TrialFileError
 from bench_hw.simulated.netft_box import NetFTBox
@@ -77,6 +79,18 @@ def test_repeating_force_data(record, session):
     assert_safe(record(rig=timed("force_freeze", "1.5 s")), session, "force_stale")
 
 
+def test_a_reading_that_stays_the_same_under_new_numbers(record, session):
+    trial = assert_safe(record(rig=timed("force_constant", "1.5 s")), session, "force_frozen")
+    last_change = trial.time[np.flatnonzero(np.diff(trial.force))[-1] + 1]
+    events = inspect_trial(session / "trial_001.mcap").events
+    fault = next(event for event in events if event["level"] == "fault")
+    assert fault["time_s"] - last_change == pytest.approx(0.25, abs=0.01)
+
+
+def test_a_simulated_sensor_without_noise_may_stay_the_same(record):
+    assert record(rig={"force": {"noise": "0 N"}}).fault is None
+
+
 def test_a_saturated_sensor(record, session):
     assert_safe(record(rig=timed("force_saturated", "1.5 s", duration="0.2 s")), session, "force_saturated")
 
@@ -112,6 +126,36 @@ def test_a_frozen_camera_is_counted_and_no_fault(record, session):
     assert outcome.fault is None
     log = json.loads((session / "capture.json").read_text())
     assert log["trials"][0]["camera"]["frozen"] >= 8
+
+
+def test_what_a_camera_complains_of_once_is_no_delay(record, session, monkeypatch):
+    read, turns = HttpCamera.read, []
+
+    def complain_once(self):
+        turns.append(1)
+        if len(turns) == 500:
+            raise DeviceError("gives 320 x 240 pixels")
+        return read(self)
+
+    monkeypatch.setattr(HttpCamera, "read", complain_once)
+    outcome = record(camera=True)
+    assert_safe(outcome, session, "camera_lost")
+    assert "gives 320 x 240 pixels" in outcome.fault.message
+
+
+def test_a_camera_that_stays_frozen_is_a_fault(record, session):
+    outcome = record(rig=timed("camera_freeze", "0.8 s"), camera=True)
+    assert_safe(outcome, session, "camera_frozen")
+    assert "the one before to the byte for 1.0 s" in outcome.fault.message
+
+
+def test_a_simulated_camera_without_noise_may_repeat_its_picture(record):
+    assert record(rig={"camera": {"noise": 0.0}} | timed("camera_freeze", "0.8 s"), camera=True).fault is None
+
+
+def test_a_slow_camera_is_not_lost_between_two_pictures(record, session):
+    assert record(rig={"camera": {"rate": "0.6 Hz"}}, camera=True).fault is None
+    assert inspect_trial(session / "trial_001.mcap").to_dict()["channels"]["camera"]["rows"] >= 1
 
 
 def test_ctrl_c(record, session, watcher):
@@ -156,10 +200,50 @@ def test_a_session_file_that_cannot_be_written_leaves_the_trial_and_no_tool_in_t
     retract = LacActuator.retract
     monkeypatch.setattr(LacActuator, "retract", lambda self: (sent.append("back"), retract(self)))
     monkeypatch.setattr("bench_hw.capture.session_folder.write_text", refuse_session_file)
-    with pytest.raises(OSError, match="No space left"):
+    with pytest.raises(OSError, match="No space left") as caught:
         record(trials=2)
+    assert caught.value.__notes__ == [
+        f"{session / 'trial_001.mcap'} is whole; what stands beside it (session.toml, capture.json) is behind"
+    ]
     assert sent
     assert inspect_trial(session / "trial_001.mcap").to_dict()["complete"]
+
+
+def test_a_full_disk_is_told_with_the_trial_it_ended(record, session, monkeypatch):
+    """Neither the trial nor the log finds room: the fault is the answer, not the log."""
+
+    def refuse(self, record):
+        raise TrialFileError(session / "trial_001.mcap.part", "the disk is full")
+
+    def full(path, text, check=None):
+        raise OSError(28, "No space left on device")
+
+    from bench_hw.trial_file.writer import McapTrialWriter
+
+    monkeypatch.setattr(McapTrialWriter, "write_depth", refuse)
+    monkeypatch.setattr("bench_hw.capture.session_folder.write_text", full)
+    fault = record().fault
+    assert (fault.kind, fault.retracted) == ("disk", True)
+    assert "trial_001.mcap.part: the disk is full" in fault.message
+    assert "capture.json cannot be written either (No space left on device)" in fault.message
+
+
+def test_a_second_ctrl_c_closes_the_file_with_its_fault(record, session, watcher):
+    def press_ctrl_c_twice(snapshot):
+        if snapshot.depth > 1.5e-3:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    def interrupt(self, duration):
+        raise KeyboardInterrupt
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Loop, "coast", interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            record(progress=watcher(press_ctrl_c_twice))
+    assert not list(session.glob("*.part"))
+    inspection = inspect_trial(session / "trial_001.mcap")
+    assert inspection.complete
+    assert "interrupted" in inspection.faults[0]
 
 
 def refuse_session_file(path, text, check=None):

@@ -1,6 +1,7 @@
 """Whole sessions with simulated devices, in simulated time."""
 
 import json
+import re
 import tomllib
 from dataclasses import replace
 from typing import ClassVar
@@ -10,6 +11,10 @@ import pytest
 
 from bench_hw.capture.order import check_order
 from bench_hw.capture.session import capture
+from bench_hw.clock import SimulatedClock
+from bench_hw.devices.lac import LacActuator
+from bench_hw.devices.netft import NetFTSensor
+from bench_hw.devices.netft_network import RdtSocket
 from bench_hw.errors import DeviceError, InputError
 from bench_hw.motion.protocol_file import load_protocol
 from bench_hw.rig.rig_file import load_rig
@@ -229,6 +234,77 @@ def test_an_existing_session_is_not_touched(record, session):
     with pytest.raises(InputError, match="not empty and nothing in it is overwritten"):
         record()
     assert {path.name: path.read_bytes() for path in session.iterdir()} == before
+
+
+def test_what_is_lost_is_said_after_each_trial(record, watcher):
+    seen = watcher()
+    faults = [{"kind": "camera_freeze", "at": "1 s", "duration": "0.3 s"}]
+    rig = {"force": {"loss": 0.2}, "camera": {"loss": 0.2}, "simulation": {"faults": faults}}
+    record(progress=seen, rig=rig, camera=True, trials=2)
+    said = [each for each in seen.said if each.startswith("trial_00")]
+    words = ("force records are lost", "pictures are lost", "pictures are the one before to the byte")
+    assert [sum(word in each for each in said) for word in words] == [2, 2, 1]
+    lost, whole = map(int, said[0].removeprefix("trial_001: ").split(" force")[0].split(" of "))
+    assert lost / whole == pytest.approx(0.2, abs=0.03)
+
+
+def test_what_is_lost_while_nobody_reads_is_none_of_the_next_trial(record, session, watcher, monkeypatch):
+    """A pause is longer than the socket's buffer holds: here, of a hundred datagrams at a time ten are kept."""
+    receive = RdtSocket.receive
+
+    def overflow(self):
+        datagrams = receive(self)
+        return datagrams[:5] + datagrams[-5:] if len(datagrams) > 100 else datagrams
+
+    monkeypatch.setattr(RdtSocket, "receive", overflow)
+    seen = watcher()
+    record(progress=seen, trials=2, pause=5.0)
+    log = json.loads((session / "capture.json").read_text())["trials"]
+    assert [trial["force"]["lost"] for trial in log] == [0, 0]
+    rows = channels(session / "trial_002.mcap")["force"]["rows"]
+    assert log[1]["force"]["received"] == pytest.approx(rows, abs=5)
+    assert not [each for each in seen.said if "trial_002" in each]
+
+
+def test_another_rate_than_the_sensor_tells_is_said(record, watcher, monkeypatch):
+    monkeypatch.setattr(NetFTSensor, "rate", 500.0)
+    seen = watcher()
+    record(progress=seen)
+    (said,) = (each for each in seen.said if each.startswith("trial_001"))
+    assert said.startswith("trial_001: force came at 1000 Hz, and the sensor tells of 500 Hz")
+
+
+def test_a_board_that_answers_late_is_said(record, watcher, monkeypatch):
+    """On a clock that passes while the board is asked."""
+    position = LacActuator.position
+
+    def late(self):
+        clock.sleep(0.04)
+        return position(self)
+
+    class Noted(SimulatedClock):
+        def __init__(self, **options):
+            nonlocal clock
+            super().__init__(**options)
+            clock = self
+
+    clock = SimulatedClock()
+    monkeypatch.setattr("bench_hw.capture.session.SimulatedClock", Noted)
+    monkeypatch.setattr(LacActuator, "position", late)
+    seen = watcher()
+    record(progress=seen)
+    (said,) = (each for each in seen.said if each.startswith("trial_001"))
+    assert re.match(r"trial_001: depth came at 2\d(\.\d)? Hz, and the rig asks for 100 Hz \(actuator\.rate\)", said)
+
+
+def test_pictures_of_a_camera_calibrated_otherwise_are_not_appended(record, session):
+    record(camera=True)
+    before = sorted(path.name for path in session.iterdir())
+    with pytest.raises(InputError, match=r"camera\.toml is another calibration than that of the rig's camera"):
+        record(camera=True, rig={"camera": {"distance": "90 mm"}}, append=True)
+    assert sorted(path.name for path in session.iterdir()) == before
+    record(camera=True, append=True)
+    record(append=True)  # without a camera there is nothing to read by it
 
 
 def test_appending_needs_a_session(record):

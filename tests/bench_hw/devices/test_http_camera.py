@@ -1,12 +1,13 @@
 """Cutting a multipart stream into pictures."""
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from bench_hw.clock import MonotonicClock, wait_until
-from bench_hw.devices.http_camera import HttpCamera, MultipartParser, StreamError
+from bench_hw.devices.http_camera import HttpCamera, MultipartParser, StreamError, jpeg_size
 from bench_hw.errors import DeviceError
 from bench_hw.simulated.camera_server import CameraServer, CameraSettings
 
@@ -192,3 +193,45 @@ def test_bytes_that_make_no_sense_end_the_stream(tcp_server, clock):
         HttpCamera(f"http://127.0.0.1:{tcp_server(talk)}/", clock=real) as camera,
     ):
         wait_until(real, lambda: camera.read() is None, timeout=5.0)
+
+
+def test_a_picture_tells_its_size():
+    for size in ((48, 64), (481, 1000)):
+        for options in ([], [cv2.IMWRITE_JPEG_PROGRESSIVE, 1]):
+            data = cv2.imencode(".jpg", np.zeros(size, np.uint8), options)[1].tobytes()
+            assert jpeg_size(data) == size[::-1]
+            assert jpeg_size(data[:2] + b"\xff" + data[2:]) == size[::-1]  # a marker may be filled up
+
+
+@given(st.binary(max_size=60))
+def test_what_is_no_jpeg_tells_none(data):
+    assert jpeg_size(data) is None
+    assert jpeg_size(b"\xff\xd8" + data[:8]) is None
+
+
+def test_a_picture_of_the_size_that_is_asked_for_is_waited_for(make_server, clock):
+    with HttpCamera(make_server().url, clock=clock, size=(64, 48)) as camera:
+        camera.start()
+        assert len(collect(camera, clock, 0.5)) == pytest.approx(15, abs=1)
+
+
+def test_pictures_of_another_size_are_refused(make_server, clock):
+    with (
+        HttpCamera(make_server().url, clock=clock, size=(640, 480)) as camera,
+        pytest.raises(DeviceError, match=r"gives 64 x 48 pixels; the rig asks for 640 x 480 \(camera\.size\)"),
+    ):
+        camera.start()
+
+
+def test_what_is_no_picture_is_no_frame(tcp_server):
+    def talk(client):
+        client.recv(4096)
+        client.sendall(b"HTTP/1.0 200 OK\r\nContent-Type: multipart/x-mixed-replace; boundary=frame\r\n\r\n")
+        client.sendall(part(b"no picture") * 3)
+        client.recv(4096)
+
+    real = MonotonicClock()
+    with HttpCamera(f"http://127.0.0.1:{tcp_server(talk)}/", clock=real, size=(64, 48), timeout=0.3) as camera:
+        with pytest.raises(DeviceError, match="no JPEG picture within"):
+            camera.start()
+        assert camera.health.received == 0

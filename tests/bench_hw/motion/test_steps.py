@@ -73,6 +73,26 @@ def test_without_a_touch_there_is_an_error_with_figures():
         run({**APPROACH, "max_depth": "3 mm"}, zero=0.005)
 
 
+def test_a_force_before_the_tool_has_moved_is_no_touch():
+    bench = IdealBench()
+    bench.now.press = 0.4  # a sensor that nobody zeroed
+    with pytest.raises(MotionError, match=r"0\.400 N before the tool moves, at position 5\.00 mm.*force\.bias"):
+        bench.run(carry_out(protocol(APPROACH), bench.now))
+    assert not [action for action in bench.actions if isinstance(action, MoveTo)]
+
+
+def test_an_approach_ends_where_the_force_grows_the_wrong_way():
+    class Turned(IdealBench):
+        def step(self):
+            super().step()
+            self.now.press = -self.now.press
+
+    bench = Turned()
+    with pytest.raises(MotionError, match=r"negative where the tool presses.*force\.press_axis"):
+        bench.run(carry_out(protocol(APPROACH), bench.now))
+    assert bench.now.position == pytest.approx(CONTACT + 0.1 / STIFFNESS, abs=1e-5)
+
+
 def test_an_approach_never_leaves_the_travel():
     with pytest.raises(MotionError, match="no touch"):
         run({**APPROACH, "touch_force": "50 N", "max_depth": "90 mm"})

@@ -94,6 +94,21 @@ def test_a_fault_of_a_device_that_is_not_simulated_is_refused():
         open_bench(loaded, SimulatedClock())
 
 
+def test_a_stream_over_http_must_have_the_rigs_size():
+    loaded = simulated_rig({"camera": {"kind": "http", "url": "http://127.0.0.1:1/x", "size": [64, 48]}})
+    bench = open_bench(loaded, SimulatedClock())
+    try:
+        assert bench.camera._size == (64, 48)
+    finally:
+        bench.close()
+
+
+def test_a_specimen_that_there_is_not_is_told_with_its_key():
+    loaded = simulated_rig({"camera": None, "simulation": {"specimen": "phantm"}})
+    with pytest.raises(InputError, match=r"simulated\.toml: key simulation\.specimen: specimen 'phantm': no such file"):
+        open_bench(loaded, SimulatedClock())
+
+
 def test_the_travel_is_set_in_the_board():
     with open_bench(load_rig("simulated"), SimulatedClock()) as bench:
         heard = [data.hex(" ") for data in bench.twins.board.received]

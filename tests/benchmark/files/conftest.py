@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from bench_hw.trial_file import DepthRecord, ForceRecord, TrialHeader, open_trial
+from bench_hw.trial_file import DepthRecord, EventRecord, ForceRecord, TrialHeader, open_trial
 
 TISSUE = """\
 schema = 1
@@ -88,13 +88,15 @@ def write_trial():
 def write_native_trial():
     """Write a native trial as simulated devices or real ones would: the same press, force and depth at 10 Hz."""
 
-    def write(path: Path, synthetic: bool) -> Path:
+    def write(path: Path, synthetic: bool, fault: str = "") -> Path:
         header = TrialHeader("trial", "2024-05-06T07:08:09+00:00", 50.0, "-z", synthetic=synthetic)
         with open_trial(path, header, background=False) as writer:
             for row in range(30):
                 time = 50.0 + 0.1 * row
                 writer.write_depth(DepthRecord(time, 0.05e-3 * row))
                 writer.write_force(ForceRecord(time, row + 1, row + 1, 0, (0.0, 0.0, -0.01 * row), (0.0, 0.0, 0.0)))
+            if fault:
+                writer.write_event(EventRecord(52.95, "force_limit", fault, "fault"))
         return path
 
     return write

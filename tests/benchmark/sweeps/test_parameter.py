@@ -90,6 +90,8 @@ def test_it_describes_itself_as_typed(text: str) -> None:
         ("tool.radius=", "KEY=VALUES"),
         ("tool.radius=2 mm,,3 mm", "empty"),
         ("tool.radius=2 mm,2 mm", "repeated"),
+        ("tool.radius=4 mm,5 mm,0.004 m", "4 mm and 0.004 m are one value"),
+        ("dermis.poisson_ratio=0.4,0.40", "0.4 and 0.40 are one value"),
         ("d.e=50 kPa:500 kPa:1", "at least 2"),
         ("d.e=50 kPa:500 kPa:many", "no range"),
         ("d.e=50 kPa:500 kPa:3:4", "no range"),

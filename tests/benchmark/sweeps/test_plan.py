@@ -3,9 +3,10 @@
 import json
 
 import pytest
+import tomli_w
 
 from benchmark.errors import InputError
-from benchmark.files import Scenario
+from benchmark.files import Scenario, load_scenario, load_tissue
 from benchmark.sweeps.plan import differences
 
 
@@ -54,6 +55,31 @@ def differing(one, other) -> list[str]:
 
 def test_the_same_command_is_the_same_sweep(plan_of) -> None:
     assert differing(plan_of("tool.radius=1 mm,2 mm"), plan_of("tool.radius=1 mm,2 mm")) == []
+
+
+def test_a_varied_tissue_whose_file_has_changed_is_another_sweep(plan_of, tmp_path) -> None:
+    mine = tmp_path / "mine.toml"
+    vary = (f"tissue=skin_forearm,{mine}", "tool.radius=1 mm,2 mm")
+    mine.write_text(load_tissue("skin_forearm").to_toml())
+    before = plan_of(*vary)
+    assert differing(before, plan_of(*vary)) == []
+    mine.write_text(load_tissue("skin_forearm", overrides={"dermis.youngs_modulus": "120 kPa"}).to_toml())
+    (said,) = differing(before, plan_of(*vary))
+    assert said.startswith(f"files.tissue {mine} (")
+    assert "files" not in plan_of("tool.radius=1 mm,2 mm").document
+
+
+def test_a_varied_load_whose_file_has_changed_is_another_sweep(plan_of, tmp_path) -> None:
+    load, usual = tmp_path / "load.csv", tmp_path / "usual.csv"
+    for each in (load, usual):
+        each.write_text("time_s,force_N\n1,0.1\n2,0.5\n")
+    file = tmp_path / "mine.toml"
+    mine = {**load_scenario("skin-5N").to_table(), "load": {"shape": "table", "file": str(usual)}}
+    file.write_text(tomli_w.dumps(mine))
+    before = plan_of(f"load.file={load}", scenario=str(file))
+    load.write_text("time_s,force_N\n1,0.1\n2,0.6\n")
+    (said,) = differing(before, plan_of(f"load.file={load}", scenario=str(file)))
+    assert said.startswith(f"files.load.file {load} (")
 
 
 def test_differences_are_named(plan_of) -> None:

@@ -86,6 +86,8 @@ def test_a_lossless_video_gives_its_pictures_and_times(video):
 def test_colour_becomes_grey_and_the_rate_can_be_given(video):
     colour = [np.dstack([p, p, p]) for p in pictures()]
     source = VideoFrames(video(colour), rate=100.0)
+    assert source.notes() == ("the video tells of 30 pictures a second; 100 as told are used",)
+    assert VideoFrames(video(colour), rate=30.001).notes() == ()
     frames = list(source.frames())
     assert frames[0].grey.shape == (48, 64)
     assert np.abs(frames[0].grey.astype(int) - colour[0][:, :, 0]).max() <= 2

@@ -56,6 +56,30 @@ def test_a_jump_below_half_the_spacing_is_linked(follow, renderer, share):
     assert error.max() < 0.1
 
 
+def test_a_knock_below_half_the_spacing_is_told(follow, renderer):
+    still = np.zeros(2)
+    knocked = [renderer.sheet.middles + (still if frame < 5 else 8.5 * np.array([0.15, 0.0])) for frame in range(12)]
+    outcome, error = follow(knocked)
+    assert error.max() < 0.1
+    (said,) = outcome.warnings
+    assert said.startswith("picture 5 at 0.167 s: all markers moved together by ")
+    assert follow(stretching(renderer))[0].warnings == ()
+    pulled = [renderer.sheet.middles + 8.5 * np.array([0.12, 0.0]) * frame for frame in range(6)]
+    assert follow(pulled)[0].warnings == ()  # as far in each picture: so it goes there
+
+
+def test_pictures_that_repeat_are_told(follow, renderer):
+    kept = []
+
+    def freeze(frame, grey):
+        kept.append(grey)
+        return kept[min(frame, 7)]
+
+    outcome, _ = follow(stretching(renderer), freeze)
+    (said,) = outcome.warnings
+    assert said.startswith(f"{COUNT - 8} pictures are the one before to the last grey level")
+
+
 @pytest.mark.parametrize("way", [(0.55, 0.0), (0.6, 0.8), (1.0, 0.0), (0.0, -1.0), (-2.0, 0.0)])
 def test_a_jump_of_half_the_spacing_or_more_is_refused(follow, renderer, tmp_path, way):
     middles = [renderer.sheet.middles + (frame >= 3) * 8.5 * np.array(way) for frame in range(5)]

@@ -7,6 +7,8 @@ import pytest
 from bench_hw.storage.folder_lock import locked
 from bench_hw.tables import TrialTable
 from bench_hw.trial_file import DepthRecord, ForceRecord, TrialHeader, open_trial
+from bench_hw.trial_file.recovery import recover_trial
+from bench_hw.trial_file.scan import scan_trial
 from benchmark.errors import InputError
 from benchmark.files import load_session, load_tissue
 from benchmark.files.load import Load
@@ -91,6 +93,42 @@ def test_a_folder_of_native_trials_is_as_synthetic_as_they_are(tmp_path, write_n
     session = load_session(tmp_path / "day")
     assert session.synthetic
     assert [trial.name for trial in session.trials] == ["one", "two"]
+
+
+ENDED = "two.mcap was ended by a fault (force_limit at 2.950 s: force of 6.1 N) and is "
+
+
+def test_a_trial_that_a_fault_ended_is_left_aside_where_nobody_listed_it(tmp_path, write_native_trial):
+    write_native_trial(tmp_path / "day" / "one.mcap", synthetic=False)
+    write_native_trial(tmp_path / "day" / "two.mcap", synthetic=False, fault="force of 6.1 N")
+    session = load_session(tmp_path / "day")
+    assert [trial.name for trial in session.trials] == ["one"]
+    assert f"{ENDED}left aside; where it is wanted, list it in a session.toml" in session.warnings
+    assert propose(tmp_path / "day").warnings == tuple(each for each in session.warnings if each.startswith(ENDED))
+    (tmp_path / "day" / "one.mcap").unlink()
+    assert f"no file holds a trial; allowed: tables with time, depth and force. {ENDED}left aside" in refusal(
+        tmp_path / "day"
+    )
+
+
+def test_a_trial_that_a_fault_ended_is_used_and_told_where_it_is_asked_for(tmp_path, write_native_trial):
+    alone = write_native_trial(tmp_path / "two.mcap", synthetic=False, fault="force of 6.1 N")
+    assert f"{ENDED}used as it is" in load_session(alone).warnings
+    listed = 'schema = 1\nname = "one"\n[[trials]]\nfile = "two.mcap"\ncondition = "press"\n'
+    (tmp_path / "session.toml").write_text(listed)
+    session = load_session(tmp_path)
+    assert len(session.trials) == 1
+    assert f"{ENDED}used as it is" in session.warnings
+
+
+def test_a_trial_that_was_recovered_is_told(tmp_path, write_native_trial):
+    whole = write_native_trial(tmp_path / "whole.mcap", synthetic=False)
+    cut = tmp_path / "cut.mcap.part"
+    cut.write_bytes(whole.read_bytes()[: scan_trial(whole).chunks[-1].end])
+    recover_trial(cut, tmp_path / "day" / "saved.mcap")
+    (said,) = [each for each in load_session(tmp_path / "day").warnings if each.startswith("saved.mcap")]
+    assert said.startswith("saved.mcap was recovered from a recording that had lost something (bytes ")
+    assert len(load_session(tmp_path / "day").trials) == 1
 
 
 def test_everything_can_be_given_on_the_command_line(tmp_path, write_trial):
