@@ -351,7 +351,7 @@ def _other_pairs(
 def _as_further_terms(
     base: Fit, current: Fit, settings: Settings, work: Pool
 ) -> tuple[Fit, dict[str, tuple[Fit, ...]]]:
-    """One effect with more terms in place of it and another that the data do not tell from such terms.
+    """One effect with more terms, each told, in place of it and another that the data do not tell from such terms.
 
     Fluid that leaves under tools of one size is a fading memory like any other. Beside the fit stands the one of both
     effects, by the slug of the one that stays.
@@ -366,6 +366,8 @@ def _as_further_terms(
         own = gain(now, held_out(rebuilt(base, [*others, whole], work, "further terms")), groups)
         for form in whole.forms[1:]:
             instead = rebuilt(base, [*others, form], work, "further terms")
+            if not (strength_told(instead, form) and terms_told(instead, whole)):
+                continue
             lead = gain(now, held_out(instead), groups)
             if lead.z < settings.lookalike_z or lead.mean < criteria.CLOSE * own.mean:
                 return instead, {whole.slug: (rebuilt(base, [*others, whole, effect], work, "further terms"),)}

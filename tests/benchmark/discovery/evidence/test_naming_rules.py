@@ -742,10 +742,13 @@ def test_the_rules_are_those_of_the_criteria():
 
 
 @pytest.mark.parametrize(
-    ("with_terms", "alone"),
-    [(100.0, True), (91.5, True), (89.0, False)],  # of 100 with both effects, of which the flow gains 90 to 10
+    ("with_terms", "told", "alone"),  # of 100 with both effects, of which the flow gains 90
+    [(100.0, True, True), (91.5, True, True), (89.0, True, False), (100.0, False, False)],
 )
-def test_a_flow_that_further_terms_stand_for_is_a_lookalike_of_them(known_densities, with_terms, alone):
+def test_a_flow_that_further_terms_stand_for_is_a_lookalike_of_them(
+    with_terms, told, alone, monkeypatch, known_densities
+):
+    monkeypatch.setattr(selection, "terms_told", lambda fit, plain: told)
     flow, memory, other = effect("flow"), effect("memory", 2, richer=effect("memory", 4)), effect("other")
     flow.further_terms_of = "memory"
     both = fitted(flow, other, memory, density=100.0)
