@@ -29,7 +29,8 @@ def _trial(number: int) -> TrialData:
 
 
 def _session(trials: tuple[TrialData, ...]) -> SimpleNamespace:
-    rig = {"tool": SimpleNamespace(radius=5e-3, contact="rigid_bonded"), "support": SimpleNamespace(kind="bonded")}
+    tool = SimpleNamespace(radius=5e-3, contact="rigid_bonded", edge_radius=None)
+    rig = {"tool": tool, "support": SimpleNamespace(kind="bonded")}
     measured = [SimpleNamespace(name=t.name, condition=t.condition, **rig) for t in trials]
     return SimpleNamespace(specimen=load_tissue("ecoflex_00_30"), trials=measured)
 
