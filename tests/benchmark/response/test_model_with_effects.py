@@ -8,7 +8,13 @@ from benchmark.errors import InputError
 from benchmark.files import load_scenario
 from benchmark.model_file import AddedEffect, RepairedModel, Value, model_toml
 from benchmark.models import Drive, ModelResult, scenario_drive
-from benchmark.response.model_with_effects import RepairedPress, load_repair, prepare_with_effects, switched_on
+from benchmark.response.model_with_effects import (
+    RepairedPress,
+    effects_of,
+    load_repair,
+    prepare_with_effects,
+    switched_on,
+)
 from tests.performance.effects import VALUES, rows
 
 STIFFNESS = 1000.0
@@ -60,6 +66,19 @@ def test_held_at_a_depth_its_force_falls_to_what_is_left() -> None:
     time = np.linspace(0.01, 20.0, 400)
     result = _pressed(_model(RELAXATION), Drive("depth", time, np.minimum(time / 0.1, 1.0) * 1e-3))
     assert result.force[-1] == pytest.approx(0.6 * STIFFNESS * 1e-3, rel=1e-3)
+
+
+@pytest.mark.parametrize("terms", [1, 2, 3])
+def test_a_model_file_has_the_form_with_as_many_terms_as_it_states(terms: int) -> None:
+    shares = {f"g_{k}": Value(0.1 * k, "") for k in range(1, terms + 1)}
+    times = {f"tau_{k}": Value(0.01 * k, "s") for k in range(1, terms + 1)}
+    model = _model(AddedEffect("viscoelastic_relaxation", shares | times))
+    ((form, values),) = effects_of(model)
+    assert set(form.names) == set(values) == set(shares | times)
+    time = np.linspace(0.01, 20.0, 400)
+    result = _pressed(model, Drive("depth", time, np.minimum(time / 0.1, 1.0) * 1e-3))
+    left = np.prod([1.0 - 0.1 * k for k in range(1, terms + 1)])
+    assert result.force[-1] == pytest.approx(left * STIFFNESS * 1e-3, rel=1e-3)
 
 
 def test_without_effects_nothing_changes() -> None:

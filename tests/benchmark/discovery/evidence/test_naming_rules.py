@@ -178,8 +178,10 @@ def test_a_further_effect_that_does_not_carry_over_is_withheld(monkeypatch, know
     first = Scored(one, "a", Gain(np.full(8, 100.0), 100.0, 1.0, 9.0), None, -50.0, fitted())
     monkeypatch.setattr(selection, "usable", lambda base, effect: True)
     ranked = [Screened(each, 9.0, np.zeros((1, 8))) for each in (a, b)]
-    monkeypatch.setattr(selection, "beats_bent", lambda scored, settings, instead, within: True)
+    asked = []
+    monkeypatch.setattr(selection, "beats_bent", lambda scored, settings, instead, within: asked.append(within) or True)
     monkeypatch.setattr(selection, "bent", lambda fit, forms: fit)
+    monkeypatch.setattr(selection, "_as_further_terms", lambda base, fit, *_: (fit, {"a": (fitted(a, effect("c")),)}))
     monkeypatch.setattr(selection, "refitted_conditions", lambda fit: np.full(8, kept if fit is both else 0.0))
     monkeypatch.setattr(
         selection, "screen", lambda fit, rest: tuple(r for r in ranked if r.effect in rest) if rest else ()
@@ -192,6 +194,9 @@ def test_a_further_effect_that_does_not_carry_over_is_withheld(monkeypatch, know
     )
     assert [each.slug for each in found.chosen.model.effects] == chosen
     assert tuple(each.slug for each in found.withheld) == withheld
+    assert asked == [pytest.approx(0.09 * 100.0)] * len(asked)
+    assert found.lookalikes["a"][0] == "c"
+    assert found.rivals["a"][0].model.effects[-1].slug == "c"
 
 
 def test_of_equals_the_simplest_is_taken_then_the_first_of_the_catalogue():

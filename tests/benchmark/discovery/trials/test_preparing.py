@@ -85,3 +85,11 @@ def test_a_long_hold_leaves_a_fast_press_its_rows(tmp_path):
     condition = prepare(load_session(tmp_path), 220).conditions[0]
     measured, depth = condition.signals[0, :, 0], 1e3 * condition.depth[0]
     assert measured == pytest.approx(np.maximum(depth, 0.0) ** 1.5, abs=0.002 * 3.0**1.5)
+
+
+@pytest.mark.parametrize(("edge", "expected"), [("", 0.0), ('edge_radius = "2 mm"\n', 2e-3)])
+def test_effects_know_the_edge_of_the_tool(tmp_path, quick_session, edge, expected):
+    folder = quick_session.write_session(tmp_path / "session")
+    file = folder / "session.toml"
+    file.write_text(file.read_text().replace('contact = "rigid_bonded"\n', f'contact = "rigid_bonded"\n{edge}'))
+    assert {each.around.edge_radius for each in prepare(load_session(folder), 40).conditions} == {expected}
