@@ -3,6 +3,7 @@
 from benchmark.physics.description import EffectDescription, EffectParameter, Option
 from benchmark.physics.effect import (
     BodyResponse,
+    DepthRecord,
     Effect,
     FemTerm,
     LowerFaceMotion,
@@ -17,6 +18,7 @@ from benchmark.physics.registry import SLUGS, catalogue, load_effects, option_ef
 __all__ = [
     "SLUGS",
     "BodyResponse",
+    "DepthRecord",
     "Effect",
     "EffectDescription",
     "EffectParameter",

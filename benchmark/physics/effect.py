@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 
 import numpy as np
@@ -65,12 +66,84 @@ class TrialContext:
 
 
 @dataclass(frozen=True, eq=False)
+class DepthRecord:
+    """The depths (m,) in m at times (m,) in s of which rows are means, between the times (n + 1,) in s.
+
+    Of the means themselves no depth between them is known, and no slope in them.
+    """
+
+    time: Array
+    depth: Array
+    borders: Array
+
+    @cached_property
+    def interval(self) -> float:
+        """Between the times, s, in the median."""
+        return float(np.median(np.diff(self.time)))
+
+    @cached_property
+    def _integral(self) -> Array:
+        """(m,) of the depth over time from the first on, m s."""
+        steps = 0.5 * (self.depth[1:] + self.depth[:-1]) * np.diff(self.time)
+        return np.concatenate([[0.0], np.cumsum(steps)])
+
+    def _until(self, time: Array) -> Array:
+        """The integral up to times, of straight lines between the depths; beyond the ends as the last line goes on."""
+        at = np.clip(np.searchsorted(self.time, time, side="right") - 1, 0, self.time.size - 2)
+        slope = (self.depth[at + 1] - self.depth[at]) / (self.time[at + 1] - self.time[at])
+        on = time - self.time[at]
+        return np.asarray(self._integral[at] + on * (self.depth[at] + 0.5 * slope * on))
+
+    def _means(self, first: Array, last: Array) -> Array:
+        """Of the depth between times, m; where they are one, over an interval around it."""
+        half = np.where(last <= first, 0.5 * self.interval, 0.0)
+        first, last = first - half, last + half
+        return np.asarray((self._until(last) - self._until(first)) / (last - first))
+
+    def means(self, late: float) -> Array:
+        """(n,) of the depth so many seconds before the rows, m."""
+        return self._means(self.borders[:-1] - late, self.borders[1:] - late)
+
+    @cached_property
+    def given(self) -> Array:
+        """(n,) means without delay, m."""
+        return self.means(0.0)
+
+    def speeds(self, late: float) -> Array:
+        """(n,) of the tool so many seconds before the rows, m/s: from the depths around the borders."""
+        first, last = self.borders[:-1] - late, self.borders[1:] - late
+        first, last = np.minimum(first, last - self.interval), np.maximum(last, first + self.interval)
+        before, after = (self._means(each - self.interval, each + self.interval) for each in (first, last))
+        return np.asarray((after - before) / (last - first))
+
+
+@dataclass(frozen=True, eq=False)
 class Motion:
-    """What the rig reports: time (n,) s, depth (n,) m, and the acceleration (n,) m/s2 of the tool."""
+    """What the rig reports: time (n,) s, depth (n,) m, and the acceleration (n,) m/s2 of the tool.
+
+    Where the rows are means, `record` has what they are means of, and the depth is that `late` seconds before them.
+    """
 
     time: Array
     depth: Array
     acceleration: Array
+    record: DepthRecord | None = None
+    late: float = 0.0
+
+    def before(self, seconds: float) -> Motion:
+        """The same so many seconds earlier."""
+        late = self.late + seconds
+        if self.record is None:
+            return replace(self, depth=np.interp(self.time - seconds, self.time, self.depth), late=late)
+        change = self.record.means(late) - (self.record.means(self.late) if self.late else self.record.given)
+        return replace(self, depth=self.depth + change, late=late)
+
+    @property
+    def speed(self) -> Array:
+        """(n,) m/s."""
+        if self.record is None:
+            return np.gradient(self.depth, self.time)
+        return self.record.speeds(self.late)
 
 
 class BodyResponse(Protocol):

@@ -119,17 +119,13 @@ class TrialPipeline:
             A depth or a value that the body's options do not cover.
         """
         if shift or height:
-            late = motion.time - shift
-            motion = replace(motion, depth=np.interp(late, motion.time, motion.depth) - height)
+            motion = motion.before(shift)
+            motion = replace(motion, depth=motion.depth - height)
         added = [(effect, values[effect.slug]) for effect in self.effects]
         clock = motion.time - motion.time[0] + FIRST_STEP
         body = PressedBody(lambda depth: gain * elastic.force(depth), clock, physics_of(added, self.around))
-        depth = motion.depth
-        for effect, own in added:
-            if effect.drive is not None:
-                depth = effect.drive(own, replace(motion, depth=depth), body)
-        trace = body.trace(depth)
-        press = PressHistory(motion.time, depth, trace.surface, trace.force, trace.elastic, trace.touching)
+        trace = _pressed(motion, added, body)
+        press = PressHistory(motion.time, trace.depth, trace.surface, trace.force, trace.elastic, trace.touching)
         readings = self._seen(elastic, press, added)
         for effect, own in added:
             if effect.observe is not None and (readings.markers is not None or not effect.needs_markers):
@@ -149,6 +145,30 @@ class TrialPipeline:
         if self.distance is not None:
             markers = markers / (1.0 - sink / self.distance)[..., None]
         return Readings(press.force, markers, sink)
+
+
+def _driven(motion: Motion, added: Sequence[Added], body: PressedBody) -> Array:
+    """Depth (n,) m to which the rig brings the tool."""
+    depth = motion.depth
+    for effect, own in added:
+        if effect.drive is not None:
+            depth = effect.drive(own, replace(motion, depth=depth), body)
+    return depth
+
+
+def _pressed(motion: Motion, added: Sequence[Added], body: PressedBody) -> PressTrace:
+    """The press; where rows are means, damped by how the elastic force changes within them, not from one to the next.
+
+    The change is that between the forces of the rows an interval of the record earlier and later.
+    """
+    depth, damping = _driven(motion, added, body), body.physics.damping
+    if motion.record is None or damping is None or damping.retardation == 0.0:
+        return body.trace(depth)
+    free, step = replace(body, physics=replace(body.physics, damping=None)), motion.record.interval
+    before, after = (free.trace(_driven(motion.before(each), added, body)).elastic for each in (step, -step))
+    trace = free.trace(depth)
+    force = trace.force + damping.retardation * (after - before) / (2.0 * step)
+    return replace(trace, force=np.where(trace.touching, np.maximum(force, np.minimum(trace.force, 0.0)), trace.force))
 
 
 @dataclass(frozen=True, eq=False)

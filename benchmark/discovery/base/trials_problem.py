@@ -155,7 +155,9 @@ def trial_refs(study: Study) -> tuple[TrialRef, ...]:
         for row in range(condition.size):
             signals = condition.signals[row]
             count = np.where(np.isfinite(signals), condition.count[row], 0.0)
-            motion = Motion(condition.time[row], condition.depth[row], condition.acceleration[row])
+            motion = Motion(
+                condition.time[row], condition.depth[row], condition.acceleration[row], condition.records[row]
+            )
             known = np.nan_to_num(signals)
             place = (number, row, int(condition.numbers[row]), condition.trials[row])
             out.append(TrialRef(*place, motion, known, count, *_between(motion.time, condition.frame_time[row])))

@@ -203,9 +203,10 @@ def delay(fitted: Fit, effect: Effect) -> float:
     signals, more = model.signals(fitted.vector, fitted.nuisance), added_by(fitted, effect.slug)
     added = rate = 0.0
     for trial, whole, part in zip(model.problem.trials, signals, more, strict=True):
-        count, force = trial.count[:, 0], part[:, 0]
+        rows = trial.count[:, 0] > 0.0
+        count, force, time = trial.count[rows, 0], part[rows, 0], trial.motion.time[rows]
         added += float(count @ force**2)
-        rate += float(count @ np.gradient(whole[:, 0] - force, trial.motion.time) ** 2)
+        rate += float(count @ np.gradient(whole[rows, 0] - force, time) ** 2)
     return math.sqrt(added / rate) if rate > 0.0 else math.inf
 
 

@@ -20,6 +20,7 @@ from benchmark.discovery.trials.rows import (
     bin_plan,
     binned,
     marker_frames,
+    record,
     resting_grid,
 )
 from benchmark.discovery.trials.segments import segments, stages
@@ -199,6 +200,7 @@ def _condition(
         time=data[..., 0] - data[:, :1, 0],
         depth=data[..., 1],
         acceleration=data[..., 2],
+        records=tuple(record(raw, plan, begin) for raw, begin in zip(group, data[:, 0, 0], strict=True)),
         signals=data[..., 3:],
         count=np.array([one.count for one in means]),
         frame_time=np.array([one.frame_time for one in means]) - data[:, :1, 0],

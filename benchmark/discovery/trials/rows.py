@@ -16,6 +16,7 @@ from benchmark.discovery.trials.marker_layout import Layout, grid
 from benchmark.discovery.trials.segments import Segment
 from benchmark.errors import InputError
 from benchmark.files import Camera, Trial
+from benchmark.physics import DepthRecord
 
 GROWTH = 1.35
 """Each bin is so many times as large as the one before it, away from a turning point."""
@@ -211,6 +212,12 @@ def binned(raw: RawTrial, plan: BinPlan, layout: Layout | None, seen: NDArray[np
         raw.frames, layout.signals(raw.markers[:, seen] - layout.origin), _edges(raw, plan)
     )
     return Binned(np.hstack([rows, signals]), np.column_stack([samples, *[frames] * len(layout.names)]), moment)
+
+
+def record(raw: RawTrial, plan: BinPlan, begin: float) -> DepthRecord:
+    """The whole record of the depth that the bins of a plan are means of, on a clock that begins so late, s."""
+    table = raw.trial.table
+    return DepthRecord(table.time - begin, table.depth, _edges(raw, plan) - begin)
 
 
 def _edges(raw: RawTrial, plan: BinPlan) -> Array:

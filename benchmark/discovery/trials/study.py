@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.trials.marker_layout import Layout
 from benchmark.files import Support, Tool
-from benchmark.physics import TrialContext
+from benchmark.physics import DepthRecord, TrialContext
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +27,8 @@ class ConditionData:
         Place of each trial in the session.
     time, depth, acceleration : (R, n)
         s, m, m/s2.
+    records : tuple of DepthRecord
+        What the depths of each trial are means of, on its clock.
     signals : (R, n, C)
         Force in N, then marker combinations in m; NaN where nothing was measured.
     count : (R, n, C)
@@ -48,6 +50,7 @@ class ConditionData:
     time: Array
     depth: Array
     acceleration: Array
+    records: tuple[DepthRecord, ...]
     signals: Array
     count: Array
     frame_time: Array

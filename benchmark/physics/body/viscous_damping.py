@@ -52,7 +52,7 @@ def _observe(values: Values, readings: Readings, motion: Motion, context: TrialC
     growth = values.get("drag_growth", 0.0)
     if values["drag"] <= 0.0 and growth <= 0.0:
         return readings
-    speed = np.gradient(motion.depth, motion.time) / REFERENCE_SPEED
+    speed = motion.speed / REFERENCE_SPEED
     formed = np.clip(motion.depth / (FORMED * context.peak_depth), 0.0, 1.0)
     resistance = (values["drag"] * formed + growth * np.maximum(readings.force, 0.0)) * REFERENCE_SPEED
     pushed = readings.force + resistance * np.sign(speed) * np.abs(speed) ** values["power"]

@@ -1,9 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from benchmark.models import UncoveredError
-from benchmark.physics import TrialContext, catalogue
-from benchmark.response.pipeline import trial_force
+from benchmark.physics import DepthRecord, Motion, TrialContext, catalogue
+from benchmark.response.pipeline import ForceAlone, TrialPipeline, trial_force
 from wavemodel import WaveError
 
 TIME = np.linspace(0.0, 20.0, 400)
@@ -54,3 +56,17 @@ def test_a_depth_beyond_the_law_is_uncovered() -> None:
 
     with pytest.raises(UncoveredError, match="1 mm at most"):
         trial_force(law, (), TIME, DEPTH, AROUND)
+
+
+def test_kelvin_voigt_damping_of_rows_that_are_means_is_the_mean_of_the_damping():
+    eta, raw, borders = 0.02, np.arange(0.0, 3.001, 0.001), np.linspace(0.0, 3.0, 61)
+    depth = 1e-3 * (1.2 - np.cos(2.0 * np.pi * raw))
+    record = DepthRecord(raw, depth, borders)
+    motion = Motion(0.5 * (borders[1:] + borders[:-1]), record.means(0.0), np.zeros(60), record)
+    pipeline = TrialPipeline(AROUND, (BY_SLUG["viscous_damping"],))
+    values = {"viscous_damping": {"damping_time": eta, "drag": 0.0, "drag_growth": 0.0, "power": 1.0}}
+    found = pipeline.readings(ForceAlone(_law), values, motion).force
+    exact = _law(record.means(0.0)) + eta * np.diff(_law(1e-3 * (1.2 - np.cos(2.0 * np.pi * borders)))) / 0.05
+    np.testing.assert_allclose(found[1:-1], np.maximum(exact, 0.0)[1:-1], atol=1e-3 * exact.max())
+    between = pipeline.readings(ForceAlone(_law), values, replace(motion, record=None)).force
+    assert np.abs(between - exact)[1:-1].max() > 5e-3 * exact.max()

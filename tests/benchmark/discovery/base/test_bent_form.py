@@ -72,7 +72,8 @@ def test_trials_that_a_bent_fit_steps_too_far_from_are_refitted_with_the_forms_a
     assert straight(loose).vector.size == first.vector.size
     monkeypatch.setattr(criteria, "TOO_FAR", -np.inf)
     difference = held_out(loose) - held_out(first)
-    np.testing.assert_allclose(difference, (strain(first) - strain(loose)) / difference.size, atol=1.0)
+    assert difference.min() > 0.0
+    assert difference.mean() == pytest.approx((strain(first) - strain(loose)) / difference.size, abs=1.0)
 
 
 @pytest.fixture(scope="module")

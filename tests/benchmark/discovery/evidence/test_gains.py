@@ -111,3 +111,17 @@ def test_a_damping_that_is_like_a_moments_delay_is_not_seen(session_of):
 
     assert delay(late(0.02), damping) == pytest.approx(0.02, rel=0.2)
     assert [seen(late(seconds), damping) for seconds in (0.003, 0.02)] == [False, True]
+
+
+def test_a_row_in_which_no_sample_fell_tells_of_no_delay(monkeypatch):
+    time = np.insert(np.linspace(0.0, 2.0, 21), 11, 1.0 + 1e-9)
+    elastic, count = 3.0 * time, np.ones((22, 1))
+    elastic[11], count[11] = elastic[11] + 0.01, 0.0
+    damped = np.full((22, 1), 0.02 * 3.0)
+    trial = SimpleNamespace(count=count, motion=SimpleNamespace(time=time))
+    model = SimpleNamespace(
+        signals=lambda vector, nuisance: [elastic[:, None] + damped], problem=SimpleNamespace(trials=[trial])
+    )
+    monkeypatch.setattr("benchmark.discovery.evidence.parameter_evidence.added_by", lambda fitted, slug: [damped])
+    fitted = SimpleNamespace(model=model, vector=None, nuisance=None)
+    assert delay(fitted, BY_SLUG["viscous_damping"]) == pytest.approx(0.02)

@@ -93,3 +93,15 @@ def test_effects_know_the_edge_of_the_tool(tmp_path, quick_session, edge, expect
     file = folder / "session.toml"
     file.write_text(file.read_text().replace('contact = "rigid_bonded"\n', f'contact = "rigid_bonded"\n{edge}'))
     assert {each.around.edge_radius for each in prepare(load_session(folder), 40).conditions} == {expected}
+
+
+def test_each_trial_keeps_the_record_that_its_rows_are_means_of(session_of):
+    condition = prepare(session_of(trials=4, speeds=(3e-3,)), 60).conditions[0]
+    for row, record in enumerate(condition.records):
+        full = condition.count[row, :, 0] > 1
+        assert full.sum() > 10
+        assert (record.borders[:-1][full] < condition.time[row][full]).all()
+        assert (record.borders[1:][full] > condition.time[row][full]).all()
+        np.testing.assert_allclose(
+            record.means(0.0)[full], condition.depth[row][full], atol=2e-3 * np.ptp(record.depth)
+        )
