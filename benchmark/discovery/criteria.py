@@ -186,6 +186,11 @@ NO_LATER = 0.005
 filter nothing says when a depth was read. Chosen with two synthetic sessions whose depth is 4 ms late (2.8 and 3.4 ms
 are left) and six dampings of seed 56000 (10.6 ms and more).
 """
+DEPTH_STEPS = 2.0
+"""A play of no more than so many of the smallest changes that the depth shows is none: within its rounding and scatter
+a play holds the depth still, which is how it foretells a force better. Chosen with two synthetic nulls (0.6 and 1.0
+steps of an encoder).
+"""
 OVER_NOISE, UNSEEN_ZERO = 3.0, 0.1
 """A force's zero lies within what rows at rest show, give or take so many times the noise; where none is at rest,
 within this share of the peak. First choice."""

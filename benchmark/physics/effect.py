@@ -284,6 +284,10 @@ class Effect:
         Whether the way back may be another than the way in, though a fit may find them alike.
     like_delay : bool
         Whether a force that is late by a moment looks like it.
+    acts_within : (values, context) -> s
+        The time that rows must resolve.
+    in_depth : str
+        The parameter that is a depth which the record of the depth must resolve.
     seen_by : str
         The parameter by which it shows in markers too, where there are some: what they do not show is another effect.
     richer : Effect or None
@@ -310,6 +314,8 @@ class Effect:
     needs_markers: bool = False
     remembers: bool = False
     like_delay: bool = False
+    acts_within: Callable[[Values, TrialContext], float] | None = None
+    in_depth: str = ""
     seen_by: str = ""
     richer: Effect | None = None
     further_terms_of: str = ""

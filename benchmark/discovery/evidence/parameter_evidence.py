@@ -189,12 +189,26 @@ def _added_force(fitted: Fit, grown: Sequence[_Strength], vector: Array) -> floa
 
 
 def seen(fitted: Fit, effect: Effect) -> bool:
-    """Whether it is more than a moment's delay, and markers show it if it must show in them, where there are any."""
+    """Whether the data resolve it in time and depth, and markers show it if it must show in them, if there are any."""
     if effect.like_delay and delay(fitted, effect) < criteria.NO_LATER:
+        return False
+    if not resolved(fitted, effect):
         return False
     if not effect.seen_by or fitted.model.problem.study.layout is None:
         return True
     return determined(fitted, effect, (effect.seen_by,))
+
+
+def resolved(fitted: Fit, effect: Effect) -> bool:
+    """Whether the records are fine enough in depth and time for what an effect does."""
+    if not (effect.in_depth or effect.acts_within):
+        return True
+    study, values = fitted.model.problem.study, fitted.model.values(fitted.vector)[effect.slug]
+    if effect.in_depth and values[effect.in_depth] < criteria.DEPTH_STEPS * study.depth_step:
+        return False
+    if effect.acts_within is None:
+        return True
+    return max(effect.acts_within(values, each.around) for each in study.conditions) > study.raw_interval
 
 
 def delay(fitted: Fit, effect: Effect) -> float:

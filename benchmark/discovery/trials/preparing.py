@@ -19,6 +19,7 @@ from benchmark.discovery.trials.rows import (
     acceleration,
     bin_plan,
     binned,
+    depth_step,
     marker_frames,
     record,
     resting_grid,
@@ -68,7 +69,8 @@ def prepare(session: Session, rows: int) -> Study:
         _condition(session, group, grid, seen, np.array([order[r.trial.name] for r in group]), rows) for group in kept
     )
     interval = float(np.median([np.median(np.diff(r.time)) for r in raw]))
-    return Study(conditions, grid, camera.distance if camera else None, interval, tuple(warnings))
+    step = float(np.median([depth_step(r.trial.table.depth) for r in raw]))
+    return Study(conditions, grid, camera.distance if camera else None, interval, step, tuple(warnings))
 
 
 def _few(session: Session) -> list[str]:

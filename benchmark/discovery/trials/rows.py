@@ -24,6 +24,10 @@ LEAST_BINS = 10
 """Of a segment."""
 FITTED = 5
 """Rows of a local quadratic."""
+SAME_DEPTH = 1e-10
+"""Depths that differ by no more are the same, m."""
+OF_NORMAL = 1.4826
+"""A normal standard deviation over the median of the sizes."""
 NEAR = (-0.04, 0.08)
 SPAN = 0.008
 """Bins whose depth comes within `NEAR` (shares of the peak) of contact span no more than `SPAN` of it."""
@@ -92,6 +96,17 @@ def bin_means(columns: Array, first: int, last: int, edges: Array) -> tuple[Arra
         middle = np.clip((0.5 * (edges[1:] + edges[:-1]) * n).astype(int), 0, n - 1)
         means[empty] = columns[first + middle[empty]]
     return means, counts.astype(float)
+
+
+def depth_step(depth: Array) -> float:
+    """The smallest change that a record of the depth (n,) shows, m: its rounding, or three deviations of its scatter.
+
+    Scatter is what third differences have: those of a motion that is sampled well are far smaller.
+    """
+    known = np.diff(np.unique(depth))
+    rounding = known[known > SAME_DEPTH].min(initial=np.inf)
+    scatter = OF_NORMAL * float(np.median(np.abs(np.diff(depth, 3)))) / np.sqrt(20.0) if depth.size > FITTED else 0.0
+    return float(max(rounding if np.isfinite(rounding) else 0.0, 3.0 * scatter))
 
 
 def acceleration(time: Array, depth: Array) -> Array:

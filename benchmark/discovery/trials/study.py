@@ -79,6 +79,8 @@ class Study:
         From camera to lower face, m.
     raw_interval : float
         Median time between raw rows, s.
+    depth_step : float
+        The smallest change that the depths show, m: their rounding or their scatter.
     warnings : tuple of str
     """
 
@@ -86,6 +88,7 @@ class Study:
     layout: Layout | None
     distance: float | None
     raw_interval: float
+    depth_step: float
     warnings: tuple[str, ...]
 
     @property

@@ -38,4 +38,4 @@ def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     return tuple({"width": 0.02 * context.peak_depth, "side": side} for side in (1.0, 0.0, 0.5))
 
 
-EFFECT = Effect(DESCRIPTION, "width", drive=_drive, starts=_starts)
+EFFECT = Effect(DESCRIPTION, "width", drive=_drive, starts=_starts, in_depth="width")

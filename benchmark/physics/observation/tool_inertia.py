@@ -21,4 +21,9 @@ def _observe(values: Values, readings: Readings, motion: Motion, context: TrialC
     return replace(readings, force=readings.force + values["mass"] * motion.acceleration)
 
 
-EFFECT = Effect(DESCRIPTION, "mass", observe=_observe)
+def _swing(values: Values, context: TrialContext) -> float:
+    """The time sqrt(m / k) of the tool on the stiffness k of the deepest press, s."""
+    return float((values["mass"] * context.peak_depth / context.peak_force) ** 0.5)
+
+
+EFFECT = Effect(DESCRIPTION, "mass", observe=_observe, acts_within=_swing)

@@ -19,9 +19,9 @@ from benchmark.discovery.evidence.gains import (
     strain,
     tissue_gain,
 )
-from benchmark.discovery.evidence.parameter_evidence import delay, seen
+from benchmark.discovery.evidence.parameter_evidence import delay, resolved, seen
 from benchmark.discovery.trials.preparing import prepare
-from benchmark.physics import catalogue
+from benchmark.physics import TrialContext, catalogue
 
 ONE = np.zeros(8, dtype=int)
 BY_SLUG = {effect.slug: effect for effect in catalogue()}
@@ -125,3 +125,21 @@ def test_a_row_in_which_no_sample_fell_tells_of_no_delay(monkeypatch):
     monkeypatch.setattr("benchmark.discovery.evidence.parameter_evidence.added_by", lambda fitted, slug: [damped])
     fitted = SimpleNamespace(model=model, vector=None, nuisance=None)
     assert delay(fitted, BY_SLUG["viscous_damping"]) == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize(
+    ("slug", "sizes", "told"),
+    [
+        ("backlash", {"width": [3e-6, 5e-6], "side": [0.5, 0.5]}, [False, True]),
+        ("tool_inertia", {"mass": [0.19, 0.21]}, [False, True]),
+        ("dry_friction", {"friction_force": [1e-9]}, [True]),
+    ],
+)
+def test_what_records_are_too_coarse_for_is_not_seen(slug, sizes, told):
+    """A play within two steps of 2 um; a mass that swings within 10 ms on 2 N at 1 mm."""
+    around = TrialContext(5e-3, 1e-2, 1e-3, 2.0, 20.0)
+    study = SimpleNamespace(depth_step=2e-6, raw_interval=0.01, conditions=[SimpleNamespace(around=around)])
+    for k, seen_so in enumerate(told):
+        values = {slug: {name: each[k] for name, each in sizes.items()}}
+        model = SimpleNamespace(problem=SimpleNamespace(study=study), values=lambda vector, own=values: own)
+        assert resolved(SimpleNamespace(model=model, vector=None), BY_SLUG[slug]) is seen_so

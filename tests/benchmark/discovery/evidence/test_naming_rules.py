@@ -33,7 +33,7 @@ def effect(slug, parameters=1, richer=None, acts_on="body"):
     description = SimpleNamespace(acts_on=acts_on, parameters=())
     names = ("p",) * parameters
     made = SimpleNamespace(slug=slug, names=names, richer=richer, description=description, seen_by="")
-    made.like_delay = False
+    made.like_delay, made.in_depth, made.acts_within = False, "", None
     made.further_terms_of, made.forms = "", (made,) if richer is None else (made, *richer.forms)
     return made
 
@@ -575,6 +575,7 @@ class Told:
 
 def strong(amplitude, amplitudes=(), form=(), **more):
     named = {"slug": "one", "amplitude": amplitude, "amplitudes": amplitudes, "form": form, "like_delay": False}
+    named |= {"in_depth": "", "acts_within": None}
     return SimpleNamespace(**named, **more)
 
 
@@ -686,7 +687,7 @@ def test_what_must_show_in_markers_shows_in_them_where_there_are_some(layout, sh
     made = Told((0.2, shown), (0.01**2, 0.05**2), SHARE, WHOLE)
     made.model.problem = SimpleNamespace(study=SimpleNamespace(layout=layout))
     assert seen(made, slip) is expected
-    assert seen(made, SimpleNamespace(slug="one", seen_by="", like_delay=False))
+    assert seen(made, SimpleNamespace(slug="one", seen_by="", like_delay=False, in_depth="", acts_within=None))
 
 
 def test_a_slip_that_no_marker_shows_is_neither_named_nor_a_look_alike(monkeypatch, known_densities):

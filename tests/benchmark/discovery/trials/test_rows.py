@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from benchmark.discovery.trials.rows import acceleration, frame_means, marker_frames
+from benchmark.discovery.trials.rows import acceleration, depth_step, frame_means, marker_frames
 from benchmark.errors import InputError
 from benchmark.files import Camera
 
@@ -44,3 +44,14 @@ def test_a_marker_beyond_the_grid_is_refused():
     table = SimpleNamespace(time=np.repeat([0.0, 0.1], 18), marker=number, x=0.001 * number, y=0.0 * number)
     with pytest.raises(InputError, match=r"17 is not in the grid of 3 x 2 .* allowed: 6 numbers"):
         marker_frames(SimpleNamespace(name="t", markers=table), camera)
+
+
+@pytest.mark.parametrize(("rounding", "scatter", "step"), [(1e-5, 1e-7, 1e-5), (1e-8, 2e-6, 6e-6), (1e-6, 0.0, 1e-6)])
+def test_the_smallest_change_of_a_depth_is_its_rounding_or_three_deviations_of_its_scatter(rounding, scatter, step):
+    time = np.arange(0.0, 10.0, 0.01)
+    depth = 1e-3 * (1.0 - np.cos(0.2 * np.pi * time)) + np.random.default_rng(3).normal(0.0, scatter, time.size)
+    assert depth_step(np.round(depth / rounding) * rounding) == pytest.approx(step, rel=0.2)
+
+
+def test_a_depth_that_stays_has_no_step():
+    assert depth_step(np.ones(40)) == 0.0
