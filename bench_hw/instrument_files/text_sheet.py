@@ -333,12 +333,23 @@ def _check_one_comma(path: Path, lines: Sequence[str], delimiter: str, told: Tol
         return
     first, width = numbers[0]
     header = next((width for number, width in reversed(widths) if number < first and width > 1), width)
+    wide = (number for number, width in numbers if width > header and _THOUSANDS.search(lines[number - 1]))
+    if any(width == header for _, width in numbers) and (number := next(wide, 0)):
+        found = len(lines[number - 1].split(","))
+        problem = f"the row has {found} cells, its header {header}: the comma seems to stand between thousands, too"
+        raise TableError(path, problem, _ANOTHER_SIGN, row=number, value=lines[number - 1])
     if width == 2 * header and len({each for _, each in numbers}) == 1:
         problem = (
             f"the row has {width} cells, its header {header}: the comma seems to stand between cells and in numbers"
         )
-        allowed = "another sign between cells (semicolon or tab), or numbers in quotes or with a point: export it anew"
-        raise TableError(path, problem, allowed, row=first, value=lines[first - 1])
+        raise TableError(path, problem, _ANOTHER_SIGN, row=first, value=lines[first - 1])
+
+
+_ANOTHER_SIGN: Final = (
+    "another sign between cells (semicolon or tab), or numbers in quotes or with a point: export it anew"
+)
+_THOUSANDS: Final = re.compile(r"(?:^|,)\s*[+-]?[1-9]\d{0,2},\d{3}(?:\.\d*)?\s*(?:,|$)", re.ASCII)
+"""A number whose thousands a comma marks, among cells that commas separate."""
 
 
 def _units_to_names(path: Path, rows: list[list[Cell]], decimal: str) -> bool:

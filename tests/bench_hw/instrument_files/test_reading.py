@@ -520,3 +520,13 @@ def test_a_needed_column_of_which_few_cells_have_a_unit_is_refused(tmp_path):
 )
 def test_what_is_no_number_under_a_decimal_sign_stays_text(cell, decimal, number):
     assert number_text(cell, decimal) == number
+
+
+def test_commas_between_thousands_and_cells_alike_are_refused(tmp_path):
+    """A press of 2000 um was one of 200, since 1,200.0 is two cells, without a word."""
+    one = press()
+    rows = [f"{t:.2f},{1e3 * d:,.1f},{1e3 * f:,.1f}" for t, d, f in zip(one.time, one.depth, one.force, strict=True)]
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(["Time (s),Distance (um),Force (mN)", *rows]))
+    with pytest.raises(TableError, match=r"[45] cells, its header 3: the comma seems to stand between thousands, too"):
+        read_instrument_file(path)
