@@ -530,3 +530,20 @@ def test_commas_between_thousands_and_cells_alike_are_refused(tmp_path):
     path.write_text("\n".join(["Time (s),Distance (um),Force (mN)", *rows]))
     with pytest.raises(TableError, match=r"[45] cells, its header 3: the comma seems to stand between thousands, too"):
         read_instrument_file(path)
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor", "same"), [("N", 1.0, True), ("N", 0.5, False), ("mN", 1e3, True), ("kN", 0.5e-3, False)]
+)
+def test_columns_that_are_proportional_otherwise_than_their_units_say_are_two(tmp_path, unit, factor, same):
+    """The half of the load that the second of two cells bears was taken for the first in other units."""
+    one = press()
+    rows = samples.rows(one.time, one.depth, one.force, factor * one.force, digits=(3, 5, 6, 8))
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join([f"Time (s),Distance (mm),Force (N),Force ({unit})", *rows]))
+    if same:
+        (record,) = read_instrument_file(path).records
+        assert record.table.force.max() == pytest.approx(one.force.max(), rel=1e-2)
+        return
+    with pytest.raises(TableError, match="two columns could be the force"):
+        read_instrument_file(path)
