@@ -5,6 +5,7 @@ What two columns could be, and a unit that stands nowhere, are asked for by nami
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -94,14 +95,23 @@ def _dimension(unit: str) -> str | None:
     return None if known is None else UNITS[known][1]
 
 
+SAME_UNITS = 0.02
+"""How far two columns of one measurement may be from what their units say: rounded, and by other pounds and grams."""
+
+
 def _same(block: Block, first: int, other: int) -> bool:
-    """Whether two columns are the same measurement in two units: their numbers are proportional."""
+    """Whether two columns are the same measurement in two units: their numbers are proportional, by what units say."""
     rows = np.flatnonzero(~block.lacking(first) & ~block.lacking(other))
     if len(rows) < 3:
         return False
     a, b = block.numbers(first, rows), block.numbers(other, rows)
     spread = float(np.abs(a).max() * np.abs(b).max())
     ratio = float(a @ b) / max(float(a @ a), 1e-300)
+    units = [unit_of(block.units[k]) for k in (first, other)]
+    if units[0] and units[1]:
+        (one, dimension), (two, another) = (UNITS[unit] for unit in units if unit)
+        if dimension != another or not math.isclose(abs(ratio) * two, one, rel_tol=SAME_UNITS):
+            return False
     return bool(spread > 0.0 and np.allclose(b, ratio * a, rtol=0.0, atol=2e-3 * float(np.abs(b).max())))
 
 

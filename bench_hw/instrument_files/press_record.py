@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.blocks import Block
 from bench_hw.instrument_files.column_choice import Taken, header_line, takes
-from bench_hw.instrument_files.text_sheet import is_absent
+from bench_hw.instrument_files.text_sheet import ONE_UNIT, is_absent, unit_in
 from bench_hw.instrument_files.told import AUTOMATIC, KEPT, Told, asking, asking_key, parse_source
 from bench_hw.instrument_files.vocabulary import COMPRESSION, DIMENSIONS, TENSION, role_of, unit_scale
 from bench_hw.tables.columns import LARGEST, check_increasing, check_row_count
@@ -184,8 +184,10 @@ def _rows(block: Block, found: Mapping[str, Taken], told: Told, notes: list[str]
         first = f"row {line}, {block.names[taken.column]!r} {str(cell)!r}"
         notes.append(f"{len(within)} rows without a number in a column that is needed are left out, as told ({first})")
         return np.setdiff1d(kept, within)
-    problem = "the cell is empty" if cell == "" else "the cell is no finite number"
-    allowed = f"a number; or leave such rows out, {asking_key('drop_empty', 'true')}"
+    problem, number = "the cell is empty" if cell == "" else "the cell is no finite number", "a number"
+    if unit_in(cell, block.decimal) is not None:
+        problem, number = "the cell has a unit behind its number, and others have none or another", ONE_UNIT
+    allowed = f"{number}; or leave such rows out, {asking_key('drop_empty', 'true')}"
     raise TableError(block.path, problem, allowed, row=line, column=block.names[taken.column], value=str(cell))
 
 

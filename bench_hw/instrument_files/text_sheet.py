@@ -10,7 +10,7 @@ import csv
 import math
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -18,11 +18,14 @@ from typing import Final
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.told import Told, asking_key
-from bench_hw.instrument_files.vocabulary import label_and_unit, role_of
+from bench_hw.instrument_files.vocabulary import UNITS, label_and_unit, role_of, unit_of
 from bench_hw.storage.regular_file import TABLE, read_regular
 
 Cell = str | float
 """A cell: text without blanks around it (`""` if empty), or the number a workbook holds."""
+
+Counts = Callable[[Cell, str], bool]
+"""Whether a cell counts as a number, under a decimal sign."""
 
 DELIMITERS: Final = ("\t", ";", ",", "|", " ")
 NAMES: Final = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar", " ": "blanks"}
@@ -37,13 +40,17 @@ _BOMS: Final = (
 NANOSCOPE: Final = re.compile(rb"\\\*(?:Force )?[Ff]ile list")
 """How the header of Bruker's NanoScope begins, before counts of its own."""
 _BYTE_ENCODINGS: Final = ("gb18030", "shift_jis", "cp1250", "cp1252")
-_MARKS: Final = "'\N{RIGHT SINGLE QUOTATION MARK}\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}"
-"""What stands between thousands besides the other decimal sign, in Switzerland and France."""
-_NUMBER: Final = {
-    decimal: re.compile(
-        rf"[+-]?(?:\d{{1,3}}(?:[{other}{_MARKS}]\d{{3}})+|\d+)?(?:[{decimal}]\d*)?(?:[eE][+-]?\d+)?", re.ASCII
-    )
+_MARKS: Final = (
+    "'\N{RIGHT SINGLE QUOTATION MARK} \N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}\N{THIN SPACE}\N{FIGURE SPACE}"
+)
+"""What stands between thousands besides the other decimal sign, in Switzerland and France; no thousands begin by 0."""
+_WRITTEN: Final = {
+    decimal: rf"[+-]?(?:[1-9]\d{{0,2}}(?:[{other}{_MARKS}]\d{{3}})+|\d+)?(?:[{decimal}]\d*)?(?:[eE][+-]?\d+)?"
     for decimal, other in ((".", ","), (",", "."))
+}
+_NUMBER: Final = {decimal: re.compile(written, re.ASCII) for decimal, written in _WRITTEN.items()}
+_QUANTITY: Final = {
+    decimal: re.compile(rf"({written})\s*([^\d\s.,+'-]\S*)", re.ASCII) for decimal, written in _WRITTEN.items()
 }
 _UNMARKED: Final = {
     decimal: str.maketrans({",": "."} | dict.fromkeys(f"{other}{_MARKS}"))
@@ -56,6 +63,7 @@ _INFINITE: Final = ("inf", "+inf", "-inf", "infinity", "-infinity", "1.#inf", "-
 _ERRORS: Final = ("#n/a", "#nv", "#div/0!", "#num!", "#zahl!", "#value!", "#wert!", "1.#ind", "-1.#ind", "1.#qnan")
 ABSENT: Final = frozenset(("nan", "-nan", "n/a", "null", "--", "---", *_INFINITE, *_ERRORS))
 """What stands, in any case of letters, where a program had no number: a cell of a column, never the name of one."""
+ONE_UNIT: Final = "the same known unit behind every number of a column, or in its name alone"
 _TERNARY = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}", re.ASCII)
 
 
@@ -98,6 +106,14 @@ def is_number(cell: Cell, decimal: str) -> bool:
     return bool(digits and _NUMBER[decimal].fullmatch(cell)) or bool(CLOCK.fullmatch(cell))
 
 
+def unit_in(cell: Cell, decimal: str) -> str | None:
+    """The known unit that stands behind the number of a cell, as in `1.2 mm`; None for any other cell."""
+    if not isinstance(cell, str) or cell[:1] not in "0123456789+-.," or is_number(cell, decimal):
+        return None
+    found = _QUANTITY[decimal].fullmatch(cell)
+    return unit_of(found[2]) if found and is_number(found[1], decimal) else None
+
+
 def is_absent(cell: Cell) -> bool:
     """Whether a cell says that there is no number."""
     return not math.isfinite(cell) if not isinstance(cell, str) else cell.casefold() in ABSENT
@@ -129,9 +145,11 @@ def text_sheet(path: Path, told: Told) -> Sheet:
         raise NoNumbersError(path, "the file is empty", "a header and rows of numbers")
     delimiter, decimal = _signs(path, lines, told)
     rows = [_cells(path, number, line, delimiter) for number, line in enumerate(lines, start=1)]
+    said = f"{encoding}, cells separated by {NAMES.get(delimiter, repr(delimiter))}, decimal {_sign_name(decimal)}"
+    if _units_to_names(path, rows, decimal):
+        said += ", units behind the numbers of cells"
     if not told.decimal:
         _check_ternary(path, rows, decimal)
-    said = f"{encoding}, cells separated by {NAMES.get(delimiter, repr(delimiter))}, decimal {_sign_name(decimal)}"
     return Sheet("", rows, range(1, len(rows) + 1), decimal, said)
 
 
@@ -218,17 +236,52 @@ def _signs(path: Path, lines: Sequence[str], told: Told) -> tuple[str, str]:
     sample = [line for line in lines[:SAMPLE] if line.strip()] + [line for line in lines[-SAMPLE:] if line.strip()]
     delimiters = [_delimiter(told.delimiter)] if told.delimiter else list(DELIMITERS)
     decimals = [told.decimal] if told.decimal else [".", ","]
-    scored = [
-        (_score(sample, delimiter, decimal), -order, delimiter, decimal)
-        for order, delimiter in enumerate(delimiters)
+    signs = [
+        (delimiter, decimal)
+        for delimiter in delimiters
         for decimal in decimals
         if delimiter != decimal or any('"' in line for line in sample)
     ]
-    best = max(scored)
+    if not told.delimiter and any(_is_table(sample, *each) for each in signs):
+        signs = [each for each in signs if each[0] != " "]  # which stands between thousands there
+    best = _best(sample, signs, _is_plain)
+    if best[0] == 0:
+        best = _best(sample, [each for each in signs if each[0] != " "], _is_loose)
     if best[0] == 0:
         _no_numbers(path, lines, told)
     _check_one_comma(path, lines, best[2], told)
     return best[2], best[3]
+
+
+def _best(sample: Sequence[str], signs: Sequence[tuple[str, str]], counts: Counts) -> tuple[int, int, str, str]:
+    """The largest score, its order, delimiter and decimal sign; of equal ones the first delimiter and the point."""
+    scored = [
+        (_score(sample, delimiter, decimal, counts)[0], -order, delimiter, decimal)
+        for order, (delimiter, decimal) in enumerate(signs)
+    ]
+    return max(scored, default=(0, 0, "", ""))
+
+
+def _is_table(sample: Sequence[str], delimiter: str, decimal: str) -> bool:
+    """Whether tabs, or another sign than blanks that splits a row of words as often, leave cells that are numbers."""
+    if delimiter == " ":
+        return False
+    score, width = _score(sample, delimiter, decimal, _is_loose)
+    words = (line.split(delimiter) for line in sample)
+    return score > 0 and (
+        delimiter == "\t"
+        or any(len(row) == width and not any(_is_loose(cell, decimal) for cell in row) for row in words)
+    )
+
+
+def _is_plain(cell: Cell, decimal: str) -> bool:
+    """A number without blanks, which may as well stand between two cells."""
+    return is_number(cell, decimal) and " " not in str(cell)
+
+
+def _is_loose(cell: Cell, decimal: str) -> bool:
+    """A number with blanks between thousands or a unit behind it, too."""
+    return is_number(cell, decimal) or unit_in(cell, decimal) is not None
 
 
 def _delimiter(told: str) -> str:
@@ -236,21 +289,21 @@ def _delimiter(told: str) -> str:
     return named.get(told, told[:1])
 
 
-def _score(sample: Sequence[str], delimiter: str, decimal: str) -> int:
-    """Numeric cells in rows of the commonest width from two cells on; none where other cells of them are text."""
+def _score(sample: Sequence[str], delimiter: str, decimal: str, counts: Counts) -> tuple[int, int]:
+    """Numeric cells in rows of the commonest width from two on, none where other cells are text; and that width."""
     rows = []
     for line in sample:
         try:
             cells = _cells(Path(), 0, line, delimiter)
         except TableError:
             continue
-        numeric = sum(is_number(cell, decimal) for cell in cells)
+        numeric = sum(counts(cell, decimal) for cell in cells)
         if numeric >= 2:
             rows.append((len(cells), 2 * numeric - sum(cell != "" for cell in cells)))
     if not rows:
-        return 0
+        return 0, 0
     width = Counter(width for width, _ in rows).most_common(1)[0][0]
-    return max(0, sum(numeric for each, numeric in rows if each == width))
+    return max(0, sum(numeric for each, numeric in rows if each == width)), width
 
 
 def _no_numbers(path: Path, lines: Sequence[str], told: Told) -> None:
@@ -259,9 +312,14 @@ def _no_numbers(path: Path, lines: Sequence[str], told: Told) -> None:
     said = " and ".join(f"{option} {value!r}" for option, value in options.items() if value)
     problem = f"no rows of numbers were found{f' with {said}, as told' if said else ''}"
     allowed = f"rows of at least two numbers, separated by tab, semicolon, comma or blanks; or {_ASK_DELIMITER}"
+    first = next((number for number, line in enumerate(lines, start=1) if _UNKNOWN.search(line)), first)
+    if _UNKNOWN.search(lines[first - 1]):
+        allowed += f"; behind a number nothing but a known unit, {ONE_UNIT}"
     raise NoNumbersError(path, problem, allowed, row=first, value=lines[first - 1].strip())
 
 
+_UNKNOWN: Final = re.compile(r"(?:^|[\t;,|])\s*[+-]?\d[\d.,]*\s*[^\W\d_]+\s*(?:$|[\t;,|])")
+"""A cell with letters behind its number, none of which is a known unit where no rows are found."""
 _ASK_DELIMITER: Final = asking_key("delimiter", "tab")
 
 
@@ -275,12 +333,82 @@ def _check_one_comma(path: Path, lines: Sequence[str], delimiter: str, told: Tol
         return
     first, width = numbers[0]
     header = next((width for number, width in reversed(widths) if number < first and width > 1), width)
+    wide = (number for number, width in numbers if width > header and _THOUSANDS.search(lines[number - 1]))
+    if any(width == header for _, width in numbers) and (number := next(wide, 0)):
+        found = len(lines[number - 1].split(","))
+        problem = f"the row has {found} cells, its header {header}: the comma seems to stand between thousands, too"
+        raise TableError(path, problem, _ANOTHER_SIGN, row=number, value=lines[number - 1])
     if width == 2 * header and len({each for _, each in numbers}) == 1:
         problem = (
             f"the row has {width} cells, its header {header}: the comma seems to stand between cells and in numbers"
         )
-        allowed = "another sign between cells (semicolon or tab), or numbers in quotes or with a point: export it anew"
-        raise TableError(path, problem, allowed, row=first, value=lines[first - 1])
+        raise TableError(path, problem, _ANOTHER_SIGN, row=first, value=lines[first - 1])
+
+
+_ANOTHER_SIGN: Final = (
+    "another sign between cells (semicolon or tab), or numbers in quotes or with a point: export it anew"
+)
+_THOUSANDS: Final = re.compile(r"(?:^|,)\s*[+-]?[1-9]\d{0,2},\d{3}(?:\.\d*)?\s*(?:,|$)", re.ASCII)
+"""A number whose thousands a comma marks, among cells that commas separate."""
+
+
+def _units_to_names(path: Path, rows: list[list[Cell]], decimal: str) -> bool:
+    """Take a unit that stands in every cell of a column to the column's name; whether there was any.
+
+    A column with cells of several units, or some without, stays as it is where other columns are numbers, and is
+    refused where it is needed; where no row is numbers without it, it is refused here.
+    """
+    data, only = _rows_of(rows, is_number, decimal), False
+    if not data:
+        data, only = _rows_of(rows, _is_loose, decimal), True
+    taken = False
+    for column in range(max((len(rows[row]) for row in data), default=0)):
+        filled = [row for row in data if len(rows[row]) > column and rows[row][column] != ""]
+        if not only and not (filled and unit_in(rows[filled[0]][column], decimal)):
+            continue
+        units = {row: unit_in(rows[row][column], decimal) for row in filled}
+        spelt = {unit and UNITS[unit] for unit in units.values()}
+        if spelt == {None} or not spelt:
+            continue
+        if len(spelt) == 1:
+            _name_unit(path, rows, (data[0], column), str(units[filled[0]]))
+            for row in filled:
+                found = _QUANTITY[decimal].fullmatch(str(rows[row][column]))
+                rows[row][column] = "" if found is None else found[1]
+            taken = True
+        elif only:
+            row = next(row for row in filled if units[row] != units[filled[0]])
+            first = f"row {filled[0] + 1} has {units[filled[0]] or 'no unit'}"
+            problem = f"the cells of column #{column + 1} are not in one unit: {first}"
+            raise TableError(path, problem, ONE_UNIT, row=row + 1, value=str(rows[row][column]))
+    return taken
+
+
+def _rows_of(rows: Sequence[Sequence[Cell]], counts: Counts, decimal: str) -> list[int]:
+    """The rows of the commonest width that hold two numeric cells or more, and no less of them than of other cells."""
+    found = []
+    for row, cells in enumerate(rows):
+        numeric = sum(counts(cell, decimal) for cell in cells)
+        if numeric >= 2 and 2 * numeric >= sum(cell != "" for cell in cells):
+            found.append(row)
+    width = Counter(len(rows[row]) for row in found).most_common(1)
+    return [row for row in found if len(rows[row]) == width[0][0]]
+
+
+def _name_unit(path: Path, rows: list[list[Cell]], first: tuple[int, int], unit: str) -> None:
+    """Write the unit of a column's cells to its name; refuses another one that is told above its `first` cell."""
+    top, column = first
+    above = [row for row in range(top - 1, max(-1, top - 5), -1) if sum(cell != "" for cell in rows[row]) >= 2]
+    for row in above:
+        cell = str(rows[row][column]) if len(rows[row]) > column else ""
+        told = unit_of(cell) or label_and_unit(cell)[1]
+        if told:
+            if UNITS[told] != UNITS[unit]:
+                problem = f"the cells of column #{column + 1} are in {unit}, its name in row {row + 1} says {told}"
+                raise TableError(path, problem, ONE_UNIT, row=top + 1, value=str(rows[top][column]))
+            return
+    if above and len(rows[above[0]]) > column:
+        rows[above[0]][column] = f"{rows[above[0]][column]} [{unit}]".strip()
 
 
 def _check_ternary(path: Path, rows: Sequence[Sequence[Cell]], decimal: str) -> None:

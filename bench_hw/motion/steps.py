@@ -15,6 +15,10 @@ from bench_hw.motion.protocol_file import Approach, Cycle, Move, Protocol, Retra
 
 _PATIENCE = 3.0
 _GRACE = 2.0
+_AHEAD = 0.5
+"""How far ahead of the tool a press to a force is sent, s of its speed: as far as a board goes that nobody stops."""
+_LEAST_AHEAD = 4.0
+"""The least of that in the actuator's own uncertainties, so that its dead band does not stop it on the way."""
 
 
 class MotionError(DeviceError):
@@ -156,7 +160,8 @@ def _(segment: Move, now: Observation) -> Iterator[Action]:
     force = segment.force or 0.0
     down = now.press < force
     target = now.travel[1] if down else now.travel[0]
-    yield from _go(now, target, segment.speed, until=force, down=down)
+    ahead = max(_AHEAD * segment.speed, _LEAST_AHEAD * now.tolerance) if down else None
+    yield from _go(now, target, segment.speed, until=force, down=down, ahead=ahead)
     if (now.press < force) if down else (now.press > force):
         raise MotionError(
             f"move: {force:g} N was not reached within the travel (press force {now.press:.3f} N at "
@@ -180,14 +185,25 @@ def _(segment: Cycle, now: Observation) -> Iterator[Action]:
 
 
 def _go(
-    now: Observation, target: float, speed: float, *, until: float | None = None, down: bool = True
+    now: Observation,
+    target: float,
+    speed: float,
+    *,
+    until: float | None = None,
+    down: bool = True,
+    ahead: float | None = None,
 ) -> Iterator[Action]:
-    """Move to `target` and wait for it, or stop on the way when the press force passes `until`."""
+    """Move to `target` and wait for it, or stop on the way when the press force passes `until`.
+
+    With `ahead` (m) the actuator is never sent farther than that beyond where it stands; it is sent on before it comes
+    there, so that it does not stop. A board has no watchdog: it goes on to where it was sent when its computer dies.
+    """
     target = _inside_travel(now, target)
     if now.at(target) and until is None:
         return
     deadline = now.time + _PATIENCE * abs(target - now.position) / speed + _GRACE
-    yield MoveTo(target, speed)
+    sent = target if ahead is None else min(target, now.position + ahead)
+    yield MoveTo(sent, speed)
     while not now.at(target):
         if until is not None and (now.press >= until if down else now.press <= until):
             yield Halt()
@@ -197,6 +213,9 @@ def _go(
                 f"the actuator did not reach {target * 1e3:.2f} mm in {_PATIENCE:g} times the time it needs: it "
                 f"stands at {now.position * 1e3:.2f} mm; check its power and the load"
             )
+        if ahead is not None and sent < target and sent - now.position <= 0.5 * ahead:
+            sent = min(target, now.position + ahead)
+            yield MoveTo(sent, speed)
         yield None
 
 

@@ -88,6 +88,8 @@ def _show_accepted(accepted: Accepted, console: Console, *, as_json: bool) -> in
             console.say(f"  warning: {warning}")
         for step in accepted.steps:
             print(step.words())
+        if accepted.unseen is not None:
+            print(accepted.unseen)
         print(f"baseline: {accepted.path}")
     return 0
 

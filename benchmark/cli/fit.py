@@ -68,10 +68,12 @@ def fit(
 ) -> int:
     """Fit the specimen of a trial session and say what the trials can tell.
 
-    Writes fit.json, fitted_parameters.csv and report.html; with --free also identified.toml, a tissue file.
+    Writes fit.json, fitted_parameters.csv and report.html; with --free also identified.toml, a tissue file. A fit
+    that does not settle is written, too, and ends with exit code 4.
     """
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
+    from benchmark.errors import SolverError
     from benchmark.runs import FitRequest, fit_to_folder
     from benchmark.runs.parameters_run import ParameterWish
 
@@ -88,6 +90,8 @@ def fit(
         print_json({**outcome.document, "out": str(outcome.folder)})
     else:
         print(f"{outcome.headline}\n  report: {outcome.folder / 'report.html'}")
+    if not outcome.settled:
+        raise SolverError(f"the fit did not settle; what it came to is in {outcome.folder}, marked settled = false")
     return 0
 
 

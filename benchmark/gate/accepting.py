@@ -10,12 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError, SolverError, TissuebenchError
-from benchmark.gate.accuracy import CURVE, farthest_step, wide_remarks
+from benchmark.gate.accuracy import CURVE, compare_values, farthest_step, wide_remarks
 from benchmark.gate.baseline import (
     BASELINE_SIGN,
     Baseline,
     StoredTiming,
     StoredValue,
+    differing,
     read_baseline,
     staged_baseline,
     write_baseline,
@@ -55,11 +56,23 @@ class Accepted:
     path: Path
     steps: tuple[Step, ...]
     warnings: tuple[str, ...]
+    differed: tuple[str, ...] = ()
+
+    @property
+    def unseen(self) -> str | None:
+        """That values differed which no check will be red for now; None where none did."""
+        if not self.differed:
+            return None
+        return (
+            f"accepted, not checked: {differing(self.differed)} from the baseline that was here by more than the gate "
+            "allows; a job that accepts each time is green whatever happens"
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """What `check --accept --json` prints."""
         steps = [vars(step).copy() for step in self.steps]
-        return {"schema": 1, "accepted": str(self.path), "changes": steps, "warnings": list(self.warnings)}
+        said = {"warnings": list(self.warnings), "differed": list(self.differed)}
+        return {"schema": 1, "accepted": str(self.path), "changes": steps, **said}
 
 
 def accept(request: CheckRequest, listener: Listener) -> Accepted:
@@ -84,8 +97,17 @@ def accept(request: CheckRequest, listener: Listener) -> Accepted:
     origin = origin_of(plan, request.seed)
     old, warnings = _old(request.baseline_path, plan.file.name)
     new, wide = _measured(plan, origin, listener)
-    _put_down(request, new)
-    return Accepted(request.baseline_path, _steps(old, new), (*warnings, *wide))
+    differed = _differed(old, new, plan)
+    _put_down(request, new.model_copy(update={"differed": differed}))
+    return Accepted(request.baseline_path, _steps(old, new), (*warnings, *wide), tuple(differed))
+
+
+def _differed(old: Baseline | None, new: Baseline, plan: GatePlan) -> list[str]:
+    """The values, and curves by their step, that a check against the old baseline would have been red for."""
+    before = {} if old is None else old.accuracy
+    both = {name: value for name, value in new.accuracy.items() if name in before and before[name].unit == value.unit}
+    rows = compare_values(both, {name: before[name] for name in both}, plan.file.tolerances, "the old baseline")
+    return [row.label for row in rows if not row.passed]
 
 
 def _put_down(request: CheckRequest, new: Baseline) -> None:

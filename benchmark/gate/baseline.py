@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
@@ -88,6 +88,8 @@ class Baseline(_Stored):
         Where it was made.
     accuracy, timing
         By quantity.
+    differed
+        Gated values that were farther from those of the baseline that this one replaced than the gate allows.
     """
 
     schema_: Annotated[int, Field(alias="schema")] = SCHEMA
@@ -98,6 +100,14 @@ class Baseline(_Stored):
     machine: Machine
     accuracy: Mapping[str, StoredValue]
     timing: Mapping[str, StoredTiming]
+    differed: list[str] = Field(default_factory=list)
+
+
+def differing(names: Sequence[str]) -> str:
+    """How many values differ, the first of them by name, as the beginning of a sentence."""
+    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    shown = f"({', '.join(names[:3])}{more})"
+    return f"1 gated value {shown} differs" if len(names) == 1 else f"{len(names)} gated values {shown} differ"
 
 
 def write_baseline(path: Path, baseline: Baseline) -> Path:
@@ -106,6 +116,8 @@ def write_baseline(path: Path, baseline: Baseline) -> Path:
     for value in table["accuracy"].values():
         if value["curve"] is None:
             del value["curve"]
+    if not table["differed"]:
+        del table["differed"]
     return write_json(path, table)
 
 

@@ -66,6 +66,13 @@ class CheckBasis:
             return True
         return self.baseline.machine.same_as(origin.machine)
 
+    def accepted_here(self, origin: Origin) -> tuple[str, ...]:
+        """Values that differed from an earlier baseline, where this one was accepted at the revision checked now."""
+        if self.baseline is None or self.baseline.revision is None or origin.revision is None:
+            return ()
+        same = self.baseline.revision.rstrip("+") == origin.revision.rstrip("+")
+        return tuple(self.baseline.differed) if same else ()
+
     def remarks(self, origin: Origin, margin: float) -> list[str]:
         """What a reader must know of a stored baseline whose times are judged; `margin` is that of another machine."""
         if self.rival is not None or self.baseline is None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.gate.accuracy import AccuracyRow, compare_values, curve_remarks, unsteady_remarks, wide_remarks
-from benchmark.gate.baseline import StoredValue
+from benchmark.gate.baseline import StoredValue, differing
 from benchmark.gate.check_basis import CheckBasis, stored_baseline
 from benchmark.gate.check_page import check_page
 from benchmark.gate.ci_files import JUNIT_SIGN, MARKDOWN_SIGN, junit_text, markdown_text
@@ -96,7 +96,12 @@ def _verdict(
     compared = basis.values()
     accuracy = compare_values(values, compared, file.tolerances, basis.values_from)
     measured, timing = _times(head, basis, origin, seed, listener)
+    accepted = basis.accepted_here(origin)
+    unseen = (
+        f"the baseline was accepted at this same revision, and {differing(accepted)} from the one before: unseen here"
+    )
     warnings = (
+        *([unseen] if accepted else []),
         *curve_remarks(values, compared, basis.values_from),
         *wide_remarks(values, file.tolerances),
         *unsteady_remarks(values, _once_more(head, accuracy)),
@@ -112,6 +117,7 @@ def _verdict(
         rounds=measured.rounds,
         against=None if basis.rival is None else basis.rival.commit,
         warnings=warnings,
+        accepted_here=accepted,
     )
     return verdict, measured
 

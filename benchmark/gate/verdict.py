@@ -30,6 +30,9 @@ class CheckVerdict:
         Full name of the other commit; None for a stored baseline.
     warnings
         What a reader must know.
+    accepted_here
+        Values for which no check can be red: the baseline was accepted at this revision, in place of one from which
+        they differed.
     """
 
     gate: str
@@ -40,6 +43,7 @@ class CheckVerdict:
     rounds: int
     against: str | None
     warnings: Sequence[str]
+    accepted_here: Sequence[str] = ()
 
     @property
     def passed(self) -> bool:
@@ -99,6 +103,7 @@ class CheckVerdict:
             "timing": [row.to_dict() for row in self.timing],
             "rounds": self.rounds,
             "warnings": list(self.warnings),
+            "accepted_here": list(self.accepted_here),
         }
 
 

@@ -193,7 +193,8 @@ SCATTER = 0.25
 
 def fit_warnings(trials: Sequence[TrialFit], pooled: PooledStiffness) -> list[str]:
     """Sentences on what limits the fit, each once for all trials."""
-    return [text for text in (_time(trials), _misfit(trials), _scatter(trials, pooled), _few(pooled)) if text]
+    found = (_far(pooled), _time(trials), _misfit(trials), _scatter(trials, pooled), _few(pooled))
+    return [text for text in found if text]
 
 
 def elastic_only(trials: Sequence[TrialFit]) -> tuple[str, ...]:
@@ -250,6 +251,19 @@ def _misfit(trials: Sequence[TrialFit]) -> str:
 
 OTHER_UNIT = 4.0
 """Fold in stiffness between trials from which on one may be in another unit (N and lbf, the nearest two, are 4.4)."""
+
+
+FAR = 100.0
+"""Times the stiffness before a fit from which on a unit is in doubt (mN under N are 1000, grams-force 102)."""
+
+
+def _far(pooled: PooledStiffness) -> str:
+    if 1.0 / FAR < pooled.value < FAR:
+        return ""
+    return (
+        f"the stiffness is {pooled.value:.3g} times that of the specimen before the fit: see whether force (N) and "
+        "depth (mm) are in the units that their columns tell, and whether the specimen is the one that was pressed"
+    )
 
 
 def _scatter(trials: Sequence[TrialFit], pooled: PooledStiffness) -> str:

@@ -13,7 +13,7 @@ from benchmark.errors import InputError
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel
 from benchmark.models.fea_results import READERS
-from benchmark.models.model_result import ModelResult, profile_radii, slips
+from benchmark.models.model_result import Array, Drive, ModelResult, profile_radii, slips
 from benchmark.models.prepare import scenario_drive
 from benchmark.models.reference_table import (
     check_at_peak,
@@ -29,16 +29,19 @@ from benchmark.models.reference_table import (
 from benchmark.models.user_file import UserFile
 from reports import write_csv
 
+FAR_APART = 100.0
+"""Models this many times apart are not in the same unit, rather than wrong: mm and m, or um and mm, are 1000."""
 NO_TIME = "a table has no compute time: timing and speed-up of the FEM are empty"
 EMPTY = "a table has no profile and no compute time: the profile, timing and speed-up of the FEM are empty"
 
 
 @dataclass(frozen=True)
 class Reference:
-    """A user's own FEA: what reports call it, and its values as a model's."""
+    """A user's own FEA: what reports call it, its values as a model's, and its file."""
 
     name: str
     result: ModelResult
+    path: Path
 
 
 def read_reference(path: Path, scenario: Scenario) -> Reference:
@@ -86,9 +89,21 @@ def read_reference(path: Path, scenario: Scenario) -> Reference:
         warnings=(
             EMPTY if np.isnan(shape).all() else NO_TIME,
             *slips(found.force, found.top, scenario.tissue.thickness, "fem_mm is in mm"),
+            *_not_as_deep(path, drive, found.top[:, 0], names[0]),
         ),
     )
-    return Reference(f"FEA of {path.name}", result)
+    return Reference(f"FEA of {path.name}", result, path)
+
+
+def _not_as_deep(path: Path, drive: Drive, top: Array, layer: str) -> tuple[str, ...]:
+    """That the surface's deflection (n,), m, is of another size than the depth the scenario prescribes it."""
+    largest, expected = (float(np.nanmax(np.abs(each), initial=0.0)) for each in (top, drive.value))
+    if drive.control != "depth" or not largest or 1.0 / FAR_APART < largest / expected < FAR_APART:
+        return ()
+    return (
+        f"{path}, column fem_mm: the largest deflection of {layer} is {1e3 * largest:.3g} mm, where the scenario "
+        f"presses it {1e3 * expected:.3g} mm deep; fem_mm is in mm",
+    )
 
 
 def _widest(scenario: Scenario) -> float:

@@ -24,11 +24,12 @@ from benchmark.runs.output.document import describe_environment
 from benchmark.runs.parameters_run import ParameterWish, answer_of, common_factor_warnings
 from benchmark.runs.report import fit_page
 from benchmark.runs.report.parameters_page import parameters_page
-from benchmark.runs.report.values import fit_headline, sheet_headline
-from reports import Page, write_csv, write_json, write_page, write_text, write_whole
+from benchmark.runs.report.values import fit_headline, sentence, sheet_headline
+from reports import Page, Verdict, write_csv, write_json, write_page, write_text, write_whole
 
 ROWS, SECONDS = 20, 10.0
 """Steps and duration of an exported press; without relaxation the duration is of no account."""
+UNSETTLED = "not settled"
 
 
 @dataclass(frozen=True)
@@ -79,10 +80,17 @@ class FitRecord:
 
     @property
     def headline(self) -> str:
-        """The fit in one sentence."""
+        """The fit in one sentence, which begins with that it did not settle where it did not."""
         if self.parameters is not None:
-            return self.parameters.headline
-        return fit_headline(self.found.fit) if self.sheet is None else sheet_headline(self.sheet)
+            said = self.parameters.headline
+        else:
+            said = fit_headline(self.found.fit) if self.sheet is None else sheet_headline(self.sheet)
+        return said if self.settled else f"{UNSETTLED}: {said}"
+
+    @property
+    def settled(self) -> bool:
+        """Whether the rounds of the fit came to rest, with its free parameters or with the effects of a model file."""
+        return self.found.settled if self.identified is None else self.identified.found.settled
 
     def document(self) -> dict[str, Any]:
         """The content of `fit.json`."""
@@ -92,6 +100,7 @@ class FitRecord:
             common = {**common, "common_factor": common["parameters"], **self.parameters.to_dict()}
         return {
             **common,
+            "settled": self.settled,
             **({} if self.sheet is None else {"sheet": self.sheet.to_dict()}),
             "session": {"name": session.name, "fingerprint": session.fingerprint, "synthetic": session.synthetic},
             "specimen": session.specimen.name,
@@ -103,8 +112,10 @@ class FitRecord:
         """The page of the fit."""
         found, environment = self.found, describe_environment(seed=self.seed)
         if self.parameters is not None:
-            return parameters_page(found.session, self.parameters, self.warnings, environment)
-        return fit_page(found.session, found.fit, self.warnings, environment, self.sheet)
+            page = parameters_page(found.session, self.parameters, self.warnings, environment)
+        else:
+            page = fit_page(found.session, found.fit, self.warnings, environment, self.sheet)
+        return page if self.settled else replace(page, verdict=Verdict("incomplete", sentence(self.headline)))
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -136,12 +147,13 @@ class FitRecord:
 
 @dataclass(frozen=True)
 class FitOutcome:
-    """A finished fit on disk: its folder, the content of `fit.json`, its headline and its warnings."""
+    """A finished fit on disk: its folder, the content of `fit.json`, headline, warnings, and whether it settled."""
 
     folder: Path
     document: dict[str, Any]
     headline: str
     warnings: tuple[str, ...]
+    settled: bool = True
 
 
 def carry_out_fit(request: FitRequest, listener: Listener) -> FitRecord:
@@ -207,7 +219,7 @@ def write_fit(record: FitRecord, folder: Path) -> FitOutcome:
             write_text(new / name, text)
 
     write_whole(folder, fill)
-    return FitOutcome(folder, document, page.verdict.headline, record.warnings)
+    return FitOutcome(folder, document, page.verdict.headline, record.warnings, record.settled)
 
 
 def check_exports(session: Session, endings: Sequence[str], *, free: bool) -> None:

@@ -62,6 +62,8 @@ class FittedSession:
         Each filmed trial with its model, by condition and name.
     added
         By condition and trial: (n,) N that the effects of a model file add to the elastic force; empty without one.
+    settled
+        False where the stiffness still moved when the rounds with the effects of a model file ended.
     """
 
     session: Session
@@ -72,6 +74,7 @@ class FittedSession:
     filmed: FilmedSession | None = None
     sheets: Mapping[Key, tuple[FilmedTrial, RampTable]] = field(default_factory=dict)
     added: Mapping[Key, Array] = field(default_factory=dict)
+    settled: bool = True
 
     @property
     def stiffness_factor(self) -> float:
@@ -174,7 +177,7 @@ def _fitted_with(
     if not made.settled:
         warnings.append("the stiffness did not come to rest with the effects in the fit: take it with care")
     everything = (*session.warnings, *base.warnings, *made.fit.warnings, *warnings)
-    return FittedSession(session, made.fit, trials, everything, base.followed, added=made.added)
+    return FittedSession(session, made.fit, trials, everything, base.followed, added=made.added, settled=made.settled)
 
 
 def _depths(session: Session) -> dict[Setup, float]:

@@ -11,6 +11,7 @@ from benchmark.errors import TissuebenchError
 from benchmark.exchange import export_text
 from benchmark.files import Scenario
 from benchmark.models import NOTHING, Array, ModelResult, Own, StepProgress, scenario_drive
+from benchmark.models.own_models import FAR_APART
 from benchmark.runs.options import Listener, RunOptions
 from benchmark.runs.record import RunRecord, compare_layers, deflections, gather_warnings
 from benchmark.runs.refinement import refine
@@ -18,9 +19,6 @@ from benchmark.runs.small_strain import beside_small_strain
 from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.side_by_side import NAMES, SideBySide, run_side_by_side
 from benchmark.side_by_side.parameter_bands import ParameterBands, parameter_bands
-
-FAR_APART = 100.0
-"""Models this many times apart are not in the same unit, rather than wrong: mm and m, or um and mm, are 1000."""
 
 
 def run_scenario(
@@ -68,7 +66,7 @@ def run_scenario(
     fem, wave = (deflections(run.result, drive.time.size, layers) for run in (pair.fem, pair.wave))
     said = [*warnings, *unknown, *_too_coarse(scenario, pair.fem.result)]
     if own.wave is not None or own.reference is not None:
-        said += _far_apart(fem, wave)
+        said += _far_apart(scenario, pair, own, fem, wave)
     try:
         comparisons = compare_layers(scenario, drive.value, fem, wave)
     except ComparisonError as error:
@@ -104,17 +102,43 @@ def _too_coarse(scenario: Scenario, result: ModelResult | None) -> tuple[str, ..
     )
 
 
-def _far_apart(fem: Array, wave: Array) -> tuple[str, ...]:
-    """What deflections (n, L), m, of two models look like whose units differ, one of them not ours."""
-    largest = [float(np.abs(each[np.isfinite(each)]).max(initial=0.0)) for each in (fem, wave)]
-    if 0.0 < FAR_APART * min(largest) < max(largest):
-        told, other = (f"{1e3 * each:.3g} mm" for each in largest)
-        times = max(largest) / min(largest)
-        return (
-            f"the largest deflections of the two models, {told} and {other}, are {times:.0f} times apart: "
-            "see whether one is in another unit (fem_mm of a table is in mm, what a model file returns in m)",
-        )
-    return ()
+def _far_apart(scenario: Scenario, pair: SideBySide, own: Own, fem: Array, wave: Array) -> list[str]:
+    """What deflections (n, L), m, and forces of two models look like whose units differ, one of them not ours.
+
+    A layer that hardly moves in both is passed over.
+    """
+    table = None if own.reference is None else f"{own.reference.path}, column"
+    least, said = 1e-2 * max(_largest(fem), _largest(wave)), []
+    layers = [(name, _largest(fem[:, k]), _largest(wave[:, k])) for k, name in enumerate(scenario.tissue.layer_names)]
+    apart = [each for each in layers if max(each[1:]) > least and _is_apart(*each[1:])]
+    if apart:
+        _, told, other = max(apart, key=lambda each: max(each[1:]))
+        names = "" if len(apart) == len(layers) else f" of {', '.join(name for name, *_ in apart)}"
+        units = "fem_mm of a table is in mm, what a model file returns in m"
+        said.append(_apart(f"deflections{names}", "mm", 1e3 * told, 1e3 * other, units, table and f"{table} fem_mm"))
+    if scenario.load.control == "depth" and pair.fem.result is not None and pair.wave.result is not None:
+        told, other = (_largest(run.result.force) for run in (pair.fem, pair.wave) if run.result is not None)
+        if _is_apart(told, other):
+            said.append(_apart("forces", "N", told, other, "forces are in N", table and f"{table} force_N"))
+    return said
+
+
+def _largest(values: Array) -> float:
+    return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))
+
+
+def _is_apart(one: float, other: float) -> bool:
+    return 0.0 < FAR_APART * min(one, other) < max(one, other)
+
+
+def _apart(what: str, unit: str, told: float, other: float, units: str, place: str | None) -> str:
+    """The warning of the FEM's largest value `told` and the wave's, with the file and column of the first, if any."""
+    times = max(told, other) / min(told, other)
+    table = "" if place is None else f". {place}: the largest value is {told:.3g}, expected is about {other:.3g} {unit}"
+    return (
+        f"the largest {what} of the two models, {told:.3g} {unit} and {other:.3g} {unit}, are {times:.0f} times apart: "
+        f"see whether one is in another unit ({units}){table}"
+    )
 
 
 def _bands(scenario: Scenario, own: Own, listener: Listener) -> tuple[ParameterBands | None, tuple[str, ...]]:

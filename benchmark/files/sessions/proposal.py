@@ -1,7 +1,8 @@
 """A proposal for a session's file, from what its trial files hold: `benchmark session new FOLDER`.
 
 Conditions come from how the tool moved (how fast, how deep, how long held), tool and specimen from headers, the
-thickness from the gap at the first touch where the base is known. What only a person can say is marked SAY.
+thickness from the gap at the first touch where the base is known, the marker grid from the tables of markers. What
+only a person can say is marked SAY.
 """
 
 from __future__ import annotations
@@ -13,18 +14,21 @@ from pathlib import Path
 import numpy as np
 
 from bench_hw.instrument_files.press_record import phases
-from bench_hw.tables import TrialTable
+from bench_hw.tables import MarkerTable, TrialTable
 from benchmark.errors import InputError
 from benchmark.files.schema import validated
 from benchmark.files.sessions.description import SessionFile
 from benchmark.files.sessions.recordings import Recording, read_recordings, told_heights, with_headers
 from benchmark.files.sessions.session_folder import SESSION_FILE, inside, session_table, unclosed_recordings
 from benchmark.files.sessions.session_loading import assumed_specimen
-from benchmark.files.sources import is_file
+from benchmark.files.sessions.trials import read_markers
+from benchmark.files.sources import Source, is_file
 
 ALIKE = 0.1
 """Of their mean, within which speeds, depths and holds are of one protocol; labs set them to round numbers."""
-SPECIMEN_FILE = "specimen.toml"
+OFF_GRID = 0.2
+"""Of the spacing, within which markers at rest stand where a grid has them: printed by hand, and seen at a slant."""
+SPECIMEN_FILE, CAMERA_FILE = "specimen.toml", "camera.toml"
 
 
 @dataclass(frozen=True)
@@ -90,7 +94,8 @@ def propose(folder: Path) -> Proposal:
     named = _conditions(read.trials, kept=len({entry.condition for entry in file.trials}) > 1)
     tools = {tuple(sorted(tool.items())) for tool in told.values() if tool}
     held = _support_lines(resolved)
-    to_say = ("tool.contact",) if len(held) > 1 else _to_say(tools, why)
+    camera, asked = _camera_lines(source, [entry.markers for entry in file.trials if entry.markers])
+    to_say = (*(("tool.contact",) if len(held) > 1 else _to_say(tools, why)), *asked)
     head = [
         "# Proposed from the files of this folder. What only a person can say is marked SAY.",
         "schema = 1",
@@ -103,6 +108,7 @@ def propose(folder: Path) -> Proposal:
         "",
         "[support]",
         *held,
+        *camera,
     ]
     trials = [line for trial, condition in zip(read.trials, named, strict=True) for line in _entry(trial, condition)]
     body = f"# SAY: layers, thickness and modulus; until then: {why}\n{specimen.to_toml()}"
@@ -179,6 +185,58 @@ def _support_lines(file: SessionFile) -> list[str]:
     return [
         'kind = "bonded"  # SAY: bonded to a base, hole with hole_radius, half_space, or plates with specimen_radius'
     ]
+
+
+@dataclass(frozen=True)
+class MarkerGrid:
+    """What a table of markers tells of their grid: rows, columns, and the spacing at rest in m."""
+
+    rows: int
+    columns: int
+    spacing: float
+
+
+def marker_grid(table: MarkerTable) -> MarkerGrid | None:
+    """The grid on which markers stand at rest, numbered row by row from 0; None where they stand on none."""
+    numbers, first = np.unique(table.marker, return_index=True)
+    if not np.array_equal(numbers, np.arange(numbers.size)):
+        return None
+    rest = np.column_stack([table.x[first], table.y[first]])
+    for rows in (rows for rows in range(2, numbers.size // 2 + 1) if numbers.size % rows == 0):
+        places = rest.reshape(rows, -1, 2)
+        along, across = np.diff(places, axis=1).reshape(-1, 2), np.diff(places, axis=0).reshape(-1, 2)
+        spacing = float(np.median(np.concatenate([along[:, 0], across[:, 1]])))
+        off = [np.abs(along - [spacing, 0.0]).max(), np.abs(across - [0.0, spacing]).max()]
+        if spacing > 0.0 and max(off) <= OFF_GRID * spacing:
+            return MarkerGrid(rows, numbers.size // rows, spacing)
+    return None
+
+
+def _camera_lines(source: Source, names: Sequence[str]) -> tuple[list[str], tuple[str, ...]]:
+    """The table [camera] where files of markers are named, and what of it a person must say.
+
+    Rows, columns and spacing are proposed where all tables stand on one grid, else left to be filled in.
+    """
+    if not names:
+        return [], ()
+    grids = [marker_grid(read_markers(inside(source.folder, name, name))) for name in names]
+    told = [each for each in grids if each is not None]
+    file = f'file = "{CAMERA_FILE}"  # as it lies in this folder'
+    own = [file] if is_file(source.folder / CAMERA_FILE) else []
+    if len(told) == len(grids) and len({(each.rows, each.columns) for each in told}) == 1:
+        spacings = [1e3 * each.spacing for each in told]
+        if max(spacings) <= (1.0 + ALIKE) * min(spacings):
+            spacing = float(np.median(spacings))
+            tables = "1 table measures" if len(names) == 1 else f"{len(names)} tables measure"
+            lines = [f"marker_rows = {told[0].rows}", f"marker_columns = {told[0].columns}"]
+            said = f'marker_spacing = "{spacing:.3g} mm"  # SAY: as printed; {tables} {spacing:.4g} mm at rest'
+            return ["", "[camera]", *lines, said, *own], ("camera.marker_spacing",)
+    keys = ("marker_rows =", "marker_columns =", 'marker_spacing = "... mm"', *own)
+    why = (
+        "# SAY: the tables of markers tell no grid (numbered row by row from 0, x along the rows); fill in and "
+        "uncomment, or the markers are left out"
+    )
+    return ["", why, "# [camera]", *(f"# {key}" for key in keys)], ("camera",)
 
 
 def _to_say(tools: set[tuple[tuple[str, str], ...]], why: str) -> tuple[str, ...]:

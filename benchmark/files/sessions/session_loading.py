@@ -41,6 +41,7 @@ from benchmark.files.sessions.trials import (
     Session,
     Trial,
     doubtful_forces,
+    doubtful_times,
     is_synthetic,
     read_markers,
     trial_names,
@@ -184,6 +185,7 @@ def _trials(
     warnings += _copied(read, names)
     if file.drive.channel == "depth":
         warnings += doubtful_forces(names, [each.table for each in read])
+    warnings += doubtful_times(names, [each.table for each in read])
     tables, counts = even_depths([each.table for each in read])
     trials = []
     for name, each, path, table in zip(names, read, paths, tables, strict=True):

@@ -134,6 +134,25 @@ def doubtful_forces(names: Sequence[str], tables: Sequence[TrialTable]) -> list[
     return said
 
 
+SLOW_ROWS, SLOW_PRESS = 1.0, 5e-6
+"""Seconds between rows, and m/s, beyond which times may be in ms: a press of 5 mm/s, or slower, sampled at 1 kHz."""
+
+
+def doubtful_times(names: Sequence[str], tables: Sequence[TrialTable]) -> list[str]:
+    """A warning of trials so slow, with so few rows a second, that their times may be milliseconds."""
+    found = []
+    for name, table in zip(names, tables, strict=True):
+        step, lasts = float(np.median(np.diff(table.time))), float(np.ptp(table.time))
+        deepest = int(table.depth.argmax())
+        way = float(table.depth[deepest] - table.depth[: deepest + 1].min())
+        if step >= SLOW_ROWS and way < SLOW_PRESS * (table.time[deepest] - table.time[0]):
+            found.append(f"{name} ({step:.3g} s from row to row, {lasts:.4g} s in all)")
+    if not found:
+        return []
+    more = f" and {len(found) - 3} more" if len(found) > 3 else ""
+    return [f"times may be milliseconds where seconds are read: {', '.join(found[:3])}{more}"]
+
+
 def _upside_down(table: TrialTable) -> bool:
     """Whether force and depth leave where they began downwards, and not a fifth as far upwards."""
     few = max(5, len(table.force) // 50)

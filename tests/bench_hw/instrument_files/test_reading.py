@@ -8,6 +8,7 @@ import pytest
 from bench_hw.errors import TableError
 from bench_hw.instrument_files import Told, preview, read_instrument_file
 from bench_hw.instrument_files.press_record import first_touch
+from bench_hw.instrument_files.text_sheet import number_text
 from bench_hw.instrument_files.told import asking_key
 from bench_hw.instrument_files.vocabulary import label_and_unit, role_of
 from bench_hw.tables import TrialTable
@@ -417,3 +418,132 @@ def test_marks_between_thousands_are_passed_over(tmp_path, mark):
     path.write_text("\n".join(["Time (s);Distance (mm);Force (mN)", *rows]), encoding="utf-8")
     (record,) = read_instrument_file(path).records
     assert record.table.force.max() == pytest.approx(one.force.max(), rel=1e-3)
+
+
+def large(
+    path, written, *, sign=",", between=";", mark="", head=("Time (s)", "Distance (um)", "Force (mN)"), units=("",) * 3
+):
+    """The press in um and mN, from 1 mm of the actuator and 1 N of load on, so that most cells have thousands."""
+    lines = []
+    for cells in zip(written.time, 1e3 * (written.depth + 2.0), 1e3 * (written.force + 2.0), strict=True):
+        texts = (f"{cell:,.3f}".translate({44: mark, 46: sign}) for cell in cells)
+        lines.append(between.join(text + unit for text, unit in zip(texts, units, strict=True)))
+    path.write_text("\n".join([between.join(head), *lines]) + "\n", encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("mark", [" ", "\N{THIN SPACE}", "\N{FIGURE SPACE}", "\N{NO-BREAK SPACE}"])
+@pytest.mark.parametrize(("between", "sign"), [(";", ","), ("\t", ","), (",", "."), ("\t", ".")])
+def test_blanks_between_thousands_are_passed_over(tmp_path, mark, between, sign):
+    """They were no numbers, or between tabs the signs between cells: 1 234,5 was two columns."""
+    path = large(tmp_path / "a.csv", press(), sign=sign, between=between, mark=mark)
+    (record,) = read_instrument_file(path).records
+    assert np.ptp(record.table.force) == pytest.approx(np.ptp(press().force), rel=1e-3)
+    assert np.ptp(record.table.depth) == pytest.approx(1e-3 * np.ptp(press().depth), rel=1e-3)
+
+
+def test_decimal_commas_with_blanks_between_cells_are_no_thousands(tmp_path):
+    one = press()
+    rows = samples.rows(one.time, 100.0 * one.depth, one.force, digits=(2, 1, 3), sign=",", between=" ")
+    path = tmp_path / "a.txt"
+    path.write_text("\n".join(["Time_s Distance_um Force_N", *rows]))
+    (record,) = read_instrument_file(path).records
+    assert np.ptp(record.table.depth) == pytest.approx(1e-4 * np.ptp(one.depth), rel=1e-3)
+    assert np.ptp(record.table.force) == pytest.approx(np.ptp(one.force), rel=1e-3)
+
+
+@pytest.mark.parametrize("peak", [0.9, 1.2])
+def test_three_decimals_behind_a_comma_are_no_thousands(tmp_path, peak):
+    """A column from 0,001 to 0,999 was taken for thousands: a press of 0.9 mm was 900 mm deep, without a word."""
+    one = press(peak=peak, hold=0.2)
+    rows = samples.rows(one.time, one.depth, one.force, digits=(3, 3, 3), sign=",", between=";")
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(["Time (s);Distance (mm);Force (N)", *rows]))
+    (record,) = read_instrument_file(path).records
+    assert record.table.depth.max() == pytest.approx(1e-3 * peak, rel=0.05)
+    assert record.table.time[-1] == pytest.approx(one.time[-1], rel=0.01)
+
+
+@pytest.mark.parametrize("head", [("Time", "Distance", "Force"), ("Time (s)", "Distance (um)", "Force (mN)")])
+@pytest.mark.parametrize("units", [(" s", " um", " mN"), ("s", "um", "mN"), ("", " µm", " mN")])
+def test_units_behind_the_numbers_of_cells_are_those_of_the_column(tmp_path, head, units):
+    head = ("Time (s)", *head[1:]) if not units[0] else head
+    path = large(tmp_path / "a.csv", press(), head=head, units=units, mark=" ")
+    read = read_instrument_file(path)
+    (record,) = read.records
+    assert np.ptp(record.table.force) == pytest.approx(np.ptp(press().force), rel=1e-3)
+    assert np.ptp(record.table.depth) == pytest.approx(1e-3 * np.ptp(press().depth), rel=1e-3)
+    assert preview(read)[0].endswith("units behind the numbers of cells")
+
+
+def test_a_unit_in_the_cells_of_one_column_alone_is_read(tmp_path):
+    path = large(tmp_path / "a.csv", press(), head=("Time (s)", "Distance", "Force (mN)"), units=("", " um", ""))
+    (record,) = read_instrument_file(path).records
+    assert np.ptp(record.table.depth) == pytest.approx(1e-3 * np.ptp(press().depth), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (
+            lambda text: text.replace("um\n", "mm\n"),
+            "row 2, value '.* mm'.*column #3 are in mm, its name in row 1 says um",
+        ),
+        (lambda text: text.replace(" (um)", "").replace("um\n", "mm\n", 1), "row 3, value '.* um'.*row 2 has mm"),
+        (lambda text: text.replace(" (um)", "").replace(" um\n", "\n", 1), "row 3, value '.* um'.*row 2 has no unit"),
+        (
+            lambda text: text.replace("um\n", "ells\n").replace("N;", "stones;"),
+            "behind a number nothing but a known unit",
+        ),
+    ],
+)
+def test_cells_in_several_units_or_unknown_ones_are_refused_by_their_place(tmp_path, change, says):
+    one = press()
+    rows = [f"{t:.2f} s;{f:.4f} N;{1e3 * d:.1f} um" for t, d, f in zip(one.time, one.depth, one.force, strict=True)]
+    path = tmp_path / "a.csv"
+    path.write_text(change("\n".join(["Time;Force (N);Distance (um)", *rows]) + "\n"))
+    with pytest.raises(TableError, match=says):
+        read_instrument_file(path)
+
+
+def test_a_needed_column_of_which_few_cells_have_a_unit_is_refused(tmp_path):
+    path = large(tmp_path / "a.csv", press())
+    text = path.read_text()
+    cell = text.splitlines()[9].split(";")[1]
+    path.write_text(text.replace(f";{cell};", f";{cell} um;", 1))
+    with pytest.raises(TableError, match="has a unit behind its number, and others have none or another"):
+        read_instrument_file(path)
+
+
+@pytest.mark.parametrize(
+    ("cell", "decimal", "number"), [("1 234,5", ",", "1234.5"), ("0,123", ".", "0,123"), ("12 34", ".", "12 34")]
+)
+def test_what_is_no_number_under_a_decimal_sign_stays_text(cell, decimal, number):
+    assert number_text(cell, decimal) == number
+
+
+def test_commas_between_thousands_and_cells_alike_are_refused(tmp_path):
+    """A press of 2000 um was one of 200, since 1,200.0 is two cells, without a word."""
+    one = press()
+    rows = [f"{t:.2f},{1e3 * d:,.1f},{1e3 * f:,.1f}" for t, d, f in zip(one.time, one.depth, one.force, strict=True)]
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(["Time (s),Distance (um),Force (mN)", *rows]))
+    with pytest.raises(TableError, match=r"[45] cells, its header 3: the comma seems to stand between thousands, too"):
+        read_instrument_file(path)
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor", "same"), [("N", 1.0, True), ("N", 0.5, False), ("mN", 1e3, True), ("kN", 0.5e-3, False)]
+)
+def test_columns_that_are_proportional_otherwise_than_their_units_say_are_two(tmp_path, unit, factor, same):
+    """The half of the load that the second of two cells bears was taken for the first in other units."""
+    one = press()
+    rows = samples.rows(one.time, one.depth, one.force, factor * one.force, digits=(3, 5, 6, 8))
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join([f"Time (s),Distance (mm),Force (N),Force ({unit})", *rows]))
+    if same:
+        (record,) = read_instrument_file(path).records
+        assert record.table.force.max() == pytest.approx(one.force.max(), rel=1e-2)
+        return
+    with pytest.raises(TableError, match="two columns could be the force"):
+        read_instrument_file(path)

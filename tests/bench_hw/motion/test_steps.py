@@ -1,5 +1,6 @@
 """Carrying a protocol out against an ideal actuator and spring, without any device."""
 
+import numpy as np
 import pytest
 
 from bench_hw.motion.protocol_file import Protocol
@@ -105,6 +106,32 @@ def test_a_move_to_a_force_comes_from_either_side(start, force):
     bench.run(carry_out(protocol({"kind": "move", "force": force, "speed": "1 mm/s"}), bench.now))
     assert bench.now.press == pytest.approx(2.0, abs=5e-3)
     assert isinstance(bench.actions[-1], Halt)
+
+
+def test_a_press_to_a_force_is_never_sent_far_ahead_and_goes_as_one_move():
+    """A board goes on to where it was sent when its computer dies: that was the end of the travel."""
+    segment = {"kind": "move", "force": "2 N", "speed": "1 mm/s"}
+    bench = IdealBench()
+    ahead = []
+    for action in carry_out(protocol(segment), bench.now):
+        if isinstance(action, MoveTo):
+            bench.target, bench.speed = action.position, action.speed
+        elif action is None:
+            bench.step()
+        ahead.append(bench.target - bench.now.position)
+    assert max(ahead) <= 0.5e-3 + 1e-9
+    times, path = np.array(bench.path).T
+    np.testing.assert_allclose(path, 5e-3 + 1e-3 * times, atol=1e-9)
+    assert bench.now.press == pytest.approx(2.0, abs=5e-3)
+
+
+def test_a_press_to_a_force_is_sent_beyond_the_dead_band():
+    bench = IdealBench()
+    bench.now.tolerance = 0.4e-3
+    bench.run(carry_out(protocol({"kind": "move", "force": "2 N", "speed": "0.1 mm/s"}), bench.now))
+    moves = [action.position for action in bench.actions if isinstance(action, MoveTo)]
+    assert moves[0] == pytest.approx(0.005 + 1.6e-3)
+    assert bench.now.press == pytest.approx(2.0, abs=5e-3)
 
 
 def test_a_force_out_of_reach_is_an_error():

@@ -125,6 +125,13 @@ def test_accept_then_check(call) -> None:
     assert "checks" not in checked.err
 
 
+def test_accepting_other_values_prints_that_nothing_was_checked(call, baseline) -> None:
+    Path("my_model.py").write_text(MODEL.replace("1e-3", "1.01e-3"))
+    again = call("--accept")
+    assert again.code == 0, again.err
+    assert "accepted, not checked: 1 gated value (spring.max_deformation_mm.skin) differs" in again.out
+
+
 @pytest.mark.parametrize("option", ["--junit", "--markdown", "--out"])
 def test_a_report_is_not_made_where_a_baseline_is(call, option: str) -> None:
     """It was passed over without a word."""

@@ -92,8 +92,31 @@ def test_a_table_in_metres_is_said_to_be_far_from_the_model(benchmark_cli, tmp_p
     said = "two models, 0.005 mm and 5 mm, are 1000 times apart: see whether one is in another unit"
     warnings = json.loads(called.out)["warnings"]
     assert any(said in warning for warning in warnings)
+    expected = f"{table}, column fem_mm: the largest value is 0.005, expected is about 5 mm"
+    assert any(warning.endswith(expected) for warning in warnings)
     idle = [warning.partition(":")[0] for warning in warnings if "no effect" in warning]
     assert idle == ["--set wave.large_press has no effect", "--set fem.mesh has no effect"]
+
+
+def test_one_layer_in_metres_and_a_force_in_kilonewtons_are_said(benchmark_cli, tmp_path: Path) -> None:
+    model, table = tmp_path / "springs.py", tmp_path / "fea.csv"
+    model.write_text(
+        "import numpy as np\n"
+        "def deform(layers, tool, support, time, force):\n    return 1e-3 * np.outer(force, np.ones(len(layers)))\n"
+        "def press(layers, tool, support, time, depth):\n    return 1e3 * depth\n"
+    )
+    values = {"epidermis": 2.0, "dermis": 2e-3, "subcutaneous_fat": 2.0}
+    table.write_text("layer,fem_mm,force_N\n" + "".join(f"{name},{value},0.002\n" for name, value in values.items()))
+    depth = ("--set", "load.control=depth", "--set", "load.peak=2 mm", "--set", "tool.contact=rigid_bonded")
+    called = benchmark_cli(
+        "run", "skin-5N", *SMALL, *depth, "--wave", model, "--reference", table, "--out", tmp_path / "r", "--json"
+    )
+    assert called.code == 0, called.err
+    warnings = json.loads(called.out)["warnings"]
+    deep = "the largest deflections of dermis of the two models, 0.002 mm and 2 mm, are 1000 times apart"
+    assert any(deep in warning and f"{table}, column fem_mm" in warning for warning in warnings)
+    forces = "the largest forces of the two models, 0.002 N and 2 N, are 1000 times apart"
+    assert any(forces in warning and f"{table}, column force_N" in warning for warning in warnings)
 
 
 @pytest.mark.slow

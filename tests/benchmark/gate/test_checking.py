@@ -19,6 +19,7 @@ from benchmark.gate.measuring.service import Service
 from benchmark.gate.plan import CheckRequest, GatePlan
 from benchmark.gate.processes import Measured
 from benchmark.gate.timing import TimingRow
+from benchmark.gate.versions import origin_of
 
 
 class Said:
@@ -355,6 +356,36 @@ def test_accepting_says_old_and_new(tiny_gate, request_of, tmp_path: Path) -> No
     assert "springs.max_deformation_mm.muscle: none -> 4 mm" in words
     assert "springs.max_deformation_mm.fat: 4 -> none mm" in words
     assert read_baseline(tmp_path / "b.json").accuracy["springs.max_deformation_mm.skin"].value == pytest.approx(5.1)
+
+
+def test_a_baseline_that_is_accepted_from_other_values_is_told_of_in_the_check_beside_it(
+    tiny_gate, request_of, tmp_path: Path, monkeypatch
+) -> None:
+    """A job that accepts and then checks is green whatever happens."""
+    gate, skin = tiny_gate(), "springs.max_deformation_mm.skin"
+    first = accept(request_of(gate), Said())
+    assert (first.differed, first.unseen) == ((), None)
+    gate.change("my_model.py", "[1e-3", "[1.02e-3")
+    at = {"revision": "abc"}
+    for module in ("accepting", "checking"):
+        monkeypatch.setattr(
+            f"benchmark.gate.{module}.origin_of", lambda plan, seed: replace(origin_of(plan, seed), **at)
+        )
+    second = accept(request_of(gate), Said())
+    assert second.differed == (skin,)
+    assert second.to_dict()["differed"] == [skin]
+    assert f"1 gated value ({skin}) differs from the baseline that was here" in second.unseen
+    at["revision"] = "abc+"  # the baseline itself is a changed file now
+    outcome = check(request_of(gate), Said())
+    assert outcome.verdict.passed
+    assert outcome.document["accepted_here"] == [skin]
+    assert outcome.document["warnings"][0].startswith(
+        "the baseline was accepted at this same revision, and 1 gated value"
+    )
+    at["revision"] = "def"
+    outcome = check(request_of(gate), Said())
+    assert outcome.document["accepted_here"] == []
+    assert not any("same revision" in warning for warning in outcome.document["warnings"])
 
 
 def test_a_folder_in_the_place_of_the_history_is_refused_before_anything(tiny_gate, request_of, tmp_path: Path) -> None:

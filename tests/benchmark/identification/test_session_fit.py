@@ -170,6 +170,15 @@ def test_elastic_trials_have_no_warning(session, silicone):
     assert fit_session(session(np.random.default_rng(0)), [silicone]).warnings == ()
 
 
+@pytest.mark.parametrize(("factor", "said"), [(1000.0, True), (1.0, False), (1e-3, True)])
+def test_a_stiffness_far_from_that_before_the_fit_asks_for_the_units(trial, silicone, factor, said):
+    """Forces in mN under force_N: 38 MPa of skin, without a word."""
+    made = [replace(one, force=factor * one.force) for one in (trial("a"), trial("b"), trial("c"))]
+    found = fit_session(made, [silicone]).warnings
+    words = [text for text in found if "times that of the specimen before the fit" in text]
+    assert bool(words) is said
+
+
 def test_large_scatter_is_said_with_the_range_of_a_further_trial(session, silicone):
     fit = fit_session(session(np.random.default_rng(0), scatter=0.6), [silicone])
     text = " ".join(fit.warnings)

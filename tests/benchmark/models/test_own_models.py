@@ -54,6 +54,16 @@ def test_slips_of_sign_and_unit_are_pointed_out(tmp_path: Path) -> None:
     assert len(read_reference(written(table(), tmp_path), SCENARIO).result.warnings) == 1
 
 
+@pytest.mark.parametrize(("size", "said"), [(1.0, 0), (1e-3, 1)])
+def test_a_table_in_metres_is_pointed_out_by_the_depth_of_the_press(tmp_path: Path, size: float, said: int) -> None:
+    """No other model is needed to see it."""
+    scenario = load_scenario("skin-5N", {"load.control": "depth", "load.peak": "2 mm", "load.observations": "4"})
+    frame = table().assign(fem_mm=size * table().fem_mm)
+    warnings = read_reference(written(frame.drop(columns="step"), tmp_path), scenario).result.warnings
+    place = f"{tmp_path / 'bench.csv'}, column fem_mm: the largest deflection of epidermis is 0.002 mm"
+    assert sum(warning.startswith(place) and "presses it 2 mm deep" in warning for warning in warnings) == said
+
+
 def test_order_of_rows_and_more_columns_do_not_matter(tmp_path: Path) -> None:
     shuffled = table(wave_mm=[None] * 12, remark="mine").sample(frac=1.0, random_state=1)
     found = read_reference(written(shuffled, tmp_path), SCENARIO)

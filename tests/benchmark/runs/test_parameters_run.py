@@ -7,11 +7,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from benchmark.cli.app import main
 from benchmark.errors import InputError
 from benchmark.files import load_scenario, load_session, load_tissue
 from benchmark.files.sessions.fit_table import FitTable
+from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.session_problem import assembled
-from benchmark.runs.fit_run import FitRequest, fit_to_folder
+from benchmark.runs import fitted_session
+from benchmark.runs.fit_run import FitRecord, FitRequest, fit_to_folder
 from benchmark.runs.parameters_run import ParameterWish
 from benchmark.scripting import Unheard
 
@@ -79,6 +82,25 @@ def test_a_fit_of_parameters_writes_a_tissue_that_a_run_takes(session, tmp_path)
     assert "one layer" in tissue.citation
     scenario = load_scenario("phantom", {"tissue": str(tmp_path / "out" / "identified.toml")})
     assert scenario.tissue == tissue
+
+
+def test_a_fit_that_does_not_settle_is_written_and_ends_with_exit_code_4(session, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(LayerFit, "settled", property(lambda _: False))
+    out = tmp_path / "out"
+    assert main(["fit", str(session), "--set", "fem.mesh=coarse", "--out", str(out), "--quiet"]) == 4
+    printed = capsys.readouterr()
+    assert printed.out.startswith("Not settled: 3 trials: silicone.youngs_modulus")
+    assert "the fit did not settle" in printed.err
+    assert str(out) in printed.err
+    assert json.loads((out / "fit.json").read_text())["settled"] is False
+    assert '"verdict incomplete"' in (out / "report.html").read_text()
+
+
+def test_a_stiffness_that_still_moves_with_effects_in_the_fit_is_not_settled(monkeypatch) -> None:
+    made = SimpleNamespace(settled=False, fit=SimpleNamespace(warnings=()), added={})
+    monkeypatch.setattr(fitted_session, "fit_with_effects", lambda *_: made)
+    repair, told = SimpleNamespace(slugs=("backlash",), name="model"), SimpleNamespace(warnings=(), followed={})
+    assert not FitRecord(fitted_session._fitted_with(repair, told, (), told), repair, 0).settled
 
 
 def test_what_is_said_takes_the_place_of_the_sessions_table() -> None:

@@ -3,12 +3,14 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from benchmark.cli.folders.shipped import session
 from benchmark.errors import InputError
 from benchmark.files import load_session
 from benchmark.files.sessions.proposal import SPECIMEN_FILE, motion_of, propose, write_proposal
+from benchmark.files.shipped import shipped_sessions
 from tests.instruments import samples
 
 
@@ -46,6 +48,52 @@ def test_speed_depth_and_hold_are_measured(folder):
     assert motion.speed == pytest.approx(1e-3, rel=0.03)
     assert motion.depth == pytest.approx(2e-3, rel=0.02)
     assert motion.hold == pytest.approx(2.0, abs=0.1)
+
+
+def write_tracks(path, rows, columns, spacing=8.0, order=1):
+    """Tracks of a grid that moves a little over three pictures; marker numbers fall along a row where `order` is -1."""
+    x = (np.arange(columns)[::order] - 0.5 * (columns - 1)) * spacing
+    y = (np.arange(rows) - 0.5 * (rows - 1)) * spacing
+    places = [(a, b) for b in y for a in x]
+    lines = [
+        f"{0.1 * k},{m},{(1 + 0.01 * k) * a:.5f},{b + 0.02:.5f}" for k in range(3) for m, (a, b) in enumerate(places)
+    ]
+    path.write_text("\n".join(["time_s,marker,x_mm,y_mm", *lines]) + "\n")
+
+
+def accepted(folder):
+    """The proposal, and the session that it makes."""
+    proposal = propose(folder)
+    write_proposal(folder, proposal)
+    return proposal, load_session(folder)
+
+
+def test_the_marker_grid_is_proposed_from_the_tables(folder):
+    for name in ("deep_1", "shallow_2"):
+        write_tracks(folder / f"{name}_markers.csv", 3, 6)
+    proposal, found = accepted(folder)
+    assert (found.camera.marker_rows, found.camera.marker_columns) == (3, 6)
+    assert found.camera.marker_spacing == pytest.approx(8e-3)
+    assert proposal.to_say[-1] == "camera.marker_spacing"
+    assert "2 tables measure 8 mm at rest" in proposal.texts["session.toml"]
+    assert sum(trial.markers is not None for trial in found.trials) == 2
+    assert not any("[camera]" in warning for warning in found.warnings)
+
+
+def test_a_camera_file_in_the_folder_is_named(folder):
+    write_tracks(folder / "deep_1_markers.csv", 4, 4)
+    (folder / "camera.toml").write_bytes((shipped_sessions()["phantom"] / "camera.toml").read_bytes())
+    assert accepted(folder)[1].camera.file == "camera.toml"
+
+
+@pytest.mark.parametrize("tracks", [[(3, 6, 8.0, -1)], [(3, 6), (6, 3)], [(3, 6, 8.0), (3, 6, 10.0)], [(1, 7)]])
+def test_markers_on_no_one_grid_leave_a_camera_to_fill_in(folder, tracks):
+    for number, one in enumerate(tracks, start=1):
+        write_tracks(folder / f"deep_{number}_markers.csv", *one)
+    proposal, found = accepted(folder)
+    assert found.camera is None
+    assert proposal.to_say[-1] == "camera"
+    assert "\n# [camera]\n# marker_rows =\n" in proposal.texts["session.toml"]
 
 
 def test_what_a_person_must_say_is_marked(folder):

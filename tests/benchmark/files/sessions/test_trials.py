@@ -8,6 +8,7 @@ from benchmark.errors import InputError
 from benchmark.files.sessions.description import TrialEntry
 from benchmark.files.sessions.trials import (
     doubtful_forces,
+    doubtful_times,
     is_synthetic,
     read_markers,
     read_table,
@@ -127,3 +128,13 @@ def test_a_press_upside_down_is_told():
     (said,) = doubtful_forces(["up", "down", "pulled"], [one, turned, pulled])
     assert said.startswith("down: force and depth only fall, to -2.8")
     assert "-2 mm" in said
+
+
+def test_times_in_milliseconds_are_asked_for():
+    """A press of 5 s was one of an hour and a half, and its relaxation a thousand times as slow, without a word."""
+    one = press()
+    thousandfold, slow = (
+        TrialTable(factor * one.time, one.depth, one.force, {}, "b.csv", {}) for factor in (1000.0, 20.0)
+    )
+    (said,) = doubtful_times(["seconds", "thousandfold", "slow"], [one, thousandfold, slow])
+    assert said.endswith("where seconds are read: thousandfold (20 s from row to row, 4780 s in all)")
