@@ -35,7 +35,8 @@ LARGEST_FAN = 4.0  # times the usual one; a larger one would come near the axis
 TOOL_RINGS, SQUARE_ROOT_RINGS = 3, 2
 STRAIGHT_SHEAR = 0.75
 """Share of the shear stiffness that the innermost of straight elements have: the force of small presses is then within
-0.06 % of the limit for Poisson's ratios of 0.45 to 0.499, and deeper ones have a third of the error of whole ones."""
+0.06 % of the limit for Poisson's ratios of 0.45 to 0.499, and deeper ones have a fifth to a half of the error that
+whole elements leave."""
 FEWER_RINGS = 2.0  # up to this factor on the size at the edge the fan has fewer rings, beyond it is larger
 
 
