@@ -38,7 +38,7 @@ from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.base.setup_priors import setup_entries, told_priors
 from benchmark.discovery.base.trial_bounds import large_remarks, trial_values
 from benchmark.discovery.criteria import Settings
-from benchmark.discovery.detection.cells import channel_sizes, reachable, within_tolerance
+from benchmark.discovery.detection.cells import channel_sizes, misses_nothing, reachable, within_tolerance
 from benchmark.discovery.detection.contrasts import contrasts
 from benchmark.discovery.detection.disagreement import (
     Detection,
@@ -327,6 +327,7 @@ def _facts(answer: _Answer, known: Sequence[Effect], settings: Settings) -> Fact
         level=settings.level,
         within=within_tolerance(answer.searched.told),
         fitted=within_tolerance(answer.chosen),
+        tiny=misses_nothing(answer.searched.told),
         taken_up=answer.searched.taken_up,
         worse=() if answer.chosen is answer.base else worse(answer.base, answer.held),
         conditions=len(answer.base.model.problem.study.conditions),

@@ -36,6 +36,8 @@ class Facts:
     within : bool
         Whether the base, with its set-up as told where that would need an effect, misses by no more than the stated
         tolerance.
+    tiny : bool
+        Whether the base misses by less than finite elements are right to.
     taken_up : bool
         Whether a set-up as far off as people are usually wrong has taken up what the set-up as told would need.
     fitted : bool
@@ -77,6 +79,7 @@ class Facts:
     unsteady: tuple[str, ...] = ()
     p_strained: float = 1.0
     taken_up: bool = False
+    tiny: bool = False
     fitted: bool = True
     shared: float = 0.0
     p_shared: float = 1.0
@@ -121,7 +124,7 @@ def verdict(facts: Facts) -> str:
     """One of `VERDICTS`."""
     if not facts.enough:
         return "cannot_tell"
-    if not (facts.p < facts.level if facts.effects else facts.shares):
+    if not (facts.p < facts.level if facts.effects else facts.shares and not facts.tiny):
         return "no_discrepancy" if facts.within else "cannot_tell"
     if not facts.effects or _fails(facts):
         return "outside_catalogue"
@@ -142,6 +145,18 @@ def _fails(facts: Facts) -> bool:
     return leaves or unlike or not facts.predicts or bool(facts.undetermined)
 
 
+def _nothing(facts: Facts) -> str:
+    if facts.tiny and facts.shares:
+        return (
+            "What simulation and measurement disagree by is within the stated tolerance, and less than "
+            f"{100.0 * criteria.LEAST_FORCE:g} % of the force, to which finite elements are right."
+        )
+    return (
+        "No disagreement beyond the base model's own uncertainty is visible "
+        f"(p = {facts.p_cells:.2g}), and what is left is within the stated tolerance."
+    )
+
+
 def _mixed(effects: Sequence[Effect]) -> bool:
     places = {effect.description.acts_on == "body" for effect in effects}
     return len(places) > 1
@@ -153,8 +168,7 @@ def statement(word: str, facts: Facts) -> str:
     lacks = _lacks(facts.effects)
     alike = ", ".join(effect.slug.replace("_", " ") for effect in facts.lookalikes)
     sentences = {
-        "no_discrepancy": "No disagreement beyond the base model's own uncertainty is visible "
-        f"(p = {facts.p_cells:.2g}), and what is left is within the stated tolerance.",
+        "no_discrepancy": _nothing(facts),
         "cannot_tell": _untold(facts),
         "named": f"{lacks}: it holds on trials and on conditions that the fit has not seen.",
         "conditional": f"{lacks}, as far as these conditions tell; another rate, depth or tool must "

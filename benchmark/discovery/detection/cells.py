@@ -269,6 +269,13 @@ def within_tolerance(fitted: Fit) -> bool:
     return all(each.after <= each.tolerance for each in channel_sizes(fitted, fitted))
 
 
+def misses_nothing(fitted: Fit) -> bool:
+    """Whether force alone is measured, and missed by less than finite elements are right to."""
+    problem = fitted.model.problem
+    peak = max(float(np.abs(trial.signals[:, 0]).max()) for trial in problem.trials)
+    return problem.study.layout is None and max(_misses(fitted).values()) < criteria.LEAST_FORCE * peak
+
+
 def _misses(fitted: Fit) -> dict[str, float]:
     """The largest miss of each channel, N or m."""
     problem = fitted.model.problem

@@ -192,7 +192,7 @@ def seen(fitted: Fit, effect: Effect) -> bool:
     """Whether the data resolve it in time and depth, and markers show it if it must show in them, if there are any."""
     if effect.like_delay and delay(fitted, effect) < criteria.NO_LATER:
         return False
-    if not resolved(fitted, effect):
+    if not resolved(fitted, effect) or not material(fitted, effect):
         return False
     if not effect.seen_by or fitted.model.problem.study.layout is None:
         return True
@@ -209,6 +209,16 @@ def resolved(fitted: Fit, effect: Effect) -> bool:
     if effect.acts_within is None:
         return True
     return max(effect.acts_within(values, each.around) for each in study.conditions) > study.raw_interval
+
+
+def material(fitted: Fit, effect: Effect) -> bool:
+    """Whether an effect that shows in the force alone adds more to it than finite elements are right to."""
+    trials = fitted.model.problem.trials
+    if fitted.model.problem.study.layout is not None or setup_key(effect.slug) is not None:
+        return True
+    pairs = zip(trials, added_by(fitted, effect.slug), strict=True)
+    added = max(float(np.abs(part[trial.count[:, 0] > 0.0, 0]).max()) for trial, part in pairs)
+    return added >= criteria.LEAST_FORCE * max(float(np.abs(trial.signals[:, 0]).max()) for trial in trials)
 
 
 def delay(fitted: Fit, effect: Effect) -> float:

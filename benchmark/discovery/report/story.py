@@ -8,7 +8,7 @@ from benchmark.discovery.discovery_result import Candidate, ChannelGap, Place, T
 from benchmark.discovery.report.disagreement_sections import representative, traced
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
 from benchmark.discovery.report.effect_sections import ADVICE, OF_A_RUN, trials_in_words
-from benchmark.discovery.report.words import channel_name, compared, effect_name, phase_name, probability, sized
+from benchmark.discovery.report.words import channel_name, compared, depths, effect_name, phase_name, probability, sized
 from reports import Story, StoryStep
 from reports.figures import repaired
 from reports.formatting import format_number
@@ -72,9 +72,8 @@ def _signed(place: Place) -> str:
 
 
 def _range(place: Place) -> str:
-    low, high = (format_number(1e3 * end, 3, trim=True) for end in place.depth)
     condition = f"{place.condition}, " if place.condition else ""
-    return f"{condition}{low} to {high} mm deep"
+    return f"{condition}{depths(place)} deep"
 
 
 def _which(record: DiscoveryRecord) -> StoryStep:

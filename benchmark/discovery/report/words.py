@@ -56,13 +56,19 @@ def probability(p: float | None) -> str:
 def place_words(place: Place) -> str:
     """A place in a sentence: where, how deep, how large, how sure."""
     cycle = f" of cycle {place.cycle}" if place.cycle else ""
-    low, high = (format_number(1e3 * end, 3, trim=True) for end in place.depth)
     return (
-        f"{channel_name(place.channel)}, {phase_name(place.phase)}{cycle} ({place.condition}), {low} to {high} mm: "
+        f"{channel_name(place.channel)}, {phase_name(place.phase)}{cycle} ({place.condition}), {depths(place)}: "
         f"{sized(place.channel, abs(place.missed))} {compared(place)}, "
         f"{format_number(abs(place.percent_of_signal), 2)} % of the signal, {probability(place.p)}"
         f"{_added(place)}"
     )
+
+
+def depths(place: Place) -> str:
+    """From where to where, mm; what is less than a thousandth of the deeper end is touch."""
+    least = 1e-3 * abs(place.depth[1])
+    low, high = (format_number(1e3 * end if abs(end) > least else 0.0, 3, trim=True) for end in place.depth)
+    return f"{low} to {high} mm"
 
 
 def compared(place: Place) -> str:

@@ -233,3 +233,14 @@ def test_a_set_up_that_is_not_as_told_is_said_apart_from_what_the_model_lacks():
     assert alone.startswith("The set-up is not as told (support.clamp): it holds")
     assert both.startswith("The set-up is not as told (support.clamp), and the model lacks pretension:")
     assert verdict(facts(effects=(clamp,), lookalikes=(BY_SLUG["pretension"],))) == "instrument_first"
+
+
+def test_a_misfit_that_is_less_than_finite_elements_are_right_to_is_no_disagreement():
+    sure = {"effects": (), "p": 1e-9, "p_cells": 1e-9}
+    assert verdict(facts(**sure)) == "outside_catalogue"
+    tiny = facts(**sure, tiny=True)
+    assert verdict(tiny) == "no_discrepancy"
+    assert "less than 0.1 % of the force" in statement("no_discrepancy", tiny)
+    assert verdict(facts(**sure, tiny=True, within=False)) == "cannot_tell"
+    assert verdict(facts(tiny=True)) == "named"
+    assert "No disagreement" in statement("no_discrepancy", facts(effects=(), p=0.4, p_cells=0.4, tiny=True))

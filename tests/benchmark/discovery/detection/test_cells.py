@@ -8,12 +8,14 @@ import pytest
 from scipy.signal import lfilter
 
 from benchmark.discovery.criteria import Settings
+from benchmark.discovery.detection import cells
 from benchmark.discovery.detection.cells import (
     Cell,
     CellTable,
     channel_sizes,
     flip_test,
     least_p,
+    misses_nothing,
     one_sided,
     reachable,
 )
@@ -180,3 +182,15 @@ def test_two_newtons_of_eight_are_beyond_the_tolerance_whatever_their_signs():
         assert force.within
         assert (marker.after, marker.tolerance, marker.within) == (pytest.approx(1e-5), 5e-5, True)
         assert not channel_sizes(small, each)[0].within
+
+
+@pytest.mark.parametrize(
+    ("layout", "missed", "expected"), [(None, 1.9e-3, True), (None, 2.1e-3, False), ("grid", 1.9e-3, False)]
+)
+def test_a_tenth_of_a_percent_of_the_largest_force_is_nothing_where_force_alone_is_measured(
+    monkeypatch, layout, missed, expected
+):
+    monkeypatch.setattr(cells, "_misses", lambda fitted: {"force_z": missed})
+    trials = [SimpleNamespace(signals=np.array([[peak, 9.0]])) for peak in (1.0, 2.0)]
+    problem = SimpleNamespace(trials=trials, study=SimpleNamespace(layout=layout))
+    assert misses_nothing(SimpleNamespace(model=SimpleNamespace(problem=problem))) is expected

@@ -10,6 +10,7 @@ from benchmark.discovery import criteria
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.detection.disagreement import combined, strained
+from benchmark.discovery.evidence import parameter_evidence
 from benchmark.discovery.evidence.gains import (
     broad,
     gain,
@@ -19,7 +20,7 @@ from benchmark.discovery.evidence.gains import (
     strain,
     tissue_gain,
 )
-from benchmark.discovery.evidence.parameter_evidence import delay, resolved, seen
+from benchmark.discovery.evidence.parameter_evidence import delay, material, resolved, seen
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import TrialContext, catalogue
 
@@ -76,7 +77,7 @@ def test_a_trial_that_the_first_order_steps_too_far_from_is_refitted(session_of,
     monkeypatch.setattr(criteria, "TOO_FAR", float(np.median(lost)))
     refitted = held_out(drift)
     np.testing.assert_array_equal(refitted != straight, lost > np.median(lost))
-    np.testing.assert_allclose(refitted, straight, atol=0.1)
+    np.testing.assert_allclose(refitted, straight, atol=0.2)
 
 
 @pytest.mark.slow
@@ -143,3 +144,22 @@ def test_what_records_are_too_coarse_for_is_not_seen(slug, sizes, told):
         values = {slug: {name: each[k] for name, each in sizes.items()}}
         model = SimpleNamespace(problem=SimpleNamespace(study=study), values=lambda vector, own=values: own)
         assert resolved(SimpleNamespace(model=model, vector=None), BY_SLUG[slug]) is seen_so
+
+
+@pytest.mark.parametrize(
+    ("layout", "slug", "expected"),
+    [(None, "dry_friction", False), ("grid", "dry_friction", True), (None, "setup.tool.radius", True)],
+)
+def test_what_adds_less_than_finite_elements_are_right_to_is_not_seen_where_force_alone_is(
+    monkeypatch, layout, slug, expected
+):
+    """One trial adds 0.9 mN to 1 N, and in a row without samples more."""
+    signals, count = np.array([[0.5], [1.0], [0.0]]), np.array([[3.0], [2.0], [0.0]])
+    trials = [SimpleNamespace(signals=signals, count=count)] * 2
+    added = [np.array([[9e-4], [-2e-4], [0.1]]), np.zeros((3, 1))]
+    monkeypatch.setattr(parameter_evidence, "added_by", lambda fitted, slug: added)
+    problem = SimpleNamespace(trials=trials, study=SimpleNamespace(layout=layout))
+    fitted = SimpleNamespace(model=SimpleNamespace(problem=problem))
+    assert material(fitted, SimpleNamespace(slug=slug)) is expected
+    added[1] = np.full((3, 1), -1.1e-3)
+    assert material(fitted, SimpleNamespace(slug=slug))

@@ -61,6 +61,7 @@ def known_where(monkeypatch, rule):
 def all_determined(monkeypatch):
     known_where(monkeypatch, lambda fit, effect, names=(): "vague" not in effect.slug)
     monkeypatch.setattr(selection, "told_parameters", lambda fit, effect: len(effect.names))
+    monkeypatch.setattr(parameter_evidence, "material", lambda fit, effect: True)
 
 
 @pytest.fixture

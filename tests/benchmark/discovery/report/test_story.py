@@ -35,6 +35,14 @@ def test_what_changes_its_sign_is_neither_more_nor_less(record) -> None:
     assert "more and less than simulated in turn" in place_words(place)
 
 
+def test_depths_next_to_touch_are_told_as_zero(record) -> None:
+    place = replace(record.found.where[0], depth=(1e-9, 6.157e-3), condition="slow")
+    told = story(replace(record, found=replace(record.found, where=(place,)))).steps[0].detail
+    assert "slow, 0 to 6.16 mm deep" in told
+    assert "(slow), 0 to 6.16 mm: " in place_words(place)
+    assert "−0.5 to 6.16 mm" in place_words(replace(place, depth=(-5e-4, 6.157e-3)))
+
+
 def test_more_or_less_is_what_was_measured_not_what_the_effects_add(record) -> None:
     place = replace(record.found.where[0], size=0.5, residual=-0.2, percent_of_signal=-9.0)
     told = story(replace(record, found=replace(record.found, where=(place,))))
