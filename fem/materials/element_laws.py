@@ -56,8 +56,6 @@ class ElementLaws:
         Share (E,) of the elastic stress that relaxation leaves to this step; None for all of it.
     overstress
         Known overstress (components, q, E) in Pa, or None.
-    shear
-        Share (E,) of the laws' elastic isochoric stress that the elements have; None for all of it.
     """
 
     groups: tuple[Group, ...]
@@ -67,7 +65,6 @@ class ElementLaws:
     pretension: FloatArray | None = None
     share: FloatArray | None = None
     overstress: FloatArray | None = None
-    shear: FloatArray | None = None
 
     def relaxing(self, share: FloatArray, overstress: FloatArray | None) -> ElementLaws:
         """The same laws in a step of relaxation."""
@@ -132,27 +129,21 @@ class ElementLaws:
     def elastic_stress(self, deformation: Deformation) -> FloatArray:
         """Isochoric first Piola-Kirchhoff stress (5, q, E) in Pa."""
         if len(self.groups) == 1:
-            return self._softened(self.groups[0].law.stress(deformation, self.groups[0].parameters))
+            return self.groups[0].law.stress(deformation, self.groups[0].parameters)
         out = np.empty_like(deformation.H)
         for group in self.groups:
             out[..., group.elements] = group.law.stress(_part(deformation, group), group.parameters)
-        return self._softened(out)
+        return out
 
     def elastic_tangent(self, deformation: Deformation) -> FloatArray:
         """Packed dP/dF (15, q, E) in Pa of the isochoric stress."""
         if len(self.groups) == 1:
-            return self._softened(self.groups[0].law.tangent(deformation, self.groups[0].parameters))
+            return self.groups[0].law.tangent(deformation, self.groups[0].parameters)
         pairs = len(deformation.components.pairs[0])
         out = np.empty((pairs, *deformation.J.shape))
         for group in self.groups:
             out[..., group.elements] = group.law.tangent(_part(deformation, group), group.parameters)
-        return self._softened(out)
-
-    def _softened(self, elastic: FloatArray) -> FloatArray:
-        """The elements' share of stress or moduli (..., E) of their laws, changed in place."""
-        if self.shear is not None:
-            elastic *= self.shear
-        return elastic
+        return out
 
 
 def _part(deformation: Deformation, group: Group) -> Deformation:
@@ -164,7 +155,6 @@ def element_laws(
     layer: IntArray,
     relaxation: tuple[tuple[PronyTerm, ...], ...] = (),
     pretension: FloatArray | None = None,
-    shear: FloatArray | None = None,
 ) -> ElementLaws:
     """Laws of elements by their layer (E,).
 
@@ -178,8 +168,6 @@ def element_laws(
         Prony terms of each layer, or empty for none at all.
     pretension
         S0, (components, 1, 1) in Pa, the same in all layers, or None.
-    shear
-        Share (E,) of the laws' isochoric stress that the elements have, or None.
     """
     laws = list(dict.fromkeys(material.law for material in materials))
     groups = []
@@ -189,6 +177,6 @@ def element_laws(
         table = np.array([materials[n].parameters for n in members])
         position = np.searchsorted(members, layer[elements])
         groups.append(Group(law, np.ascontiguousarray(table[position].T), elements))
-    shear_modulus = np.array([material.shear_modulus for material in materials])[layer]
-    bulk_modulus = np.array([material.bulk_modulus for material in materials])[layer]
-    return ElementLaws(tuple(groups), shear_modulus, bulk_modulus, prony_of(relaxation, layer), pretension, shear=shear)
+    shear = np.array([material.shear_modulus for material in materials])[layer]
+    bulk = np.array([material.bulk_modulus for material in materials])[layer]
+    return ElementLaws(tuple(groups), shear, bulk, prony_of(relaxation, layer), pretension)

@@ -4,9 +4,7 @@ Round the point from which a flat face is held (the edge of a stuck tool, the ri
 incompressible body goes with the square root of the distance (M. L. Williams, Journal of Applied Mechanics 19 (1952)
 526). A fan is rings of elements round the point, the innermost ones collapsed to triangles. With their mid-side nodes
 at a quarter of the way from the point these hold the square root exactly (R. S. Barsoum, International Journal for
-Numerical Methods in Engineering 10 (1976) 25). Straight ones are too stiff by an energy that goes with their size. A
-share less of their shear stiffness, the same for every size, takes that away, as round a re-entrant corner (H. Egger,
-U. Ruede and B. Wohlmuth, SIAM Journal on Numerical Analysis 52 (2014) 171).
+Numerical Methods in Engineering 10 (1976) 25).
 """
 
 from __future__ import annotations
@@ -39,8 +37,6 @@ class Fan:
         Depth of the point in m; 0 on the upper face, otherwise it is on the lower one.
     square_root
         Whether the innermost elements hold the square root of the distance.
-    shear
-        Share of their layer's shear stiffness that the innermost elements have.
     """
 
     radius: float
@@ -48,7 +44,6 @@ class Fan:
     rings: tuple[float, ...]
     depth: float = 0.0
     square_root: bool = False
-    shear: float = 1.0
 
     @property
     def point(self) -> FloatArray:
@@ -84,11 +79,6 @@ class Fan:
         first[at_point] = np.flatnonzero(at_point)[0]
         used, renumbered = np.unique(first[elements], return_inverse=True)
         return nodes[used], renumbered.reshape(elements.shape)
-
-    def shares(self, nodes: FloatArray, elements: IntArray) -> FloatArray:
-        """Share (E,) of the shear stiffness of elements (9, E) that it leaves them, after :meth:`gathered`."""
-        at_point = np.abs(nodes - self.point).max(axis=1) <= AT_BOUNDARY * self.half_width
-        return np.where(at_point[elements[:4]].sum(axis=0) == 2, self.shear, 1.0)
 
     def _drawn_in(self, nodes: FloatArray, elements: IntArray, at_point: BoolArray) -> FloatArray:
         """The nodes with the mid-side ones next to the point where the square root wants them."""

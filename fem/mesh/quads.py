@@ -36,8 +36,6 @@ class Mesh:
     undersides
         For each layer but the last the nodes of its lower face in the same order: those of the next top face, or
         where the interface is split nodes at the same places (see :mod:`fem.mesh.quads`).
-    shear
-        Share (E,) of its layer's shear stiffness that each element has; None for all of it.
     """
 
     nodes: FloatArray
@@ -49,7 +47,6 @@ class Mesh:
     border: BoolArray
     interfaces: tuple[IntArray, ...]
     undersides: tuple[IntArray, ...]
-    shear: FloatArray | None = None
 
     @property
     def radius(self) -> float:
@@ -93,10 +90,8 @@ def mesh_of_quads(points: FloatArray, quads: IntArray, layer_tops: FloatArray, f
     )
     nodes = np.ascontiguousarray(basis.doflocs.T)
     elements = np.asarray(basis.element_dofs, dtype=np.int64)
-    fans = tuple(fans)
     for fan in fans:
         nodes, elements = fan.gathered(nodes, elements)
-    softened = [fan.shares(nodes, elements) for fan in fans if fan.shear != 1.0]
     r, z = nodes.T
     interfaces = tuple(_row(r, np.flatnonzero(z == -depth)) for depth in layer_tops)
     return Mesh(
@@ -109,7 +104,6 @@ def mesh_of_quads(points: FloatArray, quads: IntArray, layer_tops: FloatArray, f
         border=np.asarray(r == r.max()),
         interfaces=interfaces,
         undersides=interfaces[1:],
-        shear=np.prod(softened, axis=0) if softened else None,
     )
 
 

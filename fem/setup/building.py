@@ -173,7 +173,6 @@ def layer_laws(problem: Problem, mesh: AnyMesh, components: Components) -> Eleme
         mesh.layer,
         tuple(layer.relaxation for layer in problem.layers),
         _pretension(problem, components),
-        mesh.shear if isinstance(mesh, Mesh) else None,
     )
 
 

@@ -4,8 +4,7 @@ Radially the lines gather at the tool's edge and at what the support names; vert
 top face. The stress is singular at the edge of a stuck tool and where a clamp begins: the element size there sets
 the accuracy. In linear kinematics the edge elements may be tiny. In finite strain they fold under a tool stuck to a
 thick soft layer, where the material turns round the edge: there they form a fan whose rings become smaller towards the
-edge, as few as a deep press bears. Over a hole it holds the square root of the distance, as that at the rim does; on a
-base its innermost elements are softened by what straight ones are too stiff.
+edge, as few as a deep press bears. Over a hole it holds the square root of the distance, as that at the rim does.
 """
 
 from __future__ import annotations
@@ -33,10 +32,6 @@ LARGEST_FAN = 4.0  # times the usual one; a larger one would come near the axis
 # Each half as large as the one round it. With a fourth a tool no longer goes 7 mm into soft 15 mm; in a ring that holds
 # the square root of the distance the next node is half as far away.
 TOOL_RINGS, SQUARE_ROOT_RINGS = 3, 2
-STRAIGHT_SHEAR = 0.75
-"""Share of the shear stiffness that the innermost of straight elements have: the force of small presses is then within
-0.06 % of the limit for Poisson's ratios of 0.45 to 0.499, and deeper ones have a fifth to a half of the error that
-whole elements leave."""
 FEWER_RINGS = 2.0  # up to this factor on the size at the edge the fan has fewer rings, beyond it is larger
 
 
@@ -45,9 +40,12 @@ def lay_out(problem: Problem) -> Mesh:
     return _layout(problem).mesh()
 
 
-def edge_fan(problem: Problem) -> Fan | None:
-    """The fan of elements round the edge of the tool, if the mesh has one."""
-    return _layout(problem).tool_fan if problem.geometry == "axisymmetric" else None
+def holds_edge(problem: Problem) -> bool:
+    """Whether a fan of elements round the tool's edge holds the square root of the distance from it."""
+    if problem.geometry != "axisymmetric":
+        return False
+    fan = _layout(problem).tool_fan
+    return fan is not None and fan.square_root
 
 
 def _layout(problem: Problem) -> _Layout:
@@ -108,8 +106,7 @@ class _Layout:
         fewer = round(math.log2(min(self.edge, FEWER_RINGS)))
         root = self.extent.square_root
         rings = self._rings((SQUARE_ROOT_RINGS if root else TOOL_RINGS) - fewer)
-        whole = root or self.edge > FEWER_RINGS  # larger ones are for presses that the usual ones cannot follow
-        return Fan(self.radius, half_width, rings, square_root=root, shear=1.0 if whole else STRAIGHT_SHEAR)
+        return Fan(self.radius, half_width, rings, square_root=root)
 
     def _support_fans(self, tool: Fan | None) -> tuple[Fan, ...]:
         """The fans of the support for which there is room; on the upper face they are as high as the tool's."""

@@ -6,9 +6,6 @@ an edge, the energy's error goes with the element size at the edge: its order is
 there, which is 1/2 in small strain. In deep presses, where the material turns round the edge, it is lower. There
 further solutions with larger elements at the edge alone tell it, and the share of the edge.
 
-In a fan of straight elements, the innermost softened by that error, what is left is no larger than what a coarser mesh
-of the kind shows by the order of smooth solutions, until the elements next to the edge are about to fold.
-
 In a fan whose elements hold the square root of the distance, the order is that of smooth solutions. What they do not
 hold is the region of large strain round the edge, where displacements are something else. Like the region of
 small-scale yielding round a crack (J. R. Rice, Journal of Applied Mechanics 35 (1968) 379) it is ruled by the field
@@ -39,7 +36,7 @@ from fem.mesh.quads import Mesh
 from fem.problem.parts import LARGEST_EDGE
 from fem.problem.problem import Problem
 from fem.results.solution import Solution
-from fem.setup.layout import edge_fan
+from fem.setup.layout import holds_edge
 from fem.setup.prepare import prepare
 
 if TYPE_CHECKING:
@@ -80,7 +77,7 @@ class MeshError:
     error
         Estimated value less limit of refinement (m or N).
     order
-        Order of convergence that is assumed, at a stuck edge of straight and whole elements that which was observed.
+        Order of convergence that is assumed, at a stuck edge of straight elements that which was observed.
     unknowns
         Of the solution with half as many elements in each direction.
     seconds
@@ -119,9 +116,9 @@ def estimate_mesh_error(model: Model, load: Load, solution: Solution, *, first_o
     solution
         What it found; of a run that stopped early what it reached.
     first_order
-        Take the order of small strain at a stuck edge of straight and whole elements instead of the observed one, and
-        where there is no fan the order of smooth solutions for the whole. Otherwise the order is rather too low, and
-        the error too large by up to three, without a fan by up to seven: for a bound, not to correct by.
+        Take the order of small strain at a stuck edge of straight elements instead of the observed one, and where there
+        is no fan the order of smooth solutions for the whole. Otherwise the order is rather too low, and the error too
+        large by up to three, without a fan by up to seven: for a bound, not to correct by.
 
     Returns
     -------
@@ -134,8 +131,7 @@ def estimate_mesh_error(model: Model, load: Load, solution: Solution, *, first_o
         return None
     began = clock.process_time()
     quantity = "depth" if load.control == "force" else "force"
-    fan = edge_fan(model.problem)
-    held = fan is not None and (fan.square_root or fan.shear < 1.0)
+    held = holds_edge(model.problem)
     edges = EDGES[: 1 if held else 2 if first_order else 3]
     for step, follow in _judged_steps(model, reached):
         kept = _kept_steps(model.problem, step)
@@ -176,8 +172,7 @@ def error_at_edge(model: Model, solution: Solution) -> FloatArray:
     """
     work = np.abs(solution.depth * solution.force)
     out: FloatArray = np.zeros(len(work))
-    fan = edge_fan(model.problem)
-    if fan is None or not fan.square_root:
+    if not holds_edge(model.problem):
         return out
     edge, nodes = np.array([model.problem.tool.radius, 0.0]), solution.mesh.nodes
     away = np.linalg.norm(nodes - edge, axis=1)

@@ -19,14 +19,3 @@ def test_mixed_laws_equal_each_law_on_its_elements():
         np.testing.assert_allclose(laws.tangent(d)[..., e], material.law.tangent(one, parameters), atol=1e-14)
         assert laws.bulk_modulus[e] == material.bulk_modulus
         assert laws.shear_modulus[e] == material.shear_modulus
-
-
-def test_softened_elements_have_a_share_of_the_elastic_stress_and_the_whole_bulk_modulus():
-    layer, share = np.array([0, 1, 0]), np.array([1.0, 0.5, 0.8])
-    d = Deformation(AXISYMMETRIC, np.random.default_rng(9).normal(scale=0.05, size=(5, 4, 3)))
-    for materials in ((NeoHookean(1.0, 0.3), LinearElastic(3.0, 0.2)), (NeoHookean(1.0, 0.3), NeoHookean(2.0, 0.4))):
-        whole, soft = element_laws(materials, layer), element_laws(materials, layer, shear=share)
-        for name in ("stress", "tangent", "second_stress", "linear_stress"):
-            np.testing.assert_allclose(getattr(soft, name)(d), share * getattr(whole, name)(d), rtol=1e-14, atol=0.0)
-        np.testing.assert_array_equal(soft.bulk_modulus, whole.bulk_modulus)
-        np.testing.assert_array_equal(soft.shear_modulus, whole.shear_modulus)

@@ -50,14 +50,3 @@ def test_a_fan_leaves_the_nodes_beyond_its_innermost_elements():
     assert moved.sum() == 9  # five rays and four middles
     assert np.isin(np.flatnonzero(moved), inner).all()
     assert plain.base.sum() == drawn.base.sum()
-
-
-def test_only_the_innermost_elements_of_a_fan_are_softened():
-    soft = Fan(2.0, 0.8, (1.0, 0.5, 0.25), shear=0.75)
-    for others in ([], [RIM]):
-        mesh = build_mesh(LINES, np.array([0.0, 0.8, 1.0]), np.zeros(1), [soft, *others])
-        expected = np.ones(mesh.elements.shape[1])
-        expected[inner_elements(mesh, soft)] = 0.75
-        assert (expected < 1.0).sum() == 2
-        np.testing.assert_array_equal(mesh.shear, expected)
-    assert build_mesh(LINES, DEPTHS, np.zeros(1), [RIM]).shear is None

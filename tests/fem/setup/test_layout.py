@@ -22,19 +22,6 @@ def test_other_edges_are_graded_only(slab, contact, kinematics):
     assert elements_at_edge(lay_out(slab(contact, kinematics)), 5e-3) == 2
 
 
-def test_straight_elements_at_the_edge_are_softened_where_the_usual_mesh_goes(slab, skin):
-    def softened(problem, edge=1.0):
-        shear = lay_out(replace(problem, discretisation=fem.Discretisation(edge=edge))).shear
-        return 0 if shear is None else int((shear == 0.75).sum())
-
-    assert softened(slab()) == elements_at_edge(lay_out(slab()), 5e-3)
-    assert softened(slab(), 2.0) > 0
-    assert softened(slab(), 4.0) == 0  # for presses that the usual elements cannot follow
-    others = (slab("uniform_pressure"), slab(kinematics="linear"), skin("rigid_bonded"))
-    for other in (*others, slab(support=fem.Support("hole", 0.03))):
-        assert softened(other) == 0
-
-
 def test_a_thin_first_layer_has_no_room_for_a_fan(skin):
     assert elements_at_edge(lay_out(skin("rigid_bonded")), 5e-3) == 2
 
