@@ -77,7 +77,7 @@ def test_a_trial_that_the_first_order_steps_too_far_from_is_refitted(session_of,
     monkeypatch.setattr(criteria, "TOO_FAR", float(np.median(lost)))
     refitted = held_out(drift)
     np.testing.assert_array_equal(refitted != straight, lost > np.median(lost))
-    np.testing.assert_allclose(refitted, straight, atol=0.2)
+    np.testing.assert_allclose(refitted, straight, atol=0.1)
 
 
 @pytest.mark.slow
