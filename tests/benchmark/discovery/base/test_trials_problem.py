@@ -32,3 +32,13 @@ def test_a_tool_is_pressed_deep_once_for_all_conditions(session_of):
     law = wave_table(session.specimen, trial.tool, trial.support, 3e-3)
     assert _layered_wave.cache_info().misses == before
     assert law.depth[-1] > 3e-3
+
+
+def test_a_late_trial_is_pressed_through_what_its_record_was_before(session_of):
+    session = session_of(trials=3)
+    study = prepare(session, 60)
+    model = calibrate(session, study).base.model
+    record, trial = study.conditions[0].records[0], model.problem.trials[0]
+    assert trial.motion.record is record
+    late = trial.motion.before(4e-3)
+    np.testing.assert_allclose(late.depth - trial.motion.depth, record.means(4e-3) - record.means(0.0), atol=1e-15)

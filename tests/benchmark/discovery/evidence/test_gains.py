@@ -163,3 +163,13 @@ def test_what_adds_less_than_finite_elements_are_right_to_is_not_seen_where_forc
     assert material(fitted, SimpleNamespace(slug=slug)) is expected
     added[1] = np.full((3, 1), -1.1e-3)
     assert material(fitted, SimpleNamespace(slug=slug))
+
+
+@pytest.mark.parametrize("rule", ["resolved", "material"])
+def test_what_is_too_fine_or_too_little_is_not_seen(monkeypatch, rule):
+    effect = SimpleNamespace(slug="one", seen_by="", like_delay=False)
+    for each in ("resolved", "material"):
+        monkeypatch.setattr(parameter_evidence, each, lambda fitted, effect: True)
+    assert seen(None, effect)
+    monkeypatch.setattr(parameter_evidence, rule, lambda fitted, effect: False)
+    assert not seen(None, effect)

@@ -95,8 +95,11 @@ def test_effects_know_the_edge_of_the_tool(tmp_path, quick_session, edge, expect
     assert {each.around.edge_radius for each in prepare(load_session(folder), 40).conditions} == {expected}
 
 
-def test_each_trial_keeps_the_record_that_its_rows_are_means_of(session_of):
-    condition = prepare(session_of(trials=4, speeds=(3e-3,)), 60).conditions[0]
+def test_each_trial_keeps_the_record_that_its_rows_are_means_of(tmp_path, quick_session):
+    """On the clock of its rows, which begins with the first of them."""
+    folder = quick_session.write_session(tmp_path / "session", trials=4, speeds=(3e-3,))
+    rewrite(folder, lambda table: table + np.array([7.0, 0.0, 0.0]))
+    condition = prepare(load_session(folder), 60).conditions[0]
     for row, record in enumerate(condition.records):
         full = condition.count[row, :, 0] > 1
         assert full.sum() > 10
