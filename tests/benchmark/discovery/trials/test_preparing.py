@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from benchmark.discovery.trials.preparing import prepare
+from benchmark.discovery.trials.rows import depth_step
 from benchmark.errors import InputError
 from benchmark.files import load_session
 
@@ -99,7 +100,8 @@ def test_each_trial_keeps_the_record_that_its_rows_are_means_of(tmp_path, quick_
     """On the clock of its rows, which begins with the first of them."""
     folder = quick_session.write_session(tmp_path / "session", trials=4, speeds=(3e-3,))
     rewrite(folder, lambda table: table + np.array([7.0, 0.0, 0.0]))
-    condition = prepare(load_session(folder), 60).conditions[0]
+    study = prepare(load_session(folder), 60)
+    condition = study.conditions[0]
     for row, record in enumerate(condition.records):
         full = condition.count[row, :, 0] > 1
         assert full.sum() > 10
@@ -108,3 +110,5 @@ def test_each_trial_keeps_the_record_that_its_rows_are_means_of(tmp_path, quick_
         np.testing.assert_allclose(
             record.means(0.0)[full], condition.depth[row][full], atol=2e-3 * np.ptp(record.depth)
         )
+    assert study.depth_step == pytest.approx(depth_step(condition.records[0].depth), rel=0.5)
+    assert study.depth_step > 0.0
