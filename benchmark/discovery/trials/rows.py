@@ -24,6 +24,8 @@ LEAST_BINS = 10
 """Of a segment."""
 FITTED = 5
 """Rows of a local quadratic."""
+MOST_RECORD = 20_000
+"""Rows of a record that is kept whole; of a longer one the raw rows are kept, which are means themselves."""
 SAME_DEPTH = 1e-10
 """Depths that differ by no more are the same, m."""
 OF_NORMAL = 1.4826
@@ -230,9 +232,13 @@ def binned(raw: RawTrial, plan: BinPlan, layout: Layout | None, seen: NDArray[np
 
 
 def record(raw: RawTrial, plan: BinPlan, begin: float) -> DepthRecord:
-    """The whole record of the depth that the bins of a plan are means of, on a clock that begins so late, s."""
-    table = raw.trial.table
-    return DepthRecord(table.time - begin, table.depth, _edges(raw, plan) - begin)
+    """The record of the depth that the bins of a plan are means of, on a clock that begins so late, s.
+
+    It is the whole one unless that is very long: it goes with each trial to every process.
+    """
+    whole = raw.trial.table
+    kept = whole if whole.time.size <= MOST_RECORD else raw
+    return DepthRecord(kept.time - begin, kept.depth, _edges(raw, plan) - begin)
 
 
 def _edges(raw: RawTrial, plan: BinPlan) -> Array:

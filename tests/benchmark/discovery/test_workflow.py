@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmark.discovery import Settings, expected, findings, rivals
+from benchmark.discovery import Settings, expected, findings, rivals, workflow
+from benchmark.discovery.answer.verdict import verdict
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.discovery_result import CHANNELS, PHASES, VERDICTS
 
@@ -116,3 +117,12 @@ def test_loading_alone_names_nothing_that_needs_more(session_of, quick_session, 
     said = {slug for effect in answer.effects for slug in (effect.slug, *effect.lookalikes)}
     assert not hidden & said
     assert not hidden & {slug for each in answer.candidates for slug in each.slugs}
+
+
+@pytest.mark.parametrize("tiny", [False, True])
+def test_the_verdict_is_told_whether_the_misfit_is_nothing(session_of, monkeypatch, tiny):
+    told = []
+    monkeypatch.setattr(workflow, "misses_nothing", lambda fitted: tiny)
+    monkeypatch.setattr(workflow, "verdict", lambda facts: told.append(facts) or verdict(facts))
+    findings(session_of(trials=4, speeds=(3e-3,)), settings=SETTINGS)
+    assert [facts.tiny for facts in told] == [tiny]

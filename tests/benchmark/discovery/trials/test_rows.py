@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from benchmark.discovery.trials.rows import acceleration, depth_step, frame_means, marker_frames
+from benchmark.discovery.trials.rows import acceleration, depth_step, frame_means, marker_frames, record
 from benchmark.errors import InputError
 from benchmark.files import Camera
 
@@ -55,3 +55,13 @@ def test_the_smallest_change_of_a_depth_is_its_rounding_or_three_deviations_of_i
 
 def test_a_depth_that_stays_has_no_step():
     assert depth_step(np.ones(40)) == 0.0
+
+
+@pytest.mark.parametrize(("rows", "kept"), [(20_000, 20_000), (20_001, 4)])
+def test_a_record_is_whole_unless_it_is_very_long(rows, kept):
+    whole = SimpleNamespace(table=SimpleNamespace(time=np.arange(float(rows)), depth=np.arange(float(rows))))
+    few = np.array([10.0, 20.0, 30.0, 40.0])
+    raw = SimpleNamespace(trial=whole, time=few, depth=few, pieces=(SimpleNamespace(first=0, last=4),))
+    made = record(raw, [(0, np.array([0.0, 0.5, 1.0]))], 10.0)
+    assert made.time.size == made.depth.size == kept
+    assert made.borders.tolist() == [-5.0, 15.0, 35.0]
