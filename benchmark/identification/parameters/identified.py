@@ -37,6 +37,8 @@ NOT_DETERMINED = "not determined"
 PRIOR_ALONE = "on its prior alone"
 FAR = 2.0
 """Standard uncertainties beyond which a told value of the set-up has moved far: one in twenty does by chance."""
+CONTRADICTED = 5.0
+"""Standard uncertainties beyond which the trials contradict what was told: one in two million does by chance."""
 
 
 @dataclass(frozen=True)
@@ -158,8 +160,9 @@ class Identified:
         index, own = self.found.problem.free[place], self.profiles[place]
         parameter, at = self.found.problem.parameters[index], float(self.found.vector[index])
         ends = own.determined(at)
-        identifiable = ends and largest <= LARGEST_ERROR and self.found.settled
-        quoted = ends and self.found.settled and (identifiable or parameter.prior is not None)
+        trusted = self.found.settled and not self.contradicted
+        identifiable = ends and largest <= LARGEST_ERROR and trusted
+        quoted = ends and trusted and (identifiable or parameter.prior is not None)
         values = sorted(parameter.scale * parameter.value(each) for each in (own.low, own.high)) if quoted else ()
         low, high = values if values else (None, None)
         prior = None if parameter.prior is None else f"{_prior(parameter)}; {parameter.prior.source}"
@@ -170,6 +173,11 @@ class Identified:
     def _reason(self, place: int, largest: float) -> str:
         if not self.found.settled:
             return "the fit did not settle, so that its values are no answer"
+        if self.contradicted:
+            return (
+                f"the trials contradict what was told of {', '.join(self.contradicted)}, so that this value, the "
+                "law, the contact or an effect that is not in the model is wrong"
+            )
         deviation = float(errors_alone(self.found.fit, self.found.problem.free)[place])
         if self.others and largest <= LARGEST_ERROR:
             return "two or more answers away from each other follow the trials equally well"
@@ -229,17 +237,27 @@ class Identified:
     def _moved_far(self) -> list[str]:
         """A warning for each told value of the set-up that the trials move beyond what it is known to."""
         return [
-            f"the trials move {one.key} from {one.scale * one.prior.value:.4g} to "
+            f"the trials move {one.key} from {one.scale * prior.value:.4g} to "
             f"{one.scale * self.found.value(k):.4g} {one.unit}".strip()
-            + f", {far:.2g} standard uncertainties "
-            f"({one.prior.source}), and the free values go with it: measure it, or look for another law or contact"
-            for k, one in enumerate(self.found.problem.parameters)
-            if one.told and one.prior is not None and (far := self._moved(k, one.prior, one)) > FAR
+            + f", {far:.2g} standard uncertainties ({prior.source}), and the free values go with it: measure it, look "
+            "for another law or contact, or let the command discover say which effect is missing"
+            for k, one, prior, far in self._moved
+            if far > FAR
         ]
 
-    def _moved(self, index: int, prior: Prior, one: Parameter) -> float:
-        """Standard uncertainties between a told value and the fit's."""
-        return abs(float(self.found.vector[index]) - one.coordinate(prior.value)) / prior.deviation
+    @cached_property
+    def contradicted(self) -> tuple[str, ...]:
+        """Told values of the set-up that the trials move further than chance does."""
+        return tuple(one.key for _, one, _, far in self._moved if far > CONTRADICTED)
+
+    @cached_property
+    def _moved(self) -> tuple[tuple[int, Parameter, Prior, float], ...]:
+        """Told values of the set-up, each with its place, prior, and standard uncertainties from it to the fit's."""
+        return tuple(
+            (k, one, prior, abs(float(self.found.vector[k]) - one.coordinate(prior.value)) / prior.deviation)
+            for k, one in enumerate(self.found.problem.parameters)
+            if one.told and (prior := one.prior) is not None
+        )
 
     @property
     def _unsettled(self) -> str:

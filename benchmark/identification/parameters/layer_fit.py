@@ -40,7 +40,10 @@ USUAL_SCATTER = 0.015
 """Standard deviation of trials' gains to begin with, and where there are too few trials to tell it."""
 AGREES = 5e-4
 """Largest difference of surrogate and model, as a share of the force, with which a round is the last."""
-MOST_ROUNDS = 6
+SLOW_ROUNDS = 6
+"""Rounds after which a fit goes on only while each leaves no more than `NEARING` of what the one before left."""
+MOST_ROUNDS = 20
+NEARING = 0.5
 SEARCH = Search(most=25, gain=1e-3, share=1e-7)
 LOOKED_UP = Search(most=0)
 NORMAL = 1.96
@@ -181,18 +184,20 @@ def fit_layers(start: LayerFit, say: Say = lambda _: None, rounds: int = MOST_RO
     say : callable
         Told of each round.
     rounds : int
-        At most; with none the trials are fitted on the surrogates of the start.
+        At most, and of more than `SLOW_ROUNDS` only as many as come nearer; with none the trials are fitted on the
+        surrogates of the start.
     """
     problem, model, nuisance = start.problem, start.model, start.fit.nuisance
     vector, apart, done = start.vector, np.inf, 0
     for done in range(1, rounds + 1):
+        before = apart
         model, fit, memory = _fitted(problem, model, vector, nuisance)
         pressed, vector = pressed_anew(problem, fit.vector, vector)
         apart = disagreement(model.surrogates, pressed, vector, len(problem.parameters))
         say(f"round {done}: model and surrogate differ by {100 * apart:.2g} % of the force")
         stopped = _at_edge(problem, model, fit.vector)
         model, nuisance = _renewed(problem, model, pressed, vector), fit.nuisance
-        if apart <= AGREES and not stopped:
+        if (apart <= AGREES and not stopped) or (done >= SLOW_ROUNDS and apart > NEARING * before):
             break
     model, fit, memory = _fitted(problem, model, vector, nuisance)
     return LayerFit(problem, fit, memory, done, apart)

@@ -79,7 +79,7 @@ def _values(answer: Identified) -> Section:
         said = ("value", Column("after the fit"), "unit", Column("95 % low"), Column("95 % high"), "told")
         text = (
             "What was told of the set-up is taken with its uncertainty, stated or usual; the intervals above include "
-            "it. `exact` takes it away."
+            "it. --exact all takes it away."
         )
         blocks += [Paragraph(text), Table("Told of the set-up, moved along", said, told)]
     return Section("Parameters", blocks)

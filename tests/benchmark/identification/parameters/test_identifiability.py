@@ -47,21 +47,33 @@ def test_the_two_tools_that_tell_them_are_held_out_in_turn(toy_fit) -> None:
     assert low < 1e-3 * TRUTH[MODULI[2]] < high
 
 
-@pytest.mark.parametrize(("deviations", "said"), [(1.9, False), (-1.9, False), (-7.0, True), (2.1, True)])
-def test_a_told_value_that_the_trials_move_far_is_warned_of(toy_fit, deviations, said) -> None:
-    told = answer(toy_fit())
+def moved(told, deviations):
+    """An answer whose thickness, told as 10 mm to 3.5 %, the trials move by so many standard uncertainties."""
     prior = Prior(0.01, 0.035, "told without its uncertainty")
     thickness = Parameter("specimen.thickness", 0.01, 1e-4, 1.0, prior, told=True)
-    count = len(told.found.problem.parameters)
-    vector = np.insert(told.found.vector, count, np.log(0.01) + 0.035 * deviations)
+    vector = np.insert(told.found.vector, len(told.found.problem.parameters), np.log(0.01) + 0.035 * deviations)
     problem = replace(told.found.problem, parameters=(*told.found.problem.parameters, thickness))
-    found = replace(told.found, problem=problem, fit=replace(told.found.fit, vector=vector))
-    warned = [one for one in replace(told, found=found).warnings if "standard uncertainties" in one]
+    return replace(told, found=replace(told.found, problem=problem, fit=replace(told.found.fit, vector=vector)))
+
+
+@pytest.mark.parametrize(("deviations", "said"), [(1.9, False), (-1.9, False), (-7.0, True), (2.1, True)])
+def test_a_told_value_that_the_trials_move_far_is_warned_of(toy_fit, deviations, said) -> None:
+    warned = [one for one in moved(answer(toy_fit()), deviations).warnings if "standard uncertainties" in one]
     assert len(warned) == said
     if said:
-        moved = 10.0 * np.exp(0.035 * deviations)
-        assert f"the trials move specimen.thickness from 10 to {moved:.4g} mm, " in warned[0]
+        thickness = 10.0 * np.exp(0.035 * deviations)
+        assert f"the trials move specimen.thickness from 10 to {thickness:.4g} mm, " in warned[0]
         assert f"{abs(deviations):.2g} standard uncertainties (told without its uncertainty)" in warned[0]
+
+
+@pytest.mark.parametrize(("deviations", "contradicted"), [(4.9, False), (-4.9, False), (5.1, True), (-25.0, True)])
+def test_nothing_is_determined_where_the_trials_contradict_what_was_told(toy_fit, deviations, contradicted) -> None:
+    told = moved(answer(toy_fit()), deviations)
+    assert all(one.identifiable != contradicted for one in told.estimates)
+    assert all((one.low is None) == contradicted for one in told.estimates)
+    if contradicted:
+        assert f"{MODULI[2]} {NOT_DETERMINED}" in told.headline
+        assert all("contradict what was told of specimen.thickness" in one.reason for one in told.estimates)
 
 
 def test_directions_are_said_in_words() -> None:

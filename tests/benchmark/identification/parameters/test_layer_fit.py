@@ -7,6 +7,7 @@ from scipy.signal import lfilter
 
 from benchmark.errors import InputError
 from benchmark.files.sessions.fit_table import FitTable
+from benchmark.identification.parameters import layer_fit
 from benchmark.identification.parameters.free_parameters import value_of
 from benchmark.identification.parameters.layer_fit import SEARCH, USUAL_SCATTER, begun, fit_layers
 from benchmark.identification.parameters.layer_model import FitTrial
@@ -54,6 +55,22 @@ def test_a_fit_ends_at_the_same_answer_wherever_it_takes_the_touch_to_be(toy) ->
         start = found.fit.nuisance + np.array([touch, 0.0, 0.0])
         ends.append(2.0 * least_squares(found.model, found.vector, start, search=SEARCH).objective)
     assert np.ptp(ends) < 0.1
+
+
+@pytest.mark.parametrize(
+    ("apart", "rounds", "settled"),
+    [
+        ([0.4, 0.2, 0.1, 0.014, 3e-3, 1e-3, 4e-5], 7, True),  # the gel pad's, whose start was a factor of five off
+        ([0.4, 0.5, 0.4, 0.5, 0.02, 0.02], 6, False),
+        ([0.4, 0.2, 0.1, 0.05, 0.02, 8e-3, 3e-3, 2e-3], 8, False),
+    ],
+)
+def test_a_fit_that_comes_nearer_goes_on_and_one_that_does_not_stops(toy, monkeypatch, apart, rounds, settled) -> None:
+    left = iter(apart)
+    monkeypatch.setattr(layer_fit, "disagreement", lambda *_: next(left))
+    problem = toy(trials=2)
+    found = fit_layers(begun(problem, np.zeros(4), zeros_of(problem)))
+    assert (found.rounds, found.settled) == (rounds, settled)
 
 
 def test_the_scatter_of_trials_is_told_from_their_noise(toy_fit) -> None:
