@@ -35,22 +35,24 @@ class LagStep:
 
 def lag_step(ratio: NumberArray) -> LagStep:
     """Coefficients for steps of `ratio` = duration / time, not negative; a step without duration keeps x."""
-    keep = np.exp(-ratio)
-    mean = np.divide(-np.expm1(-ratio), ratio, out=np.ones_like(ratio), where=ratio != 0.0)
-    return LagStep(keep, mean - keep, 1.0 - mean)
+    lost = -np.expm1(-ratio)
+    mean = np.divide(lost, ratio, out=np.ones_like(ratio), where=ratio != 0.0)
+    return LagStep(1.0 - lost, mean - (1.0 - lost), 1.0 - mean)
 
 
-def lagged(ratio: NumberArray, force: FloatArray, last: float = 0.0, start: float = 0.0) -> NumberArray:
-    """(n,) response x to a force that is linear within each step.
+def lagged(ratio: NumberArray, force: FloatArray, last: float = 0.0, start: NumberArray | float = 0.0) -> NumberArray:
+    """(..., n) responses x to a force that is linear within each step.
 
     Parameters
     ----------
     ratio
-        (n,) durations of the steps over the lag's time.
+        (..., n) durations of the steps over the lags' times.
     force
         (n,) at the ends of the steps.
-    last, start
-        Force and response before the first step.
+    last
+        Force before the first step.
+    start
+        (...) responses before the first step.
     """
     step = lag_step(ratio)
     before = np.concatenate([[last], force[:-1]])
@@ -84,9 +86,7 @@ class LagSum:
     def lags(self, durations: FloatArray, values: FloatArray, memory: "LagMemory | None" = None) -> NumberArray:
         """(m, n) responses of the lags to values (n,) at the ends of steps (n,), s."""
         memory = memory or self.rest()
-        pairs = zip(self.time.tolist(), memory.state.tolist(), strict=True)
-        rows = [lagged(durations / time, values, memory.last, start) for time, start in pairs]
-        return np.array(rows).reshape(self.time.size, values.size)
+        return lagged(durations / self.time[:, None], values, memory.last, memory.state)
 
     def follow(
         self, durations: FloatArray, values: FloatArray, memory: "LagMemory | None" = None

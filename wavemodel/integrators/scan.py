@@ -1,55 +1,59 @@
 """Recursions over a history without a loop over its steps."""
 
-from itertools import pairwise
-
 import numpy as np
 
 from wavemodel.arrays import FloatArray, NumberArray
 
 DECAYED = 45.0
 """Beyond this exponent what was there before is gone (e^-45 is 3e-20)."""
+
+
 LARGEST = 600.0
-"""Exponents that a block may sum up to without overflow."""
-BLOCK = 60
-"""Steps that cost as much one after the other as a block does at once; shorter blocks are not worth it."""
+"""Exponents that may be summed up without overflow."""
 
 
-def decaying_sum(exponent: NumberArray, gain: NumberArray, start: complex = 0.0) -> NumberArray:
+def decaying_sum(exponent: NumberArray, gain: NumberArray, start: NumberArray | complex = 0.0) -> NumberArray:
     """y_n = e^(-exponent_n) y_(n-1) + gain_n, from y = `start` before the first.
-
-    The sum of e^(c_k) gain_k with the running sum c of the exponents, in blocks that cannot overflow; every term is
-    scaled down by what follows it, so that no digits are lost against the recursion.
 
     Parameters
     ----------
     exponent
-        (n,) not negative (or complex, its real part).
+        (..., n) not negative (or complex, its real part).
     gain
-        (n,).
+        (..., n).
     start
-        y before the first step.
+        (...) y before the first step.
     """
-    out = np.empty_like(gain)
-    exponent = np.where(exponent.real > DECAYED, DECAYED, exponent)
-    block = np.floor(np.cumsum(exponent.real) / LARGEST)
-    edges = [0, *(np.flatnonzero(np.diff(block)) + 1), gain.size]
-    if len(edges) > 2 and gain.size < BLOCK * (len(edges) - 1):
-        return _one_by_one(np.exp(-exponent), gain, start)
-    for first, last in pairwise(edges):
-        sum_up = np.cumsum(exponent[first:last])
-        growth = np.exp(sum_up)
-        out[first:last] = (np.cumsum(gain[first:last] * growth) + start) / growth
-        start = out[last - 1] if last > first else start
+    whole = exponent.real.sum(axis=-1) <= LARGEST
+    if whole.all():
+        return _at_once(exponent, gain, start)
+    if not whole.any():
+        return _joined(exponent, gain, start)
+    out, start = np.empty_like(gain), np.broadcast_to(start, whole.shape)
+    out[whole] = _at_once(exponent[whole], gain[whole], start[whole])
+    out[~whole] = _joined(exponent[~whole], gain[~whole], start[~whole])
     return out
 
 
-def _one_by_one(keep: NumberArray, gain: NumberArray, start: complex) -> NumberArray:
-    """y_n = keep_n y_(n-1) + gain_n, (n,), in Python's numbers, which are faster than arrays of one."""
-    out, last = [], start
-    for kept, more in zip(keep.tolist(), gain.tolist(), strict=True):
-        last = kept * last + more
-        out.append(last)
-    return np.array(out, dtype=gain.dtype)
+def _at_once(exponent: NumberArray, gain: NumberArray, start: NumberArray | complex) -> NumberArray:
+    """The sum of e^(c_k) gain_k with the running sum c of the exponents, every term scaled down by what follows it."""
+    growth = np.exp(np.cumsum(exponent, axis=-1))
+    return np.asarray((np.cumsum(gain * growth, axis=-1) + np.asarray(start)[..., None]) / growth)
+
+
+def _joined(exponent: NumberArray, gain: NumberArray, start: NumberArray | complex) -> NumberArray:
+    """Two steps are y -> keep y + gain again: they are joined over distances 1, 2, 4..., while anything is left.
+
+    W. D. Hillis and G. L. Steele 1986, Communications of the ACM 29:1170.
+    """
+    keep, out = np.exp(-np.moveaxis(exponent, -1, 0), order="C"), np.moveaxis(gain, -1, 0).copy()
+    out[0] += keep[0] * start
+    distance = 1
+    while distance < len(out) and np.abs(keep[distance:]).max() > np.exp(-DECAYED):
+        out[distance:] += keep[distance:] * out[:-distance]
+        keep[distance:] *= keep[:-distance]
+        distance *= 2
+    return np.moveaxis(out, 0, -1)
 
 
 def bounded_sum(change: FloatArray, limit: FloatArray, start: float = 0.0) -> FloatArray:

@@ -92,8 +92,7 @@ class PoroelasticDrainage:
         first = float(segment.force[0]) if segment.endless else 0.0
         last, *state = memory or (first,) * (TERMS + 1)
         step = segment.duration * self.diffusivity / self.contact_radius(segment.depth) ** 2
-        pairs = zip(rate.tolist(), state, strict=True)
-        lags = np.array([lagged(step * one, segment.force, last, start) for one, start in pairs])
+        lags = lagged(step * rate[:, None], segment.force, last, np.array(state))
         drained = self.strength * (weight @ lags)
         return segment.force - drained, (float(segment.force[-1]), *lags[:, -1].tolist())
 
