@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 
@@ -20,6 +20,9 @@ from benchmark.physics.description import EffectDescription
 if TYPE_CHECKING:
     from fem import Problem
     from wavemodel import WaveLayer
+
+KEPT = 8
+"""Delays whose means a record keeps: a fit asks for the same ones over and over."""
 
 Array: TypeAlias = NDArray[np.float64]
 Values: TypeAlias = Mapping[str, float]
@@ -75,6 +78,7 @@ class DepthRecord:
     time: Array
     depth: Array
     borders: Array
+    _kept: dict[float, Array] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def interval(self) -> float:
@@ -101,8 +105,12 @@ class DepthRecord:
         return np.asarray((self._until(last) - self._until(first)) / (last - first))
 
     def means(self, late: float) -> Array:
-        """(n,) of the depth so many seconds before the rows, m."""
-        return self._means(self.borders[:-1] - late, self.borders[1:] - late)
+        """(n,) of the depth so many seconds before the rows, m; to be read only."""
+        if late not in self._kept:
+            if len(self._kept) >= KEPT:
+                self._kept.pop(next(iter(self._kept)))
+            self._kept[late] = self._means(self.borders[:-1] - late, self.borders[1:] - late)
+        return self._kept[late]
 
     @cached_property
     def given(self) -> Array:

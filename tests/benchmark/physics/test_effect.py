@@ -32,6 +32,12 @@ def test_means_are_those_of_the_late_record(record, late):
     np.testing.assert_allclose(record.means(late)[2:], _mean(first, last), atol=2e-8)
 
 
+def test_means_are_the_same_however_many_others_are_asked_for(record):
+    delays = [*np.linspace(-LATE, LATE, 21), LATE, 0.0, -LATE]
+    for late in delays:
+        np.testing.assert_array_equal(record.means(late), DepthRecord(TIME, _depth(TIME), BORDERS).means(late))
+
+
 def test_speeds_are_those_in_the_rows(record):
     exact = np.diff(_depth(BORDERS - LATE)) / np.diff(BORDERS)
     np.testing.assert_allclose(record.speeds(LATE)[1:], exact[1:], atol=1e-6)
