@@ -26,6 +26,7 @@ from benchmark.discovery.evidence.gains import (
     score,
 )
 from benchmark.discovery.evidence.parameter_evidence import (
+    determined,
     seen,
     steady,
     strength_told,
@@ -354,7 +355,8 @@ def _as_further_terms(
     """One effect with more terms, each told, in place of it and another that the data do not tell from such terms.
 
     Fluid that leaves under tools of one size is a fading memory like any other. Beside the fit stands the one of both
-    effects, by the slug of the one that stays.
+    effects, by the slug of the one that stays. Where no such terms do as well, each must be told by itself to stand
+    beside the other: what it adds to the force alone may be what the other's form misses of the true one.
     """
     chosen = {effect.slug: effect for effect in current.model.effects}
     for effect in chosen.values():
@@ -363,7 +365,8 @@ def _as_further_terms(
             continue
         others = [other for other in chosen.values() if other not in (effect, whole)]
         groups, now = conditions(current), held_out(current)
-        own = gain(now, held_out(rebuilt(base, [*others, whole], work, "further terms")), groups)
+        less = rebuilt(base, [*others, whole], work, "further terms")
+        own = gain(now, held_out(less), groups)
         for form in whole.forms[1:]:
             instead = rebuilt(base, [*others, form], work, "further terms")
             if not (strength_told(instead, form) and terms_told(instead, whole)):
@@ -371,6 +374,10 @@ def _as_further_terms(
             lead = gain(now, held_out(instead), groups)
             if lead.z < settings.lookalike_z or lead.mean < criteria.CLOSE * own.mean:
                 return instead, {whole.slug: (rebuilt(base, [*others, whole, effect], work, "further terms"),)}
+        if not determined(current, effect):
+            return less, {}
+        if not determined(current, whole):
+            return rebuilt(base, [*others, effect], work, "further terms"), {}
     return current, {}
 
 

@@ -756,6 +756,7 @@ def test_a_flow_that_further_terms_stand_for_is_a_lookalike_of_them(
     with_terms, told, alone, monkeypatch, known_densities
 ):
     monkeypatch.setattr(selection, "terms_told", lambda fit, plain: told)
+    monkeypatch.setattr(selection, "determined", lambda fit, effect: True)
     flow, memory, other = effect("flow"), effect("memory", 2, richer=effect("memory", 4)), effect("other")
     flow.further_terms_of = "memory"
     both = fitted(flow, other, memory, density=100.0)
@@ -771,6 +772,26 @@ def test_a_flow_that_further_terms_stand_for_is_a_lookalike_of_them(
 
     found = selection._as_further_terms(fitted(), both, SETTINGS, Fits())
     assert found == ((longer, {"memory": (apart,)}) if alone else (both, {}))
+
+
+@pytest.mark.parametrize(
+    ("told", "stay"),
+    [
+        ({"flow", "memory"}, ["other", "flow", "memory"]),
+        ({"memory"}, ["other", "memory"]),
+        ({"flow"}, ["other", "flow"]),
+    ],
+)
+def test_of_a_memory_and_a_flow_beside_it_each_must_be_told_by_itself(told, stay, monkeypatch, known_densities):
+    """What the one adds to the force may be what the other's form misses, however surely it adds it."""
+    monkeypatch.setattr(selection, "determined", lambda fit, effect: effect.slug in told)
+    monkeypatch.setattr(selection, "strength_told", lambda fit, effect: True)
+    flow, memory, other = effect("flow"), effect("memory", 2), effect("other")
+    flow.further_terms_of, memory.forms = "memory", (memory,)
+    both = fitted(other, flow, memory, density=100.0)
+    work = Work(fitted(other), fitted(other, memory), fitted(other, flow))
+    found, apart = selection._as_further_terms(fitted(), both, SETTINGS, work)
+    assert ([each.slug for each in found.model.effects], apart) == (stay, {})
 
 
 def test_effects_that_are_no_terms_of_each_other_stay(known_densities):
