@@ -138,6 +138,15 @@ class UserCode:
         """Whether the file has a callable of that name."""
         return callable(getattr(self._module, function, None))
 
+    def arguments(self, function: str) -> tuple[str, ...]:
+        """Names of a function's arguments by place, without leading underscores; empty where they cannot be told."""
+        try:
+            found = inspect.signature(getattr(self._module, function)).parameters.values()
+        except (AttributeError, TypeError, ValueError):
+            return ()
+        by_place = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+        return tuple(each.name.lstrip("_") for each in found if each.kind in by_place)
+
     def call(self, function: str, *arguments: Any, **keywords: Any) -> Any:
         """Call a function that the file has and return what it returns."""
         called: Callable[..., Any] = getattr(self._module, function)
