@@ -174,11 +174,11 @@ class UserModel:
 
     def follow(self, drive: Drive, on_step: OnStep = silent) -> Reading:
         """Follow a load history: what `deform`, and `press` under depth control, take."""
-        steps, names = drive.time.size, self._scenario.tissue.layer_names
+        steps, layers = drive.time.size, len(self._specimen[0])
         force = drive.value
         if drive.control == "depth":
             force = self._array(PRESS, (steps,), drive.time, drive.value)
-        top = self._array(DEFORM, (steps, len(names)), drive.time, force)
+        top = self._array(DEFORM, (steps, layers), drive.time, force)
         return lambda: self._result(drive, on_step, force, top)
 
     def _result(self, drive: Drive, on_step: OnStep, force: Array, top: Array) -> ModelResult:
@@ -235,8 +235,11 @@ class UserModel:
 
     def _check_columns(self, function: str, given: Any) -> None:
         """Refuse a data frame whose columns are the layers in another order; they are taken by their place."""
-        names, columns = self._scenario.tissue.layer_names, list(getattr(given, "columns", ()))
-        if function == DEFORM and set(columns) == set(names) and columns != list(names):
+        columns = list(getattr(given, "columns", ()))
+        if not columns or function != DEFORM:
+            return
+        names = self._scenario.tissue.layer_names
+        if set(columns) == set(names) and columns != list(names):
             raise self._code.fault(
                 function, f"its columns are {', '.join(columns)}; allowed: the layers downwards, {', '.join(names)}"
             )
