@@ -20,7 +20,7 @@ from benchmark.sweeps.plan import SweepPlan, make_plan
 from benchmark.sweeps.point import FAILED, OK, PointResult, Task, failed
 from benchmark.sweeps.sensitivity import Sensitivity, sensitivity_columns, sweep_sensitivity
 from benchmark.sweeps.sweep_folder import SweepFolder, open_folder
-from benchmark.sweeps.sweep_page import sweep_page
+from benchmark.sweeps.sweep_page import sweep_page, without_effect
 from reports import extended_folder, write_csv, write_json, write_page
 
 MOST_SAID = 3
@@ -170,6 +170,7 @@ def _document(plan: SweepPlan, rows: Sequence[PointResult], found: Sensitivity |
         "failed": failures,
         "vary": plan.document["vary"],
         "sample": plan.design.kind,
+        "without_effect": list(without_effect(plan, rows)),
         "results": list(dict.fromkeys(name for row in rows for name in row.values)),
     }
     if found is not None:
