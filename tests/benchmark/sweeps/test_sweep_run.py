@@ -3,7 +3,7 @@ import pytest
 from benchmark.runs.output.document import describe_environment
 from benchmark.sweeps.point import PointResult, failed
 from benchmark.sweeps.sweep_page import sweep_page, without_effect
-from benchmark.sweeps.sweep_run import SweepProgress, say_failures
+from benchmark.sweeps.sweep_run import SweepProgress, say_failures, say_unusable
 
 
 def test_the_estimate_rests_on_what_this_command_did() -> None:
@@ -32,6 +32,19 @@ def test_points_that_failed_are_named_with_their_values_and_the_reason(plan_of) 
     assert said[0] == "point 1 (tool.radius 1 mm) failed: the solver stopped"
     assert len(said) == 4
     assert said[3] == "1 more points failed; their reasons are in the report"
+
+
+def test_points_without_a_scenario_are_told_of_at_the_start(plan_of) -> None:
+    """A misspelt tissue was told of after the last point, hours later."""
+    plan, said = plan_of("tissue=skin_forearm,skin_forarm", "tool.radius=2 mm,3"), []
+    say_unusable([1, 2, 3, 4], plan, said.append)
+    (line,) = said
+    assert line.startswith(
+        "3 of 4 points cannot be computed; the first is point 2 (tissue skin_forearm, tool.radius 3): "
+    )
+    assert "--vary tool.radius: the bare number 3 has no unit" in line
+    say_unusable([1], plan, said.append)
+    assert len(said) == 1
 
 
 def test_a_warning_of_many_points_keeps_its_figures(plan_of) -> None:
