@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import ctypes
 import multiprocessing
 import os
 import signal
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from functools import cache
 from multiprocessing import resource_tracker
 from multiprocessing.context import SpawnContext, SpawnProcess
 from multiprocessing.process import BaseProcess
@@ -118,6 +120,39 @@ def _exit_unless_theirs(status: int) -> NoReturn:
     if Path(sys._getframe(1).f_code.co_filename).absolute() in _theirs:
         raise SystemExit(status)
     _really_exit(status)
+
+
+@contextmanager
+def output_on_stderr() -> Iterator[None]:
+    """What is written to file descriptor 1 inside goes to stderr: by C libraries and by programs that are started.
+
+    Python's own `sys.stdout` is not meant; `contextlib.redirect_stdout` leads that away. Of C's buffer, what is left
+    inside is flushed before the way back. Without a stdout or a stderr nothing is led.
+    """
+    try:
+        kept = os.dup(1)
+    except OSError:
+        yield
+        return
+    try:
+        with suppress(OSError):
+            os.dup2(2, 1)
+        yield
+    finally:
+        _flush_c()
+        os.dup2(kept, 1)
+        os.close(kept)
+
+
+def _flush_c() -> None:
+    """Empty the buffers of C's own streams, where the system has one C library for the whole process."""
+    with suppress(OSError, TypeError, AttributeError):
+        _c_library().fflush(None)
+
+
+@cache
+def _c_library() -> ctypes.CDLL:
+    return ctypes.CDLL(None)
 
 
 def end_with_parent() -> None:

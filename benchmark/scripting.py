@@ -81,15 +81,15 @@ def run(
     """
     request = RunRequest(
         scenario,
-        _path(trials),
+        _path(trials, "trials"),
         specimen,
         set or {},
         None,
-        _path(wave),
-        _path(reference),
+        _path(wave, "wave"),
+        _path(reference, "reference"),
         () if tissue is None else (tissue,),
-        _path(model),
-        _path(effects),
+        _path(model, "model"),
+        _path(effects, "effects"),
     )
     if fields not in ("peak", "all"):
         raise InputError(f"fields = {fields!r}: allowed are 'peak' and 'all'")
@@ -141,9 +141,11 @@ def fit(
     """
     keys = [None if each is None else tuple(each) for each in (free, exact)]
     laws = (law,) if isinstance(law, str) else None if law is None else tuple(law)
-    files = tuple(map(Path, others)), _path(fit_file)
+    files = tuple(map(Path, others)), _path(fit_file, "fit_file")
     wish = ParameterWish(keys[0], keys[1], laws, forward, *files, posterior=posterior, seed=seed)
-    request = FitRequest(Path(session), specimen, set or {}, _path(model), _path(effects), seed, wish)
+    request = FitRequest(
+        Path(session), specimen, set or {}, _path(model, "model"), _path(effects, "effects"), seed, wish
+    )
     return FitResult(carry_out_fit(request, listener or Unheard()))
 
 
@@ -174,7 +176,9 @@ def discover(
     InputError
         Input that cannot be used.
     """
-    request = DiscoverRequest(tuple(map(Path, paths)), model, _path(effects), specimen, set or {}, None, seed)
+    request = DiscoverRequest(
+        tuple(map(Path, paths)), model, _path(effects, "effects"), specimen, set or {}, None, seed
+    )
     return DiscoveryResult(answer(request, listener or Unheard()))
 
 
@@ -219,7 +223,7 @@ def sweep(
         sample=sample,
         points=points,
         sensitivity=sensitivity,
-        out=_path(out),
+        out=_path(out, "out"),
         seed=seed,
         workers=workers,
         scheduler=scheduler,
@@ -245,12 +249,15 @@ def compare(*runs: StrPath) -> ComparisonResult:
 
 
 def _folders(runs: Sequence[StrPath]) -> list[Path]:
-    from benchmark.errors import InputError
-
     if len(runs) < 2:
         raise InputError(f"compare takes two result folders of run or more; {len(runs)} given")
     return [Path(each) for each in runs]
 
 
-def _path(path: StrPath | None) -> Path | None:
-    return None if path is None else Path(path)
+def _path(path: object, name: str) -> Path | None:
+    """A path, None where there is none; refuses what is none, such as a function in the place of its file."""
+    if path is None or isinstance(path, str | PathLike):
+        return None if path is None else Path(path)
+    kind = getattr(path, "__name__", None)
+    given = f"the {type(path).__name__} {kind}" if kind else f"a {type(path).__name__}"
+    raise InputError(f"{name} is {given}; allowed: the path of a file or folder, as text or as a Path")

@@ -214,6 +214,23 @@ def _law_apart(layer: Layer) -> str | None:
     return (
         f"layer {layer.name}: its {layer.hyperelastic.law} law begins with a shear modulus of {law / 1e3:.4g} kPa, "
         f"its moduli say {layer.shear_modulus / 1e3:.4g} kPa; finite strain follows the law, small strain the moduli"
+        f"{_other_form(layer)}"
+    )
+
+
+def _other_form(layer: Layer) -> str:
+    """That Ogden's constants fit the moduli in another program's form of the energy; nothing where they do not.
+
+    The initial shear modulus of the form 2 mu / alpha^2 is the sum of mu, that of c / m^2 half the sum of c.
+    """
+    if layer.hyperelastic.law != "ogden":
+        return ""
+    whole = sum(term.mu for term in layer.hyperelastic.terms)
+    forms = ((whole, "2 mu / alpha^2 (Abaqus)", "2 mu / alpha"), (whole / 2, "c / m^2 (FEBio)", "c / m"))
+    return "".join(
+        f"; its constants fit the moduli in the form {form}: mu is {ours} here"
+        for shear, form, ours in forms
+        if abs(shear / layer.shear_modulus - 1) <= _ALIKE
     )
 
 

@@ -202,7 +202,7 @@ def _sentence(error: ErrorDetails, model: type[BaseModel], table: Mapping[str, A
         what = "this key" if isinstance(path[-1], str) else f"entry {path[-1] + 1}"
         return f"{place}: {what} is missing; it is needed."
     if kind == "extra_forbidden":
-        return f"{place}: this key is not known; {nearest(str(path[-1]), _known_keys(model, path[:-1], table))}"
+        return f"{place}: this key is not known; {_meant(str(path[-1]), model, path[:-1], table)}"
     words = {**error.get("ctx", {}), "input": _shortened(repr(error["input"])), "msg": error["msg"]}
     return f"{place}: {_SENTENCES.get(kind, '{msg}').format(**words).rstrip('.')}."
 
@@ -253,8 +253,15 @@ def _child(node: Any, part: str | int) -> Any:
     return None
 
 
-def _known_keys(model: type[BaseModel], parents: KeyPath, table: Any) -> list[str]:
-    """The keys that the table at a path may have."""
+def _meant(word: str, model: type[BaseModel], parents: KeyPath, table: Any) -> str:
+    """What may have been meant by a key that is not known: the field's other names first (`other_names`)."""
+    models = _models_at(model, parents, table)
+    named = [names[word] for each in models if word in (names := getattr(each, "other_names", {}))]
+    return named[0] if named else nearest(word, dict.fromkeys(key for each in models for key in known_keys(each)))
+
+
+def _models_at(model: type[BaseModel], parents: KeyPath, table: Any) -> list[type[BaseModel]]:
+    """The models that the table at a path may be of."""
     models: list[type[BaseModel]] = [model]
     node = table
     for part in parents:
@@ -263,12 +270,8 @@ def _known_keys(model: type[BaseModel], parents: KeyPath, table: Any) -> list[st
             fields = [field for each in models for key, field in _fields(each).items() if key == part]
             models = [found for field in fields for found in _models_in(field)] or models  # a mapping's own keys
     law = node.get("law") if isinstance(node, Mapping) else None
-    keys: dict[str, None] = {}
-    for each in models:
-        allowed = _fields(each).get("law")
-        if law is None or allowed is None or law in typing.get_args(allowed):
-            keys.update(dict.fromkeys(known_keys(each)))
-    return list(keys)
+    laws = {each: _fields(each).get("law") for each in models}
+    return [each for each in models if law is None or laws[each] is None or law in typing.get_args(laws[each])]
 
 
 def known_keys(model: type[BaseModel]) -> list[str]:

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import Annotated, Literal, Self, TypeVar
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Literal, Self, TypeVar
 
 from pydantic import BaseModel, Field, model_validator
 
@@ -73,7 +74,10 @@ class Yeoh(FileModel):
 
 
 class OgdenTerm(FileModel):
-    """One term mu / alpha (l1^alpha + l2^alpha + l3^alpha - 3) of Ogden's energy."""
+    """One term mu / alpha (l1^alpha + l2^alpha + l3^alpha - 3) of Ogden's energy.
+
+    Of constants for 2 mu / alpha^2 (Abaqus) `mu` here is 2 mu / alpha, of those for c / m^2 (FEBio) it is c / m.
+    """
 
     mu: SignedModulus
     alpha: Annotated[float, Number("-1000 to 1000", Bounds(-1e3, 1e3))]
@@ -152,6 +156,22 @@ PoissonRatio = Annotated[
 ]
 
 
+_OF_SHEAR = "a layer takes youngs_modulus, which is 2 (1 + poisson_ratio) times the shear modulus."
+_OF_A_LAW = 'it belongs to a law, as in hyperelastic = { law = "yeoh", c10 = "8.4 kPa", c20 = "2.5 kPa" }.'
+OTHER_NAMES: Mapping[str, str] = {
+    **dict.fromkeys(("E", "e_modulus", "young", "modulus", "stiffness"), "Young's modulus is youngs_modulus."),
+    **dict.fromkeys(("nu", "v", "poisson"), "Poisson's ratio is poisson_ratio."),
+    **dict.fromkeys(("shear_modulus", "mu", "G", "mu0"), _OF_SHEAR),
+    **dict.fromkeys(
+        ("bulk_modulus", "K", "kappa"),
+        "a layer takes youngs_modulus, which is 3 (1 - 2 poisson_ratio) times the bulk modulus.",
+    ),
+    **dict.fromkeys(("c10", "C10", "c01", "C01", "c20", "C20", "c30", "C30", "alpha", "jm"), _OF_A_LAW),
+    "prony": "its key is relaxation, a list of { g, tau }.",
+}
+"""What a layer's file calls what other programs and papers call so; the end of a sentence."""
+
+
 class Layer(FileModel):
     """One layer.
 
@@ -174,6 +194,8 @@ class Layer(FileModel):
     fibre : Fibre or None
         Fibre family added to the law.
     """
+
+    other_names: ClassVar[Mapping[str, str]] = OTHER_NAMES
 
     name: Name
     thickness: Thickness = math.inf
@@ -285,9 +307,11 @@ class Tissue(FileModel):
 
     @model_validator(mode="after")
     def _layers_fit(self) -> Self:
-        name, times = Counter(self.layer_names).most_common(1)[0]
+        name, times = Counter(" ".join(each.casefold().split()) for each in self.layer_names).most_common(1)[0]
         if times > 1:
-            raise problem(f"{times} layers are named {name!r}; each layer needs its own name", key="layers")
+            alike = [each for each in self.layer_names if " ".join(each.casefold().split()) == name]
+            named = " and ".join(repr(each) for each in dict.fromkeys(alike))
+            raise problem(f"{times} layers are named {named}; each layer needs its own name", key="layers")
         for index, layer in enumerate(self.layers[:-1]):
             if math.isinf(layer.thickness):
                 raise problem(

@@ -140,9 +140,10 @@ def parse_quantity(text: str, dimension: Dimension) -> float:
         )
     factor, base = _unit_factor(unit)
     if base is None:
-        raise QuantityError(
-            f"{text!r}: the unit {unit!r} is not known; give {dimension.article} such as {dimension.example!r}"
-        )
+        near = [each for each, _ in dimension.units if each.casefold() == unit.casefold()]
+        meant = f"; give {dimension.article} such as {dimension.example!r}"
+        meant = f" for {dimension.article}; did you mean {near[0]}?" if near else meant
+        raise QuantityError(f"{text!r}: the unit {unit!r} is not known{meant}")
     if base != _base_of(dimension):
         given = _dimension_name(base)
         raise QuantityError(f"{text!r} is {given}, not {dimension.article}; give one such as {dimension.example!r}")

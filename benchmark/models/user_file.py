@@ -12,7 +12,7 @@ import os
 import sys
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, redirect_stdout
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -124,13 +124,13 @@ class UserCode:
     """
 
     def __init__(self, file: UserFile):
-        self._file = file
+        self._file, self._folder = file, str(Path(file.path).absolute().parent)
         self._module = ModuleType(f"user_model_{Path(file.path).stem}")
         self._module.__file__ = file.path
         sys.modules[self._module.__name__] = self._module
         self._known = len(sys.modules)
         forbid_ending(file.path)
-        with self._guarded(1):
+        with self._guarded():
             exec(compile(file.text, file.path, "exec"), self._module.__dict__)
         self._see_imports()
 
@@ -138,10 +138,19 @@ class UserCode:
         """Whether the file has a callable of that name."""
         return callable(getattr(self._module, function, None))
 
+    def arguments(self, function: str) -> tuple[str, ...]:
+        """Names of a function's arguments by place, without leading underscores; empty where they cannot be told."""
+        try:
+            found = inspect.signature(getattr(self._module, function)).parameters.values()
+        except (AttributeError, TypeError, ValueError):
+            return ()
+        by_place = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+        return tuple(each.name.lstrip("_") for each in found if each.kind in by_place)
+
     def call(self, function: str, *arguments: Any, **keywords: Any) -> Any:
         """Call a function that the file has and return what it returns."""
         called: Callable[..., Any] = getattr(self._module, function)
-        with self._guarded(self._line(function)):
+        with self._guarded(function):
             found = called(*arguments, **keywords)
         self._see_imports()
         return found
@@ -179,13 +188,17 @@ class UserCode:
         return code.co_firstlineno if code is not None and code.co_filename == self._file.path else 0
 
     @contextmanager
-    def _guarded(self, line: int) -> Iterator[None]:
-        """Run the user's code; `line` stands for errors that have none in the file."""
-        folder = str(Path(self._file.path).absolute().parent)
-        sys.path.insert(0, folder)
+    def _guarded(self, function: str | None = None) -> Iterator[None]:
+        """Run the user's code, one of its functions or its top level; short, since a fast model's time has it in it.
+
+        What it prints goes to stderr. It finds an empty stdin: nobody can answer a model, and the commands of a
+        measured process are not for it.
+        """
+        sys.path.insert(0, self._folder)
+        before = sys.stdin, sys.stdout
         try:
-            with redirect_stdout(sys.stderr), _no_input():
-                yield
+            sys.stdin, sys.stdout = _nothing(), sys.stderr
+            yield
         except NotImplementedError as error:
             raise UncoveredError(str(error) or f"{self._file.path} raised NotImplementedError") from None
         except BaseException as error:
@@ -193,29 +206,25 @@ class UserCode:
             if _is_interrupt(error) and not self._raises(frames[-1]):
                 raise
             lines = [frame.lineno for frame in frames if frame.filename == self._file.path]
-            place = f"{self._file.path}, line {lines[-1] if lines else line}"
+            line = lines[-1] if lines else 1 if function is None else self._line(function)
+            place = f"{self._file.path}, line {line}"
             raise InputError(f"{place}: {_in_words(error)}") from (None if _is_interrupt(error) else error)
         finally:
-            if folder in sys.path:
-                sys.path.remove(folder)
+            sys.stdin, sys.stdout = before
+            if self._folder in sys.path:
+                sys.path.remove(self._folder)
+
+
+def _nothing() -> TextIO:
+    """A file without content, with a handle that programs which a model starts can be given; a closed one anew."""
+    if _empty().closed:
+        _empty.cache_clear()
+    return _empty()
 
 
 @cache
-def _nothing() -> TextIO:
-    """A file without content, with a handle that programs which a model starts can be given."""
+def _empty() -> TextIO:
     return Path(os.devnull).open(encoding="utf-8")
-
-
-@contextmanager
-def _no_input() -> Iterator[None]:
-    """An empty stdin: nobody can answer a model, and the commands of a measured process are not for it."""
-    if _nothing().closed:
-        _nothing.cache_clear()
-    before, sys.stdin = sys.stdin, _nothing()
-    try:
-        yield
-    finally:
-        sys.stdin = before
 
 
 def _is_interrupt(error: BaseException) -> bool:

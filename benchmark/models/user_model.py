@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -119,6 +119,16 @@ def specimen_of(scenario: Scenario) -> Specimen:
 DEFORM, SET_UP, PROFILE, PRESS = "deform", "set_up", "profile", "press"
 UNITS = {DEFORM: "m", PROFILE: "m", PRESS: "N"}
 """Of what the functions return."""
+SPECIMEN = ("layers", "tool", "support")
+GIVEN = {
+    SET_UP: SPECIMEN,
+    DEFORM: (*SPECIMEN, "time", "force"),
+    PROFILE: (*SPECIMEN, "time", "force", "radii"),
+    PRESS: (*SPECIMEN, "time", "depth"),
+}
+"""What the functions are given, by place."""
+OFF_THE_AXIS = 0.1
+"""How far a profile at its centre may be from the deflection on the axis, of it; a slip of unit or load is more."""
 
 
 class UserModel:
@@ -130,7 +140,8 @@ class UserModel:
         The scenario has what the functions are not told of, is under depth control without a `press`, or the file
         raises `NotImplementedError`.
     InputError
-        The file raises anything else, has no `deform`, or returns what cannot be used: file, line and what is wrong.
+        The file raises anything else, has no `deform`, names arguments in another order, or returns what cannot be
+        used: file, line and what is wrong.
     """
 
     def __init__(self, scenario: Scenario, file: UserFile):
@@ -141,10 +152,21 @@ class UserModel:
             raise self._code.fault(
                 DEFORM, f"there is no such function; needed: {DEFORM}(layers, tool, support, time, force)"
             )
+        self._check_arguments()
         if scenario.load.control == "depth" and not self._code.has(PRESS):
             raise UncoveredError(f"the load is a depth and {file.path} has no function {PRESS}")
         prepared = self._code.has(SET_UP)
         self._keywords = {"prepared": self._code.call(SET_UP, *self._specimen)} if prepared else {}
+
+    def _check_arguments(self) -> None:
+        """Refuse names of arguments at another one's place: `force, time` would be taken for times and forces."""
+        known = {name for names in GIVEN.values() for name in names}
+        for function, given in GIVEN.items():
+            named = self._code.arguments(function)
+            if any(name in known and name != place for name, place in zip(named, given, strict=False)):
+                raise self._code.fault(
+                    function, f"its arguments are {', '.join(named)}; they are given by place: {', '.join(given)}"
+                )
 
     def run(self, drive: Drive, on_step: OnStep = silent) -> ModelResult:
         """Follow a load history and read everything off it."""
@@ -152,11 +174,11 @@ class UserModel:
 
     def follow(self, drive: Drive, on_step: OnStep = silent) -> Reading:
         """Follow a load history: what `deform`, and `press` under depth control, take."""
-        steps, names = drive.time.size, self._scenario.tissue.layer_names
+        steps, layers = drive.time.size, len(self._specimen[0])
         force = drive.value
         if drive.control == "depth":
             force = self._array(PRESS, (steps,), drive.time, drive.value)
-        top = self._array(DEFORM, (steps, len(names)), drive.time, force)
+        top = self._array(DEFORM, (steps, layers), drive.time, force)
         return lambda: self._result(drive, on_step, force, top)
 
     def _result(self, drive: Drive, on_step: OnStep, force: Array, top: Array) -> ModelResult:
@@ -165,6 +187,7 @@ class UserModel:
         depth = drive.value if drive.control == "depth" else top[:, 0]
         peak = int(np.abs(drive.value).argmax())
         radii = profile_radii(self._scenario.tool.radius)
+        profile = self._profile(drive.time[: peak + 1], force[: peak + 1], radii)
         on_step(StepProgress(steps, steps, float(force[peak]), float(depth[peak])))
         return ModelResult(
             model="wave",
@@ -174,11 +197,11 @@ class UserModel:
             depth=depth,
             top_deflection=top,
             profile_radii=radii,
-            profile=self._profile(drive.time[: peak + 1], force[: peak + 1], radii),
+            profile=profile,
             peak_step=peak,
             unknowns=None,
             notes={"model": f"the user's own, {self._file.path}", "SHA-256 of the file": self._file.fingerprint},
-            warnings=self._warnings(force, top),
+            warnings=(*self._warnings(force, top), *_not_its_own(profile[:, 0], top[peak], names)),
         )
 
     def _profile(self, time: Array, force: Array, radii: Array) -> Array:
@@ -212,8 +235,11 @@ class UserModel:
 
     def _check_columns(self, function: str, given: Any) -> None:
         """Refuse a data frame whose columns are the layers in another order; they are taken by their place."""
-        names, columns = self._scenario.tissue.layer_names, list(getattr(given, "columns", ()))
-        if function == DEFORM and set(columns) == set(names) and columns != list(names):
+        columns = list(getattr(given, "columns", ()))
+        if not columns or function != DEFORM:
+            return
+        names = self._scenario.tissue.layer_names
+        if set(columns) == set(names) and columns != list(names):
             raise self._code.fault(
                 function, f"its columns are {', '.join(columns)}; allowed: the layers downwards, {', '.join(names)}"
             )
@@ -226,21 +252,36 @@ class UserModel:
         return (*said, *slips(force, top, self._scenario.tissue.thickness, "deflections are in m"))
 
 
+def _not_its_own(centre: Array, top: Array, names: Sequence[str]) -> tuple[str, ...]:
+    """That a profile at its centre (L,) m is not the deflection (L,) m on the axis at the same load."""
+    apart = np.abs(centre - top) - OFF_THE_AXIS * np.abs(top)
+    if not (apart > 0.0).any():
+        return ()
+    worst = int(np.nanargmax(apart))
+    return (
+        f"its {PROFILE} of {names[worst]} is {1e3 * centre[worst]:.4g} mm on the axis, where its {DEFORM} is "
+        f"{1e3 * top[worst]:.4g} mm at the same load; both are in m, the profile at the end of the history it is given",
+    )
+
+
 def _no_numbers(given: Any) -> str:
     """What was returned that is no array of real numbers, in words."""
     try:
         if np.iscomplexobj(np.asarray(given)):
             return "complex numbers"
-    except ValueError:
-        pass
+    except Exception as error:
+        return f"a {type(given).__name__} that NumPy cannot read ({type(error).__name__}: {error})"
     return f"a {type(given).__name__} without numbers"
 
 
 def _numbers(given: Any) -> Array | None:
-    """What was returned as an array of doubles of its own, masked values as NaN; None where it is no real numbers."""
+    """What was returned as an array of doubles of its own, masked values as NaN; None where it is no real numbers.
+
+    Arrays of other libraries, on a graphics card or with gradients, refuse by exceptions of their own.
+    """
     try:
         array = np.asanyarray(given)
-    except ValueError:
+    except Exception:
         return None
     if array.dtype.kind not in "iuf":
         return None

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from benchmark.child_processes import output_on_stderr
 from benchmark.errors import TissuebenchError
 from benchmark.files import Load, Scenario, Session, Support, Tissue, Tool, scaled_tissue
 from benchmark.identification import TrialData, predict, sheet_force
@@ -28,7 +29,7 @@ from benchmark.runs.options import Listener, RunOptions
 from benchmark.runs.record import RunRecord
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.trials.measured import MeasuredComparison, TrialPrediction
-from benchmark.side_by_side import NAMES
+from benchmark.side_by_side import NAMES, SAME_ANSWER
 
 OBSERVATIONS = 100
 STEPS = 60
@@ -38,6 +39,10 @@ ROUND = 0.25
 """Edge radius over tool radius from which a flat end is another tool."""
 REACH = 1.2
 """The wave's elastic law is ramped this much deeper than the trial."""
+
+
+Answer = tuple[Setup, TrialData, Array | str]
+"""Of a trial under a set-up: force (n,) N, or why there is none."""
 
 
 def run_session(
@@ -107,20 +112,45 @@ def _followed(scenario: Scenario) -> bool:
         return False
 
 
+@output_on_stderr()
 def _predictions(found: FittedSession, tissue: Tissue, own: Own) -> tuple[tuple[TrialPrediction, ...], tuple[str, ...]]:
-    """Both models' forces for each trial that was fitted, and why the wave model has none for some."""
+    """Both models' forces for each trial that was fitted, and why the wave model has none for some.
+
+    Of a user's model, stdout goes to stderr.
+    """
     kept = {trial.key for trial in found.fit.trials}
     setups = [(trial.tool, trial.support) for trial in found.session.trials]
     waves = {setup: _wave(found.session, tissue, setup, own) for setup in dict.fromkeys(setups)}
     answers = [
-        (trial, _wave_force(trial, found, waves[setup], own))
+        (setup, trial, _wave_force(trial, found, waves[setup], own))
         for setup, trial in zip(setups, found.trials, strict=True)
         if trial.key in kept
     ]
-    reasons = Counter(answer for _, answer in answers if isinstance(answer, str))
+    reasons = Counter(answer for _, _, answer in answers if isinstance(answer, str))
     name = own.name("wave") or NAMES["wave"]
     said = tuple(f"the {name} has no force for {count} of the trials: {reason}" for reason, count in reasons.items())
-    return tuple(_prediction(trial, found, answer) for trial, answer in answers), said
+    said += () if own.wave is None else _remembers(own.wave.name, answers, waves, found)
+    return tuple(_prediction(trial, found, answer) for _, trial, answer in answers), said
+
+
+def _remembers(
+    name: str, answers: Sequence[Answer], waves: dict[Setup, PreparedModel | str], found: FittedSession
+) -> tuple[str, ...]:
+    """That a user's model answers otherwise for a set-up's first trial, asked again after the others."""
+    firsts: dict[Setup, Answer] = {}
+    for each in answers:
+        firsts.setdefault(each[0], each)
+    for setup, trial, force in firsts.values():
+        again = _wave_force(trial, found, waves[setup], NOTHING)
+        if isinstance(force, str) or isinstance(again, str):
+            continue
+        apart = float(np.abs(again - force).max())
+        if apart > SAME_ANSWER * float(np.abs(force).max()):
+            return (
+                f"the {name} answers the same trial differently each time: {trial.condition}/{trial.name} by up to "
+                f"{apart:.3g} N when it is asked again; what it keeps from call to call, or draws, is in its forces",
+            )
+    return ()
 
 
 def _wave(session: Session, tissue: Tissue, setup: Setup, own: Own) -> PreparedModel | str:

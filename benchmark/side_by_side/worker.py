@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from benchmark.child_processes import end_with_parent
+from benchmark.child_processes import end_with_parent, output_on_stderr
 from benchmark.errors import InputError
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel
@@ -110,8 +110,12 @@ class ModelJob:
     keep: Path | None = None
 
 
+@output_on_stderr()
 def serve(connection: Connection, job: ModelJob, core: int | None) -> None:
-    """Answer `RunCommand`s on `connection` until `None` or its end arrives, or the parent is gone."""
+    """Answer `RunCommand`s on `connection` until `None` or its end arrives, or the parent is gone.
+
+    What is written to stdout goes to stderr.
+    """
     end_with_parent()
     if core is not None and hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {core})

@@ -10,7 +10,7 @@ import numpy as np
 
 from benchmark.sweeps.parameter import Parameter
 from benchmark.sweeps.plan import SweepPlan
-from benchmark.sweeps.point import FAILED, MODELS, SECONDS, PointResult, headline
+from benchmark.sweeps.point import BAND, FAILED, MODELS, SECONDS, PointResult, headline
 from benchmark.sweeps.sensitivity import Sensitivity
 from benchmark.sweeps.sweep_folder import Columns, point_columns
 from reports import (
@@ -71,6 +71,29 @@ def sweep_page(
     )
 
 
+def without_effect(plan: SweepPlan, rows: Sequence[PointResult]) -> tuple[str, ...]:
+    """Varied keys that change no result: points that differ in one of them alone have the same to the last digit.
+
+    Seconds and bands are no results; of a sample over several keys no two points differ in one alone.
+    """
+    results = {
+        plan.points[row.point - 1]: {
+            name: value for name, value in row.values.items() if not name.endswith((SECONDS, BAND))
+        }
+        for row in rows
+        if row.status != FAILED and row.values
+    }
+    found = []
+    for place, parameter in enumerate(plan.parameters):
+        groups: dict[tuple[str, ...], list[Mapping[str, float]]] = {}
+        for point, values in results.items():
+            groups.setdefault((*point[:place], *point[place + 1 :]), []).append(values)
+        compared = [alike for alike in groups.values() if len(alike) > 1]
+        if compared and all(each == alike[0] for alike in compared for each in alike):
+            found.append(parameter.key)
+    return tuple(found)
+
+
 def _verdict(plan: SweepPlan, rows: Sequence[PointResult], columns: Columns) -> Verdict:
     failures = sum(row.status == FAILED for row in rows)
     quantity, unit = headline(plan.scenario.load.control)
@@ -83,6 +106,8 @@ def _verdict(plan: SweepPlan, rows: Sequence[PointResult], columns: Columns) -> 
     if failures == len(rows):
         return Verdict("failed", f"None of the {len(rows)} points has results.", points)
     said = f"{failures} of {len(rows)} points failed" if failures else f"All {len(rows)} points have results"
+    idle = without_effect(plan, rows)
+    said += f"; no result depends on {', '.join(idle)}" if idle else ""
     return Verdict("finding", f"{said}.", points)
 
 

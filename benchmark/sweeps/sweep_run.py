@@ -20,7 +20,7 @@ from benchmark.sweeps.plan import SweepPlan, make_plan
 from benchmark.sweeps.point import FAILED, OK, PointResult, Task, failed
 from benchmark.sweeps.sensitivity import Sensitivity, sensitivity_columns, sweep_sensitivity
 from benchmark.sweeps.sweep_folder import SweepFolder, open_folder
-from benchmark.sweeps.sweep_page import sweep_page
+from benchmark.sweeps.sweep_page import sweep_page, without_effect
 from reports import extended_folder, write_csv, write_json, write_page
 
 MOST_SAID = 3
@@ -77,11 +77,15 @@ def say_failures(rows: Sequence[PointResult], plan: SweepPlan, say: Callable[[st
     """Name the first points that failed, with their values and why."""
     failures = [row for row in rows if row.status == FAILED]
     for row in failures[:MOST_SAID]:
-        varied = zip(plan.parameters, plan.points[row.point - 1], strict=True)
-        values = ", ".join(f"{parameter.key} {value}" for parameter, value in varied)
-        say(f"point {row.point} ({values}) failed: {row.reason}")
+        say(f"point {row.point} ({_values_of(plan, row.point)}) failed: {row.reason}")
     if len(failures) > MOST_SAID:
         say(f"{len(failures) - MOST_SAID} more points failed; their reasons are in the report")
+
+
+def _values_of(plan: SweepPlan, point: int) -> str:
+    """The values of a point with their keys."""
+    varied = zip(plan.parameters, plan.points[point - 1], strict=True)
+    return ", ".join(f"{parameter.key} {value}" for parameter, value in varied)
 
 
 def _folder(request: SweepRequest, plan: SweepPlan) -> Path:
@@ -111,11 +115,20 @@ def _finish(folder: SweepFolder, plan: SweepPlan, request: SweepRequest, listene
         listener.say(f"{folder.path}: {done} of {total} points are there already")
     if not missing:
         return
+    say_unusable(missing, plan, listener.say)
     with listener.progress(f"{plan.scenario.name}: {len(missing)} points") as advance:
         progress = SweepProgress(total, done, advance)
         for row in _rows(plan, missing, request, folder.unfinished, listener):
             folder.add(row)
             progress.add(row)
+
+
+def say_unusable(missing: Sequence[int], plan: SweepPlan, say: Callable[[str], None]) -> None:
+    """Say at the start how many points no scenario can be made of, and why for the first: hours may follow."""
+    reasons = {point: reason for point in missing if isinstance(reason := plan.scenarios[point - 1], str)}
+    if reasons:
+        first, count = min(reasons), f"{len(reasons)} of {len(plan.points)} points cannot be computed"
+        say(f"{count}; the first is point {first} ({_values_of(plan, first)}): {reasons[first]}")
 
 
 def _rows(
@@ -170,6 +183,7 @@ def _document(plan: SweepPlan, rows: Sequence[PointResult], found: Sensitivity |
         "failed": failures,
         "vary": plan.document["vary"],
         "sample": plan.design.kind,
+        "without_effect": list(without_effect(plan, rows)),
         "results": list(dict.fromkeys(name for row in rows for name in row.values)),
     }
     if found is not None:

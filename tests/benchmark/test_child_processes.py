@@ -23,6 +23,19 @@ if __name__ == "__main__":
 """
 
 
+def test_what_is_written_past_python_goes_to_stderr():
+    """Of C's own buffer, too, which `PYTHONUNBUFFERED` would take away."""
+    script = (
+        "import ctypes, os\nfrom benchmark.child_processes import output_on_stderr\nprint('before', flush=True)\n"
+        "with output_on_stderr():\n    os.write(1, b'bytes ')\n    os.system('echo program')\n"
+        "    ctypes.CDLL(None).puts(b'library')\nprint('after')\n"
+    )
+    plain = {key: value for key, value in os.environ.items() if key != "PYTHONUNBUFFERED"}
+    ran = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, env=plain)
+    assert ran.stdout == "before\nafter\n"
+    assert set(ran.stderr.split()) == {"bytes", "program", "library"}
+
+
 def test_children_end_with_a_killed_parent(tmp_path):
     script = tmp_path / "parent.py"
     script.write_text(PARENT)

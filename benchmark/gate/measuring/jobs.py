@@ -212,6 +212,11 @@ def run_history(job: Job) -> Work:
     """Follow the scenario's load history with the FEM or the wave model (`model`): all its load steps."""
     scenario = load_scenario(Path(job["scenario"]), job["set"])
     prepared, drive = model_of(job, scenario), scenario_drive(scenario)
+    # no time: begin
+    if job["own"] is not None:  # in the fingerprint by OWN_ALONE (benchmark.gate.plan)
+        # Reading the results takes ten times as long as a model of some microseconds, and would hide one twice as slow.
+        return lambda: prepared.follow(drive)
+    # no time: end
     return lambda: prepared.run(drive)
 
 

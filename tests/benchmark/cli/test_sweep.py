@@ -81,6 +81,7 @@ def test_failed_points_are_kept_with_their_reason(benchmark_cli, tmp_path: Path)
     assert refused.status == "failed"
     assert "--vary wave.window" in refused.reason
     assert (frame.loc["120 mm"].status == "ok").all()
+    assert "cannot be computed; the first is point" in called.err.replace("\n", " ").partition("1/4")[0]
     failed = json.loads(called.out)["failed"]
     assert [each["point"] for each in failed] == list(frame.reset_index().query("status == 'failed'").point)
     assert "Points that failed" in (tmp_path / "s/report.html").read_text()

@@ -176,6 +176,31 @@ def notes(**overrides):
     return scenario_notes(load_scenario("skin-5N", {key.replace("__", "."): value for key, value in overrides.items()}))
 
 
+def energy_of_abaqus(terms, stretch: float) -> float:
+    """Ogden's energy in Abaqus's form, sum of 2 mu / alpha^2 (...), of an isochoric uniaxial stretch."""
+    stretches = (stretch, stretch**-0.5, stretch**-0.5)
+    return sum(2 * mu / alpha**2 * (sum(each**alpha for each in stretches) - 3) for mu, alpha in terms)
+
+
+def test_ogden_constants_of_another_form_are_told_with_their_factor() -> None:
+    """E = 960 kPa and nu = 0.48 are a shear modulus of 324.3 kPa; Abaqus's constants add up to it, ours do not."""
+    abaqus = ((224.3e3, 10.0), (100e3, -2.0))
+    step = 1e-4
+    second = (energy_of_abaqus(abaqus, 1 + step) + energy_of_abaqus(abaqus, 1 - step)) / step**2
+    assert second / 3 == pytest.approx(324.3e3, rel=1e-3)
+
+    def said(terms):
+        told = ", ".join(f'{{ mu = "{mu} Pa", alpha = {alpha} }}' for mu, alpha in terms)
+        return " ".join(notes(dermis__hyperelastic=f'{{ law = "ogden", terms = [{told}] }}'))
+
+    assert "fit the moduli in the form 2 mu / alpha^2 (Abaqus): mu is 2 mu / alpha here" in said(abaqus)
+    assert said((2 * mu / alpha, alpha) for mu, alpha in abaqus) == ""
+    febio = tuple((2 * mu, alpha) for mu, alpha in abaqus)
+    assert "fit the moduli in the form c / m^2 (FEBio): mu is c / m here" in said(febio)
+    assert said((mu / alpha, alpha) for mu, alpha in febio) == ""
+    assert "fit the moduli" not in said(((500e3, 10.0),))
+
+
 def test_the_shipped_scenario_has_nothing_to_note():
     assert notes() == ()
 

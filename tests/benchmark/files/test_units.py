@@ -53,6 +53,8 @@ def test_reads_a_number_with_a_unit_exactly(text, dimension, value):
         ("5 kg", units.FORCE, "is a quantity in kilogram, not a force"),
         ("5", units.LENGTH, "'5' has no unit"),
         ("5 parsnip", units.LENGTH, "the unit 'parsnip' is not known"),
+        ("5 kpa", units.PRESSURE, "the unit 'kpa' is not known for a pressure; did you mean kPa?"),
+        ("5 mpa", units.PRESSURE, "the unit 'mpa' is not known for a pressure; did you mean MPa?"),
         ("nan mm", units.LENGTH, "is not a finite number"),
         ("inf kPa", units.PRESSURE, "is not a finite number"),
         ("-inf kPa", units.PRESSURE, "is not a finite number"),

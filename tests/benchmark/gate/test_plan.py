@@ -59,6 +59,13 @@ def test_ratios_are_comparable_while_the_work_is_the_same(tiny_gate, file: str, 
     assert (load_plan(gate.path).fingerprint == before) is same
 
 
+def test_how_a_users_model_is_timed_is_in_its_fingerprint_alone(tiny_gate, monkeypatch) -> None:
+    own, shipped = load_plan(tiny_gate(timed=True).path), load_plan(None)
+    monkeypatch.setattr("benchmark.gate.plan.OWN_ALONE", "with what is read off it")
+    assert load_plan(own.path).fingerprint != own.fingerprint
+    assert load_plan(None).fingerprint == shipped.fingerprint
+
+
 def test_another_revision_has_its_own_models_and_the_same_inputs(tiny_gate) -> None:
     gate = tiny_gate(timed=True)
     plan = load_plan(gate.path)

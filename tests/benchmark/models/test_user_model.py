@@ -14,6 +14,8 @@ def deform(layers, tool, support, time, force):
     share = np.arange(len(layers), 0, -1) / len(layers)
     return 1e-3 * np.outer(force, share)
 """
+TENSOR = "type('Tensor', (), {'__array__': lambda self, *_, **__: [][0]})()"
+"""An array of another library that refuses to become one of NumPy, as those on a graphics card do."""
 
 
 def answer(scenario, file):
@@ -97,7 +99,7 @@ def test_a_profile_is_taken_at_the_peak(scenario, user_file) -> None:
         + """
 def profile(layers, tool, support, time, force, radii):
     assert force[-1] == force.max() and len(time) == 3
-    return np.where(radii < 4 * tool.radius, 1e-3 * force[-1], np.nan) * np.ones((len(layers), 1))
+    return np.where(radii < 4 * tool.radius, 1e-3 * force[-1], np.nan) * np.array([[1], [2 / 3], [1 / 3]])
 """
     )
     found = answer(scenario, user_file(text))
@@ -126,6 +128,7 @@ def test_depth_control_needs_press(user_file) -> None:
         (returning("np.zeros((6, 2))"), ["line 3", "deform", "(6, 2)", "(6, 3)", "one column a layer"]),
         (returning("np.zeros(6)"), ["(6,)", "(6, 3)"]),
         (returning("None"), ["NoneType"]),
+        (returning(TENSOR), ["line 3", "a Tensor that NumPy cannot read (IndexError: ", "in m"]),
         (returning("[[1, 2], [3]]"), ["list", "(6, 3)"]),
         (returning("np.zeros((6, 3), complex)"), ["complex numbers; allowed: real numbers of shape (6, 3)", "in m"]),
         (returning("np.ma.masked_less(np.ones((6, 3)), 2.0)"), ["nan at [0, 0]", "finite"]),
@@ -145,6 +148,44 @@ def test_what_cannot_be_used_is_refused(scenario, user_file, text: str, words: l
         answer(scenario, user_file(text))
     for word in ["my_model.py", *words]:
         assert word in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("named", "function"),
+    [
+        ("deform(layers, tool, support, force, time)", "deform"),
+        ("deform(layers, support, tool, *_)", "deform"),
+        ("profile(layers, tool, support, time, radii, force)", "profile"),
+        ("press(layers, tool, support, _depth, _time)", "press"),
+        ("press(layers, tool, support, time, force)", "press"),
+        ("set_up(tool, layers, support)", "set_up"),
+    ],
+)
+def test_arguments_named_in_another_order_are_refused(scenario, user_file, named: str, function: str) -> None:
+    """Times were taken for forces without a word."""
+    text = ("" if function == "deform" else SPRINGS) + f"\ndef {named}:\n    return np.zeros((6, 3))\n"
+    with pytest.raises(InputError, match=rf"line \d+, {function}: its arguments are .*; they are given by place: "):
+        answer(scenario, user_file(text))
+
+
+def test_names_of_ones_own_for_the_arguments_are_taken(scenario, user_file) -> None:
+    text = (
+        "import numpy as np\ndef deform(bed, probe, _support, t, f, *, prepared=None):\n    return np.zeros((6, 3))\n"
+    )
+    assert not answer(scenario, user_file(text)).top_deflection.any()
+
+
+def test_a_profile_that_is_not_the_deflection_on_the_axis_is_pointed_out(scenario, user_file) -> None:
+    text = (
+        SPRINGS
+        + "\ndef profile(layers, tool, support, time, force, radii):\n    return {0} * np.ones((3, len(radii)))\n"
+    )
+    same = "deform(layers, tool, support, time, force)[-1][:, None]"
+    assert not answer(scenario, user_file(text.format(same))).warnings
+    for other in (f"1e3 * {same}", f"0.8 * {same}"):
+        (warning,) = answer(scenario, user_file(text.format(other))).warnings
+        assert "its profile of epidermis is" in warning
+        assert "where its deform is 0.5 mm at the same load" in warning
 
 
 def test_slips_of_sign_and_unit_are_pointed_out(scenario, user_file) -> None:

@@ -134,6 +134,17 @@ def test_a_model_that_answers_differently_each_time_is_told_of(scenario, tmp_pat
     assert sum("differently each time" in each for each in pair.wave.result.warnings) == count
 
 
+def test_what_a_users_model_writes_past_python_is_not_on_stdout(scenario: Scenario, tmp_path, capfd) -> None:
+    """It stood before the object of `--json`."""
+    path = tmp_path / "loud.py"
+    path.write_text("import os\nos.write(1, b'loud')\ndef deform(layers, tool, support, time, force):\n    pass\n")
+    with ModelProcess("wave", scenario, own=read_user_file(path)) as process:
+        process.command(keep_result=True)
+        with pytest.raises(InputError):
+            process.answer()
+    assert capfd.readouterr() == ("", "loud")
+
+
 def test_a_users_model_that_dies_is_named(scenario: Scenario, tmp_path) -> None:
     path = tmp_path / "mine.py"
     path.write_text("import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)\n")

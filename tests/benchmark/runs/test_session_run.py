@@ -1,0 +1,39 @@
+"""A model of one's own beside measured trials: what is said of one that remembers."""
+
+import os
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from benchmark.runs import session_run
+
+SETUPS = ("narrow", "wide")
+
+
+@pytest.mark.parametrize(("remembers", "said"), [(False, 0), (True, 1)])
+def test_a_model_that_remembers_the_trials_before_is_pointed_out(monkeypatch, remembers: bool, said: int) -> None:
+    """Each trial's force depended on those before it, without a word."""
+    calls = []
+
+    def force(trial, found, wave, own):
+        calls.append(wave)
+        return trial.depth * (1.0 + remembers * 1e-3 * len(calls))
+
+    monkeypatch.setattr(session_run, "_wave_force", force)
+    trials = [SimpleNamespace(name=f"t{n}", condition="slow", depth=np.linspace(0.0, 1.0, 5)) for n in range(4)]
+    waves = {setup: setup for setup in SETUPS}
+    answers = [(SETUPS[n % 2], trial, force(trial, None, SETUPS[n % 2], None)) for n, trial in enumerate(trials)]
+    found = session_run._remembers("springs", answers, waves, None)
+    assert len(found) == said
+    assert all("the springs answers the same trial differently each time: slow/t0" in each for each in found)
+    assert calls[4:] == (["narrow"] if remembers else ["narrow", "wide"])
+
+
+def test_what_a_model_writes_past_python_beside_trials_is_not_on_stdout(monkeypatch, capfd) -> None:
+    """It stood before the object of `--json`."""
+    monkeypatch.setattr(session_run, "_wave", lambda *_: os.write(1, b"loud"))
+    session = SimpleNamespace(trials=[SimpleNamespace(tool="flat", support="base")])
+    found = SimpleNamespace(session=session, fit=SimpleNamespace(trials=[]), trials=[SimpleNamespace(key="t0")])
+    assert session_run._predictions(found, None, session_run.NOTHING) == ((), ())
+    assert capfd.readouterr() == ("", "loud")
