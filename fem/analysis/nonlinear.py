@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from fem.results.solution import Failure, Resumed, Solution, StepReport
 NOTICED = 1e-3
 """Share of the work below which a loss is within what the trapezoidal rule is off, and told only of a creep."""
 LEAST_SHARE_OF_PEAK = 1e-3
+EASED = (1e-3, 3e-2)
+"""Of the stiffness against sliding, with which a state is sought first that is sought without the way there."""
+EASED_LIMITS = NewtonSettings(1e-3, beyond_limits=False)
 
 
 def run_nonlinear(
@@ -129,9 +132,17 @@ def equilibrium_near(
 ) -> State | None:
     """The state in equilibrium at a load value (N or m) that a guess leads to, without the way there, if it does.
 
-    For bodies without a memory, whose state does not depend on the way.
+    For equations that know all of the way that they need. Points that slide or stick by their displacements pass over
+    the narrow range in which they stick: those that stick are sought with a wider one first.
     """
     scale = LEAST_SHARE_OF_PEAK * abs(guess.force)
+    for share in EASED:
+        eased = problem.system.eased(share)
+        if eased is None:
+            break
+        found = Stepper(replace(problem, system=eased), control, scale, EASED_LIMITS).found_near(guess, value)
+        if found.success:
+            guess = replace(found.state, y=problem.system.tightened(found.state.y, share))
     found = Stepper(problem, control, scale, settings).found_near(guess, value)
     return found.state if found.success else None
 

@@ -65,6 +65,24 @@ class EquationItem(ABC):
     def accepted(self, y: FloatArray) -> Self:
         """The item after a step that ends at unknowns y (n,)."""
 
+    def met(self, y: FloatArray) -> FloatArray:
+        """The unknowns (n,) with the item's own as the displacements among them have it, as far as these tell."""
+        return y
+
+    def eased(self, share: float) -> Self | None:
+        """The item with a share of its stiffness below a limit; None where it has none, or multipliers in its place."""
+        del share
+        return None
+
+    def tightened(self, y: FloatArray, share: float) -> FloatArray:
+        """Unknowns (n,) of the eased item with its points where this one has the same forces on them."""
+        del share
+        return y
+
+    def led(self, y: FloatArray) -> Self:
+        """The item after a way from rest to unknowns y (n,) that are known from another mesh, not from equilibrium."""
+        return self.accepted(y)
+
     @property
     def follows_pressure(self) -> bool:
         """Whether limits are guessed and corrected, round after round, until they fit the pressure."""

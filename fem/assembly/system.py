@@ -166,6 +166,26 @@ class System:
         elements = self.elements.accepted(self.element_displacement(y))
         return replace(self, elements=elements, items=tuple(item.accepted(y) for item in self.items))
 
+    def met(self, y: FloatArray) -> FloatArray:
+        """The unknowns (n,) with the items' own as the displacements among them have it."""
+        for item in self.items:
+            y = item.met(y)
+        return y
+
+    def eased(self, share: float) -> System | None:
+        """The equations with a share of what stiffness friction has below its limits; None where it has none."""
+        return self._with([item.eased(share) for item in self.items])
+
+    def tightened(self, y: FloatArray, share: float) -> FloatArray:
+        """The eased equations' unknowns (n,) with points that stick where these equations have the same friction."""
+        for item in self.items:
+            y = item.tightened(y, share)
+        return y
+
+    def led(self, y: FloatArray) -> System:
+        """The equations after a way from rest to unknowns y (n,) that are known from another mesh."""
+        return replace(self, items=tuple(item.led(y) for item in self.items)) if self.items else self
+
     def corrected(self, y: FloatArray, press: float) -> System | None:
         """The equations that fit a state with unknowns y (n,) and a press in N; None if these do."""
         return self._with([item.corrected(y, press) for item in self.items])

@@ -121,6 +121,11 @@ class Friction:
         """The same after a step that ends at a path with an elastic slip, shaped like the anchor, in m."""
         return replace(self, anchor=path - elastic, tried=())
 
+    def led(self, path: FloatArray) -> Friction:
+        """The same after a way in one direction from rest to a path (m,) or (t, m) in m."""
+        most = self.limit / self.stick
+        return self.after(path, np.clip(path - self.anchor, -most, most))
+
     def following(self, limit: FloatArray, press: float) -> Friction | None:
         """Coulomb's law: limits nearer to those (m,) in N of the pressure; None where these fit a press in N."""
         misfit = limit - self.limit

@@ -60,6 +60,21 @@ class ClampFriction(EquationItem):
         elastic = self.respond(y).force / self.friction.stick
         return replace(self, friction=self.friction.after(y[self.own], elastic))
 
+    def eased(self, share: float) -> ClampFriction:
+        """The clamp with a share of its stiffness below the limit."""
+        return replace(self, friction=replace(self.friction, stick=share * self.friction.stick))
+
+    def tightened(self, y: FloatArray, share: float) -> FloatArray:
+        """Unknowns y (n,) of the eased clamp with what sticks there moved to where its friction is the same here."""
+        out, trial = y.copy(), share * self._trial(y)
+        sticks = np.abs(trial) <= self.friction.limit
+        out[self.own[sticks]] = (self.friction.anchor + trial / self.friction.stick)[sticks]
+        return out
+
+    def led(self, y: FloatArray) -> ClampFriction:
+        """The item after a way from rest to unknowns y (n,) of another mesh."""
+        return replace(self, friction=self.friction.led(y[self.own]))
+
     def warning(self, y: FloatArray) -> str:
         """Where the sheet slides up to the border."""
         return SLIDES_EVERYWHERE if self.friction.slides_everywhere(self._trial(y)) else ""

@@ -29,6 +29,7 @@ from fem.assembly.item import EquationItem, ItemForces
 from fem.interactions.active_set import Friction
 
 SLIP_SHARE = 0.03  # of k, by which a node's slip counts against the force along the curve
+MOST_MET = 4  # of Newton's corrections of the slips that bring the curve to the nodes
 OWN = ((0, 2), (1, 3), (2, 2), (3, 3), (2, 4), (3, 4), (4, 4))  # unknowns of a node that its stiffness couples
 
 
@@ -211,6 +212,24 @@ class InterfaceFriction(EquationItem):
         if state is None:
             raise ArithmeticError("an accepted state cannot be evaluated")
         return replace(self, friction=self.friction.after(y[self.own[4]], state.friction * self.give / self.hold))
+
+    def met(self, y: FloatArray) -> FloatArray:
+        """The unknowns (n,) with the slips that bring the curve to the nodes' radii; as they are if nothing does."""
+        u, slip = np.append(y, 0.0), np.zeros(len(self.start))
+        along = u[self.along[0]]
+        for _ in range(MOST_MET):
+            weights = self.curve.weights(self.start + slip)
+            if weights is None:
+                return y
+            off = slip + weights[0, 0] @ along - u[self.own[0]]
+            slip = slip - off / (1.0 + weights[1, 0] @ along)
+        out = y.copy()
+        out[self.own[4]] = slip
+        return out
+
+    def led(self, y: FloatArray) -> InterfaceFriction:
+        """The item after a way from rest to unknowns y (n,) of another mesh."""
+        return replace(self, friction=self.friction.led(y[self.own[4]]))
 
     @property
     def unknowns(self) -> IntArray:

@@ -101,10 +101,7 @@ class ToolContact(EquationItem):
     def touch(self, y: FloatArray) -> Touch | None:
         """Contact at unknowns y (n,); None where a node is deep inside the punch."""
         c, penalty = len(self.place), self.friction.stick
-        u = np.append(y, 0.0)[self.own]
-        place = self.place + u[:c]
-        place[-1] -= u[c]
-        gap = self.punch.gap(place)
+        u, gap = np.append(y, 0.0)[self.own], self._gap(y)
         if gap is None:
             return None
         touches = self._touching(u[c + 1], gap) if self.held is None else self.held
@@ -202,6 +199,25 @@ class ToolContact(EquationItem):
         pressed, peak = self.pressed or touch.press > 0.0, max(self.peak, touch.press)
         return replace(self, friction=friction, pressed=pressed, peak=peak)
 
+    def entry(self, y: FloatArray) -> FloatArray | None:
+        """How far (m,) in m the nodes are inside the punch at unknowns y (n,), the multipliers of those that touch."""
+        gap = self._gap(y)
+        return None if gap is None else -gap.distance
+
+    def led(self, y: FloatArray) -> ToolContact:
+        """The contact after a way from rest to unknowns y (n,) of another mesh; whether it pressed is not told."""
+        gap = self._gap(y)
+        return self if gap is None else replace(self, friction=self.friction.led(gap.path))
+
+    def entered(self, y: FloatArray, entry: FloatArray, *, pressed: bool) -> tuple[FloatArray, ToolContact]:
+        """Unknowns y (n,) with multipliers that go with how far (m,) in m the nodes are inside, and the contact."""
+        inside, out = np.maximum(entry, 0.0), y.copy()
+        if pressed and self.punch.adhesion > 0.0:
+            inside = np.where(self.punch.under_face(self.place), entry, inside)
+        out[self.own[len(self.place) + 1]] = inside
+        limit = self.punch.friction * self.friction.stick * np.maximum(inside, 0.0)
+        return out, replace(self, pressed=pressed, friction=self.friction.with_limit(limit))
+
     @property
     def follows_pressure(self) -> bool:
         """Coulomb's limits do."""
@@ -241,11 +257,15 @@ class ToolContact(EquationItem):
 
     def active(self, y: FloatArray) -> BoolArray | None:
         """Which nodes (m,) touch at unknowns y (n,)."""
+        gap = self._gap(y)
+        return None if gap is None else self._touching(y[self.own[len(self.place) + 1]], gap)
+
+    def _gap(self, y: FloatArray) -> Gap | None:
+        """The gap at unknowns y (n,); None where a node is deep inside the punch."""
         c, u = len(self.place), np.append(y, 0.0)[self.own]
         place = self.place + u[:c]
         place[-1] -= u[c]
-        gap = self.punch.gap(place)
-        return None if gap is None else self._touching(u[c + 1], gap)
+        return self.punch.gap(place)
 
     def _touching(self, multiplier: FloatArray, gap: Gap) -> BoolArray:
         """Which nodes (m,) multipliers (m,) in m and gap have touch."""

@@ -83,13 +83,13 @@ def mesh_of_quads(points: FloatArray, quads: IntArray, layer_tops: FloatArray, f
     fans
         Whose nodes at their points become one each.
     """
-    basis = skfem.Basis(
-        skfem.MeshQuad(np.ascontiguousarray(points.T), np.ascontiguousarray(quads)),
-        skfem.ElementQuad2(),
-        intorder=1,
-    )
-    nodes = np.ascontiguousarray(basis.doflocs.T)
-    elements = np.asarray(basis.element_dofs, dtype=np.int64)
+    mesh = skfem.MeshQuad(np.ascontiguousarray(points.T), np.ascontiguousarray(quads))
+    dofs = skfem.Dofs(mesh, skfem.ElementQuad2())
+    elements = np.asarray(dofs.element_dofs, dtype=np.int64)
+    corners = mesh.p[:, mesh.t]
+    middle, centre = 0.5 * (corners + np.roll(corners, -1, axis=1)), corners.mean(axis=1, keepdims=True)
+    nodes: FloatArray = np.empty((dofs.N, 2))
+    nodes[elements.ravel()] = np.concatenate((corners, middle, centre), axis=1).reshape(2, -1).T
     for fan in fans:
         nodes, elements = fan.gathered(nodes, elements)
     r, z = nodes.T

@@ -16,6 +16,7 @@ elements, what is left is what straight ones leave: some mu l h with nodes at h 
 
 from __future__ import annotations
 
+import itertools
 import math
 import time as clock
 from collections.abc import Iterator, Sequence
@@ -30,6 +31,7 @@ from fem.analysis.newton import NewtonSettings
 from fem.analysis.nonlinear import equilibrium_along, equilibrium_near
 from fem.analysis.prediction import from_displacement
 from fem.errors import FemError
+from fem.interactions.tool_contact import ToolContact
 from fem.linear_solver.factory import suited_threads
 from fem.load import Load
 from fem.mesh.quads import Mesh
@@ -42,6 +44,8 @@ from fem.setup.prepare import prepare
 if TYPE_CHECKING:
     from fem.analysis.prepared import Model
     from fem.arrays import FloatArray
+    from fem.assembly.system import System
+    from fem.mesh.solid import AnyMesh
 
 SINGULAR_ORDER = 1.0
 LEAST_ORDER = 0.6  # seen in deep presses of two sheets, with up to five rings of elements at the edge
@@ -52,6 +56,8 @@ l min(l, h) times the length of the edge; from one sheet, presses of 0.9 to 1.8 
 EDGES = (1.0, 2.0, 4.0)
 ELASTIC_STEPS = 3
 REMEMBERED_STEPS = 25  # of a body whose state follows from those before
+PRESSED = 1e-6
+"""Of the largest force, above which a tool is taken to touch: one that came off has what equilibrium leaves."""
 WAY, END = (
     NewtonSettings(tolerance, misfit=misfit, beyond_limits=False) for tolerance, misfit in ((1e-3, 1e-2), (1e-6, 1e-5))
 )
@@ -136,7 +142,7 @@ def estimate_mesh_error(model: Model, load: Load, solution: Solution, *, first_o
     for step, follow in _judged_steps(model, reached):
         kept = _kept_steps(model.problem, step)
         along = [_Pressed.of(solution, n) for n in kept]
-        further = list(_coarser(model.problem, _shortened(model.problem, load, kept), along, edges, follow=follow))
+        further = list(_coarser(model, _shortened(model.problem, load, kept), along, edges, follow=follow))
         if further:
             break
     else:
@@ -197,16 +203,16 @@ def _judged_steps(model: Model, reached: FloatArray) -> list[tuple[int, bool]]:
 
 
 def _has_near(model: Model) -> bool:
-    """Whether a state may be sought near another one: the way there does not count, and the mesh is plane."""
-    linear = model.problem.kinematics == "linear"
-    return isinstance(model.mesh, Mesh) and not linear and not _remembers(model.problem)
+    """Whether a state may be sought near another one: of the way there the last step counts, and the mesh is plane."""
+    relaxes = any(layer.relaxation for layer in model.problem.layers)
+    return isinstance(model.mesh, Mesh) and model.problem.kinematics != "linear" and not relaxes
 
 
 @dataclass(frozen=True)
 class _Pressed:
-    """One state of a solution: nodes (N, 2) with their displacements (N, 2) in m, depth in m and force in N."""
+    """One state of a solution: mesh, displacements (N, 2) in m of its nodes, depth in m and force in N."""
 
-    nodes: FloatArray
+    mesh: AnyMesh
     displacement: FloatArray
     depth: float
     force: float
@@ -215,7 +221,14 @@ class _Pressed:
     def of(cls, solution: Solution, step: int) -> _Pressed:
         """At a step of a solution."""
         depth, force = float(solution.depth[step]), float(solution.force[step])
-        return cls(solution.mesh.nodes, solution.displacement[step], depth, force)
+        return cls(solution.mesh, solution.displacement[step], depth, force)
+
+    def unknowns(self, model: Model) -> FloatArray:
+        """The unknowns (n,) of a model of the same mesh, without multipliers."""
+        system = model.equilibrium.system
+        y: FloatArray = np.zeros(system.numbering.count + 1)
+        y[system.numbering.unknown], y[model.equilibrium.probe] = self.displacement.T, -self.depth
+        return y[:-1]
 
     def value(self, control: str) -> float:
         """What the load leaves free, m or N."""
@@ -223,40 +236,68 @@ class _Pressed:
 
 
 def _coarser(
-    problem: Problem, load: Load, along: Sequence[_Pressed], factors: Sequence[float], *, follow: bool
+    own: Model, load: Load, along: Sequence[_Pressed], factors: Sequence[float], *, follow: bool
 ) -> Iterator[tuple[float, int]]:
     """What half as many elements give, and unknowns; at a stuck edge also with elements larger there by the factors.
 
-    The first is sought near the last state of those `along` the load history or, with `follow`, followed from rest; the
-    others are if need be.
+    The first is sought near the last state of those `along` the load history of the model's own mesh or, with `follow`,
+    followed from rest; the others are if need be.
     """
-    own, before, pressed = problem.discretisation, 0, along[-1]
-    edges = [own.edge * factor for factor in factors if own.edge * factor <= LARGEST_EDGE]
+    problem, before = own.problem, own
+    discretisation = problem.discretisation
+    edges = [edge for edge in (discretisation.edge * factor for factor in factors) if edge <= LARGEST_EDGE]
     for edge in edges if _is_stuck(problem) else edges[:1]:
         try:
-            model = prepare(replace(problem, discretisation=replace(own, halved=True, edge=edge)))
+            model = prepare(replace(problem, discretisation=replace(discretisation, halved=True, edge=edge)))
         except FemError:
             return
-        if model.unknowns == before:
+        if before is not own and model.unknowns == before.unknowns:
             return  # there is no fan
-        found = _found_near(model, load, pressed)
-        if found is None and (follow or before):
-            found = _followed(model, load, along)
-        before = model.unknowns
+        first = before is own
+        found = None if first and follow else _found_near(model, load, along, before)
+        if found is None and (follow or not first):
+            end = _followed(model, load, along)
+            found = None if end is None else [end]
         if found is None:
             return
-        yield found.value(load.control), model.unknowns
-        pressed = found
+        yield found[-1].value(load.control), model.unknowns
+        along, before = found, model
 
 
-def _found_near(model: Model, load: Load, pressed: _Pressed) -> _Pressed | None:
-    """The end of a load history on this mesh, from a state nearby; None where the way there counts, or is needed."""
-    if not _has_near(model) or not isinstance(model.mesh, Mesh):
+def _found_near(model: Model, load: Load, along: Sequence[_Pressed], source: Model) -> list[_Pressed] | None:
+    """The end of a load history on this mesh, from a state nearby; None where the way there counts, or is needed.
+
+    Friction and adhesion remember where the step before left them: they get that step's state of the mesh of the
+    `source`, which is given back before the end.
+    """
+    is_told = not _remembers(model.problem) or len(along) >= min(2, len(load.time))
+    if not _has_near(model) or not isinstance(model.mesh, Mesh) or not is_told:
         return None
-    (guess,) = _carried_over(model, model.mesh, [pressed])
+    near, settings = model.equilibrium, model.newton
+    *earlier, guess = _carried_over(model, model.mesh, along[-2:] if _remembers(model.problem) else along[-1:])
+    if _remembers(model.problem):
+        system, settings = near.system, END
+        if earlier:
+            system = system.led(system.met(earlier[-1].y))
+        guess, system = _touching(system, replace(guess, y=system.met(guess.y)), along, source)
+        near = replace(near, system=system)
     with suited_threads(model.unknowns):
-        found = equilibrium_near(model.equilibrium, guess, load.control, float(load.value[-1]), model.newton)
-    return None if found is None else _pressed_by(model, found)
+        found = equilibrium_near(near, guess, load.control, float(load.value[-1]), settings)
+    return None if found is None else [_pressed_by(model, each) for each in (*earlier, found)]
+
+
+def _touching(system: System, guess: State, along: Sequence[_Pressed], source: Model) -> tuple[State, System]:
+    """Guess and equations with the pressure between tool and surface that another mesh has."""
+    y, items = guess.y, list(system.items)
+    pressed = len(along) > 1 and abs(along[-2].force) > PRESSED * max(abs(each.force) for each in along)
+    for n, (item, other) in enumerate(zip(system.items, source.equilibrium.system.items, strict=True)):
+        if isinstance(item, ToolContact) and isinstance(other, ToolContact):
+            entry = other.entry(along[-1].unknowns(source))
+            if entry is not None:
+                row = np.argsort(other.place[0])
+                inside: FloatArray = np.interp(item.place[0], other.place[0][row], entry[row])
+                y, items[n] = item.entered(y, inside, pressed=pressed)
+    return replace(guess, y=y), replace(system, items=tuple(items))
 
 
 def _followed(model: Model, load: Load, along: Sequence[_Pressed]) -> _Pressed | None:
@@ -276,20 +317,30 @@ def _followed(model: Model, load: Load, along: Sequence[_Pressed]) -> _Pressed |
 
 
 def _carried_over(model: Model, mesh: Mesh, pressed: Sequence[_Pressed]) -> list[State]:
-    """States of another mesh as guesses at those of this one, linear between its nearest nodes."""
-    nodes, values = pressed[0].nodes, np.concatenate([each.displacement for each in pressed], axis=1)
-    found: FloatArray = LinearNDInterpolator(nodes, values)(mesh.nodes)
-    outside = np.isnan(found[:, 0])
-    if outside.any():
-        found[outside] = NearestNDInterpolator(nodes, values)(mesh.nodes[outside])
-    each_own = zip(pressed, np.split(found, len(pressed), axis=1), strict=True)
+    """States of another mesh as guesses at those of this one, linear between its nearest nodes.
+
+    Layers that slip on each other are apart, their nodes being at the same places.
+    """
+    values = np.concatenate([each.displacement for each in pressed], axis=1)
+    out: FloatArray = np.empty((len(mesh.nodes), values.shape[1]))
+    slips = [limit is not None for limit in model.problem.shear_limits]
+    part = np.array([0, *itertools.accumulate(slips)])
+    for each in range(part[-1] + 1):
+        mine, theirs = (np.unique(one.elements[:, part[one.layer] == each]) for one in (mesh, pressed[0].mesh))
+        places, known = mesh.nodes[mine], pressed[0].mesh.nodes[theirs]
+        found: FloatArray = LinearNDInterpolator(known, values[theirs])(places)
+        outside = np.isnan(found[:, 0])
+        if outside.any():
+            found[outside] = NearestNDInterpolator(known, values[theirs])(places[outside])
+        out[mine] = found
+    each_own = zip(pressed, np.split(out, len(pressed), axis=1), strict=True)
     return [from_displacement(model.equilibrium, mesh, own, each.force, each.depth) for each, own in each_own]
 
 
 def _pressed_by(model: Model, found: State) -> _Pressed:
     """A state of a model."""
     nodal = model.equilibrium.system.numbering.expand(found.y).T
-    return _Pressed(model.mesh.nodes, nodal, model.equilibrium.depth(found.y), found.force)
+    return _Pressed(model.mesh, nodal, model.equilibrium.depth(found.y), found.force)
 
 
 def _judged(value: float, coarser: list[float], stuck: bool) -> tuple[float, float]:
@@ -309,11 +360,11 @@ def _judged(value: float, coarser: list[float], stuck: bool) -> tuple[float, flo
 
 
 def _kept_steps(problem: Problem, peak: int) -> list[int]:
-    """Steps up to the peak that are followed; of a body without a memory the peak alone."""
+    """Steps up to the peak that are followed, the one before it among them; without a memory the peak alone."""
     if not _remembers(problem):
         return [peak]
     kept = np.linspace(-1, peak, min(REMEMBERED_STEPS, peak + 1) + 1)[1:].round().astype(np.int64)
-    return [int(step) for step in kept]
+    return sorted({*kept.tolist(), max(0, peak - 1)})
 
 
 def _shortened(problem: Problem, load: Load, kept: list[int]) -> Load:

@@ -153,3 +153,21 @@ def test_the_stiffness_is_the_derivative_of_the_force():
 def test_everywhere(moved, everywhere):
     slider = ClampFriction(np.arange(2), Friction(np.ones(2), np.ones(2), np.zeros(2)))
     assert bool(slider.warning(np.array([2.0, moved]))) is everywhere
+
+
+def test_what_sticks_to_a_softer_plate_has_the_same_friction_where_it_is_put_on_the_real_one():
+    slider = ClampFriction(np.arange(3), Friction(np.full(3, 50.0), np.ones(3), np.array([0.0, 0.1, 0.2])))
+    y = np.array([0.5, -0.4, 9.0])
+    eased = slider.eased(0.02)
+    put = slider.tightened(y, 0.02)
+    np.testing.assert_allclose(eased.respond(y).force, [0.5, -0.5, 1.0])
+    np.testing.assert_allclose(slider.respond(put).force, eased.respond(y).force)
+    assert put[2] == y[2]  # slides
+
+
+def test_after_a_way_in_one_direction_it_slides_on_from_where_it_is():
+    """As by equilibrium from step to step: elastic up to the limit, not what a mesh without that stiffness has."""
+    slider = ClampFriction(np.arange(2), Friction(np.full(2, 10.0), np.ones(2), np.zeros(2)))
+    y = np.array([0.05, -2.0])
+    np.testing.assert_allclose(slider.led(y).friction.anchor, slider.accepted(y).friction.anchor)
+    np.testing.assert_allclose(slider.led(y).friction.anchor, [0.0, -1.9])

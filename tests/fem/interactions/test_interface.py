@@ -126,3 +126,16 @@ def test_after_a_slip_it_sticks_where_it_came_to():
 
 def test_beyond_the_end_of_the_curve_there_is_none():
     assert interface(1.0).evaluate(state(0.0, 1.0)) is None
+
+
+def test_slips_are_found_from_where_the_nodes_are():
+    part, rng = interface(1.0), np.random.default_rng(3)
+    y, slip = np.zeros(SIZE + 1), 0.05 * rng.normal(size=COUNT)
+    y[part.along] = 0.05 * rng.normal(size=part.along.shape)
+    y[-1] = 0.0
+    weights = part.curve.weights(part.start + slip)
+    y[part.own[0]] = slip + weights[0, 0] @ y[part.along[0]]
+    np.testing.assert_allclose(part.met(y[:-1])[part.own[4]], slip, atol=1e-9)
+    np.testing.assert_allclose(part.led(part.met(y[:-1])).friction.anchor, slip, atol=2.0 * GIVE)
+    beyond = np.where(np.isin(np.arange(SIZE), part.own[0]), 99.0, y[:-1])
+    np.testing.assert_array_equal(part.met(beyond), beyond)

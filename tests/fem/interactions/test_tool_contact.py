@@ -1,5 +1,7 @@
 """The contact of nodes: its stiffness is the derivative of its force; the node on the axis; entry between nodes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -116,3 +118,26 @@ def test_a_surface_that_enters_between_its_nodes_is_not_sound(share, sound):
     y = np.zeros(16)
     y[6] = share * MOST_ENTRY / 0.75
     assert row((0, 1)).is_sound(y) == sound
+
+
+def test_touch_and_limits_are_those_of_how_far_nodes_are_inside():
+    """A node's multiplier is its entry; the nodes of a face that adheres may be outside and held."""
+    made = row((0, 1))
+    y = np.zeros(16)
+    y[5:8], y[10] = (0.02, -0.01, 0.03), 0.0
+    np.testing.assert_allclose(made.entry(y)[:3], [0.02, -0.01, 0.03], atol=1e-12)
+    rubs = replace(made, punch=Punch(5.0, 1.0, 0.5))
+    put, there = rubs.entered(y, rubs.entry(y), pressed=False)
+    np.testing.assert_allclose(put[11:14], [0.02, 0.0, 0.03], atol=1e-12)
+    np.testing.assert_allclose(there.friction.limit[:3], [0.01, 0.0, 0.015], atol=1e-12)
+    assert not there.pressed
+    holds = replace(made, punch=Punch(5.0, 1.0, adhesion=1.0))
+    put, there = holds.entered(y, holds.entry(y), pressed=True)
+    np.testing.assert_allclose(put[11:14], [0.02, -0.01, 0.03], atol=1e-12)
+    assert there.pressed
+
+
+def test_after_a_way_of_another_mesh_nodes_stick_where_they_are():
+    y = np.zeros(16)
+    y[:5] = 0.1
+    np.testing.assert_allclose(row((0, 1)).led(y).friction.anchor[0, :2], [0.1, 2.1])
