@@ -66,7 +66,8 @@ def discover(
     Writes discovery.json, model.toml (for run --model), tables, report.html, and next_experiment.toml where rivals
     remain. With a result folder of run in the place of a session, the wave model is repaired against its FEM.
     With --bench the experiment that best separates the rivals is done there, its trials added to a copy of the session
-    and decided again, until one name stands or the budget ends. Exit code 0 whatever is found.
+    and decided again, until one name stands or the budget ends. Exit code 0 whatever is found; where the bench ends the
+    loop with a fault, the answer so far is written, and the exit code is the fault's.
     """
     from benchmark.cli.console import Console
     from benchmark.cli.show import show_discovery
@@ -77,7 +78,12 @@ def discover(
         paths, model, effects, specimen, parse_settings(settings), out, seed, bench, budget, _asked, refit
     )
     outcome = carry_out(request, console)
-    return show_discovery(outcome, console, as_json=json)
+    code = show_discovery(outcome, console, as_json=json)
+    if outcome.stopped is not None:
+        raise type(outcome.stopped)(
+            f"{outcome.stopped}; the answer so far is in {outcome.folder}, what the bench recorded in its session/"
+        )
+    return code
 
 
 def _asked(proposal: NextExperiment, setup: Mapping[str, Any]) -> bool:

@@ -16,14 +16,21 @@ from benchmark.discovery.evidence.pool import forget
 from benchmark.discovery.evidence.told_setup import on_told
 from benchmark.discovery.from_run import at_small_strain, is_run, read_run, repair_run
 from benchmark.discovery.planning.bench_loop import Loop
-from benchmark.discovery.planning.bench_work import Asked, BenchWork, load_bench, session_copy, unattended
+from benchmark.discovery.planning.bench_work import (
+    Asked,
+    BenchWork,
+    kept_experiments,
+    load_bench,
+    session_copy,
+    unattended,
+)
 from benchmark.discovery.planning.proposing import Allowed, propose
 from benchmark.discovery.refitting.refit import picked, refits
 from benchmark.discovery.refitting.refit_result import ModelRefit
 from benchmark.discovery.report.discovery_files import DiscoveryOutcome, write_discovery
 from benchmark.discovery.report.discovery_record import NAMING, DiscoveryRecord, NextExperiment, Round
 from benchmark.discovery.workflow import Findings, findings
-from benchmark.errors import InputError
+from benchmark.errors import InputError, TissuebenchError
 from benchmark.files import Session, load_session
 from benchmark.files.schema import nearest
 from benchmark.files.shipped import session_folder
@@ -160,16 +167,18 @@ def _answered(
     own = tuple(effect for effect in effects if effect.slug not in SLUGS)
     rounds: tuple[Round, ...] = ()
     grown: Path | None = None
+    stopped: TissuebenchError | None = None
     if request.bench is None:
         found = _found(session, request, own, listener, store)
         proposal = propose(found, fem_or_wave_table(session, ()), session.specimen)
     else:
         loop = _looped(request, own, listener, store)
         found, grown = loop.run(), loop.bench.folder
-        rounds = tuple(loop.rounds)
+        rounds, stopped = tuple(loop.rounds), loop.stopped
         session, said = _loaded(request, grown, listener)
         proposal = loop.propose(found, loop.bench.allowed({each.choice for each in rounds}))
     refitted = _refitted(session, request, found, effects, listener)
+    said += () if stopped is None else (f"{stopped}: the answer is that of the trials before",)
     warnings = tuple(dict.fromkeys((*session.warnings, *said, *found.discovery.warnings)))
     return DiscoveryRecord(
         name=session.name,
@@ -186,6 +195,7 @@ def _answered(
         store=store,
         rounds=rounds,
         grown=grown,
+        stopped=stopped,
         refits=refitted,
     )
 
@@ -226,8 +236,11 @@ def _loaded(request: DiscoverRequest, path: Path, listener: Listener) -> tuple[S
 
 def _looped(request: DiscoverRequest, own: tuple[Effect, ...], listener: Listener, store: Path) -> Loop:
     """The closed loop on a copy of the session beside the fits that are kept."""
-    rig = load_bench(str(request.bench))
-    folder = session_copy(session_folder(request.paths[0]), store / "session")
+    rig, original = load_bench(str(request.bench)), session_folder(request.paths[0])
+    left = kept_experiments(original, store / "session")
+    if left is not None:
+        listener.say(f"{left}: what the bench recorded for a loop that was interrupted, with its session")
+    folder = session_copy(original, store / "session")
     bench = BenchWork(rig, folder, request.asked, request.seed)
 
     def decide(path: Path, without: frozenset[str]) -> Findings:

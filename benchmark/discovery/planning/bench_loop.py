@@ -25,8 +25,9 @@ from benchmark.discovery.planning.proposing import BLOCK, DEPTH_READ, GIVES, RUL
 from benchmark.discovery.planning.rivals import Rival, rivals
 from benchmark.discovery.report.discovery_record import NextExperiment, Round
 from benchmark.discovery.workflow import Findings
-from benchmark.errors import InputError
+from benchmark.errors import DeviceError, InputError, SolverError
 from benchmark.files.sessions.trials import read_table
+from reports import write_text
 
 Decide = Callable[[Path, frozenset[str]], Findings]
 """The discovery of a session without effects that were ruled out."""
@@ -35,7 +36,7 @@ Propose = Callable[[Findings, Allowed], NextExperiment | None]
 
 @dataclass
 class Loop:
-    """The rounds so far and what they ruled out."""
+    """The rounds so far, what they ruled out, and the error with which the bench ended them before their time."""
 
     bench: Bench
     budget: int
@@ -46,9 +47,13 @@ class Loop:
     leads: dict[tuple[tuple[str, ...], ...], Leads] = field(default_factory=dict)
     promised: dict[tuple[tuple[str, ...], ...], float] = field(default_factory=dict)
     out: frozenset[str] = frozenset()
+    stopped: DeviceError | InputError | SolverError | None = None
 
     def run(self) -> Findings:
-        """Go round until one name stands, nothing can be proposed, or the budget ends; the last answer."""
+        """Go round until one name stands, nothing can be proposed, the budget or the bench ends; the last answer.
+
+        What an experiment that fails has entered into the session is taken out again; its files stay.
+        """
         found = self.decide(self.bench.folder, self.out)
         done = {RULER}  # nothing of a loop reads a picture
         while len(self.rounds) < self.budget:
@@ -56,7 +61,14 @@ class Loop:
             if proposal is None or not self.bench.ready(proposal):
                 return found
             done.add(proposal.choice)
-            found = self._round(found, proposal)
+            entered = self.bench.folder / "session.toml"
+            before = entered.read_text(encoding="utf-8")
+            try:
+                found = self._round(found, proposal)
+            except (DeviceError, InputError, SolverError) as error:
+                write_text(entered, before)
+                self.stopped = error
+                return found
         return found
 
     def _round(self, found: Findings, proposal: NextExperiment) -> Findings:

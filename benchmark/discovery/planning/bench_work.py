@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import shutil
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
@@ -57,7 +58,7 @@ def unattended(proposal: NextExperiment, setup: Mapping[str, Any]) -> bool:  # n
 
 
 def load_bench(name: str) -> LoadedRig:
-    """Read a rig file, or the shipped rig of that name.
+    """Read a rig file, or the shipped rig of that name, and what it says lies under the tool.
 
     Raises
     ------
@@ -65,7 +66,9 @@ def load_bench(name: str) -> LoadedRig:
         There is none, or it says something that is not allowed.
     """
     try:
-        return load_rig(name)
+        rig = load_rig(name)
+        specimen_of(rig), sheet_of(rig)
+        return rig
     except BenchError as error:
         raise InputError(f"--bench: {error}") from None
 
@@ -105,6 +108,8 @@ class BenchWork:
     def record(self, proposal: NextExperiment, trials: int, number: int) -> tuple[Path, ...]:
         """Do an experiment; the files of its trials, which lie in the copy of the session.
 
+        What was recorded when the bench ends with a fault, or is interrupted, stays in a folder of the copy.
+
         Raises
         ------
         DeviceError
@@ -112,6 +117,7 @@ class BenchWork:
         InputError
             The bench cannot do it.
         """
+        recorded = self.folder / f"experiment_{number}"
         with scratch() as folder:
             protocol = folder / "next_experiment.toml"
             write_text(protocol, proposal.toml)
@@ -121,17 +127,18 @@ class BenchWork:
             order = CaptureOrder(
                 loaded,
                 self.rig,
-                folder / "session",
+                recorded,
                 trials,
                 condition=proposal.choice,
                 fast=self.rig.rig.all_simulated,
                 seed=self.seed + 1000 * number,
             )
-            outcome = _captured(order, under)
-            return tuple(
+            files = tuple(
                 Path(shutil.copyfile(file, self.folder / f"experiment_{number}_{place}.mcap"))
-                for place, file in enumerate(outcome, 1)
+                for place, file in enumerate(_captured(order, under), 1)
             )
+        shutil.rmtree(recorded)
+        return files
 
     def add(self, proposal: NextExperiment, files: tuple[Path, ...]) -> None:
         """Enter trials into the session file of the copy, with the tool they were made with."""
@@ -149,7 +156,7 @@ def _captured(order: CaptureOrder, specimen: Any) -> tuple[Path, ...]:
 
 
 def session_copy(session: Path, folder: Path) -> Path:
-    """Copy a session with a session.toml to a folder that will grow.
+    """Copy a session with a session.toml to a folder that will grow, in place of an earlier copy.
 
     Raises
     ------
@@ -166,6 +173,18 @@ def session_copy(session: Path, folder: Path) -> Path:
         shutil.rmtree(folder, ignore_errors=True)
         raise
     return folder
+
+
+def kept_experiments(session: Path, folder: Path) -> Path | None:
+    """Move an earlier copy in which a bench recorded something out of the way; its new place, None where there is none.
+
+    It is what an interrupted loop leaves: a session of its own, beside the hidden folder in which it grew.
+    """
+    if not folder.is_dir() or {each.name for each in folder.iterdir()} <= {each.name for each in session.iterdir()}:
+        return None
+    name = folder.parent.name.removeprefix(".").removesuffix(".unfinished")
+    places = (folder.parent.with_name(f"{name}-experiments-{number}") for number in itertools.count(1))
+    return folder.rename(next(place for place in places if not place.exists()))
 
 
 def enter(folder: Path, proposal: NextExperiment, trials: Sequence[Mapping[str, str]]) -> None:

@@ -24,6 +24,7 @@ from benchmark.discovery.own_values import SetupEstimate, TrialValues
 from benchmark.discovery.report.discovery_page import discovery_page
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, LayerGap, NextExperiment, gap_in_units
 from benchmark.discovery.report.refit_section import refit_line
+from benchmark.errors import TissuebenchError
 from benchmark.files.units import shown
 from benchmark.model_file import model_toml
 from benchmark.runs.output.document import describe_environment
@@ -276,13 +277,17 @@ def _columns(rows: Iterable[Mapping[str, Any]], names: Sequence[str]) -> Columns
 
 @dataclass(frozen=True)
 class DiscoveryOutcome:
-    """A finished discovery on disk: its folder, `discovery.json`'s content, headline, warnings, and a line a refit."""
+    """A finished discovery on disk.
+
+    Its folder, `discovery.json`'s content, headline, warnings, a line a refit, and what ended a closed loop early.
+    """
 
     folder: Path
     document: dict[str, Any]
     headline: str
     warnings: tuple[str, ...]
     lines: tuple[str, ...] = ()
+    stopped: TissuebenchError | None = None
 
 
 def write_discovery(record: DiscoveryRecord, folder: Path) -> DiscoveryOutcome:
@@ -293,8 +298,7 @@ def write_discovery(record: DiscoveryRecord, folder: Path) -> DiscoveryOutcome:
     OSError
         Where the file system refuses; `folder` is then as it was.
     """
-    rounds = {} if record.grown is None else {"rounds": [asdict(each) for each in record.rounds]}
-    document, environment = {**discovery_document(record), **rounds}, describe_environment(seed=record.seed)
+    document, environment = {**discovery_document(record), **_loop(record)}, describe_environment(seed=record.seed)
     tables = discovery_tables(document)
     page = discovery_page(record, environment, list(tables))
 
@@ -312,4 +316,12 @@ def write_discovery(record: DiscoveryRecord, folder: Path) -> DiscoveryOutcome:
 
     write_whole(folder, fill)
     lines = tuple(refit_line(refit) for refit in record.refits)
-    return DiscoveryOutcome(folder, document, page.verdict.headline, record.found.warnings, lines)
+    return DiscoveryOutcome(folder, document, page.verdict.headline, record.found.warnings, lines, record.stopped)
+
+
+def _loop(record: DiscoveryRecord) -> dict[str, Any]:
+    """What `discovery.json` has of a closed loop; nothing without one."""
+    if record.grown is None:
+        return {}
+    stopped = None if record.stopped is None else str(record.stopped)
+    return {"rounds": [asdict(each) for each in record.rounds], "stopped": stopped}

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from benchmark.discovery.discovery_result import Array, ChannelGap, Discovery, Estimate, channel_unit
 from benchmark.discovery.refitting.refit_result import ModelRefit
+from benchmark.errors import TissuebenchError
 from benchmark.model_file import AddedEffect, RepairedModel, Value
 from benchmark.physics.description import EffectDescription
 from benchmark.physics.setup_entry import setup_key
@@ -156,6 +157,8 @@ class DiscoveryRecord:
         Of the closed loop; empty without a bench.
     grown : Path or None
         The copy of the session to which the loop added trials.
+    stopped : TissuebenchError or None
+        With which the bench ended the loop before its time.
     refits : tuple of ModelRefit
         The effects in the FEM and the wave model, where that was asked for.
     """
@@ -176,6 +179,7 @@ class DiscoveryRecord:
     store: Path | None = None
     rounds: tuple[Round, ...] = ()
     grown: Path | None = None
+    stopped: TissuebenchError | None = None
     refits: tuple[ModelRefit, ...] = ()
 
     @property

@@ -224,9 +224,11 @@ def _menu(proposal: NextExperiment) -> Table:
 
 def loop_section(record: DiscoveryRecord) -> Section:
     """Return what was done on the bench, round by round."""
-    title = "Measured on the bench"
+    title, none = "Measured on the bench", "No experiment was done: one answer stood, or none could be proposed."
+    if record.stopped is not None:
+        none = f"The loop ended before its time: {record.stopped}. What was recorded is in the folder session."
     if not record.rounds:
-        return Section(title, [Paragraph("No experiment was done: one answer stood, or none could be proposed.")])
+        return Section(title, [Paragraph(none)])
     told = [
         f"{each.words} {_begun(effect_name(each.rivals[0]))} against {effect_name(each.rivals[1])}: "
         f"{_parted(each.found)} apart, {each.expected:.0f} expected. {_outcome(each)}"
@@ -251,7 +253,8 @@ def loop_section(record: DiscoveryRecord) -> Section:
         for number, each in enumerate(record.rounds, 1)
     ]
     caption = "Rounds: separation of the rivals in standard deviations before, expected of the experiment, and found"
-    return Section(title, [Bullets(told), Table(caption, columns, rows, folded=False)])
+    ended = [] if record.stopped is None else [Paragraph(none)]
+    return Section(title, [*ended, Bullets(told), Table(caption, columns, rows, folded=False)])
 
 
 def _parted(found: float | None) -> str:

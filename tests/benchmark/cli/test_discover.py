@@ -7,7 +7,11 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from benchmark.cli.app import main
+from benchmark.discovery import discovery_request
 from benchmark.discovery.discovery_request import DiscoverRequest, carry_out
+from benchmark.discovery.report.discovery_files import DiscoveryOutcome
+from benchmark.errors import DeviceError
 from benchmark.sessions import SHIPPED
 
 PHANTOM = SHIPPED / "phantom"
@@ -101,3 +105,14 @@ def test_a_folder_that_is_no_result_is_refused_before_the_work(tmp_path: Path, m
     monkeypatch.setattr("benchmark.discovery.discovery_request.findings", never)
     with pytest.raises(InputError, match="not a result"):
         carry_out(DiscoverRequest([PHANTOM], out=tmp_path), Console(quiet=True))
+
+
+def test_a_bench_that_fails_gives_the_exit_code_after_the_answer_so_far(tmp_path: Path, monkeypatch, capsys) -> None:
+    document = {"name": "gel", "verdict": "lookalikes"}
+    outcome = DiscoveryOutcome(tmp_path / "found", document, "Two stand.", (), (), DeviceError("--bench: it is silent"))
+    monkeypatch.setattr(discovery_request, "carry_out", lambda *_: outcome)
+    assert main(["discover", "gel", "--bench", "rig.toml"]) == 5
+    printed = capsys.readouterr()
+    assert printed.out.startswith("gel: lookalikes: Two stand.")
+    assert "error: --bench: it is silent; the answer so far is in" in printed.err
+    assert str(tmp_path / "found") in printed.err.replace("\n", "")

@@ -8,6 +8,7 @@ from benchmark.discovery.planning import bench_loop
 from benchmark.discovery.planning.bench_loop import Loop, judged_by_block, judged_by_trials, rigs_give
 from benchmark.discovery.planning.bench_work import BenchWork
 from benchmark.discovery.planning.rivals import Rival
+from benchmark.errors import DeviceError, InputError
 from benchmark.experiments.menu import Usual, menu, rigid_block
 
 USUAL = Usual(depth=2e-3, speed=1e-3, hold=5.0, thickness=20e-3)
@@ -130,3 +131,30 @@ def test_the_loop_stops_at_its_budget_or_when_nothing_is_proposed(bench, proposa
     silent = Loop(bench, 2, lambda path, without: found, lambda found, allowed: None)
     silent.run()
     assert silent.rounds == []
+
+
+@pytest.mark.parametrize("where", ["record", "decide"])
+def test_a_bench_that_fails_ends_the_loop_with_the_answer_before(bench, proposal, monkeypatch, where) -> None:
+    """What the failed experiment entered is taken out again, so that the session can be read."""
+    answers = [SimpleNamespace(discovery=SimpleNamespace(verdict="lookalikes", effects=()), calibrated=None)]
+    entered = (bench.folder / "session.toml").read_text()
+    monkeypatch.setattr(bench_loop, "rivals", lambda found: _pair(1e-3))
+    monkeypatch.setattr(bench_loop, "leads", lambda found, standing: {})
+
+    def record(bench, proposal, trials, number):
+        if where == "record":
+            raise DeviceError("--bench: the actuator is gone")
+        return ()
+
+    def decide(path, without):
+        if not answers:
+            raise InputError("the new trials cannot be read")
+        return answers.pop()
+
+    monkeypatch.setattr(BenchWork, "record", record)
+    monkeypatch.setattr(BenchWork, "add", lambda bench, proposal, files: (bench.folder / "session.toml").write_text(""))
+    first, longer = answers[0], proposal(menu(USUAL)[0])
+    loop = Loop(bench, 3, decide, lambda found, allowed: longer)
+    assert loop.run() is first
+    assert isinstance(loop.stopped, DeviceError if where == "record" else InputError)
+    assert (loop.rounds, (bench.folder / "session.toml").read_text()) == ([], entered)

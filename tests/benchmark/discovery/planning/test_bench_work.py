@@ -1,9 +1,13 @@
 import tomllib
+from dataclasses import replace
 
 import pytest
 
-from benchmark.discovery.planning.bench_work import session_copy
-from benchmark.errors import InputError
+from bench_hw.capture.session import capture
+from bench_hw.capture.trial import Fault
+from benchmark.discovery.planning import bench_work
+from benchmark.discovery.planning.bench_work import kept_experiments, load_bench, session_copy
+from benchmark.errors import DeviceError, InputError
 from benchmark.experiments.menu import Usual, second_tools
 from benchmark.files import load_session
 
@@ -23,6 +27,42 @@ def test_an_experiment_with_another_tool_joins_the_copy_with_that_tool_alone(ben
     )
     assert max(float(trial.table.force.max()) for trial in grown.trials[1:]) > 0.5
     assert [trial.condition for trial in load_session(folder / "session").trials] == ["usual"]
+
+
+def test_what_lies_under_the_tool_is_read_with_the_rig(folder) -> None:
+    """Not at the first experiment, minutes later."""
+    specimen = folder / "specimen.toml"
+    specimen.write_text(specimen.read_text().replace("compliance_mm_per_N", "compliance_um"))
+    with pytest.raises(InputError, match=r"--bench: .*specimen\.toml.*compliance_um"):
+        load_bench(str(folder / "rig.toml"))
+
+
+def test_what_was_recorded_before_a_fault_stays(bench, proposal, monkeypatch) -> None:
+    def faulty(order, *told, **more):
+        made = capture(replace(order, trials=1), *told, **more)
+        return replace(made, fault=Fault("silent", "the force sensor is silent", retracted=True))
+
+    monkeypatch.setattr(bench_work, "capture", faulty)
+    (other,) = second_tools(USUAL, 5e-3, bench.allowed(set()).radii)
+    with pytest.raises(DeviceError, match="--bench: the force sensor is silent"):
+        bench.record(proposal(other), 2, 1)
+    assert [each.name for each in (bench.folder / "experiment_1").glob("*.mcap")] == ["trial_001.mcap"]
+    assert len(load_session(bench.folder).trials) == 1
+
+
+def test_the_copy_of_an_interrupted_loop_is_kept_and_one_without_recordings_is_not(folder, tmp_path) -> None:
+    store = tmp_path / "results" / ".found-wave.unfinished"
+    store.mkdir(parents=True)
+    for number in (1, 2):
+        copy = session_copy(folder / "session", store / "session")
+        assert kept_experiments(folder / "session", copy) is None
+        assert copy.is_dir()
+        (copy / "experiment_1_1.mcap").write_bytes(b"measured")
+        kept = kept_experiments(folder / "session", copy)
+        assert kept == tmp_path / "results" / f"found-wave-experiments-{number}"
+        assert (kept / "experiment_1_1.mcap").read_bytes() == b"measured"
+        assert not copy.exists()
+    assert kept_experiments(folder / "session", copy) is None
 
 
 def test_a_folder_without_a_session_file_is_refused(tmp_path) -> None:

@@ -9,6 +9,7 @@ from benchmark.discovery.report.disagreement_sections import representative
 from benchmark.discovery.report.discovery_page import discovery_page, discovery_verdict
 from benchmark.discovery.report.discovery_record import NextExperiment, Round
 from benchmark.discovery.report.effect_sections import next_section
+from benchmark.errors import DeviceError
 from reports import render_page
 
 pytestmark = pytest.mark.usefixtures("undrawn")  # test_discovery_files draws the page once
@@ -134,6 +135,12 @@ def test_each_round_at_the_bench_is_told_and_stands_in_a_table(record, tmp_path)
     assert "Viscoelastic relaxation against poroelastic drainage:" in text
     assert re.search(r"longer hold viscoelastic relaxation / poroelastic drainage 0.1 15.2 4.3 5 11", text)
     assert "2 more experiments: wider tool; longer hold" in text
+    assert "before its time" not in text
+    for rounds in ((), (first,)):
+        stopped = DeviceError("--bench: the force sensor is silent")
+        text = _text(replace(record, proposal=None, grown=tmp_path, rounds=rounds, stopped=stopped))
+        assert "The loop ended before its time: --bench: the force sensor is silent." in text
+        assert "No experiment was done" not in text
 
 
 def test_one_trial_a_channel_and_condition_is_shown_the_held_out_one(found) -> None:
