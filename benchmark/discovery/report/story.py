@@ -138,8 +138,10 @@ def _gap(record: DiscoveryRecord) -> list[StoryStep]:
 
 
 def _closing(record: DiscoveryRecord) -> list[ChannelGap]:
-    """The gaps of which it is known how far the named effects close them."""
-    return [gap for gap in record.found.gap if gap.closed is not None] if record.named else []
+    """The gaps of which it is known how far the named effects close them: where model and trials disagree, if there."""
+    known = [gap for gap in record.found.gap if gap.closed is not None] if record.named else []
+    told = {place.channel for place in record.found.where}
+    return [gap for gap in known if gap.channel in told] or known
 
 
 def _closed(gap: ChannelGap) -> str:

@@ -1,15 +1,19 @@
+import shutil
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from benchmark.discovery import discovery_request
+from benchmark.discovery.discovery_request import DiscoverRequest, answer_session
 from benchmark.discovery.planning import bench_loop
 from benchmark.discovery.planning.bench_loop import Loop, judged_by_block, judged_by_trials, rigs_give
 from benchmark.discovery.planning.bench_work import BenchWork
 from benchmark.discovery.planning.rivals import Rival
 from benchmark.errors import DeviceError, InputError
 from benchmark.experiments.menu import Usual, menu, rigid_block
+from benchmark.scripting import Unheard
 
 USUAL = Usual(depth=2e-3, speed=1e-3, hold=5.0, thickness=20e-3)
 
@@ -158,3 +162,38 @@ def test_a_bench_that_fails_ends_the_loop_with_the_answer_before(bench, proposal
     assert loop.run() is first
     assert isinstance(loop.stopped, DeviceError if where == "record" else InputError)
     assert (loop.rounds, (bench.folder / "session.toml").read_text()) == ([], entered)
+
+
+class Heard(Unheard):
+    """Keeps what is said."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+
+    def say(self, line: str) -> None:
+        self.lines.append(line)
+
+
+def test_a_discovery_whose_bench_fails_has_the_error_and_keeps_what_an_earlier_one_recorded(
+    folder, proposal, record, monkeypatch
+) -> None:
+    def gone(*_):
+        raise DeviceError("--bench: the actuator is gone")
+
+    found = SimpleNamespace(discovery=record.found, chosen=None, entries=(), calibrated=None)
+    monkeypatch.setattr(discovery_request, "_found", lambda *_: found)
+    monkeypatch.setattr(discovery_request, "propose", lambda *_: proposal(menu(USUAL)[0]))
+    monkeypatch.setattr(discovery_request, "fem_or_wave_table", lambda *_: None)
+    monkeypatch.setattr(bench_loop, "rivals", lambda found: _pair(1e-3))
+    monkeypatch.setattr(BenchWork, "record", gone)
+    left, kept = (folder / name for name in (".found-wave.unfinished/session", "found-wave-experiments-1"))
+    shutil.copytree(folder / "session", left)
+    (left / "experiment_1_1.mcap").write_bytes(b"measured")
+    request = DiscoverRequest([folder / "session"], out=folder / "found", bench=folder / "rig.toml")
+    heard = Heard()
+    told = answer_session(request, (), heard)
+    assert isinstance(told.stopped, DeviceError)
+    assert "--bench: the actuator is gone: the answer is that of the trials before" in told.found.warnings
+    assert (kept / "experiment_1_1.mcap").read_bytes() == b"measured"
+    assert any(line.startswith(str(kept)) for line in heard.lines)
+    assert not (told.grown / "experiment_1_1.mcap").exists()

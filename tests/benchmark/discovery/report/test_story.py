@@ -27,6 +27,18 @@ def test_the_picture_is_of_a_channel_whose_gap_shrinks(record) -> None:
     assert telling(replace(other, found=replace(other.found, gap=none))).channel != "marker_x"  # nothing is told of it
 
 
+def test_the_gap_is_of_a_channel_in_which_they_disagree(record) -> None:
+    """Not of the one that is nearest to noise, of which an effect of the force closes nothing."""
+    force = next(gap for gap in record.found.gap if gap.channel == "force_z")
+    noise = replace(force, channel="marker_x", rmse_before=1.0, rmse_after=1.0, noise_floor=1e-6, closed=-2e-5)
+    place = replace(record.found.where[0], channel="force_z")
+    found = replace(record.found, gap=(replace(force, closed=0.9), noise), where=(place,))
+    told = [step.answer for step in story(replace(record, found=found)).steps]
+    assert any(answer.startswith("90 % of it is closed") for answer in told)
+    unplaced = story(replace(record, found=replace(found, where=()))).steps
+    assert any(step.answer.startswith("−0.002 % of it is closed") for step in unplaced)
+
+
 def test_what_changes_its_sign_is_neither_more_nor_less(record) -> None:
     place = replace(record.found.where[0], size=0.2, residual=None, percent_of_signal=9.0, either_way=True)
     told = story(replace(record, found=replace(record.found, where=(place,)))).steps[0].answer
