@@ -43,13 +43,13 @@ def made_up(depth, maximum, profile):
 
 
 def test_only_steps_inside_the_range_count_and_each_of_them_does():
-    good = made_up([0.1, 0.3, 0.31], [1.0, 2.0, 9.0], [5.0, 1.0, 9.0])
+    good = made_up([0.1, 0.4, 0.41], [1.0, 2.0, 9.0], [5.0, 1.0, 9.0])
     assert good.met
     assert good.worst(inside=True) == (2.0, 5.0)
     assert good.worst(inside=False) == (9.0, 9.0)
     assert not replace(good, maximum=np.array([2.1, 0.0, 0.0])).met
     assert not replace(good, profile=np.array([5.1, 0.0, 0.0])).met
-    assert not replace(good, depth=np.array([0.4, 0.5, 0.6])).met
+    assert not replace(good, depth=np.array([0.41, 0.5, 0.6])).met
 
 
 def test_a_row_says_what_was_not_met_and_leaves_out_what_there_is_not():

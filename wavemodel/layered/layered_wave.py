@@ -179,7 +179,7 @@ class LayeredWave:
             layer_names=tuple(layer.name for layer in self.layers),
             top_deflection=history.top_deflection,
             integrator=method,
-            warnings=notices(self.press, history, method, added),
+            warnings=notices(self.press, self.tool, history, method, added),
             faces=LayeredFaces(self.press, history),
         )
 

@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 
 from wavemodel.integrators.load_history import History
-from wavemodel.layered.body_options import VERIFIED
+from wavemodel.layered.body_options import verified_depth
 from wavemodel.layered.press import Press
+from wavemodel.specimen import DiscTool
 
 SMALL_STRAIN = 0.05
 SUBLAYER_ERROR = 0.003
@@ -12,12 +13,12 @@ BORDER_COST = 0.005
 INERTIA = 0.02
 
 
-def notices(press: Press, history: History, method: str, ringing: float) -> tuple[str, ...]:
+def notices(press: Press, tool: DiscTool, history: History, method: str, ringing: float) -> tuple[str, ...]:
     """Warnings of one run.
 
     Parameters
     ----------
-    press
+    press, tool
         The set-up.
     history
         The run.
@@ -27,17 +28,18 @@ def notices(press: Press, history: History, method: str, ringing: float) -> tupl
         About what inertia adds, over the peak.
     """
     inertia = _inertia(ringing) if method == "quasi_static" else iter(())
-    return (*_strain(press, history), *_sublayers(press), *_border(press), *inertia)
+    return (*_strain(press, tool, history), *_sublayers(press), *_border(press), *inertia)
 
 
-def _strain(press: Press, history: History) -> Iterator[str]:
+def _strain(press: Press, tool: DiscTool, history: History) -> Iterator[str]:
     deepest, height = float(abs(history.depth).max()), press.stack.height
     if press.field.large is not None:
-        if deepest > VERIFIED * height:
+        verified = verified_depth(tool, height)
+        if deepest > verified:
             yield (
                 f"layered wave: the deepest press, {deepest * 1e3:.3g} mm, is {100 * deepest / height:.3g} % of the "
-                f"{height * 1e3:.3g} mm stack, outside the range that the large-press correction is verified in "
-                f"({100 * VERIFIED:.0f} %){_continued(press, deepest)}"
+                f"{height * 1e3:.3g} mm stack and beyond the {verified * 1e3:.3g} mm down to which the large-press "
+                f"correction is verified under this tool{_continued(press, deepest)}"
             )
     elif deepest > SMALL_STRAIN * height:
         yield (

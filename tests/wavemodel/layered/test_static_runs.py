@@ -107,10 +107,19 @@ def test_too_deep_is_one_error_and_the_wave_goes_on(corrected):
     np.testing.assert_array_equal(corrected.run("depth", TIME, CYCLE).force, before)
 
 
-def test_says_where_the_correction_is_not_verified(corrected):
-    said = corrected.run("depth", np.array([1.0]), np.array([0.35 * 11.6e-3])).warnings
-    assert len(said) == 1
-    assert "verified" in said[0]
+@pytest.mark.parametrize(
+    ("tool", "inside", "outside"),
+    [
+        (DiscTool(5e-3), 0.39 * 11.6e-3, 0.41 * 11.6e-3),
+        (DiscTool(2e-3), 3.4e-3, 3.6e-3),  # 1.75 radii of a small tool come before 0.4 of the stack
+        (DiscTool(5e-3, "rigid_bonded"), 0.29 * 11.6e-3, 0.31 * 11.6e-3),
+    ],
+)
+def test_says_where_the_correction_is_not_verified(skin, tool, inside, outside):
+    wave = LayeredWave(skin(), tool, large_press="corrected")
+    assert wave.run("depth", np.array([1.0]), np.array([inside])).warnings == ()
+    (said,) = wave.run("depth", np.array([1.0]), np.array([outside])).warnings
+    assert "verified" in said
 
 
 @pytest.mark.parametrize(
