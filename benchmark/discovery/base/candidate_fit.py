@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,7 @@ from benchmark.response.least_squares import Search, least_squares
 
 GOING_ON = Search(most=40)
 """Of the best start's fit, where its first steps did not end it."""
-SCALES = (1e-5, 10.0)
+LEAST, MOST = 1e-5, 10.0
 """A screened start's amplitude is scaled within this range."""
 
 
@@ -78,43 +78,65 @@ class CandidateStart:
 
 
 def screened(base: Fit, model: EffectModel, effect: Effect, nuisance: Array | None = None) -> list[CandidateStart]:
-    """Starts with what one step would gain from them, best first, at the trials' nuisances or at others (R, q)."""
+    """Starts with what one step would gain from them, best first, at the trials' nuisances or at others (R, q).
+
+    A start of which the step leaves little is far off, and what it moves is bent: what a large offset of the depth
+    moves is not along what the trials' own touches would take up of it. The step is then taken anew from next to none.
+    """
     state = base.nuisance if nuisance is None else nuisance
-    problem = base.model.problem
-    white = White(problem)
-    known = base.model.values(base.vector)
-    plain = base.model.signals(base.vector, state)
-    residuals = white.residuals(plain)
-    projections = _projections(base)
+    screen = _Screen(base, model, effect, state)
     ranked: list[CandidateStart] = []
-    for values in _starts(problem, effect):
-        start = model.vector(base.vector[: base.model.shape_count], {**known, effect.slug: values})
-        signals = model.signals(start, state)
-        moved = [white.flat(i, signals[i] - plain[i]) for i in range(len(plain))]
-        overlaps, sizes, pull = _projected(base, state, projections, residuals, moved)
-        overlap, size = float(overlaps.sum()) + pull, float(sizes.sum())
-        if size <= 0.0:
-            continue
-        scale = float(np.clip(overlap / size, *SCALES))
-        won = scale * overlap - 0.5 * scale**2 * size
-        along = overlaps / np.sqrt(size / len(plain))
-        ranked.append(CandidateStart(won, _scaled(model, start, effect, values, scale, known), along))
+    for values in _starts(base.model.problem, effect):
+        found, scale = screen.step(values, MOST)
+        if 0.0 < scale < criteria.TOO_FAR_A_START:
+            small = criteria.SMALL_START
+            found = max(found, screen.step(_resized(effect, values, small), 1.0 / small)[0], key=lambda each: each.won)
+        if scale > 0.0:
+            ranked.append(found)
     ranked.sort(key=lambda each: -each.won)
     if not ranked:
-        first = effect.first_values(problem.study.conditions[0].around)[0]
-        start = model.vector(base.vector[: base.model.shape_count], {**known, effect.slug: first})
-        return [CandidateStart(0.0, start, np.zeros(len(plain)))]
+        first = effect.first_values(base.model.problem.study.conditions[0].around)[0]
+        return [CandidateStart(0.0, screen.vector(first), np.zeros(len(state)))]
     return ranked
 
 
-def _scaled(
-    model: EffectModel, start: Array, effect: Effect, values: Values, scale: float, known: Mapping[str, Values]
-) -> Array:
+class _Screen:
+    """One step from a base towards an effect, off what base and nuisances (R, q) explain."""
+
+    def __init__(self, base: Fit, model: EffectModel, effect: Effect, state: Array) -> None:
+        self.base, self.model, self.effect, self.state = base, model, effect, state
+        self.known = base.model.values(base.vector)
+        self.plain = base.model.signals(base.vector, state)
+        self.white = White(base.model.problem)
+        self.residuals = self.white.residuals(self.plain)
+        self.projections = _projections(base)
+
+    def vector(self, values: Values) -> Array:
+        """The base's vector with the effect at values."""
+        shape = self.base.vector[: self.model.shape_count]
+        return self.model.vector(shape, {**self.known, self.effect.slug: values})
+
+    def step(self, values: Values, most: float) -> tuple[CandidateStart, float]:
+        """A start at values, resized by the share that one step leaves, up to `most`, and that; 0 if nothing moves."""
+        signals = self.model.signals(self.vector(values), self.state)
+        moved = [self.white.flat(i, now - then) for i, (now, then) in enumerate(zip(signals, self.plain, strict=True))]
+        overlaps, sizes, pull = _projected(self.base, self.state, self.projections, self.residuals, moved)
+        overlap, size = float(overlaps.sum()) + pull, float(sizes.sum())
+        if size <= 0.0:
+            return CandidateStart(0.0, self.vector(values), np.zeros(len(self.state))), 0.0
+        scale = float(np.clip(overlap / size, LEAST, most))
+        won = scale * overlap - 0.5 * scale**2 * size
+        along = overlaps / np.sqrt(size / len(self.plain))
+        return CandidateStart(won, self.vector(_resized(self.effect, values, scale)), along), scale
+
+
+def _resized(effect: Effect, values: Values, scale: float) -> dict[str, float]:
+    """The values with linear amplitudes so many times as large, within their bounds."""
     changed = dict(values)
     for p in effect.description.parameters:
         if p.name in (effect.amplitude, *effect.amplitudes) and not p.logarithmic:
             changed[p.name] = float(np.clip(values[p.name] * scale, p.low, p.high))
-    return model.vector(start[: model.shape_count], {**known, effect.slug: changed})
+    return changed
 
 
 def _starts(problem: TrialsProblem, effect: Effect) -> list[dict[str, float]]:
