@@ -56,8 +56,7 @@ from benchmark.discovery.evidence.gains import conditions, tissue_gain
 from benchmark.discovery.evidence.parameter_evidence import constant, undetermined, unsteady
 from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fingerprint, own_code, pool, silent
 from benchmark.discovery.evidence.selection import Selection, first_gain, select, usable
-from benchmark.discovery.evidence.shortlist import compared, on_all, on_some, promising, remark, screen
-from benchmark.discovery.evidence.showing import not_shown
+from benchmark.discovery.evidence.shortlist import compared, not_shown, on_all, on_some, promising, remark, screen
 from benchmark.discovery.evidence.told_setup import on_told, setup_first, stands, taken_up
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import Session

@@ -10,11 +10,16 @@ import numpy as np
 from scipy.stats import t as t_distribution
 
 from benchmark.discovery import criteria
-from benchmark.discovery.base.bent_form import bent
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.cells import within_tolerance
-from benchmark.discovery.discovery_result import Array
+from benchmark.discovery.evidence.further_effect import (
+    beats_bent,
+    carries_over,
+    further,
+    is_form_of_others,
+    over_trials,
+)
 from benchmark.discovery.evidence.gains import (
     Gain,
     Scored,
@@ -22,20 +27,17 @@ from benchmark.discovery.evidence.gains import (
     conditions,
     gain,
     held_out,
-    refitted_conditions,
     score,
 )
 from benchmark.discovery.evidence.parameter_evidence import (
     determined,
     seen,
-    steady,
     strength_told,
     terms_told,
     told_parameters,
 )
 from benchmark.discovery.evidence.pool import Pool
-from benchmark.discovery.evidence.shortlist import Screened, screen
-from benchmark.discovery.evidence.showing import missing
+from benchmark.discovery.evidence.shortlist import Screened, missing, screen
 from benchmark.physics import Effect
 from benchmark.physics.setup_entry import setup_key
 
@@ -148,71 +150,7 @@ def _evident(scored: Scored, steps: Sequence[Scored], settings: Settings) -> boo
     effect = scored.fit.model.effects[-1]
     if not seen(scored.fit, effect) or (steps and not strength_told(scored.fit, effect)):
         return False
-    return _over_trials(scored.gain, settings) and scored.delta_bic < criteria.ACCEPT_BIC
-
-
-def _over_trials(gained: Gain, settings: Settings) -> bool:
-    return gained.z >= settings.accept_z or broad(gained) > criteria.BROAD
-
-
-def further(current: Fit, evident: Sequence[Scored], settings: Settings, within: float = 0.0) -> list[Scored]:
-    """Those of a round's candidates that carry over and are more than what the forms of the effects before miss.
-
-    What those forms miss at most is worked out once; `within` is the gain that they may miss.
-    """
-    carried, forms = [s for s in evident if carries_over(s)], _own_forms(current)
-    instead = held_out(bent(current, forms)) if carried and forms else None
-    return [s for s in carried if beats_bent(s, settings, instead, within)]
-
-
-def _own_forms(fitted: Fit) -> list[str]:
-    """Slugs of the effects that have a form of their own; that of a set-up entry is the finite elements'."""
-    return [effect.slug for effect in fitted.model.effects if setup_key(effect.slug) is None]
-
-
-def beats_bent(scored: Scored, settings: Settings, instead: Array | None = None, within: float = 0.0) -> bool:
-    """Whether a further effect is more than what the forms of those before miss of the true ones.
-
-    It must foretell trials surely better than they do by being off without it (`instead` (R,), where it is known). Or
-    it must have its evidence where those forms may be off; that must be most of what it gains where they may not, or it
-    must not foretell trials surely worse than they do without it. What gains no more than `within` has the first way
-    alone: a form that is off by a share of what it adds misses the square of that share of what it gains.
-    """
-    forms = _own_forms(scored.under)
-    if not forms:
-        return True
-    if instead is None:
-        instead = held_out(bent(scored.under, forms))
-    groups = conditions(scored.under)
-    straight = gain(held_out(scored.fit), instead, groups)
-    if straight.z > settings.accept_z and straight.mean > 0.0:
-        return True
-    if scored.gain.mean <= within:
-        return False
-    beside = gain(held_out(bent(scored.fit, forms)), instead, groups)
-    if not _over_trials(beside, settings):
-        return False
-    return beside.mean > criteria.MOSTLY_OWN * scored.gain.mean or straight.z > -settings.lookalike_z
-
-
-def carries_over(scored: Scored) -> bool:
-    """Whether a condition that the fit has not seen gains from the candidate, too.
-
-    What an effect's form misses of the true one differs from condition to condition; a further effect that follows it
-    helps trials whose mates it has seen, and no others. Where one condition has nearly all of the gain and the others
-    do not speak against its parameters, as with a limit that only the deeper presses reach, no other one can tell.
-    """
-    if scored.transfer is None:
-        return True
-    groups = conditions(scored.fit)
-    parts = np.array([max(float(scored.gain.each[groups == number].sum()), 0.0) for number in np.unique(groups)])
-    if parts.max() > criteria.ONE_ALONE * parts.sum() and steady(scored.fit, scored.slug):
-        return True
-    asked = criteria.CARRIED * scored.gain.mean
-    if scored.transfer.mean >= asked:
-        return True
-    groups = conditions(scored.fit)
-    return gain(refitted_conditions(scored.fit), refitted_conditions(scored.under), groups).mean >= asked
+    return over_trials(scored.gain, settings) and scored.delta_bic < criteria.ACCEPT_BIC
 
 
 def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
@@ -246,8 +184,8 @@ def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> tuple[Fi
     forms: list[Scored] = []
     while len(current.model.effects) > 1:
         owns = [_own(base, current, effect, work) for effect in current.model.effects[:-1]]
-        idle = [o for o in owns if not _over_trials(o.gain, settings) or o.under.objective <= current.objective]
-        others = [own for own in owns if own not in idle and _is_form_of_others(own, settings)]
+        idle = [o for o in owns if not over_trials(o.gain, settings) or o.under.objective <= current.objective]
+        others = [own for own in owns if own not in idle and is_form_of_others(own, settings)]
         if not idle and not others:
             break
         dropped = min((*idle, *others), key=lambda each: each.under.objective)
@@ -261,16 +199,6 @@ def _own(base: Fit, current: Fit, effect: Effect, work: Pool) -> Scored:
     less = rebuilt(base, [other for other in current.model.effects if other is not effect], work, "backward")
     own = gain(held_out(current), held_out(less), conditions(current))
     return Scored(current, effect.slug, own, None, 0.0, less)
-
-
-def _is_form_of_others(scored: Scored, settings: Settings) -> bool:
-    """Whether an effect is no more than what the others' forms miss, and these surely foretell more without it."""
-    forms = _own_forms(scored.under)
-    if not forms:
-        return False
-    instead = held_out(bent(scored.under, forms))
-    surely = gain(held_out(scored.fit), instead, conditions(scored.under)).z < -settings.lookalike_z
-    return surely and not beats_bent(scored, settings, instead)
 
 
 def _told(base: Fit, current: Fit, effects: Sequence[Effect], settings: Settings, work: Pool) -> Fit:
@@ -289,7 +217,7 @@ def _told(base: Fit, current: Fit, effects: Sequence[Effect], settings: Settings
         if sum(len(form.names) for form in forms) < sum(len(effect.names) for effect in current.model.effects):
             simpler = rebuilt(base, forms, work, "backward")
             more = gain(held_out(simpler), held_out(less), conditions(current))
-            if _over_trials(more, settings) and all(strength_told(simpler, effect) for effect in forms):
+            if over_trials(more, settings) and all(strength_told(simpler, effect) for effect in forms):
                 return simpler
         current = less
     return current
@@ -323,7 +251,7 @@ def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], settin
                 continue
             if not (carries_over(scored) and beats_bent(scored, settings)):
                 continue
-            if not alone or _over_trials(gain(then, now, groups), settings):
+            if not alone or over_trials(gain(then, now, groups), settings):
                 best, density = scored.fit, float(then.sum())
     return best
 

@@ -9,7 +9,7 @@ import pytest
 
 from benchmark.discovery import criteria
 from benchmark.discovery.criteria import Settings
-from benchmark.discovery.evidence import parameter_evidence, selection
+from benchmark.discovery.evidence import further_effect, parameter_evidence, selection
 from benchmark.discovery.evidence.gains import Gain, Scored
 from benchmark.discovery.evidence.parameter_evidence import (
     adds_force,
@@ -66,7 +66,8 @@ def all_determined(monkeypatch):
 
 @pytest.fixture
 def known_densities(monkeypatch):
-    monkeypatch.setattr(selection, "held_out", lambda fit: fit.density)
+    for module in (selection, further_effect):
+        monkeypatch.setattr(module, "held_out", lambda fit: fit.density)
     monkeypatch.setattr(selection, "within_tolerance", lambda fit: True)
 
 
@@ -121,8 +122,8 @@ def test_a_further_effect_must_be_more_than_what_the_form_of_the_first_misses(
         asked.append((fit, forms))
         return fitted(*fit.model.effects, density=beside if fit is made else instead + scatter)
 
-    monkeypatch.setattr(selection, "bent", bent)
-    assert selection.further(under, [more, more], SETTINGS) == ([] if expected is False else [more, more])
+    monkeypatch.setattr(further_effect, "bent", bent)
+    assert further_effect.further(under, [more, more], SETTINGS) == ([] if expected is False else [more, more])
     once_a_round = [(under, ["a"])] + [(made, ["a"])] * (0 if expected is None else 2)
     assert asked == ([] if "." in before else once_a_round)
 
@@ -142,8 +143,10 @@ def test_what_gains_no_more_than_a_form_may_miss_must_foretell_better_than_it(
     under, made = fitted(a), fitted(a, b, density=20.0)
     more = Scored(made, "b", Gain(np.full(8, gained), gained, 1.0, 9.0), None, -50.0, under)
     beside = {True: 34.0, False: instead + np.array([2.0, -2.0] * 4)}
-    monkeypatch.setattr(selection, "bent", lambda fit, forms: fitted(*fit.model.effects, density=beside[fit is made]))
-    assert selection.further(under, [more], SETTINGS, within=20.0) == ([more] if accepted else [])
+    monkeypatch.setattr(
+        further_effect, "bent", lambda fit, forms: fitted(*fit.model.effects, density=beside[fit is made])
+    )
+    assert further_effect.further(under, [more], SETTINGS, within=20.0) == ([more] if accepted else [])
 
 
 @pytest.mark.parametrize(
@@ -163,10 +166,10 @@ def test_a_further_effect_must_carry_over_to_a_condition_that_is_not_fitted(
     made = scored("b", float(np.mean(each)), each=each)
     made.fit.model.problem.trials = tuple(SimpleNamespace(condition=number) for number in (0,) * 4 + (1,) * 4)
     moved = replace(made, transfer=Gain(np.full(8, kept), kept, 1.0, 9.0))
-    monkeypatch.setattr(selection, "steady", lambda fit, slug: agrees)
+    monkeypatch.setattr(further_effect, "steady", lambda fit, slug: agrees)
     densities = {id(moved.fit): np.full(8, refitted), id(moved.under): np.zeros(8)}
-    monkeypatch.setattr(selection, "refitted_conditions", lambda fit: densities[id(fit)])
-    assert selection.carries_over(moved) is expected
+    monkeypatch.setattr(further_effect, "refitted_conditions", lambda fit: densities[id(fit)])
+    assert further_effect.carries_over(moved) is expected
 
 
 @pytest.mark.parametrize(("kept", "chosen", "withheld"), [(30.0, ["a", "b"], ()), (1.0, ["a"], ("b",))])
@@ -180,10 +183,12 @@ def test_a_further_effect_that_does_not_carry_over_is_withheld(monkeypatch, know
     monkeypatch.setattr(selection, "usable", lambda base, effect: True)
     ranked = [Screened(each, 9.0, np.zeros((1, 8))) for each in (a, b)]
     asked = []
-    monkeypatch.setattr(selection, "beats_bent", lambda scored, settings, instead, within: asked.append(within) or True)
-    monkeypatch.setattr(selection, "bent", lambda fit, forms: fit)
+    monkeypatch.setattr(
+        further_effect, "beats_bent", lambda scored, settings, instead, within: asked.append(within) or True
+    )
+    monkeypatch.setattr(further_effect, "bent", lambda fit, forms: fit)
     monkeypatch.setattr(selection, "_as_further_terms", lambda base, fit, *_: (fit, {"a": (fitted(a, effect("c")),)}))
-    monkeypatch.setattr(selection, "refitted_conditions", lambda fit: np.full(8, kept if fit is both else 0.0))
+    monkeypatch.setattr(further_effect, "refitted_conditions", lambda fit: np.full(8, kept if fit is both else 0.0))
     monkeypatch.setattr(
         selection, "screen", lambda fit, rest: tuple(r for r in ranked if r.effect in rest) if rest else ()
     )
@@ -352,7 +357,7 @@ def test_of_effects_that_one_trial_speaks_against_by_more_than_all_gain_one_is_s
 
 
 def test_an_effect_that_another_makes_needless_is_dropped(known_densities, monkeypatch):
-    monkeypatch.setattr(selection, "bent", lambda fit, forms: fit)
+    monkeypatch.setattr(further_effect, "bent", lambda fit, forms: fit)
     a, b = effect("a"), effect("b")
     both = fitted(a, b, density=10.0, objective=50.0)
     same = fitted(b, density=10.0, objective=50.5)
@@ -363,7 +368,7 @@ def test_an_effect_that_another_makes_needless_is_dropped(known_densities, monke
 
 def test_an_effect_accepted_by_all_trials_but_the_best_is_not_dropped_for_its_scatter(known_densities, monkeypatch):
     """An inertia that shows in the fast presses alone, of which one speaks against it (session 47007)."""
-    monkeypatch.setattr(selection, "bent", lambda fit, forms: fit)
+    monkeypatch.setattr(further_effect, "bent", lambda fit, forms: fit)
     gained = np.array([1.0, 1.0, 1.4, -0.3, 39.0, -13.3, 37.6, 40.9])
     both, alone = fitted(effect("a"), effect("b"), density=gained, objective=50.0), fitted(effect("b"), objective=140.0)
     own = selection._own(fitted(), both, both.model.effects[0], Work(alone))
@@ -380,7 +385,7 @@ def test_an_effect_that_is_another_form_of_a_later_one_is_withheld(
     """`loose` and `beside` foretell trials with the later one's form bent, without and with the first one."""
     first, later = effect("first"), effect("later")
     both, alone = fitted(first, later, density=10.0, objective=50.0), fitted(later, density=2.0, objective=90.0)
-    monkeypatch.setattr(selection, "bent", lambda fit, forms: fitted(density=beside if fit is both else loose))
+    monkeypatch.setattr(further_effect, "bent", lambda fit, forms: fitted(density=beside if fit is both else loose))
     kept, forms = selection._pruned(fitted(), both, SETTINGS, Work(alone))
     assert kept is (alone if dropped else both)
     assert [each.slug for each in forms] == ["first"] * dropped
@@ -393,7 +398,7 @@ def test_what_could_have_gone_as_another_form_and_stays_is_not_withheld(known_de
     kept, dear = fitted(second, third, density=2.0, objective=60.0), fitted(first, third, density=2.0, objective=90.0)
     last = fitted(third, density=0.0, objective=200.0)
     loose = {id(kept): 20.0, id(dear): 20.0, id(last): 0.0}
-    monkeypatch.setattr(selection, "bent", lambda fit, forms: fitted(density=loose.get(id(fit), 20.0)))
+    monkeypatch.setattr(further_effect, "bent", lambda fit, forms: fitted(density=loose.get(id(fit), 20.0)))
     found, forms = selection._pruned(fitted(), three, SETTINGS, Work(fitted(first), fitted(second), kept, dear, last))
     assert found is kept
     assert [each.slug for each in forms] == ["first"]
