@@ -214,10 +214,9 @@ TOGETHER, FREE_TRAVEL = 4.0, 0.01
 that their scatter hides. First choice."""
 LATE = 1.5
 """Trials of a condition are late where their time shift is this many times its scatter. Development seeds."""
-TOO_FAR_A_START, SMALL_START = 0.5, 0.01
-"""Share of a start that one step leaves, below which the step is taken anew from the second share of it, next to which
-all effects are straight. First choice.
-"""
+SMALLER_STARTS = (0.1, 0.01)
+"""Shares of a start that is too far, from which the step is taken anew: less is straighter, and nearer to the step by
+which the trials' own nuisances are differentiated. First choice."""
 STARTS, SECOND_START = 2, 0.7
 """Starts that are refined, and the share of the first's promise that the second must have. Cost."""
 

@@ -80,17 +80,17 @@ class CandidateStart:
 def screened(base: Fit, model: EffectModel, effect: Effect, nuisance: Array | None = None) -> list[CandidateStart]:
     """Starts with what one step would gain from them, best first, at the trials' nuisances or at others (R, q).
 
-    A start of which the step leaves little is far off, and what it moves is bent: what a large offset of the depth
-    moves is not along what the trials' own touches would take up of it. The step is then taken anew from next to none.
+    A start that the step makes smaller is too far off, and what it moves is bent: what a large offset of the depth
+    moves is not along what the trials' own touches would take up of it. The step is then taken anew from smaller ones.
     """
     state = base.nuisance if nuisance is None else nuisance
     screen = _Screen(base, model, effect, state)
     ranked: list[CandidateStart] = []
     for values in _starts(base.model.problem, effect):
         found, scale = screen.step(values, MOST)
-        if 0.0 < scale < criteria.TOO_FAR_A_START:
-            small = criteria.SMALL_START
-            found = max(found, screen.step(_resized(effect, values, small), 1.0 / small)[0], key=lambda each: each.won)
+        for share in criteria.SMALLER_STARTS if 0.0 < scale < 1.0 else ():
+            again, _ = screen.step(_resized(effect, values, share), 1.0 / share)
+            found = max(found, again, key=lambda each: each.won)
         if scale > 0.0:
             ranked.append(found)
     ranked.sort(key=lambda each: -each.won)
