@@ -186,6 +186,15 @@ class System:
         """The equations after a way from rest to unknowns y (n,) that are known from another mesh."""
         return replace(self, items=tuple(item.led(y) for item in self.items)) if self.items else self
 
+    def pressed_as(
+        self, y: FloatArray, other: System, theirs: FloatArray, *, pressed: bool
+    ) -> tuple[FloatArray, System]:
+        """Unknowns y (n,) and equations with the pressure of another mesh's at its unknowns (m,), item by item."""
+        items = list(self.items)
+        for n, (mine, their) in enumerate(zip(self.items, other.items, strict=True)):
+            y, items[n] = mine.pressed_as(y, their, theirs, pressed=pressed)
+        return y, replace(self, items=tuple(items))
+
     def corrected(self, y: FloatArray, press: float) -> System | None:
         """The equations that fit a state with unknowns y (n,) and a press in N; None if these do."""
         return self._with([item.corrected(y, press) for item in self.items])
