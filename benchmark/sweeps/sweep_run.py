@@ -22,6 +22,7 @@ from benchmark.sweeps.sensitivity import SweepFindings, keys_without_effect, sen
 from benchmark.sweeps.sweep_folder import SweepFolder, open_folder
 from benchmark.sweeps.sweep_page import sweep_page
 from reports import extended_folder, write_csv, write_json, write_page
+from reports.formatting import counted
 
 MOST_SAID = 3
 """Failed points that are named on the terminal."""
@@ -79,7 +80,7 @@ def say_failures(rows: Sequence[PointResult], plan: SweepPlan, say: Callable[[st
     for row in failures[:MOST_SAID]:
         say(f"point {row.point} ({_values_of(plan, row.point)}) failed: {row.reason}")
     if len(failures) > MOST_SAID:
-        say(f"{len(failures) - MOST_SAID} more points failed; their reasons are in the report")
+        say(f"{counted(len(failures) - MOST_SAID, 'more point')} failed; the reasons are in the report")
 
 
 def _values_of(plan: SweepPlan, point: int) -> str:

@@ -32,7 +32,7 @@ def test_points_that_failed_are_named_with_their_values_and_the_reason(plan_of) 
     say_failures(rows, plan, said.append)
     assert said[0] == "point 1 (tool.radius 1 mm) failed: the solver stopped"
     assert len(said) == 4
-    assert said[3] == "1 more points failed; their reasons are in the report"
+    assert said[3] == "1 more point failed; the reasons are in the report"
 
 
 def test_points_without_a_scenario_are_told_of_at_the_start(plan_of) -> None:
