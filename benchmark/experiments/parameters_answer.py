@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from benchmark.experiments.optimal_design import Design
+from benchmark.experiments.optimal_design import OptimalDesign
 from benchmark.identification.parameters.identified import Identified
 from benchmark.identification.parameters.law_selection import LawScore
 from benchmark.identification.parameters.posterior import Posterior
@@ -20,14 +20,14 @@ class ParametersAnswer:
     identified : Identified
     laws : tuple of LawScore
         Where several laws were compared, the best first.
-    design : Design or None
+    design : OptimalDesign or None
         What to measure next.
     posterior : Posterior or None
     """
 
     identified: Identified
     laws: tuple[LawScore, ...] = ()
-    design: Design | None = None
+    design: OptimalDesign | None = None
     posterior: Posterior | None = None
 
     @property

@@ -30,7 +30,7 @@ from benchmark.response import ForceCurve, RampTable
 from benchmark.response.ramp import Setup
 from benchmark.runs.options import Listener
 from benchmark.runs.report.values import fit_headline
-from benchmark.runs.trials.film_tables import Motion, motions_of
+from benchmark.runs.trials.film_tables import MarkerMotion, motions_of
 from benchmark.runs.trials.filming import Films, session_films
 from benchmark.runs.trials.measured import FilmedSession
 from benchmark.runs.trials.session_tables import BaseCurves, Followed, base_curves, session_sheets
@@ -158,7 +158,7 @@ def _with_films(found: FittedSession, films: Films, listener: Listener) -> Fitte
 def _placed(model: RampTable, own: SheetTrial) -> Placed:
     """Take perspective off the markers of a trial, by how far the fitted sheet sinks."""
 
-    def true_displacements(motion: Motion, depth: Array) -> Array:
+    def true_displacements(motion: MarkerMotion, depth: Array) -> Array:
         radius = np.hypot(*(motion.rest - np.array(own.state.axis)).T)
         sunk = model.face(depth - own.state.onset, radius)[1]
         return np.asarray(model.view.true(motion.rest + motion.moved, sunk) - motion.rest)

@@ -7,7 +7,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
 from fem.arrays import FloatArray, IndexArray
-from fem.linear_solver.symmetric import DiagonalScaling, SingularMatrixError, require_finite
+from fem.linear_solver.symmetric import DiagonalScaling, SingularMatrixError, checked_solution
 
 PIVOT_THRESHOLD = 0.01
 
@@ -68,4 +68,4 @@ class SuperLUSolver:
         if self._factors is None:
             raise SingularMatrixError("nothing is factorised")
         factor = self._scaling.factor[:, None]
-        return require_finite(factor * self._factors.solve(factor * right))
+        return checked_solution(factor * self._factors.solve(factor * right))
