@@ -20,10 +20,10 @@ import numpy as np
 
 from fem.arrays import FloatArray
 from fem.assembly.element_geometry import ElementGeometry
-from fem.linear_solver.factory import do_in_threads, in_parts, in_threads
 from fem.materials.deformation import Deformation
 from fem.materials.element_laws import ElementLaws
 from fem.materials.prony import Memory
+from fem.threads import do_in_threads, in_parts, in_threads
 
 ELEMENTS_AT_ONCE = 64  # so that their pulled back moduli stay in the cache
 THREADS_FROM = 32  # parts of so many elements; fewer are done before threads have begun

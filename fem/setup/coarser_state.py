@@ -19,11 +19,11 @@ from fem.analysis.equilibrium import State
 from fem.analysis.newton import NewtonSettings
 from fem.analysis.nonlinear import equilibrium_along, equilibrium_near
 from fem.analysis.prediction import from_displacement
-from fem.linear_solver.factory import suited_threads
 from fem.load import Load
 from fem.mesh.quads import Mesh
 from fem.problem.problem import Problem
 from fem.results.solution import Solution
+from fem.threads import suited_threads
 
 if TYPE_CHECKING:
     from fem.analysis.prepared import Model
