@@ -1,4 +1,9 @@
-"""Processes of this program: one thread a library, no script of the user, an end with their parent and by no other."""
+"""Processes that this program starts, and what the user's code may not do to the process that it is loaded into.
+
+First how a child begins and ends: one thread a library, without the user's script, deaf to Ctrl-C where its parent
+answers for it, at an end when its parent is. Then what guards a process, child or not, against code and libraries in
+it: they do not end it without a word (`forbid_ending`), nor write among its answers (`output_on_stderr`).
+"""
 
 from __future__ import annotations
 
@@ -102,9 +107,24 @@ def begin_in_pool() -> None:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
 
 
+def end_with_parent() -> None:
+    """Make this process end when its parent is gone, killed or not; for the start of a pool's processes.
+
+    A process of a spawned pool holds the writing end of its own queue, so it would wait for work for ever.
+    """
+    threading.Thread(target=_wait_for_parent, daemon=True).start()
+
+
+def _wait_for_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
 _really_exit = os._exit
-_theirs: set[Path] = set()
-"""Files of the user's that were loaded into this process."""
+_users_files: set[Path] = set()
+"""Those that were loaded into this process."""
 
 
 def forbid_ending(file: str) -> None:
@@ -112,12 +132,12 @@ def forbid_ending(file: str) -> None:
 
     Otherwise the process would end at once with the exit code that they chose, without a result and without a word.
     """
-    _theirs.add(Path(file).absolute())
-    os._exit = _exit_unless_theirs
+    _users_files.add(Path(file).absolute())
+    os._exit = _exit_unless_users
 
 
-def _exit_unless_theirs(status: int) -> NoReturn:
-    if Path(sys._getframe(1).f_code.co_filename).absolute() in _theirs:
+def _exit_unless_users(status: int) -> NoReturn:
+    if Path(sys._getframe(1).f_code.co_filename).absolute() in _users_files:
         raise SystemExit(status)
     _really_exit(status)
 
@@ -153,18 +173,3 @@ def _flush_c() -> None:
 @cache
 def _c_library() -> ctypes.CDLL:
     return ctypes.CDLL(None)
-
-
-def end_with_parent() -> None:
-    """Make this process end when its parent is gone, killed or not; for the start of a pool's processes.
-
-    A process of a spawned pool holds the writing end of its own queue, so it would wait for work for ever.
-    """
-    threading.Thread(target=_wait_for_parent, daemon=True).start()
-
-
-def _wait_for_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)

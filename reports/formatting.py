@@ -55,6 +55,11 @@ def format_cell(value: Any, digits: int = 4, trim: bool = False) -> str:
     return str(value)
 
 
+def counted(number: int, what: str) -> str:
+    """Return a number of things in words, one or many: "1 point", "2 points"."""
+    return f"{number} {what}{'' if number == 1 else 's'}"
+
+
 def shortened(text: str, length: int) -> str:
     """Return text of at most `length` characters, its end cut off behind an ellipsis where it is longer."""
     return text if len(text) <= length else text[: length - 1].rstrip() + "…"

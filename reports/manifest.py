@@ -60,18 +60,16 @@ def read_manifest(folder: Path) -> Manifest | None:
         return None
 
 
-def manifest_of(folder: Path, growing: Collection[str] = ()) -> dict[str, Any]:
+def manifest_of(folder: Path) -> dict[str, Any]:
     """The manifest of all that is in a folder now; folders with one of their own are named and left to it."""
     nested = [name for name, path in _entries(folder) if _has_manifest(path)]
     files = {}
-    for name, path in _entries(folder, skip=(*nested, *growing)):
+    for name, path in _entries(folder, skip=nested):
         if path.is_file() and name != MANIFEST:
             files[name] = {"size": path.stat().st_size, "sha256": sha256(path)}
     table: dict[str, Any] = {"schema": SCHEMA, "program": PROGRAM, "files": files}
     if nested:
         table["folders"] = nested
-    if growing:
-        table["growing"] = sorted(growing)
     return table
 
 

@@ -154,9 +154,9 @@ def recover(target: Path) -> None:
         )
 
 
-def write_manifest(folder: Path, growing: Collection[str] = ()) -> None:
-    """Say that all that is in `folder` now is ours; what is `growing` by name alone."""
-    write_json(folder / MANIFEST, manifest_of(folder, growing))
+def write_manifest(folder: Path) -> None:
+    """Say that all that is in `folder` now is ours."""
+    write_json(folder / MANIFEST, manifest_of(folder))
 
 
 @contextmanager

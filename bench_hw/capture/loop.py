@@ -21,7 +21,7 @@ from bench_hw.errors import BenchError, DeviceError
 from bench_hw.motion.steps import Action, Halt, MotionError, MoveTo, Note, Observation
 from bench_hw.rig.bench import Bench
 from bench_hw.safety import SafetyError, SafetyLimits, SafetyMonitor
-from bench_hw.trial_file.records import DepthRecord, EventRecord, ForceRecord, FrameRecord, Level, TrialWriter
+from bench_hw.trial_file.records import EventRecord, ForceRecord, FrameRecord, Level, PositionRecord, TrialWriter
 
 RETRACT_TIME = 3.0
 """How long the tool's way back is tried for while the actuator is lost, s."""
@@ -75,7 +75,7 @@ class Recorder:
         """Write one position of the actuator (m) and where it was sent."""
         self.positions += 1
         depth_of_target = None if target is None else target - self._zero
-        self._writer.write_depth(DepthRecord(time, position - self._zero, counts, depth_of_target))
+        self._writer.write_position(PositionRecord(time, position - self._zero, counts, depth_of_target))
 
     def frames(self, frames: Iterable[CameraFrame]) -> None:
         """Write pictures."""

@@ -209,10 +209,10 @@ class NetFTSensor(Connection):
         return len(self._waiting) > 0
 
     def _received(self) -> ForceBlock:
-        datagrams = self._opened().receive()
-        if not datagrams:
+        received = self._opened().receive()
+        if not received:
             return ForceBlock.empty()
-        return self._block(np.frombuffer(b"".join(datagrams), rdt.RECORD), self._clock.now())
+        return self._block(np.concatenate(received), self._clock.now())
 
     def _block(self, records: NDArray[np.void], now: float) -> ForceBlock:
         number = records["rdt_sequence"].astype(np.uint32)

@@ -15,6 +15,9 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from bench_hw.devices import rdt
 from bench_hw.devices.rdt import Command
 from bench_hw.errors import DeviceError
@@ -299,15 +302,15 @@ class RdtSocket:
         except OSError as error:
             raise self._failed(error) from error
 
-    def receive(self) -> list[bytes]:
-        """Give every datagram of whole records that has come, oldest first; others are counted `malformed`.
+    def receive(self) -> list[NDArray[np.void]]:
+        """Give the records (n,) of every datagram that has come, oldest first; others are counted `malformed`.
 
         Raises
         ------
         DeviceError
             The box refuses datagrams, or the network is down.
         """
-        received: list[bytes] = []
+        received: list[NDArray[np.void]] = []
         for _ in range(_MOST_DATAGRAMS):
             try:
                 datagram = self._socket.recv(_LARGEST_DATAGRAM)
@@ -315,10 +318,11 @@ class RdtSocket:
                 break
             except OSError as error:
                 raise self._failed(error) from error
-            if datagram and len(datagram) % rdt.RECORD.itemsize == 0:
-                received.append(datagram)
-            else:
+            records = rdt.parse_records(datagram)
+            if records is None:
                 self.malformed += 1
+            else:
+                received.append(records)
         return received
 
     def close(self) -> None:

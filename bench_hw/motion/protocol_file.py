@@ -152,7 +152,7 @@ class LoadedProtocol:
     path: Path
 
 
-def shipped() -> dict[str, Path]:
+def shipped_protocols() -> dict[str, Path]:
     """Give the shipped protocols: name to path."""
     return shipped_files("bench_hw.motion")
 
@@ -165,6 +165,6 @@ def load_protocol(name_or_path: str | Path) -> LoadedProtocol:
     InputError
         No such file or shipped name, or the file says something that is not allowed.
     """
-    path = find_file("protocol", name_or_path, shipped())
+    path = find_file("protocol", name_or_path, shipped_protocols())
     tables, text = read_toml(path)
     return LoadedProtocol(validated(Protocol, tables, str(path)), text, path)

@@ -185,10 +185,8 @@ def encode(picture: NDArray[np.uint8], quality: int = 92) -> bytes:
     return bytes(cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, quality])[1])
 
 
-def write_pictures(
-    folder: Path, picture: Callable[[float], NDArray[np.uint8]], times: list[float], format: str = "png"
-) -> list[Path]:
-    """Write the pictures of given instants as files `frame_00001.png` (lossless) or `.jpg`; give their paths.
+def write_pictures(folder: Path, picture: Callable[[float], NDArray[np.uint8]], times: list[float]) -> list[Path]:
+    """Write the pictures of given instants as files `frame_00001.png`, lossless; give their paths.
 
     Raises
     ------
@@ -198,7 +196,7 @@ def write_pictures(
     import cv2
 
     folder.mkdir(parents=True, exist_ok=True)
-    paths = [folder / f"frame_{number:05d}.{format}" for number in range(1, len(times) + 1)]
+    paths = [folder / f"frame_{number:05d}.png" for number in range(1, len(times) + 1)]
     for path, time in zip(paths, times, strict=True):
         path.write_bytes(bytes(cv2.imencode(path.suffix, picture(time))[1]))
     return paths

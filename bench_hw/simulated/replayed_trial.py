@@ -29,7 +29,7 @@ from bench_hw.trial_file.encoding import (
     decode_frame,
     nanoseconds,
 )
-from bench_hw.trial_file.records import DepthRecord, ForceRecord, FrameRecord, TrialHeader
+from bench_hw.trial_file.records import ForceRecord, FrameRecord, PositionRecord, TrialHeader
 from bench_hw.trial_file.scan import Scan, read_messages, scan_trial, trial_header
 from bench_hw.trial_file.sequence import usual_interval
 
@@ -64,7 +64,7 @@ class Replay:
     scan: Scan = field(init=False)
     header: TrialHeader = field(init=False)
     force: list[ForceRecord] = field(init=False)
-    depth: list[DepthRecord] = field(init=False)
+    depth: list[PositionRecord] = field(init=False)
     began: float | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:

@@ -2,21 +2,21 @@
 
 from bench_hw.trial_file.reading import Ending, ending_of_trial, read_trial_mcap
 from bench_hw.trial_file.records import (
-    DepthRecord,
     EventRecord,
     ForceRecord,
     FrameRecord,
+    PositionRecord,
     TrialHeader,
     TrialWriter,
 )
 from bench_hw.trial_file.writer import open_trial
 
 __all__ = [
-    "DepthRecord",
     "Ending",
     "EventRecord",
     "ForceRecord",
     "FrameRecord",
+    "PositionRecord",
     "TrialHeader",
     "TrialWriter",
     "ending_of_trial",

@@ -14,13 +14,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from bench_hw.trial_file.records import DepthRecord, EventRecord, ForceRecord, FrameRecord, Level, Vector
+from bench_hw.trial_file.records import EventRecord, ForceRecord, FrameRecord, Level, PositionRecord, Vector
 
 _INTEGER = {"type": "integer"}
 _NUMBER = {"type": ["number", "null"]}
 _TIME = {"type": "object", "title": "time", "properties": {"sec": _INTEGER, "nsec": _INTEGER}}
 _AXES = {"type": "object", "properties": {"x": _NUMBER, "y": _NUMBER, "z": _NUMBER}}
-Record = ForceRecord | DepthRecord | FrameRecord | EventRecord
+Record = ForceRecord | PositionRecord | FrameRecord | EventRecord
 NANOSECONDS = 1_000_000_000
 _LEVELS: dict[Level, int] = {"info": 2, "warning": 3, "fault": 4}
 _LEVEL_NAMES: dict[int, Level] = {number: name for name, number in _LEVELS.items()}
@@ -148,7 +148,7 @@ def _encode_force(record: ForceRecord) -> bytes:
     ).encode()
 
 
-def _encode_depth(record: DepthRecord) -> bytes:
+def _encode_depth(record: PositionRecord) -> bytes:
     counts = "null" if record.counts is None else record.counts
     return f'{{"depth":{_number(record.depth)},"counts":{counts},"target":{_number(record.target)}}}'.encode()
 
@@ -169,14 +169,14 @@ def _encode_event(record: EventRecord) -> bytes:
 
 _ENCODERS: dict[type, tuple[int, Callable[[Any], bytes]]] = {
     ForceRecord: (1, _encode_force),
-    DepthRecord: (2, _encode_depth),
+    PositionRecord: (2, _encode_depth),
     FrameRecord: (3, _encode_frame),
     EventRecord: (4, _encode_event),
 }
 
 
 def encode(record: Record) -> tuple[int, bytes]:
-    """Give the channel number (of `schemas.CHANNELS`) and the message bytes of a record."""
+    """Give the channel number (of `CHANNELS`) and the message bytes of a record."""
     channel, encoder = _ENCODERS[type(record)]
     return channel, encoder(record)
 
@@ -247,11 +247,11 @@ def _message(data: bytes) -> dict[str, Any]:
     return message
 
 
-def decode_depth(time: float, data: bytes) -> DepthRecord:
+def decode_depth(time: float, data: bytes) -> PositionRecord:
     """Read a message of `/depth`; raises as `decode_force`."""
     message = _message(data)
     counts, target = message["counts"], message["target"]
-    return DepthRecord(
+    return PositionRecord(
         time,
         _float(message["depth"]),
         None if counts is None else _whole(counts),

@@ -38,7 +38,7 @@ from bench_hw.trial_file.mcap_records import (
     read_chunk,
 )
 from bench_hw.trial_file.metadata import TRIAL, is_sealed, read_header
-from bench_hw.trial_file.records import DepthRecord, EventRecord, ForceRecord, FrameRecord, TrialHeader
+from bench_hw.trial_file.records import EventRecord, ForceRecord, FrameRecord, PositionRecord, TrialHeader
 from bench_hw.trial_file.writer import PART, SUFFIX
 
 LARGEST_LOOK = 32 * 1024 * 1024
@@ -58,7 +58,7 @@ class TrialNews:
         None until it has been read.
     force : tuple of ForceRecord
         In the sensor's axes.
-    depth : tuple of DepthRecord
+    depth : tuple of PositionRecord
         Positions.
     frames : tuple of FrameRecord
         Pictures.
@@ -71,7 +71,7 @@ class TrialNews:
     name: str
     header: TrialHeader | None
     force: tuple[ForceRecord, ...] = ()
-    depth: tuple[DepthRecord, ...] = ()
+    depth: tuple[PositionRecord, ...] = ()
     frames: tuple[FrameRecord, ...] = ()
     events: tuple[EventRecord, ...] = ()
     ended: bool = False

@@ -34,7 +34,7 @@ from bench_hw.trial_file.encoding import (
     nanoseconds,
 )
 from bench_hw.trial_file.mcap_records import RawMessage
-from bench_hw.trial_file.records import DepthRecord, EventRecord, ForceRecord, PressAxis, TrialHeader
+from bench_hw.trial_file.records import EventRecord, ForceRecord, PositionRecord, PressAxis, TrialHeader
 from bench_hw.trial_file.scan import Scan, read_messages, scan_trial, trial_header
 from bench_hw.trial_file.sequence import check_sequence, longest_allowed
 
@@ -133,7 +133,7 @@ def read_contents(path: Path, topics: Collection[str] = TOPICS) -> TrialContents
     )
 
 
-def _depth_row(time: float, message: RawMessage) -> tuple[DepthRecord, int]:
+def _depth_row(time: float, message: RawMessage) -> tuple[PositionRecord, int]:
     return decode_depth(time, message.data), message.sequence
 
 
@@ -170,7 +170,7 @@ def _force_columns(records: Sequence[ForceRecord]) -> ForceColumns:
     )
 
 
-def _depth_columns(rows: Sequence[tuple[DepthRecord, int]]) -> DepthColumns:
+def _depth_columns(rows: Sequence[tuple[PositionRecord, int]]) -> DepthColumns:
     records = [record for record, _ in rows]
     return DepthColumns(
         time=np.array([r.time for r in records], dtype=np.float64),

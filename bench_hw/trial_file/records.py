@@ -89,15 +89,15 @@ class ForceRecord:
 
 
 @dataclass(frozen=True, slots=True)
-class DepthRecord:
-    """One position of the actuator, as it reported it.
+class PositionRecord:
+    """One position of the actuator, as it reported it; a message of `/depth`.
 
     Parameters
     ----------
     time : float
         Monotonic clock, s.
     depth : float
-        Position, m, positive into the tissue.
+        Position from where depth is zero, m, positive into the tissue.
     counts : int, optional
         The board's own reading, 0 to 1023.
     target : float, optional
@@ -171,7 +171,7 @@ class TrialWriter(Protocol):
         """Take one force sample; never waits for the disk."""
         ...
 
-    def write_depth(self, record: DepthRecord) -> None:
+    def write_position(self, record: PositionRecord) -> None:
         """Take one position; never waits for the disk."""
         ...
 

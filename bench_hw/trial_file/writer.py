@@ -19,7 +19,7 @@ from bench_hw.errors import TrialFileError, system_words
 from bench_hw.trial_file.encoding import CHANNELS, Record, encode, nanoseconds
 from bench_hw.trial_file.mcap_output import ChunkedWriter, NewFile, Syncer, sync_folder
 from bench_hw.trial_file.metadata import TRIAL, header_entries
-from bench_hw.trial_file.records import DepthRecord, EventRecord, ForceRecord, FrameRecord, TrialHeader, TrialWriter
+from bench_hw.trial_file.records import EventRecord, ForceRecord, FrameRecord, PositionRecord, TrialHeader, TrialWriter
 
 SUFFIX = ".mcap"
 PART = ".part"
@@ -132,7 +132,7 @@ class McapTrialWriter:
         """Take one force sample."""
         self._put(record)
 
-    def write_depth(self, record: DepthRecord) -> None:
+    def write_position(self, record: PositionRecord) -> None:
         """Take one position."""
         self._put(record)
 

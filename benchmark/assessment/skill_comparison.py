@@ -15,6 +15,7 @@ from benchmark.comparison.t_tests import LARGE_EFFECT, TwoSampleT, detectable_ef
 from benchmark.errors import InputError
 from benchmark.runs.output.destination import destination
 from reports import Column, Download, Page, Section, Table, Verdict, write_csv, write_json, write_page, write_whole
+from reports.formatting import counted
 
 LEVEL = 0.05
 FEWEST = 2
@@ -105,7 +106,7 @@ class Assessment:
     @property
     def headline(self) -> str:
         """What was found, in one sentence."""
-        count = f"{len(self.attempts)} attempt{'s' * (len(self.attempts) != 1)}"
+        count = counted(len(self.attempts), "attempt")
         if not self.tests:
             return f"{count} measured; groups are compared where two folders with two attempts each are given."
         found = [one for one in self.tests if one.differs]

@@ -18,6 +18,8 @@ from benchmark.comparison.samples import ComparisonError, Result, Row, shared_ro
 OBSERVED, ASSUMED = 1.25, 3.0
 COVERAGE = 1.15
 LEAST_ORDER = 0.5
+NORMAL_95 = 1.959963984540054
+"""Half-width of a 95 % interval of the normal distribution in standard deviations."""
 
 
 @dataclass(frozen=True)
@@ -176,4 +178,4 @@ def replicate_uncertainty(values: Sequence[float]) -> float | None:
 
 def input_uncertainty(sensitivity: float, ci95: tuple[float, float]) -> float:
     """u_input of one parameter: |dS/dp| times the standard uncertainty of its 95 % interval (half-width / 1.96)."""
-    return abs(sensitivity) * 0.5 * abs(ci95[1] - ci95[0]) / 1.959963984540054
+    return abs(sensitivity) * 0.5 * abs(ci95[1] - ci95[0]) / NORMAL_95

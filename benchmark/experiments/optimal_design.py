@@ -90,7 +90,7 @@ class Proposal:
 
 
 @dataclass(frozen=True)
-class Design:
+class OptimalDesign:
     """Experiments weighed, the D-optimal and the A-optimal one per minute among them, and errors as they are now."""
 
     proposals: tuple[Proposal, ...]
@@ -99,10 +99,10 @@ class Design:
     errors_now: Array
 
 
-def designed(answer: Identified, specimen: int = 0) -> Design | None:
-    """Weigh the menu for one specimen; None where no experiment can be worked out."""
+def designed(answer: Identified) -> OptimalDesign | None:
+    """Weigh the menu for the first specimen; None where no experiment can be worked out."""
     found = answer.found
-    presses = [one for one in found.problem.presses if one.specimen == specimen]
+    presses = [one for one in found.problem.presses if one.specimen == 0]
     now = _covariance(found.fit.blocks.matrix.sum(axis=0) + np.diag(_told(answer)), found.problem)
     proposals = []
     for press, tool, prefix in _tools(presses):
@@ -117,7 +117,7 @@ def designed(answer: Identified, specimen: int = 0) -> Design | None:
     able = _able(proposals, {one.setup[1].radius for one in presses})
     best_d = max(able, key=lambda one: one.determinant / one.minutes)
     best_a = max(able, key=lambda one: one.trace / one.minutes)
-    return Design(tuple(proposals), best_d, best_a, np.sqrt(np.diag(now)))
+    return OptimalDesign(tuple(proposals), best_d, best_a, np.sqrt(np.diag(now)))
 
 
 def _able(proposals: Sequence[Proposal], radii: Collection[float]) -> list[Proposal]:

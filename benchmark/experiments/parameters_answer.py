@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from benchmark.experiments.optimal_design import Design
+from benchmark.experiments.optimal_design import OptimalDesign
 from benchmark.identification.parameters.identified import Identified
 from benchmark.identification.parameters.law_selection import LawScore
 from benchmark.identification.parameters.posterior import Posterior
@@ -20,29 +20,33 @@ class ParametersAnswer:
     identified : Identified
     laws : tuple of LawScore
         Where several laws were compared, the best first.
-    design : Design or None
+    design : OptimalDesign or None
         What to measure next.
     posterior : Posterior or None
     """
 
     identified: Identified
     laws: tuple[LawScore, ...] = ()
-    design: Design | None = None
+    design: OptimalDesign | None = None
     posterior: Posterior | None = None
+
+    @property
+    def tied(self) -> str:
+        """The laws that the trials do not tell apart, as a list in words; empty where one stands alone."""
+        names = [one.law for one in self.laws if one.tied]
+        return ", ".join(names) if len(names) > 1 else ""
 
     @property
     def headline(self) -> str:
         """The fit in one sentence, with the laws that are tied."""
-        tied = [one.law for one in self.laws if one.tied]
-        return self.identified.headline + (f"; tied laws: {', '.join(tied)}" if len(tied) > 1 else "")
+        return self.identified.headline + (f"; tied laws: {self.tied}" if self.tied else "")
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a reader must know before a figure is quoted."""
         said = [*self.identified.warnings]
-        tied = [one.law for one in self.laws if one.tied]
-        if len(tied) > 1:
-            said.append(f"the trials do not tell these laws apart on what was held out: {', '.join(tied)}")
+        if self.tied:
+            said.append(f"the trials do not tell these laws apart on what was held out: {self.tied}")
         if self.posterior is not None and not self.posterior.converged:
             said.append(f"the posterior's chains did not mix (R-hat {self.posterior.r_hat.max():.3g}): do not quote it")
         return tuple(said)

@@ -24,10 +24,10 @@ from benchmark.gate.baseline import (
 from benchmark.gate.history.history_file import HISTORY_SIGN, HistoryEntry, append
 from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
 from benchmark.gate.processes import measure
-from benchmark.gate.verdict import counted
 from benchmark.gate.versions import Origin, gated_values, origin_of, this_version
 from benchmark.runs.options import Listener
 from benchmark.runs.output.destination import check_file, check_ready
+from reports.formatting import counted
 
 NEEDED = 1_000_000
 """Bytes of a baseline and a line of its history, with room to spare."""

@@ -79,7 +79,7 @@ class Baseline(_Stored):
     gate
         Name of the gate it was made with.
     fingerprint
-        Of what was timed and how (see `plan.Plan`).
+        Of what was timed and how (see `plan.GatePlan`).
     made
         Date and time, UTC.
     revision

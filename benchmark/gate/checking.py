@@ -18,11 +18,12 @@ from benchmark.gate.history.history_file import HISTORY_SIGN, HistoryEntry, appe
 from benchmark.gate.plan import CheckRequest, GatePlan, load_plan
 from benchmark.gate.processes import Measured, Party, measure
 from benchmark.gate.timing import DECISIVE, Judge, TimingRow
-from benchmark.gate.verdict import CheckVerdict, counted
+from benchmark.gate.verdict import CheckVerdict
 from benchmark.gate.versions import Origin, gated_values, origin_of, rival, this_version
 from benchmark.runs.options import Listener
 from benchmark.runs.output.destination import check_file, claimed, destination, remove_earlier
 from reports import write_csv, write_json, write_page, write_text, write_whole
+from reports.formatting import counted
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ from xml.etree import ElementTree
 
 from benchmark.gate.accuracy import AccuracyRow
 from benchmark.gate.timing import TimingRow
-from benchmark.gate.verdict import CheckVerdict, counted, time_words, value_words
+from benchmark.gate.verdict import CheckVerdict, time_words, value_words
+from reports.formatting import counted
 
 SUITE = "tissuebench check"
 HEADING = "Regression check `"

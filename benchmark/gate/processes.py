@@ -66,7 +66,7 @@ class Side:
         return list(self._ask({"do": "values", "cases": plan.cases})["values"])
 
     def prepare(self, plan: GatePlan) -> bool:
-        """Set the workloads up and warm them; whether waiting will be seen (see `measuring.clock`)."""
+        """Set the workloads up and warm them; whether waiting will be seen (see `measuring.costs`)."""
         return bool(self._ask({"do": "prepare", "timed": plan.jobs, "references": plan.references})["sees_waiting"])
 
     def block(self) -> dict[str, float]:
@@ -175,7 +175,7 @@ class Measured:
     rounds
         Processes of each party.
     sees_waiting
-        Whether sleeping and waiting counted (see `measuring.clock`).
+        Whether sleeping and waiting counted (see `measuring.costs`).
     """
 
     ratios: tuple[dict[str, list[float]], ...]

@@ -8,6 +8,7 @@ from typing import Any
 
 from benchmark.gate.accuracy import AccuracyRow
 from benchmark.gate.timing import TimingRow
+from reports.formatting import counted
 
 SCHEMA = 1
 
@@ -126,8 +127,3 @@ def time_words(row: TimingRow) -> str:
 
 def _bad(rows: Sequence[AccuracyRow] | Sequence[TimingRow]) -> int:
     return sum(not row.passed for row in rows)
-
-
-def counted(number: int, what: str) -> str:
-    """A number of things, one or many."""
-    return f"{number} {what}{'' if number == 1 else 's'}"

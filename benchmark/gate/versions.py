@@ -139,7 +139,7 @@ def _why_no_repository(folder: Path) -> str:
 
 
 def gated_values(party: Party) -> dict[str, StoredValue]:
-    """The gated values of a party, from a process of its own; raises as `side.Side`."""
+    """The gated values of a party, from a process of its own; raises as `processes.Side`."""
     with party.start() as side:
         found = side.values(party.plan)
     return {

@@ -1,4 +1,7 @@
-"""What the functions of a user's model get: plain values in SI units, nothing of this program needed to read them."""
+"""A user's model on a scenario: what its functions are given, and what they return, checked, as a result.
+
+They get plain values in SI units; nothing of this program is needed to read them.
+"""
 
 from __future__ import annotations
 

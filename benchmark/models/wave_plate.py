@@ -28,8 +28,7 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
     hole, load, options = scenario.support.hole_radius, scenario.load, scenario.wave
     by_depth = load.control == "depth"
     explicit = options.model == "plate"
-    series, warnings = _sheet_series(scenario)
-    stress = scenario.physics.pretension or 0.0
+    series, warnings = sheet_series(scenario)
     wave = PlateWave(
         wave_layers(scenario.tissue.layers),
         wave_tool(scenario),
@@ -40,7 +39,7 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
             reach=FIRST_REACH * hole if hole is not None else None,
             tension="local" if explicit else None,
         ),
-        pretension=stress * sum(layer.thickness for layer in scenario.tissue.layers),
+        pretension=sheet_pretension(scenario),
         relaxation=series,
         physics=wave_physics(scenario),
         clamp=scenario.support.clamp,
@@ -60,7 +59,12 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
     )
 
 
-def _sheet_series(scenario: Scenario) -> tuple[Prony | None, tuple[str, ...]]:
+def sheet_pretension(scenario: Scenario) -> float:
+    """The tension at rest in N/m: the stress that the scenario states times the whole thickness; 0 without one."""
+    return (scenario.physics.pretension or 0.0) * scenario.tissue.thickness
+
+
+def sheet_series(scenario: Scenario) -> tuple[Prony | None, tuple[str, ...]]:
     """The relaxation that all layers share, or a warning that layers which differ are elastic."""
     series = wave_relaxation(scenario)
     if series is None:

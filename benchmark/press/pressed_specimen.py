@@ -23,6 +23,7 @@ from benchmark.models.model_result import Array
 from benchmark.models.scenario_effects import refuse_solid
 from benchmark.models.solver_layers import wave_layers
 from benchmark.models.wave_parts import law_warnings, refuse_fibres, wave_relaxation, wave_tool
+from benchmark.models.wave_plate import sheet_pretension, sheet_series
 from benchmark.press.radial_table import RadialTable, table_of_body, table_of_levels
 from benchmark.response.model_with_effects import SwitchedOn, on_its_base, switched_on
 from wavemodel import LayeredWave, NotCoveredError, PlateSettings, PlateWave, Prony, WaveError
@@ -170,14 +171,13 @@ def _sheet(scenario: Scenario) -> tuple[RadialTable, Memory, tuple[str, ...]]:
     hole = scenario.support.hole_radius
     if hole is None:
         raise UncoveredError("the sheet needs a hole")
-    stress = scenario.physics.pretension or 0.0
     wave = PlateWave(
         wave_layers(scenario.tissue.layers),
         wave_tool(scenario),
         "hole",
         hole,
         PlateSettings(reach=0.1 * hole),
-        pretension=stress * sum(layer.thickness for layer in scenario.tissue.layers),
+        pretension=sheet_pretension(scenario),
         clamp=scenario.support.clamp,
     )
     layered = wave.tension == "layered"
@@ -185,11 +185,14 @@ def _sheet(scenario: Scenario) -> tuple[RadialTable, Memory, tuple[str, ...]]:
     peak = abs(scenario.load.peak)
     depth = peak if scenario.load.control == "depth" else float(wave.depth_of_force(np.array([peak]))[0])
     table = table_of_body(sheet_body(wave, PATCH, deepest := min(BEYOND_PEAK * depth, SHEET_REACH * hole)), deepest)
-    series = wave_relaxation(scenario) or [None]
-    alike = series[0] is not None and all(one == series[0] for one in series)
+    series, left_out = sheet_series(scenario)
     laws = () if layered else law_warnings(scenario)
-    remarks = ("The sheet's patch is as wide as its hole and moves along with the tool.", *laws)
-    return table, Memory(series[0] or ELASTIC) if alike else Memory(), remarks
+    patch = "The sheet's patch is as wide as its hole and moves along with the tool."
+    return table, Memory(series or ELASTIC), (patch, *map(_sentence, (*left_out, *laws)))
+
+
+def _sentence(warning: str) -> str:
+    return f"{warning[:1].upper()}{warning[1:]}."
 
 
 def _series(wave: LayeredWave) -> Prony:
@@ -277,7 +280,7 @@ def _repaired(plain: PressedSpecimen, repair: RepairedModel) -> PressedSpecimen:
 
 def _followed(switched: SwitchedOn) -> tuple[SwitchedOn, Sequence[str]]:
     """The effects that a page can follow, and a sentence for each of the others."""
-    kept, remarks = [], [f"{warning[:1].upper()}{warning[1:]}." for warning in switched.warnings]
+    kept, remarks = [], [_sentence(warning) for warning in switched.warnings]
     for added in switched.effects:
         options = replace(switched, effects=(added,)).physics
         foreign = [name for name, value in vars(options).items() if value is not None and name not in CARRIED]

@@ -13,7 +13,7 @@ from benchmark.models import Array
 from benchmark.runs.options import Listener, RunOptions
 from benchmark.runs.record import RunRecord
 from benchmark.runs.scenario_run import run_scenario
-from benchmark.runs.trials.film_tables import Motion, motions_of
+from benchmark.runs.trials.film_tables import MarkerMotion, motions_of
 from benchmark.runs.trials.filming import Tracked, session_films
 from benchmark.runs.trials.table_one import table_one
 from benchmark.sessions import SHIPPED
@@ -51,7 +51,7 @@ class Chain:
     synthetic: bool
     variables: Mapping[str, float | None]
     r2: Array
-    shown: Motion
+    shown: MarkerMotion
     depth: Array
     places: Array
     tracked: Tracked | None
@@ -102,7 +102,7 @@ def follow_chain(session: Session, listener: Listener) -> Chain:
     )
 
 
-def _r2(motion: Motion) -> Array:
+def _r2(motion: MarkerMotion) -> Array:
     """Of the parabolas over the frames with deformation, after the article's moving average."""
     moved = moving_average(motion.moved, mode="causal")[motion.window]
     return np.asarray(fit_parabolas(motion.time[motion.window], moved).r2.ravel())

@@ -30,11 +30,12 @@ from benchmark.response import ForceCurve, RampTable
 from benchmark.response.ramp import Setup
 from benchmark.runs.options import Listener
 from benchmark.runs.report.values import fit_headline
-from benchmark.runs.trials.film_tables import Motion, motions_of
+from benchmark.runs.trials.film_tables import MarkerMotion, motions_of
 from benchmark.runs.trials.filming import Films, session_films
 from benchmark.runs.trials.measured import FilmedSession
 from benchmark.runs.trials.session_tables import BaseCurves, Followed, base_curves, session_sheets
 from benchmark.runs.trials.table_one import Placed, table_one
+from reports.formatting import counted
 
 Key = tuple[str, str]
 MARGIN = 1.02
@@ -111,7 +112,7 @@ def fit_trials(
     for line in session.shown:
         listener.say(line)
     base = base_curves(session, _depths(session), listener)
-    listener.say(f"{session.name}: fitting {len(session.trials)} trial{'s' * (len(session.trials) != 1)}")
+    listener.say(f"{session.name}: fitting {counted(len(session.trials), 'trial')}")
     try:
         trials = tuple(_trial_data(trial, base.curves[trial.tool, trial.support]) for trial in session.trials)
         if repair is not None:
@@ -128,9 +129,7 @@ def _with_films(found: FittedSession, films: Films, listener: Listener) -> Fitte
     session, camera = found.session, found.session.camera
     if camera is None or not films.films:
         return replace(found, warnings=(*found.warnings, *films.warnings))
-    listener.say(
-        f"{session.name}: fitting force and markers of {len(films.films)} trial{'s' * (len(films.films) != 1)} together"
-    )
+    listener.say(f"{session.name}: fitting force and markers of {counted(len(films.films), 'trial')} together")
     motions = motions_of(films.films, camera)
     models, said = session_sheets(session, _depths(session), films.view, listener)
     starts = {trial.key: trial for trial in found.fit.trials}
@@ -159,7 +158,7 @@ def _with_films(found: FittedSession, films: Films, listener: Listener) -> Fitte
 def _placed(model: RampTable, own: SheetTrial) -> Placed:
     """Take perspective off the markers of a trial, by how far the fitted sheet sinks."""
 
-    def true_displacements(motion: Motion, depth: Array) -> Array:
+    def true_displacements(motion: MarkerMotion, depth: Array) -> Array:
         radius = np.hypot(*(motion.rest - np.array(own.state.axis)).T)
         sunk = model.face(depth - own.state.onset, radius)[1]
         return np.asarray(model.view.true(motion.rest + motion.moved, sunk) - motion.rest)

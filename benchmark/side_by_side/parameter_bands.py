@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmark.comparison.uncertainty import NORMAL_95
 from benchmark.errors import InputError, SolverError
 from benchmark.files import Scenario
 from benchmark.models import Array, Drive, UncoveredError, prepare
@@ -19,7 +20,6 @@ from benchmark.models.fem_derivatives import ScenarioChange, differentiated_pres
 from benchmark.response.setup_change import STIFFNESS, changed_setup, is_absolute, natural_change
 from fem.errors import NotDifferentiableError
 
-NORMAL = 1.959963984540054
 SMALL, DIFFERENCE = 3e-5, 0.01
 """Steps of the solver's derivatives and of central differences, in natural changes."""
 MODULUS = "youngs_modulus"
@@ -50,7 +50,7 @@ class ParameterBands:
 
     def factor(self, deviation: Array) -> Array:
         """Upper end of the 95 % band over the value."""
-        return np.asarray(np.exp(NORMAL * deviation))
+        return np.asarray(np.exp(NORMAL_95 * deviation))
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 from benchmark.errors import InputError
 from benchmark.sweeps.point import PointResult, Task, evaluate, failed
+from reports.formatting import counted
 
 
 class ClusterError(InputError):
@@ -58,11 +59,7 @@ def on_cluster(
     """
     with _connected(address) as client:
         workers = _check_workers(client, address)
-        say(
-            f"{address}: {workers} worker{'s' * (workers > 1)}"
-            if workers
-            else f"{address}: no worker yet, waiting for one"
-        )
+        say(f"{address}: {counted(workers, 'worker')}" if workers else f"{address}: no worker yet, waiting for one")
         try:
             yield from _rows(client, work, jobs, lost)
         except (OSError, CancelledError):

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from benchmark.errors import InputError
 from benchmark.sweeps.parameter import Parameter
 from benchmark.sweeps.sensitivity import DEFAULT_BASE, LEAST_BASE, base_samples, saltelli_design
+from reports.formatting import counted
 
 Kind = Literal["grid", "lhs", "sobol", "saltelli"]
 Shares = NDArray[np.float64]
@@ -111,7 +112,7 @@ def _saltelli(sample: str | None, points: int | None, parameters: int, seed: int
         raise InputError("--sensitivity needs a Sobol design of its own: leave --sample lhs out")
     if points is not None and base_samples(points, parameters) < LEAST_BASE:
         raise InputError(
-            f"--points {points} is too few for --sensitivity with {parameters} parameter{'s' * (parameters != 1)}; "
+            f"--points {points} is too few for --sensitivity with {counted(parameters, 'parameter')}; "
             f"allowed: at least {LEAST_BASE * block}"
         )
     return Design("saltelli", DEFAULT_BASE * block if points is None else points, seed)

@@ -1,4 +1,4 @@
-"""Which parameter matters to which result: Saltelli's design, and Sobol indices with confidence intervals, by SALib."""
+"""Which parameter matters to which result: keys without effect, and Sobol indices by Saltelli's design and SALib."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from benchmark.models import Array
-from benchmark.sweeps.point import SECONDS, PointResult
+from benchmark.sweeps.point import BAND, FAILED, SECONDS, PointResult
 
 CONSTANT = 1e-9
 """Spread of a result, as a part of its largest value, below which it does not depend on anything."""
@@ -92,6 +92,46 @@ class Sensitivity:
     indices: tuple[SobolIndex, ...]
     base_samples: int
     warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class SweepFindings:
+    """What the points of a sweep tell of the keys that vary.
+
+    Attributes
+    ----------
+    without_effect : tuple of str
+        Keys that change no result.
+    sensitivity : Sensitivity or None
+        Sobol indices where they were asked for.
+    """
+
+    without_effect: tuple[str, ...] = ()
+    sensitivity: Sensitivity | None = None
+
+
+def keys_without_effect(
+    keys: Sequence[str], points: Sequence[Sequence[str]], rows: Sequence[PointResult]
+) -> tuple[str, ...]:
+    """Varied keys that change no result: points that differ in one of them alone have the same to the last digit.
+
+    `points` has each point's value of every key. Seconds and bands are no results; of a sample over several keys no two
+    points differ in one alone.
+    """
+    results = {
+        points[row.point - 1]: {name: value for name, value in row.values.items() if not name.endswith((SECONDS, BAND))}
+        for row in rows
+        if row.status != FAILED and row.values
+    }
+    found = []
+    for place, key in enumerate(keys):
+        groups: dict[tuple[str, ...], list[Mapping[str, float]]] = {}
+        for point, values in results.items():
+            groups.setdefault((*point[:place], *point[place + 1 :]), []).append(values)
+        compared = [alike for alike in groups.values() if len(alike) > 1]
+        if compared and all(each == alike[0] for alike in compared for each in alike):
+            found.append(key)
+    return tuple(found)
 
 
 def sobol_indices(parameters: Sequence[str], results: Mapping[str, Array], *, seed: int) -> Sensitivity:

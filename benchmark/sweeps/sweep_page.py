@@ -10,8 +10,8 @@ import numpy as np
 
 from benchmark.sweeps.parameter import Parameter
 from benchmark.sweeps.plan import SweepPlan
-from benchmark.sweeps.point import BAND, FAILED, MODELS, SECONDS, PointResult, headline
-from benchmark.sweeps.sensitivity import Sensitivity
+from benchmark.sweeps.point import FAILED, MODELS, SECONDS, PointResult, headline
+from benchmark.sweeps.sensitivity import Sensitivity, SweepFindings
 from benchmark.sweeps.sweep_folder import Columns, point_columns
 from reports import (
     Block,
@@ -44,23 +44,24 @@ INDICES = (
 
 
 def sweep_page(
-    plan: SweepPlan, rows: Sequence[PointResult], found: Sensitivity | None, environment: Mapping[str, Any]
+    plan: SweepPlan, rows: Sequence[PointResult], found: SweepFindings, environment: Mapping[str, Any]
 ) -> Page:
     """Return the page of a finished sweep."""
+    sensitivity = found.sensitivity
     columns = point_columns(plan.parameters, plan.points, rows)
     sections = [Section("What varied", (Paragraph(_design(plan)), _varied(plan.parameters)))]
     sections += [Section("Results", _results(plan, columns))]
-    sections += [] if found is None else [_sensitivity(found)]
+    sections += [] if sensitivity is None else [_sensitivity(sensitivity)]
     sections += [_failures(plan, rows), _method(plan, environment)]
     downloads = [Download("points.parquet", "one row a point", media_type="application/vnd.apache.parquet")]
-    if found is not None:
+    if sensitivity is not None:
         downloads.append(Download("sensitivity.csv", "Sobol indices with intervals"))
     return Page(
         title=f"{plan.scenario.name}: sweep",
         subtitle=f"{len(rows)} points over {', '.join(parameter.key for parameter in plan.parameters)}",
-        verdict=_verdict(plan, rows, columns),
+        verdict=_verdict(plan, rows, columns, found.without_effect),
         facts=(Fact("Made", str(environment["made"])), Fact("Seed", str(plan.design.seed))),
-        notices=_notices(rows, found),
+        notices=_notices(rows, sensitivity),
         sections=[section for section in sections if section.blocks],
         downloads=(
             *downloads,
@@ -71,30 +72,7 @@ def sweep_page(
     )
 
 
-def without_effect(plan: SweepPlan, rows: Sequence[PointResult]) -> tuple[str, ...]:
-    """Varied keys that change no result: points that differ in one of them alone have the same to the last digit.
-
-    Seconds and bands are no results; of a sample over several keys no two points differ in one alone.
-    """
-    results = {
-        plan.points[row.point - 1]: {
-            name: value for name, value in row.values.items() if not name.endswith((SECONDS, BAND))
-        }
-        for row in rows
-        if row.status != FAILED and row.values
-    }
-    found = []
-    for place, parameter in enumerate(plan.parameters):
-        groups: dict[tuple[str, ...], list[Mapping[str, float]]] = {}
-        for point, values in results.items():
-            groups.setdefault((*point[:place], *point[place + 1 :]), []).append(values)
-        compared = [alike for alike in groups.values() if len(alike) > 1]
-        if compared and all(each == alike[0] for alike in compared for each in alike):
-            found.append(parameter.key)
-    return tuple(found)
-
-
-def _verdict(plan: SweepPlan, rows: Sequence[PointResult], columns: Columns) -> Verdict:
+def _verdict(plan: SweepPlan, rows: Sequence[PointResult], columns: Columns, without_effect: Sequence[str]) -> Verdict:
     failures = sum(row.status == FAILED for row in rows)
     quantity, unit = headline(plan.scenario.load.control)
     shown = [
@@ -106,8 +84,7 @@ def _verdict(plan: SweepPlan, rows: Sequence[PointResult], columns: Columns) -> 
     if failures == len(rows):
         return Verdict("failed", f"None of the {len(rows)} points has results.", points)
     said = f"{failures} of {len(rows)} points failed" if failures else f"All {len(rows)} points have results"
-    idle = without_effect(plan, rows)
-    said += f"; no result depends on {', '.join(idle)}" if idle else ""
+    said += f"; no result depends on {', '.join(without_effect)}" if without_effect else ""
     return Verdict("finding", f"{said}.", points)
 
 

@@ -18,10 +18,11 @@ from benchmark.sweeps.local import usable_cores, work_locally
 from benchmark.sweeps.parameter import parse_parameter
 from benchmark.sweeps.plan import SweepPlan, make_plan
 from benchmark.sweeps.point import FAILED, OK, PointResult, Task, failed
-from benchmark.sweeps.sensitivity import Sensitivity, sensitivity_columns, sweep_sensitivity
+from benchmark.sweeps.sensitivity import SweepFindings, keys_without_effect, sensitivity_columns, sweep_sensitivity
 from benchmark.sweeps.sweep_folder import SweepFolder, open_folder
-from benchmark.sweeps.sweep_page import sweep_page, without_effect
+from benchmark.sweeps.sweep_page import sweep_page
 from reports import extended_folder, write_csv, write_json, write_page
+from reports.formatting import counted
 
 MOST_SAID = 3
 """Failed points that are named on the terminal."""
@@ -79,7 +80,7 @@ def say_failures(rows: Sequence[PointResult], plan: SweepPlan, say: Callable[[st
     for row in failures[:MOST_SAID]:
         say(f"point {row.point} ({_values_of(plan, row.point)}) failed: {row.reason}")
     if len(failures) > MOST_SAID:
-        say(f"{len(failures) - MOST_SAID} more points failed; their reasons are in the report")
+        say(f"{counted(len(failures) - MOST_SAID, 'more point')} failed; the reasons are in the report")
 
 
 def _values_of(plan: SweepPlan, point: int) -> str:
@@ -156,23 +157,23 @@ def _rows(
 
 def _write(path: Path, plan: SweepPlan, rows: Sequence[PointResult], request: SweepRequest) -> SweepOutcome:
     """Write what a finished sweep leaves beside its points."""
-    found = (
-        sweep_sensitivity([each.key for each in plan.parameters], rows, seed=plan.design.seed)
-        if request.sensitivity
-        else None
+    keys = [parameter.key for parameter in plan.parameters]
+    found = SweepFindings(
+        keys_without_effect(keys, plan.points, rows),
+        sweep_sensitivity(keys, rows, seed=plan.design.seed) if request.sensitivity else None,
     )
     environment = describe_environment(seed=request.seed)
     page = sweep_page(plan, rows, found, environment)
     with extended_folder(path) as new:
-        if found is not None:
-            write_csv(new / "sensitivity.csv", sensitivity_columns(found))
+        if found.sensitivity is not None:
+            write_csv(new / "sensitivity.csv", sensitivity_columns(found.sensitivity))
         write_json(new / "environment.json", environment)
         write_page(new / "report.html", page)
     document = _document(plan, rows, found)
     return SweepOutcome(path, document, page.verdict.headline, any(row.status == OK for row in rows))
 
 
-def _document(plan: SweepPlan, rows: Sequence[PointResult], found: Sensitivity | None) -> dict[str, Any]:
+def _document(plan: SweepPlan, rows: Sequence[PointResult], found: SweepFindings) -> dict[str, Any]:
     """The sweep for programs."""
     failures = [{"point": row.point, "reason": row.reason} for row in rows if row.status == FAILED]
     document: dict[str, Any] = {
@@ -183,14 +184,14 @@ def _document(plan: SweepPlan, rows: Sequence[PointResult], found: Sensitivity |
         "failed": failures,
         "vary": plan.document["vary"],
         "sample": plan.design.kind,
-        "without_effect": list(without_effect(plan, rows)),
+        "without_effect": list(found.without_effect),
         "results": list(dict.fromkeys(name for row in rows for name in row.values)),
     }
-    if found is not None:
+    if found.sensitivity is not None:
         document["sensitivity"] = {
-            "base_samples": found.base_samples,
-            "warnings": list(found.warnings),
-            "indices": [vars(index) for index in found.indices],
+            "base_samples": found.sensitivity.base_samples,
+            "warnings": list(found.sensitivity.warnings),
+            "indices": [vars(index) for index in found.sensitivity.indices],
         }
     return document
 

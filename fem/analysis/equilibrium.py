@@ -72,7 +72,7 @@ class State:
     y
         Unknowns (n,) in m.
     pressure
-        Pressure coefficients (3, E).
+        Pressure coefficients (p, E).
     force
         Press of the tool in N.
     """

@@ -114,7 +114,7 @@ class RelaxingBody:
         self._unit = unit_state(replace(self._problem, system=self.system))
 
     def _alone(self, over: FloatArray) -> FloatArray:
-        """Unknowns (n,) under the overstress's forces (18, E) and the prescribed displacements alone."""
+        """Unknowns (n,) under the overstress's forces (k, E) and the prescribed displacements alone."""
         y = np.zeros(self.system.numbering.count)
         for _ in range(2):
             force = self.system.scatter.vector(over + self.system.linear_force(self._rest, y))

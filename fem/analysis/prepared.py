@@ -15,12 +15,12 @@ from fem.analysis.newton import NewtonSettings
 from fem.analysis.nonlinear import run_nonlinear
 from fem.analysis.record import Record
 from fem.linear_solver import IterativeSolver
-from fem.linear_solver.factory import suited_threads
 from fem.load import Load
 from fem.mesh.solid import AnyMesh
 from fem.problem.problem import Problem
 from fem.results.fields import FieldRecovery
 from fem.results.solution import Solution, StepReport
+from fem.threads import suited_threads
 
 PULLING = "the load history pulls (negative values): the contact is tied to the surface and cannot lift off"
 

@@ -1,7 +1,7 @@
 """The elements of a mesh with their laws: forces and stiffness of displacement and pressure, the pressure condensed.
 
-The shapes in the docstrings are those of the axisymmetric element (18 displacements, 3 pressures); other
-elements have others. An element without pressure shapes has all of its bulk modulus at the Gauss points.
+In shapes an element has k displacements, its nodes times the components, and p pressures (18 and 3 in axial symmetry).
+One without pressure shapes has all of its bulk modulus at the Gauss points.
 
 Two-field form (perturbed Lagrangian): W_iso(F) + p (J - 1) - p^2 / (2 K), u quadratic, p discontinuous, as a rule
 linear (Q2/P1, inf-sup stable: Boffi, Brezzi and Fortin, Mixed Finite Element Methods and Applications,
@@ -20,10 +20,10 @@ import numpy as np
 
 from fem.arrays import FloatArray
 from fem.assembly.element_geometry import ElementGeometry
-from fem.linear_solver.factory import do_in_threads, in_parts, in_threads
 from fem.materials.deformation import Deformation
 from fem.materials.element_laws import ElementLaws
 from fem.materials.prony import Memory
+from fem.threads import do_in_threads, in_parts, in_threads
 
 ELEMENTS_AT_ONCE = 64  # so that their pulled back moduli stay in the cache
 THREADS_FROM = 32  # parts of so many elements; fewer are done before threads have begun
@@ -38,15 +38,15 @@ class ElementState:
     deformation
         Deformation gradient at the Gauss points.
     pressure
-        Pressure coefficients (3, E) the evaluation was made with.
+        Pressure coefficients (p, E) the evaluation was made with.
     pressure_at_points
         Pressure (q, E) in Pa.
     coupling
-        b (18, 3, E): derivative of the volume change by the nodal displacements.
+        b (k, p, E): derivative of the volume change by the nodal displacements.
     mismatch
-        K (volume change) - p (3, E): how far the pressure is from what the volume change asks for.
+        K (volume change) less the pressure, (p, E): how far that is from what the volume change asks for.
     force
-        Nodal forces (18, E) in N with the pressure the volume change asks for.
+        Nodal forces (k, E) in N with the pressure the volume change asks for.
     """
 
     deformation: Deformation
@@ -58,7 +58,7 @@ class ElementState:
 
     @property
     def consistent_pressure(self) -> FloatArray:
-        """Pressure coefficients (3, E) the volume change asks for."""
+        """Pressure coefficients (p, E) the volume change asks for."""
         out: FloatArray = self.pressure + self.mismatch
         return out
 
@@ -95,15 +95,15 @@ class Elements:
 
     @property
     def rest_pressure(self) -> FloatArray:
-        """Pressure coefficients (3, E) at rest."""
+        """Pressure coefficients (p, E) at rest."""
         return np.zeros((len(self.geometry.pressure), len(self.laws.bulk_modulus)))
 
     def deformation(self, u: FloatArray) -> Deformation:
-        """Deformation at the Gauss points of nodal displacements (18, E) in m."""
+        """Deformation at the Gauss points of nodal displacements (k, E) in m."""
         return Deformation(self.geometry.components, self.geometry.gradient(u))
 
     def evaluate(self, u: FloatArray, pressure: FloatArray) -> ElementState | None:
-        """Forces at nodal displacements (18, E) and pressure coefficients (3, E); None where J <= 0."""
+        """Forces at nodal displacements (k, E) and pressure coefficients (p, E); None where J <= 0."""
         deformation = self.deformation(u)
         if not deformation.J.min() > 0.0:
             return None
@@ -118,7 +118,7 @@ class Elements:
         return ElementState(deformation, pressure, at_points, coupling, mismatch, force)
 
     def wanted_pressure(self, volume_change: FloatArray) -> FloatArray:
-        """Pressure coefficients (3, E) that the moments (3, E) of the volume change ask for."""
+        """Pressure coefficients (p, E) that the moments (p, E) of the volume change ask for."""
         out: FloatArray = self.field_modulus * volume_change
         return out
 
@@ -134,7 +134,7 @@ class Elements:
         yield from zip(parts, worked_on(partial(self._stiffness, moduli, state, slope), parts), strict=True)
 
     def soft_matrices(self, state: ElementState) -> tuple[FloatArray, FloatArray]:
-        """Stiffness (E, 18, 18) with at most the shear modulus as derivative of the pressure; the rest (E,)."""
+        """Stiffness (E, k, k) with at most the shear modulus as derivative of the pressure; the rest (E,)."""
         slope, (rows, columns) = self.pressure_slope(state), self.geometry.packed
         soft: FloatArray = np.minimum(slope, self.laws.shear_modulus)
         moduli = self._moduli(state)
@@ -169,18 +169,18 @@ class Elements:
             packed += np.einsum("pie,pie->pe", (coupling * modulus)[rows], coupling[columns])
 
     def pressure_after(self, state: ElementState, du: FloatArray) -> FloatArray:
-        """Pressure coefficients (3, E) after an increment du (18, E) of the nodal displacements."""
+        """Pressure coefficients (p, E) after an increment du (k, E) of the nodal displacements."""
         change = np.einsum("nie,ne->ie", state.coupling, du)
         out: FloatArray = state.pressure + state.mismatch + self.pressure_slope(state) * change
         return out
 
     def linear_pressure(self, rest: ElementState, u: FloatArray) -> FloatArray:
-        """Pressure coefficients (3, E) at small nodal displacements (18, E)."""
+        """Pressure coefficients (p, E) at small nodal displacements (k, E)."""
         out: FloatArray = self.field_modulus * np.einsum("nie,ne->ie", rest.coupling, u)
         return out
 
     def linear_force(self, rest: ElementState, u: FloatArray) -> FloatArray:
-        """Nodal forces (18, E) in N of small nodal displacements (18, E), from the moduli at rest."""
+        """Nodal forces (k, E) in N of small nodal displacements (k, E), from the moduli at rest."""
         H, components = self.geometry.gradient(u), self.geometry.components
         moduli = components.unpack(self.laws.tangent(rest.deformation))
         stress = np.einsum("kmqe,mqe->kqe", moduli, H)
@@ -198,7 +198,7 @@ class Elements:
         return replace(self, duration=duration, laws=self.laws.relaxing(*self.memory.ahead(duration)))
 
     def accepted(self, u: FloatArray) -> Elements:
-        """The elements after a step that ends at nodal displacements (18, E); evaluated there they give its forces."""
+        """The elements after a step that ends at nodal displacements (k, E); evaluated there they give its forces."""
         if self.memory is None:
             return self
         elastic = self.laws.second_stress(self.deformation(u))

@@ -83,6 +83,21 @@ class EquationItem(ABC):
         """The item after a way from rest to unknowns y (n,) that are known from another mesh, not from equilibrium."""
         return self.accepted(y)
 
+    def pressed_as(self, y: FloatArray, other: Self, theirs: FloatArray, *, pressed: bool) -> tuple[FloatArray, Self]:
+        """Unknowns y (n,) and the item with the pressure that another mesh's item has.
+
+        Parameters
+        ----------
+        y
+            Unknowns (n,) of this mesh.
+        other, theirs
+            The item of the other mesh, and its unknowns (m,).
+        pressed
+            Whether the tool pressed before this state.
+        """
+        del other, theirs, pressed
+        return y, self
+
     @property
     def follows_pressure(self) -> bool:
         """Whether limits are guessed and corrected, round after round, until they fit the pressure."""

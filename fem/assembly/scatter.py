@@ -1,6 +1,7 @@
 """From element arrays to the unknowns: numbering, and the sparse pattern, built once where it is asked for.
 
-It is asked for by direct solvers and items; an iterative one does without, and without its memory.
+It is asked for by direct solvers and items; an iterative one does without, and without its memory. In shapes an element
+has k displacements, its nodes times the components (18 in axial symmetry).
 """
 
 from __future__ import annotations
@@ -30,11 +31,11 @@ class Numbering:
     Attributes
     ----------
     unknown
-        Unknown of (component, node), (2, N) or (3, N); -1 where the displacement is zero.
+        Unknown of (component, node), (components, N); -1 where the displacement is zero.
     count
         Number of unknowns n.
     prescribed
-        Displacements (2, N) in m on top of those of the unknowns, or None for none.
+        Displacements (components, N) in m on top of those of the unknowns, or None for none.
     """
 
     unknown: IntArray
@@ -42,24 +43,24 @@ class Numbering:
     prescribed: FloatArray | None = None
 
     def expand(self, y: FloatArray) -> FloatArray:
-        """Nodal displacements (..., 2, N) in m of the unknowns (..., n)."""
+        """Nodal displacements (..., components, N) in m of the unknowns (..., n)."""
         out: FloatArray = np.concatenate((y, np.zeros((*y.shape[:-1], 1))), axis=-1)[..., self.unknown]
         return out if self.prescribed is None else out + self.prescribed
 
     def reduce(self, nodal: FloatArray) -> FloatArray:
-        """Forces on the unknowns (n,) of nodal forces (2, N)."""
+        """Forces on the unknowns (n,) of nodal forces (components, N)."""
         total: FloatArray = np.zeros(self.count + 1)
         np.add.at(total, self.unknown.ravel(), nodal.ravel())
         return total[:-1]
 
 
 def number_unknowns(fixed: BoolArray, tied: BoolArray, level: Iterable[tuple[IntArray, IntArray]] = ()) -> Numbering:
-    """Number node by node what is neither fixed (2, N) nor the same as another.
+    """Number node by node what is neither fixed (components, N) nor the same as another.
 
     Parameters
     ----------
     fixed
-        Displacements that are zero, (2, N) or (3, N), the vertical one last.
+        Displacements that are zero, (components, N), the vertical one last.
     tied
         Nodes (N,) that share one vertical displacement.
     level
@@ -83,7 +84,7 @@ class Pattern:
     Attributes
     ----------
     place
-        Entry (171, E) of each entry of a packed element stiffness; nnz for what is fixed.
+        Entry (k (k + 1) / 2, E) of each entry of a packed element stiffness; nnz for what is fixed.
     twice
         Whether each of these entries stands for two, for itself and for its mirror; None where none does.
     indptr, indices
@@ -96,7 +97,7 @@ class Pattern:
     indices: Index
 
     def sum(self, parts: Iterable[tuple[slice, FloatArray]]) -> FloatArray:
-        """Entries (nnz,) of the upper triangle from packed element stiffness (171, part), part by part."""
+        """Entries (nnz,) of the upper triangle from packed element stiffness (k (k + 1) / 2, part), part by part."""
         out = np.zeros(len(self.indices) + 1)
         for part, packed in parts:
             place = self.place[:, part]
@@ -114,9 +115,9 @@ class Scatter:
     Attributes
     ----------
     element_unknowns
-        Unknowns of each element (18, E), radial ones first; fixed ones are n.
+        Unknowns of each element (k, E), component by component; fixed ones are n.
     vector_sum
-        Sparse (n, 18 E): element forces to forces on the unknowns.
+        Sparse (n, k E): element forces to forces on the unknowns.
     elements, numbering
         Nodes (nodes, E) of the elements, and which unknowns they have.
     wide
@@ -145,12 +146,12 @@ class Scatter:
         return self.pattern.indices
 
     def gather(self, y: FloatArray) -> FloatArray:
-        """Element values (18, E) of the unknowns (n,)."""
+        """Element values (k, E) of the unknowns (n,)."""
         out: FloatArray = np.append(y, 0.0)[self.element_unknowns]
         return out
 
     def vector(self, element: FloatArray) -> FloatArray:
-        """Forces (n,) of element forces (18, E)."""
+        """Forces (n,) of element forces (k, E)."""
         out: FloatArray = self.vector_sum @ element.ravel()
         return out
 
@@ -168,11 +169,11 @@ class Scatter:
         return float(np.finfo(np.float64).eps * np.linalg.norm(bound))
 
     def matrix(self, packed: FloatArray) -> FloatArray:
-        """Entries (nnz,) of the upper triangle from packed element stiffness (171, E)."""
+        """Entries (nnz,) of the upper triangle from packed element stiffness (k (k + 1) / 2, E)."""
         return self.pattern.sum([(slice(None), packed)])
 
     def matrix_of_parts(self, parts: Iterable[tuple[slice, FloatArray]]) -> FloatArray:
-        """The same of elements and their packed stiffness (171, part), part by part."""
+        """The same of elements and their packed stiffness (k (k + 1) / 2, part), part by part."""
         return self.pattern.sum(parts)
 
 
@@ -216,7 +217,7 @@ class NodePairs:
     low, high
         The nodes (p,) of each pair.
     number
-        Pair of each two local nodes of each element, (k (k + 1) / 2, E), in the order of `numpy.triu_indices`.
+        Pair of each two of the m local nodes of each element, (m (m + 1) / 2, E), in the order of `numpy.triu_indices`.
     has_folded
         Whether an element has a node twice.
     """

@@ -1,4 +1,7 @@
-"""The equations: residual and tangent on the unknowns, summed over elements and items."""
+"""The equations: residual and tangent on the unknowns, summed over elements and items.
+
+Shapes of elements are those of :mod:`fem.assembly.elements`: k displacements and p pressures in each.
+"""
 
 from __future__ import annotations
 
@@ -49,7 +52,7 @@ class System:
     places
         For each item the place of each of its entries in the tangent; see :func:`make_system`.
     offset
-        Prescribed displacements (18, E) in m on top of those of the unknowns, or None.
+        Prescribed displacements (k, E) in m on top of those of the unknowns, or None.
     """
 
     elements: Elements
@@ -75,16 +78,16 @@ class System:
         return any(item.follows_pressure for item in self.items)
 
     def element_displacement(self, y: FloatArray) -> FloatArray:
-        """Nodal displacements of each element (18, E) in m at the unknowns y (n,)."""
+        """Nodal displacements of each element (k, E) in m at the unknowns y (n,)."""
         u = self.scatter.gather(y)
         return u if self.offset is None else u + self.offset
 
     def rest(self) -> tuple[FloatArray, FloatArray]:
-        """Unknowns (n,) and pressure coefficients (3, E) at rest."""
+        """Unknowns (n,) and pressure coefficients (p, E) at rest."""
         return np.zeros(self.numbering.count), self.elements.rest_pressure
 
     def evaluate(self, y: FloatArray, pressure: FloatArray) -> Evaluation | None:
-        """Equations at unknowns y (n,) and pressure coefficients (3, E).
+        """Equations at unknowns y (n,) and pressure coefficients (p, E).
 
         Returns
         -------
@@ -123,15 +126,15 @@ class System:
         return ElementTangent(matrices, at.coupling, rest, elements.laws.shear_modulus, lambda: self.tangent(state))
 
     def pressure_after(self, state: Evaluation, dy: FloatArray) -> FloatArray:
-        """Pressure coefficients (3, E) after a Newton increment dy (n,) of the unknowns."""
+        """Pressure coefficients (p, E) after a Newton increment dy (n,) of the unknowns."""
         return self.elements.pressure_after(state.elements, self.scatter.gather(dy))
 
     def linear_pressure(self, rest: Evaluation, y: FloatArray) -> FloatArray:
-        """Pressure coefficients (3, E) at small displacements y (n,)."""
+        """Pressure coefficients (p, E) at small displacements y (n,)."""
         return self.elements.linear_pressure(rest.elements, self.element_displacement(y))
 
     def linear_force(self, rest: Evaluation, y: FloatArray) -> FloatArray:
-        """Nodal forces (18, E) in N of small displacements y (n,), from the moduli at rest."""
+        """Nodal forces (k, E) in N of small displacements y (n,), from the moduli at rest."""
         return self.elements.linear_force(rest.elements, self.element_displacement(y))
 
     def linear_residual(self, rest: Evaluation, y: FloatArray) -> FloatArray:
@@ -145,7 +148,7 @@ class System:
         return out
 
     def reaction(self, element_force: FloatArray, responses: tuple[ItemForces, ...] = ()) -> float:
-        """Upward force in N of the support on the specimen, from element forces (18, E) and the items' responses.
+        """Upward force in N of the support on the specimen, from element forces (k, E) and the items' responses.
 
         Internal forces in z add up to zero over all nodes, so what the support returns is minus the sum over the
         nodes that may move; an item may pull on fixed nodes as well.
@@ -185,6 +188,15 @@ class System:
     def led(self, y: FloatArray) -> System:
         """The equations after a way from rest to unknowns y (n,) that are known from another mesh."""
         return replace(self, items=tuple(item.led(y) for item in self.items)) if self.items else self
+
+    def pressed_as(
+        self, y: FloatArray, other: System, theirs: FloatArray, *, pressed: bool
+    ) -> tuple[FloatArray, System]:
+        """Unknowns y (n,) and equations with the pressure of another mesh's at its unknowns (m,), item by item."""
+        items = list(self.items)
+        for n, (mine, their) in enumerate(zip(self.items, other.items, strict=True)):
+            y, items[n] = mine.pressed_as(y, their, theirs, pressed=pressed)
+        return y, replace(self, items=tuple(items))
 
     def corrected(self, y: FloatArray, press: float) -> System | None:
         """The equations that fit a state with unknowns y (n,) and a press in N; None if these do."""

@@ -16,6 +16,7 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from typing import Self
 
 import numpy as np
 
@@ -199,23 +200,26 @@ class ToolContact(EquationItem):
         pressed, peak = self.pressed or touch.press > 0.0, max(self.peak, touch.press)
         return replace(self, friction=friction, pressed=pressed, peak=peak)
 
-    def entry(self, y: FloatArray) -> FloatArray | None:
-        """How far (m,) in m the nodes are inside the punch at unknowns y (n,), the multipliers of those that touch."""
-        gap = self._gap(y)
-        return None if gap is None else -gap.distance
-
     def led(self, y: FloatArray) -> ToolContact:
         """The contact after a way from rest to unknowns y (n,) of another mesh; whether it pressed is not told."""
         gap = self._gap(y)
         return self if gap is None else replace(self, friction=self.friction.led(gap.path))
 
-    def entered(self, y: FloatArray, entry: FloatArray, *, pressed: bool) -> tuple[FloatArray, ToolContact]:
-        """Unknowns y (n,) with multipliers that go with how far (m,) in m the nodes are inside, and the contact."""
+    def pressed_as(self, y: FloatArray, other: Self, theirs: FloatArray, *, pressed: bool) -> tuple[FloatArray, Self]:
+        """Multipliers and friction limits by how far another mesh's nodes are inside the punch.
+
+        As they are where one of those nodes is deep inside. Of a face that adheres and has pressed, nodes outside pull.
+        """
+        gap = other._gap(theirs)
+        if gap is None:
+            return y, self
+        row = np.argsort(other.place[0])
+        entry: FloatArray = np.interp(self.place[0], other.place[0][row], -gap.distance[row])
         inside, out = np.maximum(entry, 0.0), y.copy()
+        limit = self.punch.friction * self.friction.stick * inside
         if pressed and self.punch.adhesion > 0.0:
             inside = np.where(self.punch.under_face(self.place), entry, inside)
         out[self.own[len(self.place) + 1]] = inside
-        limit = self.punch.friction * self.friction.stick * np.maximum(inside, 0.0)
         return out, replace(self, pressed=pressed, friction=self.friction.with_limit(limit))
 
     @property

@@ -22,9 +22,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.arrays import FloatArray
-from fem.linear_solver.factory import do_in_threads, in_parts
 from fem.linear_solver.multigrid import AT_ONCE, CoarseSpace, ElementSum, MultigridCycle
-from fem.linear_solver.symmetric import SingularMatrixError, SymmetricSolver, flexible_gmres, require_finite
+from fem.linear_solver.symmetric import SingularMatrixError, SymmetricSolver, checked_solution, flexible_gmres
+from fem.threads import do_in_threads, in_parts
 
 TOLERANCE = 1e-7  # unbalanced over given forces; displacements are then 1e-8 to 1e-10 from those of a direct solver
 MOST_ITERATIONS = 400  # of one solve; a million unknowns take about 80
@@ -190,7 +190,7 @@ class IterativeSolver:
                 return self._all_solved(right, tolerance)
             except SingularMatrixError as error:
                 self._take_direct(str(error))
-        return require_finite(self._given_up().solve(right))
+        return checked_solution(self._given_up().solve(right))
 
     def round_off(self, u: FloatArray) -> float:
         """Norm in N of the forces that round-off leaves unbalanced at displacements (n,)."""

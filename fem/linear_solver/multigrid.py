@@ -20,8 +20,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem.arrays import FloatArray, IndexArray, IntArray
-from fem.linear_solver.factory import do_in_threads, in_parts
 from fem.linear_solver.symmetric import SingularMatrixError, SymmetricSolver
+from fem.threads import do_in_threads, in_parts
 
 DEGREE = 3  # of the Chebyshev polynomial; 2 and 4 take 5 to 10 % more products with the matrix
 DAMPED = 25.0  # largest eigenvalue over the smallest that the polynomial damps

@@ -23,7 +23,7 @@ from numpy.typing import DTypeLike, NDArray
 from pypardiso.pardiso_wrapper import PyPardisoError
 
 from fem.arrays import FloatArray, IndexArray
-from fem.linear_solver.symmetric import DiagonalScaling, SingularMatrixError, flexible_gmres, require_finite
+from fem.linear_solver.symmetric import DiagonalScaling, SingularMatrixError, checked_solution, flexible_gmres
 
 POSITIVE_DEFINITE, INDEFINITE = 2, -2
 ANALYSE, FACTORISE, SOLVE = 11, 22, 33
@@ -141,10 +141,10 @@ class PardisoSolver:
         while self.is_single:
             found = self._refined(scaled, tolerance)
             if found is not None:
-                return require_finite(factor * found)
+                return checked_solution(factor * found)
             self._take_next()
             self._refactorise()
-        return require_finite(factor * self._factors.solve(scaled))
+        return checked_solution(factor * self._factors.solve(scaled))
 
     def _refactorise(self) -> None:
         """Factorise the matrix in the first way that can."""

@@ -78,7 +78,7 @@ class DiagonalScaling:
         return out
 
 
-def require_finite(solution: FloatArray) -> FloatArray:
+def checked_solution(solution: FloatArray) -> FloatArray:
     """Return the solution.
 
     Raises

@@ -7,7 +7,7 @@ Analysis and Optimization 2, 2005, chapters 6 and 7): exact but for round-off wh
 most constants of laws do.
 
 A parameter is whatever two problems differ in. The mesh keeps its topology: its nodes move with tool, rims and layers
-(:mod:`fem.sensitivity.held_mesh`), and its outer border stays.
+(:mod:`fem.sensitivity.changed_equations`), and its outer border stays.
 
 What the equations leave unbalanced at p +- h and y +- h dy/dp is -h^2/2 K d2y/dp2: second derivatives cost one more
 solve. They want a change of 1e-5 to 1e-3 of what matters in both directions, for round-off grows with its square.

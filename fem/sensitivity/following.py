@@ -21,11 +21,11 @@ from fem.analysis.record import Record
 from fem.arrays import FloatArray
 from fem.assembly.system import System
 from fem.errors import NotDifferentiableError
-from fem.linear_solver.factory import suited_threads
 from fem.load import Load
 from fem.results.solution import Solution, StepReport
 from fem.sensitivity.changed_equations import ChangedEquations, changed_equations
 from fem.sensitivity.problem_change import DifferentiatedSolution, ProblemChange, SecondDerivative, SolutionDerivative
+from fem.threads import suited_threads
 
 MOST_CORRECTIONS = 80
 SETTLED = 1e-6  # last correction over the derivative; of round-off are 1e-9 to 1e-6

@@ -12,11 +12,12 @@ small-scale yielding round a crack (J. R. Rice, Journal of Applied Mechanics 35 
 round it: where that is |u|^2 = l r at a distance r, it is some l wide, and its energy is some mu l^2 along each length
 of the edge. Elements larger than l do not see it, so that no coarser mesh tells it, either. Where l is larger than the
 elements, what is left is what straight ones leave: some mu l h with nodes at h from the edge.
+
+How a state is found on a coarser mesh is in :mod:`fem.setup.coarser_state`.
 """
 
 from __future__ import annotations
 
-import itertools
 import math
 import time as clock
 from collections.abc import Iterator, Sequence
@@ -24,28 +25,19 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
 
-from fem.analysis.equilibrium import State
-from fem.analysis.newton import NewtonSettings
-from fem.analysis.nonlinear import equilibrium_along, equilibrium_near
-from fem.analysis.prediction import from_displacement
 from fem.errors import FemError
-from fem.interactions.tool_contact import ToolContact
-from fem.linear_solver.factory import suited_threads
 from fem.load import Load
-from fem.mesh.quads import Mesh
 from fem.problem.parts import LARGEST_EDGE
 from fem.problem.problem import Problem
 from fem.results.solution import Solution
+from fem.setup.coarser_state import MeshState, followed, found_near, has_state_nearby, kept_steps, remembers, shortened
 from fem.setup.layout import holds_edge
 from fem.setup.prepare import prepare
 
 if TYPE_CHECKING:
     from fem.analysis.prepared import Model
     from fem.arrays import FloatArray
-    from fem.assembly.system import System
-    from fem.mesh.solid import AnyMesh
 
 SINGULAR_ORDER = 1.0
 LEAST_ORDER = 0.6  # seen in deep presses of two sheets, with up to five rings of elements at the edge
@@ -54,15 +46,6 @@ AT_EDGE = 0.5
 """Derivative of the energy that the elements of a fan do not find by the logarithm of the depth, in shear moduli times
 l min(l, h) times the length of the edge; from one sheet, presses of 0.9 to 1.8 mm with a tool of 5 mm."""
 EDGES = (1.0, 2.0, 4.0)
-ELASTIC_STEPS = 3
-REMEMBERED_STEPS = 25  # of a body whose state follows from those before
-PRESSED = 1e-6
-"""Of the largest force, above which a tool is taken to touch: one that came off has what equilibrium leaves."""
-WAY, END = (
-    NewtonSettings(tolerance, misfit=misfit, beyond_limits=False) for tolerance, misfit in ((1e-3, 1e-2), (1e-6, 1e-5))
-)
-"""Limits on that way and at its end. Beside the usual ones they changed the estimate by 3e-5 of the value at most, of
-22 presses with friction, and of most by 1e-6."""
 
 
 @dataclass(frozen=True)
@@ -140,9 +123,9 @@ def estimate_mesh_error(model: Model, load: Load, solution: Solution, *, first_o
     held = holds_edge(model.problem)
     edges = EDGES[: 1 if held else 2 if first_order else 3]
     for step, follow in _judged_steps(model, reached):
-        kept = _kept_steps(model.problem, step)
-        along = [_Pressed.of(solution, n) for n in kept]
-        further = list(_coarser(model, _shortened(model.problem, load, kept), along, edges, follow=follow))
+        kept = kept_steps(model.problem, step)
+        along = [MeshState.of(solution, n) for n in kept]
+        further = list(_coarser(model, shortened(model.problem, load, kept), along, edges, follow=follow))
         if further:
             break
     else:
@@ -198,45 +181,12 @@ def _judged_steps(model: Model, reached: FloatArray) -> list[tuple[int, bool]]:
     """
     peak = int(np.abs(reached).argmax())
     half = int(np.abs(reached[: peak + 1] - 0.5 * reached[peak]).argmin())
-    steps = [peak] if _remembers(model.problem) or half == peak else [peak, half]
-    return [(step, follow) for follow in ((False, True) if _has_near(model) else (True,)) for step in steps]
-
-
-def _has_near(model: Model) -> bool:
-    """Whether a state may be sought near another one: of the way there the last step counts, and the mesh is plane."""
-    relaxes = any(layer.relaxation for layer in model.problem.layers)
-    return isinstance(model.mesh, Mesh) and model.problem.kinematics != "linear" and not relaxes
-
-
-@dataclass(frozen=True)
-class _Pressed:
-    """One state of a solution: mesh, displacements (N, 2) in m of its nodes, depth in m and force in N."""
-
-    mesh: AnyMesh
-    displacement: FloatArray
-    depth: float
-    force: float
-
-    @classmethod
-    def of(cls, solution: Solution, step: int) -> _Pressed:
-        """At a step of a solution."""
-        depth, force = float(solution.depth[step]), float(solution.force[step])
-        return cls(solution.mesh, solution.displacement[step], depth, force)
-
-    def unknowns(self, model: Model) -> FloatArray:
-        """The unknowns (n,) of a model of the same mesh, without multipliers."""
-        system = model.equilibrium.system
-        y: FloatArray = np.zeros(system.numbering.count + 1)
-        y[system.numbering.unknown], y[model.equilibrium.probe] = self.displacement.T, -self.depth
-        return y[:-1]
-
-    def value(self, control: str) -> float:
-        """What the load leaves free, m or N."""
-        return self.depth if control == "force" else self.force
+    steps = [peak] if remembers(model.problem) or half == peak else [peak, half]
+    return [(step, follow) for follow in ((False, True) if has_state_nearby(model) else (True,)) for step in steps]
 
 
 def _coarser(
-    own: Model, load: Load, along: Sequence[_Pressed], factors: Sequence[float], *, follow: bool
+    own: Model, load: Load, along: Sequence[MeshState], factors: Sequence[float], *, follow: bool
 ) -> Iterator[tuple[float, int]]:
     """What half as many elements give, and unknowns; at a stuck edge also with elements larger there by the factors.
 
@@ -254,93 +204,14 @@ def _coarser(
         if before is not own and model.unknowns == before.unknowns:
             return  # there is no fan
         first = before is own
-        found = None if first and follow else _found_near(model, load, along, before)
+        found = None if first and follow else found_near(model, load, along, before)
         if found is None and (follow or not first):
-            end = _followed(model, load, along)
+            end = followed(model, load, along)
             found = None if end is None else [end]
         if found is None:
             return
         yield found[-1].value(load.control), model.unknowns
         along, before = found, model
-
-
-def _found_near(model: Model, load: Load, along: Sequence[_Pressed], source: Model) -> list[_Pressed] | None:
-    """The end of a load history on this mesh, from a state nearby; None where the way there counts, or is needed.
-
-    Friction and adhesion remember where the step before left them: they get that step's state of the mesh of the
-    `source`, which is given back before the end.
-    """
-    is_told = not _remembers(model.problem) or len(along) >= min(2, len(load.time))
-    if not _has_near(model) or not isinstance(model.mesh, Mesh) or not is_told:
-        return None
-    near, settings = model.equilibrium, model.newton
-    *earlier, guess = _carried_over(model, model.mesh, along[-2:] if _remembers(model.problem) else along[-1:])
-    if _remembers(model.problem):
-        system, settings = near.system, END
-        if earlier:
-            system = system.led(system.met(earlier[-1].y))
-        guess, system = _touching(system, replace(guess, y=system.met(guess.y)), along, source)
-        near = replace(near, system=system)
-    with suited_threads(model.unknowns):
-        found = equilibrium_near(near, guess, load.control, float(load.value[-1]), settings)
-    return None if found is None else [_pressed_by(model, each) for each in (*earlier, found)]
-
-
-def _touching(system: System, guess: State, along: Sequence[_Pressed], source: Model) -> tuple[State, System]:
-    """Guess and equations with the pressure between tool and surface that another mesh has."""
-    y, items = guess.y, list(system.items)
-    pressed = len(along) > 1 and abs(along[-2].force) > PRESSED * max(abs(each.force) for each in along)
-    for n, (item, other) in enumerate(zip(system.items, source.equilibrium.system.items, strict=True)):
-        if isinstance(item, ToolContact) and isinstance(other, ToolContact):
-            entry = other.entry(along[-1].unknowns(source))
-            if entry is not None:
-                row = np.argsort(other.place[0])
-                inside: FloatArray = np.interp(item.place[0], other.place[0][row], entry[row])
-                y, items[n] = item.entered(y, inside, pressed=pressed)
-    return replace(guess, y=y), replace(system, items=tuple(items))
-
-
-def _followed(model: Model, load: Load, along: Sequence[_Pressed]) -> _Pressed | None:
-    """The end of a load history, followed from rest; None where it cannot be without going over limit points.
-
-    Under a tool that touches it is led by the states `along` the history. Without that the predictions from its own
-    states were as good or better: larger elements at a stuck edge or a rim hold another increment.
-    """
-    remembers = _remembers(model.problem) and model.problem.kinematics != "linear"
-    if not remembers or not isinstance(model.mesh, Mesh):
-        run = model.within_limits.run(load)
-        return _Pressed.of(run, -1) if run.complete else None
-    guides = _carried_over(model, model.mesh, along) if model.problem.touches else None
-    with suited_threads(model.unknowns):
-        found = equilibrium_along(model.equilibrium, load, guides, WAY, END)
-    return None if found is None else _pressed_by(model, found)
-
-
-def _carried_over(model: Model, mesh: Mesh, pressed: Sequence[_Pressed]) -> list[State]:
-    """States of another mesh as guesses at those of this one, linear between its nearest nodes.
-
-    Layers that slip on each other are apart, their nodes being at the same places.
-    """
-    values = np.concatenate([each.displacement for each in pressed], axis=1)
-    out: FloatArray = np.empty((len(mesh.nodes), values.shape[1]))
-    slips = [limit is not None for limit in model.problem.shear_limits]
-    part = np.array([0, *itertools.accumulate(slips)])
-    for each in range(part[-1] + 1):
-        mine, theirs = (np.unique(one.elements[:, part[one.layer] == each]) for one in (mesh, pressed[0].mesh))
-        places, known = mesh.nodes[mine], pressed[0].mesh.nodes[theirs]
-        found: FloatArray = LinearNDInterpolator(known, values[theirs])(places)
-        outside = np.isnan(found[:, 0])
-        if outside.any():
-            found[outside] = NearestNDInterpolator(known, values[theirs])(places[outside])
-        out[mine] = found
-    each_own = zip(pressed, np.split(out, len(pressed), axis=1), strict=True)
-    return [from_displacement(model.equilibrium, mesh, own, each.force, each.depth) for each, own in each_own]
-
-
-def _pressed_by(model: Model, found: State) -> _Pressed:
-    """A state of a model."""
-    nodal = model.equilibrium.system.numbering.expand(found.y).T
-    return _Pressed(model.mesh, nodal, model.equilibrium.depth(found.y), found.force)
 
 
 def _judged(value: float, coarser: list[float], stuck: bool) -> tuple[float, float]:
@@ -357,30 +228,6 @@ def _judged(value: float, coarser: list[float], stuck: bool) -> tuple[float, flo
         order = float(np.clip(np.log2((coarser[2] - coarser[1]) / first), LEAST_ORDER, SINGULAR_ORDER))
     at_edge = first / 2.0**order
     return at_edge / (2.0**order - 1.0) + (difference - at_edge) / (2.0**SMOOTH_ORDER - 1.0), order
-
-
-def _kept_steps(problem: Problem, peak: int) -> list[int]:
-    """Steps up to the peak that are followed, the one before it among them; without a memory the peak alone."""
-    if not _remembers(problem):
-        return [peak]
-    kept = np.linspace(-1, peak, min(REMEMBERED_STEPS, peak + 1) + 1)[1:].round().astype(np.int64)
-    return sorted({*kept.tolist(), max(0, peak - 1)})
-
-
-def _shortened(problem: Problem, load: Load, kept: list[int]) -> Load:
-    """The history of the steps that are kept; straight to the last, in few steps, where only that counts."""
-    if _remembers(problem):
-        return Load(load.control, load.time[kept], load.value[kept])
-    count = min(ELASTIC_STEPS, kept[-1] + 1)
-    part: FloatArray = np.linspace(0.0, 1.0, count + 1)[1:]
-    return Load(load.control, part, load.value[kept[-1]] * part)
-
-
-def _remembers(problem: Problem) -> bool:
-    """Whether a state depends on those before it."""
-    slides = problem.support.clamp_shear_limit is not None or any(limit is not None for limit in problem.shear_limits)
-    grips = problem.touches and (problem.tool.contact == "rigid_frictional" or problem.tool.adhesion_force > 0.0)
-    return slides or grips or any(layer.relaxation for layer in problem.layers)
 
 
 def _is_stuck(problem: Problem) -> bool:

@@ -49,7 +49,7 @@ class Constraint:
 
 
 @dataclass(frozen=True)
-class Touch:
+class ContactForces:
     """What a contact does at one state.
 
     Attributes
@@ -74,7 +74,7 @@ class Contact(Protocol):
     def count(self) -> int:
         """Nodes n that can touch."""
 
-    def touch(self, u: FloatArray, share: float, multiplier: FloatArray) -> Touch:
+    def touch(self, u: FloatArray, share: float, multiplier: FloatArray) -> ContactForces:
         """What it does at displacements (3, N) in m and the share of the load, with multipliers (n,) in Pa."""
 
     def settled(self, multiplier: FloatArray, pressure: FloatArray, times: int) -> bool:
@@ -225,7 +225,7 @@ class ConstrainedBody:
             state = replace(state, multipliers=tuple(m if stays else touch.pressure for stays, m, touch in told))
         raise ArithmeticError("the multipliers of a contact do not settle: its penalty is too small")
 
-    def _equilibrium(self, state: _State, share: float) -> tuple[_State, tuple[Touch, ...]]:
+    def _equilibrium(self, state: _State, share: float) -> tuple[_State, tuple[ContactForces, ...]]:
         """Displacements and pressures in equilibrium with these multipliers, by Newton; the supports move first."""
         (chosen, goal), load = self._reduced, share * self.force.ravel()
         y, pressure, jump = state.y, state.pressure, (share - state.share) * goal
@@ -245,7 +245,7 @@ class ConstrainedBody:
             jump = np.zeros_like(jump)
         raise ArithmeticError("no equilibrium is found: the steps are too long, or the body is not held")
 
-    def _touches(self, y: FloatArray, share: float, multipliers: tuple[FloatArray, ...]) -> tuple[Touch, ...]:
+    def _touches(self, y: FloatArray, share: float, multipliers: tuple[FloatArray, ...]) -> tuple[ContactForces, ...]:
         u = y.reshape(3, -1)
         return tuple(one.touch(u, share, m) for one, m in zip(self.contacts, multipliers, strict=True))
 

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from fem.arrays import BoolArray, FloatArray, IntArray
-from fem.verification.constrained_body import Touch
+from fem.verification.constrained_body import ContactForces
 
 
 class RigidSurface(Protocol):
@@ -123,7 +123,7 @@ class RigidContact:
         """The same without penetration, to six digits of the pressures."""
         return replace(self, augmentation=Augmentation(1e-6))
 
-    def touch(self, u: FloatArray, share: float, multiplier: FloatArray) -> Touch:
+    def touch(self, u: FloatArray, share: float, multiplier: FloatArray) -> ContactForces:
         """See :class:`fem.verification.constrained_body.Contact`."""
         gap, normal, slope = self.surface.gap(self.places + u[:, self.nodes].T, share)
         met = np.isfinite(gap)
@@ -136,7 +136,7 @@ class RigidContact:
         )
         row, column = np.broadcast_arrays(rows[:, :, None], rows[:, None, :])
         stiffness = sp.csr_array((blocks.ravel(), (row.ravel(), column.ravel())), shape=(u.size, u.size))
-        return Touch(force, stiffness, pressure)
+        return ContactForces(force, stiffness, pressure)
 
     def settled(self, multiplier: FloatArray, pressure: FloatArray, times: int) -> bool:
         """See :class:`fem.verification.constrained_body.Contact`."""

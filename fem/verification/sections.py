@@ -87,13 +87,13 @@ def nearly_incompressible() -> tuple[Quantity, ...]:
     return (Quantity("", 1e3 * FINITE_REFERENCE, 1e3 * found, "mm", FINITE_PERCENT, body.numbering.count),)
 
 
-def panel(material: Material, shear: float, elements: int = ELEMENTS) -> tuple[Body, FloatArray]:
+def panel(material: Material, shear: float) -> tuple[Body, FloatArray]:
     """The panel and the load of a shear traction in Pa on its right side."""
 
     def place(s: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
         return COOK_RADIUS + WIDTH * s, RISE * s + t * (LEFT + (RIGHT - LEFT) * s)
 
-    line = np.linspace(0.0, 1.0, elements + 1)
+    line = np.linspace(0.0, 1.0, ELEMENTS + 1)
     mesh = mapped_mesh(line, line, place)
     clamped = mesh.nodes[:, 0] == mesh.nodes[:, 0].min()
     body = Body(mesh, material, np.stack((clamped, clamped)), free_of_ties(mesh))

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 
 Limits = tuple[float, float] | None
+LOAD_STEP = "load step"
 
 
 def max_deformation(
@@ -39,7 +40,6 @@ def max_deformation(
     fem_mm: Any,
     wave_mm: Any = None,
     percent_error: Any = None,
-    x_label: str = "load step",
     pair: Pair = DEFAULT,
 ) -> Figure:
     """Draw the deflection of each layer's top face on the tool axis, a panel a layer.
@@ -49,14 +49,12 @@ def max_deformation(
     layer_names
         Names from the surface down, L of them.
     x
-        Abscissa, shape (n,): the load step, or the force in N.
+        Load steps, shape (n,).
     fem_mm, wave_mm
         Deflection in mm, press positive, shape (n, L), NaN where a model has no value (it stopped there);
         `wave_mm` is None where the wave model does not cover the case.
     percent_error
         Error of wave against FEM in percent, shape (n, L), NaN where it has no meaning; None leaves it out.
-    x_label
-        What `x` is, with its unit.
     pair
         What the two models are called.
 
@@ -74,7 +72,7 @@ def max_deformation(
     error_scale = None if error is None else shared_limits(list(error.T))
     errors = [(layer_of(error, place), error_scale) for place in range(len(layer_names))]
     layers = [
-        _LoadPanel(name, place, x, fem[:, place], layer_of(wave, place), scale, pair, x_label, *errors[place])
+        _LoadPanel(name, place, x, fem[:, place], layer_of(wave, place), scale, pair, *errors[place])
         for place, name in enumerate(layer_names)
     ]
     height = 290 if error is None else 380
@@ -170,7 +168,6 @@ class _LayerPanel:
 class _LoadPanel(_LayerPanel):
     """A layer's top face over the load history, the error below."""
 
-    x_label: str
     error: Floats | None
     error_scale: Limits
 
@@ -183,7 +180,7 @@ class _LoadPanel(_LayerPanel):
             self._paint_error(bottom, self.error)
         self.paint_models(top)
         top.set_ylabel("deflection (mm)")
-        bottom.set_xlabel(self.x_label)
+        bottom.set_xlabel(LOAD_STEP)
         self.name_panel(top)
 
     def _paint_error(self, axes: Axes, error: Floats) -> None:
@@ -197,7 +194,7 @@ class _LoadPanel(_LayerPanel):
         axes = [LiveAxes("deflection (mm)", model_lines(self.pair, self.x, self.fem, self.wave))]
         if self.error is not None:
             axes.append(LiveAxes("error (%)", (LiveLine("error, %", self.x, self.error, "ink"),)))
-        return LivePlot(self.x_label, axes)
+        return LivePlot(LOAD_STEP, axes)
 
     def words(self) -> str:
         """Say what the panel shows."""

@@ -23,7 +23,7 @@ from reports.figures.style import (
     legend_above,
     zero_line,
 )
-from reports.formatting import format_number, shortened
+from reports.formatting import counted, format_number, shortened
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -185,7 +185,7 @@ class _Condition:
         self._paint_forces(top, models)
         top.set_ylabel("force (N)")
         bottom.set_xlabel("depth (mm)")
-        count = f"{len(self.trials)} {'synthetic ' if self.synthetic else ''}trial{'s' * (len(self.trials) > 1)}"
+        count = counted(len(self.trials), "synthetic trial" if self.synthetic else "trial")
         name = shortened(self.name, 36 if self.place is None else 14)
         heading(top, f"{name}, {count}", self.place, room=24)
         legend_above(top, 3 if self.place is not None else 4)

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 import fem
-from fem.sensitivity.held_mesh import moved_mesh
+from fem.sensitivity.changed_equations import moved_mesh
 from tests.performance.peers import calculix
 from tests.performance.peers.case import LAYERS, POISSON, Case
 from tests.performance.peers.cases import BORDER, TOOL_RADIUS, axisymmetric_case

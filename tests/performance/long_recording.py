@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from bench_hw.trial_file import open_trial
-from bench_hw.trial_file.records import DepthRecord, ForceRecord, FrameRecord, TrialHeader
+from bench_hw.trial_file.records import ForceRecord, FrameRecord, PositionRecord, TrialHeader
 
 FORCE_RATE, DEPTHS, FRAMES = 1000, 100, 30
 PICTURE = 52_000
@@ -36,7 +36,7 @@ def main(minutes: float) -> int:
                     force = (0.01 * k, 0.0, -1.0 - 1e-3 * k)
                     writer.write_force(ForceRecord(at, number, number, 0, force, (0.0, 0.0, 0.0), None))
                     if k % (FORCE_RATE // DEPTHS) == 0:
-                        writer.write_depth(DepthRecord(at, 1e-6 * k, k, 1e-3))
+                        writer.write_position(PositionRecord(at, 1e-6 * k, k, 1e-3))
                 for k in range(FRAMES):
                     frame = FrameRecord(second + 0.999 + 1e-5 * k, second * FRAMES + k, pictures[k], "jpeg")
                     writer.write_frame(frame)

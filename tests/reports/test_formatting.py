@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reports.formatting import decimal_padding, format_cell, format_number, is_exact, is_number, shortened
+from reports.formatting import counted, decimal_padding, format_cell, format_number, is_exact, is_number, shortened
 
 
 @pytest.mark.parametrize(
@@ -73,6 +73,11 @@ def test_numbers_are_told_from_words():
 
 def test_exact_is_what_the_digits_hold():
     assert [is_exact(value, 3) for value in (0.1, 5, 1.234, math.pi)] == [True, True, False, False]
+
+
+@pytest.mark.parametrize(("number", "words"), [(0, "0 points"), (1, "1 point"), (2, "2 points")])
+def test_a_count_agrees_with_what_is_counted(number, words):
+    assert counted(number, "point") == words
 
 
 @given(st.text(max_size=30), st.integers(1, 30))

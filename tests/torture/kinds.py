@@ -208,13 +208,13 @@ def _of_presses(folder: Path) -> list[Kind]:
 def _of_bench(folder: Path) -> list[Kind]:
     """Rigs, protocols, cameras, recordings, pictures."""
     from bench_hw.configuration import read_toml
-    from bench_hw.motion.protocol_file import shipped
+    from bench_hw.motion.protocol_file import shipped_protocols
     from bench_hw.rig.rig_file import load_rig, shipped_rigs
     from bench_hw.trial_file import read_trial_mcap
 
     scene = folder.parent
     rig = read_toml(shipped_rigs()["simulated"])[0]
-    protocol = read_toml(shipped()["paper_press"])[0]
+    protocol = read_toml(shipped_protocols()["paper_press"])[0]
     data = (scene / "trial.mcap").read_bytes()
     picture = (scene / "pictures" / "frame_003.png").read_bytes()
     film = ("track", str(folder / "film"), "--camera", str(scene / "camera.toml"), "--out", "out.csv")

@@ -1,4 +1,4 @@
-"""ContactRelaxation memory of each contact while it is held, and how it comes back when the tool is gone.
+"""Relaxation of each contact while it is held, and how the surface comes back when the tool is gone.
 
 Held, the force is f = e - sum_j y_j + eta e' with tau_j y_j' = g_j e - y_j, exact for an elastic force e linear in each
 frame. Free, f = 0: without damping the surface springs to e = sum_j y_j at once and creeps on from there.
@@ -20,7 +20,7 @@ class ContactRelaxation:
     contacts
         How many.
     series
-        ContactRelaxation memory of the tissue.
+        Relaxation of the tissue.
     retardation
         Kelvin-Voigt time, s.
 

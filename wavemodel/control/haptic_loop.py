@@ -69,7 +69,7 @@ class SimulatedDevice:
     Raises
     ------
     WaveError
-        If a value is not positive.
+        If time, mass or stiffness is not positive.
     """
 
     def __init__(

@@ -64,14 +64,9 @@ class OscillatorStep:
         np.add(moved, shift + change, out=u)
 
 
-def oscillator_step(frequency: FloatArray, damping: Damping, duration: float) -> OscillatorStep:
-    """Coefficients for angular frequencies (N,) in rad/s, above zero, and a duration (s) above zero."""
-    return pair_step(frequency, damping.mass_rate + damping.stiffness_time * frequency**2, duration)
-
-
-def pair_step(frequency: FloatArray, rate: FloatArray, duration: float) -> OscillatorStep:
-    """The same for any rates c (N,), 1/s."""
-    half = 0.5 * rate
+def oscillator_step(frequency: FloatArray, drag: FloatArray, duration: float) -> OscillatorStep:
+    """Coefficients for angular frequencies w (N,) in rad/s and a duration in s, above zero, and rates c (N,) in 1/s."""
+    half = 0.5 * drag
     inner = (frequency - half) * (frequency + half)
     cosine, sine = np.empty_like(frequency), np.empty_like(frequency)
     under = inner > 0.0
@@ -83,7 +78,7 @@ def pair_step(frequency: FloatArray, rate: FloatArray, duration: float) -> Oscil
         stay=cosine + lean * sine,
         swing=sine,
         settle=cosine - lean * sine,
-        drag=rate / (frequency**2 * duration),
+        drag=drag / (frequency**2 * duration),
         pace=1.0 / (frequency * duration),
     )
 
@@ -113,7 +108,7 @@ class Poles:
     Attributes
     ----------
     frequency, drag
-        (N,) of the pair: w and c of `pair_step`.
+        (N,) of the pair: w and c of `oscillator_step`.
     position, speed
         (N,) weights of its position and of its speed over w.
     rate, weight
@@ -131,7 +126,7 @@ class Poles:
 def poles(frequency: FloatArray, damping: Damping, series: Prony) -> Poles:
     """Split oscillators of natural frequencies (N,), rad/s."""
     strength, rate = series.ordered
-    drag = damping.mass_rate + damping.stiffness_time * frequency**2
+    drag = damping.drag(frequency)
     found = _real_rates(frequency, drag, strength, rate)
     apart = rate[:, None] - found
     pair_drag = drag + apart.sum(axis=0)
@@ -186,7 +181,7 @@ class OscillatorMotion:
     def prepare(self, duration: float) -> None:
         """Coefficients of steps of `duration`, s."""
         p = self._poles
-        self._step: OscillatorStep = pair_step(p.frequency, p.drag, duration)
+        self._step: OscillatorStep = oscillator_step(p.frequency, p.drag, duration)
         self._lag: LagStep = lag_step(p.rate * duration)
 
     def advance(self, before: float, change: float) -> None:

@@ -95,3 +95,7 @@ class Damping:
     def __post_init__(self) -> None:
         require_not_negative("damping mass_rate", self.mass_rate, "1/s")
         require_not_negative("damping stiffness_time", self.stiffness_time, "s")
+
+    def drag(self, frequency: FloatArray) -> FloatArray:
+        """Rates c (N,) in 1/s of q'' + c q' + w^2 q = f for natural frequencies w (N,) in rad/s."""
+        return np.asarray(self.mass_rate + self.stiffness_time * frequency**2)

@@ -203,8 +203,8 @@ def automatic_window(laminate: Laminate, radius: float) -> float:
     nearest = PROFILE_RADII * radius
     distance = np.linspace(nearest, nearest + REACH * laminate.height, SAMPLES)
     field = np.abs(far_field(laminate, radius, distance)).max(axis=0)
-    at_border = _last_above(BORDER_COST, distance, field)
-    on_axis = 0.5 * _last_above(BORDER_COST / 4.0, distance, field)
+    at_border = _settled_below(BORDER_COST, distance, field)
+    on_axis = 0.5 * _settled_below(BORDER_COST / 4.0, distance, field)
     return 2.0 * max(at_border, on_axis)
 
 
@@ -215,7 +215,7 @@ def border_cost(laminate: Laminate, radius: float, side: float) -> float:
     return float(max(field.max(), 4.0 * field[distance >= side].max(initial=0.0)))
 
 
-def _last_above(level: float, distance: FloatArray, field: FloatArray) -> float:
+def _settled_below(level: float, distance: FloatArray, field: FloatArray) -> float:
     """First distance from which on the field stays below the level."""
     above = np.flatnonzero(field > level)
     return float(distance[min(above[-1] + 1, distance.size - 1)] if above.size else distance[0])

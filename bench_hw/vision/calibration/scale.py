@@ -31,15 +31,29 @@ LARGEST_TILT = np.radians(2.0)
 
 
 @dataclass(frozen=True, slots=True)
-class RulerScale:
-    """What a ruler tells: m per undistorted pixel, its standard deviation, and where it lies (undistorted pixels)."""
+class PlaneScale:
+    """The scale of the marker plane, from one picture.
+
+    Parameters
+    ----------
+    scale, scale_std : float
+        m per undistorted pixel and its standard deviation.
+    middle : tuple of 2 floats
+        Where the middle of the board or ruler is seen, undistorted pixels.
+    kind : str
+        `board` or `ruler`.
+    warnings : tuple of str
+        A sentence each.
+    """
 
     scale: float
     scale_std: float
     middle: tuple[float, float]
+    kind: str
+    warnings: tuple[str, ...] = ()
 
 
-def measure_ruler(grey: NDArray[np.uint8], camera: Camera, mark: float) -> RulerScale | None:
+def measure_ruler(grey: NDArray[np.uint8], camera: Camera, mark: float) -> PlaneScale | None:
     """Measure the scale from the marks of a ruler.
 
     Parameters
@@ -53,7 +67,7 @@ def measure_ruler(grey: NDArray[np.uint8], camera: Camera, mark: float) -> Ruler
 
     Returns
     -------
-    RulerScale or None
+    PlaneScale or None
         None where nothing repeats clearly enough to be a ruler.
     """
     marks = _marks(grey, camera)
@@ -65,7 +79,8 @@ def measure_ruler(grey: NDArray[np.uint8], camera: Camera, mark: float) -> Ruler
         wave = wave + change
     scale = mark * float(np.hypot(*wave))
     scale_std = float(np.hypot(mark * std, _SYSTEMATIC * scale))
-    return RulerScale(scale, scale_std, middle) if scale_std < _LARGEST_STD * scale else None
+    x, y = camera.to_pixels((np.array(middle) - camera.centre) / camera.focal[0])  # the marks' pixels are square
+    return PlaneScale(scale, scale_std, (float(x), float(y)), "ruler") if scale_std < _LARGEST_STD * scale else None
 
 
 def _marks(grey: NDArray[np.uint8], camera: Camera) -> FloatArray:
@@ -144,29 +159,6 @@ def _phase_slope(marks: FloatArray, wave: FloatArray) -> tuple[FloatArray, float
     return wave * period * slope / (2.0 * np.pi), std, middle
 
 
-@dataclass(frozen=True, slots=True)
-class PlaneScale:
-    """The scale of the marker plane, from one picture.
-
-    Parameters
-    ----------
-    scale, scale_std : float
-        m per undistorted pixel and its standard deviation.
-    middle : tuple of 2 floats
-        Where the middle of the board or ruler is seen, undistorted pixels.
-    kind : str
-        `board` or `ruler`.
-    warnings : tuple of str
-        A sentence each.
-    """
-
-    scale: float
-    scale_std: float
-    middle: tuple[float, float]
-    kind: str
-    warnings: tuple[str, ...] = ()
-
-
 def measure_plane(path: Path, board: Board, camera: Camera, mark: float) -> PlaneScale:
     """Measure the scale in a picture of the marker plane.
 
@@ -201,7 +193,7 @@ def measure_plane(path: Path, board: Board, camera: Camera, mark: float) -> Plan
             f"{path}: neither a board with {board} inner corners ({view.reason}) nor a ruler; "
             "allowed: one of the two, sharp and lying in the marker plane"
         )
-    return PlaneScale(found.scale, found.scale_std, found.middle, "ruler")
+    return found
 
 
 def _of_board(seen: FloatArray, board: Board, camera: Camera) -> PlaneScale:

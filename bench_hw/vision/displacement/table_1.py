@@ -67,9 +67,7 @@ class PublishedVariables:
     amplitude_as_printed: float
 
 
-def published_variables(
-    moved: FloatArray, radius: FloatArray, depth: FloatArray, c2: float = PAPER_C2
-) -> PublishedVariables:
+def published_variables(moved: FloatArray, radius: FloatArray, depth: FloatArray) -> PublishedVariables:
     """Compute Table 1 from the frames with deformation.
 
     Parameters
@@ -80,8 +78,6 @@ def published_variables(
         Of the circle through the nine inner markers, m.
     depth : ndarray, shape (n,)
         Of the tool, m.
-    c2 : float
-        T / rho as the article has it, m^2/s^2.
 
     Raises
     ------
@@ -98,7 +94,7 @@ def published_variables(
     frame = largest_sample(np.arange(len(radius), dtype=np.float64), radius).frame
     with np.errstate(divide="ignore", invalid="ignore"):
         d = float(np.float64(depth[frame]) * 1e3 / (_value(o, frame) * _value(p, frame)))
-    return evaluate(o, p, d, 2e3 * float(radius[frame]), c2)
+    return evaluate(o, p, d, 2e3 * float(radius[frame]))
 
 
 def evaluate(o: Coefficients, p: Coefficients, d: float, a: float, c2: float = PAPER_C2) -> PublishedVariables:

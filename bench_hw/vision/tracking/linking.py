@@ -127,8 +127,8 @@ def rigid_jump(last: FloatArray, spots: FloatArray, spacing: float) -> FloatArra
     Returns
     -------
     ndarray, shape (2,), or None
-        The shift, at least half the spacing, if it explains more than half of the markers and more of them than
-        any shorter one does; None otherwise.
+        The shift, beyond `GATE` of the spacing, if it explains `_LEAST_SHARE` of the markers or more, and more of
+        them than any shorter one does; None otherwise.
     """
     if len(spots) < _LEAST_SHARE * len(last):
         return None

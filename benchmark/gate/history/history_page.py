@@ -10,7 +10,6 @@ from typing import Any
 from benchmark.errors import InputError
 from benchmark.gate.history.history_file import HistoryEntry, read_history
 from benchmark.gate.history.trend import Trend, trend_figure, trends, value_trends
-from benchmark.gate.verdict import counted
 from benchmark.runs.output.destination import claimed, destination, file_name
 from benchmark.runs.output.document import describe_environment
 from reports import (
@@ -28,6 +27,7 @@ from reports import (
     write_page,
     write_whole,
 )
+from reports.formatting import counted
 
 HOW = (
     "A step is where a partition of the checks into levels, with a penalty for each further one, costs least (optimal "

@@ -12,6 +12,7 @@ from benchmark.gate.history.history_file import HistoryEntry
 from benchmark.gate.history.steps import LevelStep, level_steps
 from reports import Figure, Panel
 from reports.figures.style import INK, MUTED, SMALL, draw, heading
+from reports.formatting import counted
 from reports.palette import PALETTE
 
 if TYPE_CHECKING:
@@ -208,6 +209,6 @@ def _words(trend: Trend) -> str:
     ratios = [point.ratio for point in trend.points]
     failed = sum(point.failed for point in trend.points)
     return (
-        f"{trend.quantity} over {len(ratios)} checks, relative to the first: {min(ratios):.3g} to {max(ratios):.3g}, "
-        f"last {ratios[-1]:.3g}; {failed} called slower; {len(trend.steps)} steps."
+        f"{trend.quantity} over {counted(len(ratios), 'check')}, relative to the first: {min(ratios):.3g} to "
+        f"{max(ratios):.3g}, last {ratios[-1]:.3g}; {failed} called slower; {counted(len(trend.steps), 'step')}."
     )

@@ -15,7 +15,7 @@ from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
 from benchmark.files.sessions.session_folder import result_of
 from benchmark.models import Array, ModelResult, RunFailure, scenario_drive
-from benchmark.runs.finished.saved_tables import MM, SavedTables, Table, saved_trials
+from benchmark.runs.finished.saved_tables import FROM_MM, SavedTables, Table, saved_trials
 from benchmark.runs.output.document import SCHEMA
 from benchmark.runs.record import RunRecord, compare_layers
 from benchmark.runs.report.run_page import REFINEMENT, VALIDATION
@@ -149,7 +149,7 @@ def _repeats(timing: Table, key: str) -> tuple[Seconds, ...]:
 
 def _result(model: str, scenario: Scenario, told: dict[str, Any], tables: SavedTables) -> ModelResult:
     drive, names = scenario_drive(scenario), scenario.tissue.layer_names
-    top = MM * tables.read("max_deformation.csv").numbers(f"{model}_mm").reshape(drive.time.size, len(names))
+    top = FROM_MM * tables.read("max_deformation.csv").numbers(f"{model}_mm").reshape(drive.time.size, len(names))
     curve = tables.read("force_depth.csv")
     reached = int(np.isfinite(top).all(axis=1).sum())
     radii, profile = _profile(model, len(names), tables.read("profile.csv"))
@@ -158,7 +158,7 @@ def _result(model: str, scenario: Scenario, told: dict[str, Any], tables: SavedT
         layers=names,
         time=drive.time[:reached],
         force=curve.numbers(f"{model}_force_N")[:reached],
-        depth=MM * curve.numbers(f"{model}_depth_mm")[:reached],
+        depth=FROM_MM * curve.numbers(f"{model}_depth_mm")[:reached],
         top_deflection=top[:reached],
         profile_radii=radii,
         profile=profile,
@@ -171,8 +171,8 @@ def _result(model: str, scenario: Scenario, told: dict[str, Any], tables: SavedT
 
 def _profile(model: str, layers: int, table: Table) -> tuple[Array, Array]:
     """Radii (m,) and deflections (L, m), m."""
-    deflection = MM * table.numbers(f"{model}_mm").reshape(layers, -1)
-    return MM * table.numbers("r_mm")[: deflection.shape[1]], deflection
+    deflection = FROM_MM * table.numbers(f"{model}_mm").reshape(layers, -1)
+    return FROM_MM * table.numbers("r_mm")[: deflection.shape[1]], deflection
 
 
 def _failure(text: str | None) -> RunFailure | None:

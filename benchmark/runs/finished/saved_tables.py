@@ -19,7 +19,7 @@ from benchmark.runs.report.trials_section import TrialsPart
 from benchmark.runs.trials.measured import TrialPrediction
 from reports.tables import read_cell
 
-MM = 1e-3
+FROM_MM = 1e-3
 """A column in mm times this is in m."""
 
 
@@ -139,7 +139,7 @@ def _predictions(table: Table) -> tuple[TrialPrediction, ...]:
                 trial=key[0],
                 condition=key[1],
                 time=time[rows],
-                depth=MM * depth[rows],
+                depth=FROM_MM * depth[rows],
                 force=force[rows],
                 fem_force=fem[rows],
                 wave_force=wave[rows] if answered else None,

@@ -16,7 +16,7 @@ import numpy as np
 
 from benchmark.models import Array
 from benchmark.runs.report.values import MM
-from benchmark.runs.trials.film_tables import Motion
+from benchmark.runs.trials.film_tables import MarkerMotion
 from benchmark.runs.trials.measured import FilmedSession, MeasuredComparison
 from reports import (
     Block,
@@ -142,7 +142,7 @@ def _read_motion(trial: str, path: Path) -> MotionPart:
     return MotionPart(trial, time, depth, nine, ring, table[:, leading:].reshape(len(table), -1, 2))
 
 
-def _motion_part(motion: Motion, comparison: MeasuredComparison) -> MotionPart:
+def _motion_part(motion: MarkerMotion, comparison: MeasuredComparison) -> MotionPart:
     table = next(trial.table for trial in comparison.session.trials if trial.name == motion.trial)
     depth = MM * np.interp(motion.time, table.time, table.depth)
     nine, ring = MM * motion.radius_nine, MM * motion.radius_ring

@@ -11,7 +11,7 @@ from benchmark.runs.record import RunRecord
 from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.side_by_side import Speedup
 from reports.figures.style import Pair
-from reports.formatting import format_number
+from reports.formatting import counted, format_number
 
 MM = 1e3
 
@@ -95,7 +95,7 @@ def fit_headline(fit: SessionFit) -> str:
             f"{found.value:.4g} times the value before the fit"
         )
     return (
-        f"fitted to {count} trial{'s' if count > 1 else ''}: {what}; the elastic law leaves {rms:.2g} % of the "
+        f"fitted to {counted(count, 'trial')}: {what}; the elastic law leaves {rms:.2g} % of the "
         "peak force (median over trials of the root mean square)"
     )
 

@@ -26,7 +26,7 @@ AXES = ("x", "y")
 
 
 @dataclass(frozen=True)
-class Motion:
+class MarkerMotion:
     """The markers of one trial.
 
     Attributes
@@ -59,7 +59,7 @@ class Motion:
     window: slice
 
 
-def motion_of(trial: str, film: Film, camera: Camera) -> Motion:
+def _marker_motion(trial: str, film: Film, camera: Camera) -> MarkerMotion:
     """Work out the motion of a trial's markers."""
     seen = np.isfinite(film.places).all(axis=2)
     rest = film.places[seen.argmax(axis=0), np.arange(film.places.shape[1])]
@@ -72,10 +72,10 @@ def motion_of(trial: str, film: Film, camera: Camera) -> Motion:
         empty = np.full(len(film.time), np.nan)
         block, radii, centre = None, (empty, empty), np.full((len(film.time), 2), np.nan)
     size = np.asarray(np.nanmean(np.hypot(moved[..., 0], moved[..., 1]), axis=1))
-    return Motion(trial, film.time, moved, rest, block, *radii, centre, deformation_window(size))
+    return MarkerMotion(trial, film.time, moved, rest, block, *radii, centre, deformation_window(size))
 
 
-def marker_fits(motions: Sequence[Motion]) -> dict[str, Any]:
+def marker_fits(motions: Sequence[MarkerMotion]) -> dict[str, Any]:
     """Columns of `marker_fits.csv`: displacement in mm = a t^2 + b t + c over the frames with deformation, t in s."""
     names = ("trial", "marker", "axis", "a", "b", "c", "r2")
     rows: list[tuple[Any, ...]] = []
@@ -88,7 +88,7 @@ def marker_fits(motions: Sequence[Motion]) -> dict[str, Any]:
     return {name: [row[place] for row in rows] for place, name in enumerate(names)}
 
 
-def circles(motions: Sequence[Motion]) -> dict[str, Any]:
+def circles(motions: Sequence[MarkerMotion]) -> dict[str, Any]:
     """Columns of `circle.csv`: circles through the nine markers and through the ring of eight, whose middle is x, y."""
     whole = [motion for motion in motions if motion.block is not None]
 
@@ -105,6 +105,6 @@ def circles(motions: Sequence[Motion]) -> dict[str, Any]:
     }
 
 
-def motions_of(films: Mapping[tuple[str, str], Film], camera: Camera) -> tuple[Motion, ...]:
+def motions_of(films: Mapping[tuple[str, str], Film], camera: Camera) -> tuple[MarkerMotion, ...]:
     """The motion of every film, in their order."""
-    return tuple(motion_of(name, film, camera) for (_, name), film in films.items())
+    return tuple(_marker_motion(name, film, camera) for (_, name), film in films.items())

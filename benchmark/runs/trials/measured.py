@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from benchmark.files import Session
 from benchmark.identification import SessionFit, SheetFit
 from benchmark.models import Array
-from benchmark.runs.trials.film_tables import Motion
+from benchmark.runs.trials.film_tables import MarkerMotion
 from benchmark.runs.trials.filming import Tracked
 
 
@@ -42,7 +42,7 @@ class TrialPrediction:
 class FilmedSession:
     """The markers of a session: their motion, what was tracked in this run, and the fit with them (None without)."""
 
-    motions: tuple[Motion, ...]
+    motions: tuple[MarkerMotion, ...]
     tracked: tuple[Tracked, ...]
     sheet: SheetFit | None
 

@@ -13,7 +13,7 @@ from bench_hw.vision.displacement import maximum_radius, moving_average, publish
 from benchmark.files import Session, Trial
 from benchmark.identification import FittedParameter
 from benchmark.identification.pooling import counted_trials, mean_interval
-from benchmark.runs.trials.film_tables import Motion
+from benchmark.runs.trials.film_tables import MarkerMotion
 
 OURS = "Table 1 with dimensions that are right, mean over {} of condition {}"
 THEIRS = "Table 1 in the article's own way, units mixed as there, mean over {} of condition {}"
@@ -22,11 +22,13 @@ CANCEL = ": markers on opposite sides cancel in the averages"
 Values = dict[str, tuple[float, str]]
 
 
-Placed = Callable[[Motion, np.ndarray], np.ndarray]
+Placed = Callable[[MarkerMotion, np.ndarray], np.ndarray]
 """From a motion and the depths (f,) at its frames to the markers' true displacements, (f, m, 2) m."""
 
 
-def table_one(session: Session, motions: Sequence[Motion], placed: Mapping[str, Placed]) -> tuple[FittedParameter, ...]:
+def table_one(
+    session: Session, motions: Sequence[MarkerMotion], placed: Mapping[str, Placed]
+) -> tuple[FittedParameter, ...]:
     """Return rows of Table 1 for the first condition with markers; none where no trial gives one.
 
     Parameters
@@ -71,11 +73,11 @@ def _rows(values: Sequence[Mapping[str, tuple[float, str]]], source: str, condit
     return rows
 
 
-def _depth(trial: Trial, motion: Motion) -> np.ndarray:
+def _depth(trial: Trial, motion: MarkerMotion) -> np.ndarray:
     return np.interp(motion.time, trial.table.time, trial.table.depth)
 
 
-def _published(trial: Trial, motion: Motion) -> Values:
+def _published(trial: Trial, motion: MarkerMotion) -> Values:
     window = motion.window
     moved = moving_average(motion.moved, mode="causal")[window]
     found = published_variables(moved, motion.radius_nine[window], _depth(trial, motion)[window])
@@ -94,7 +96,7 @@ def _published(trial: Trial, motion: Motion) -> Values:
     return values
 
 
-def _sound(session: Session, trial: Trial, motion: Motion, placed: Placed) -> Values:
+def _sound(session: Session, trial: Trial, motion: MarkerMotion, placed: Placed) -> Values:
     """Sides of the window from the markers' motion; tension of a membrane that takes the peak force at its depth."""
     if motion.block is None:
         return {}

@@ -220,7 +220,7 @@ def test_a_full_disk_is_told_with_the_trial_it_ended(record, session, monkeypatc
 
     from bench_hw.trial_file.writer import McapTrialWriter
 
-    monkeypatch.setattr(McapTrialWriter, "write_depth", refuse)
+    monkeypatch.setattr(McapTrialWriter, "write_position", refuse)
     monkeypatch.setattr("bench_hw.capture.session_folder.write_text", full)
     fault = record().fault
     assert (fault.kind, fault.retracted) == ("disk", True)
@@ -269,8 +269,8 @@ def test_a_disk_that_refuses(record, session, monkeypatch):
 
     from bench_hw.trial_file.writer import McapTrialWriter
 
-    original = McapTrialWriter.write_depth
-    monkeypatch.setattr(McapTrialWriter, "write_depth", refuse)
+    original = McapTrialWriter.write_position
+    monkeypatch.setattr(McapTrialWriter, "write_position", refuse)
     outcome = record()
     assert outcome.fault.kind == "disk"
     assert outcome.fault.retracted

@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from bench_hw.cli import app
-from bench_hw.trial_file import DepthRecord, ForceRecord, FrameRecord, TrialHeader, open_trial
+from bench_hw.trial_file import ForceRecord, FrameRecord, PositionRecord, TrialHeader, open_trial
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ def trial_file(tmp_path: Path) -> Path:
             if n + 1 not in (200, 201, 202, 500):
                 writer.write_force(ForceRecord(time, n + 1, 7 * n, 0, (0.25, 0.5, -press), (0.0, 0.0, 0.125)))
             if n % 10 == 0:
-                writer.write_depth(DepthRecord(time, 2e-3 * press))
+                writer.write_position(PositionRecord(time, 2e-3 * press))
             if n % 200 == 0:
                 writer.write_frame(FrameRecord(time, n // 200, bytes([n // 200]) * 50))
     return writer.path

@@ -4,7 +4,7 @@ import pytest
 
 from bench_hw.errors import InputError
 from bench_hw.motion.plan import drawing, plan, summary, write_plot
-from bench_hw.motion.protocol_file import Protocol, load_protocol, shipped
+from bench_hw.motion.protocol_file import Protocol, load_protocol, shipped_protocols
 
 
 def protocol(*segments):
@@ -32,7 +32,7 @@ def test_a_move_to_a_force_is_assumed():
     assert planned.duration == pytest.approx(2.0)
 
 
-@pytest.mark.parametrize("name", sorted(shipped()))
+@pytest.mark.parametrize("name", sorted(shipped_protocols()))
 def test_the_shipped_ones_join_up_and_stay_moderate(name):
     planned = plan(load_protocol(name).protocol)
     for before, after in zip(planned.steps, planned.steps[1:], strict=False):
@@ -44,7 +44,7 @@ def test_the_shipped_ones_join_up_and_stay_moderate(name):
 
 
 def test_the_richer_ones_hold_what_discovery_needs():
-    protocols = {name: load_protocol(name).protocol for name in shipped()}
+    protocols = {name: load_protocol(name).protocol for name in shipped_protocols()}
     speeds = {s.speed for s in protocols["discovery_two_speeds"].segments if s.kind == "cycle"}
     assert len(speeds) == 2
     assert any(s.kind == "hold" and s.duration >= 20 for s in protocols["discovery_holds"].segments)

@@ -3,7 +3,7 @@
 import pytest
 
 from bench_hw.errors import InputError
-from bench_hw.motion.protocol_file import load_protocol, shipped
+from bench_hw.motion.protocol_file import load_protocol, shipped_protocols
 
 HEAD = 'schema = 1\nname = "p"\n'
 
@@ -98,8 +98,8 @@ def test_a_setup_for_a_person_is_kept(load):
 
 
 def test_the_shipped_protocols_are_whole():
-    assert {"paper_press", "paper_ten_presses"} <= set(shipped())
-    for name in shipped():
+    assert {"paper_press", "paper_ten_presses"} <= set(shipped_protocols())
+    for name in shipped_protocols():
         protocol = load_protocol(name).protocol
         assert protocol.name == name
         assert protocol.approach is not None

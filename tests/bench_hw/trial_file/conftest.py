@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 
 from bench_hw.trial_file import (
-    DepthRecord,
     EventRecord,
     ForceRecord,
     FrameRecord,
+    PositionRecord,
     TrialHeader,
     open_trial,
 )
 
 EPOCH = 50.0
-Record = ForceRecord | DepthRecord | FrameRecord | EventRecord
+Record = ForceRecord | PositionRecord | FrameRecord | EventRecord
 
 
 def force_record(number: int, time: float, press: float, status: int = 0) -> ForceRecord:
@@ -57,7 +57,7 @@ def make_records() -> Callable[..., list[Record]]:
             records.append(force_record(number, EPOCH + time, 4 * press(time)))
         for number in range(round(seconds * depth_rate) + 1):
             time = number / depth_rate
-            records.append(DepthRecord(EPOCH + time, 2e-3 * press(time), number % 1024, 2e-3))
+            records.append(PositionRecord(EPOCH + time, 2e-3 * press(time), number % 1024, 2e-3))
         for number in range(round(seconds * fps)):
             records.append(FrameRecord(EPOCH + number / fps, number, random.bytes(3000 + number)))
         return sorted(records, key=lambda record: record.time)
@@ -70,7 +70,7 @@ def write_records(header: TrialHeader) -> Callable[..., Path]:
     """Write a trial of these records to a path."""
     methods = {
         ForceRecord: "write_force",
-        DepthRecord: "write_depth",
+        PositionRecord: "write_position",
         FrameRecord: "write_frame",
         EventRecord: "write_event",
     }

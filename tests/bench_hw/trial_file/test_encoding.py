@@ -15,7 +15,7 @@ from bench_hw.trial_file.encoding import (
     encode,
     nanoseconds,
 )
-from bench_hw.trial_file.records import DepthRecord, EventRecord, ForceRecord, FrameRecord
+from bench_hw.trial_file.records import EventRecord, ForceRecord, FrameRecord, PositionRecord
 
 numbers = st.floats(allow_nan=False, allow_infinity=False)
 vectors = st.tuples(numbers, numbers, numbers)
@@ -65,8 +65,13 @@ def test_force_comes_back_exactly(sequence, sample, status, force, torque, raw):
 
 @given(depth=numbers, raw=st.none() | st.integers(0, 1023), target=st.none() | numbers)
 def test_depth_comes_back_exactly(depth, raw, target):
-    record = DepthRecord(3.5, depth, raw, target)
+    record = PositionRecord(3.5, depth, raw, target)
     assert decode_depth(3.5, encode(record)[1]) == record
+
+
+def test_a_position_is_the_message_of_depth_that_earlier_files_have():
+    written = encode(PositionRecord(3.5, 1e-3, 512, 2e-3))
+    assert written == (2, b'{"depth":0.001,"counts":512,"target":0.002}')
 
 
 @given(frame=words, data=st.binary(max_size=500), kind=st.sampled_from(["jpeg", "png", "webp"]))
@@ -88,7 +93,7 @@ def test_what_is_not_finite_is_null_and_never_a_zero(value):
     record = decode_force(0.0, data)
     assert math.isnan(record.force[0])
     assert math.isnan(record.torque[2])
-    assert math.isnan(decode_depth(0.0, encode(DepthRecord(0.0, value))[1]).depth)
+    assert math.isnan(decode_depth(0.0, encode(PositionRecord(0.0, value))[1]).depth)
 
 
 def test_seconds_become_the_nearest_nanosecond():

@@ -9,7 +9,7 @@ import pytest
 from bench_hw.errors import TrialFileError
 from bench_hw.tables import read_trial_csv
 from bench_hw.tables.output import csv_text
-from bench_hw.trial_file import DepthRecord, ForceRecord, FrameRecord, read_trial_mcap
+from bench_hw.trial_file import ForceRecord, FrameRecord, PositionRecord, read_trial_mcap
 from bench_hw.trial_file.export import ExportOptions, export_trial
 
 
@@ -46,7 +46,7 @@ def test_force_rows_come_back_exactly(make_records, record, tmp_path):
 
 def test_depth_and_camera_rows(make_records, record, tmp_path):
     records = make_records(1.0)
-    records.append(DepthRecord(51.02, 1e-3))
+    records.append(PositionRecord(51.02, 1e-3))
     export_trial(record(records), tmp_path)
     depth = rows_of(tmp_path / "depth.csv")
     assert list(depth[0]) == ["time_s", "depth_mm", "target_mm", "counts"]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench_hw.errors import TrialFileError
-from bench_hw.trial_file import DepthRecord, ForceRecord, FrameRecord, TrialHeader, following, open_trial
+from bench_hw.trial_file import ForceRecord, FrameRecord, PositionRecord, TrialHeader, following, open_trial
 from bench_hw.trial_file.following import TrialFollower
 from bench_hw.trial_file.records import EventRecord
 
@@ -24,7 +24,7 @@ def record(writer, first, last, picture=b"x"):
         time = 10.0 + n / 1000
         writer.write_force(ForceRecord(time, n, n, 0, (0.0, 0.0, -1e-3 * n), (0.0, 0.0, 0.0)))
         if n % 10 == 0:
-            writer.write_depth(DepthRecord(time, 1e-6 * n))
+            writer.write_position(PositionRecord(time, 1e-6 * n))
         if n % 50 == 0:
             writer.write_frame(FrameRecord(time, n // 50, picture))
     writer._chunks.flush()

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from bench_hw.trial_file import DepthRecord, EventRecord, ForceRecord
+from bench_hw.trial_file import EventRecord, ForceRecord, PositionRecord
 from bench_hw.trial_file.inspection import inspect_trial, report_channel
 from bench_hw.trial_file.recovery import recover_trial
 
@@ -139,7 +139,7 @@ def test_drift_is_the_unloaded_force_after_less_before(record):
         return 2e-3 if 1.0 < time < 3.0 else 0.0
 
     force = [ForceRecord(n / 100, n, n, 0, (0.0, 0.0, -press(n / 100)), (0.0, 0.0, 0.0)) for n in range(401)]
-    depths = [DepthRecord(n / 50, depth(n / 50)) for n in range(201)]
+    depths = [PositionRecord(n / 50, depth(n / 50)) for n in range(201)]
     there_and_back = [dataclasses.replace(item, time=item.time + 50) for item in (*force, *depths)]
     result = inspect_trial(record(there_and_back)).to_dict()
     assert result["channels"]["force"]["drift_N"] == pytest.approx(0.12)

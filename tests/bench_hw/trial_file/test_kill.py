@@ -17,7 +17,7 @@ from bench_hw.trial_file.recovery import recover_trial
 
 RECORDER = """
 import mmap, os, struct, sys, time
-from bench_hw.trial_file import DepthRecord, ForceRecord, FrameRecord, TrialHeader, open_trial
+from bench_hw.trial_file import PositionRecord, ForceRecord, FrameRecord, TrialHeader, open_trial
 
 ledger = mmap.mmap(os.open(sys.argv[2], os.O_RDWR), 16)
 epoch = time.monotonic()
@@ -30,7 +30,7 @@ while True:
     press = 1.0 + number * 0.001
     writer.write_force(ForceRecord(now, number, 7 * number, 0, (press, press, -press), (press, press, press)))
     if number % 10 == 0:
-        writer.write_depth(DepthRecord(now, press * 1e-3))
+        writer.write_position(PositionRecord(now, press * 1e-3))
     if number % 33 == 0:
         writer.write_frame(FrameRecord(now, number // 33, picture))
     ledger[:] = struct.pack("<qd", number, now - epoch)

@@ -7,7 +7,7 @@ import pytest
 
 from bench_hw.errors import TrialFileError
 from bench_hw.tables import read_trial_csv, write_trial_csv
-from bench_hw.trial_file import DepthRecord, ForceRecord, read_trial_mcap
+from bench_hw.trial_file import ForceRecord, PositionRecord, read_trial_mcap
 
 EPOCH = 50.0
 
@@ -20,8 +20,8 @@ def steady(seconds: float = 1.0, rate: int = 100) -> list[ForceRecord]:
     return [sample(n, n / rate, press=n * 0.01) for n in range(round(seconds * rate))]
 
 
-def depths(times) -> list[DepthRecord]:
-    return [DepthRecord(EPOCH + time, 1e-3 * time) for time in times]
+def depths(times) -> list[PositionRecord]:
+    return [PositionRecord(EPOCH + time, 1e-3 * time) for time in times]
 
 
 def test_the_rows_are_the_force_samples_themselves(record):
@@ -45,7 +45,7 @@ def test_the_press_axis_picks_component_and_sign(record, header, tmp_path, axis,
         for n in range(50):
             writer.write_force(sample(n, n / 100))
         for item in depths(np.arange(0, 0.51, 0.02)):
-            writer.write_depth(item)
+            writer.write_position(item)
     np.testing.assert_array_equal(read_trial_mcap(tmp_path / "axis.mcap").force, press)
 
 

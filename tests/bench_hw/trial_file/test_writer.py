@@ -12,7 +12,7 @@ import pytest
 from mcap.reader import make_reader
 
 from bench_hw.errors import TrialFileError
-from bench_hw.trial_file import DepthRecord, EventRecord, ForceRecord, open_trial
+from bench_hw.trial_file import EventRecord, ForceRecord, PositionRecord, open_trial
 from bench_hw.trial_file.encoding import encode, nanoseconds
 
 
@@ -127,15 +127,15 @@ def test_nothing_can_be_written_after_the_end(header, tmp_path):
     writer = open_trial(tmp_path / "trial.mcap", header)
     writer.close()
     with pytest.raises(TrialFileError, match="is closed"):
-        writer.write_depth(DepthRecord(1.0, 0.0))
+        writer.write_position(PositionRecord(1.0, 0.0))
 
 
 @pytest.mark.parametrize("time", [-1e-9, float("nan"), float("inf"), 1e11])
 def test_a_time_that_is_none_is_refused(header, tmp_path, time):
     with open_trial(tmp_path / "trial.mcap", header) as writer:
         with pytest.raises(TrialFileError, match="a record has the time"):
-            writer.write_depth(DepthRecord(time, 0.0))
-        writer.write_depth(DepthRecord(1.0, 0.0))
+            writer.write_position(PositionRecord(time, 0.0))
+        writer.write_position(PositionRecord(1.0, 0.0))
     assert len(messages_of(tmp_path / "trial.mcap")) == 1
 
 
@@ -145,7 +145,7 @@ def test_records_may_come_from_several_threads(header, tmp_path, background):
 
         def write(thread: int) -> None:
             for number in range(500):
-                writer.write_depth(DepthRecord(1.0 + number * 1e-3, thread + number / 1000))
+                writer.write_position(PositionRecord(1.0 + number * 1e-3, thread + number / 1000))
 
         threads = [threading.Thread(target=write, args=(thread,)) for thread in range(4)]
         for thread in threads:
@@ -222,7 +222,7 @@ def test_the_refusal_stays_once_the_disk_has_refused(header, tmp_path, monkeypat
     with monkeypatch.context() as patch:
         patch.setattr(os, "write", refuse)
         with pytest.raises(TrialFileError, match="No space left on device"):
-            writer.write_depth(DepthRecord(2.0, 0.0))
+            writer.write_position(PositionRecord(2.0, 0.0))
     with pytest.raises(TrialFileError, match="No space left on device"):
         writer.write_force(sample)
     with pytest.raises(TrialFileError, match="No space left on device"):

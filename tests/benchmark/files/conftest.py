@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from bench_hw.trial_file import DepthRecord, EventRecord, ForceRecord, TrialHeader, open_trial
+from bench_hw.trial_file import EventRecord, ForceRecord, PositionRecord, TrialHeader, open_trial
 
 TISSUE = """\
 schema = 1
@@ -93,7 +93,7 @@ def write_native_trial():
         with open_trial(path, header, background=False) as writer:
             for row in range(30):
                 time = 50.0 + 0.1 * row
-                writer.write_depth(DepthRecord(time, 0.05e-3 * row))
+                writer.write_position(PositionRecord(time, 0.05e-3 * row))
                 writer.write_force(ForceRecord(time, row + 1, row + 1, 0, (0.0, 0.0, -0.01 * row), (0.0, 0.0, 0.0)))
             if fault:
                 writer.write_event(EventRecord(52.95, "force_limit", fault, "fault"))

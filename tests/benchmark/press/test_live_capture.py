@@ -9,7 +9,7 @@ import pytest
 from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
-from bench_hw.trial_file import DepthRecord, ForceRecord, FrameRecord, TrialHeader, open_trial
+from bench_hw.trial_file import ForceRecord, FrameRecord, PositionRecord, TrialHeader, open_trial
 from bench_hw.trial_file.records import EventRecord
 from benchmark.press.live_capture import MOST_SAMPLES, LiveCapture, LiveLine, tell
 from benchmark.press.press_server import Served, make_server
@@ -39,7 +39,7 @@ def record(writer, seconds=1.0, lost=(), missing=(), picture=b""):
         if n not in lost:
             writer.write_force(ForceRecord(time, n, n, 0, (0.0, 0.0, -2.0 if n == 777 else -1.0), (0.0, 0.0, 0.0)))
         if n % 10 == 0:
-            writer.write_depth(DepthRecord(time, 1e-3))
+            writer.write_position(PositionRecord(time, 1e-3))
         if n % 40 == 0 and n // 40 not in missing:
             writer.write_frame(FrameRecord(time, n // 40, picture, "png"))
     writer.write_event(EventRecord(11.0, "segment", "4 of 5: hold"))

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from bench_hw.trial_file import DepthRecord, ForceRecord, FrameRecord, TrialHeader, open_trial
+from bench_hw.trial_file import ForceRecord, FrameRecord, PositionRecord, TrialHeader, open_trial
 from bench_hw.trial_file.records import EventRecord
 from benchmark.assessment.attempt_measures import read_attempt
 from benchmark.press.live_capture import LiveCapture, LiveLine, tell
@@ -395,7 +395,7 @@ def test_a_running_capture_is_shown_with_its_pictures_and_leads_the_tool(browser
             if n not in (300, 301):
                 writer.write_force(ForceRecord(10 + n / 1000, n, n, 0, (0.0, 0.0, -0.625), (0.0, 0.0, 0.0)))
             if n % 10 == 0:
-                writer.write_depth(DepthRecord(10 + n / 1000, 1e-3))
+                writer.write_position(PositionRecord(10 + n / 1000, 1e-3))
             if n % 40 == 0 and n != 400:
                 writer.write_frame(FrameRecord(10 + n / 1000, n // 40, picture, "png"))
         writer._chunks.flush()

@@ -98,3 +98,13 @@ def test_a_press_keeps_what_it_cannot_follow_in_words():
     changes = {"load.peak": "0.5 N", "physics.interface_shear_limit": "1 kPa", "wave.large_press": "linear"}
     found = pressed_specimen(load_scenario("skin-5N", {"fem.mesh": "coarse", **changes}))
     assert any("interface_shear_limit" in remark for remark in found.remarks)
+
+
+def test_layers_over_a_hole_that_relax_each_in_their_own_way_are_said_to_be_elastic():
+    from benchmark.press.pressed_specimen import ELASTIC, pressed_specimen
+
+    relaxes = {"dermis.relaxation": '[{ g = 0.3, tau = "0.5 s" }]'}
+    hole = {"support.kind": "hole", "support.hole_radius": "30 mm", "load.peak": "0.5 N", "fem.mesh": "coarse"}
+    found = pressed_specimen(load_scenario("skin-5N", hole | relaxes))
+    assert found.memory.series is ELASTIC
+    assert any(remark.startswith("Relaxation of dermis is left out") for remark in found.remarks)

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from benchmark.comparison.uncertainty import NORMAL_95
 from benchmark.files import load_scenario
 from benchmark.files.tissue import Correlation
 from benchmark.models import prepare, scenario_drive
-from benchmark.side_by_side.parameter_bands import NORMAL, beside, parameter_bands
+from benchmark.side_by_side.parameter_bands import beside, parameter_bands
 
 SMALL = {"fem.mesh": "coarse", "load.observations": "2", "load.peak": "1 N", "load.shape": "ramp"}
 STATED = {"dermis.youngs_modulus": "0.96 MPa +/- 20 %", "subcutaneous_fat.thickness": "10 mm +/- 4 %"}
@@ -76,4 +77,4 @@ def test_words_say_whether_the_difference_matters(bands) -> None:
     assert not any(one.matters for one in small)
     assert all(one.matters for one in large)
     assert "does not matter" in small[0].text
-    assert small[0].fem == pytest.approx(100.0 * (np.exp(NORMAL * found.fem[1, 0]) - 1.0))
+    assert small[0].fem == pytest.approx(100.0 * (np.exp(NORMAL_95 * found.fem[1, 0]) - 1.0))

@@ -1,9 +1,10 @@
-"""Sobol indices against the closed form of the Ishigami function, and what happens to points without a value."""
+"""Sobol indices against the closed form of the Ishigami function, points without a value, and keys without effect."""
 
 import numpy as np
 import pytest
 
-from benchmark.sweeps.sensitivity import base_samples, saltelli_design, sobol_indices
+from benchmark.sweeps.point import PointResult, failed
+from benchmark.sweeps.sensitivity import base_samples, keys_without_effect, saltelli_design, sobol_indices
 
 NAMES = ("x1", "x2", "x3")
 A, B = 7.0, 0.1
@@ -93,3 +94,21 @@ def test_the_design_has_the_shape_the_indices_count_on() -> None:
         mixed = first.copy()
         mixed[:, place] = last[:, place]
         np.testing.assert_array_equal(design[:, 1 + place], mixed)
+
+
+def row(point: int, depth: float, **more: float) -> PointResult:
+    return PointResult(point, "ok", values={"fem_depth_mm": depth, "fem_seconds_s": float(point), **more})
+
+
+def without_effect(rows: list[PointResult]) -> tuple[str, ...]:
+    points = [(modulus, radius) for modulus in ("1 MPa", "2 MPa") for radius in ("2 mm", "3 mm")]
+    return keys_without_effect(["dermis.youngs_modulus", "tool.radius"], points, rows)
+
+
+def test_a_key_that_changes_no_result_is_without_effect() -> None:
+    """A layer with a law of its own does not follow `youngs_modulus` in finite strain: all points were the same."""
+    idle = [row(1, 1.0), row(2, 0.5), row(3, 1.0), row(4, 0.5)]
+    assert without_effect(idle) == ("dermis.youngs_modulus",)
+    assert without_effect([*idle[:3], row(4, 0.5000001)]) == ()
+    assert without_effect([*idle[:2], failed(3, "no"), failed(4, "no")]) == ()
+    assert without_effect([row(1, 1.0), row(2, 0.5), row(3, 1.0, wave_depth_mm=1.0), row(4, 0.5)]) == ()

@@ -125,16 +125,32 @@ def test_touch_and_limits_are_those_of_how_far_nodes_are_inside():
     made = row((0, 1))
     y = np.zeros(16)
     y[5:8], y[10] = (0.02, -0.01, 0.03), 0.0
-    np.testing.assert_allclose(made.entry(y)[:3], [0.02, -0.01, 0.03], atol=1e-12)
     rubs = replace(made, punch=Punch(5.0, 1.0, 0.5))
-    put, there = rubs.entered(y, rubs.entry(y), pressed=False)
+    put, there = rubs.pressed_as(y, rubs, y, pressed=False)
     np.testing.assert_allclose(put[11:14], [0.02, 0.0, 0.03], atol=1e-12)
     np.testing.assert_allclose(there.friction.limit[:3], [0.01, 0.0, 0.015], atol=1e-12)
     assert not there.pressed
     holds = replace(made, punch=Punch(5.0, 1.0, adhesion=1.0))
-    put, there = holds.entered(y, holds.entry(y), pressed=True)
+    put, there = holds.pressed_as(y, holds, y, pressed=True)
     np.testing.assert_allclose(put[11:14], [0.02, -0.01, 0.03], atol=1e-12)
     assert there.pressed
+
+
+def test_between_another_meshs_nodes_how_far_nodes_are_inside_is_linear():
+    """In whatever order that mesh has its nodes; one that is deep inside tells nothing."""
+    mine = row((0, 1))
+    order = np.array([4, 2, 0, 3, 1])
+    moved = np.array([[0.0, 1.0, 3.0, 4.0, 5.0], np.zeros(5)])[:, order]
+    theirs = replace(mine, place=moved)
+    y = np.zeros(16)
+    y[5:10] = np.array([0.02, 0.04, 0.03, 0.01, 0.0])[order]
+    put, there = mine.pressed_as(np.zeros(16), theirs, y, pressed=True)
+    np.testing.assert_allclose(put[11:14], [0.02, 0.035, 0.01], atol=1e-12)
+    assert there.pressed
+    y[5:10] = 20.0
+    kept, same = mine.pressed_as(put, theirs, y, pressed=True)
+    assert kept is put
+    assert same is mine
 
 
 def test_after_a_way_of_another_mesh_nodes_stick_where_they_are():

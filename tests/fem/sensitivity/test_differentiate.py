@@ -10,8 +10,7 @@ import pytest
 import fem
 from fem.analysis.newton import NewtonSettings
 from fem.interactions import active_set
-from fem.sensitivity.changed_equations import changed_equations
-from fem.sensitivity.held_mesh import moved_mesh
+from fem.sensitivity.changed_equations import changed_equations, moved_mesh
 
 TIGHT = NewtonSettings(tolerance=1e-13)
 COARSE = fem.Discretisation("coarse")

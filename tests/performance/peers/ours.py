@@ -19,10 +19,10 @@ from fem.assembly.elements import make_elements
 from fem.assembly.scatter import build_scatter, number_unknowns
 from fem.assembly.system import make_system
 from fem.linear_solver import make_solver
-from fem.linear_solver.factory import suited_threads
 from fem.materials.element_laws import element_laws
 from fem.mesh.quads import Mesh
 from fem.mesh.solid import SolidMesh
+from fem.threads import suited_threads
 from tests.performance.peers.case import LAYERS, POISSON, Case, load_case
 
 

@@ -74,14 +74,17 @@ class Amplitudes:
         """All."""
         return self.outward + (self.modes.count + 1) * self.nodes
 
-    def on(self, node: int, outward: FloatArray | None, level: FloatArray | None) -> FloatArray:
-        """(A, J) forces on one node's amplitudes from work (J, N) on U or (J, N + 1) on W."""
-        given = outward if outward is not None else level
-        assert given is not None
-        out = np.zeros((self.size, given.shape[0]))
-        first = node if outward is not None else self.outward + node
-        last = self.outward if outward is not None else self.size
-        out[first : last : self.nodes] = given.T
+    def outward_forces(self, node: int, work: FloatArray) -> FloatArray:
+        """(A, J) forces on one node's amplitudes of U from work (J, N) on its functions."""
+        return self._placed(work, node, self.outward)
+
+    def level_forces(self, node: int, work: FloatArray) -> FloatArray:
+        """(A, J) forces on one node's amplitudes of W from work (J, N + 1) on its functions."""
+        return self._placed(work, self.outward + node, self.size)
+
+    def _placed(self, work: FloatArray, first: int, end: int) -> FloatArray:
+        out = np.zeros((self.size, len(work)))
+        out[first : end : self.nodes] = work.T
         return out
 
 
@@ -89,7 +92,7 @@ def pressure_on(place: Amplitudes, radius: float) -> FloatArray:
     """(A,) forces of a uniform pressure of unit force on a disc (m) of the upper face."""
     height, share = _half_range()
     level = place.modes.level(radius * np.sqrt(1.0 - height**2))[0]
-    return place.on(0, None, (2.0 * height * share @ level)[None])[:, 0]
+    return place.level_forces(0, (2.0 * height * share @ level)[None])[:, 0]
 
 
 def bonded_tool(place: Amplitudes, radius: float) -> FloatArray:
@@ -97,8 +100,8 @@ def bonded_tool(place: Amplitudes, radius: float) -> FloatArray:
     height, share = _half_range()
     at = radius * np.sqrt(1.0 - height**2)
     powers = legendre.legvander(height, 2 * FUNCTIONS - 1).T * share
-    level = place.on(0, None, powers[0::2] @ place.modes.level(at)[0])
-    return np.hstack([level, place.on(0, powers[1::2] @ place.modes.outward(at)[0], None)])
+    level = place.level_forces(0, powers[0::2] @ place.modes.level(at)[0])
+    return np.hstack([level, place.outward_forces(0, powers[1::2] @ place.modes.outward(at)[0])])
 
 
 def plate(place: Amplitudes, hole: float, near: float) -> FloatArray:
@@ -108,14 +111,14 @@ def plate(place: Amplitudes, hole: float, near: float) -> FloatArray:
     at = hole + ring * root**2
     powers = legendre.legvander(2.0 * root - 1.0, math.ceil(math.sqrt(ring / near)) - 1).T * (share * at / hole)
     last = place.nodes - 1
-    level = place.on(last, None, powers @ place.modes.level(at)[0])
-    return np.hstack([level, place.on(last, powers @ place.modes.outward(at)[0], None)])
+    level = place.level_forces(last, powers @ place.modes.level(at)[0])
+    return np.hstack([level, place.outward_forces(last, powers @ place.modes.outward(at)[0])])
 
 
 def border(place: Amplitudes) -> FloatArray:
     """(A, n) of a shear force on each node of the border."""
     level = place.modes.level(np.array([place.modes.radius.border]))[0]
-    return np.hstack([place.on(node, None, level) for node in range(place.nodes)])
+    return np.hstack([place.level_forces(node, level) for node in range(place.nodes)])
 
 
 def _half_range() -> tuple[FloatArray, FloatArray]:

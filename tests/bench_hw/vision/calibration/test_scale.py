@@ -1,5 +1,7 @@
 """The scale of the marker plane, from a board and from a ruler."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -42,6 +44,17 @@ def test_a_ruler_gives_the_scale_to_a_thousandth(boards, lens, board, true_camer
     found = measure_ruler(picture, true_camera, 1e-3)
     assert found.scale == pytest.approx(distance * 1e-3 / 620, rel=5e-4)
     assert abs(found.scale / (distance * 1e-3 / 620) - 1) < 3 * found.scale_std / found.scale
+
+
+def test_where_a_ruler_lies_is_told_in_pixels_that_are_not_square(boards, lens, true_camera):
+    """A camera whose pixels are a tenth less high sees the ruler's middle in the same direction."""
+    middles = []
+    for height in (620.0, 560.0):
+        camera = replace(true_camera, focal=(620.0, height))
+        seen = replace(lens, focal=camera.focal)
+        picture = boards.ruler(seen, boards.Pose((0, 0, 0.1), (2.0, 20.0, 90.0)), np.random.default_rng(0))
+        middles.append(camera.to_normalised(np.array(measure_ruler(picture, camera, 1e-3).middle)))
+    assert middles[0] == pytest.approx(middles[1], abs=2.0 / 620.0)
 
 
 def test_the_ruler_is_found_where_there_is_no_board(boards, lens, board, true_camera, save):

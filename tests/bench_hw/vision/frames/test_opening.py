@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from bench_hw.errors import InputError
-from bench_hw.trial_file import DepthRecord, FrameRecord, TrialHeader, open_trial
+from bench_hw.trial_file import FrameRecord, PositionRecord, TrialHeader, open_trial
 from bench_hw.vision.frames.opening import VideoFrames, open_frames
 from bench_hw.vision.frames.source import decode_grey, to_grey
 
@@ -144,7 +144,7 @@ def trial(tmp_path):
             for number in range(count):
                 time = EPOCH + (0.0333 * number + 0.001 * (number % 3) if times is None else times[number])
                 data = cv2.imencode(".jpg", np.full((48, 64), 10 * number, np.uint8))[1].tobytes()
-                writer.write_depth(DepthRecord(time, 0.0))
+                writer.write_position(PositionRecord(time, 0.0))
                 writer.write_frame(FrameRecord(time, number, spoil(number, data)))
         return tmp_path / name
 

@@ -6,7 +6,7 @@ import pytest
 
 from bench_hw.storage.folder_lock import locked
 from bench_hw.tables import TrialTable
-from bench_hw.trial_file import DepthRecord, ForceRecord, TrialHeader, open_trial
+from bench_hw.trial_file import ForceRecord, PositionRecord, TrialHeader, open_trial
 from bench_hw.trial_file.recovery import recover_trial
 from bench_hw.trial_file.scan import scan_trial
 from benchmark.errors import InputError
@@ -330,7 +330,7 @@ def test_a_recording_that_ended_before_the_touch_is_not_to_be_turned(tmp_path):
     with open_trial(tmp_path / "trial_001.mcap", header, background=False) as writer:
         for number in range(100):
             writer.write_force(ForceRecord(number / 100, number, number, 0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
-            writer.write_depth(DepthRecord(number / 100, -2e-3 + 1e-5 * number))
+            writer.write_position(PositionRecord(number / 100, -2e-3 + 1e-5 * number))
     said = refusal(tmp_path)
     assert "the depth is never above zero (down to -2 mm)" in said
     assert "ended before its tool touched" in said

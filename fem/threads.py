@@ -1,68 +1,21 @@
-"""Choice of the direct solver, where its library is, and how many threads the work may have.
-
-Without being told pypardiso would search the whole environment for the MKL, which takes up to a second.
-"""
+"""How many threads the work may have, and work on parts in several of them."""
 
 from __future__ import annotations
 
 import os
-import sys
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TypeVar
 
 from threadpoolctl import threadpool_limits
 
-from fem.arrays import IndexArray
-from fem.errors import FemError, require_one_of
-from fem.linear_solver.superlu import SuperLUSolver
-from fem.linear_solver.symmetric import SymmetricSolver
-
-LINEAR_SOLVERS = ("auto", "pardiso", "superlu", "iterative")
-DIRECT = LINEAR_SOLVERS[:3]
-VARIABLE = "PYPARDISO_MKL_RT"
 SMALL = 10_000
+"""Unknowns below which one thread is faster than several."""
 AHEAD = 4  # parts of a work for each thread
 NUMPY_LIBRARIES = ("libopenblas", "libscipy_openblas", "openblas")
 Result = TypeVar("Result")
-
-
-def make_solver(choice: str, indptr: IndexArray, indices: IndexArray) -> SymmetricSolver:
-    """Direct solver for a pattern.
-
-    Parameters
-    ----------
-    choice
-        "pardiso", "superlu" or "auto": Pardiso where it can be loaded, otherwise SuperLU.
-    indptr, indices
-        Pattern of the upper triangle in compressed rows, diagonal first in each row.
-
-    Raises
-    ------
-    FemError
-        If the word is unknown, or Pardiso was asked for and cannot be loaded.
-    """
-    require_one_of("linear_solver", choice, DIRECT)
-    if choice != "superlu":
-        name_library()
-        try:
-            from fem.linear_solver.pardiso import PardisoSolver
-
-            return PardisoSolver(indptr, indices)
-        except ImportError as error:
-            if choice == "pardiso":
-                raise FemError(f"linear_solver = 'pardiso': cannot be loaded ({error}); use 'superlu'") from error
-    return SuperLUSolver(indptr, indices)
-
-
-def name_library(prefix: str = sys.prefix) -> None:
-    """Tell pypardiso the library of this environment by its variable, unless the user has set it."""
-    for pattern in ("lib/libmkl_rt.so*", "Library/bin/mkl_rt*.dll"):
-        for path in sorted(Path(prefix).glob(pattern)):
-            os.environ.setdefault(VARIABLE, str(path))
 
 
 @contextmanager

@@ -1,19 +1,65 @@
-"""SuperLU of SciPy in symmetric mode, the fallback where the MKL is missing."""
+"""The direct solver of a symmetric pattern: Pardiso where it can be loaded, otherwise SuperLU of SciPy, which is here.
+
+Without being told pypardiso would search the whole environment for the MKL, which takes up to a second.
+"""
 
 from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
 
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
 from fem.arrays import FloatArray, IndexArray
-from fem.linear_solver.symmetric import DiagonalScaling, SingularMatrixError, require_finite
+from fem.errors import FemError, require_one_of
+from fem.linear_solver.symmetric import DiagonalScaling, SingularMatrixError, SymmetricSolver, checked_solution
 
-PIVOT_THRESHOLD = 0.01
+LINEAR_SOLVERS = ("auto", "pardiso", "superlu", "iterative")
+DIRECT = LINEAR_SOLVERS[:3]
+VARIABLE = "PYPARDISO_MKL_RT"
+PIVOT_THRESHOLD = 0.01  # of SuperLU
+
+
+def make_solver(choice: str, indptr: IndexArray, indices: IndexArray) -> SymmetricSolver:
+    """Direct solver for a pattern.
+
+    Parameters
+    ----------
+    choice
+        "pardiso", "superlu" or "auto": Pardiso where it can be loaded, otherwise SuperLU.
+    indptr, indices
+        Pattern of the upper triangle in compressed rows, diagonal first in each row.
+
+    Raises
+    ------
+    FemError
+        If the word is unknown, or Pardiso was asked for and cannot be loaded.
+    """
+    require_one_of("linear_solver", choice, DIRECT)
+    if choice != "superlu":
+        name_library()
+        try:
+            from fem.linear_solver.pardiso import PardisoSolver
+
+            return PardisoSolver(indptr, indices)
+        except ImportError as error:
+            if choice == "pardiso":
+                raise FemError(f"linear_solver = 'pardiso': cannot be loaded ({error}); use 'superlu'") from error
+    return SuperLUSolver(indptr, indices)
+
+
+def name_library(prefix: str = sys.prefix) -> None:
+    """Tell pypardiso the library of this environment by its variable, unless the user has set it."""
+    for pattern in ("lib/libmkl_rt.so*", "Library/bin/mkl_rt*.dll"):
+        for path in sorted(Path(prefix).glob(pattern)):
+            os.environ.setdefault(VARIABLE, str(path))
 
 
 class SuperLUSolver:
-    """SuperLU for one pattern; the ordering is made anew in each factorisation.
+    """SuperLU in symmetric mode for one pattern; the ordering is made anew in each factorisation.
 
     Parameters
     ----------
@@ -68,4 +114,4 @@ class SuperLUSolver:
         if self._factors is None:
             raise SingularMatrixError("nothing is factorised")
         factor = self._scaling.factor[:, None]
-        return require_finite(factor * self._factors.solve(factor * right))
+        return checked_solution(factor * self._factors.solve(factor * right))

@@ -1,4 +1,4 @@
-"""Where the MKL is looked for, and how many threads suit a system."""
+"""How many threads suit a system, and work on parts in several of them."""
 
 import os
 
@@ -6,53 +6,7 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from fem.linear_solver import make_solver
-from fem.linear_solver.factory import (
-    NUMPY_LIBRARIES,
-    SMALL,
-    VARIABLE,
-    do_in_threads,
-    in_parts,
-    in_threads,
-    name_library,
-    suited_threads,
-    usable_threads,
-)
-
-
-@pytest.fixture
-def environment(tmp_path):
-    """A folder like an environment with the library."""
-    (tmp_path / "lib").mkdir()
-    (tmp_path / "lib" / "libmkl_rt.so.3").touch()
-    return tmp_path
-
-
-def test_the_library_of_the_environment_is_named(environment, monkeypatch):
-    monkeypatch.setenv(VARIABLE, "to be restored")
-    monkeypatch.delenv(VARIABLE)
-    name_library(str(environment))
-    assert os.environ[VARIABLE] == str(environment / "lib" / "libmkl_rt.so.3")
-
-
-def test_the_user_s_choice_stays(environment, monkeypatch):
-    monkeypatch.setenv(VARIABLE, "mine")
-    name_library(str(environment))
-    assert os.environ[VARIABLE] == "mine"
-
-
-@pytest.mark.parametrize("count", [200, 20_000])
-def test_other_limits_of_threads_do_not_reach_between_the_phases(count):
-    """Analysed with two threads, factorised with one: Pardiso itself would crash."""
-    indptr = np.append(np.arange(0, 2 * count - 1, 2), 2 * count - 1)
-    indices = np.stack((np.arange(count), np.arange(1, count + 1)), axis=1).ravel()[:-1]
-    data = np.where(np.arange(2 * count - 1) % 2 == 0, 4.0, 1.0)
-    with threadpool_limits(2):
-        solver = make_solver("auto", indptr, indices)
-    with threadpool_limits(1):
-        solver.factorise(data)
-        x = solver.solve(np.ones((count, 1)))[:, 0]
-    np.testing.assert_allclose(4 * x[1:-1] + x[:-2] + x[2:], 1.0, rtol=1e-12)
+from fem.threads import NUMPY_LIBRARIES, SMALL, do_in_threads, in_parts, in_threads, suited_threads, usable_threads
 
 
 def threads():
