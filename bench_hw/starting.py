@@ -191,6 +191,14 @@ def refuse_repeats(app: typer.Typer) -> None:
             refuse_repeats(group.typer_instance)
 
 
+def usage_words(error: Any, program: str) -> str:
+    """A usage error of the command-line library as one sentence, and whose help tells more."""
+    said = " ".join(error.format_message().replace("Value error, ", "").split()).rstrip(".")
+    context = getattr(error, "ctx", None)
+    verb = program if context is None else context.command_path
+    return f"{said}{'' if said.endswith('?') else '.'} See {verb} --help."
+
+
 def end(code: int) -> int:
     """Pass on what is left for standard output, and give the exit code: 2, and why, where that cannot be done."""
     known = unsaid() is not None

@@ -16,7 +16,9 @@ from typing import Annotated
 import typer
 
 from bench_hw.cli._report import EXIT_MISSING, report_unexpected, say_error
-from bench_hw.starting import refuse_repeats
+from bench_hw.starting import refuse_repeats, usage_words
+
+PROGRAM = "python -m bench_hw"
 
 
 def make_app() -> typer.Typer:
@@ -60,12 +62,17 @@ def main() -> int:
     """Run the command line and return its exit code."""
     os.environ.setdefault("OPENCV_LOG_LEVEL", "SILENT")  # a camera that is missing is said by the bench itself
     try:
-        app()
+        code = app(prog_name=PROGRAM, standalone_mode=False)
     except SystemExit as end:
         if isinstance(end.__context__, BrokenPipeError):  # the command-line library met it
             say_error(end.__context__)
             return EXIT_MISSING
         return end.code if isinstance(end.code, int) else 1
     except Exception as error:
+        if hasattr(error, "format_message"):  # a usage error of the command-line library
+            helped = type(error).__name__ == "NoArgsIsHelpError"  # which is not public; its message is the help
+            said = error.format_message() if helped else f"error: {usage_words(error, PROGRAM)}"
+            print(said, file=sys.stderr)
+            return EXIT_MISSING
         return report_unexpected(error, debug="--debug" in sys.argv)
-    return 0
+    return code if isinstance(code, int) else 0

@@ -10,11 +10,11 @@ import textwrap
 import traceback
 import warnings
 from collections.abc import Sequence
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from bench_hw.starting import refuse_repeats, unsaid
+from bench_hw.starting import refuse_repeats, unsaid, usage_words
 from benchmark.cli import (
     blind,
     check,
@@ -28,6 +28,7 @@ from benchmark.cli import (
 )
 from benchmark.cli.folders import results, shipped
 
+PROGRAM = "python -m benchmark"
 EXIT_USAGE = 2
 TOO_LITTLE = "there is too little memory for this: end other programs, or ask for less (a coarser mesh, fewer workers)"
 EXIT_INTERRUPTED = 130
@@ -84,7 +85,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         if "--debug" not in arguments:  # what NumPy says of an overflow tried on the way is for who mends the program
             warnings.filterwarnings("ignore", category=RuntimeWarning)
-        code = app(args=arguments or ["--help"], prog_name="python -m benchmark", standalone_mode=False)
+        code = app(args=arguments or ["--help"], prog_name=PROGRAM, standalone_mode=False)
     except KeyboardInterrupt:
         code = EXIT_INTERRUPTED
     except SystemExit as end:  # nothing of ours ends so; an effects file of the user's may
@@ -117,7 +118,7 @@ def _report(error: Exception, *, debug: bool) -> int:
     if debug:
         traceback.print_exc()
     if hasattr(error, "format_message"):  # a usage error of the command-line library
-        return _fail(_usage(error), EXIT_USAGE)
+        return _fail(usage_words(error, PROGRAM), EXIT_USAGE)
     if isinstance(error, typer.Abort):
         return _fail("interrupted", EXIT_INTERRUPTED)
     from bench_hw.errors import BenchError, system_words, what_is_missing
@@ -134,14 +135,6 @@ def _report(error: Exception, *, debug: bool) -> int:
         return _fail(missing, EXIT_USAGE)
     text = f"a fault of the program, {type(error).__name__}: {error}; --debug shows where"
     return _fail(text, EXIT_BUG)
-
-
-def _usage(error: Any) -> str:
-    """A usage error of the command-line library, with whose help tells more."""
-    said = error.format_message().replace("Value error, ", "").rstrip(".")
-    context = getattr(error, "ctx", None)
-    verb = "python -m benchmark" if context is None else context.command_path
-    return f"{said}. See {verb} --help."
 
 
 def _who_ended(end: SystemExit) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -30,7 +30,12 @@ Bench = Annotated[
     str | None,
     typer.Option("--bench", help="Close the loop on this bench: a rig file, or the shipped rig simulated."),
 ]
-Budget = Annotated[int, typer.Option("--budget", min=1, max=20, help="Most experiments of the loop.")]
+BUDGET = 3
+"""Experiments of the loop where nobody says how many."""
+Budget = Annotated[
+    int | None,
+    typer.Option("--budget", min=1, max=20, help=f"Most experiments of the loop of --bench; {BUDGET} without it."),
+]
 Refit = Annotated[
     str | None,
     typer.Option(
@@ -52,7 +57,7 @@ def discover(
     effects: Effects = None,
     specimen: Specimen = None,
     bench: Bench = None,
-    budget: Budget = 3,
+    budget: Budget = None,
     refit: Refit = None,
     out: Out = None,
     settings: Set = None,
@@ -74,8 +79,11 @@ def discover(
     from benchmark.discovery.discovery_request import DiscoverRequest, carry_out
 
     console = Console(quiet=quiet)
+    _check_together(paths, bench, budget, refit)
+    _check_picked(refit, effects)
+    most = BUDGET if budget is None else budget
     request = DiscoverRequest(
-        paths, model, effects, specimen, parse_settings(settings), out, seed, bench, budget, _asked, refit
+        paths, model, effects, specimen, parse_settings(settings), out, seed, bench, most, _asked, refit
     )
     outcome = carry_out(request, console)
     code = show_discovery(outcome, console, as_json=json)
@@ -84,6 +92,37 @@ def discover(
             f"{outcome.stopped}; the answer so far is in {outcome.folder}, what the bench recorded in its session/"
         )
     return code
+
+
+def _check_together(paths: Sequence[Path], bench: str | None, budget: int | None, refit: str | None) -> None:
+    """Refuse options that would change nothing: `--budget` without a bench, a session's beside finished runs."""
+    from benchmark.discovery.from_run import is_run
+    from benchmark.errors import InputError
+
+    if (bench is not None or refit is not None) and any(is_run(path) for path in paths):
+        raise InputError("--bench and --refit belong to a session: a finished run has no trials to add or refit to")
+    if budget is not None and bench is None:
+        raise InputError("--budget is the most experiments of a bench's loop: give --bench with it")
+
+
+def _check_picked(refit: str | None, own: Path | None) -> None:
+    """Refuse a slug that no session can have, before the hours of a discovery.
+
+    Those of a set-up, `setup.KEY`, depend on the session's layers and are looked up once these are known.
+    """
+    from benchmark.errors import InputError
+    from benchmark.files.schema import nearest
+    from benchmark.physics import SLUGS, load_effects
+
+    if refit is None or refit == "found":
+        return
+    picked = [slug.strip() for slug in refit.split(",") if slug.strip()]
+    if not picked:
+        raise InputError(f"--refit {refit!r} names no effect; allowed: found, or SLUG,SLUG of your choice")
+    known = {*SLUGS, *(() if own is None else (effect.slug for effect in load_effects(own)))}
+    for slug in picked:
+        if slug not in known and not slug.startswith("setup."):
+            raise InputError(f"--refit {refit}: {slug!r} is no effect; {nearest(slug, ('found', *sorted(known)))}")
 
 
 def _asked(proposal: NextExperiment, setup: Mapping[str, Any]) -> bool:

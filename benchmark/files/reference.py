@@ -7,7 +7,7 @@ import math
 import re
 import types
 import typing
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pydantic.fields import FieldInfo
@@ -95,17 +95,31 @@ def _models(annotation: Any) -> list[type[FileModel]]:
 
 def _allowed(field: FieldInfo) -> str:
     every = [*field.metadata, *_parts(field.annotation)]
+    origins = [typing.get_origin(each) for each in every]
+    pair = any(_is_pair(each) for each in every)
     for each in every:
         if isinstance(each, Quantity | Number):
-            return each.allowed
+            return f"two in a list, each {each.allowed}" if pair else each.allowed
     words = [f'`"{word}"`' for each in every if typing.get_origin(each) is typing.Literal for word in each.__args__]
     if words:
         return ", ".join(words).replace('`"1"`', "`1`")
+    named = Mapping in origins
     if _models(field.annotation):
-        many = any(typing.get_origin(each) in (tuple, list) for each in every)
-        return "tables `[[...]]`, see below" if many else "a table, see below"
-    kinds = {bool: "true or false", str: "text", float: "a number", int: "a whole number"}
-    return next((text for kind, text in kinds.items() if kind in every), "see its description")
+        if named:
+            return "tables by their names, see below"
+        return "tables `[[...]]`, see below" if tuple in origins else "a table, see below"
+    if named:
+        return "a table"
+    kinds = {bool: "true or false", str: "text", float: "a quantity with its unit", int: "a whole number"}
+    kind = next((text for kind, text in kinds.items() if kind in every), "see its description")
+    if origins.count(tuple) > 1:
+        return f"a list of rows, each of two, {kind} each"
+    return f"two in a list, {kind} each" if pair else f"a list, {kind} each" if tuple in origins else kind
+
+
+def _is_pair(annotation: Any) -> bool:
+    inside = typing.get_args(annotation)
+    return typing.get_origin(annotation) is tuple and len(inside) == 2 and Ellipsis not in inside
 
 
 def _default(field: FieldInfo) -> str:
@@ -120,6 +134,8 @@ def _default(field: FieldInfo) -> str:
             if math.isinf(value):
                 return "endless"
             return f'`"{format_quantity(value, each.dimension)}"`'
+        if isinstance(each, Quantity) and value and isinstance(value, tuple):
+            return f"`{[format_quantity(one, each.dimension) for one in value]}`".replace("'", '"')
     return f'`"{value}"`' if isinstance(value, str) else "none" if value == () else f"`{str(value).lower()}`"
 
 

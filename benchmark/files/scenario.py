@@ -106,8 +106,11 @@ class Scenario(FileModel):
     ----------
     name : str
         Any printable text; escape it where it is shown.
-    tissue, tool, support, load, physics, comparison, fem, wave
-        The sections; all but tissue, tool and load have defaults.
+    tissue : Tissue
+        What is pressed: a table of a tissue file's keys, or in its place text: a shipped name, or the path of a tissue
+        file from this one.
+    tool, support, load, physics, comparison, fem, wave
+        The sections; all but tool and load have defaults.
     """
 
     schema_: Annotated[Schema, Field(alias="schema")] = 1

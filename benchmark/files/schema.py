@@ -168,9 +168,11 @@ def check_schema(table: Mapping[str, Any], source: Source) -> None:
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """The words nearest to one that is not known, as the end of a sentence; all of them where none is near."""
+    """The words nearest to one that is not known, whatever its capitals, to end a sentence with; all where none is."""
     words = list(known)
-    near = difflib.get_close_matches(word, words, n=3, cutoff=0.6)
+    lower = [each.casefold() for each in words]
+    found = difflib.get_close_matches(word.casefold(), dict.fromkeys(lower), n=3, cutoff=0.6)
+    near = [words[lower.index(each)] for each in found]
     if near:
         return f"did you mean {' or '.join(near)}?"
     return f"known: {', '.join(words)}."

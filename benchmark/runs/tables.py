@@ -171,14 +171,19 @@ def _profile(result: ModelResult | None, layers: int, radii: Array) -> Array:
 
 
 def timing(pair: SideBySide) -> Columns:
-    """One row a model and timed repeat."""
+    """One row a model and timed repeat; peak memory is that of the model's process, MB, one value for its rows."""
     rows = [
-        (run.key, repeat, seconds.setup, seconds.wall, seconds.cpu)
+        (run.key, repeat, seconds.setup, seconds.wall, seconds.cpu, _megabytes(run.peak_memory))
         for run in (pair.fem, pair.wave)
         for repeat, seconds in enumerate(run.repeats, start=1)
     ]
-    names = ("model", "repeat", "setup_s", "wall_s", "cpu_s")
+    names = ("model", "repeat", "setup_s", "wall_s", "cpu_s", "peak_memory_mb")
     return {name: [row[column] for row in rows] for column, name in enumerate(names)}
+
+
+def _megabytes(size: int | None) -> float:
+    """MB of `size` bytes, NaN where the system does not tell it."""
+    return np.nan if size is None else size / 1e6
 
 
 def measured(comparison: MeasuredComparison) -> Columns:

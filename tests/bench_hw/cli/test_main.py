@@ -40,11 +40,32 @@ def test_each_verb_explains_itself(run, verb):
     assert "--debug" in ran.stdout
 
 
-def test_a_wrong_use_is_exit_two():
-    for arguments in (("inspect",), ("inspect", "a", "--unknown"), ("nonsense",), ("recover", "a")):
-        ran = bench(*arguments)
-        assert (ran.returncode, ran.stdout) == (2, "")
-        assert "Error: " in ran.stderr
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("inspect",), "Missing argument 'file'. See python -m bench_hw inspect --help."),
+        (("inspect", "a", "--unknown"), "No such option: --unknown"),
+        (("nonsense",), "No such command 'nonsense'. See python -m bench_hw --help."),
+        (("Capture",), "No such command 'Capture'. Did you mean 'capture'? See python -m bench_hw --help."),
+        (("recover", "a"), "Missing option '--out'. See python -m bench_hw recover --help."),
+        (("simulate", "netft", "--http-port", "70000"), "See python -m bench_hw simulate netft --help."),
+    ],
+)
+def test_a_wrong_use_is_exit_two_and_one_line(monkeypatch, capsys, arguments, said):
+    monkeypatch.setattr(sys, "argv", ["bench_hw", *arguments])
+    assert _app.main() == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.startswith("error: ")
+    assert said in printed.err
+    assert printed.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("arguments", [(), ("simulate",)])
+def test_without_arguments_it_shows_its_help_and_is_exit_two(arguments):
+    ran = bench(*arguments)
+    assert (ran.returncode, ran.stdout) == (2, "")
+    assert ran.stderr.startswith("Usage: python -m bench_hw")
 
 
 @pytest.mark.parametrize(("verb", "option"), [(("recover", "a"), "--out"), (("simulate", "netft"), "--seed")])
@@ -57,7 +78,7 @@ def test_an_option_of_one_value_is_given_once(run, verb, option):
 
 @pytest.mark.parametrize("debug", [False, True])
 def test_an_error_nobody_foresaw_is_one_line_without_debug(monkeypatch, capsys, debug):
-    def broken() -> None:
+    def broken(**_: object) -> None:
         raise ZeroDivisionError("half a device")
 
     monkeypatch.setattr(_app, "app", broken)

@@ -158,6 +158,8 @@ def test_every_verb_has_the_options_that_scripts_pass_everywhere(verb: str) -> N
          "error: --reference is given 2 times; it takes one value. See python -m benchmark run --help."),
         (("fit", "phantom", "--seed", "1", "--seed", "1"), "error: --seed is given 2 times"),
         (("nosuch",), "error: No such command 'nosuch'. See python -m benchmark --help."),
+        (("Run",), "error: No such command 'Run'. Did you mean 'run'? See python -m benchmark --help."),
+        (("session",), "error: Missing argument 'what'. Choose from: new. See python -m benchmark session --help."),
     ],
 )  # fmt: skip
 def test_what_is_typed_wrong_is_said_with_the_help_of_its_verb(benchmark_cli, typed, said) -> None:

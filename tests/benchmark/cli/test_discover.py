@@ -82,6 +82,8 @@ def test_unusable_input_is_exit_2_and_leaves_nothing(benchmark_cli, finished: Pa
         (("discover", finished, "--model", "fem"), "leave it out"),
         (("discover", finished, "--set", "a=b"), "belong to a session"),
         (("discover", PHANTOM, "--effects", tmp_path / "no.py"), "no such effects file"),
+        (("discover", finished, "--refit", "found"), "belong to a session"),
+        (("discover", finished, "--bench", "simulated"), "belong to a session"),
         (("run", "--model", tmp_path / "m.toml"), "needs a SCENARIO"),
         (("run", "skin-5N", "--model", tmp_path / "m.toml"), "no such model file"),
         (("fit", PHANTOM, "--effects", tmp_path / "e.py"), "--model"),
@@ -105,6 +107,39 @@ def test_a_folder_that_is_no_result_is_refused_before_the_work(tmp_path: Path, m
     monkeypatch.setattr("benchmark.discovery.discovery_request.findings", never)
     with pytest.raises(InputError, match="not a result"):
         carry_out(DiscoverRequest([PHANTOM], out=tmp_path), Console(quiet=True))
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--budget", "2"), "give --bench with it"),
+        (("--refit", "backlash,strain_stifening"), "did you mean strain_stiffening"),
+        (("--refit", "Found"), "did you mean found"),
+        (("--refit", ","), "names no effect"),
+    ],
+)
+def test_options_that_can_change_nothing_are_refused_before_the_work(
+    benchmark_cli, monkeypatch, options, words
+) -> None:
+    def never(*_: object):
+        raise AssertionError("the work began")
+
+    monkeypatch.setattr(discovery_request, "carry_out", never)
+    called = benchmark_cli("discover", PHANTOM, *options)
+    assert called.code == 2
+    assert words in " ".join(called.err.split())
+
+
+def test_an_effect_of_the_set_up_is_looked_up_once_the_session_is_known(monkeypatch) -> None:
+    asked = []
+
+    def noted(request: DiscoverRequest, _: object) -> DiscoveryOutcome:
+        asked.append(request)
+        return DiscoveryOutcome(Path("found"), {"name": "gel", "verdict": "named"}, "", (), (), None)
+
+    monkeypatch.setattr(discovery_request, "carry_out", noted)
+    assert main(["discover", "phantom", "--refit", "setup.tool.radius, backlash"]) == 0
+    assert (asked[0].refit, asked[0].budget) == ("setup.tool.radius, backlash", 3)
 
 
 def test_a_bench_that_fails_gives_the_exit_code_after_the_answer_so_far(tmp_path: Path, monkeypatch, capsys) -> None:

@@ -56,7 +56,9 @@ def check_tables(out: Path, document: dict) -> None:
         peak = deformation[deformation.layer == layer].fem_mm.max()
         assert rows.fem_mm.iloc[0] == pytest.approx(peak, rel=1e-9)
     timing = pd.read_csv(out / "tables/timing.csv")
-    assert list(timing) == ["model", "repeat", "setup_s", "wall_s", "cpu_s"]
+    assert list(timing) == ["model", "repeat", "setup_s", "wall_s", "cpu_s", "peak_memory_mb"]
+    for model, rows in timing.groupby("model"):
+        np.testing.assert_allclose(rows.peak_memory_mb, document["models"][model]["peak_memory_MB"])
     assert timing.groupby("model").size().to_dict() == {"fem": 3, "wave": 3}
     assert document["speedup"]["ci95"][0] <= document["speedup"]["median"] <= document["speedup"]["ci95"][1]
 

@@ -18,3 +18,14 @@ def test_every_key_has_its_bounds_default_and_words() -> None:
     assert "| `poisson_ratio` | 0 to 0.49999 (at 0.5 the material has no finite bulk modulus) | needed |" in page
     assert '| `mesh` | `"coarse"`, `"default"`, `"fine"` | `"default"` |' in page
     assert "## session.toml: trials" in page
+
+
+def test_lists_and_tables_are_no_text() -> None:
+    page = reference().replace("two in a list, each -100000 m to 100000 m", "PLACE")
+    assert '| `position` | PLACE | `["0 mm", "0 mm"]` |' in page
+    assert "| `between` | two in a list, text each | needed |" in page
+    assert "| `free` | a list, text each | none |" in page
+    assert "| `table` | a list of rows, each of two, a quantity with its unit each |" in page
+    assert page.count("| `tool` | a table | left out |") == 2  # of a session, and of one of its conditions
+    assert "| `conditions` | tables by their names, see below |" in page
+    assert "| `peak` | a quantity with its unit | needed |" in page

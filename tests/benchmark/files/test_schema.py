@@ -123,6 +123,7 @@ def test_braces_in_a_value_stay_as_they_are():
 def test_nearest_words():
     assert nearest("epidermiss", ["dermis", "epidermis", "fat"]) == "did you mean epidermis or dermis?"
     assert nearest("zz", ["a", "b"]) == "known: a, b."
+    assert nearest("SKIN-5N", ["paper", "skin-5N"]) == "did you mean skin-5N?"
 
 
 def test_paths_for_people():
