@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.text_sheet import Cell, Sheet, is_absent, is_number, number_text
-from bench_hw.instrument_files.vocabulary import HeaderFact, label_and_unit, plain, role_of, unit_of
+from bench_hw.instrument_files.vocabulary import HeaderFact, clock_seconds, label_and_unit, plain, role_of, unit_of
 from bench_hw.tables.columns import numbers_of
 from bench_hw.tables.units import FloatArray
 
@@ -80,6 +80,12 @@ class Block:
         name = self.names[column] or f"#{column + 1}"
         texts = [number_text(cells[row], self.decimal) for row in kept.tolist()]
         return numbers_of(self.path, name, texts, self.lines[kept], empty=False)
+
+    def clock(self, column: int) -> str:
+        """The first cell of a column of times of the clock, with or without a day; "" where it is none."""
+        cells = self.columns[column]
+        first = "" if isinstance(cells, np.ndarray) else next((cell for cell in cells if cell != ""), "")
+        return first if isinstance(first, str) and clock_seconds(first) is not None else ""
 
     def lacking(self, column: int) -> NDArray[np.bool_]:
         """(n,): where a column has no number."""
