@@ -13,6 +13,7 @@ import numpy as np
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.blocks import Block
+from bench_hw.instrument_files.text_sheet import is_number
 from bench_hw.instrument_files.told import ColumnSource, Told, asking, asking_key, parse_source
 from bench_hw.instrument_files.vocabulary import CLOCK, DIMENSIONS, UNITS, role_of, unit_of, unit_scale
 
@@ -163,10 +164,7 @@ def _shown(block: Block, column: int) -> str:
 def _taken(block: Block, role: str, kind: str, column: int, unit: str, sign: int) -> Taken:
     example = f"{block.names[column] or f'#{column + 1}'}:{_EXAMPLES[role]}"
     if block.lacking(column).all():
-        problem, value = f"no cell of the column is a number, which would be the {kind}", str(block.columns[column][0])
-        raise TableError(
-            block.path, problem, kinds(role), row=int(block.lines[0]), column=block.names[column], value=value
-        )
+        _refuse_words(block, role, kind, column)
     if not unit:
         problem = f"the unit of the {kind} stands neither in its column's name nor in a line below it"
         raise TableError(
@@ -184,6 +182,24 @@ def _taken(block: Block, role: str, kind: str, column: int, unit: str, sign: int
         )
     named = block.names[column] or f"column #{column + 1}"
     return Taken(column, kind, scale, sign, f"{named} [{unit}]")
+
+
+def _refuse_words(block: Block, role: str, kind: str, column: int) -> None:
+    """Refuse a column without any number."""
+    check_decimal(block, column, 0)
+    problem, value = f"no cell of the column is a number, which would be the {kind}", str(block.columns[column][0])
+    place = int(block.lines[0])
+    raise TableError(block.path, problem, kinds(role), row=place, column=block.names[column], value=value)
+
+
+def check_decimal(block: Block, column: int, row: int) -> None:
+    """Refuse a cell that is a number with another decimal sign than the file's; raises TableError."""
+    value, other = str(block.columns[column][row]), "," if block.decimal == "." else "."
+    if not is_number(value, block.decimal) and is_number(value, other):
+        problem = f"the number has the decimal sign {other!r}, others have {block.decimal!r}"
+        allowed = "one decimal sign in all cells: export it anew"
+        place = int(block.lines[row])
+        raise TableError(block.path, problem, allowed, row=place, column=block.names[column], value=value)
 
 
 def kinds(role: str) -> str:

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.blocks import Block
-from bench_hw.instrument_files.column_choice import Taken, header_line, kinds, takes
+from bench_hw.instrument_files.column_choice import Taken, check_decimal, header_line, kinds, takes
 from bench_hw.instrument_files.text_sheet import ONE_UNIT, is_absent, unit_in
 from bench_hw.instrument_files.told import AUTOMATIC, KEPT, TARGETS, Told, asking, asking_key, parse_source
 from bench_hw.instrument_files.vocabulary import COMPRESSION, DIMENSIONS, TENSION, role_of, unit_scale
 from bench_hw.tables.columns import LARGEST, check_increasing, check_row_count
-from bench_hw.tables.measurement import TrialTable, calm
+from bench_hw.tables.measurement import TrialTable, calm, check_totals
 from bench_hw.tables.units import FloatArray
 
 SURE: Final = 6.0
@@ -91,6 +91,7 @@ def record_of(block: Block, told: Told) -> PressRecord:
     lines = block.lines[rows]
     values = {role: block.numbers(taken.column, rows) * taken.scale for role, taken in found.items()}
     _check_sizes(block, found, values, lines)
+    check_totals(block.path, {block.names[found[role].column]: values[role] for role in found if role != "time"}, lines)
     time = np.arange(len(rows)) / told.rate if told.rate else _times(block.path, values["time"], lines, notes)
     if not told.rate and (clock := block.clock(found["time"].column)):
         notes.append(f"times are counted from its first, {clock}")
@@ -193,9 +194,12 @@ def _rows(block: Block, found: Mapping[str, Taken], told: Told, notes: list[str]
     row = int(within[0])
     taken = next(each for each in found.values() if block.lacking(each.column)[row])
     cell, line = block.columns[taken.column][row], int(block.lines[row])
+    check_decimal(block, taken.column, row)
     if told.drop_empty:
         first = f"row {line}, {block.names[taken.column]!r} {str(cell)!r}"
-        notes.append(f"{len(within)} rows without a number in a column that is needed are left out, as told ({first})")
+        counted = "1 row" if len(within) == 1 else f"{len(within)} rows"
+        left = "is" if len(within) == 1 else "are"
+        notes.append(f"{counted} without a number in a column that is needed {left} left out, as told ({first})")
         return np.setdiff1d(kept, within)
     if 2 * len(within) > len(kept):
         problem = f"{len(within)} of {len(kept)} cells of the {taken.role} are no numbers"

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from bench_hw.errors import BenchError
+from bench_hw.errors import BenchError, TableError
 from bench_hw.tables import MarkerTable, TrialTable, read_marker_csv, read_trial_csv
 from benchmark.errors import InputError
 from benchmark.files.load import Load
@@ -85,6 +85,13 @@ def trial_names(paths: Sequence[Path], folder: Path) -> list[str]:
     return [name if times[name] == 1 else f"{name} #{number}" for number, name in enumerate(names, start=1)]
 
 
+LOOSER = (
+    'Units in cells or in a row of their own, clocks and footers are read by --set import.force="force_N:N"; rows that '
+    "lack a number are left out by --set import.drop_empty=true."
+)
+"""How a table with the bench's own names that is not written as the bench writes it may be read all the same."""
+
+
 def read_table(path: Path) -> TrialTable:
     """The table of a trial file, CSV or native; raises InputError."""
     try:
@@ -93,6 +100,9 @@ def read_table(path: Path) -> TrialTable:
 
             return read_trial_mcap(path)
         return read_trial_csv(path)
+    except TableError as error:
+        hint = f" {LOOSER}" if error.problem.startswith(("the cell is", "the row")) else ""
+        raise InputError(f"{error}.{hint}") from None
     except BenchError as error:
         raise InputError(f"{error}.") from None
 

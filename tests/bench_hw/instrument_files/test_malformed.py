@@ -114,6 +114,14 @@ TEXTS = {
         table(body=[line if k < 30 else "no" + line[line.index(","):] for k, line in enumerate(lines())]),
         r"cells of the time are no numbers.*import\.rate",
     ),
+    "two decimal signs": (
+        "Time (s);Distance (mm);Force (N)\n" + "\n".join(f"{t:.3f};{d:.4f};{f:.5f}".replace(".", ",", 1) for t, d, f in zip(T, D, F, strict=True)),
+        r"column 'Time'.*the number has the decimal sign ',', others have '\.'",
+    ),
+    "totals in the last row": (
+        table(body=[*lines(), f"{T.sum():.3f},{D.sum():.4f},{F.sum():.5f}"]),
+        r"the last row holds the sums of the columns Distance and Force|the last row holds the sums of the columns Force and Distance",
+    ),
     "units in columns of their own": (
         "Time,,Distance,,Force,\n" + "\n".join(f"{t:.3f},s,{d:.4f},mm,{f:.5f},N" for t, d, f in zip(T, D, F, strict=True)),
         r"row 2.*no columns of units beside the numbers: take them out",

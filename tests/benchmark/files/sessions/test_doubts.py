@@ -181,3 +181,27 @@ def test_what_a_turned_table_is_answered_by_reads_each_file_its_own_way(tmp_path
         assert trial.table.depth == pytest.approx(table.depth, abs=1e-9)
     where = "in 3 of 4 trials the force falls as the tool presses: force [N] is turned (t1.csv, t2.csv, t3.csv)"
     assert where in session.warnings
+
+
+WRITTEN_OTHERWISE = {
+    "units in cells": lambda t, d, f: f"{t},{d},{f} N",
+    "clocks": lambda t, d, f: f"12:00:{t:06.3f},{d},{f}",
+}
+
+
+@pytest.mark.parametrize("name", WRITTEN_OTHERWISE)
+def test_what_a_strict_table_is_answered_by_reads_it(tmp_path, name):
+    table = replicate(1)
+    rows = zip(table.time.round(3), (1e3 * table.depth).round(6), table.force.round(6), strict=True)
+    lines = [WRITTEN_OTHERWISE[name](*row) for row in rows]
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(["time_s,depth_mm,force_N", *lines]), encoding="utf-8")
+    with pytest.raises(InputError, match=r'read by --set import\.force="force_N:N"'):
+        load_session(path)
+    (trial,) = load_session(path, {"import.force": "force_N:N"}).trials
+    assert trial.table.force == pytest.approx(table.force, abs=1e-5)
+    lines[7] = "0.070,,"
+    path.write_text("\n".join(["time_s,depth_mm,force_N", *lines]), encoding="utf-8")
+    with pytest.raises(InputError, match=r"import\.drop_empty=true"):
+        load_session(path)
+    assert len(load_session(path, {"import.drop_empty": "true"}).trials[0].table.time) == 399
