@@ -160,7 +160,7 @@ def _of_stress(block: Block, found: dict[str, Taken], told: Told) -> dict[str, T
         own = " ".join(f'--set import.{role}="{text}"' for role, text in unsaid.items())
         maps = " ".join(f"--map {TARGETS[role]}={text}" for role, text in unsaid.items())
         problem = f"the columns have no names (it has {block.header})"
-        allowed = f"say which is which, by place and unit: {own} (bench_hw import: {maps})"
+        allowed = f"say which is which, by place and unit: {own} (bench_hw import: --no-header {maps})"
         raise TableError(block.path, problem, allowed, row=header_line(block))
     for role in lacking:
         if faces[role] not in found:
