@@ -151,6 +151,20 @@ def text_sheet(path: Path, told: Told) -> Sheet:
     return Sheet("", rows, range(1, len(rows) + 1), decimal, said)
 
 
+def sheet_of_cells(path: Path, name: str, rows: list[list[Cell]]) -> Sheet:
+    """A workbook's sheet, whose cells of text may be numbers with one decimal sign or the other, and with units."""
+    texts = [cell for row in rows for cell in row if isinstance(cell, str) and cell]
+    points, commas = (sum(_is_loose(cell, sign) for cell in texts) for sign in (".", ","))
+    decimal = "," if commas > points else "."
+    if max(points, commas) > SAMPLE // 10 and len(_rows_of(rows, _is_loose, decimal)) > SAMPLE // 20:
+        _units_to_names(path, rows, decimal)
+        marked = [cell for cell in texts if "," in cell and _TERNARY.fullmatch(cell)]
+        if marked and points == commas:
+            problem, allowed = "the comma may stand before decimals or thousands", "numbers as numbers, not as text"
+            raise TableError(path, problem, allowed, value=marked[0])
+    return Sheet(name, rows, range(1, len(rows) + 1), decimal)
+
+
 def _sign_name(decimal: str) -> str:
     return "comma" if decimal == "," else "point"
 

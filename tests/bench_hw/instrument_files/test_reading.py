@@ -580,3 +580,34 @@ def test_columns_that_are_proportional_otherwise_than_their_units_say_are_two(tm
         return
     with pytest.raises(TableError, match="two columns could be the force"):
         read_instrument_file(path)
+
+
+TEXTS = {
+    "points": lambda value, unit: f"{value:.4f}",
+    "commas": lambda value, unit: f"{value:.4f}".replace(".", ","),
+    "units": lambda value, unit: f"{value:.4f} {unit}".replace(".", ","),
+}
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_workbook_of_numbers_as_text_is_read(tmp_path, name):
+    """Numbers as text with commas, as a German Excel keeps what was pasted, were no rows of numbers."""
+    pytest.importorskip("python_calamine")
+    one, units = press(), ("s", "mm", "N")
+    rows = [
+        [TEXTS[name](float(value), unit) for value, unit in zip(row, units, strict=True)]
+        for row in zip(one.time, one.depth, one.force, strict=True)
+    ]
+    head = ["Zeit", "Weg", "Kraft"] if name == "units" else ["Zeit [s]", "Weg [mm]", "Kraft [N]"]
+    path = samples.workbook(tmp_path / "a.xlsx", {"Daten": [head, *rows]})
+    (record,) = read_instrument_file(path).records
+    assert record.table.force.max() == pytest.approx(one.force.max(), rel=1e-3)
+    assert np.ptp(record.table.time) == pytest.approx(np.ptp(one.time), rel=1e-3)
+
+
+def test_a_workbook_whose_commas_may_be_thousands_is_refused(tmp_path):
+    pytest.importorskip("python_calamine")
+    rows = [[f"1,{n:03d}", f"2,{n:03d}", f"3,{n:03d}"] for n in range(60)]
+    path = samples.workbook(tmp_path / "a.xlsx", {"Daten": [["Zeit [s]", "Weg [mm]", "Kraft [N]"], *rows]})
+    with pytest.raises(TableError, match="the comma may stand before decimals or thousands"):
+        read_instrument_file(path)
