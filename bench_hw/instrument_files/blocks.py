@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.text_sheet import Cell, Sheet, is_absent, is_number, number_text
-from bench_hw.instrument_files.vocabulary import HeaderFact, label_and_unit, plain, role_of, unit_of
+from bench_hw.instrument_files.vocabulary import HeaderFact, clock_seconds, label_and_unit, plain, role_of, unit_of
 from bench_hw.tables.columns import numbers_of
 from bench_hw.tables.units import FloatArray
 
@@ -81,6 +81,12 @@ class Block:
         texts = [number_text(cells[row], self.decimal) for row in kept.tolist()]
         return numbers_of(self.path, name, texts, self.lines[kept], empty=False)
 
+    def clock(self, column: int) -> str:
+        """The first cell of a column of times of the clock, with or without a day; "" where it is none."""
+        cells = self.columns[column]
+        first = "" if isinstance(cells, np.ndarray) else next((cell for cell in cells if cell != ""), "")
+        return first if isinstance(first, str) and clock_seconds(first) is not None else ""
+
     def lacking(self, column: int) -> NDArray[np.bool_]:
         """(n,): where a column has no number."""
         cells = self.columns[column]
@@ -121,8 +127,12 @@ def block_of_arrays(
 
 def _is_data(row: Sequence[Cell], decimal: str) -> bool:
     """Two numbers or more, or words that there is none, and no less of them than of other cells that hold anything."""
-    numeric = sum(is_number(cell, decimal) or is_absent(cell) for cell in row)
+    numeric = sum(_is_numeric(cell, decimal) for cell in row)
     return numeric >= 2 and 2 * numeric >= sum(cell != "" for cell in row)
+
+
+def _is_numeric(cell: Cell, decimal: str) -> bool:
+    return is_number(cell, decimal) or is_absent(cell)
 
 
 def _spans(path: Path, sheet: Sheet, data: Sequence[bool]) -> Iterator[tuple[int, int]]:
@@ -159,7 +169,7 @@ def _names_above(sheet: Sheet, first: int, row: int) -> bool:
 def _check_gap(path: Path, sheet: Sheet, last: int, row: int, rows: int) -> None:
     """Refuse text between rows of numbers; a few rows that are no table yet may have it."""
     for each in range(last, row):
-        cells = [cell for cell in sheet.rows[each] if cell != ""]
+        cells = [cell for cell in sheet.rows[each] if cell != "" and not _is_numeric(cell, sheet.decimal)]
         if cells and rows >= HEADER_ROWS:
             problem = "a row of text stands amid rows of numbers"
             allowed = "rows of numbers without a break; take the row out, or export the tests apart"

@@ -13,8 +13,9 @@ import numpy as np
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.blocks import Block
-from bench_hw.instrument_files.told import ColumnSource, Told, asking, parse_source
-from bench_hw.instrument_files.vocabulary import DIMENSIONS, UNITS, role_of, unit_of, unit_scale
+from bench_hw.instrument_files.text_sheet import is_number
+from bench_hw.instrument_files.told import ColumnSource, Told, asking, asking_key, parse_source
+from bench_hw.instrument_files.vocabulary import CLOCK, DIMENSIONS, UNITS, role_of, unit_of, unit_scale
 
 TRAVEL: Final = ("depth", "displacement", "gap", "position")
 """Quantities that say how far the tool went, the plainest first."""
@@ -48,6 +49,10 @@ def takes(block: Block, told: Told) -> dict[str, Taken]:
                 if (taken := _by_word(block, role, kind)) is not None:
                     found[role] = taken
                     break
+    if "time" not in found and not told.rate and (stamped := _stamped(block)) is not None:
+        found["time"] = _taken(block, "time", "time", stamped, "s", 0)
+    if "force" not in found and "depth" not in found:
+        _check_contradiction(block)
     if "force" not in found or "depth" not in found:
         found |= {
             role: taken for role in ("stress", "strain") if role not in found and (taken := _by_word(block, role, role))
@@ -65,7 +70,7 @@ def _told(block: Block, role: str, source: ColumnSource) -> Taken:
             "no column is called so" if not matching else f"{len(matching)} columns are called so"
         )
         raise TableError(block.path, problem, f"one of {block.header}, by its name or its place #N", column=source.name)
-    unit = source.unit or block.units[matching[0]]
+    unit = source.unit or _unit(block, matching[0])
     return _taken(block, role, role, matching[0], unit, source.sign)
 
 
@@ -84,10 +89,41 @@ def _by_word(block: Block, role: str, kind: str) -> Taken | None:
     for other in best[1:]:
         if not _same(block, first, other):
             names = " and ".join(repr(_shown(block, k)) for k in (first, other))
-            example = f"#{first + 1}:{block.units[first] or _EXAMPLES[role]}"
+            example = f"#{first + 1}:{_unit(block, first) or _EXAMPLES[role]}"
             problem = f"two columns could be the {role}: {names}"
             raise TableError(block.path, problem, f"name one, {asking(role, example)}", row=header_line(block))
-    return _taken(block, role, kind, first, block.units[first], 0)
+    return _taken(block, role, kind, first, _unit(block, first), 0)
+
+
+def _unit(block: Block, column: int) -> str:
+    """The unit of a column, which needs none where it holds times of the clock."""
+    return block.units[column] or ("s" if block.clock(column) else "")
+
+
+def _stamped(block: Block) -> int | None:
+    """The first column that holds days with times of the clock, whatever its name; None where none does."""
+    clocks = (CLOCK.fullmatch(block.clock(k)) for k in range(len(block.names)))
+    return next((k for k, clock in enumerate(clocks) if clock is not None and clock["day"]), None)
+
+
+def _check_contradiction(block: Block) -> None:
+    """Refuse a depth in a unit of force beside a force in one of length, as exchanged names or numbers are."""
+    odd: dict[str, int] = {}
+    for k, name in enumerate(block.names):
+        meaning, dimension = role_of(name), _dimension(block.units[k])
+        if meaning is not None and meaning[0] == "force" and dimension == DIMENSIONS["depth"]:
+            odd.setdefault("force", k)
+        elif meaning is not None and meaning[0] in TRAVEL and dimension == DIMENSIONS["force"]:
+            odd.setdefault("depth", k)
+    if len(odd) < 2:
+        return
+    force, depth = odd["force"], odd["depth"]
+    problem = f"{_shown(block, depth)!r} and {_shown(block, force)!r}: names and units contradict each other"
+    of_units = f"#{depth + 1}:{block.units[depth]}", f"#{force + 1}:{block.units[force]}"
+    of_names = f"#{force + 1}:{block.units[depth]}", f"#{depth + 1}:{block.units[force]}"
+    by_units, by_names = (f"{asking('force', one)} and {asking('depth', two)}" for one, two in (of_units, of_names))
+    allowed = f"where the units are right, {by_units}; where the names are, {by_names}"
+    raise TableError(block.path, problem, allowed, row=header_line(block))
 
 
 def _dimension(unit: str) -> str | None:
@@ -127,6 +163,8 @@ def _shown(block: Block, column: int) -> str:
 
 def _taken(block: Block, role: str, kind: str, column: int, unit: str, sign: int) -> Taken:
     example = f"{block.names[column] or f'#{column + 1}'}:{_EXAMPLES[role]}"
+    if block.lacking(column).all():
+        _refuse_words(block, role, kind, column)
     if not unit:
         problem = f"the unit of the {kind} stands neither in its column's name nor in a line below it"
         raise TableError(
@@ -144,6 +182,32 @@ def _taken(block: Block, role: str, kind: str, column: int, unit: str, sign: int
         )
     named = block.names[column] or f"column #{column + 1}"
     return Taken(column, kind, scale, sign, f"{named} [{unit}]")
+
+
+def _refuse_words(block: Block, role: str, kind: str, column: int) -> None:
+    """Refuse a column without any number."""
+    check_decimal(block, column, 0)
+    problem, value = f"no cell of the column is a number, which would be the {kind}", str(block.columns[column][0])
+    place = int(block.lines[0])
+    raise TableError(block.path, problem, kinds(role), row=place, column=block.names[column], value=value)
+
+
+def check_decimal(block: Block, column: int, row: int) -> None:
+    """Refuse a cell that is a number with another decimal sign than the file's; raises TableError."""
+    value, other = str(block.columns[column][row]), "," if block.decimal == "." else "."
+    if not is_number(value, block.decimal) and is_number(value, other):
+        problem = f"the number has the decimal sign {other!r}, others have {block.decimal!r}"
+        allowed = "one decimal sign in all cells: export it anew"
+        place = int(block.lines[row])
+        raise TableError(block.path, problem, allowed, row=place, column=block.names[column], value=value)
+
+
+def kinds(role: str) -> str:
+    """What may stand in a column of which most cells are no numbers."""
+    if role != "time":
+        return f"numbers, in another column, {asking(role, f'COLUMN:{_EXAMPLES[role]}')}"
+    clocks = "12:00:01.50 or 2024-03-01 12:00:01.50"
+    return f"seconds, or a clock as {clocks}; or rows per second, {asking_key('rate', '100 Hz')}"
 
 
 def is_record(block: Block, told: Told) -> bool:

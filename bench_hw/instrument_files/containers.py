@@ -18,7 +18,7 @@ import numpy as np
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.blocks import Block, block_of_arrays, blocks_of, header_facts
-from bench_hw.instrument_files.text_sheet import Cell, Sheet
+from bench_hw.instrument_files.text_sheet import Cell, Sheet, sheet_of_cells
 from bench_hw.instrument_files.vocabulary import HeaderFact, label_and_unit, unit_of
 from bench_hw.storage.regular_file import DOCUMENT, open_regular
 
@@ -87,7 +87,7 @@ def _workbook(path: Path) -> list[Block]:
     """Each sheet's blocks; what other sheets tell of tool and specimen (parameters, results) is a fact of all."""
     calamine = _library(path, "python_calamine", "python-calamine", "instruments")
     book = calamine.CalamineWorkbook.from_path(str(path))
-    sheets = [_sheet(book, name) for name in book.sheet_names]
+    sheets = [_sheet(path, book, name) for name in book.sheet_names]
     blocks = [(sheet, block) for sheet in sheets for block in blocks_of(path, sheet)]
     beside = [fact for sheet in sheets for fact in header_facts(sheet.rows[:200] if _tells(sheet) else ())]
     return [_with_facts(block, [*block.facts, *beside]) for _, block in blocks]
@@ -104,9 +104,9 @@ def _with_facts(block: Block, facts: Sequence[HeaderFact]) -> Block:
     return replace(block, facts=tuple(facts))
 
 
-def _sheet(book: Any, name: str) -> Sheet:
+def _sheet(path: Path, book: Any, name: str) -> Sheet:
     rows = book.get_sheet_by_name(name).to_python(skip_empty_area=False)
-    return Sheet(name, [[_cell(cell) for cell in row] for row in rows], range(1, len(rows) + 1))
+    return sheet_of_cells(path, name, [[_cell(cell) for cell in row] for row in rows])
 
 
 def _cell(cell: object) -> Cell:

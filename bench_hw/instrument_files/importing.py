@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from bench_hw.errors import InputError, TableError
 from bench_hw.instrument_files import PressRecord, Told, is_plain_trial, read_instrument_file
-from bench_hw.instrument_files.text_sheet import Cell, number_text, text_sheet
+from bench_hw.instrument_files.text_sheet import Cell, is_number, number_text, text_sheet
 from bench_hw.tables.columns import check_increasing, check_row_count, numbers_of
 from bench_hw.tables.measurement import MARKER_COLUMNS, TRIAL_COLUMNS
 from bench_hw.tables.output import write_columns
@@ -91,7 +91,10 @@ def read_foreign(path: Path, layout: ForeignFormat) -> ForeignRows:
         raise TableError(path, "the file is empty", "a header and rows of numbers")
     names: Sequence[str] = ()
     if layout.header:
-        names, kept = kept[0][1], kept[1:]
+        (line, names), kept = kept[0], kept[1:]
+        if all(is_number(cell, sheet.decimal) for cell in names if cell):
+            problem, allowed = "the header is a row of numbers", "names of columns; or --no-header where there are none"
+            raise TableError(path, problem, allowed, row=line, value=", ".join(names))
     kept = kept[layout.skip_rows :]
     rows = tuple([number_text(cell, sheet.decimal) for cell in row] for _, row in kept)
     return ForeignRows(path, tuple(names), rows, tuple(line for line, _ in kept))

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.blocks import Block
-from bench_hw.instrument_files.column_choice import Taken, header_line, takes
+from bench_hw.instrument_files.column_choice import Taken, check_decimal, header_line, kinds, takes
 from bench_hw.instrument_files.text_sheet import ONE_UNIT, is_absent, unit_in
-from bench_hw.instrument_files.told import AUTOMATIC, KEPT, Told, asking, asking_key, parse_source
+from bench_hw.instrument_files.told import AUTOMATIC, KEPT, TARGETS, Told, asking, asking_key, parse_source
 from bench_hw.instrument_files.vocabulary import COMPRESSION, DIMENSIONS, TENSION, role_of, unit_scale
 from bench_hw.tables.columns import LARGEST, check_increasing, check_row_count
-from bench_hw.tables.measurement import TrialTable, calm
+from bench_hw.tables.measurement import TrialTable, calm, check_totals
 from bench_hw.tables.units import FloatArray
 
 SURE: Final = 6.0
@@ -91,7 +91,11 @@ def record_of(block: Block, told: Told) -> PressRecord:
     lines = block.lines[rows]
     values = {role: block.numbers(taken.column, rows) * taken.scale for role, taken in found.items()}
     _check_sizes(block, found, values, lines)
+    check_totals(block.path, {block.names[found[role].column]: values[role] for role in found if role != "time"}, lines)
     time = np.arange(len(rows)) / told.rate if told.rate else _times(block.path, values["time"], lines, notes)
+    if not told.rate and (clock := block.clock(found["time"].column)):
+        notes.append(f"times are counted from its first, {clock}")
+        time = time - time[0]
     kind = _kind(block, found, told)
     if kind != "press":
         notes.append(f"this is {kind} of a cylinder or block, not a press of a tool: depth and force are its faces'")
@@ -144,10 +148,20 @@ def _kind(block: Block, found: Mapping[str, Taken], told: Told) -> str:
     return "tension" if pulled and not pressed else "compression"
 
 
+_BY_PLACE: Final = {"time": "#1:s", "depth": "#2:mm", "force": "#3:N"}
+
+
 def _of_stress(block: Block, found: dict[str, Taken], told: Told) -> dict[str, Taken]:
     """Stress in the place of a force that is missing, strain in that of a depth, where area and height are known."""
     faces = {"force": "stress", "depth": "strain"}
     lacking = [role for role in faces if role not in found]
+    if lacking and not any(block.names):
+        unsaid = {role: text for role, text in _BY_PLACE.items() if role not in told.columns}
+        own = " ".join(f'--set import.{role}="{text}"' for role, text in unsaid.items())
+        maps = " ".join(f"--map {TARGETS[role]}={text}" for role, text in unsaid.items())
+        problem = f"the columns have no names (it has {block.header})"
+        allowed = f"say which is which, by place and unit: {own} (bench_hw import: --no-header {maps})"
+        raise TableError(block.path, problem, allowed, row=header_line(block))
     for role in lacking:
         if faces[role] not in found:
             example = "COLUMN:N" if role == "force" else "COLUMN:mm"
@@ -180,10 +194,18 @@ def _rows(block: Block, found: Mapping[str, Taken], told: Told, notes: list[str]
     row = int(within[0])
     taken = next(each for each in found.values() if block.lacking(each.column)[row])
     cell, line = block.columns[taken.column][row], int(block.lines[row])
+    check_decimal(block, taken.column, row)
     if told.drop_empty:
         first = f"row {line}, {block.names[taken.column]!r} {str(cell)!r}"
-        notes.append(f"{len(within)} rows without a number in a column that is needed are left out, as told ({first})")
+        counted = "1 row" if len(within) == 1 else f"{len(within)} rows"
+        left = "is" if len(within) == 1 else "are"
+        notes.append(f"{counted} without a number in a column that is needed {left} left out, as told ({first})")
         return np.setdiff1d(kept, within)
+    if 2 * len(within) > len(kept):
+        problem = f"{len(within)} of {len(kept)} cells of the {taken.role} are no numbers"
+        raise TableError(
+            block.path, problem, kinds(taken.role), row=line, column=block.names[taken.column], value=str(cell)
+        )
     problem, number = "the cell is empty" if cell == "" else "the cell is no finite number", "a number"
     if unit_in(cell, block.decimal) is not None:
         problem, number = "the cell has a unit behind its number, and others have none or another", ONE_UNIT

@@ -18,7 +18,7 @@ from typing import Final
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.told import Told, asking_key
-from bench_hw.instrument_files.vocabulary import UNITS, label_and_unit, role_of, unit_of
+from bench_hw.instrument_files.vocabulary import UNITS, clock_seconds, label_and_unit, role_of, unit_of
 from bench_hw.storage.regular_file import TABLE, read_regular
 
 Cell = str | float
@@ -56,7 +56,6 @@ _UNMARKED: Final = {
     decimal: str.maketrans({",": "."} | dict.fromkeys(f"{other}{_MARKS}"))
     for decimal, other in ((".", ","), (",", "."))
 }
-CLOCK: Final = re.compile(r"(?:(\d+):)?(\d{1,2}):(\d{2}(?:[.,]\d+)?)", re.ASCII)
 MINUS: Final = "\N{MINUS SIGN}"
 """What Scandinavian settings write before a number."""
 _INFINITE: Final = ("inf", "+inf", "-inf", "infinity", "-infinity", "1.#inf", "-1.#inf")
@@ -97,13 +96,13 @@ class Sheet:
 
 
 def is_number(cell: Cell, decimal: str) -> bool:
-    """Whether a cell is a number or a time of the clock."""
+    """Whether a cell is a number or a time of the clock, with or without its day."""
     if not isinstance(cell, str):
         return True
     if not cell or cell[0] not in "0123456789+-.,":
         return False
     digits = any(letter.isdigit() for letter in cell[:4])
-    return bool(digits and _NUMBER[decimal].fullmatch(cell)) or bool(CLOCK.fullmatch(cell))
+    return bool(digits and _NUMBER[decimal].fullmatch(cell)) or clock_seconds(cell) is not None
 
 
 def unit_in(cell: Cell, decimal: str) -> str | None:
@@ -123,9 +122,8 @@ def number_text(cell: Cell, decimal: str) -> str:
     """A cell as a number with a point, thousands unmarked, a clock in seconds; other text as it is."""
     if not isinstance(cell, str):
         return repr(float(cell))
-    if (clock := CLOCK.fullmatch(cell)) is not None:
-        hours, minutes, seconds = clock.groups()
-        return repr(3600.0 * int(hours or 0) + 60.0 * int(minutes) + float(seconds.replace(",", ".")))
+    if (seconds := clock_seconds(cell)) is not None:
+        return repr(seconds)
     if not _NUMBER[decimal].fullmatch(cell):
         return cell
     return cell.translate(_UNMARKED[decimal])
@@ -151,6 +149,20 @@ def text_sheet(path: Path, told: Told) -> Sheet:
     if not told.decimal:
         _check_ternary(path, rows, decimal)
     return Sheet("", rows, range(1, len(rows) + 1), decimal, said)
+
+
+def sheet_of_cells(path: Path, name: str, rows: list[list[Cell]]) -> Sheet:
+    """A workbook's sheet, whose cells of text may be numbers with one decimal sign or the other, and with units."""
+    texts = [cell for row in rows for cell in row if isinstance(cell, str) and cell]
+    points, commas = (sum(_is_loose(cell, sign) for cell in texts) for sign in (".", ","))
+    decimal = "," if commas > points else "."
+    if max(points, commas) > SAMPLE // 10 and len(_rows_of(rows, _is_loose, decimal)) > SAMPLE // 20:
+        _units_to_names(path, rows, decimal)
+        marked = [cell for cell in texts if "," in cell and _TERNARY.fullmatch(cell)]
+        if marked and points == commas:
+            problem, allowed = "the comma may stand before decimals or thousands", "numbers as numbers, not as text"
+            raise TableError(path, problem, allowed, value=marked[0])
+    return Sheet(name, rows, range(1, len(rows) + 1), decimal)
 
 
 def _sign_name(decimal: str) -> str:
@@ -315,11 +327,20 @@ def _no_numbers(path: Path, lines: Sequence[str], told: Told) -> None:
     first = next((number for number, line in enumerate(lines, start=1) if _UNKNOWN.search(line)), first)
     if _UNKNOWN.search(lines[first - 1]):
         allowed += f"; behind a number nothing but a known unit, {ONE_UNIT}"
+    if alone := next((number for number, line in enumerate(lines[:SAMPLE], start=1) if _UNIT_ALONE.search(line)), 0):
+        first, allowed = (
+            alone,
+            "no columns of units beside the numbers: take them out, and say `Depth (mm)` in the name",
+        )
     raise NoNumbersError(path, problem, allowed, row=first, value=lines[first - 1].strip())
 
 
 _UNKNOWN: Final = re.compile(r"(?:^|[\t;,|])\s*[+-]?\d[\d.,]*\s*[^\W\d_]+\s*(?:$|[\t;,|])")
 """A cell with letters behind its number, none of which is a known unit where no rows are found."""
+_UNIT_ALONE: Final = re.compile(
+    r"(?:^|[\t;,|])\s*[+-]?\d[\d.,]*\s*[\t;,|]\s*(?:[µu]?m|[cm]m|[mk]?N|[mk]?g|s|ms)\s*(?:$|[\t;,|])"
+)
+"""A unit in a cell of its own behind a number."""
 _ASK_DELIMITER: Final = asking_key("delimiter", "tab")
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from datetime import date
 from typing import Final
 
 from bench_hw.configuration import parse_quantity
@@ -94,7 +95,7 @@ _WORDS: Final[tuple[tuple[str, int, str], ...]] = (
     ("force", 0, r"force|load|(?:force|f) ?z|f ?n|f|kraft|standardkraft|pr(?:ü|ue|u)fkraft|normalkraft|druckkraft|last|si(?:ł|l)a|obci(?:ąż|az)enie|fuerza|carga|charge|effort|forza|kuvvet|y[uü]k|力|载荷|负荷|试验力|荷重|試験力"),  # noqa: E501
     ("force", 1, _QUALIFIED + r"(?:force|load)(?: (?:z|sensor))?|load ?cell|kraft(?: ?sensor| z| f)"),
     ("force", 2, _QUALIFIED + r"(?:force|load|load ?cell|kraft) \d+"),
-    ("depth", 0, r"depth|indentation(?: depth)?|penetration(?: depth)?|eindring(?:tiefe|weg|ung)|profondeur|profundidad|压入深度|压痕深度|押込み深さ"),  # noqa: E501
+    ("depth", 0, r"enfoncement|profondeur (?:d[’' ]?)?(?:indentation|enfoncement|p[eé]n[eé]tration)|p[eé]n[eé]tration|depth|indentation(?: depth)?|penetration(?: depth)?|eindring(?:tiefe|weg|ung)|profondeur|profundidad|压入深度|压痕深度|押込み深さ"),  # noqa: E501
     ("displacement", 0, r"displacement|disp|extension|travel|distance|stroke|standardweg|weg|verfahrweg|d[eé]placement|desplazamiento|przemieszczenie|wyd(?:ł|l)u(?:ż|z)enie|course|allongement|uzama|deplasman|spostamento|corsa|deslocamento|curso|位移|行程|変位|ストローク|つかみ具間変位|伸び"),  # noqa: E501
     ("displacement", 1, _QUALIFIED + r"(?:displacement|disp|extension|travel|distance|stroke|deflection|elongation|separation)|grip(?: to grip)? separation|traversenweg|verformung|deformation|stauchung|nutzweg|absolutweg|wegaufnehmer|变形|横梁位移"),  # noqa: E501
     ("displacement", 2, r"(?:absolute )?crosshead(?: travel)?|traverse(?:nweg)?(?: abs(?:olut)?)?|piezo|" + _QUALIFIED + r"(?:displacement|disp|extension) \d+"),  # noqa: E501
@@ -123,6 +124,35 @@ def role_of(label: str, unit: str = "") -> tuple[str, int] | None:
     if role == "displacement" and unit in RELATIVE:
         return "strain", rank
     return (role, rank) if role else None
+
+
+CLOCK: Final = re.compile(
+    r"(?:(?P<day>\d{4}-\d{2}-\d{2}|\d{1,2}\.\d{1,2}\.\d{4}|\d{1,4}/\d{1,2}/\d{1,4})(?:T|,? +))?"
+    r"(?:(?P<hours>\d+):)?(?P<minutes>\d{1,2}):(?P<seconds>\d{2}(?:[.,]\d+)?)"
+    r"(?P<half> ?[AaPp][Mm])?(?:Z| ?[+-]\d{2}:?\d{2})?",
+    re.ASCII,
+)
+"""A time of the clock, `12:00:01.5`, with its day, `2024-03-01T12:00:01.5Z` or `01.03.2024 12:00:01`, or without."""
+
+
+def clock_seconds(text: str) -> float | None:
+    """Seconds since midnight of a clock, since 2000 where its day stands before it; None for any other text.
+
+    A day with slashes, which has the month first in one country and second in another, does not count.
+    """
+    found = CLOCK.fullmatch(text) if ":" in text else None
+    if found is None:
+        return None
+    day, hours, half = found["day"], int(found["hours"] or 0), (found["half"] or "").strip().casefold()
+    hours = hours % 12 + 12 * (half == "pm") if half else hours
+    seconds = 3600.0 * hours + 60.0 * int(found["minutes"]) + float(found["seconds"].replace(",", "."))
+    if day is None or "/" in day:
+        return seconds
+    parts = [int(part) for part in (day.split("-") if "-" in day else day.split(".")[::-1])]
+    try:
+        return seconds + 86400.0 * (date(parts[0], parts[1], parts[2]) - date(2000, 1, 1)).days
+    except ValueError:
+        return None
 
 
 @dataclass(frozen=True)

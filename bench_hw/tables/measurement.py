@@ -93,6 +93,36 @@ def calm(force: FloatArray) -> FloatArray:
     return np.where(np.abs(force - middle) > LONE * float(np.ptp(middle)), middle, force)
 
 
+SUMMED = 1e-3
+"""How near the last row of a table is to the sums of the others, relative, to be their totals."""
+
+
+def check_totals(path: Path, columns: Mapping[str, FloatArray], lines: IntArray) -> None:
+    """Refuse a last row that holds the sums of the columns, as a spreadsheet's totals do.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        For the error.
+    columns : Mapping[str, ndarray], each of shape (n,)
+        Depth and force, in any unit.
+    lines : ndarray of int, shape (n,)
+        The line of the file of each row.
+
+    Raises
+    ------
+    TableError
+        Each column's last number is the sum of the others, and far beyond all of them.
+    """
+    for values in columns.values():
+        total = float(values[:-1].sum()) if len(values) > 2 else 0.0
+        beyond = abs(total) > LONE * float(np.abs(values[:-1]).max(initial=0.0))
+        if not beyond or abs(float(values[-1]) - total) > SUMMED * abs(total):
+            return
+    problem = f"the last row holds the sums of the columns {' and '.join(columns)}"
+    raise TableError(path, problem, "rows of the record alone: take it out", row=int(lines[-1]))
+
+
 def read_trial_csv(path: Path | str) -> TrialTable:
     """Read a trial from a CSV file.
 
@@ -120,6 +150,7 @@ def read_trial_csv(path: Path | str) -> TrialTable:
     columns = read_table(path, TRIAL_COLUMNS)
     check_increasing(path, "time_s", columns.values["time_s"], columns.lines)
     check_row_count(path, len(columns.lines))
+    check_totals(path, {name: columns.values[name] for name in TRIAL_COLUMNS[1:]}, columns.lines)
     si, units = _in_si(path, columns.values)
     time, depth, force = (si.pop(name) for name in ("time", "depth", "force"))
     extra_units = {name: units[name] for name in si if units[name]}

@@ -117,6 +117,35 @@ def _single(trial: TrialFit) -> PooledStiffness:
     )
 
 
+APART = 1.25
+"""Fold between the mean stiffness of conditions from which on one stiffness is said not to follow them."""
+CHANCE = 1e-3
+"""P of an F test below which conditions differ by more than their trials scatter."""
+LEAST_WITHIN = 1e-3
+"""Relative scatter within conditions that counts as no less."""
+
+
+def fold_between(groups: Sequence[Sequence[float]]) -> float | None:
+    """How many times the largest group's mean is the smallest's; None within `APART`, or where it may be chance.
+
+    Parameters
+    ----------
+    groups : sequence of sequences of float
+        Logarithms, of two groups or more that hold two trials more than there are groups.
+    """
+    count, freedom = len(groups), sum(len(group) for group in groups) - len(groups)
+    if count < 2 or freedom < 2:
+        return None
+    means = np.array([math.fsum(group) / len(group) for group in groups])
+    sizes = np.array([len(group) for group in groups])
+    inside = sum(float(np.sum((np.array(group) - mean) ** 2)) for group, mean in zip(groups, means, strict=True))
+    within = max(inside / freedom, LEAST_WITHIN**2)
+    between = float(np.sum(sizes * (means - np.average(means, weights=sizes)) ** 2)) / (count - 1)
+    fold = math.exp(float(np.ptp(means)))
+    chance = float(scipy.stats.f.sf(between / within, count - 1, freedom))
+    return fold if fold > APART and chance < CHANCE else None
+
+
 TOTAL_ROWS = 20000
 """Rows of all trials together in the joint fit; longer trials are averaged further."""
 

@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 
 from benchmark.identification.fitted_parameters import FittedParameter, LayerLike, fitted_parameters
-from benchmark.identification.pooling import JointFit, PooledStiffness, fit_jointly, pool
+from benchmark.identification.pooling import JointFit, PooledStiffness, fit_jointly, fold_between, pool
 from benchmark.identification.trial_data import FittingError, NoContactError, TrialData
 from benchmark.identification.trial_fit import TrialFit, fit_trial, prepare_rows
 from benchmark.response.force_curve import Array
@@ -54,6 +54,11 @@ class SessionFit:
     parameters: tuple[FittedParameter, ...]
     notes: tuple[str, ...]
     warnings: tuple[str, ...]
+
+    @property
+    def conditions_fold(self) -> float | None:
+        """How many times the stiffest condition is as stiff as the softest, where one stiffness follows not all."""
+        return conditions_fold(self.trials)
 
     @property
     def stiffness_factor(self) -> float:
@@ -193,7 +198,8 @@ SCATTER = 0.25
 
 def fit_warnings(trials: Sequence[TrialFit], pooled: PooledStiffness) -> list[str]:
     """Sentences on what limits the fit, each once for all trials."""
-    found = (_far(pooled), _time(trials), _misfit(trials), _scatter(trials, pooled), _few(pooled))
+    scatter = _conditions(trials) or _scatter(trials, pooled)
+    found = (_far(pooled), _time(trials), _misfit(trials), scatter, _few(pooled))
     return [text for text in found if text]
 
 
@@ -219,13 +225,37 @@ def fit_notes(trials: Sequence[TrialFit], pooled: PooledStiffness, joint: JointF
 
 def conditions_p(trials: Sequence[TrialFit]) -> float | None:
     """P of equal mean logarithms in all conditions; None without two conditions of scattering trials."""
-    logs: dict[str, list[float]] = {}
-    for trial in trials:
-        logs.setdefault(trial.condition, []).append(trial.log_stiffness)
-    groups = [group for group in logs.values() if len(group) > 1]
+    groups = [group for group in _by_condition(trials).values() if len(group) > 1]
     if len(groups) < 2 or all(np.ptp(group) < 1e-9 for group in groups):
         return None
     return float(scipy.stats.f_oneway(*groups).pvalue)
+
+
+def _by_condition(trials: Sequence[TrialFit]) -> dict[str, list[float]]:
+    """Logarithms of the trials' stiffness factors."""
+    logs: dict[str, list[float]] = {}
+    for trial in trials:
+        logs.setdefault(trial.condition, []).append(trial.log_stiffness)
+    return logs
+
+
+def conditions_fold(trials: Sequence[TrialFit]) -> float | None:
+    """How many times the stiffest condition is as stiff as the softest; None where one stiffness follows them."""
+    return fold_between(list(_by_condition(trials).values()))
+
+
+def _conditions(trials: Sequence[TrialFit]) -> str:
+    fold = conditions_fold(trials)
+    if fold is None:
+        return ""
+    means = {name: math.exp(math.fsum(logs) / len(logs)) for name, logs in _by_condition(trials).items()}
+    soft, stiff = min(means, key=lambda name: means[name]), max(means, key=lambda name: means[name])
+    return (
+        f"one law with one stiffness does not follow all conditions: {stiff} is {fold:.3g} times as stiff as {soft} "
+        f"({means[stiff]:.3g} and {means[soft]:.3g} times the value before the fit), beyond their trials' scatter. "
+        "What is quoted is the mean of conditions that contradict each other: see whether each has the units, "
+        "specimen, tool and support that it was pressed with, or let the command discover say which effect is missing"
+    )
 
 
 def _time(trials: Sequence[TrialFit]) -> str:

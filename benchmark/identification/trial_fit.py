@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmark.files.sessions.doubts import EITHER_WAY
 from benchmark.identification.elastic_law import LawFit, minimise
 from benchmark.identification.trial_data import (
     LEAST_ROWS,
@@ -205,7 +206,7 @@ def _no_contact(trial: TrialData, start: Start) -> str:
     return (
         f"{trial.label}: no force rises with depth over the noise (t = {start.evidence:.3g}, at least "
         f"{LEAST_EVIDENCE:g} is needed); was there contact, and is press positive in force and depth? "
-        'A column is turned by --set import.force="-COLUMN:N" or import.depth="-COLUMN:mm"'
+        f"Where pressing is negative, {EITHER_WAY}"
     )
 
 

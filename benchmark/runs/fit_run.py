@@ -185,7 +185,11 @@ def _check(request: FitRequest, session: Session) -> None:
     request.wish.check(session)
     free = bool(request.wish.table(session.fit).free)
     if free and request.model is not None:
-        raise InputError("--free and --model do not go together: the effects of a model file act on a common factor")
+        raise InputError(
+            "--free and --model do not go together: the effects of a model file are fitted with one "
+            "common stiffness. Leave --free out for that, or leave --model out and fit what is an effect of the "
+            "material along: --free KEY,relaxation, or --law yeoh with --free KEY where it stiffens"
+        )
     check_exports(session, request.export, free=free)
 
 

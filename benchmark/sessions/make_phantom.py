@@ -35,8 +35,7 @@ from bench_hw.tables import write_trial_csv
 from bench_hw.trial_file import read_trial_mcap
 from bench_hw.vision.tracking.film import TrackOrder, track
 from benchmark.errors import SolverError
-from benchmark.sessions.phantom_sheet import RELAXATION, hidden_sheet
-from benchmark.sessions.phantom_text import TrueTrial, session_text, truth_text
+from benchmark.sessions.phantom_sheet import RELAXATION, TrueTrial, hidden_sheet, session_text, truth_text
 
 PRESSES: Final = (("press", "paper_press", 10), ("rich", "rich_press", 3))
 """Condition, protocol and number of trials."""

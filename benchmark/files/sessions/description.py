@@ -25,30 +25,6 @@ MarkerNumber = Annotated[int, Number("0 to 1000000 (a whole number)", Bounds(0, 
 Keys = Mapping[str, Any]
 
 
-class TrialEntry(FileModel):
-    """One trial.
-
-    Attributes
-    ----------
-    file : str
-        CSV or native trial file, inside the session's folder.
-    condition : str
-        What the trial shares with others: a speed, a depth, a day.
-    markers : str or None
-        CSV file of the marker tracks, inside the session's folder.
-    film : str or None
-        Video of the markers, inside the session's folder, tracked in the run with the camera of [camera] file.
-    sheet : str or None
-        The sheet, group or test of an instrument's file; None: each that holds a record is a trial.
-    """
-
-    file: Name
-    condition: Name
-    markers: Name | None = None
-    film: Name | None = None
-    sheet: Name | None = None
-
-
 class ImportTable(FileModel):
     """What files of other instruments leave open: where columns stand and in which units, and how text is written.
 
@@ -83,6 +59,10 @@ class ImportTable(FileModel):
     height: Length | None = None
     area: Name | None = None
 
+    def with_own(self, own: ImportTable) -> ImportTable:
+        """Give the table with what is told of one file in its place."""
+        return self.model_copy(update={key: getattr(own, key) for key in own.model_fields_set})
+
     def told(self, sheet: str | None = None) -> Told:
         """As the reader takes it; raises InputError."""
         roles = ("time", "depth", "force", "gap", "stress", "strain")
@@ -102,6 +82,33 @@ class ImportTable(FileModel):
             )
         except ValueError as error:
             raise InputError(f"[import]: {error}") from None
+
+
+class TrialEntry(FileModel):
+    """One trial.
+
+    Attributes
+    ----------
+    file : str
+        CSV or native trial file, inside the session's folder.
+    condition : str
+        What the trial shares with others: a speed, a depth, a day.
+    markers : str or None
+        CSV file of the marker tracks, inside the session's folder.
+    film : str or None
+        Video of the markers, inside the session's folder, tracked in the run with the camera of [camera] file.
+    sheet : str or None
+        The sheet, group or test of an instrument's file; None: each that holds a record is a trial.
+    import_ : ImportTable
+        What is told of this file alone, as `import = { force = "Load:kgf" }`; it counts before [import].
+    """
+
+    file: Name
+    condition: Name
+    markers: Name | None = None
+    film: Name | None = None
+    sheet: Name | None = None
+    import_: Annotated[ImportTable, Field(alias="import")] = ImportTable()
 
 
 class Drive(FileModel):

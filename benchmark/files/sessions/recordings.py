@@ -62,6 +62,8 @@ class Recording:
         What was found out or changed in reading.
     kind : str
         press | compression | tension.
+    columns : Mapping[str, str]
+        Where each quantity stood in another instrument's file, "NAME [UNIT]"; empty for the bench's own.
     """
 
     entry: TrialEntry
@@ -70,6 +72,7 @@ class Recording:
     header: Reading = field(default_factory=Reading)
     notes: tuple[str, ...] = ()
     kind: str = "press"
+    columns: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +141,7 @@ def read_recordings(file: SessionFile, paths: Sequence[Path], *, listed: bool) -
             raise InputError(f"{error}.") from None
         several = len(read.records) > 1
         trials += [
-            Recording(entry, each.name if several else "", each.table, read.header, each.notes, each.kind)
+            Recording(entry, each.name if several else "", each.table, read.header, each.notes, each.kind, each.columns)
             for each in read.records
         ]
         shown += preview(read)
@@ -169,22 +172,34 @@ def _told(file: SessionFile, entry: TrialEntry, path: Path) -> Told | None:
 
     The bench's own table counts depth as it is meant, so its touch is looked for only where that was asked for.
     """
-    told = file.import_.told(entry.sheet)
+    table = file.import_.with_own(entry.import_)
+    told = table.told(entry.sheet)
     if is_instruments(path):
         return told
     if path.suffix.lower() == ".mcap" or not is_told_of(path, told):
         return None
-    return told if "touch" in file.import_.model_fields_set else replace(told, touch="none")
+    return told if "touch" in table.model_fields_set else replace(told, touch="none")
 
 
 def _warnings(trials: Sequence[Recording]) -> list[str]:
-    """What was found out in reading, once for all trials of which it is true but for its numbers."""
-    told = Counter(_numberless(note) for trial in trials for note in trial.notes)
-    first = {_numberless(note): note for trial in reversed(trials) for note in reversed(trial.notes)}
-    return [
-        f"in {count} of {len(trials)} trials {first[text]}" if len(trials) > 1 else first[text]
-        for text, count in told.items()
-    ]
+    """What was found out in reading, once for all trials of which it is true but for its numbers, with their files."""
+    files: dict[str, list[str]] = {}
+    first: dict[str, str] = {}
+    for trial in trials:
+        for note in trial.notes:
+            first.setdefault(_numberless(note), note)
+            files.setdefault(_numberless(note), []).append(trial.entry.file)
+    return [_of_files(first[text], of, len(trials)) for text, of in files.items()]
+
+
+def _of_files(note: str, files: Sequence[str], trials: int) -> str:
+    """A note with the number of trials it is true of, and their files where it is not true of all."""
+    if trials == 1:
+        return note
+    some = list(dict.fromkeys(files))
+    listed = ", ".join(some[:3]) + (f" and {len(some) - 3} more" if len(some) > 3 else "")
+    where = f" ({listed})" if len(files) < trials else ""
+    return f"in {len(files)} of {trials} trials {note}{where}"
 
 
 def _numberless(note: str) -> str:

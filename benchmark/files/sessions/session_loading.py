@@ -27,6 +27,7 @@ from benchmark.files.overrides import layer_path, put_in, unknown_key
 from benchmark.files.schema import FileModel, known_keys, validated
 from benchmark.files.sessions.depth_counts import even_depths
 from benchmark.files.sessions.description import Camera, SessionFile, assumptions, base_setup, setups
+from benchmark.files.sessions.doubts import check_labels, doubtful_forces, doubtful_times
 from benchmark.files.sessions.film_clock import on_trials_clock
 from benchmark.files.sessions.recordings import (
     Recording,
@@ -40,8 +41,6 @@ from benchmark.files.sessions.session_folder import fingerprint, inside, said_of
 from benchmark.files.sessions.trials import (
     Session,
     Trial,
-    doubtful_forces,
-    doubtful_times,
     is_synthetic,
     read_markers,
     trial_names,
@@ -183,6 +182,7 @@ def _trials(
     named = dict(zip(map(id, file.trials), trial_names(files, source.folder), strict=True))
     names = recorded_names(read, [named[id(each.entry)] for each in read])
     warnings += _copied(read, names)
+    check_labels(read, file.import_, setup)
     if file.drive.channel == "depth":
         warnings += doubtful_forces(names, [each.table for each in read])
     warnings += doubtful_times(names, [each.table for each in read])

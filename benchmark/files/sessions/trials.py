@@ -6,12 +6,9 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final
 
-import numpy as np
-
-from bench_hw.errors import BenchError
-from bench_hw.tables import MarkerTable, TrialTable, calm, read_marker_csv, read_trial_csv
+from bench_hw.errors import BenchError, TableError
+from bench_hw.tables import MarkerTable, TrialTable, read_marker_csv, read_trial_csv
 from benchmark.errors import InputError
 from benchmark.files.load import Load
 from benchmark.files.loading import scenario_from_table
@@ -88,6 +85,13 @@ def trial_names(paths: Sequence[Path], folder: Path) -> list[str]:
     return [name if times[name] == 1 else f"{name} #{number}" for number, name in enumerate(names, start=1)]
 
 
+LOOSER = (
+    'Units in cells or in a row of their own, clocks and footers are read by --set import.force="force_N:N"; rows that '
+    "lack a number are left out by --set import.drop_empty=true."
+)
+"""How a table with the bench's own names that is not written as the bench writes it may be read all the same."""
+
+
 def read_table(path: Path) -> TrialTable:
     """The table of a trial file, CSV or native; raises InputError."""
     try:
@@ -96,79 +100,11 @@ def read_table(path: Path) -> TrialTable:
 
             return read_trial_mcap(path)
         return read_trial_csv(path)
+    except TableError as error:
+        hint = f" {LOOSER}" if error.problem.startswith(("the cell is", "the row")) else ""
+        raise InputError(f"{error}.{hint}") from None
     except BenchError as error:
         raise InputError(f"{error}.") from None
-
-
-STANDS: Final = 0.1
-"""Share of the travel over which a force that does not change by one digit is no tissue's."""
-TURNED: Final = 0.2
-"""Of the way down that a press with its signs turned goes up at most."""
-LEVELS: Final = 20
-"""Values of the upper half of a force, below which its digits are too coarse to tell that it stands."""
-
-
-def doubtful_forces(names: Sequence[str], tables: Sequence[TrialTable]) -> list[str]:
-    """A warning for each trial whose force no tissue makes: a glitch of single rows, a sensor's end, signs turned."""
-    said = []
-    for name, table in zip(names, tables, strict=True):
-        if _upside_down(table):
-            force, depth = float(table.force.min()), float(table.depth.min())
-            said.append(
-                f"{name}: force and depth only fall, to {force:.4g} N and {1e3 * depth:.4g} mm, as where pressing is "
-                "negative; allowed: press positive. It is used as it is; turn both columns of its file"
-            )
-            continue
-        lone = np.flatnonzero(calm(table.force) != table.force)
-        if len(lone):
-            row = int(lone[0])
-            said.append(
-                f"{name}: the force is {table.force[row]:g} N at {table.time[row]:.6g} s, in a single row far beyond "
-                f"all others (such rows: {len(lone)}): a glitch, which the fit takes for the press; take the row out"
-            )
-        elif (way := _standing(table)) > 0.0:
-            said.append(
-                f"{name}: the force stands at {table.force.max():g} N, its largest value, while the depth goes on over "
-                f"{1e3 * way:.3g} mm: at the end of the sensor's range? What is fitted is then too soft"
-            )
-    return said
-
-
-SLOW_ROWS, SLOW_PRESS = 1.0, 5e-6
-"""Seconds between rows, and m/s, beyond which times may be in ms: a press of 5 mm/s, or slower, sampled at 1 kHz."""
-
-
-def doubtful_times(names: Sequence[str], tables: Sequence[TrialTable]) -> list[str]:
-    """A warning of trials so slow, with so few rows a second, that their times may be milliseconds."""
-    found = []
-    for name, table in zip(names, tables, strict=True):
-        step, lasts = float(np.median(np.diff(table.time))), float(np.ptp(table.time))
-        deepest = int(table.depth.argmax())
-        way = float(table.depth[deepest] - table.depth[: deepest + 1].min())
-        if step >= SLOW_ROWS and way < SLOW_PRESS * (table.time[deepest] - table.time[0]):
-            found.append(f"{name} ({step:.3g} s from row to row, {lasts:.4g} s in all)")
-    if not found:
-        return []
-    more = f" and {len(found) - 3} more" if len(found) > 3 else ""
-    return [f"times may be milliseconds where seconds are read: {', '.join(found[:3])}{more}"]
-
-
-def _upside_down(table: TrialTable) -> bool:
-    """Whether force and depth leave where they began downwards, and not a fifth as far upwards."""
-    few = max(5, len(table.force) // 50)
-    moved = [values - float(np.median(values[:few])) for values in (table.force, table.depth)]
-    return all(float(each.max()) < TURNED * -float(each.min()) for each in moved)
-
-
-def _standing(table: TrialTable) -> float:
-    """The longest way (m) over which the force stays at its largest value to the last digit; 0 where it is no more."""
-    peak = float(table.force.max())
-    if len(np.unique(table.force[table.force > 0.5 * peak])) < LEVELS:
-        return 0.0
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], table.force == peak, [False]]).astype(int)))
-    spans = zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
-    way = max(float(np.ptp(table.depth[first:last])) for first, last in spans)
-    return way if way > STANDS * float(np.ptp(table.depth)) else 0.0
 
 
 def is_synthetic(path: Path) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit
 from benchmark.identification.parameters.layer_model import GAIN, LayerModel
+from benchmark.identification.pooling import fold_between
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import least_squares, settled
 
@@ -29,6 +31,8 @@ class HeldOut:
         The same of each trial.
     covered : float
         Share of the trials whose force at the peak lies in the 95 % band of one more trial.
+    gains : tuple of float
+        Logarithm of each trial's force over the model's in the fit of all conditions together.
     """
 
     condition: str
@@ -36,10 +40,34 @@ class HeldOut:
     rms_percent: float
     covered: float
     trial_rms_percent: tuple[float, ...] = ()
+    gains: tuple[float, ...] = ()
+
+    @property
+    def over_model(self) -> float:
+        """The trials' force over the model's in the fit of all conditions together, their geometric mean."""
+        return math.exp(math.fsum(self.gains) / max(len(self.gains), 1))
 
     def to_dict(self) -> dict[str, Any]:
         """Entry of `fit.json`."""
-        return {**vars(self), "trial_rms_percent": list(self.trial_rms_percent)}
+        own = {key: value for key, value in vars(self).items() if key != "gains"}
+        return {**own, "trial_rms_percent": list(self.trial_rms_percent), "force_over_model": self.over_model}
+
+
+def contradiction(held: Sequence[HeldOut]) -> str:
+    """How conditions contradict each other under one law, in words; "" where the law follows them all.
+
+    They do where the forces of their trials stand beside those of the fitted model by `pooling.APART`, and by more than
+    trials of one condition scatter.
+    """
+    fold = fold_between([one.gains for one in held])
+    if fold is None:
+        return ""
+    stand = ", ".join(f"{one.condition} {one.over_model:.3g}" for one in held[:4])
+    errors = ", ".join(f"{one.condition} to {one.rms_percent:.3g} %" for one in held[:4])
+    return (
+        f"one law does not follow all conditions: their forces over the fitted model's are {stand}; each predicted "
+        f"from the others: {errors} of the peak"
+    )
 
 
 def held_out(found: LayerFit, groups: Sequence[str]) -> tuple[HeldOut, ...]:
@@ -76,8 +104,9 @@ def _predicted(found: LayerFit, out: Array, name: str) -> HeldOut:
         error = (trial.data.force[peak] - force[peak]) / max(float(pressing[peak]), 1e-12)
         inside += int(abs(error) <= found.quantile * np.sqrt(variance))
     roots = tuple(100.0 * float(np.sqrt(each)) for each in squares)
+    gains = tuple(found.fit.nuisance[out.astype(bool), GAIN].tolist())
     whole = 100.0 * float(np.sqrt(np.mean(squares)))
-    return HeldOut(name, len(held.trials), whole, inside / len(held.trials), roots)
+    return HeldOut(name, len(held.trials), whole, inside / len(held.trials), roots, gains)
 
 
 def subset(model: LayerModel, kept: NDArray[np.int64]) -> LayerModel:

@@ -15,7 +15,7 @@ import numpy as np
 
 from benchmark.identification.fitted_parameters import FittedParameter
 from benchmark.identification.parameters.free_parameters import Parameter, Prior
-from benchmark.identification.parameters.held_out import HeldOut, held_out
+from benchmark.identification.parameters.held_out import HeldOut, contradiction, held_out
 from benchmark.identification.parameters.identifiability import (
     KNOWN,
     LARGEST_ERROR,
@@ -34,6 +34,10 @@ from benchmark.identification.parameters.profile_likelihood import Profile, larg
 from benchmark.identification.pooling import counted_trials
 
 NOT_DETERMINED = "not determined"
+ONE_BY_ONE = (
+    "See whether each has the units, specimen, tool and support that it was pressed with, fit each in a folder of its "
+    "own, or let the command discover say which effect is missing. What the fit came to, not to be quoted"
+)
 PRIOR_ALONE = "on its prior alone"
 FAR = 2.0
 """Standard uncertainties beyond which a told value of the set-up has moved far: one in twenty does by chance."""
@@ -160,7 +164,7 @@ class Identified:
         index, own = self.found.problem.free[place], self.profiles[place]
         parameter, at = self.found.problem.parameters[index], float(self.found.vector[index])
         ends = own.determined(at)
-        trusted = self.found.settled and not self.contradicted
+        trusted = self.found.settled and not self.contradicted and not self.conflict
         identifiable = ends and largest <= LARGEST_ERROR and trusted
         quoted = ends and trusted and (identifiable or parameter.prior is not None)
         values = sorted(parameter.scale * parameter.value(each) for each in (own.low, own.high)) if quoted else ()
@@ -173,6 +177,8 @@ class Identified:
     def _reason(self, place: int, largest: float) -> str:
         if not self.found.settled:
             return "the fit did not settle, so that its values are no answer"
+        if self.conflict:
+            return "one law does not follow all conditions, so that no value is right for all of them"
         if self.contradicted:
             return (
                 f"the trials contradict what was told of {', '.join(self.contradicted)}, so that this value, the "
@@ -217,12 +223,14 @@ class Identified:
         """The fit in one sentence."""
         trials = counted_trials(len(self.found.problem.trials))
         law = "" if self.found.problem.law is None else f", law {self.found.problem.law}"
-        return f"{trials}{law}: {'; '.join(one.text for one in self.estimates)}"
+        apart = "one law does not follow all conditions; " if self.conflict else ""
+        return f"{trials}{law}: {apart}{'; '.join(one.text for one in self.estimates)}"
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a reader must know before a figure is quoted."""
         said = [*self.remarks, *([] if self.found.spread is None else [self.found.spread.text])]
+        said += [f"{self.conflict}. {ONE_BY_ONE}: {self._values(self.found)}"] if self.conflict else []
         said += [one.warning for one in self.undetermined]
         said += self._moved_far
         use = discrepancy_use(self.found)
@@ -244,6 +252,12 @@ class Identified:
             for k, one, prior, far in self._moved
             if far > FAR
         ]
+
+    @cached_property
+    def conflict(self) -> str:
+        """How conditions contradict each other under one law; "" where they do not, or several specimens scatter."""
+        several = self.found.spread is not None or len(self.specimens) > 1
+        return "" if several else contradiction(self.held_out)
 
     @cached_property
     def contradicted(self) -> tuple[str, ...]:

@@ -94,9 +94,11 @@ def fit_headline(fit: SessionFit) -> str:
             f"Young's modulus is {one.value:.4g} {one.unit} (95 % {one.ci95_low:.4g} to {one.ci95_high:.4g}), "
             f"{found.value:.4g} times the value before the fit"
         )
+    fold = fit.conditions_fold
+    apart = "" if fold is None else f"; its conditions differ {fold:.3g}-fold, which one stiffness does not follow"
     return (
         f"fitted to {counted(count, 'trial')}: {what}; the elastic law leaves {rms:.2g} % of the "
-        "peak force (median over trials of the root mean square)"
+        f"peak force (median over trials of the root mean square){apart}"
     )
 
 

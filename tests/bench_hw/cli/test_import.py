@@ -100,6 +100,21 @@ def test_a_file_without_header_and_times(run, tmp_path):
     np.testing.assert_allclose(table.force, np.arange(COUNT) * 2e-3)
 
 
+def test_a_file_without_header_loses_no_row_to_one(run, tmp_path):
+    """Its first row was taken for names, and missing from the result, without a word."""
+    path = tmp_path / "bare.csv"
+    path.write_text("".join(f"{n / 10},{n},{n / 5}\n" for n in range(COUNT)))
+    maps = ("--map", "time_s=#1:s", "--map", "depth_mm=#2:mm", "--map", "force_N=#3:N")
+    ran = run("import", path, "--out", tmp_path / "out")
+    assert "bench_hw import: --no-header --map time_s=#1:s" in ran.stderr.replace("\n", " ")
+    ran = run("import", path, "--out", tmp_path / "out", *maps)
+    assert ran.exit_code == 2
+    assert "(row 1, value '0.0, 0, 0.0'): the header is a row of numbers" in ran.stderr.replace("\n", " ")
+    ran = run("import", path, "--out", tmp_path / "out", "--no-header", *maps)
+    assert (ran.exit_code, ran.stderr) == (0, "")
+    assert len(read_trial_csv(tmp_path / "out" / "bare.csv").time) == COUNT
+
+
 def test_rows_with_an_empty_cell_are_dropped_only_on_request(run, tmp_path):
     rows = [f"{n / 10},{n},{n if n != 7 else ''}" for n in range(COUNT)]
     path = write_csv(tmp_path / "a.csv", "time_s,depth_mm,force_N", rows)

@@ -45,7 +45,7 @@ TEXTS = {
     "one column": ("Force (N)\n" + "\n".join(map(str, range(50))), "no rows of numbers"),
     "few rows": (table(body=lines()[:7]), "at least 20 rows"),
     "header alone": (HEAD + "\n", "no rows of numbers"),
-    "no header": (table(None), "no column is the force.*import.force"),
+    "no header": (table(None), r"have no names.*import\.time=\"#1:s\" --set import\.depth=\"#2:mm\" --set import\.force"),
     "no force": (columns(T, D, head="Time (s),Distance (mm)", digits=(3, 5)), "no column is the force.*import.force"),
     "no depth": (columns(T, F, head="Time (s),Force (N)", digits=(3, 5)), "no column is the depth.*import.depth"),
     "no time": (columns(D, F, head="Distance (mm),Force (N)", digits=(5, 5)), "no column is the time.*import.rate"),
@@ -102,6 +102,30 @@ TEXTS = {
     "told sheet missing": (table(), "no sheet 'Probe 7'", {"sheets": ("Probe 7",)}),
     "told encoding wrong": ("Zeit (s);Weg (mm);Kraft (N) ü\n", "no ascii text.*import.encoding", {"encoding": "ascii"}),
     "told encoding unknown": (table(), "no utf-9 text.*import.encoding", {"encoding": "utf-9"}),
+    "names and units exchanged": (
+        table("Time (s),Depth (N),Force (mm)"),
+        r"names and units contradict.*units are right, --set import\.force=\"#2:N\".*import\.depth=\"#3:mm\".*names are, .*\"#3:N\"",
+    ),
+    "days in words": (
+        "Time;Distance (mm);Force (N)\n" + "\n".join(f"1 Mar {t:05.2f};{d:.4f};{f:.5f}" for t, d, f in zip(T, D, F, strict=True)),
+        r"row 2, column 'Time'.*no cell of the column is a number.*12:00:01.50.*import\.rate",
+    ),
+    "mostly no numbers": (
+        table(body=[line if k < 30 else "no" + line[line.index(","):] for k, line in enumerate(lines())]),
+        r"cells of the time are no numbers.*import\.rate",
+    ),
+    "two decimal signs": (
+        "Time (s);Distance (mm);Force (N)\n" + "\n".join(f"{t:.3f};{d:.4f};{f:.5f}".replace(".", ",", 1) for t, d, f in zip(T, D, F, strict=True)),
+        r"column 'Time'.*the number has the decimal sign ',', others have '\.'",
+    ),
+    "totals in the last row": (
+        table(body=[*lines(), f"{T.sum():.3f},{D.sum():.4f},{F.sum():.5f}"]),
+        r"the last row holds the sums of the columns Distance and Force|the last row holds the sums of the columns Force and Distance",
+    ),
+    "units in columns of their own": (
+        "Time,,Distance,,Force,\n" + "\n".join(f"{t:.3f},s,{d:.4f},mm,{f:.5f},N" for t, d, f in zip(T, D, F, strict=True)),
+        r"row 2.*no columns of units beside the numbers: take them out",
+    ),
     "stress without area": (
         columns(T, D, F, head="Time (s),Strain (%),Stress (kPa)", digits=(3, 5, 6)), r"height and area.*import\.height",
     ),

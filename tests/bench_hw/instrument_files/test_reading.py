@@ -10,7 +10,7 @@ from bench_hw.instrument_files import Told, preview, read_instrument_file
 from bench_hw.instrument_files.press_record import first_touch
 from bench_hw.instrument_files.text_sheet import number_text
 from bench_hw.instrument_files.told import asking_key
-from bench_hw.instrument_files.vocabulary import label_and_unit, role_of
+from bench_hw.instrument_files.vocabulary import clock_seconds, label_and_unit, role_of
 from bench_hw.tables import TrialTable
 from tests.instruments import samples
 from tests.instruments.samples import SAMPLES, press
@@ -209,6 +209,9 @@ def test_the_number_of_a_column_is_no_unit():
         ("Kraft/mN", "force"),
         ("Spannung/N/mm2", "stress"),
         ("Allongement", "displacement"),
+        ("Enfoncement (mm)", "depth"),
+        ("Profondeur d'indentation [mm]", "depth"),
+        ("Pénétration (mm)", "depth"),
     ],
 )
 def test_names_that_makers_write_are_known(header, role):
@@ -395,6 +398,36 @@ def test_a_minus_sign_of_typesetting_is_a_minus(tmp_path):
     assert len(record.table.time) == one.time.size
 
 
+DAYS = {
+    "a day": ("Date", "2024-03-01 12:00:{:06.3f}"),
+    "as programs write it": ("timestamp", "2024-03-01T12:00:{:06.3f}Z"),
+    "German": ("Zeit", "01.03.2024 12:00:{:06.3f}"),
+    "American": ("Time", "3/1/2024 12:00:{:06.3f} PM"),
+    "a clock": ("Time", "12:00:{:06.3f}"),
+}
+
+
+@pytest.mark.parametrize("name", DAYS)
+def test_times_of_the_clock_need_no_unit_and_begin_at_zero(tmp_path, name):
+    """A day before the clock was no number: rows without numbers were to be left out, which left none."""
+    one, (head, clock) = press(), DAYS[name]
+    rows = [f"{clock.format(t)};{d:.5f};{f:.5f}" for t, d, f in zip(one.time, one.depth, one.force, strict=True)]
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join([f"{head};Distance (mm);Force (N)", *rows]), encoding="utf-8")
+    (record,) = read_instrument_file(path).records
+    assert record.table.time == pytest.approx(one.time - one.time[0], abs=1e-3)
+    assert any(note.startswith("times are counted from its first, ") for note in record.notes)
+
+
+def test_days_carry_a_clock_over_midnight():
+    before, after = clock_seconds("2024-02-29 23:59:59.5"), clock_seconds("2024-03-01 00:00:00.5")
+    assert after - before == pytest.approx(1.0)
+    assert clock_seconds("29.02.2024 23:59:59,5") == before
+    assert clock_seconds("1:00:00 pm") == 13 * 3600.0
+    for text in ("2024-13-01 12:00:00", "12", "Mar 1 12:00:00", "12:00"):
+        assert clock_seconds(text) in (None, 720.0)
+
+
 def test_where_no_row_is_one_as_told_what_was_told_is_named(tmp_path):
     one = press()
     rows = samples.rows(one.time, one.depth, one.force, digits=(3, 5, 6), sign=",", between=";")
@@ -546,4 +579,35 @@ def test_columns_that_are_proportional_otherwise_than_their_units_say_are_two(tm
         assert record.table.force.max() == pytest.approx(one.force.max(), rel=1e-2)
         return
     with pytest.raises(TableError, match="two columns could be the force"):
+        read_instrument_file(path)
+
+
+TEXTS = {
+    "points": lambda value, unit: f"{value:.4f}",
+    "commas": lambda value, unit: f"{value:.4f}".replace(".", ","),
+    "units": lambda value, unit: f"{value:.4f} {unit}".replace(".", ","),
+}
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_workbook_of_numbers_as_text_is_read(tmp_path, name):
+    """Numbers as text with commas, as a German Excel keeps what was pasted, were no rows of numbers."""
+    pytest.importorskip("python_calamine")
+    one, units = press(), ("s", "mm", "N")
+    rows = [
+        [TEXTS[name](float(value), unit) for value, unit in zip(row, units, strict=True)]
+        for row in zip(one.time, one.depth, one.force, strict=True)
+    ]
+    head = ["Zeit", "Weg", "Kraft"] if name == "units" else ["Zeit [s]", "Weg [mm]", "Kraft [N]"]
+    path = samples.workbook(tmp_path / "a.xlsx", {"Daten": [head, *rows]})
+    (record,) = read_instrument_file(path).records
+    assert record.table.force.max() == pytest.approx(one.force.max(), rel=1e-3)
+    assert np.ptp(record.table.time) == pytest.approx(np.ptp(one.time), rel=1e-3)
+
+
+def test_a_workbook_whose_commas_may_be_thousands_is_refused(tmp_path):
+    pytest.importorskip("python_calamine")
+    rows = [[f"1,{n:03d}", f"2,{n:03d}", f"3,{n:03d}"] for n in range(60)]
+    path = samples.workbook(tmp_path / "a.xlsx", {"Daten": [["Zeit [s]", "Weg [mm]", "Kraft [N]"], *rows]})
+    with pytest.raises(TableError, match="the comma may stand before decimals or thousands"):
         read_instrument_file(path)

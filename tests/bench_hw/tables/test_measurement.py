@@ -30,6 +30,14 @@ def test_columns_come_back_in_si(good_lines, write):
     assert table.source.endswith("trial.csv")
 
 
+def test_totals_in_the_last_row_are_refused(good_lines, write):
+    """A spreadsheet's sums were the deepest row of the press; a last row far beyond one column alone is none."""
+    depth, force = sum(range(24)) / 4, sum(range(24)) / 8
+    with pytest.raises(TableError, match=r"row 26.*the last row holds the sums of the columns depth_mm and force_N"):
+        read_trial_csv(write([*good_lines, f"27.6,{depth},{force},0"]))
+    assert len(read_trial_csv(write([*good_lines, f"27.6,{depth},3.0,0"])).time) == 25
+
+
 @pytest.mark.parametrize("end", ["\n", "\r\n"])
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
 def test_line_ends_and_byte_order_mark_do_not_matter(good_lines, write, end, encoding):

@@ -5,7 +5,7 @@ import pytest
 import scipy
 
 from benchmark.identification import FittingError, fit_session, fit_trial
-from benchmark.identification.pooling import fit_jointly, mean_interval, pool
+from benchmark.identification.pooling import fit_jointly, fold_between, mean_interval, pool
 from benchmark.identification.trial_fit import prepare_rows
 
 
@@ -97,3 +97,15 @@ def test_fading_trials_keep_the_contact_of_their_loading(fading_trial):
     trials = [fading_trial(seed=n, name=str(n)) for n in range(3)]
     mean = np.mean([fit_trial(trial).stiffness for trial in trials])
     assert jointly(trials).value == pytest.approx(mean, rel=0.02)
+
+
+def test_the_fold_between_conditions_is_told_beyond_chance_and_scatter():
+    """The F test is SciPy's; within a quarter, in wide scatter and from single trials nothing is told."""
+    random = np.random.default_rng(3)
+    soft, stiff = 0.02 * random.standard_normal(5), math.log(3.0) + 0.02 * random.standard_normal(4)
+    assert fold_between([soft, stiff]) == pytest.approx(math.exp(stiff.mean() - soft.mean()))
+    assert scipy.stats.f_oneway(soft, stiff).pvalue < 1e-3
+    assert fold_between([soft, 0.15 + soft]) is None
+    assert fold_between([40.0 * soft, 40.0 * soft + 1.0]) is None
+    assert fold_between([[0.0], [2.0]]) is None
+    assert fold_between([soft]) is None

@@ -9,6 +9,7 @@ from benchmark.identification import FittingError, fit_session, fit_trial, held_
 from benchmark.identification.pooling import pool
 from benchmark.identification.session_fit import elastic_only
 from benchmark.response import ForceCurve
+from benchmark.runs.report.values import fit_headline
 
 
 def coverage(session, repeats, **options):
@@ -202,6 +203,11 @@ def test_conditions_that_differ_are_noted(trial, silicone):
     assert "differs between conditions" in " ".join(apart.notes)
     assert "differs between conditions" not in " ".join(alike.notes)
     assert apart.to_dict()["conditions_differ_p"] < 1e-4
+    (said,) = (text for text in apart.warnings if text.startswith("one law with one stiffness does not follow"))
+    assert "fast is 1.5 times as stiff as slow (1.5" in said
+    assert "conditions differ 1.5-fold, which one stiffness does not follow" in fit_headline(apart)
+    assert not [text for text in alike.warnings if "one stiffness" in text]
+    assert "conditions differ" not in fit_headline(alike)
 
 
 def test_the_joint_value_is_reported(session, silicone):

@@ -7,7 +7,7 @@ from bench_hw.vision.camera.camera_file import read_camera
 from benchmark.files import load_session
 from benchmark.sessions import SHIPPED
 from benchmark.sessions.make_phantom import DISTORTION, PRESSES, SEED, drawn_trials
-from benchmark.sessions.phantom_text import truth_text
+from benchmark.sessions.phantom_sheet import truth_text
 
 PHANTOM = Path(SHIPPED) / "phantom"
 LARGEST, TOTAL = 5_000_000, 20_000_000

@@ -1,14 +1,10 @@
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from bench_hw.tables import TrialTable
 from benchmark.errors import InputError
 from benchmark.files.sessions.description import TrialEntry
 from benchmark.files.sessions.trials import (
-    doubtful_forces,
-    doubtful_times,
     is_synthetic,
     read_markers,
     read_table,
@@ -98,43 +94,3 @@ def test_a_native_file_that_is_none_is_an_input_error(tmp_path):
     path.write_bytes(b"not a trial")
     with pytest.raises(InputError, match=r"bad\.mcap"):
         read_table(path)
-
-
-def press(force=None):
-    depth = np.concatenate([np.linspace(-0.3, 2.0, 120), np.linspace(2.0, -0.3, 120)]) * 1e-3
-    clean = np.clip(1e3 * depth, 0.0, None) ** 1.5 + 1e-3 * np.random.default_rng(1).normal(size=depth.size)
-    return TrialTable(0.02 * np.arange(depth.size), depth, clean if force is None else force(clean), {}, "a.csv", {})
-
-
-def glitch(force):
-    return np.where(np.arange(force.size) == 70, 9999.9, force)
-
-
-def test_a_force_that_no_tissue_makes_is_told():
-    """A sensor at its end and a glitch of one row went into the fit without a word."""
-    tables = [press(), press(lambda force: np.minimum(force, 1.5)), press(glitch), press(lambda force: force.round(1))]
-    end, lone = doubtful_forces(["whole", "end", "lone", "coarse"], tables)
-    assert "end: the force stands at 1.5 N" in end
-    assert "lone: the force is 9999.9 N at 1.4 s, in a single row" in lone
-
-
-def test_a_press_upside_down_is_told():
-    """Among others it went into the fit as one that touches at its deepest, without a word."""
-    one = press()
-    turned = TrialTable(one.time, -one.depth, -one.force, {}, "b.csv", {})
-    pulled = TrialTable(
-        one.time, one.depth, one.force - 0.2 * np.exp(-(((one.time - 4.6) / 0.1) ** 2)), {}, "c.csv", {}
-    )
-    (said,) = doubtful_forces(["up", "down", "pulled"], [one, turned, pulled])
-    assert said.startswith("down: force and depth only fall, to -2.8")
-    assert "-2 mm" in said
-
-
-def test_times_in_milliseconds_are_asked_for():
-    """A press of 5 s was one of an hour and a half, and its relaxation a thousand times as slow, without a word."""
-    one = press()
-    thousandfold, slow = (
-        TrialTable(factor * one.time, one.depth, one.force, {}, "b.csv", {}) for factor in (1000.0, 20.0)
-    )
-    (said,) = doubtful_times(["seconds", "thousandfold", "slow"], [one, thousandfold, slow])
-    assert said.endswith("where seconds are read: thousandfold (20 s from row to row, 4780 s in all)")

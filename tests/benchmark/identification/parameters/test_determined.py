@@ -121,3 +121,30 @@ def test_only_points_within_the_region_count() -> None:
     errors = np.array([[9.0, 9.0], [0.1, 0.2], [0.3, 0.1], [9.0, 9.0]])
     one = Profile(np.arange(4.0), np.array([9.0, 0.0, 3.0, 9.0]), errors, 0.5, 2.5, 2.0)
     assert largest_errors((one, one)) == pytest.approx([0.3, 0.2])
+
+
+def test_conditions_that_one_law_cannot_follow_leave_nothing_determined(toy):
+    """Forces of one tool 5 times as large went into the trials' gains: moduli had tight intervals all the same."""
+    problem = toy(keys=("subcutaneous_fat.youngs_modulus",))
+    groups = [trial.data.condition for trial in problem.trials]
+
+    def answer_to(factor):
+        trials = tuple(
+            replace(one, data=replace(one.data, force=factor * one.data.force)) if name == "tool 1" else one
+            for one, name in zip(problem.trials, groups, strict=True)
+        )
+        made = begun(replace(problem, trials=trials), np.zeros(len(trials)), np.zeros(len(trials)))
+        return identify(fit_layers(made), (), directions(made), groups, ["toy"])
+
+    followed, torn = answer_to(1.0), answer_to(5.0)
+    assert followed.conflict == ""
+    assert torn.undetermined == torn.estimates
+    assert "one law does not follow all conditions; " in torn.headline
+    (said,) = (text for text in torn.warnings if text.startswith("one law does not follow all conditions: their"))
+    errors = {one.condition: one.rms_percent for one in torn.held_out}
+    assert min(errors.values()) > 10.0
+    for name, error in errors.items():
+        assert f"{name} to {error:.3g} %" in said
+    over = [one.to_dict()["force_over_model"] for one in torn.held_out]
+    assert over[1] / over[0] == pytest.approx(5.0, rel=0.2)
+    assert "subcutaneous_fat.youngs_modulus" in said
