@@ -237,10 +237,10 @@ POOLED_TRIALS = 4.0
 """Trials that the pooled variance of a signal's cells counts as; steadies t where trials are few. First choice."""
 MOST_FLAGGED = 0.6
 """Where more than this share of the cells is flagged there is nothing clean to refit on. First choice."""
-TREND = 6.0
-"""|t| of a cell's mean over the trial number from which the trials are said not to be exchangeable.
+TREND = 4.0
+"""|z| of a cell's mean over the trial number from which the trials are said not to be exchangeable.
 
-First choice; high, since it is the largest over all cells.
+First choice; high, since it is the largest over all cells: of a hundred 0.6 % have one by chance.
 """
 SHOWN = 3.0
 """Standard deviations of the trials' mean from which an effect's change is shown as a place. It was 4, and of nine

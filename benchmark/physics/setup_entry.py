@@ -52,3 +52,9 @@ def setup_entry(key: str, farthest: float, *, choice: bool) -> Effect:
 def setup_key(slug: str) -> str | None:
     """The key of a set-up entry by its slug; None for an effect."""
     return slug.removeprefix(PREFIX) if slug.startswith(PREFIX) else None
+
+
+def effect_name(slug: str) -> str:
+    """An effect in words, strain stiffening; of a set-up entry what is not as told: another support.hole_radius."""
+    key = setup_key(slug)
+    return slug.replace("_", " ") if key is None else f"another {key}"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from benchmark.discovery import criteria
 from benchmark.physics import Effect
-from benchmark.physics.setup_entry import setup_key
+from benchmark.physics.setup_entry import effect_name, setup_key
 
 
 @dataclass(frozen=True)
@@ -164,9 +164,9 @@ def _mixed(effects: Sequence[Effect]) -> bool:
 
 def statement(word: str, facts: Facts) -> str:
     """The answer in one sentence."""
-    names = " and ".join(effect.slug.replace("_", " ") for effect in facts.effects)
+    names = " and ".join(effect_name(effect.slug) for effect in facts.effects)
     lacks = _lacks(facts.effects)
-    alike = ", ".join(effect.slug.replace("_", " ") for effect in facts.lookalikes)
+    alike = ", ".join(effect_name(effect.slug) for effect in facts.lookalikes)
     sentences = {
         "no_discrepancy": _nothing(facts),
         "cannot_tell": _untold(facts),
@@ -185,7 +185,7 @@ def statement(word: str, facts: Facts) -> str:
 def _lacks(effects: Sequence[Effect]) -> str:
     """What is wrong of the set-up, and what the model lacks."""
     keys = [key for effect in effects if (key := setup_key(effect.slug)) is not None]
-    names = " and ".join(effect.slug.replace("_", " ") for effect in effects if setup_key(effect.slug) is None)
+    names = " and ".join(effect_name(effect.slug) for effect in effects if setup_key(effect.slug) is None)
     setup = f"The set-up is not as told ({', '.join(keys)})"
     if not keys:
         return f"The model lacks {names}"

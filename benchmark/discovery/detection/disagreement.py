@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import norm
+from scipy.stats import t as t_distribution
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import EffectModel, Fit, White, fit
@@ -104,7 +105,7 @@ def _refitted(fitted: Fit, table: CellTable, flagged: NDArray[np.bool_]) -> Fit:
 
 
 def _trend(fitted: Fit, table: CellTable) -> Array:
-    """(K,) t of the slope of each cell's mean over the trial number, within conditions."""
+    """(K,) slope of each cell's mean over the trial number, within conditions: Student's t as a normal deviate."""
     problem = fitted.model.problem
     numbers = np.array([trial.number for trial in problem.trials], dtype=float)
     groups = np.array([trial.condition for trial in problem.trials])
@@ -120,7 +121,7 @@ def _trend(fitted: Fit, table: CellTable) -> Array:
         slope = float(x @ y) / float(x @ x)
         rest = y - slope * x
         error = np.sqrt(float(rest @ rest) / freedom / float(x @ x))
-        out[k] = slope / max(error, 1e-300)
+        out[k] = np.copysign(norm.isf(t_distribution.sf(abs(slope) / max(error, 1e-300), freedom)), slope)
     return out
 
 

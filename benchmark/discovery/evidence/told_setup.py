@@ -18,7 +18,7 @@ from benchmark.discovery.base.setup_priors import is_setup
 from benchmark.discovery.evidence.gains import broad, held_out
 from benchmark.discovery.evidence.pool import Pool
 from benchmark.discovery.evidence.selection import Selection, rebuilt
-from benchmark.physics.setup_entry import setup_key
+from benchmark.physics.setup_entry import effect_name, setup_key
 
 SHOWN_MOVE = 0.5
 """Of a set-up parameter's standard deviation, from which it is told to have moved. First choice."""
@@ -87,8 +87,8 @@ def taken_up(told: Selection, moving: Selection) -> tuple[str, ...]:
     gone = [slug for slug in (*needed, *_instead(told)) if slug not in found]
     if not gone or not set(found) <= set(needed):
         return ()
-    base, names = moving.base, " and ".join(slug.replace("_", " ") for slug in gone)
-    beside = f" beside {' and '.join(slug.replace('_', ' ') for slug in found)}" if found else ""
+    base, names = moving.base, " and ".join(map(effect_name, gone))
+    beside = f" beside {' and '.join(map(effect_name, found))}" if found else ""
     problem = base.model.problem
     moved = [
         name

@@ -7,8 +7,8 @@ import math
 from benchmark.discovery.criteria import ENOUGH_TRIALS, Settings
 from benchmark.discovery.discovery_result import Candidate, Estimate, NamedEffect
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, NextExperiment, Round
-from benchmark.discovery.report.words import effect_name
 from benchmark.files.units import shown
+from benchmark.physics.setup_entry import effect_name
 from reports import Block, Bullets, Column, Download, Fact, Facts, Listing, Paragraph, Section, Subsection, Table
 from reports.figures import RankedCandidate, ranking
 from reports.formatting import format_number

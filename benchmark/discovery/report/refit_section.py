@@ -7,8 +7,9 @@ from benchmark.discovery.discovery_result import channel_unit
 from benchmark.discovery.refitting.refit_result import ModelRefit, Prediction, RefittedNumber
 from benchmark.discovery.report.disagreement_sections import traced
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
-from benchmark.discovery.report.words import channel_name, effect_name, sized
+from benchmark.discovery.report.words import channel_name, sized
 from benchmark.files.units import shown
+from benchmark.physics.setup_entry import effect_name
 from reports import Block, Bullets, Column, Download, Paragraph, Section, Subsection, Table
 from reports.figures import repaired
 from reports.formatting import format_number

@@ -8,7 +8,8 @@ from benchmark.discovery.discovery_result import Candidate, ChannelGap, Place, T
 from benchmark.discovery.report.disagreement_sections import representative, traced
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
 from benchmark.discovery.report.effect_sections import ADVICE, OF_A_RUN, trials_in_words
-from benchmark.discovery.report.words import channel_name, compared, depths, effect_name, phase_name, probability, sized
+from benchmark.discovery.report.words import channel_name, compared, depths, phase_name, probability, sized
+from benchmark.physics.setup_entry import effect_name
 from reports import Story, StoryStep
 from reports.figures import repaired
 from reports.formatting import format_number

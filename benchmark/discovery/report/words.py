@@ -35,11 +35,6 @@ def phase_name(phase: str) -> str:
     return PHASES.get(phase, phase.replace("_", " "))
 
 
-def effect_name(slug: str) -> str:
-    """A slug as words: strain stiffening."""
-    return slug.replace("_", " ")
-
-
 def sized(channel: str, size: float) -> str:
     """A residual of a channel with its unit: 0.21 N, 35 um as 0.035 mm."""
     unit, scale = channel_unit(channel)

@@ -69,3 +69,13 @@ def test_a_run_has_a_weight_and_no_confidence(record) -> None:
     assert "Confidence" in of_session
     assert "Confidence" not in of_run
     assert "of the likelihood among the candidates; one run has no noise, so nothing is tested" in of_run
+
+
+def test_a_set_up_entry_in_a_sentence_says_that_it_is_another_one(record) -> None:
+    first = record.found.effects[0]
+    effects = (
+        replace(first, lookalikes=("setup.support.hole_radius",)),
+        replace(first, slug="setup.tool.radius", lookalikes=()),
+    )
+    told = [step.answer for step in story(replace(record, found=replace(record.found, effects=effects))).steps]
+    assert "viscoelastic relaxation and another tool.radius, or another support.hole_radius" in "\n".join(told)
