@@ -140,7 +140,7 @@ def _report(error: Exception, *, debug: bool) -> int:
 def _who_ended(end: SystemExit) -> str:
     """Where the program was told to end, in a sentence."""
     frame = traceback.extract_tb(end.__traceback__)[-1]
-    if frame.name == "_exit_unless_theirs":  # it stands for os._exit, which is called a frame before
+    if frame.name == "_exit_unless_users":  # it stands for os._exit, which is called a frame before
         frame = traceback.extract_tb(end.__traceback__)[-2]
     return (
         f"{frame.filename}, line {frame.lineno}: the program was told to end there (exit code {end.code}) and has no "

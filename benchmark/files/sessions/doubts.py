@@ -170,7 +170,7 @@ class _Labelled:
     def is_press(self) -> bool:
         """Whether the force rises clearly over its noise as the tool goes in."""
         noise = float(np.median(np.abs(np.diff(self.table.force))))
-        return float(self.table.depth.max()) > 0.0 and self.rise > SIGNAL * noise
+        return float(self.table.depth.max()) > 0.0 and self.travel > 0.0 and self.rise > SIGNAL * noise
 
     def force_at(self, depth: float) -> float:
         """Force (N) on the way to the deepest row, at a depth (m)."""
@@ -277,6 +277,8 @@ def _exchanged_among(one: _Labelled, others: Sequence[_Labelled]) -> str:
     if len(others) < OTHERS:
         return ""
     numbers = [[each.travel / each.scale("depth"), each.rise / each.scale("force")] for each in (one, *others)]
+    if min(numbers[0]) <= 0.0:
+        return ""
     own, families = np.log(numbers[0]), [_family(column) for column in np.array(numbers[1:]).T]
     for number, other, family in zip(own, own[::-1], families, strict=True):
         if abs(other - family.middle) > family.near or not family.is_apart(number):
