@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from benchmark.discovery import criteria
+from benchmark.discovery.discovery_result import Discovery
 from benchmark.discovery.own_values import SetupEstimate, TrialValues
 from benchmark.discovery.report.disagreement_sections import (
     comparison_section,
@@ -152,9 +155,10 @@ def discovery_verdict(record: DiscoveryRecord) -> Verdict:
     if status == "good" and not found.within_tolerance:
         status = "finding"
     points = [MEANING[found.verdict]]
-    small = criteria.SMALL_IN_PRACTICE
-    if found.where and all(abs(place.percent_of_signal) < small for place in found.where):
-        points.append(f"All of it lies below {small:g} % of the signal: visible, but small in practice.")
+    if found.where and _largest_share(found) < criteria.SMALL_IN_PRACTICE:
+        points.append(
+            f"All of it lies below {criteria.SMALL_IN_PRACTICE:g} % of the signal: visible, but small in practice."
+        )
     points.extend(_sizes(record))
     if found.verdict == "no_discrepancy" and found.smallest_visible:
         smallest = ", ".join(
@@ -162,6 +166,19 @@ def discovery_verdict(record: DiscoveryRecord) -> Verdict:
         )
         points.append(f"The smallest disagreement these data could have shown: {smallest}.")
     return Verdict(status, found.statement, points)
+
+
+def _largest_share(found: Discovery) -> float:
+    """The most of a channel's signal, %, that a place is off in its mean, or that the effects add at any instant.
+
+    A short pull or snap is a small part of the phase that it is in.
+    """
+    shares = [abs(place.percent_of_signal) for place in found.where]
+    for trace in found.traces:
+        added, signal = np.abs(trace.after - trace.before), np.abs(trace.measured)
+        if np.isfinite(added).any() and np.isfinite(signal).any():
+            shares.append(float(100.0 * np.nanmax(added) / max(np.nanmax(signal), 1e-300)))
+    return max(shares)
 
 
 def _sizes(record: DiscoveryRecord) -> list[str]:

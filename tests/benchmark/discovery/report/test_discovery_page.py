@@ -2,6 +2,7 @@ import math
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from benchmark.discovery.discovery_result import VERDICTS, ChannelSize, ConditionEstimate, Estimate, LookAlike
@@ -209,3 +210,14 @@ def test_rivals_that_are_far_apart_already_say_why_they_stay(record) -> None:
     far = NextExperiment(rivals, "rest", "Rest.", 96.0, 140.0, 22.0, {"rest": (140.0, 22.0)}, "")
     assert "textbook forms are far apart" in _text(replace(record, proposal=far))
     assert "textbook forms" not in _text(replace(record, proposal=replace(far, separation_now=2.0)))
+
+
+@pytest.mark.parametrize(("pull", "small"), [(0.01, True), (0.1, False)])
+def test_a_short_pull_is_not_small_for_its_mean_over_a_phase(record, pull: float, small: bool) -> None:
+    first = record.found.traces[0]
+    after = first.before.copy()
+    after[5] -= pull * np.abs(first.measured).max()
+    where = tuple(replace(place, percent_of_signal=1.5) for place in record.found.where)
+    found = replace(record.found, where=where, traces=(replace(first, after=after),))
+    points = discovery_verdict(replace(record, found=found)).points
+    assert any("small in practice" in point for point in points) is small
