@@ -139,8 +139,10 @@ def _report(error: Exception, *, debug: bool) -> int:
 
 def _who_ended(end: SystemExit) -> str:
     """Where the program was told to end, in a sentence."""
+    from benchmark.child_processes import exit_unless_users
+
     frame = traceback.extract_tb(end.__traceback__)[-1]
-    if frame.name == "_exit_unless_users":  # it stands for os._exit, which is called a frame before
+    if frame.name == exit_unless_users.__name__:  # it stands for os._exit, which is called a frame before
         frame = traceback.extract_tb(end.__traceback__)[-2]
     return (
         f"{frame.filename}, line {frame.lineno}: the program was told to end there (exit code {end.code}) and has no "

@@ -9,11 +9,17 @@ from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.base.setup_priors import is_setup
 from benchmark.discovery.detection.disagreement import Detection
 from benchmark.discovery.detection.places import flagged_places
-from benchmark.discovery.discovery_result import Candidate, Estimate, LookAlike, NamedEffect, channel_unit
+from benchmark.discovery.discovery_result import (
+    Candidate,
+    Estimate,
+    LookAlike,
+    NamedEffect,
+    SetupEstimate,
+    channel_unit,
+)
 from benchmark.discovery.evidence.gains import Scored, conditions, gain, held_out
 from benchmark.discovery.evidence.parameter_evidence import by_condition, constant, effect_estimates, half_widths
 from benchmark.discovery.evidence.selection import Selection
-from benchmark.discovery.own_values import SetupEstimate
 from benchmark.physics.setup_entry import setup_key
 
 MOST_REMAINS = 5

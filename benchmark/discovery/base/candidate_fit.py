@@ -89,8 +89,9 @@ def screened(base: Fit, model: EffectModel, effect: Effect, nuisance: Array | No
     for values in _starts(base.model.problem, effect):
         found, scale = screen.step(values, MOST)
         for share in criteria.SMALLER_STARTS if 0.0 < scale < 1.0 else ():
-            again, _ = screen.step(_resized(effect, values, share), 1.0 / share)
-            found = max(found, again, key=lambda each: each.won)
+            smaller = _resized(effect, values, share)
+            if smaller != values:  # an amplitude by its logarithm has no smaller start
+                found = max(found, screen.step(smaller, 1.0 / share)[0], key=lambda each: each.won)
         if scale > 0.0:
             ranked.append(found)
     ranked.sort(key=lambda each: -each.won)

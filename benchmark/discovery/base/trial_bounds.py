@@ -10,8 +10,7 @@ import numpy as np
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.trials_problem import OWN, TrialRef, TrialsProblem
-from benchmark.discovery.discovery_result import PHASES
-from benchmark.discovery.own_values import TrialValues
+from benchmark.discovery.discovery_result import PHASES, TrialValues
 from benchmark.response.force_curve import Array
 
 APPROACH = PHASES.index("approach")

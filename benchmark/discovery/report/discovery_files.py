@@ -18,9 +18,10 @@ from benchmark.discovery.discovery_result import (
     Estimate,
     NamedEffect,
     Place,
+    SetupEstimate,
+    TrialValues,
     channel_unit,
 )
-from benchmark.discovery.own_values import SetupEstimate, TrialValues
 from benchmark.discovery.report.discovery_page import discovery_page
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, LayerGap, NextExperiment, gap_in_units
 from benchmark.discovery.report.refit_section import refit_line

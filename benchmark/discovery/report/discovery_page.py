@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from benchmark.discovery import criteria
-from benchmark.discovery.discovery_result import Discovery
-from benchmark.discovery.own_values import SetupEstimate, TrialValues
+from benchmark.discovery.discovery_result import Discovery, SetupEstimate, TrialValues
 from benchmark.discovery.report.disagreement_sections import (
     comparison_section,
     gap_section,

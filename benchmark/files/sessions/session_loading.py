@@ -25,9 +25,10 @@ from benchmark.files.loading import (
 )
 from benchmark.files.overrides import layer_path, put_in, unknown_key
 from benchmark.files.schema import FileModel, known_keys, validated
+from benchmark.files.sessions.column_labels import check_labels
 from benchmark.files.sessions.depth_counts import even_depths
 from benchmark.files.sessions.description import Camera, SessionFile, assumptions, base_setup, setups
-from benchmark.files.sessions.doubts import check_labels, doubtful_forces, doubtful_times
+from benchmark.files.sessions.doubts import doubtful_forces, doubtful_times
 from benchmark.files.sessions.film_clock import on_trials_clock
 from benchmark.files.sessions.recordings import (
     Recording,
