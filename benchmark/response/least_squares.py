@@ -141,16 +141,58 @@ def scaled_inverse(matrix: Array) -> Array:
     return np.asarray(np.linalg.pinv(matrix * np.outer(scale, scale), hermitian=True) * np.outer(scale, scale))
 
 
+@dataclass(frozen=True, eq=False)
+class Descent(Generic[Fitted]):
+    """Where the steps of a fit ended, and whether by themselves; derivatives there only where it is `finished`."""
+
+    model: Fitted
+    at: TrialsEvaluation
+    objective: float
+    precision: Array
+    prior_mean: Array
+    converged: bool
+
+    def finished(self) -> TrialsFit[Fitted]:
+        """The fit with the derivatives there, and what they say."""
+        columns = self.model.columns(self.at)
+        return TrialsFit(
+            self.model,
+            self.at.vector,
+            self.at.nuisance,
+            self.objective,
+            _blocks(self.model, columns, self.at),
+            self.precision,
+            self.prior_mean,
+            columns,
+            self.converged,
+        )
+
+
 def least_squares(
     model: Model,
     start: Array,
     nuisance: Array,
     *,
     warm: TrialColumns | None = None,
+    known: TrialColumns | None = None,
     search: Search = USUAL,
     around: Array | None = None,
 ) -> TrialsFit[Model]:
-    """Fit a model from a start.
+    """Fit a model from a start; the parameters are those of `descend`."""
+    return descend(model, start, nuisance, warm=warm, known=known, search=search, around=around).finished()
+
+
+def descend(
+    model: Model,
+    start: Array,
+    nuisance: Array,
+    *,
+    warm: TrialColumns | None = None,
+    known: TrialColumns | None = None,
+    search: Search = USUAL,
+    around: Array | None = None,
+) -> Descent[Model]:
+    """Step down from a start.
 
     Parameters
     ----------
@@ -162,6 +204,8 @@ def least_squares(
         (R, q) start of the trials' nuisances.
     warm
         Derivatives near the start, some of which serve for the first steps.
+    known
+        Derivatives at the start, where it is within its bounds and they have been worked out.
     search
         How it goes on and when it has converged.
     around
@@ -171,7 +215,7 @@ def least_squares(
     limits = model.trial_bounds
     at = model.evaluated(np.clip(start, *model.bounds), nuisance if limits is None else np.clip(nuisance, *limits))
     value = _objective(model, at, mean, precision)
-    damping, columns, converged = search.damping, None, False
+    damping, columns, converged = search.damping, known, False
     for turn in range(search.most):
         if columns is None:
             columns = model.columns(at, warm if turn < LENT else None)
@@ -190,9 +234,7 @@ def least_squares(
             converged = damping > MOST_DAMPING
             if converged:
                 break
-    columns = model.columns(at)
-    blocks = _blocks(model, columns, at)
-    return TrialsFit(model, at.vector, at.nuisance, value, blocks, precision, mean, columns, converged)
+    return Descent(model, at, value, precision, mean, converged)
 
 
 def one_step(

@@ -118,33 +118,101 @@ class TrialPipeline:
         wavemodel.WaveError
             A depth or a value that the body's options do not cover.
         """
-        if shift or height:
-            motion = motion.before(shift)
-            motion = replace(motion, depth=motion.depth - height)
+        return self.of_several([elastic], values, [motion], [(gain, shift, height)])[0]
+
+    def of_several(
+        self,
+        elastics: Sequence[Elastic],
+        values: Mapping[str, Mapping[str, float]],
+        motions: Sequence[Motion],
+        own: Sequence[tuple[float, float, float]],
+    ) -> list[Readings]:
+        """`readings` of trials that share the effects' values: the elastic answer, motion, and own values of each.
+
+        What they share is worked out once, and the lower face of those that share it in one go.
+        """
         added = [(effect, values[effect.slug]) for effect in self.effects]
-        clock = motion.time - motion.time[0] + FIRST_STEP
-        body = PressedBody(lambda depth: gain * elastic.force(depth), clock, physics_of(added, self.around))
-        trace = _pressed(motion, added, body)
-        press = PressHistory(motion.time, trace.depth, trace.surface, trace.force, trace.elastic, trace.touching)
-        readings = self._seen(elastic, press, added)
+        physics = physics_of(added, self.around)
+        moved = [_late_and_low(motion, shift, height) for motion, (_, shift, height) in zip(motions, own, strict=True)]
+        presses = [
+            _history(motion, added, _times(gain, elastic), physics)
+            for elastic, motion, (gain, _, _) in zip(elastics, moved, own, strict=True)
+        ]
+        seen = self._seen(elastics, presses, added)
+        return [self._observed(readings, motion, added) for readings, motion in zip(seen, moved, strict=True)]
+
+    def _observed(self, readings: Readings, motion: Motion, added: Sequence[Added]) -> Readings:
+        """As sensor and camera report it."""
         for effect, own in added:
             if effect.observe is not None and (readings.markers is not None or not effect.needs_markers):
                 readings = effect.observe(own, readings, motion, self.around)
         return readings
 
-    def _seen(self, elastic: Elastic, press: PressHistory, added: Sequence[Added]) -> Readings:
+    def _seen(
+        self, elastics: Sequence[Elastic], presses: Sequence[PressHistory], added: Sequence[Added]
+    ) -> list[Readings]:
         """The force, and the markers where there are any."""
-        if self.around.markers is None:
-            return Readings(press.force)
+        rest = self.around.markers
+        if rest is None:
+            return [Readings(press.force) for press in presses]
+        faces = _lower_faces(elastics, [self._spread(press, added) for press in presses], rest)
+        out = []
+        for press, (markers, sink) in zip(presses, faces, strict=True):
+            if self.distance is not None:
+                markers = markers / (1.0 - sink / self.distance)[..., None]
+            out.append(Readings(press.force, markers, sink))
+        return out
+
+    def _spread(self, press: PressHistory, added: Sequence[Added]) -> LowerFaceMotion:
+        """How a press moves the lower face."""
         under = np.where(press.touching, press.surface, np.maximum(press.surface, 0.0))
         spread = LowerFaceMotion(under, np.ones_like(under))
         for effect, values in added:
             if effect.lower_face is not None:
                 spread = effect.lower_face(values, spread, press, self.around)
-        markers, sink = elastic.lower_face(spread, self.around.markers)
-        if self.distance is not None:
-            markers = markers / (1.0 - sink / self.distance)[..., None]
-        return Readings(press.force, markers, sink)
+        return spread
+
+
+def _times(gain: float, elastic: Elastic) -> Law:
+    """The elastic law of a specimen that is so many times as stiff."""
+    return lambda depth: gain * elastic.force(depth)
+
+
+def _late_and_low(motion: Motion, shift: float, height: float) -> Motion:
+    """A motion that sensors show late by a shift, s, of a tool that touches at a height, m."""
+    if not (shift or height):
+        return motion
+    late = motion.before(shift)
+    return replace(late, depth=late.depth - height)
+
+
+def _history(motion: Motion, added: Sequence[Added], law: Law, physics: Physics) -> PressHistory:
+    """A press worked out."""
+    body = PressedBody(law, motion.time - motion.time[0] + FIRST_STEP, physics)
+    trace = _pressed(motion, added, body)
+    return PressHistory(motion.time, trace.depth, trace.surface, trace.force, trace.elastic, trace.touching)
+
+
+def _lower_faces(
+    elastics: Sequence[Elastic], spreads: Sequence[LowerFaceMotion], rest: Array
+) -> list[tuple[Array, Array]]:
+    """Positions and sinking of markers by each elastic answer; in one go where all go by the same one alike."""
+    first = spreads[0]
+    alike = all(each is elastics[0] for each in elastics) and all(_alike(first, each) for each in spreads)
+    if len(spreads) == 1 or not alike:
+        return [elastic.lower_face(spread, rest) for elastic, spread in zip(elastics, spreads, strict=True)]
+    depth, passed = (np.concatenate([getattr(each, name) for each in spreads]) for name in ("depth", "passed"))
+    dents = [each.dent for each in spreads if each.dent is not None]
+    dent = (np.concatenate([outward for outward, _ in dents]), dents[0][1]) if dents else None
+    moved, sunk = elastics[0].lower_face(LowerFaceMotion(depth, passed, first.centre, first.ratio, dent), rest)
+    ends = np.cumsum([each.depth.size for each in spreads[:-1]])
+    return list(zip(np.split(moved, ends), np.split(sunk, ends), strict=True))
+
+
+def _alike(one: LowerFaceMotion, other: LowerFaceMotion) -> bool:
+    """Whether two motions differ by what they have in each row alone."""
+    inner = [None if each.dent is None else each.dent[1] for each in (one, other)]
+    return one.centre == other.centre and one.ratio == other.ratio and inner[0] == inner[1]
 
 
 def _driven(motion: Motion, added: Sequence[Added], body: PressedBody) -> Array:

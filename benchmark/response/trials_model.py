@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -17,6 +17,11 @@ class TrialColumns:
 
     vector: list[Array]
     nuisance: list[Array]
+
+    def only(self, trials: Iterable[int]) -> TrialColumns:
+        """Those of some trials, by their numbers."""
+        pairs = [(self.vector[index], self.nuisance[index]) for index in trials]
+        return TrialColumns([vector for vector, _ in pairs], [nuisance for _, nuisance in pairs])
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ driven by force, each instant is solved for the depth at which the body answers 
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -26,6 +27,7 @@ ForceLaw: TypeAlias = Callable[[FloatArray], FloatArray]
 WIDENINGS = 60
 EXACT = 1e-13
 """Of the force, and of the depth (relatively), to which a step is solved."""
+NO_SET, NO_ADHESION = PermanentSet(0.0), Adhesion()
 
 
 @dataclass(frozen=True)
@@ -54,19 +56,19 @@ class Physics:
     friction: DryFriction | None = None
     adhesion: Adhesion | None = None
 
-    @property
+    @cached_property
     def elastic(self) -> tuple[BodyOption, ...]:
         """What changes the elastic force, in order."""
         chosen = (self.stiffening, self.pretension, self.floor, self.slip, self.softening)
         return tuple(option for option in chosen if option is not None)
 
-    @property
+    @cached_property
     def relaxing(self) -> tuple[BodyOption, ...]:
         """What lets the force relax, in order."""
         relaxation = None if self.relaxation is None else RelaxingForce(self.relaxation)
         return tuple(option for option in (relaxation, self.drainage) if option is not None)
 
-    @property
+    @cached_property
     def beside(self) -> tuple[BodyOption, ...]:
         """What acts beside the elastic force."""
         return tuple(option for option in (self.damping, self.friction) if option is not None)
@@ -170,8 +172,7 @@ class QuasiStaticPress:
         held
             Whether tool and tissue are one: no lift-off, and any pull.
         """
-        lasting = self.physics.permanent_set or PermanentSet(0.0)
-        met, surface, set_memory = lasting.meet(duration, depth, state.surface)
+        met, surface, set_memory = (self.physics.permanent_set or NO_SET).meet(duration, depth, state.surface)
         start = self._touched(duration, met, state.touching, held)
         memories = iter(state.options)
         elastic, first = _chain(self.physics.elastic, start, memories)
@@ -187,9 +188,9 @@ class QuasiStaticPress:
         after = PressState(bool(start.touching[-1]), set_memory, (*first, *second, *third))
         return PressTrace(depth, stands, force, elastic.force, start.touching), after
 
-    @property
+    @cached_property
     def _adhesion(self) -> Adhesion:
-        return self.physics.adhesion or Adhesion()
+        return self.physics.adhesion or NO_ADHESION
 
     def _touched(self, duration: FloatArray, met: FloatArray, before: bool, held: bool) -> LoadSegment:
         """Contact and the elastic force of the bare law; pulled, the law is that of the press with its sign."""

@@ -84,7 +84,8 @@ def _without(fitted: Fit, left: np.ndarray) -> Fit:
     """The fit to the other trials (mask (R,) of those left out), until it has converged."""
     kept = np.flatnonzero(~left)
     model = replace(fitted.model, problem=only(fitted.model.problem, kept.tolist()))
-    return least_squares(model, fitted.vector, fitted.nuisance[kept], search=CONVERGED)
+    columns = fitted.columns.only(kept)
+    return least_squares(model, fitted.vector, fitted.nuisance[kept], known=columns, search=CONVERGED)
 
 
 def _told(base: Fit, chosen: Fit) -> Fit:

@@ -41,9 +41,13 @@ LEAST_MOVED = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class BentModel(EffectModel):
-    """A model with `bends` amplitudes of what its effects' forms miss, behind the base's nuisances in the vector."""
+    """A model with `bends` amplitudes of what its effects' forms miss, behind the base's nuisances in the vector.
+
+    `straight` is the fit with the forms as they are.
+    """
 
     bends: int = 0
+    straight: Fit | None = None
 
     @property
     def shape_count(self) -> int:
@@ -74,7 +78,7 @@ def bent(fitted: Fit, slugs: Sequence[str]) -> Fit:
     before, first = fitted.model, fitted.model.shape_count
     parts = [_bends(fitted, effect) for effect in before.effects if effect.slug in slugs]
     extra = [np.hstack(each) for each in zip(*parts, strict=True)]
-    model = BentModel(before.problem, before.effects, before.pinned, bends=extra[0].shape[1])
+    model = BentModel(before.problem, before.effects, before.pinned, extra[0].shape[1], fitted)
     at = model.evaluated(model.widened(fitted.vector, 0.0), fitted.nuisance)
     vector = [np.hstack([j[:, :first], e, j[:, first:]]) for j, e in zip(fitted.columns.vector, extra, strict=True)]
     mean, precision = model.widened(fitted.prior_mean, 0.0), model.widened(fitted.precision, criteria.FORM_OFF**-2)
@@ -84,12 +88,7 @@ def bent(fitted: Fit, slugs: Sequence[str]) -> Fit:
 def straight(fitted: Fit) -> Fit:
     """The fit with the forms as they are, to be refitted: bends are one step, of which the model knows no more."""
     model = fitted.model
-    if not isinstance(model, BentModel):
-        return fitted
-    first = len(model.problem.shapes)
-    kept = np.delete(np.arange(fitted.vector.size), np.s_[first : first + model.bends])
-    plain = EffectModel(model.problem, model.effects, model.pinned)
-    return replace(fitted, model=plain, vector=fitted.vector[kept], prior_mean=fitted.prior_mean[kept])
+    return model.straight if isinstance(model, BentModel) and model.straight is not None else fitted
 
 
 def _bends(fitted: Fit, effect: Effect) -> list[Array]:

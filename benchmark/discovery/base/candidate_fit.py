@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmark.discovery import criteria
-from benchmark.discovery.base.effect_model import EffectModel, Fit, White, fit, nuisance_precision
+from benchmark.discovery.base.effect_model import EffectModel, Fit, White, nuisance_precision
 from benchmark.discovery.base.trials_problem import TrialsProblem
 from benchmark.physics import Effect
 from benchmark.physics.effect import Values
 from benchmark.response.force_curve import Array
-from benchmark.response.least_squares import Search, least_squares
+from benchmark.response.least_squares import Descent, Search, descend, least_squares
 
 GOING_ON = Search(most=40)
 """Of the best start's fit, where its first steps did not end it."""
@@ -34,7 +34,7 @@ def fit_candidate(base: Fit, effect: Effect, most: int = 10) -> Fit:
         Steps from each start; the best one goes on until it has converged.
     """
     model = EffectModel(base.model.problem, (*base.model.effects, effect))
-    fits = []
+    ended: list[Descent[EffectModel]] = []
     for state in (base.nuisance, *_unshifted(base)):
         starts = screened(base, model, effect, state)
         close = [
@@ -43,15 +43,15 @@ def fit_candidate(base: Fit, effect: Effect, most: int = 10) -> Fit:
             if one.won > criteria.SECOND_START * starts[0].won or one is starts[0]
         ]
         warm = base.columns if state is base.nuisance else None
-        fits += [fit(model, start, state, warm, most) for start in close]
-    return gone_on(min(fits, key=lambda each: each.objective))
+        ended += [descend(model, start, state, warm=warm, search=Search(most)) for start in close]
+    return _gone_on(min(ended, key=lambda each: each.objective))
 
 
-def gone_on(found: Fit) -> Fit:
+def _gone_on(ended: Descent[EffectModel]) -> Fit:
     """The fit to convergence, round the same priors: what an unfinished one leaves would be laid to something else."""
-    if found.converged:
-        return found
-    return least_squares(found.model, found.vector, found.nuisance, search=GOING_ON, around=found.prior_mean)
+    if ended.converged:
+        return ended.finished()
+    return least_squares(ended.model, ended.at.vector, ended.at.nuisance, search=GOING_ON, around=ended.prior_mean)
 
 
 def _unshifted(base: Fit) -> tuple[Array, ...]:

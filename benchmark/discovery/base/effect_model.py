@@ -41,22 +41,24 @@ class White:
 
     @cached_property
     def _whiteners(self) -> list[tuple[Array, NDArray[np.int64], Array]]:
-        """(n, C) of each trial: what share of a row before is taken off, which row, and the weight of the rest."""
+        """(n, C) of each trial: what share of a row before is taken off, its place, and the weight of the rest.
+
+        Places are in the flattened rows.
+        """
         out = []
         for index, trial in enumerate(self.problem.trials):
             use = self.problem.whiteners(index)
             weight = 1.0 / np.column_stack([one.scale for one in use])
             if self.problem.mask is not None:
                 weight = weight * self.problem.mask[trial.condition]
-            out.append(
-                (np.column_stack([one.back for one in use]), np.column_stack([one.before for one in use]), weight)
-            )
+            before = np.column_stack([one.before for one in use]) * len(use) + np.arange(len(use))
+            out.append((np.column_stack([one.back for one in use]), before, weight))
         return out
 
     def flat(self, index: int, rows: Array) -> Array:
         """Rows (n, C) of a trial whitened, masked and flattened to (N,)."""
         back, before, weight = self._whiteners[index]
-        return np.asarray(((rows - back * np.take_along_axis(rows, before, axis=0)) * weight).ravel())
+        return np.asarray(((rows - back * rows.take(before)) * weight).ravel())
 
     def residuals(self, signals: list[Array]) -> list[Array]:
         """White residuals, measured minus simulated."""
@@ -176,20 +178,34 @@ class EffectModel:
             (trials, q): log gain, force zero, time shift, depth at touch, thickness, marker zeros.
         """
         tables, values = self.shaped(vector), self.values(vector)
-        return [self._trial(index, tables, values, own) for index, own in enumerate(nuisance)]
+        out: list[Array] = [np.zeros(0)] * len(nuisance)
+        for number, places in self._places.items():
+            own = nuisance[places, : len(OWN)].tolist()
+            elastics = [tables[number].thicker(thickness) for *_, thickness in own]
+            motions = [self.problem.trials[index].motion for index in places]
+            ways = [(float(np.exp(gain)), shift, height) for gain, _, shift, height, _ in own]
+            readings = self.pipelines[number].of_several(elastics, values, motions, ways)
+            scaled = self._grid_seen(tables[number].shape)
+            for index, each in zip(places, readings, strict=True):
+                signals = self.as_signals(each, nuisance[index, 1], nuisance[index, len(OWN) :])
+                signals[:, 1:] = self.problem.trials[index].at_frames(signals[:, 1:] + scaled)
+                out[index] = signals
+        return out
 
-    def _trial(self, index: int, tables: Sequence[ShapedTable], values: Mapping[str, Values], nuisance: Array) -> Array:
-        """(n, C) signals of one trial."""
-        trial = self.problem.trials[index]
-        gain, zero, shift, height, thickness = nuisance[: len(OWN)].tolist()
-        pipeline, table = self.pipelines[trial.condition], tables[trial.condition].thicker(thickness)
-        readings = pipeline.readings(table, values, trial.motion, float(np.exp(gain)), shift, height)
-        signals = self.as_signals(readings, zero, nuisance[len(OWN) :])
+    @cached_property
+    def _places(self) -> dict[int, list[int]]:
+        """Numbers of the trials of each condition."""
+        found: dict[int, list[int]] = {}
+        for index, trial in enumerate(self.problem.trials):
+            found.setdefault(trial.condition, []).append(index)
+        return found
+
+    def _grid_seen(self, shape: Shape) -> Array:
+        """(C - 1,) or (0,) m by which the grid's scale shows in the marker combinations."""
         layout = self.problem.study.layout
-        if layout is not None and signals.shape[1] > 1:
-            signals[:, 1:] += layout.seen_scale(table.shape.grid_scale, table.shape.lens) * layout.scale_pattern
-        signals[:, 1:] = trial.at_frames(signals[:, 1:])
-        return signals
+        if layout is None:
+            return np.zeros(0)
+        return layout.seen_scale(shape.grid_scale, shape.lens) * layout.scale_pattern
 
     def as_signals(self, readings: Readings, zero: float, offsets: Array) -> Array:
         """(n, C): force, then marker combinations, with their zeros."""
@@ -198,8 +214,7 @@ class EffectModel:
         if layout is None or readings.markers is None:
             return force
         markers = layout.signals(readings.markers)
-        for k, name in enumerate(layout.zeros):
-            markers[:, layout.names.index(name)] += offsets[k]
+        markers[:, layout.zero_columns] += offsets
         return np.concatenate([force, markers], axis=1)
 
     @cached_property
@@ -261,8 +276,8 @@ class EffectModel:
             for k, step in steps.items():
                 columns[..., k] = (moved[k][i] - base) / step
             if study.layout is not None:
-                for k, name in enumerate(study.layout.zeros, start=len(OWN)):
-                    columns[:, 1 + study.layout.names.index(name), k] = 1.0
+                for k, place in enumerate(study.layout.zero_columns, start=len(OWN)):
+                    columns[:, 1 + place, k] = 1.0
             out.append(np.column_stack([self.white.flat(i, columns[..., k]) for k in range(columns.shape[2])]))
         return out
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from typing import TypeAlias
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +15,13 @@ from benchmark.discovery.base.bent_form import straight
 from benchmark.discovery.base.effect_model import Fit, fit, settled
 from benchmark.discovery.base.trials_problem import only
 from benchmark.discovery.discovery_result import Array
-from benchmark.response.least_squares import least_squares
+from benchmark.response.least_squares import descend
 from benchmark.response.noise import whitener
 
-KEPT = 4
-"""Fits whose densities by refitting are kept: those of a round are compared with the same one."""
+Mapped: TypeAlias = Callable[[Callable[[Fit], Array], Sequence[Fit]], Iterable[Array]]
+"""What a function gives for each fit, in their order, as `map` does; processes may do it."""
+FORETOLD: WeakKeyDictionary[Fit, Array] = WeakKeyDictionary()
+"""What `held_out` gave for a fit, as long as it lives."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +55,10 @@ class Scored:
         return tuple(effect.slug for effect in self.fit.model.effects)
 
 
+REFITTED: WeakKeyDictionary[Fit, dict[bytes, Array]] = WeakKeyDictionary()
+"""What fits without some trials say of these, by the mask of them; of a fit that is bent by the straight one."""
+
+
 def conditions(fitted: Fit) -> Array:
     """(R,) number of each trial's condition."""
     return np.array([trial.condition for trial in fitted.model.problem.trials])
@@ -71,6 +78,18 @@ def held_out(fitted: Fit) -> Array:
     without it, since a curved effect, such as a limit that one trial reaches more than the others, is stepped over.
     Of a fit that is bent that is the fit with its forms as they are.
     """
+    return foretold([fitted])[0]
+
+
+def foretold(fits: Sequence[Fit], mapped: Mapped = map) -> list[Array]:
+    """`held_out` of several fits: worked out once for each, since the same one is compared with many others."""
+    new = [fit for fit in dict.fromkeys(fits) if fit not in FORETOLD]
+    FORETOLD.update(zip(new, mapped(_foretold, new), strict=True))
+    return [FORETOLD[fit] for fit in fits]
+
+
+def _foretold(fitted: Fit) -> Array:
+    """See `held_out`."""
     count = len(fitted.model.problem.trials)
     with_all, out = fitted.log_density(fitted.vector), np.empty(count)
     for index in range(count):
@@ -91,7 +110,6 @@ def held_out_conditions(fitted: Fit) -> Array:
     return out - strain(fitted) / groups.size
 
 
-@lru_cache(maxsize=KEPT)
 def refitted_conditions(fitted: Fit) -> Array:
     """(R,) log density of each trial under the fit to the other conditions, converged; strain as in `held_out`.
 
@@ -107,13 +125,22 @@ def refitted_conditions(fitted: Fit) -> Array:
 
 
 def _refitted(fitted: Fit, left: NDArray[np.bool_]) -> Array:
-    """Log density of the trials `left` (R,) under the fit to the others, converged."""
+    """Log density of the trials `left` (R,) under the fit to the others, converged; each fit is made once."""
     fitted = straight(fitted)
+    known = REFITTED.setdefault(fitted, {})
+    if left.tobytes() not in known:
+        known[left.tobytes()] = _refitted_straight(fitted, left)
+    return known[left.tobytes()]
+
+
+def _refitted_straight(fitted: Fit, left: NDArray[np.bool_]) -> Array:
+    """The same of a fit whose forms are as they are."""
     model, places = fitted.model, (np.flatnonzero(~left), np.flatnonzero(left))
     others, unseen = (replace(model, problem=only(model.problem, some.tolist())) for some in places)
-    found = least_squares(others, fitted.vector, fitted.nuisance[~left], around=fitted.prior_mean)
-    own = settled(unseen, found.vector, fitted.nuisance[left])
-    return fit(unseen, found.vector, own, most=0).log_density(found.vector)
+    columns = fitted.columns.only(places[0])
+    found = descend(others, fitted.vector, fitted.nuisance[~left], known=columns, around=fitted.prior_mean).at.vector
+    own = settled(unseen, found, fitted.nuisance[left])
+    return fit(unseen, found, own, most=0).log_density(found)
 
 
 def gain(fitted: Array, other: Array, groups: Array) -> Gain:
@@ -190,15 +217,15 @@ def delta_bic(fitted: Fit, other: Fit, samples: float) -> float:
     return 2.0 * (fitted.objective - other.objective) + (informed(fitted) - informed(other)) * float(np.log(samples))
 
 
-def score(current: Fit, fits: Sequence[Fit]) -> list[Scored]:
+def score(current: Fit, fits: Sequence[Fit], mapped: Mapped = map) -> list[Scored]:
     """Candidates by their held-out gain over `current`, best first."""
-    groups = conditions(current)
-    before, samples = held_out(current), effective_size(current)
+    groups, samples = conditions(current), effective_size(current)
+    before, *densities = foretold([current, *fits], mapped)
     several = np.unique(groups).size > 1
     before_conditions = held_out_conditions(current) if several else None
     out = []
-    for made in fits:
+    for made, density in zip(fits, densities, strict=True):
         transfer = gain(held_out_conditions(made), before_conditions, groups) if before_conditions is not None else None
         slug, bic = made.model.effects[-1].slug, delta_bic(made, current, samples)
-        out.append(Scored(made, slug, gain(held_out(made), before, groups), transfer, bic, current))
+        out.append(Scored(made, slug, gain(density, before, groups), transfer, bic, current))
     return sorted(out, key=lambda each: -each.gain.mean)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import io
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
@@ -16,6 +16,7 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
+from weakref import WeakKeyDictionary
 from zipfile import BadZipFile
 
 import numpy as np
@@ -24,6 +25,7 @@ from benchmark.child_processes import PoolContext, begin_in_pool, single_threade
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.base.effect_model import EffectModel, Fit
 from benchmark.physics import Effect, load_effects
+from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import Blocks
 from benchmark.response.trials_model import TrialColumns
 from reports import write_bytes
@@ -50,6 +52,12 @@ class Pool:
     store: Path | None
     key: str
     listener: Listener = field(default=silent)
+    made: WeakKeyDictionary[Fit, dict[tuple[str, int], Fit]] = field(default_factory=WeakKeyDictionary)
+    """Fits of each base, by slug and number of parameters of what was added to it, as long as the base lives."""
+
+    def map(self, work: Callable[[Fit], Array], fits: Sequence[Fit]) -> Iterable[Array]:
+        """What `work` gives for each fit, by the processes where there are any."""
+        return map(work, fits) if self.executor is None else self.executor.map(work, fits)
 
     def fits(self, stage: str, jobs: Sequence[tuple[Fit, Effect]]) -> list[Fit]:
         """One fit for each base and effect, in their order."""
@@ -63,6 +71,21 @@ class Pool:
         return [done[k] for k in range(len(jobs))]
 
     def _made(self, jobs: Sequence[tuple[Fit, Effect]]) -> Iterator[tuple[int, Fit]]:
+        """Each job's number and fit as they come; the same job gives the same fit again."""
+        new = []
+        for index, (base, effect) in enumerate(jobs):
+            known = self.made.setdefault(base, {}).get(_name(effect))
+            if known is None:
+                new.append(index)
+            else:
+                yield index, known
+        for place, fit in self._worked_out([jobs[index] for index in new]):
+            base, effect = jobs[new[place]]
+            self.made[base][_name(effect)] = fit
+            yield new[place], fit
+
+    def _worked_out(self, jobs: Sequence[tuple[Fit, Effect]]) -> Iterator[tuple[int, Fit]]:
+        """The same of jobs that are new, or kept in the folder by an earlier run."""
         waiting: dict[Future[Fit], int] = {}
         for index, (base, effect) in enumerate(jobs):
             kept = self._recall(base, effect)
@@ -80,7 +103,7 @@ class Pool:
         """Where a fit is kept: by all that it follows from."""
         if self.store is None:
             return None
-        slugs = "+".join([*(each.slug for each in base.model.effects), f"{effect.slug}-{len(effect.names)}"])
+        slugs = "+".join([*(each.slug for each in base.model.effects), "{}-{}".format(*_name(effect))])
         name = hashlib.sha256(f"{self.key} {slugs}".encode())
         name.update(stored(base))
         return self.store / f"{name.hexdigest()[:24]}.npz"
@@ -98,6 +121,11 @@ class Pool:
         if file is not None:
             write_bytes(file, content)
         return restored(content, base, effect)
+
+
+def _name(effect: Effect) -> tuple[str, int]:
+    """Slug and number of parameters: an effect with more terms is another one."""
+    return effect.slug, len(effect.names)
 
 
 def stored(made: Fit) -> bytes:

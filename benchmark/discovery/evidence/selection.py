@@ -25,6 +25,7 @@ from benchmark.discovery.evidence.gains import (
     Scored,
     broad,
     conditions,
+    foretold,
     gain,
     held_out,
     score,
@@ -81,7 +82,7 @@ def select(
             ranked = screen(current, rest)
         first_screen = first_screen or ranked
         promising = _promising(ranked, criteria.REFINED if number == 1 else criteria.REFINED_LATER)
-        scored = score(current, work.fits(f"round {number}", [(current, s.effect) for s in promising]))
+        scored = score(current, work.fits(f"round {number}", [(current, s.effect) for s in promising]), work.map)
         rounds.append(_enriched(current, scored, work))
         evident = [s for s in rounds[-1] if _evident(s, steps, settings)]
         within = criteria.FORM_OFF**2 * max((step.gain.mean for step in steps), default=0.0)
@@ -163,7 +164,7 @@ def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
     richer = work.fits("second terms", [(current, effect) for _, effect in pairs])
     plain = [s.fit.model.effects[-1] for s, _ in pairs]
     told = [fit for fit, effect in zip(richer, plain, strict=True) if terms_told(fit, effect)]
-    better = {s.slug: s for s in score(current, told)}
+    better = {s.slug: s for s in score(current, told, work.map)}
     chosen = []
     for s in scored:
         other = better.get(s.slug)
@@ -245,7 +246,7 @@ def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], settin
     if not alone:
         density += criteria.TIE * max(density - float(held_out(base).sum()), 0.0)
     for under, incoming in swaps:
-        for scored in score(under, work.fits("swaps", [(under, rival) for rival in incoming])):
+        for scored in score(under, work.fits("swaps", [(under, rival) for rival in incoming]), work.map):
             then = held_out(scored.fit)
             if float(then.sum()) <= density or not seen(scored.fit, scored.fit.model.effects[-1]):
                 continue
@@ -325,11 +326,10 @@ def _in_place(
         made = work.fits("look-alikes", [(under, rival) for rival in _nearest(rounds, taken)])
     else:
         made = [s.fit for s in rounds[0] if s.slug not in taken]
+    shown = [rival for rival in made if seen(rival, rival.model.effects[-1])]
     alike, fitted = [], within_tolerance(current)
-    for rival in made:
-        if not seen(rival, rival.model.effects[-1]):
-            continue
-        lead = gain(now, held_out(rival), groups)
+    for rival, density in zip(shown, foretold(shown, work.map), strict=True):
+        lead = gain(now, density, groups)
         close = _close(effect, rival.model.effects[-1]) if fitted else criteria.CLOSE_UNFITTED
         if lead.z < settings.lookalike_z or lead.mean < close * own.mean:
             alike.append((lead.mean, rival))

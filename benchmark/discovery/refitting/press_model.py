@@ -5,7 +5,7 @@ The engine's bends of the base are held at none. What is expanded agrees with th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
@@ -55,13 +55,13 @@ class PressModel(EffectModel):
     fading: Mapping[int, Array] = field(default_factory=dict)
     origin: Numbers = field(default_factory=dict)
 
-    def _trial(self, index: int, tables: Sequence[ShapedTable], values: Mapping[str, Values], nuisance: Array) -> Array:
-        signals = super()._trial(index, tables, values, nuisance)
-        condition = self.problem.trials[index].condition
-        if condition in self.fading:
-            size = np.exp(nuisance[0] + tables[condition].shape.modulus)
-            signals[:, 0] += size * self.fading[condition]
-        return signals
+    def signals(self, vector: Array, nuisance: Array) -> list[Array]:
+        """(n, C) signals of each trial; see `EffectModel.signals`."""
+        out, modulus = super().signals(vector, nuisance), self.shape(vector).modulus
+        for signals, trial, own in zip(out, self.problem.trials, nuisance, strict=True):
+            if trial.condition in self.fading:
+                signals[:, 0] += np.exp(own[0] + modulus) * self.fading[trial.condition]
+        return out
 
 
 PressFit: TypeAlias = TrialsFit[PressModel]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -55,10 +56,15 @@ class Layout:
     lens_error: float = np.inf
     centre_error: float = 0.0
 
-    @property
+    @cached_property
     def scale_pattern(self) -> Array:
         """(signals,) m by which a grid of twice the size differs."""
         return np.asarray(np.tensordot(self.rest, self.weights, axes=([0, 1], [1, 2])))
+
+    @cached_property
+    def zero_columns(self) -> list[int]:
+        """Numbers of the combinations with a zero of their own."""
+        return [self.names.index(name) for name in self.zeros]
 
     def lens_within(self, usual: float) -> tuple[float, float]:
         """Mean and standard deviation of the lens's distortion, which is `usual` where no grid shows it."""
@@ -78,7 +84,13 @@ class Layout:
 
     def signals(self, positions: Array) -> Array:
         """(..., signals) combinations of positions (..., m, 2), m, less their resting places."""
-        return np.asarray(np.tensordot(positions - self.rest, self.weights, axes=([-2, -1], [1, 2])))
+        moved = (positions - self.rest).reshape(*positions.shape[:-2], -1)
+        return np.asarray(moved @ self._by_coordinate)
+
+    @cached_property
+    def _by_coordinate(self) -> Array:
+        """(2 m, signals) weights of the markers' x and y, one marker after the other."""
+        return np.ascontiguousarray(self.weights.reshape(len(self.weights), -1).T)
 
 
 def grid(camera: Camera) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy
 
-from benchmark.response.least_squares import EXACT, Search, fit_record, least_squares, scaled_inverse, settled
+from benchmark.response.least_squares import EXACT, Search, descend, fit_record, least_squares, scaled_inverse, settled
 from benchmark.response.trials_model import RecordModel, TrialColumns, TrialsEvaluation, differences
 
 TIME = np.linspace(0.0, 1.0, 40)
@@ -228,3 +228,26 @@ def test_what_is_weakly_told_in_large_units_does_not_seem_known():
     determinant = one * other - both**2
     np.testing.assert_allclose(found, np.array([[other, -both], [-both, one]]) / determinant, rtol=1e-9)
     np.testing.assert_allclose(scaled_inverse(np.zeros((2, 2))), 0.0)
+
+
+def test_derivatives_that_are_known_at_the_start_are_not_worked_out_again():
+    asked = []
+
+    class Asked(Straight):
+        def columns(self, at, warm=None):
+            asked.append(at.vector.copy())
+            return super().columns(at, warm)
+
+    plain = straight()
+    model = Asked(plain.measured, plain.design, plain.trial_precision)
+    start, own = np.array([0.5, 0.5]), np.zeros((4, 2))
+    known = plain.columns(plain.evaluated(start, own))
+    ended = descend(model, start, own, known=known, search=Search(most=1))
+    assert asked == []
+    assert not ended.converged
+    np.testing.assert_array_equal(
+        ended.finished().vector, least_squares(plain, start, own, search=Search(most=1)).vector
+    )
+    assert len(asked) == 1
+    assert len(known.only([2, 0]).vector) == 2
+    assert known.only([2, 0]).vector[0] is known.vector[2]

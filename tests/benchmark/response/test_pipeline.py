@@ -84,3 +84,45 @@ def test_the_damping_of_rows_that_are_means_is_the_mean_of_the_damping(given, ex
     np.testing.assert_allclose(found[1:-1], exact[1:-1], atol=5e-3 * size)
     between = pipeline.readings(ForceAlone(_law), values, replace(motion, record=None)).force
     assert np.abs(between - exact)[1:-1].max() > 1e-2 * size
+
+
+class Sheet:
+    """An elastic answer whose lower face moves by the depth over the distance from the tool's axis."""
+
+    def force(self, depth):
+        return _law(depth)
+
+    def lower_face(self, spread, rest):
+        away = rest - np.asarray(spread.centre)
+        sunk = (spread.depth * spread.passed)[:, None] / (1.0 + np.hypot(*away.T) * spread.ratio)
+        if spread.dent is not None:
+            sunk = sunk + spread.dent[0][:, None] / max(spread.dent[1], 1e-3)
+        return rest + sunk[..., None] * away, sunk
+
+
+@pytest.mark.parametrize(
+    "added",
+    [
+        {},
+        {"off_centre_load": {"x_0": 1e-3, "y_0": 0.0}},
+        {"pretension": {"pretension": 100.0, "field": 0.5}},
+        {"perspective": {"nearness": 7.0}, "viscous_damping": {"damping_time": 0.2, "drag": 0.0, "power": 1.0}},
+        {"permanent_set": {"permanent_set": 0.3, "permanent_set_onset": 0.0, "marker_share": 0.5}},
+    ],
+)
+def test_several_trials_at_once_are_each_as_by_itself(added) -> None:
+    around = replace(
+        AROUND, markers=np.array([[1e-3, 0.0], [0.0, 2e-3], [-3e-3, 1e-3]]), spacing=1e-3, hole_radius=1e-2
+    )
+    pipeline = TrialPipeline(around, tuple(BY_SLUG[slug] for slug in added), 0.1)
+    ways = [(1.0, 0.0, 0.0), (1.3, 0.05, 1e-4), (0.8, -0.02, -2e-4)]
+    lengths = (400, 300, 350)
+    motions = [Motion(TIME[:n], DEPTH[:n] * (1.0 + 0.1 * k), np.zeros(n)) for k, n in enumerate(lengths)]
+    sheet, other = Sheet(), Sheet()
+    for elastics in ([sheet] * 3, [sheet, other, sheet]):
+        together = pipeline.of_several(elastics, added, motions, ways)
+        for elastic, motion, way, found in zip(elastics, motions, ways, together, strict=True):
+            alone = pipeline.readings(elastic, added, motion, *way)
+            np.testing.assert_array_equal(found.force, alone.force)
+            np.testing.assert_allclose(found.markers, alone.markers, rtol=1e-14)
+            np.testing.assert_allclose(found.sink, alone.sink, rtol=1e-14)

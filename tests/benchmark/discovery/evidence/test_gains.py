@@ -7,12 +7,15 @@ import numpy as np
 import pytest
 
 from benchmark.discovery import criteria
+from benchmark.discovery.base.bent_form import bent
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.detection.disagreement import combined, strained
+from benchmark.discovery.evidence import gains as gains_module
 from benchmark.discovery.evidence import parameter_evidence
 from benchmark.discovery.evidence.gains import (
     broad,
+    foretold,
     gain,
     held_out,
     held_out_conditions,
@@ -23,6 +26,7 @@ from benchmark.discovery.evidence.gains import (
 from benchmark.discovery.evidence.parameter_evidence import delay, material, resolved, seen
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import TrialContext, catalogue
+from benchmark.response.least_squares import descend
 
 ONE = np.zeros(8, dtype=int)
 BY_SLUG = {effect.slug: effect for effect in catalogue()}
@@ -75,9 +79,36 @@ def test_a_trial_that_the_first_order_steps_too_far_from_is_refitted(session_of,
     straight = held_out(drift)
     lost = drift.log_density(drift.vector) - straight - strain(drift) / straight.size
     monkeypatch.setattr(criteria, "TOO_FAR", float(np.median(lost)))
-    refitted = held_out(drift)
+    refitted = held_out(replace(drift))
     np.testing.assert_array_equal(refitted != straight, lost > np.median(lost))
     np.testing.assert_allclose(refitted, straight, atol=0.1)
+
+
+def test_a_fit_foretells_once_and_others_may_do_the_work(session_of, monkeypatch):
+    session = session_of(noise=0.003, trials=4)
+    base = calibrate(session, prepare(session, 40)).base
+    fits, asked = [base, replace(base)], []
+
+    def elsewhere(work, new):
+        asked.append(len(new))
+        return [work(each) + 1.0 for each in new]
+
+    first = foretold(fits, elsewhere)
+    np.testing.assert_array_equal(held_out(base), first[0])
+    np.testing.assert_array_equal(foretold([*fits, base], elsewhere)[2], held_out(replace(base)) + 1.0)
+    assert asked == [2, 0]
+
+
+def test_a_bent_form_is_refitted_by_the_straight_fit_that_it_comes_from(session_of, monkeypatch):
+    session = session_of(force=lambda time, depth, elastic: elastic + 5e-4 * time, noise=0.003)
+    drift = fit_candidate(calibrate(session, prepare(session, 40)).base, BY_SLUG["force_drift"])
+    monkeypatch.setattr(criteria, "TOO_FAR", -np.inf)  # all are refitted
+    refits = []
+    monkeypatch.setattr(gains_module, "descend", lambda *a, **k: refits.append(1) or descend(*a, **k))
+    refitted = held_out(drift) + strain(drift) / 8
+    loose = bent(drift, ["force_drift"])
+    np.testing.assert_allclose(held_out(loose) + strain(loose) / 8, refitted, rtol=1e-14)
+    assert len(refits) == 8
 
 
 @pytest.mark.slow

@@ -68,11 +68,14 @@ def all_determined(monkeypatch):
 def known_densities(monkeypatch):
     for module in (selection, further_effect):
         monkeypatch.setattr(module, "held_out", lambda fit: fit.density)
+    monkeypatch.setattr(selection, "foretold", lambda fits, _: [fit.density for fit in fits])
     monkeypatch.setattr(selection, "within_tolerance", lambda fit: True)
 
 
 class Work:
     """Fits looked up by the slugs of their effects."""
+
+    map = staticmethod(map)
 
     def __init__(self, *fits):
         self.by_slugs = {tuple(each.slug for each in fit.model.effects): fit for fit in fits}
@@ -193,7 +196,7 @@ def test_a_further_effect_that_does_not_carry_over_is_withheld(monkeypatch, know
         selection, "screen", lambda fit, rest: tuple(r for r in ranked if r.effect in rest) if rest else ()
     )
     monkeypatch.setattr(
-        selection, "score", lambda fit, fits: [] if not fits else [second] if fit.model.effects else [first]
+        selection, "score", lambda fit, fits, _: [] if not fits else [second] if fit.model.effects else [first]
     )
     found = selection.select(
         fitted(conditions=groups), [a, b], replace(SETTINGS, most_effects=2), Work(one, other, both, fitted(b, a))
@@ -246,14 +249,14 @@ def test_one_more_term_only_where_bic_prefers_it_clearly(monkeypatch, bic, kept)
     richer = effect("memory", 4)
     plain = scored("memory", 10.0, richer=richer)
     rich = scored("memory", 12.0, bic=bic)
-    monkeypatch.setattr(selection, "score", lambda current, fits: [rich] if fits else [])
+    monkeypatch.setattr(selection, "score", lambda current, fits, _: [rich] if fits else [])
     (chosen,) = selection._enriched(fitted(), [plain], Work(fitted(richer)))
     assert chosen is (rich if kept == "richer" else plain)
 
 
 def test_no_further_term_is_tried_of_what_gains_little(monkeypatch):
     asked = []
-    monkeypatch.setattr(selection, "score", lambda current, fits: asked.append(fits) or [])
+    monkeypatch.setattr(selection, "score", lambda current, fits, _: asked.append(fits) or [])
     low = scored("low", 2.9, richer=effect("low", 3))
     unsure = scored("unsure", 9.0, z=1.9, richer=effect("unsure", 3))
     selection._enriched(fitted(), [scored("best", 10.0), unsure, low], Work())
@@ -261,7 +264,7 @@ def test_no_further_term_is_tried_of_what_gains_little(monkeypatch):
 
 
 def test_a_further_term_is_tried_of_the_best_that_may_have_one(monkeypatch):
-    monkeypatch.setattr(selection, "score", lambda current, fits: [])
+    monkeypatch.setattr(selection, "score", lambda current, fits, _: [])
     monkeypatch.setattr(selection, "terms_told", lambda fit, plain: True)
     tried = []
 
@@ -271,7 +274,7 @@ def test_a_further_term_is_tried_of_the_best_that_may_have_one(monkeypatch):
 
     without = [scored(f"plain_{k}", 10.0) for k in range(4)]
     withs = [scored(f"may_{k}", 9.0 - k, richer=effect(f"may_{k}", 3)) for k in range(4)]
-    selection._enriched(fitted(), [*without, *withs], SimpleNamespace(fits=fits))
+    selection._enriched(fitted(), [*without, *withs], SimpleNamespace(fits=fits, map=map))
     assert tried == ["may_0", "may_1", "may_2"]
 
 
@@ -417,7 +420,7 @@ def swap(monkeypatch, known_densities):
         monkeypatch.setattr(
             selection,
             "score",
-            lambda under, fits: [replace(scored("rival", 1.0), fit=fit, under=under) for fit in fits],
+            lambda under, fits, _: [replace(scored("rival", 1.0), fit=fit, under=under) for fit in fits],
         )
         monkeypatch.setattr(selection, "carries_over", lambda each: passes.get("carries", True))
         monkeypatch.setattr(selection, "beats_bent", lambda each, settings: passes.get("beats", True))
@@ -458,7 +461,7 @@ def test_a_pair_may_begin_with_what_did_nearly_as_well_first(monkeypatch, known_
     monkeypatch.setattr(selection, "carries_over", lambda each: True)
     monkeypatch.setattr(selection, "beats_bent", lambda each, settings: True)
     monkeypatch.setattr(
-        selection, "score", lambda under, fits: [replace(scored("x", 1.0), fit=fit, under=under) for fit in fits]
+        selection, "score", lambda under, fits, _: [replace(scored("x", 1.0), fit=fit, under=under) for fit in fits]
     )
     better = fitted(found["one"], found["other"], density=12.0)
     work = Work()
@@ -483,7 +486,7 @@ def test_a_pair_takes_the_place_of_a_set_up_entry_alone(top, start, density, exp
     monkeypatch.setattr(
         selection, "screen", lambda fit, effects: tuple(SimpleNamespace(effect=e, won=9.0) for e in effects)
     )
-    monkeypatch.setattr(selection, "score", lambda under, fits: [replace(scored("x", 1.0), fit=f) for f in fits])
+    monkeypatch.setattr(selection, "score", lambda under, fits, _: [replace(scored("x", 1.0), fit=f) for f in fits])
     monkeypatch.setattr(selection, "carries_over", lambda each: True)
     monkeypatch.setattr(selection, "beats_bent", lambda each, settings: True)
     current, pair = fitted(one, density=10.0), fitted(other, second, density=density)

@@ -1,6 +1,7 @@
 """A discovery that was interrupted, at whatever fit, ends with the answer it would have had, to the last bit."""
 
 from concurrent.futures import Future
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,8 @@ from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence import pool as module
-from benchmark.discovery.evidence.pool import Pool, forget, restored, stored
+from benchmark.discovery.evidence.gains import foretold
+from benchmark.discovery.evidence.pool import Pool, forget, pool, restored, silent, stored
 from benchmark.discovery.evidence.selection import select
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
@@ -139,3 +141,22 @@ def test_only_kept_fits_are_forgotten(tmp_path):
     mine.unlink()
     forget(tmp_path)
     assert not tmp_path.exists()
+
+
+def test_the_same_job_gives_the_same_fit_while_its_base_lives(base, monkeypatch):
+    made = counted(monkeypatch, -1)
+    work = Pool(None, None, "key")
+    first = work.fits("x", [(base, EFFECTS[0]), (base, EFFECTS[1])])
+    assert work.fits("x", [(base, EFFECTS[1])])[0] is first[1]
+    assert len(made) == 2
+    other = work.fits("x", [(first[0], EFFECTS[1])])[0]
+    assert other is not first[1]
+    assert len(other.model.effects) == 2
+
+
+def test_processes_foretell_what_one_does(base):
+    made = Pool(None, None, "key").fits("x", [(base, effect) for effect in EFFECTS])
+    alone = foretold(made)
+    with pool(2, None, "key", (), silent) as work:
+        together = foretold([replace(each) for each in made], work.map)
+    np.testing.assert_array_equal(together, alone)

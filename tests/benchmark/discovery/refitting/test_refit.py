@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from benchmark.discovery.base.calibration import calibrate
-from benchmark.discovery.base.effect_model import Fit
+from benchmark.discovery.base.effect_model import EffectModel, Fit
 from benchmark.discovery.base.setup_priors import told_priors
 from benchmark.discovery.evidence.told_setup import on_told
 from benchmark.discovery.refitting.native_terms import C20, C30, PRETENSION, STIFFENING
+from benchmark.discovery.refitting.press_model import PressModel
 from benchmark.discovery.refitting.refit import picked, refit
 from benchmark.discovery.refitting.refit_result import ModelRefit
 from benchmark.discovery.refitting.solid_press import FemSpecimen
@@ -55,6 +56,21 @@ def test_an_unseen_tool_is_predicted_with_the_effect_alone(in_fem: ModelRefit) -
         assert each.after < 0.1 * each.before, each
         assert each.explained is not None
         assert each.explained > 0.98
+
+
+def test_what_a_memory_in_the_model_changes_grows_with_the_stiffness_of_each_trial(stiffened: Fit) -> None:
+    problem = stiffened.model.problem
+    plain = EffectModel(problem, ())
+    faded = np.full(len(problem.trials[0].motion.time), -0.1)
+    vector, own = np.zeros(plain.size), np.zeros_like(stiffened.nuisance)
+    vector[0], own[0, 0] = np.log(2.0), np.log(3.0)
+    apart = zip(
+        PressModel(problem, (), fading={0: faded}).signals(vector, own), plain.signals(vector, own), strict=True
+    )
+    for index, (with_it, without) in enumerate(apart):
+        expected = (-0.6 if index == 0 else -0.2) if problem.trials[index].condition == 0 else 0.0
+        np.testing.assert_allclose(with_it[:, 0] - without[:, 0], expected, atol=1e-12)
+    assert {trial.condition for trial in problem.trials} > {0}
 
 
 def test_model_and_search_add_about_as_much(in_fem: ModelRefit) -> None:
