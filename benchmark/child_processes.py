@@ -13,14 +13,17 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager, suppress
 from functools import cache
 from multiprocessing import resource_tracker
 from multiprocessing.context import SpawnContext, SpawnProcess
 from multiprocessing.process import BaseProcess
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn, Protocol, TypeVar
+
+T = TypeVar("T", covariant=True)
 
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 
@@ -105,6 +108,24 @@ def begin_in_pool() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+
+
+class Mapped(Protocol):
+    """What a function gives for each of some things, in their order, as `map` does."""
+
+    def __call__(self, work: Callable[[Any], T], things: Iterable[Any], /) -> Iterable[T]:
+        """The same."""
+        ...
+
+
+@contextmanager
+def mapping(workers: int) -> Iterator[Mapped]:
+    """`map` by so many processes; by this one where more would do nothing. Function and things can be pickled."""
+    if workers <= 1:
+        yield map
+        return
+    with single_threaded_children(), ProcessPoolExecutor(workers, PoolContext(), initializer=begin_in_pool) as executor:
+        yield executor.map
 
 
 def end_with_parent() -> None:

@@ -29,7 +29,7 @@ from benchmark.discovery.refitting.refit import picked, refits
 from benchmark.discovery.refitting.refit_result import ModelRefit
 from benchmark.discovery.report.discovery_files import DiscoveryOutcome, write_discovery
 from benchmark.discovery.report.discovery_record import NAMING, DiscoveryRecord, NextExperiment, Round
-from benchmark.discovery.workflow import Findings, findings
+from benchmark.discovery.workflow import DEFAULT, Findings, findings
 from benchmark.errors import InputError, TissuebenchError
 from benchmark.files import Session, load_session
 from benchmark.files.schema import nearest
@@ -170,7 +170,7 @@ def _answered(
     stopped: TissuebenchError | None = None
     if request.bench is None:
         found = _found(session, request, own, listener, store)
-        proposal = propose(found, fem_or_wave_table(session, ()), session.specimen)
+        proposal = propose(found, fem_or_wave_table(session, ()), session.specimen, workers=DEFAULT.workers)
     else:
         loop = _looped(request, own, listener, store)
         found, grown = loop.run(), loop.bench.folder
@@ -249,7 +249,7 @@ def _looped(request: DiscoverRequest, own: tuple[Effect, ...], listener: Listene
 
     def proposed(found: Findings, allowed: Allowed) -> NextExperiment | None:
         session, _ = _loaded(request, folder, listener)
-        return propose(found, fem_or_wave_table(session, ()), session.specimen, allowed)
+        return propose(found, fem_or_wave_table(session, ()), session.specimen, allowed, DEFAULT.workers)
 
     return Loop(bench, request.budget, decide, proposed)
 

@@ -107,13 +107,16 @@ SECOND_TOOLS = {"wider tool": 1.6, "narrower tool": 1.0 / 1.6, "much wider tool"
 
 SAME_TOOL = 0.01
 """Relative difference of radii up to which a tool is the session's own."""
+DEEPEST = 2.0
+"""Radii of a tool, deeper than which it is not pressed in the place of another one."""
 
 
 def second_tools(usual: Usual, radius: float, there: Sequence[float] | None = None) -> tuple[Experiment, ...]:
     """The session's own press with other tools; `radius` is that of the first, m.
 
     A wider tool is held longer, by the radii's ratio squared: fluid needs that time to leave, and a press as short as
-    before would show its beginning alone.
+    before would show its beginning alone. A narrower one that would go deeper than its diameter pierces rather than
+    presses, and no model follows it there: it is left out, unless the session's own tool goes as deep for its size.
 
     Parameters
     ----------
@@ -128,7 +131,8 @@ def second_tools(usual: Usual, radius: float, there: Sequence[float] | None = No
         others = {name: _round(ratio * radius) for name, ratio in SECOND_TOOLS.items()}
     else:
         others = {f"tool of {_mm(each)}": each for each in there if abs(each - radius) > SAME_TOOL * radius}
-    return tuple(_with_tool(usual, radius, name, other) for name, other in others.items())
+    least = min(usual.depth / DEEPEST, radius)
+    return tuple(_with_tool(usual, radius, name, other) for name, other in others.items() if other >= least)
 
 
 def _with_tool(usual: Usual, radius: float, name: str, other: float) -> Experiment:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
@@ -44,14 +45,17 @@ def fem_or_wave_table(session: Session, keys: Sequence[str] = (RADIUS,)) -> Tabl
     keys : sequence of str
         Set-up parameters by which the tables are differentiated.
     """
+    return partial(_fem_or_wave, session, keys)
 
-    def table(tissue: Tissue, tool: Tool, support: Support, depth: float) -> ElasticTable:
-        try:
-            return _fem_table(session, (tissue, tool, support), depth, keys)
-        except TissuebenchError as error:
-            return _noted(_wave(tissue, tool, support, depth, keys), str(error))
 
-    return table
+def _fem_or_wave(
+    session: Session, keys: Sequence[str], tissue: Tissue, tool: Tool, support: Support, depth: float
+) -> ElasticTable:
+    """See `fem_or_wave_table`; a function of the module, so that processes can be given it."""
+    try:
+        return _fem_table(session, (tissue, tool, support), depth, keys)
+    except TissuebenchError as error:
+        return _noted(_wave(tissue, tool, support, depth, keys), str(error))
 
 
 def fem_table(session: Session, keys: Sequence[str] = (RADIUS,)) -> TableOf:

@@ -9,7 +9,7 @@ import sys
 import psutil
 import pytest
 
-from benchmark.child_processes import THREAD_VARIABLES, single_threaded_children, start_child
+from benchmark.child_processes import THREAD_VARIABLES, mapping, single_threaded_children, start_child
 
 PARENT = """
 import sys, time
@@ -58,6 +58,19 @@ def test_children_get_one_thread_and_the_parent_keeps_its_own(monkeypatch: pytes
         assert {os.environ[name] for name in THREAD_VARIABLES} == {"1"}
     assert os.environ["OMP_NUM_THREADS"] == "7"
     assert "MKL_NUM_THREADS" not in os.environ
+
+
+def _where(thing: int) -> tuple[int, int, str]:
+    return thing, os.getpid(), os.environ.get("OMP_NUM_THREADS", "")
+
+
+def test_processes_map_in_order_and_one_does_it_itself() -> None:
+    with mapping(1) as mapped:
+        assert mapped is map
+    with mapping(2) as mapped:
+        found = list(mapped(_where, range(5)))
+    assert [thing for thing, _, _ in found] == list(range(5))
+    assert {(process != os.getpid(), threads) for _, process, threads in found} == {(True, "1")}
 
 
 IN_A_POOL = """

@@ -10,6 +10,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from benchmark.child_processes import mapping
 from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import PHASES
 from benchmark.discovery.planning.rivals import Rival, expected, rivals, separation, under
@@ -29,8 +30,8 @@ from benchmark.experiments.menu import (
     same_again,
     second_tools,
 )
-from benchmark.files import Tissue
-from benchmark.response.elastic_table import TableOf
+from benchmark.files import Support, Tissue, Tool
+from benchmark.response.elastic_table import ElasticTable, TableOf
 
 ROWS = 400
 """Rows of a trial on which rivals are compared: about what a trial's autocorrelated samples are worth at most."""
@@ -67,7 +68,11 @@ SPARE = 0.8
 
 
 def propose(
-    found: Findings, table_of: TableOf | None = None, specimen: Tissue | None = None, allowed: Allowed = ANYTHING
+    found: Findings,
+    table_of: TableOf | None = None,
+    specimen: Tissue | None = None,
+    allowed: Allowed = ANYTHING,
+    workers: int = 1,
 ) -> NextExperiment | None:
     """Return the experiment that separates the answer from its nearest look-alike; None where there is none.
 
@@ -81,6 +86,8 @@ def propose(
         The elastic answer of a specimen under a tool; without them no second tool is proposed.
     allowed
         What may be proposed.
+    workers
+        Processes that work out the elastic answers under other tools; with more than one, `table_of` can be pickled.
     """
     standing = rivals(found)
     if len(standing) < 2:
@@ -90,7 +97,7 @@ def propose(
     condition = max(study.conditions, key=lambda each: each.size)
     weighed = _weighed(first, second, condition, allowed)
     if table_of is not None and specimen is not None:
-        weighed |= _tools(first, second, condition, (table_of, specimen), allowed)
+        weighed |= _tools(first, second, condition, (table_of, specimen), allowed, workers)
     now = weighed.pop(SAME, (None, 0.0, 1.0))[1]
     weighed = {name: each for name, each in weighed.items() if each[1] > now and name not in allowed.done}
     if not weighed:
@@ -137,24 +144,34 @@ def _weighed(first: Rival, second: Rival, condition: ConditionData, allowed: All
 
 
 def _tools(
-    first: Rival, second: Rival, condition: ConditionData, base: tuple[TableOf, Tissue], allowed: Allowed
+    first: Rival, second: Rival, condition: ConditionData, base: tuple[TableOf, Tissue], allowed: Allowed, workers: int
 ) -> Weighed:
     """Other tools, each with the elastic answer of the specimen under it."""
     table_of, specimen = base
+    wanted = second_tools(usual_press(condition), condition.tool.radius, allowed.radii)
+    experiments = [each for each in wanted if each.name not in allowed.done]
+    tools = [condition.tool.model_copy(update={"radius": each.tool_radius}) for each in experiments]
+    jobs = [(table_of, specimen, tool, condition.support, condition.around.peak_depth) for tool in tools]
+    with mapping(min(workers, len(jobs))) as mapped:
+        tables = list(mapped(_table_under, jobs))
     out: Weighed = {}
-    for experiment in second_tools(usual_press(condition), condition.tool.radius, allowed.radii):
-        if experiment.name in allowed.done:
-            continue
-        tool = condition.tool.model_copy(update={"radius": experiment.tool_radius})
-        try:
-            table = table_of(specimen, tool, condition.support, condition.around.peak_depth)
-        except TissuebenchError:
+    for experiment, tool, table in zip(experiments, tools, tables, strict=True):
+        if table is None:
             continue
         pair = [under(rival, condition.name, tool, table) for rival in (first, second)]
         size = _simulated(pair[0], pair[1], condition, experiment, allowed.most_force)
         if size is not None:
             out[experiment.name] = (experiment, size, minutes(experiment, condition.size))
     return out
+
+
+def _table_under(job: tuple[TableOf, Tissue, Tool, Support, float]) -> ElasticTable | None:
+    """The elastic answer under a tool; None where there is none."""
+    table_of, specimen, tool, support, depth = job
+    try:
+        return table_of(specimen, tool, support, depth)
+    except TissuebenchError:
+        return None
 
 
 def _simulated(

@@ -63,6 +63,14 @@ def test_a_wider_tool_is_held_as_much_longer_as_fluid_takes_to_leave() -> None:
     assert "hold for 60 s" in longest.words
 
 
+def test_no_tool_is_pressed_deeper_than_its_diameter_but_where_its_own_is():
+    deep = replace(USUAL, depth=9.7e-3)
+    assert [each.name for each in second_tools(deep, 5e-3)] == ["wider tool", "much wider tool"]
+    assert [each.tool_radius for each in second_tools(deep, 5e-3, (4.8e-3, 5e-3, 6e-3))] == [6e-3]
+    needle = replace(USUAL, depth=9.7e-3)
+    assert [each.tool_radius for each in second_tools(needle, 1e-3, (0.5e-3, 1.5e-3))] == [1.5e-3]
+
+
 def test_tools_that_are_there_are_taken_instead_of_any() -> None:
     found = second_tools(USUAL, 5e-3, (5.02e-3, 2.5e-3, 9e-3))
     assert {each.name: each.tool_radius for each in found} == {"tool of 2.5 mm": 2.5e-3, "tool of 9 mm": 9e-3}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -39,6 +40,12 @@ def test_the_force_is_the_other_one_and_goes_on_like_the_wave() -> None:
     assert law.force[-1] == pytest.approx(1.6 * wave.force[-1], rel=1e-2)
     assert law.by[RADIUS].force[0, -1] == pytest.approx(1.6 * by_radius[0, -1], rel=1e-2)
     assert law.force[0] == 0.0
+
+
+def test_a_table_of_may_go_to_another_process(sheet) -> None:
+    there = pickle.loads(pickle.dumps(fem_or_wave_table(sheet, ())))  # noqa: S301
+    setup = (sheet.specimen, sheet.tool, sheet.support, 1e-3)
+    assert there(*setup).force == pytest.approx(fem_or_wave_table(sheet, ())(*setup).force, rel=1e-12)
 
 
 def test_a_wider_tool_is_foretold_by_the_orders(sheet) -> None:
