@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeAlias
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmark.child_processes import Mapped
 from benchmark.discovery import criteria
 from benchmark.discovery.base.bent_form import straight
 from benchmark.discovery.base.effect_model import Fit, fit, settled
@@ -18,10 +18,10 @@ from benchmark.discovery.discovery_result import Array
 from benchmark.response.least_squares import descend
 from benchmark.response.noise import whitener
 
-Mapped: TypeAlias = Callable[[Callable[[Fit], Array], Sequence[Fit]], Iterable[Array]]
-"""What a function gives for each fit, in their order, as `map` does; processes may do it."""
 FORETOLD: WeakKeyDictionary[Fit, Array] = WeakKeyDictionary()
 """What `held_out` gave for a fit, as long as it lives."""
+REFITTED: WeakKeyDictionary[Fit, dict[bytes, Array]] = WeakKeyDictionary()
+"""What fits without some trials say of these, by the mask of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,10 +53,6 @@ class Scored:
     def slugs(self) -> tuple[str, ...]:
         """Effects of the candidate."""
         return tuple(effect.slug for effect in self.fit.model.effects)
-
-
-REFITTED: WeakKeyDictionary[Fit, dict[bytes, Array]] = WeakKeyDictionary()
-"""What fits without some trials say of these, by the mask of them; of a fit that is bent by the straight one."""
 
 
 def conditions(fitted: Fit) -> Array:
@@ -125,7 +121,10 @@ def refitted_conditions(fitted: Fit) -> Array:
 
 
 def _refitted(fitted: Fit, left: NDArray[np.bool_]) -> Array:
-    """Log density of the trials `left` (R,) under the fit to the others, converged; each fit is made once."""
+    """Log density of the trials `left` (R,) under the fit to the others, converged.
+
+    Each is made once, and shared by a fit and what is bent from it.
+    """
     fitted = straight(fitted)
     known = REFITTED.setdefault(fitted, {})
     if left.tobytes() not in known:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import io
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
@@ -21,11 +21,10 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from benchmark.child_processes import PoolContext, begin_in_pool, single_threaded_children
+from benchmark.child_processes import Mapped, PoolContext, begin_in_pool, single_threaded_children
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.base.effect_model import EffectModel, Fit
 from benchmark.physics import Effect, load_effects
-from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import Blocks
 from benchmark.response.trials_model import TrialColumns
 from reports import write_bytes
@@ -55,9 +54,10 @@ class Pool:
     made: WeakKeyDictionary[Fit, dict[tuple[str, int], Fit]] = field(default_factory=WeakKeyDictionary)
     """Fits of each base, by slug and number of parameters of what was added to it, as long as the base lives."""
 
-    def map(self, work: Callable[[Fit], Array], fits: Sequence[Fit]) -> Iterable[Array]:
-        """What `work` gives for each fit, by the processes where there are any."""
-        return map(work, fits) if self.executor is None else self.executor.map(work, fits)
+    @property
+    def map(self) -> Mapped:
+        """`map` by the processes, where there are any."""
+        return map if self.executor is None else self.executor.map
 
     def fits(self, stage: str, jobs: Sequence[tuple[Fit, Effect]]) -> list[Fit]:
         """One fit for each base and effect, in their order."""
@@ -72,17 +72,18 @@ class Pool:
 
     def _made(self, jobs: Sequence[tuple[Fit, Effect]]) -> Iterator[tuple[int, Fit]]:
         """Each job's number and fit as they come; the same job gives the same fit again."""
-        new = []
+        same: dict[tuple[Fit, tuple[str, int]], list[int]] = {}
         for index, (base, effect) in enumerate(jobs):
             known = self.made.setdefault(base, {}).get(_name(effect))
             if known is None:
-                new.append(index)
+                same.setdefault((base, _name(effect)), []).append(index)
             else:
                 yield index, known
-        for place, fit in self._worked_out([jobs[index] for index in new]):
-            base, effect = jobs[new[place]]
+        new = list(same.values())
+        for place, fit in self._worked_out([jobs[numbers[0]] for numbers in new]):
+            base, effect = jobs[new[place][0]]
             self.made[base][_name(effect)] = fit
-            yield new[place], fit
+            yield from ((index, fit) for index in new[place])
 
     def _worked_out(self, jobs: Sequence[tuple[Fit, Effect]]) -> Iterator[tuple[int, Fit]]:
         """The same of jobs that are new, or kept in the folder by an earlier run."""

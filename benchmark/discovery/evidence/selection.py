@@ -174,17 +174,25 @@ def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
 
 def rebuilt(base: Fit, effects: Sequence[Effect], work: Pool, stage: str) -> Fit:
     """Fit the base with several effects, one after the other."""
-    current = base
-    for effect in effects:
-        current = work.fits(stage, [(current, effect)])[0]
-    return current
+    return rebuilt_each(base, [effects], work, stage)[0]
+
+
+def rebuilt_each(base: Fit, rows: Sequence[Sequence[Effect]], work: Pool, stage: str) -> list[Fit]:
+    """`rebuilt` with each row of effects, side by side."""
+    found = [base] * len(rows)
+    for turn in range(max(map(len, rows))):
+        going = [number for number, row in enumerate(rows) if turn < len(row)]
+        made = work.fits(stage, [(found[number], rows[number][turn]) for number in going])
+        for number, fit in zip(going, made, strict=True):
+            found[number] = fit
+    return found
 
 
 def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> tuple[Fit, tuple[Scored, ...]]:
     """Drop what the others make superfluous and what is another form of a later one; the dropped of the second kind."""
     forms: list[Scored] = []
     while len(current.model.effects) > 1:
-        owns = [_own(base, current, effect, work) for effect in current.model.effects[:-1]]
+        owns = _owns(base, current, work)
         idle = [o for o in owns if not over_trials(o.gain, settings) or o.under.objective <= current.objective]
         others = [own for own in owns if own not in idle and is_form_of_others(own, settings)]
         if not idle and not others:
@@ -195,11 +203,14 @@ def _pruned(base: Fit, current: Fit, settings: Settings, work: Pool) -> tuple[Fi
     return current, tuple(forms)
 
 
-def _own(base: Fit, current: Fit, effect: Effect, work: Pool) -> Scored:
-    """A chosen effect with what it gains over the others alone."""
-    less = rebuilt(base, [other for other in current.model.effects if other is not effect], work, "backward")
-    own = gain(held_out(current), held_out(less), conditions(current))
-    return Scored(current, effect.slug, own, None, 0.0, less)
+def _owns(base: Fit, current: Fit, work: Pool) -> list[Scored]:
+    """The chosen effects but the last, each with what it gains over the others alone."""
+    effects = current.model.effects
+    rows = [effects[:left] + effects[left + 1 :] for left in range(len(effects) - 1)]
+    unders = rebuilt_each(base, rows, work, "backward")
+    now, *densities = foretold([current, *unders], work.map)
+    owns = [gain(now, density, conditions(current)) for density in densities]
+    return [Scored(current, e.slug, own, None, 0.0, less) for e, own, less in zip(effects, owns, unders, strict=False)]
 
 
 def _told(base: Fit, current: Fit, effects: Sequence[Effect], settings: Settings, work: Pool) -> Fit:
@@ -240,7 +251,7 @@ def _swapped(base: Fit, current: Fit, rounds: Sequence[Sequence[Scored]], settin
         taken = {effect.slug for effect in chosen}
         rivals = [s.fit.model.effects[-1] for s in rounds[0] if s.slug not in taken][:2]
         rests = [[other for other in chosen if other is not effect] for effect in chosen]
-        swaps = [*((rebuilt(base, rest, work, "swaps"), rivals) for rest in rests), *swaps]
+        swaps = [*((under, rivals) for under in rebuilt_each(base, rests, work, "swaps")), *swaps]
     now, groups = held_out(current), conditions(current)
     best, density = current, float(now.sum())
     if not alone:

@@ -15,9 +15,9 @@ from benchmark.discovery import criteria
 from benchmark.discovery.base.calibration import first_guess
 from benchmark.discovery.base.effect_model import EffectModel, Fit, fit
 from benchmark.discovery.base.setup_priors import is_setup
-from benchmark.discovery.evidence.gains import broad, held_out
+from benchmark.discovery.evidence.gains import broad, foretold, held_out
 from benchmark.discovery.evidence.pool import Pool
-from benchmark.discovery.evidence.selection import Selection, rebuilt
+from benchmark.discovery.evidence.selection import Selection, rebuilt_each
 from benchmark.physics.setup_entry import effect_name, setup_key
 
 SHOWN_MOVE = 0.5
@@ -52,12 +52,12 @@ def stands(chosen: Fit, told: Fit, moving: Fit, work: Pool) -> bool:
     found = float(held_out(chosen).sum())
     if found - float(held_out(moving).sum()) < criteria.OVER_SETUP:
         return False
-    for left in range(len(effects)):
-        others = rebuilt(moving, effects[:left] + effects[left + 1 :], work, "set-up")
-        if found - float(held_out(others).sum()) < criteria.OVER_SETUP:
-            return False
+    rows = [effects[:left] + effects[left + 1 :] for left in range(len(effects))]
+    *less, whole = foretold(rebuilt_each(moving, [*rows, effects], work, "set-up"), work.map)
+    if any(found - float(each.sum()) < criteria.OVER_SETUP for each in less):
+        return False
     slack = max(criteria.OVER_SETUP, criteria.TIE * (found - float(held_out(told).sum())))
-    return float(held_out(rebuilt(moving, effects, work, "set-up")).sum()) - found < slack
+    return float(whole.sum()) - found < slack
 
 
 def setup_first(told: Selection) -> bool:

@@ -43,7 +43,7 @@ def test_the_force_is_the_other_one_and_goes_on_like_the_wave() -> None:
 
 
 def test_a_table_of_may_go_to_another_process(sheet) -> None:
-    there = pickle.loads(pickle.dumps(fem_or_wave_table(sheet, ())))  # noqa: S301
+    there = pickle.loads(pickle.dumps(fem_or_wave_table(sheet, ())))
     setup = (sheet.specimen, sheet.tool, sheet.support, 1e-3)
     assert there(*setup).force == pytest.approx(fem_or_wave_table(sheet, ())(*setup).force, rel=1e-12)
 

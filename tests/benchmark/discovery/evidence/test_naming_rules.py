@@ -374,7 +374,7 @@ def test_an_effect_accepted_by_all_trials_but_the_best_is_not_dropped_for_its_sc
     monkeypatch.setattr(further_effect, "bent", lambda fit, forms: fit)
     gained = np.array([1.0, 1.0, 1.4, -0.3, 39.0, -13.3, 37.6, 40.9])
     both, alone = fitted(effect("a"), effect("b"), density=gained, objective=50.0), fitted(effect("b"), objective=140.0)
-    own = selection._own(fitted(), both, both.model.effects[0], Work(alone))
+    (own,) = selection._owns(fitted(), both, Work(alone))
     assert own.gain.z < SETTINGS.accept_z
     assert selection._pruned(fitted(), both, SETTINGS, Work(alone)) == (both, ())
     carried = fitted(effect("a"), effect("b"), density=np.where(gained < 40.0, 0.0, gained), objective=50.0)

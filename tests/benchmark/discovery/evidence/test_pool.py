@@ -146,7 +146,8 @@ def test_only_kept_fits_are_forgotten(tmp_path):
 def test_the_same_job_gives_the_same_fit_while_its_base_lives(base, monkeypatch):
     made = counted(monkeypatch, -1)
     work = Pool(None, None, "key")
-    first = work.fits("x", [(base, EFFECTS[0]), (base, EFFECTS[1])])
+    first = work.fits("x", [(base, EFFECTS[0]), (base, EFFECTS[1]), (base, EFFECTS[0])])
+    assert first[2] is first[0]
     assert work.fits("x", [(base, EFFECTS[1])])[0] is first[1]
     assert len(made) == 2
     other = work.fits("x", [(first[0], EFFECTS[1])])[0]
