@@ -303,8 +303,18 @@ class Identified:
         low, high = sorted(one.scale * one.value(at + sign * half) for sign in (-1.0, 1.0))
         source = "told" if one.prior is None else one.prior.source
         value = one.scale * self.found.value(index)
-        said = f"{source}; told, moved along by the fit"
+        said = f"{source}{self._whose(one)}; told, moved along by the fit"
         return FittedParameter(one.key, value, one.unit, low, high, False, said, source)
+
+    def _whose(self, one: Parameter) -> str:
+        """Of which tool or specimen something was told, where it was of several: their rows have one key."""
+        alike = [other for other in self.found.problem.parameters if other.told and other.key == one.key]
+        if len(alike) < 2:
+            return ""
+        if one.tool is not None:
+            return f", tool of {MM * one.tool.radius:g} mm"
+        names = [press.session.name for press in self.found.problem.presses if press.specimen == one.specimen]
+        return f", {names[0]}" if names else ""
 
     def to_dict(self) -> dict[str, Any]:
         """What `fit.json` gains."""

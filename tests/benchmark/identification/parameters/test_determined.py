@@ -1,12 +1,13 @@
 """What counts as determined where the likelihood is steep at the estimate and flat beside it."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from benchmark.identification.parameters.identifiability import LARGEST_ERROR, directions, errors_alone
-from benchmark.identification.parameters.identified import NOT_DETERMINED, Estimate, identify
+from benchmark.identification.parameters.identified import NOT_DETERMINED, Estimate, Identified, identify
 from benchmark.identification.parameters.identified_tissue import identified_tissue
 from benchmark.identification.parameters.law_shapes import shear_modulus
 from benchmark.identification.parameters.layer_fit import begun, fit_layers
@@ -148,3 +149,19 @@ def test_conditions_that_one_law_cannot_follow_leave_nothing_determined(toy):
     over = [one.to_dict()["force_over_model"] for one in torn.held_out]
     assert over[1] / over[0] == pytest.approx(5.0, rel=0.2)
     assert "subcutaneous_fat.youngs_modulus" in said
+
+
+def test_rows_of_one_key_say_whose_it_is():
+    """Two tools of one session, and two specimens of which both thicknesses were told."""
+    small, wide = (SimpleNamespace(radius=radius) for radius in (5e-3, 8e-3))
+    presses = [SimpleNamespace(specimen=k, session=SimpleNamespace(name=name)) for k, name in enumerate("ab")]
+
+    def told(key, **whose):
+        return SimpleNamespace(**{"key": key, "told": True, "tool": None, "specimen": None} | whose)
+
+    radii = [told("tool.radius", tool=tool) for tool in (small, wide)]
+    thick = [told("fat.thickness", specimen=k) for k in (0, 1)]
+    problem = SimpleNamespace(parameters=[*radii, *thick, told("hole", specimen=0)], presses=presses)
+    found = SimpleNamespace(found=SimpleNamespace(problem=problem))
+    said = [Identified._whose(found, each) for each in problem.parameters]
+    assert said == [", tool of 5 mm", ", tool of 8 mm", ", a", ", b", ""]
