@@ -76,7 +76,8 @@ def propose(
 ) -> NextExperiment | None:
     """Return the experiment that separates the answer from its nearest look-alike; None where there is none.
 
-    Entries that a model cannot follow are left out of the menu.
+    Entries that a model cannot follow are left out of the menu. They are weighed by as many trials as the session has of
+    a condition, but by no more than a test of trials needs: the rivals may be told apart by one.
 
     Parameters
     ----------
@@ -95,17 +96,18 @@ def propose(
     first, second = standing[:2]
     study = found.calibrated.base.model.problem.study
     condition = max(study.conditions, key=lambda each: each.size)
-    weighed = _weighed(first, second, condition, allowed)
+    seen = _with_this_tool(first, second, condition, allowed)
     if table_of is not None and specimen is not None:
-        weighed |= _tools(first, second, condition, (table_of, specimen), allowed, workers)
-    now = weighed.pop(SAME, (None, 0.0, 1.0))[1]
+        seen |= _tools(first, second, condition, (table_of, specimen), allowed, workers)
+    now = seen.pop(SAME, (None, 0.0))[1] * math.sqrt(condition.size)
+    few = min(condition.size, criteria.ENOUGH_TRIALS)
+    weighed = {each.name: (each, *_by_trials(each, size, few)) for each, size in seen.values()}
     weighed = {name: each for name, each in weighed.items() if each[1] > now and name not in allowed.done}
     if not weighed:
         return None
     best, size, cost = max(weighed.values(), key=lambda each: each[1] ** 2 / each[2])
-    trials = 1 if best.name in (BLOCK, RULER) else enough_trials(condition.size, size)
-    if trials > 1:
-        size, cost = size * math.sqrt(trials / condition.size), minutes(best, trials)
+    trials = 1 if best.name in ONCE else enough_trials(few, size)
+    size, cost = _by_trials(best, seen[best.name][1], trials)
     return NextExperiment(
         rivals=(_distinct(first, second), _distinct(second, first)),
         choice=best.name,
@@ -119,33 +121,41 @@ def propose(
     )
 
 
+def _by_trials(experiment: Experiment, size: float, trials: int) -> tuple[float, float]:
+    """Separation by so many trials, of which one gives `size`, and minutes at the bench; a calibration is done once."""
+    count = 1 if experiment.name in ONCE else trials
+    return size * math.sqrt(count), minutes(experiment, count)
+
+
 def enough_trials(usual: int, size: float) -> int:
     """Trials by which an experiment decides, whose rivals are `size` standard deviations apart in the usual number."""
     wanted = math.ceil(usual * (criteria.PROMISED / max(size, 1e-9)) ** 2)
     return min(max(wanted, usual), criteria.MOST_TIMES * usual)
 
 
-Weighed: TypeAlias = dict[str, tuple[Experiment, float, float]]
-"""Name to experiment, separation in standard deviations over all trials, and minutes."""
+Seen: TypeAlias = dict[str, tuple[Experiment, float]]
+"""Name to experiment, and separation in standard deviations by one trial of it."""
 SAME, BLOCK, RULER = "same again", "rigid block", "ruler image"
+ONCE = (BLOCK, RULER)
+"""Calibrations, which are not repeated."""
 
 
-def _weighed(first: Rival, second: Rival, condition: ConditionData, allowed: Allowed) -> Weighed:
+def _with_this_tool(first: Rival, second: Rival, condition: ConditionData, allowed: Allowed) -> Seen:
     """The entries that can be done with the tool in place, and calibrations."""
     usual = usual_press(condition)
-    out: Weighed = {}
+    out: Seen = {}
     for experiment in (same_again(usual), *menu(usual)):
         size = _simulated(first, second, condition, experiment, allowed.most_force)
         if size is not None:
-            out[experiment.name] = (experiment, size, minutes(experiment, condition.size))
+            out[experiment.name] = (experiment, size)
     for experiment, size in _calibrations(first, second, condition, allowed.most_force):
-        out[experiment.name] = (experiment, size, minutes(experiment, 1))
+        out[experiment.name] = (experiment, size)
     return out
 
 
 def _tools(
     first: Rival, second: Rival, condition: ConditionData, base: tuple[TableOf, Tissue], allowed: Allowed, workers: int
-) -> Weighed:
+) -> Seen:
     """Other tools, each with the elastic answer of the specimen under it."""
     table_of, specimen = base
     wanted = second_tools(usual_press(condition), condition.tool.radius, allowed.radii)
@@ -154,14 +164,14 @@ def _tools(
     jobs = [(table_of, specimen, tool, condition.support, condition.around.peak_depth) for tool in tools]
     with mapping(min(workers, len(jobs))) as mapped:
         tables = list(mapped(_table_under, jobs))
-    out: Weighed = {}
+    out: Seen = {}
     for experiment, tool, table in zip(experiments, tools, tables, strict=True):
         if table is None:
             continue
         pair = [under(rival, condition.name, tool, table) for rival in (first, second)]
         size = _simulated(pair[0], pair[1], condition, experiment, allowed.most_force)
         if size is not None:
-            out[experiment.name] = (experiment, size, minutes(experiment, condition.size))
+            out[experiment.name] = (experiment, size)
     return out
 
 
@@ -177,7 +187,7 @@ def _table_under(job: tuple[TableOf, Tissue, Tool, Support, float]) -> ElasticTa
 def _simulated(
     first: Rival, second: Rival, condition: ConditionData, experiment: Experiment, most_force: float
 ) -> float | None:
-    """Separation over all trials; None where a model does not follow the motion, or the force is too large."""
+    """Separation by one trial; None where a model does not follow the motion, or the force is too large."""
     time, depth = motion(experiment, ROWS)
     try:
         a = expected(first, condition.name, time, depth)
@@ -193,7 +203,7 @@ def _simulated(
         return None
     if float(a.signals[:, 0].max()) > SPARE * most_force or not math.isfinite(size):
         return None
-    return math.sqrt(condition.size * size)
+    return math.sqrt(size)
 
 
 def _calibrations(

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from benchmark.discovery.discovery_result import PHASES
-from benchmark.discovery.planning.proposing import _calibrations, _distinct, enough_trials, usual_press
+from benchmark.discovery.planning import proposing
+from benchmark.discovery.planning.proposing import _calibrations, _distinct, enough_trials, propose, usual_press
+from benchmark.experiments.menu import menu, minutes, same_again
 from benchmark.physics import TrialContext
 
 
@@ -39,6 +41,33 @@ def test_an_experiment_gets_as_many_trials_as_are_to_decide() -> None:
     assert enough_trials(5, 7.0) == 10
     assert enough_trials(5, 1.0) == 15
     assert enough_trials(5, 0.0) == 15
+
+
+@pytest.mark.parametrize(
+    ("there", "alone", "trials", "apart", "now"),
+    [
+        (49, 100.0, 6, 100.0 * 6**0.5, 7.0),  # one would do: no more than a test of trials needs
+        (5, 5.0, 5, 5.0 * 5**0.5, 5**0.5),  # as many as there are
+        (49, 3.2, 9, 3.2 * 9**0.5, 7.0),  # as many as are to decide
+        (49, 2.5, None, None, 7.0),  # 2.5 by the root of six is less than what 49 trials tell already
+    ],
+)
+def test_many_trials_of_a_session_are_not_asked_for_again(monkeypatch, there, alone, trials, apart, now) -> None:
+    usual = usual_press(_condition("bonded"))
+    again, deeper = same_again(usual), menu(usual)[0]
+    seen = {"same again": (again, 1.0), deeper.name: (deeper, alone)}
+    monkeypatch.setattr(proposing, "rivals", lambda found: (_rival("a"), _rival("b")))
+    monkeypatch.setattr(proposing, "_with_this_tool", lambda *_: dict(seen))
+    study = SimpleNamespace(conditions=[SimpleNamespace(size=there)])
+    base = SimpleNamespace(model=SimpleNamespace(problem=SimpleNamespace(study=study)))
+    found = propose(SimpleNamespace(calibrated=SimpleNamespace(base=base)))
+    if trials is None:
+        assert found is None
+        return
+    assert (found.trials, found.choice) == (trials, deeper.name)
+    assert (found.separation, found.separation_now) == (pytest.approx(apart), pytest.approx(now))
+    assert found.minutes == minutes(deeper, trials)
+    assert found.menu[deeper.name][1] == minutes(deeper, min(there, 6))
 
 
 def test_a_rigid_block_is_for_a_rig_that_gives_way() -> None:
