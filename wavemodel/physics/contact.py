@@ -131,9 +131,9 @@ class PermanentSet:
         memory
             Deepest depth and surface before the first sample, m; empty at rest.
         """
+        if self.fraction == 0.0:
+            return depth, np.zeros_like(depth), memory
         before, stood = memory or (0.0, 0.0)
-        if self.fraction == 0.0 and stood == 0.0:
-            return depth, np.zeros_like(depth), (max(before, float(depth.max())), 0.0)
         deepest = np.maximum.accumulate(np.maximum(depth, before))
         surface = self.fraction * np.maximum(deepest - self.onset, 0.0)
         if self.delay > 0.0:

@@ -89,12 +89,15 @@ def test_the_damping_of_rows_that_are_means_is_the_mean_of_the_damping(given, ex
 class Sheet:
     """An elastic answer whose lower face moves by the depth over the distance from the tool's axis."""
 
+    def __init__(self, shown=1.0):
+        self.shown = shown
+
     def force(self, depth):
         return _law(depth)
 
     def lower_face(self, spread, rest):
         away = rest - np.asarray(spread.centre)
-        sunk = (spread.depth * spread.passed)[:, None] / (1.0 + np.hypot(*away.T) * spread.ratio)
+        sunk = self.shown * (spread.depth * spread.passed)[:, None] / (1.0 + np.hypot(*away.T) * spread.ratio)
         if spread.dent is not None:
             sunk = sunk + spread.dent[0][:, None] / max(spread.dent[1], 1e-3)
         return rest + sunk[..., None] * away, sunk
@@ -118,7 +121,7 @@ def test_several_trials_at_once_are_each_as_by_itself(added) -> None:
     ways = [(1.0, 0.0, 0.0), (1.3, 0.05, 1e-4), (0.8, -0.02, -2e-4)]
     lengths = (400, 300, 350)
     motions = [Motion(TIME[:n], DEPTH[:n] * (1.0 + 0.1 * k), np.zeros(n)) for k, n in enumerate(lengths)]
-    sheet, other = Sheet(), Sheet()
+    sheet, other = Sheet(), Sheet(2.0)
     for elastics in ([sheet] * 3, [sheet, other, sheet]):
         together = pipeline.of_several(elastics, added, motions, ways)
         for elastic, motion, way, found in zip(elastics, motions, ways, together, strict=True):
