@@ -76,8 +76,8 @@ def propose(
 ) -> NextExperiment | None:
     """Return the experiment that separates the answer from its nearest look-alike; None where there is none.
 
-    Entries that a model cannot follow are left out of the menu. They are weighed by as many trials as the session has of
-    a condition, but by no more than a test of trials needs: the rivals may be told apart by one.
+    Entries that a model cannot follow are left out of the menu. They are weighed by as many trials as a condition of
+    the session has, but by no more than a test of trials needs: the rivals may be told apart by one.
 
     Parameters
     ----------
