@@ -129,3 +129,27 @@ def test_several_trials_at_once_are_each_as_by_itself(added) -> None:
             np.testing.assert_array_equal(found.force, alone.force)
             np.testing.assert_allclose(found.markers, alone.markers, rtol=1e-14)
             np.testing.assert_allclose(found.sink, alone.sink, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    "moved",
+    [
+        lambda face, deep: replace(face, centre=(deep, 0.0)),
+        lambda face, deep: replace(face, ratio=1.0 + 100.0 * deep),
+        lambda face, deep: replace(face, dent=(1e-6 * face.depth, 2.0 * deep)),
+        lambda face, deep: face if deep < 2.1e-3 else replace(face, dent=(1e-6 * face.depth, 1e-3)),
+    ],
+    ids=["centre", "ratio", "dent", "some dents"],
+)
+def test_an_effect_that_moves_each_trials_face_otherwise_is_followed_trial_by_trial(moved) -> None:
+    markers = np.array([[1e-3, 0.0], [0.0, 2e-3], [-3e-3, 1e-3]])
+    own = replace(
+        BY_SLUG["off_centre_load"],
+        lower_face=lambda values, face, press, around: moved(face, float(press.depth.max())),
+    )
+    pipeline, values = TrialPipeline(replace(AROUND, markers=markers), (own,)), {own.slug: {"x_0": 0.0, "y_0": 0.0}}
+    motions = [Motion(TIME, DEPTH * (1.0 + 0.1 * k), np.zeros(TIME.size)) for k in range(3)]
+    sheet = Sheet()
+    together = pipeline.of_several([sheet] * 3, values, motions, [(1.0, 0.0, 0.0)] * 3)
+    for motion, found in zip(motions, together, strict=True):
+        np.testing.assert_allclose(found.markers, pipeline.readings(sheet, values, motion).markers, rtol=1e-14)

@@ -10,6 +10,7 @@ from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.base.effect_model import EffectModel, fit
 from benchmark.discovery.base.setup_priors import setup_entries, setup_priors, told_priors
+from benchmark.discovery.evidence import told_setup as module
 from benchmark.discovery.evidence.gains import Gain
 from benchmark.discovery.evidence.pool import Pool
 from benchmark.discovery.evidence.told_setup import on_told, setup_first, stands, taken_up
@@ -65,6 +66,30 @@ def test_an_effect_stands_and_what_a_base_may_be_off_by_anyway_does_not(relaxing
     wide = replace(moving.model.problem, setup={**moving.model.problem.setup, "layer.thickness": 1.0})
     anywhere = fit(EffectModel(wide, ()), moving.vector, moving.nuisance, most=8)
     assert not stands(fit_candidate(told, thickness), told, anywhere, ALONE)
+
+
+@pytest.mark.parametrize(
+    ("without_a", "without_b", "whole", "expected"),
+    [
+        (50.0, 60.0, 100.0, True),
+        (100.0, 60.0, 100.0, False),  # a base that moves does without the first what the first does
+        (50.0, 100.0, 100.0, False),
+        (50.0, 60.0, 150.0, False),  # and with both it gains by moving
+    ],
+)
+def test_each_of_several_effects_must_be_missed_by_a_base_that_moves(
+    monkeypatch, without_a, without_b, whole, expected
+):
+    a, b = (SimpleNamespace(slug=slug) for slug in "ab")
+    by_slugs = {"b": without_a, "a": without_b, "ab": whole}
+    chosen, told, moving = 100.0, 0.0, 10.0
+    monkeypatch.setattr(module, "held_out", lambda fit: np.full(4, getattr(fit, "density", fit) / 4))
+    monkeypatch.setattr(module, "foretold", lambda fits, _: [np.full(4, fit / 4) for fit in fits])
+    monkeypatch.setattr(
+        module, "rebuilt_each", lambda base, rows, *_: [by_slugs["".join(each.slug for each in row)] for row in rows]
+    )
+    found = SimpleNamespace(model=SimpleNamespace(effects=(a, b)), density=chosen)
+    assert stands(found, told, moving, ALONE) is expected
 
 
 @pytest.mark.parametrize(
