@@ -6,10 +6,11 @@ import traceback
 from collections.abc import Mapping
 from typing import Any
 
-from benchmark.errors import TissuebenchError
+from benchmark.errors import InputError, TissuebenchError
 from benchmark.gate.measuring.costs import CostClock, Slice, measure_block, warm_up
 from benchmark.gate.measuring.jobs import CASES, WORKLOADS
 from benchmark.gate.measuring.references import CALLS, REFERENCES
+from benchmark.models import UncoveredError
 
 
 class Service:
@@ -36,7 +37,12 @@ class Service:
     def _values(self, command: Mapping[str, Any]) -> dict[str, Any]:
         found = []
         for case in command["cases"]:
-            found += [{**each.to_dict(), "name": f"{case['name']}.{each.name}"} for each in CASES[case["model"]](case)]
+            try:
+                values = CASES[case["model"]](case)
+            except UncoveredError as error:
+                model = case.get("own") or case["model"]
+                raise InputError(f"case {case['name']}: {model} does not cover its scenario: {error}") from None
+            found += [{**each.to_dict(), "name": f"{case['name']}.{each.name}"} for each in values]
         return {"values": found}
 
     def _prepare(self, command: Mapping[str, Any]) -> dict[str, Any]:

@@ -11,6 +11,11 @@ from benchmark.gate.measuring.references import CALLS, REFERENCES
 from benchmark.gate.measuring.service import Service
 from benchmark.gate.plan import GatePlan, load_plan
 
+UNCOVERED = """
+def deform(layers, tool, support, time, force):
+    raise NotImplementedError("it knows a hole only")
+"""
+
 
 @pytest.fixture
 def service():
@@ -31,6 +36,15 @@ def test_values_of_a_users_model(service: Service, tiny_gate) -> None:
         "name": "springs.max_deformation_mm.fat", "value": pytest.approx(4.0), "unit": "mm", "reason": None,
         "curve": {f"step {k} ({n} N)": pytest.approx(0.8 * n) for k, n in enumerate([1, 2, 3, 4, 5, 4, 3, 2, 1, 0], 1)},
     }  # fmt: skip
+
+
+def test_a_case_that_its_model_does_not_cover_is_told_of_by_name(service: Service, tiny_gate) -> None:
+    gate = tiny_gate()
+    (gate.path.parent / "my_model.py").write_text(UNCOVERED)
+    answer = service.answer({"do": "values", "cases": load_plan(gate.path).cases})
+    assert answer["fault"] is False
+    assert answer["error"].startswith("case springs: ")
+    assert answer["error"].endswith("my_model.py does not cover its scenario: it knows a hole only")
 
 
 def test_of_a_long_history_some_steps_are_kept_the_peak_among_them(service: Service, tiny_gate) -> None:
