@@ -21,7 +21,7 @@ from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.evidence.gains import held_out, held_out_conditions
 from benchmark.discovery.planning.bench_work import Bench
-from benchmark.discovery.planning.proposing import BLOCK, DEPTH_READ, GIVES, RULER, Allowed
+from benchmark.discovery.planning.proposing import BLOCK, DEPTH_READ, GIVES, HALF, RULER, SURE_OF_GIVE, Allowed
 from benchmark.discovery.planning.rivals import Rival, rivals
 from benchmark.discovery.report.discovery_record import NextExperiment, Round
 from benchmark.discovery.workflow import Findings
@@ -109,12 +109,6 @@ class Loop:
             )
         )
         return found
-
-
-HALF = 0.5
-"""A rig that gives way by less than this share of what a rival says is not what the rival says."""
-SURE_OF_GIVE = 3.0
-"""Standard deviations by which a measured give must lie on one side of that."""
 
 
 def judged_by_block(standing: tuple[Rival, ...], trial: Path) -> tuple[float, frozenset[str]]:

@@ -39,6 +39,10 @@ DEPTH_READ = 0.02e-3
 """Standard deviation with which a rig's give under a rigid block is taken to be read, m."""
 RULER_READ = 2e-3
 """Relative standard deviation of a scale read off a ruler's picture."""
+HALF = 0.5
+"""A rig that gives way by less than this share of what a rival says is not what the rival says."""
+SURE_OF_GIVE = 3.0
+"""Standard deviations by which a measured give must lie on one side of that."""
 GIVES = {"machine_compliance": "compliance"}
 SCALES = {"marker_scale_error": "error"}
 
@@ -76,8 +80,10 @@ def propose(
 ) -> NextExperiment | None:
     """Return the experiment that separates the answer from its nearest look-alike; None where there is none.
 
-    Entries that a model cannot follow are left out of the menu. They are weighed by as many trials as a condition of
-    the session has, but by no more than a test of trials needs: the rivals may be told apart by one.
+    Entries that a model cannot follow are left out of the menu, and so are those that tell no more than as many trials
+    of the session's own press would. They are weighed by as many trials as a condition of the session has, but by no
+    more than a test of trials needs: the rivals may be told apart by one. Of those that promise to decide the one that
+    tells most a minute is taken; where none does, the one that promises most.
 
     Parameters
     ----------
@@ -94,37 +100,75 @@ def propose(
     if len(standing) < 2:
         return None
     first, second = standing[:2]
-    study = found.calibrated.base.model.problem.study
-    condition = max(study.conditions, key=lambda each: each.size)
+    condition = _own_condition(found.calibrated.base.model.problem.study.conditions, allowed.done)
     seen = _with_this_tool(first, second, condition, allowed)
     if table_of is not None and specimen is not None:
         seen |= _tools(first, second, condition, (table_of, specimen), allowed, workers)
-    now = seen.pop(SAME, (None, 0.0))[1] * math.sqrt(condition.size)
     few = min(condition.size, criteria.ENOUGH_TRIALS)
-    weighed = {each.name: (each, *_by_trials(each, size, few)) for each, size in seen.values()}
-    weighed = {name: each for name, each in weighed.items() if each[1] > now and name not in allowed.done}
+    again = seen.pop(SAME, (None, 0.0))[1]
+    entries = [_Entry(experiment, size, few) for name, (experiment, size) in seen.items() if name not in allowed.done]
+    weighed = [each for each in entries if each.separation(few) > again * math.sqrt(few)]
     if not weighed:
         return None
-    best, size, cost = max(weighed.values(), key=lambda each: each[1] ** 2 / each[2])
-    trials = 1 if best.name in ONCE else enough_trials(few, size)
-    size, cost = _by_trials(best, seen[best.name][1], trials)
+    deciding = [each for each in weighed if each.decides]
+    best = max(deciding, key=_Entry.rate) if deciding else max(weighed, key=_Entry.promise)
     return NextExperiment(
         rivals=(_distinct(first, second), _distinct(second, first)),
-        choice=best.name,
-        words=best.words,
-        separation_now=now,
-        separation=size,
-        minutes=cost,
-        menu={name: (each[1], each[2]) for name, each in weighed.items()},
-        toml=protocol_toml(best),
-        trials=trials,
+        choice=best.experiment.name,
+        words=best.experiment.words,
+        separation_now=again * math.sqrt(condition.size),
+        separation=best.promise(),
+        minutes=best.minutes(best.trials),
+        menu={each.experiment.name: (each.separation(few), each.minutes(few)) for each in weighed},
+        toml=protocol_toml(best.experiment),
+        trials=best.trials,
     )
 
 
-def _by_trials(experiment: Experiment, size: float, trials: int) -> tuple[float, float]:
-    """Separation by so many trials, of which one gives `size`, and minutes at the bench; a calibration is done once."""
-    count = 1 if experiment.name in ONCE else trials
-    return size * math.sqrt(count), minutes(experiment, count)
+def _own_condition(conditions: Sequence[ConditionData], done: AbstractSet[str]) -> ConditionData:
+    """The largest of a session's own conditions, from which experiments differ: none of those that a loop has added."""
+    own = [each for each in conditions if each.name not in done]
+    return max(own or conditions, key=lambda each: each.size)
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """An entry of the menu: the separation by one trial of it, and the trials that are usual."""
+
+    experiment: Experiment
+    alone: float
+    usual: int
+
+    @property
+    def once(self) -> bool:
+        """Whether it is a calibration, which is not repeated."""
+        return self.experiment.name in ONCE
+
+    @property
+    def trials(self) -> int:
+        """As many as are to decide."""
+        return 1 if self.once else enough_trials(self.usual, self.separation(self.usual))
+
+    @property
+    def decides(self) -> bool:
+        """Whether so many trials promise as much as rules a rival out."""
+        return self.promise() >= (SURE_OF_GIVE / HALF if self.once else criteria.PROMISED)
+
+    def promise(self) -> float:
+        """Separation by so many, standard deviations."""
+        return self.separation(self.trials)
+
+    def rate(self) -> float:
+        """What the usual trials tell a minute: squared separation over bench time."""
+        return self.separation(self.usual) ** 2 / self.minutes(self.usual)
+
+    def separation(self, trials: int) -> float:
+        """Of the rivals by so many trials, standard deviations."""
+        return self.alone if self.once else self.alone * math.sqrt(trials)
+
+    def minutes(self, trials: int) -> float:
+        """At the bench."""
+        return minutes(self.experiment, 1 if self.once else trials)
 
 
 def enough_trials(usual: int, size: float) -> int:
@@ -137,7 +181,7 @@ Seen: TypeAlias = dict[str, tuple[Experiment, float]]
 """Name to experiment, and separation in standard deviations by one trial of it."""
 SAME, BLOCK, RULER = "same again", "rigid block", "ruler image"
 ONCE = (BLOCK, RULER)
-"""Calibrations, which are not repeated."""
+"""Calibrations."""
 
 
 def _with_this_tool(first: Rival, second: Rival, condition: ConditionData, allowed: Allowed) -> Seen:

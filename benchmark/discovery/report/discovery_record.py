@@ -62,7 +62,7 @@ class NextExperiment:
     words : str
         What to do, in one sentence.
     separation_now, separation : float
-        Expected distance of the rivals in standard deviations with the session's protocol, and with the proposed one.
+        Expected distance of the rivals in standard deviations by the trials there are, and by the proposed ones.
     minutes : float
         Bench time of its trials.
     menu : mapping

@@ -187,8 +187,9 @@ def next_section(record: DiscoveryRecord) -> Section:
     first, second = map(effect_name, proposal.rivals)
     text = (
         f"{proposal.words} Expected distance of {first} and {second}: "
-        f"{proposal.separation:.1f} standard deviations instead of {proposal.separation_now:.1f}, in "
-        f"{trials_in_words(proposal.trials)} and {proposal.minutes:.0f} minutes at the bench.{_apart(proposal)}"
+        f"{proposal.separation:.1f} standard deviations by {trials_in_words(proposal.trials)} in "
+        f"{proposal.minutes:.0f} minutes at the bench; the session tells "
+        f"{proposal.separation_now:.1f}.{_apart(proposal)}"
     )
     listing = Listing(proposal.toml, "next_experiment.toml, for python -m bench_hw capture")
     return Section("What to measure next", [Paragraph(text), _menu(proposal), listing])

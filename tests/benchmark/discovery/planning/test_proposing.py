@@ -5,8 +5,15 @@ import pytest
 
 from benchmark.discovery.discovery_result import PHASES
 from benchmark.discovery.planning import proposing
-from benchmark.discovery.planning.proposing import _calibrations, _distinct, enough_trials, propose, usual_press
-from benchmark.experiments.menu import menu, minutes, same_again
+from benchmark.discovery.planning.proposing import (
+    _calibrations,
+    _distinct,
+    _own_condition,
+    enough_trials,
+    propose,
+    usual_press,
+)
+from benchmark.experiments.menu import menu, minutes, rigid_block, same_again
 from benchmark.physics import TrialContext
 
 
@@ -49,7 +56,8 @@ def test_an_experiment_gets_as_many_trials_as_are_to_decide() -> None:
         (49, 100.0, 6, 100.0 * 6**0.5, 7.0),  # one would do: no more than a test of trials needs
         (5, 5.0, 5, 5.0 * 5**0.5, 5**0.5),  # as many as there are
         (49, 3.2, 9, 3.2 * 9**0.5, 7.0),  # as many as are to decide
-        (49, 2.5, None, None, 7.0),  # 2.5 by the root of six is less than what 49 trials tell already
+        (49, 1.1, 18, 1.1 * 18**0.5, 7.0),  # more than another press as before, if less than 49 of them
+        (49, 0.9, None, None, 7.0),  # less than another press as before
     ],
 )
 def test_many_trials_of_a_session_are_not_asked_for_again(monkeypatch, there, alone, trials, apart, now) -> None:
@@ -58,7 +66,7 @@ def test_many_trials_of_a_session_are_not_asked_for_again(monkeypatch, there, al
     seen = {"same again": (again, 1.0), deeper.name: (deeper, alone)}
     monkeypatch.setattr(proposing, "rivals", lambda found: (_rival("a"), _rival("b")))
     monkeypatch.setattr(proposing, "_with_this_tool", lambda *_: dict(seen))
-    study = SimpleNamespace(conditions=[SimpleNamespace(size=there)])
+    study = SimpleNamespace(conditions=[SimpleNamespace(size=there, name="slow")])
     base = SimpleNamespace(model=SimpleNamespace(problem=SimpleNamespace(study=study)))
     found = propose(SimpleNamespace(calibrated=SimpleNamespace(base=base)))
     if trials is None:
@@ -68,6 +76,37 @@ def test_many_trials_of_a_session_are_not_asked_for_again(monkeypatch, there, al
     assert (found.separation, found.separation_now) == (pytest.approx(apart), pytest.approx(now))
     assert found.minutes == minutes(deeper, trials)
     assert found.menu[deeper.name][1] == minutes(deeper, min(there, 6))
+
+
+@pytest.mark.parametrize(
+    ("sizes", "chosen", "trials"),
+    [
+        ({"slower": 4.0, "faster": 2.0}, "slower", 6),  # both are to decide: what tells most a minute
+        ({"slower": 2.0, "rest in air": 2.3}, "rest in air", 18),  # 8.5 by 18 trials rules nobody out, 9.8 does
+        ({"slower": 2.0, "rest in air": 2.1}, "rest in air", 18),  # neither is to decide: what promises most
+        ({"slower": 2.0, "rigid block": 6.0}, "rigid block", 1),
+        ({"slower": 2.0, "rigid block": 5.9}, "slower", 18),
+    ],
+)
+def test_what_decides_goes_before_what_is_quick(monkeypatch, sizes, chosen, trials) -> None:
+    usual = usual_press(_condition("bonded"))
+    entries = {each.name: each for each in (*menu(usual), rigid_block(3.0))}
+    seen = {"same again": (same_again(usual), 1.0), **{name: (entries[name], size) for name, size in sizes.items()}}
+    monkeypatch.setattr(proposing, "rivals", lambda found: (_rival("a"), _rival("b")))
+    monkeypatch.setattr(proposing, "_with_this_tool", lambda *_: dict(seen))
+    study = SimpleNamespace(conditions=[SimpleNamespace(size=10, name="slow")])
+    base = SimpleNamespace(model=SimpleNamespace(problem=SimpleNamespace(study=study)))
+    found = propose(SimpleNamespace(calibrated=SimpleNamespace(base=base)))
+    assert (found.choice, found.trials) == (chosen, trials)
+
+
+def test_an_experiment_differs_from_the_sessions_own_press_and_not_from_the_experiment_before() -> None:
+    slow, fast, wider = (
+        SimpleNamespace(size=size, name=name) for size, name in ((4, "slow"), (6, "fast"), (15, "wider tool"))
+    )
+    assert _own_condition((slow, fast, wider), {"ruler image", "wider tool"}) is fast
+    assert _own_condition((slow, fast, wider), frozenset()) is wider
+    assert _own_condition((wider,), {"wider tool"}) is wider  # a user's own name
 
 
 def test_a_rigid_block_is_for_a_rig_that_gives_way() -> None:

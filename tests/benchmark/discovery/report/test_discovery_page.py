@@ -110,7 +110,7 @@ def test_the_proposal_stands_with_its_protocol(record) -> None:
     rivals = ("viscoelastic_relaxation", "force_drift")
     proposal = NextExperiment(rivals, "rest", "Rest 60 s.", 6.9, 40.8, 22.0, {"rest": (40.8, 22.0)}, "[[segments]]\n")
     text = _text(replace(record, proposal=proposal))
-    for words in ("Rest 60 s.", "40.8 standard deviations instead of 6.9", "[[segments]]"):
+    for words in ("Rest 60 s.", "40.8 standard deviations by", "the session tells 6.9", "[[segments]]"):
         assert words in text
 
 
