@@ -195,7 +195,7 @@ def _answered(
     selection, before = _searched(trusted, known, settings, work)
     if trusted is not moving:
         silent_on_it = before.p < settings.level and not selection.steps
-        if silent_on_it or not stands(selection.chosen, selection.base, on_some(moving, compared(moving)), work):
+        if silent_on_it or not stands(selection.chosen, selection.base, on_some(moving, compared(moving)), known, work):
             found, seen = _searched(moving, known, settings, work)
             if found.steps or not setup_first(selection):
                 gone = bool(selection.steps) and not found.steps

@@ -8,7 +8,7 @@ without any one of them it must not do as well by moving alone. Otherwise the se
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from benchmark.discovery import criteria
@@ -16,8 +16,11 @@ from benchmark.discovery.base.calibration import first_guess
 from benchmark.discovery.base.effect_model import EffectModel, Fit, fit
 from benchmark.discovery.base.setup_priors import is_setup
 from benchmark.discovery.evidence.gains import broad, foretold, held_out
+from benchmark.discovery.evidence.parameter_evidence import seen
 from benchmark.discovery.evidence.pool import Pool
 from benchmark.discovery.evidence.selection import Selection, rebuilt_each
+from benchmark.discovery.evidence.shortlist import missing, screen
+from benchmark.physics import Effect
 from benchmark.physics.setup_entry import effect_name, setup_key
 
 SHOWN_MOVE = 0.5
@@ -40,11 +43,11 @@ def on_told(moving: Fit, told: Mapping[str, float]) -> Fit:
     return min((fit(model, *start, most=8) for start in starts), key=lambda each: each.objective)
 
 
-def stands(chosen: Fit, told: Fit, moving: Fit, work: Pool) -> bool:
+def stands(chosen: Fit, told: Fit, moving: Fit, known: Sequence[Effect], work: Pool) -> bool:
     """Whether the effects of a fit on the set-up as told hold against the base that moves; so does no effect at all.
 
     Where effects gain much, their form is what leaves most: a base that moves follows some of it, so that a small share
-    of what they gain does not count.
+    of what they gain does not count. Nor may that base foretell more with one of `known` in the place of one of them.
     """
     effects = chosen.model.effects
     if not effects:
@@ -53,11 +56,27 @@ def stands(chosen: Fit, told: Fit, moving: Fit, work: Pool) -> bool:
     if found - float(held_out(moving).sum()) < criteria.OVER_SETUP:
         return False
     rows = [effects[:left] + effects[left + 1 :] for left in range(len(effects))]
-    *less, whole = foretold(rebuilt_each(moving, [*rows, effects], work, "set-up"), work.map)
+    rebuilt = rebuilt_each(moving, [*rows, effects], work, "set-up")
+    *less, whole = foretold(rebuilt, work.map)
     if any(found - float(each.sum()) < criteria.OVER_SETUP for each in less):
         return False
     slack = max(criteria.OVER_SETUP, criteria.TIE * (found - float(held_out(told).sum())))
-    return float(whole.sum()) - found < slack
+    if float(whole.sum()) - found >= slack:
+        return False
+    instead = _others_in_place(chosen, rebuilt[:-1], known, work)
+    return all(float(each.sum()) - found < slack for each in foretold(instead, work.map))
+
+
+def _others_in_place(chosen: Fit, without: Sequence[Fit], known: Sequence[Effect], work: Pool) -> list[Fit]:
+    """Of each fit that lacks one of the chosen effects, that with the most promising other one, where it comes near."""
+    taken = {effect.slug for effect in chosen.model.effects}
+    pairs = []
+    for less in without:
+        study = less.model.problem.study
+        first = screen(less, [each for each in known if each.slug not in taken and not missing(study, each)])[:1]
+        near = less.objective - chosen.objective - criteria.OVER_SETUP
+        pairs += [(less, each.effect) for each in first if each.won > near]
+    return [each for each in work.fits("set-up", pairs) if seen(each, each.model.effects[-1])]
 
 
 def setup_first(told: Selection) -> bool:

@@ -32,7 +32,7 @@ DESCRIPTION = EffectDescription(
     acts_on="body",
     sentence="The specimen was under tension before the press, which adds a stiffness that is there from the start.",
     equation="F = f(d) + k d; over a hole k = 2 pi S t / ln(R / a) (membrane), on a base k = (S / d) dF/dS "
-    "of the layers; of its share of F a part q moves the lower face by t d / (2 r ln(R / a)). Over a hole that finite "
+    "of the layers; q times its share of F moves the lower face by t d / (2 r ln(R / a)). Over a hole that finite "
     "elements cover, discovery takes force and face from their own press under S",
     source="Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, chapter 13; M. A. Biot, Mechanics of "
     "Incremental Deformations",
@@ -45,7 +45,7 @@ DESCRIPTION = EffectDescription(
             "in-plane tensile stress S of all layers before the press",
             option=Option(0.0, 1e12),
         ),
-        linear("field", "", 0.0, 1.0, "part q of what the tension moves that shows in the lower face"),
+        linear("field", "", 0.0, 2.0, "times q of what the tension moves that show in the lower face"),
     ),
     in_wave="in the plane of every layer or of the sheet; a finite-strain wave on a base as the stiffness k on top",
     in_fem="in-plane stress of all layers before the press, in axial symmetry and blocks",
@@ -115,7 +115,7 @@ def _lower_face(values: Values, face: LowerFaceMotion, press: PressHistory, cont
     carried = added_stiffness(values["pretension"], context) * press.surface
     pressed = press.elastic > 1e-9 * context.peak_force
     share = np.divide(carried, press.elastic, out=np.zeros_like(carried), where=pressed)
-    share = values["field"] * np.clip(share, 0.0, 1.0)
+    share = np.clip(values["field"] * np.clip(share, 0.0, 1.0), 0.0, 1.0)
     slope = face.depth / math.log(context.hole_radius / context.tool_radius)
     dent = 0.5 * context.thickness * share * slope
     return replace(face, passed=face.passed * (1.0 - share), dent=(dent, context.tool_radius))

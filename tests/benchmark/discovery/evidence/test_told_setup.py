@@ -45,7 +45,7 @@ def test_a_set_up_as_told_moves_in_the_tool_alone_and_in_what_is_stated(relaxing
     assert set(moving.model.problem.setup) == {"tool.radius", "layer.thickness"}
     assert set(told.model.problem.setup) == {"tool.radius"}
     assert on_told(moving, setup_priors(session)) is moving
-    assert stands(told, told, moving, ALONE)
+    assert stands(told, told, moving, (), ALONE)
 
 
 def test_a_set_up_that_went_far_does_not_take_the_one_that_was_told_with_it(relaxing):
@@ -62,10 +62,10 @@ def test_an_effect_stands_and_what_a_base_may_be_off_by_anyway_does_not(relaxing
     told = on_told(moving, told_priors(session))
     thickness = next(entry for entry in setup_entries(moving.model.problem.tables) if "thickness" in entry.slug)
     found = fit_candidate(told, RELAXATION)
-    assert stands(found, told, moving, ALONE)
+    assert stands(found, told, moving, catalogue(), ALONE)
     wide = replace(moving.model.problem, setup={**moving.model.problem.setup, "layer.thickness": 1.0})
     anywhere = fit(EffectModel(wide, ()), moving.vector, moving.nuisance, most=8)
-    assert not stands(fit_candidate(told, thickness), told, anywhere, ALONE)
+    assert not stands(fit_candidate(told, thickness), told, anywhere, (), ALONE)
 
 
 @pytest.mark.parametrize(
@@ -88,8 +88,37 @@ def test_each_of_several_effects_must_be_missed_by_a_base_that_moves(
     monkeypatch.setattr(
         module, "rebuilt_each", lambda base, rows, *_: [by_slugs["".join(each.slug for each in row)] for row in rows]
     )
+    monkeypatch.setattr(module, "_others_in_place", lambda *_: [])
     found = SimpleNamespace(model=SimpleNamespace(effects=(a, b)), density=chosen)
-    assert stands(found, told, moving, ALONE) is expected
+    assert stands(found, told, moving, (), ALONE) is expected
+
+
+@pytest.mark.parametrize(
+    ("won", "density", "seen", "expected"),
+    [
+        (16.0, 106.0, True, False),
+        (16.0, 104.0, True, True),  # no more than chance
+        (14.0, 106.0, True, True),  # one step says that it comes nowhere near
+        (16.0, 106.0, False, True),  # these data cannot show it
+    ],
+)
+def test_another_effect_must_not_foretell_more_on_a_base_that_moves(monkeypatch, won, density, seen, expected):
+    chosen, other, hidden = (SimpleNamespace(slug=slug) for slug in ("chosen", "other", "hidden"))
+    model = SimpleNamespace(effects=(chosen,), problem=SimpleNamespace(study=None))
+    found = SimpleNamespace(model=model, objective=1000.0, density=100.0)
+    less = SimpleNamespace(model=model, objective=1020.0, density=50.0)
+    instead = SimpleNamespace(model=SimpleNamespace(effects=(other,)), density=density)
+    monkeypatch.setattr(module, "held_out", lambda fit: np.full(4, fit.density / 4))
+    monkeypatch.setattr(module, "foretold", lambda fits, _: [np.full(4, fit.density / 4) for fit in fits])
+    monkeypatch.setattr(module, "rebuilt_each", lambda *_: [less, found])
+    monkeypatch.setattr(module, "missing", lambda _, effect: effect is hidden)
+    monkeypatch.setattr(
+        module, "screen", lambda _, effects: [SimpleNamespace(effect=each, won=won) for each in effects]
+    )
+    monkeypatch.setattr(module, "seen", lambda fit, effect: seen)
+    work = SimpleNamespace(map=map, fits=lambda _, pairs: [instead] if pairs == [(less, other)] else [])
+    told = moving = SimpleNamespace(density=0.0)
+    assert stands(found, told, moving, (hidden, chosen, other), work) is expected
 
 
 @pytest.mark.parametrize(
