@@ -137,7 +137,7 @@ def _simplest(accepted: Sequence[Scored], effects: Sequence[Effect]) -> Scored:
     places = {effect.slug: place for place, effect in enumerate(effects)}
     best = accepted[0].gain.mean
     ties = [s for s in accepted if s.gain.mean >= best - criteria.TIE * abs(best)]
-    told = [s for s in ties if strength_told(s.fit, s.fit.model.effects[-1])]
+    told = [s for s in ties if _whole_told(s)]
 
     def terms(scored: Scored) -> tuple[int, int, int]:
         effect = scored.fit.model.effects[-1]
@@ -155,7 +155,11 @@ def _evident(scored: Scored, steps: Sequence[Scored], settings: Settings) -> boo
 
 
 def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
-    """Effects near the top in their richer form, where BIC prefers it and the data tell how strong each part is."""
+    """Effects near the top in their richer form, where BIC prefers it and the data tell how strong each part is.
+
+    Not where they tell how strong the plain form is and no longer how strong the richer one is: a term for a delay of a
+    few milliseconds beside a relaxation took its name from it.
+    """
     if not scored:
         return scored
     top = scored[0].gain.mean
@@ -167,9 +171,14 @@ def _enriched(current: Fit, scored: list[Scored], work: Pool) -> list[Scored]:
     better = {s.slug: s for s in score(current, told, work.map)}
     chosen = []
     for s in scored:
-        other = better.get(s.slug)
-        chosen.append(other if other is not None and other.delta_bic < s.delta_bic + criteria.RICHER_BIC else s)
+        other = better.get(s.slug, s)
+        surer = _whole_told(other) or not _whole_told(s)
+        chosen.append(other if surer and other.delta_bic < s.delta_bic + criteria.RICHER_BIC else s)
     return sorted(chosen, key=lambda each: -each.gain.mean)
+
+
+def _whole_told(scored: Scored) -> bool:
+    return strength_told(scored.fit, scored.fit.model.effects[-1])
 
 
 def rebuilt(base: Fit, effects: Sequence[Effect], work: Pool, stage: str) -> Fit:

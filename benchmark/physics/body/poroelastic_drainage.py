@@ -54,4 +54,16 @@ def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     return tuple({"drainage_share": 0.2, "drainage_diffusivity": factor * scale} for factor in (0.5, 4.0, 30.0))
 
 
-EFFECT = Effect(DESCRIPTION, "drainage_share", body=_body, starts=_starts, further_terms_of="viscoelastic_relaxation")
+def _diffusion(values: Values, context: TrialContext) -> float:
+    """Time of diffusion under the tool, a^2 / D, s."""
+    return float(context.tool_radius**2 / values["drainage_diffusivity"])
+
+
+EFFECT = Effect(
+    DESCRIPTION,
+    "drainage_share",
+    body=_body,
+    starts=_starts,
+    acts_within=_diffusion,
+    further_terms_of="viscoelastic_relaxation",
+)

@@ -95,13 +95,19 @@ def _spread(slow: float, shares: tuple[float, ...]) -> dict[str, float]:
     return found
 
 
+def _slowest(values: Values, context: TrialContext) -> float:
+    """Time of the slowest term that is there, s; rows that do not resolve it show a damping as well."""
+    shares = (name for name, value in values.items() if name.startswith("g_") and value > 0.0)
+    return max((values[name.replace("g_", "tau_")] for name in shares), default=0.0)
+
+
 def _effect(
     terms: int, starts: Callable[[TrialContext], tuple[dict[str, float], ...]], richer: Effect | None
 ) -> Effect:
     description = _description(terms)
     names = tuple(parameter.name for parameter in description.parameters)
     fem = FemTerm(names, _in_fem, elastic=False)
-    return Effect(description, "g_1", body=_body, starts=starts, richer=richer, fem=fem)
+    return Effect(description, "g_1", body=_body, starts=starts, acts_within=_slowest, richer=richer, fem=fem)
 
 
 EFFECT = _effect(1, _starts, _effect(2, _two_starts, _effect(3, _three_starts, None)))

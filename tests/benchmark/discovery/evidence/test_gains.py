@@ -164,11 +164,18 @@ def test_a_row_in_which_no_sample_fell_tells_of_no_delay(monkeypatch):
     [
         ("backlash", {"width": [3e-6, 5e-6], "side": [0.5, 0.5]}, [False, True]),
         ("tool_inertia", {"mass": [0.19, 0.21]}, [False, True]),
+        ("viscoelastic_relaxation", {"g_1": [0.7, 0.7], "tau_1": [0.009, 0.011]}, [False, True]),
+        (
+            "viscoelastic_relaxation",
+            {"g_1": [0.1, 0.1], "tau_1": [0.002, 0.002], "g_2": [0.1, 0.0], "tau_2": [1.0, 1.0]},
+            [True, False],
+        ),
+        ("poroelastic_drainage", {"drainage_diffusivity": [2.6e-3, 2.4e-3]}, [False, True]),
         ("dry_friction", {"friction_force": [1e-9]}, [True]),
     ],
 )
 def test_what_records_are_too_coarse_for_is_not_seen(slug, sizes, told):
-    """A play within two steps of 2 um; a mass that swings within 10 ms on 2 N at 1 mm."""
+    """A play within two steps of 2 um; a mass that swings within 10 ms on 2 N at 1 mm; a memory of less than 10 ms."""
     around = TrialContext(5e-3, 1e-2, 1e-3, 2.0, 20.0)
     study = SimpleNamespace(depth_step=2e-6, raw_interval=0.01, conditions=[SimpleNamespace(around=around)])
     for k, seen_so in enumerate(told):

@@ -254,6 +254,20 @@ def test_one_more_term_only_where_bic_prefers_it_clearly(monkeypatch, bic, kept)
     assert chosen is (rich if kept == "richer" else plain)
 
 
+@pytest.mark.parametrize(
+    ("of_plain", "of_richer", "kept"), [(True, True, 4), (True, False, 2), (False, False, 4), (False, True, 4)]
+)
+def test_no_further_term_takes_the_strength_from_an_effect(monkeypatch, of_plain, of_richer, kept):
+    richer = effect("memory", 4)
+    plain, rich = scored("memory", 10.0, richer=richer), scored("memory", 12.0, bic=-90.0)
+    rich.fit.model.effects[-1].names = ("",) * 4
+    told = {id(plain.fit): of_plain, id(rich.fit): of_richer}
+    monkeypatch.setattr(selection, "score", lambda current, fits, _: [rich] if fits else [])
+    monkeypatch.setattr(selection, "strength_told", lambda fit, _: told[id(fit)])
+    (chosen,) = selection._enriched(fitted(), [plain], Work(fitted(richer)))
+    assert chosen is (rich if kept == 4 else plain)
+
+
 def test_no_further_term_is_tried_of_what_gains_little(monkeypatch):
     asked = []
     monkeypatch.setattr(selection, "score", lambda current, fits, _: asked.append(fits) or [])

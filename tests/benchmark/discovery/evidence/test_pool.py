@@ -88,6 +88,8 @@ class Backwards:
     def __init__(self, most):
         self.most, self.waiting = most, []
 
+    map = staticmethod(map)
+
     def submit(self, work, base, effect):
         future = Future()
         self.waiting.append((future, work, base, effect))
