@@ -6,6 +6,7 @@ import pytest
 from benchmark.discovery.discovery_result import PHASES
 from benchmark.discovery.planning import proposing
 from benchmark.discovery.planning.proposing import (
+    Allowed,
     _calibrations,
     _distinct,
     _own_condition,
@@ -96,8 +97,12 @@ def test_what_decides_goes_before_what_is_quick(monkeypatch, sizes, chosen, tria
     monkeypatch.setattr(proposing, "_with_this_tool", lambda *_: dict(seen))
     study = SimpleNamespace(conditions=[SimpleNamespace(size=10, name="slow")])
     base = SimpleNamespace(model=SimpleNamespace(problem=SimpleNamespace(study=study)))
-    found = propose(SimpleNamespace(calibrated=SimpleNamespace(base=base)))
+    session = SimpleNamespace(calibrated=SimpleNamespace(base=base))
+    found = propose(session)
     assert (found.choice, found.trials) == (chosen, trials)
+    others = propose(session, allowed=Allowed(done={chosen}))
+    assert others.choice == next(name for name in sizes if name != chosen)
+    assert propose(session, allowed=Allowed(done=set(sizes))) is None
 
 
 def test_an_experiment_differs_from_the_sessions_own_press_and_not_from_the_experiment_before() -> None:
