@@ -3,7 +3,8 @@
 A base that may be off in every thickness and modulus takes up much of what a smooth effect of the body does; one that
 is trusted to the last digit takes the error of a set-up for an effect. So effects are looked for on the set-up as told,
 and what is found must hold against the other base: that base must not gain by moving once the effects are there, and
-without any one of them it must not do as well by moving alone. Otherwise the search is made on the base that moves.
+without any one of them it must not do as well by moving alone, or better with another effect in its place. Otherwise
+the search is made on the base that moves.
 """
 
 from __future__ import annotations
@@ -18,8 +19,8 @@ from benchmark.discovery.base.setup_priors import is_setup
 from benchmark.discovery.evidence.gains import broad, foretold, held_out
 from benchmark.discovery.evidence.parameter_evidence import seen
 from benchmark.discovery.evidence.pool import Pool
-from benchmark.discovery.evidence.selection import Selection, rebuilt_each
-from benchmark.discovery.evidence.shortlist import missing, screen
+from benchmark.discovery.evidence.selection import Selection, rebuilt_each, usable
+from benchmark.discovery.evidence.shortlist import screen
 from benchmark.physics import Effect
 from benchmark.physics.setup_entry import effect_name, setup_key
 
@@ -72,8 +73,7 @@ def _others_in_place(chosen: Fit, without: Sequence[Fit], known: Sequence[Effect
     taken = {effect.slug for effect in chosen.model.effects}
     pairs = []
     for less in without:
-        study = less.model.problem.study
-        first = screen(less, [each for each in known if each.slug not in taken and not missing(study, each)])[:1]
+        first = screen(less, [each for each in known if each.slug not in taken and usable(less, each)])[:1]
         near = less.objective - chosen.objective - criteria.OVER_SETUP
         pairs += [(less, each.effect) for each in first if each.won > near]
     return [each for each in work.fits("set-up", pairs) if seen(each, each.model.effects[-1])]

@@ -8,6 +8,7 @@ import pytest
 from benchmark.discovery.base.base_shape import Shape, ShapedTable
 from benchmark.physics import SLUGS, Motion, TrialContext, catalogue
 from benchmark.physics.body.pretension import added_stiffness
+from benchmark.physics.effect import LowerFaceMotion, PressHistory
 from benchmark.response import ElasticTable, SeparableField, SetupDerivative, TrialPipeline
 from benchmark.response.setup_change import RADIUS
 from wavemodel import DiscTool, LayeredWave, WaveLayer
@@ -204,6 +205,16 @@ def test_pretension_adds_its_stiffness():
     made = readings(MOTION, pretension={"pretension": TENSE, "field": 0.5})
     assert (made.force - PLAIN.force)[DEEP] == pytest.approx(ADDED * PEAK)
     assert made.markers == pytest.approx(PLAIN.markers)
+
+
+@pytest.mark.parametrize(("share", "field", "passed"), [(0.3, 1.0, 0.7), (0.3, 2.0, 0.4), (0.8, 2.0, 0.0)])
+def test_a_tension_changes_the_lower_face_by_up_to_twice_its_share_and_never_by_more_than_all(share, field, passed):
+    around = TrialContext(5e-3, 4e-3, 2e-3, 1.0, 10.0, hole_radius=30e-3)
+    depth, force, none = np.array([0.0, 2e-3]), np.array([0.0, 1.0]), np.zeros(2)
+    press = PressHistory(none, depth, depth, force, force, depth > 0.0)
+    values = {"pretension": share / 2e-3 / added_stiffness(1.0, around), "field": field}
+    face = BY_SLUG["pretension"].lower_face(values, LowerFaceMotion(depth, np.ones(2)), press, around)
+    np.testing.assert_allclose(face.passed, [1.0, passed], atol=1e-9)
 
 
 def test_pretension_over_a_hole_moves_the_lower_face_as_a_membrane_does():

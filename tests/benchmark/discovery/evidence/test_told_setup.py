@@ -111,7 +111,7 @@ def test_another_effect_must_not_foretell_more_on_a_base_that_moves(monkeypatch,
     monkeypatch.setattr(module, "held_out", lambda fit: np.full(4, fit.density / 4))
     monkeypatch.setattr(module, "foretold", lambda fits, _: [np.full(4, fit.density / 4) for fit in fits])
     monkeypatch.setattr(module, "rebuilt_each", lambda *_: [less, found])
-    monkeypatch.setattr(module, "missing", lambda _, effect: effect is hidden)
+    monkeypatch.setattr(module, "usable", lambda _, effect: effect is not hidden)
     monkeypatch.setattr(
         module, "screen", lambda _, effects: [SimpleNamespace(effect=each, won=won) for each in effects]
     )
