@@ -7,6 +7,7 @@ fail there, and only its layout and its SVG are left out, which have tests of th
 """
 
 import os
+import signal
 from collections.abc import Iterator
 
 import pytest
@@ -20,6 +21,12 @@ settings.load_profile("same_each_run")
 os.environ["TISSUEBENCH_CACHE"] = ""
 
 BLANK = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"/>'
+
+
+@pytest.fixture(autouse=True, scope="session")
+def ctrl_c_is_heard() -> None:
+    """A shell's background jobs ignore Ctrl-C, and so would all that a test starts."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(autouse=True, scope="session")
