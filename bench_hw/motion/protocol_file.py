@@ -26,10 +26,12 @@ from bench_hw.configuration import (
 
 CLEARANCE = 2e-3
 """Distance to the specimen between trials of a protocol without a retraction, m."""
+MOST_FORCE = 100.0
+"""Largest force of a protocol, N."""
 Depth = Annotated[Length, Field(ge=-0.1, le=0.1)]
 Pace = Annotated[Speed, Field(gt=0.0, le=0.1)]
 Time = Annotated[Duration, Field(gt=0.0, le=86_400.0)]
-Push = Annotated[Force, Field(gt=0.0, le=100.0)]
+Push = Annotated[Force, Field(gt=0.0, le=MOST_FORCE)]
 
 
 class Wait(StrictModel):
@@ -53,7 +55,7 @@ class Move(StrictModel):
 
     kind: Literal["move"]
     depth: Depth | None = None
-    force: Annotated[Force, Field(ge=0.0, le=100.0)] | None = None
+    force: Annotated[Force, Field(ge=0.0, le=MOST_FORCE)] | None = None
     speed: Pace
 
     @model_validator(mode="after")

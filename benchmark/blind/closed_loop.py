@@ -11,7 +11,7 @@ import pandas as pd
 
 from bench_hw.configuration import validated
 from bench_hw.motion.plan import plan
-from bench_hw.motion.protocol_file import Protocol
+from bench_hw.motion.protocol_file import Move, Protocol
 from benchmark.blind.body.presses import DEEPEST
 from benchmark.blind.cases import BlindCase, generator
 from benchmark.blind.motion import Array, ReportedMotion, rounded
@@ -50,7 +50,7 @@ class HiddenBench:
     folder: Path
 
     def allowed(self, done: set[str]) -> Allowed:
-        """Any tool, and as much force as the body has been computed for."""
+        """Any tool, and of the body as much force as it has been computed for."""
         deepest = float(self.made.scene.body.force(np.array([DEEPEST]))[0])
         return Allowed(deepest, frozenset(done))
 
@@ -61,9 +61,9 @@ class HiddenBench:
     def record(self, proposal: NextExperiment, trials: int, number: int) -> tuple[Path, ...]:
         """Do an experiment on the true body; the files of its trials."""
         rng = generator(self.made.name, f"experiment {number}")
-        if proposal.choice == BLOCK:
-            return (self._block(self.folder / f"block_{number}.csv", rng),)
         protocol = validated(Protocol, tomllib.loads(proposal.toml), proposal.choice)
+        if proposal.choice == BLOCK:
+            return (self._block(self.folder / f"block_{number}.csv", protocol, rng),)
         radius, made = protocol.setup.get("tool_radius"), self.made
         if radius is not None:
             depth = max(made.scene.scale.deep, *(step.depth_to for step in plan(protocol).steps))
@@ -84,15 +84,15 @@ class HiddenBench:
         ]
         enter(self.folder, proposal, entries)
 
-    def _block(self, file: Path, rng: np.random.Generator) -> Path:
+    def _block(self, file: Path, protocol: Protocol, rng: np.random.Generator) -> Path:
         """A press against a block that does not give way: the depth is what the rig loses, and how it is read."""
-        scene = self.made.scene
-        force = scene.scale.force * np.linspace(0.0, 1.0, BLOCK_ROWS)
-        time, lost = np.arange(BLOCK_ROWS) / scene.rate, np.zeros(BLOCK_ROWS)
+        peak = max(each.force for each in protocol.segments if isinstance(each, Move) and each.force is not None)
+        force = peak * np.linspace(0.0, 1.0, BLOCK_ROWS)
+        time, lost = np.arange(BLOCK_ROWS) / self.made.scene.rate, np.zeros(BLOCK_ROWS)
         for effect in self.made.effects:
             if effect.gives_way:
                 lost = lost - effect.travel(time, np.zeros(BLOCK_ROWS), force)
-        read = lost + DEPTH_READ * float(rng.normal()) * force / scene.scale.force
+        read = lost + DEPTH_READ * float(rng.normal()) * force / peak
         columns = {"time_s": time, "depth_mm": 1e3 * read, "force_N": force}
         pd.DataFrame(columns).to_csv(file, index=False)
         return file

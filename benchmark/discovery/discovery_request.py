@@ -188,7 +188,7 @@ def _answered(
         tissue=session.specimen.name,
         model=request.model,
         found=replace(found.discovery, warnings=warnings),
-        cards={effect.slug: effect.forms[-1].description for effect in (*effects, *found.entries)},
+        cards={effect.slug: effect.forms[-1].description for effect in (*found.known, *effects)},
         seed=request.seed,
         proposal=proposal,
         large_press="corrected",
@@ -216,7 +216,7 @@ def _refitted(
         named = bool(found.discovery.effects) and found.discovery.verdict in NAMING
         listener.say(f"{session.name}: " + ("refitting in FEM and wave" if named else "no effect to refit was found"))
         return refits(session, found.chosen) if named else ()
-    known = {effect.slug: effect for effect in (*effects, *found.entries)}
+    known = {effect.slug: effect for effect in (*found.known, *effects)}
     slugs = [slug.strip() for slug in request.refit.split(",") if slug.strip()]
     for slug in slugs:
         if slug not in known:

@@ -55,7 +55,7 @@ from benchmark.discovery.discovery_result import Discovery, Place
 from benchmark.discovery.evidence.gains import conditions, tissue_gain
 from benchmark.discovery.evidence.parameter_evidence import constant, undetermined, unsteady
 from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fingerprint, own_code, pool, silent
-from benchmark.discovery.evidence.selection import Selection, first_gain, select, usable
+from benchmark.discovery.evidence.selection import Selection, first_gain, ruled_out, select, usable
 from benchmark.discovery.evidence.shortlist import compared, not_shown, on_all, on_some, promising, remark, screen
 from benchmark.discovery.evidence.told_setup import on_told, setup_first, stands, taken_up
 from benchmark.discovery.trials.preparing import prepare
@@ -80,19 +80,26 @@ class Findings:
         Plain results.
     calibrated : Calibrated
         The base's fit, with noise and priors.
-    selection : Selection
-        The chosen fit, its look-alikes and their fits.
-    entries : tuple of Effect
-        Of the session's set-up, which were candidates beside the catalogue.
+    searched : Searched
+        The base that was taken, the chosen fit, its look-alikes and their fits.
+    known : tuple of Effect
+        Candidates: entries of the session's set-up, the catalogue, and own ones.
+    settings : Settings
     chosen : Fit or None
         The answer fitted to all trials.
     """
 
     discovery: Discovery
     calibrated: Calibrated
-    selection: Selection
-    entries: tuple[Effect, ...] = ()
+    searched: Searched
+    known: tuple[Effect, ...]
+    settings: Settings
     chosen: Fit | None = None
+
+    @property
+    def selection(self) -> Selection:
+        """What was chosen, with its look-alikes."""
+        return self.searched.selection
 
 
 def discover(
@@ -155,13 +162,32 @@ def findings(
             searched = _answered(calibrated.base, told_priors(session), known, settings, work)
         calibrated = replace(calibrated, warnings=(*calibrated.warnings, *searched.remarks))
         listener("verify", 0, 1, "")
-        answer = _verified(searched, settings)
-        discovery = _discovery(calibrated, answer, known, settings, began)
-    return Findings(discovery, calibrated, searched.selection, entries, answer.chosen)
+        return _finished(calibrated, searched, known, settings, began)
+
+
+def without_ruled_out(found: Findings, lost: AbstractSet[str]) -> Findings:
+    """The answer once a measurement apart from the trials has ruled out effects: of what stood, the nearest left.
+
+    The trials are not searched anew. They told no more than which causes may stand behind them, and a base that moves
+    would take up the one that is left.
+    """
+    began = time.perf_counter()
+    with threadpool_limits(1):
+        searched = replace(found.searched, selection=ruled_out(found.selection, lost))
+        known = tuple(each for each in found.known if each.slug not in lost)
+        return _finished(found.calibrated, searched, known, found.settings, began)
+
+
+def _finished(
+    calibrated: Calibrated, searched: Searched, known: tuple[Effect, ...], settings: Settings, began: float
+) -> Findings:
+    answer = _verified(searched, settings)
+    discovery = _discovery(calibrated, answer, known, settings, began)
+    return Findings(discovery, calibrated, searched, known, settings, answer.chosen)
 
 
 @dataclass(frozen=True, eq=False)
-class _Searched:
+class Searched:
     """What the search ends with.
 
     Attributes
@@ -189,7 +215,7 @@ class _Searched:
 
 def _answered(
     moving: Fit, told: Mapping[str, float], known: Sequence[Effect], settings: Settings, work: Pool
-) -> _Searched:
+) -> Searched:
     """What was found on the set-up as told where that stands, else on another."""
     trusted = on_told(moving, told)
     selection, before = _searched(trusted, known, settings, work)
@@ -199,8 +225,8 @@ def _answered(
             found, seen = _searched(moving, known, settings, work)
             if found.steps or not setup_first(selection):
                 gone = bool(selection.steps) and not found.steps
-                return _Searched(moving, found, seen, trusted if gone else moving, taken_up(selection, found))
-    return _Searched(trusted, selection, before, trusted)
+                return Searched(moving, found, seen, trusted if gone else moving, taken_up(selection, found))
+    return Searched(trusted, selection, before, trusted)
 
 
 def _searched(base: Fit, known: Sequence[Effect], settings: Settings, work: Pool) -> tuple[Selection, Detection]:
@@ -220,7 +246,7 @@ class _Answer:
 
     Attributes
     ----------
-    searched : _Searched
+    searched : Searched
     chosen : Fit
         Of all trials; the base where nothing was chosen.
     plain : Fit
@@ -232,7 +258,7 @@ class _Answer:
         Share of the misfit that trials share which the effects leave.
     """
 
-    searched: _Searched
+    searched: Searched
     chosen: Fit
     plain: Fit
     after: Detection
@@ -255,7 +281,7 @@ class _Answer:
         return self.searched.before
 
 
-def _verified(searched: _Searched, settings: Settings) -> _Answer:
+def _verified(searched: Searched, settings: Settings) -> _Answer:
     base, before = searched.base, searched.before
     chosen = on_all(base, searched.selection.chosen)
     if chosen is base:

@@ -160,7 +160,10 @@ def rigid_block(force: float) -> Experiment:
         _wait("hold", 2.0),
         _retract(2e-3),
     )
-    words = f"Put a rigid block in the specimen's place and press to {force:.3g} N: what gives way is the rig."
+    words = (
+        f"Put a rigid block in the specimen's place and press to {force:.3g} N, or as hard as the rig and its force "
+        "sensor bear: what gives way is the rig."
+    )
     return Experiment("rigid block", words, steps, {"specimen": "a rigid block (steel or aluminium)"}, 10.0)
 
 

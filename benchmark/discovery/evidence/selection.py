@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import t as t_distribution
@@ -103,6 +103,28 @@ def select(
     }
     own = {slug: gained for slug, _, gained in places}
     return Selection(base, current, tuple(steps), tried, first_screen, lookalikes, rivals, own, (*withheld, *forms))
+
+
+def ruled_out(selection: Selection, lost: AbstractSet[str]) -> Selection:
+    """What is left once a measurement has ruled out effects: the chosen fit, or else its nearest look-alike."""
+    kept = [fit for fit in (selection.chosen, *sum(selection.rivals.values(), ())) if not _slugs(fit) & lost]
+    if not kept:
+        return selection
+    chosen, *others = kept
+    own = {slug: gained for slug, gained in selection.own.items() if slug in _slugs(chosen)}
+    for slug in _slugs(chosen) - set(own):
+        (instead,) = _slugs(selection.chosen) - _slugs(chosen)
+        without = held_out(selection.chosen) - selection.own[instead].each
+        own[slug] = gain(held_out(chosen), without, conditions(chosen))
+    rivals = {slug: tuple(fit for fit in others if slug not in _slugs(fit)) for slug in own}
+    lookalikes = {
+        slug: tuple(dict.fromkeys(fit.model.effects[-1].slug for fit in fits)) for slug, fits in rivals.items()
+    }
+    return replace(selection, chosen=chosen, rivals=rivals, lookalikes=lookalikes, own=own)
+
+
+def _slugs(fit: Fit) -> set[str]:
+    return {effect.slug for effect in fit.model.effects}
 
 
 def first_gain(selection: Selection) -> float:

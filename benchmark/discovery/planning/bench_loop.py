@@ -21,10 +21,20 @@ from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.evidence.gains import held_out, held_out_conditions
 from benchmark.discovery.planning.bench_work import Bench
-from benchmark.discovery.planning.proposing import BLOCK, DEPTH_READ, GIVES, HALF, RULER, SURE_OF_GIVE, Allowed
-from benchmark.discovery.planning.rivals import Rival, rivals
+from benchmark.discovery.planning.proposing import (
+    BLOCK,
+    DEPTH_READ,
+    LEAST_GIVE,
+    MEASURED,
+    RULER,
+    SURE_OF_GIVE,
+    Allowed,
+    measured,
+    parted,
+)
+from benchmark.discovery.planning.rivals import Rival, nearest, rivals
 from benchmark.discovery.report.discovery_record import NextExperiment, Round
-from benchmark.discovery.workflow import Findings
+from benchmark.discovery.workflow import Findings, without_ruled_out
 from benchmark.errors import DeviceError, InputError, SolverError
 from benchmark.files.sessions.trials import read_table
 from reports import write_text
@@ -72,26 +82,28 @@ class Loop:
         return found
 
     def _round(self, found: Findings, proposal: NextExperiment) -> Findings:
-        standing = tuple(sorted(rivals(found)[:2], key=lambda rival: rival.slugs))  # one pair, whichever is first now
+        standing = rivals(found)
         number = len(self.rounds) + 1
         separation: float | None
         if proposal.choice == BLOCK:
             files = self.bench.record(proposal, proposal.trials, number)
             separation, lost = judged_by_block(standing, files[0])
+            found = without_ruled_out(found, lost) if lost else found
         else:
             self.bench.add(proposal, self.bench.record(proposal, proposal.trials, number))
-            pair = tuple(each.slugs for each in standing)
+            two = tuple(sorted(nearest(standing), key=lambda rival: rival.slugs))  # one pair, whichever is first now
+            pair = tuple(each.slugs for each in two)
             if pair not in self.leads:
-                self.leads[pair] = leads(found, standing) or {}
+                self.leads[pair] = leads(found, two) or {}
             self.promised[pair] = math.hypot(self.promised.get(pair, 0.0), proposal.separation)
             self.measured.append(proposal.choice)
             found = self.decide(self.bench.folder, self.out)
-            separation, lost = judged_by_trials(found, standing, self.measured, self.leads[pair])
+            separation, lost = judged_by_trials(found, two, self.measured, self.leads[pair])
             if self.promised[pair] < criteria.PROMISED:
                 lost = frozenset()
-        if lost:
-            self.out |= lost
-            found = self.decide(self.bench.folder, self.out)
+            if lost:
+                found = self.decide(self.bench.folder, self.out | lost)
+        self.out |= lost
         self.rounds.append(
             Round(
                 rivals=proposal.rivals,
@@ -111,19 +123,26 @@ class Loop:
         return found
 
 
-def judged_by_block(standing: tuple[Rival, ...], trial: Path) -> tuple[float, frozenset[str]]:
-    """Separation in standard deviations, and the slugs that the rig's own give rules out."""
-    slug, name = next(iter(GIVES.items()))
-    said = next(float(rival.values[slug][name]) for rival in standing if slug in rival.slugs)
+def judged_by_block(standing: Sequence[Rival], trial: Path) -> tuple[float, frozenset[str]]:
+    """Separation in standard deviations, and the slugs that the rig's own give rules out.
+
+    Raises
+    ------
+    InputError
+        The block was not pressed, or no rival says that the rig gives way.
+    """
+    pair = parted(standing, BLOCK)
+    if pair is None:
+        raise InputError(f"{trial.name}: a rigid block tells nothing of what is in question")
+    said = measured(pair[0], BLOCK)
     give, error = rigs_give(trial)
-    distance = (give - HALF * said) / error
-    if abs(distance) < SURE_OF_GIVE:
-        return abs(distance) / HALF, frozenset()
-    lost = frozenset({slug}) if distance < 0.0 else _without(standing, slug)
-    return abs(distance) / HALF, lost
+    distance = (give - LEAST_GIVE * said) / error
+    slug = MEASURED[BLOCK][0]
+    lost, apart = (frozenset({slug}), said - give) if distance < 0.0 else (_without(standing, slug), give)
+    return apart / error, lost if abs(distance) >= SURE_OF_GIVE else frozenset()
 
 
-def _without(standing: tuple[Rival, ...], slug: str) -> frozenset[str]:
+def _without(standing: Sequence[Rival], slug: str) -> frozenset[str]:
     """What the rivals that lack an effect have in its place."""
     having = {each for rival in standing if slug in rival.slugs for each in rival.slugs}
     return frozenset(

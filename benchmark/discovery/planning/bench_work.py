@@ -98,7 +98,8 @@ class BenchWork:
         specimen, sheet = specimen_of(self.rig), sheet_of(self.rig)
         radii = None if specimen is None else tuple(1e-3 * tool.radius_mm for tool in specimen.file.tools)
         radii = radii if sheet is None else (sheet.table.tool_radius,)
-        return Allowed(self.rig.rig.safety.force_limit, frozenset(done), radii)
+        limit = self.rig.rig.safety.force_limit
+        return Allowed(limit, frozenset(done), radii, limit)
 
     def ready(self, proposal: NextExperiment) -> bool:
         """Whether what must be done by hand first was done."""

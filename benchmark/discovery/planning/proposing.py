@@ -10,10 +10,11 @@ from typing import TypeAlias
 
 import numpy as np
 
+from bench_hw.motion.protocol_file import MOST_FORCE
 from benchmark.child_processes import mapping
 from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import PHASES
-from benchmark.discovery.planning.rivals import Rival, expected, rivals, separation, under
+from benchmark.discovery.planning.rivals import Rival, expected, nearest, rivals, separation, under
 from benchmark.discovery.report.discovery_record import NextExperiment
 from benchmark.discovery.trials.study import ConditionData
 from benchmark.discovery.workflow import Findings
@@ -35,16 +36,19 @@ from benchmark.response.elastic_table import ElasticTable, TableOf
 
 ROWS = 400
 """Rows of a trial on which rivals are compared: about what a trial's autocorrelated samples are worth at most."""
-DEPTH_READ = 0.02e-3
-"""Standard deviation with which a rig's give under a rigid block is taken to be read, m."""
+DEPTH_READ, BLOCK_TIMES = 0.02e-3, 10.0
+"""Standard deviation with which a rig's give under a rigid block is taken to be read, m, and how many times harder than
+the specimen the block is pressed: a give is read as well under a large force as under a small one."""
 RULER_READ = 2e-3
 """Relative standard deviation of a scale read off a ruler's picture."""
-HALF = 0.5
-"""A rig that gives way by less than this share of what a rival says is not what the rival says."""
+LEAST_GIVE = 1.0 / 3.0
+"""A rig that gives way by less than this share of what a rival says is not what the rival says.
+
+It may well be less than one: bearings give way more under small loads than under large ones, and a block is pressed
+harder than a specimen.
+"""
 SURE_OF_GIVE = 3.0
 """Standard deviations by which a measured give must lie on one side of that."""
-GIVES = {"machine_compliance": "compliance"}
-SCALES = {"marker_scale_error": "error"}
 
 
 @dataclass(frozen=True)
@@ -54,16 +58,19 @@ class Allowed:
     Attributes
     ----------
     most_force : float
-        Largest press that the rig allows, N.
+        Largest press of the specimen, N.
     done : set of str
         Entries of the menu that were done already.
     radii : tuple of float or None
         Radii of the tools that are there, m; None: any.
+    rig_force : float
+        Largest force that the rig bears, N.
     """
 
     most_force: float = math.inf
     done: AbstractSet[str] = frozenset()
     radii: tuple[float, ...] | None = None
+    rig_force: float = math.inf
 
 
 ANYTHING = Allowed()
@@ -83,7 +90,8 @@ def propose(
     Entries that a model cannot follow are left out of the menu, and so are those that tell no more than as many trials
     of the session's own press would. They are weighed by as many trials as a condition of the session has, but by no
     more than a test of trials needs: the rivals may be told apart by one. Of those that promise to decide the one that
-    tells most a minute is taken; where none does, the one that promises most.
+    tells most a minute is taken, a calibration before all: it measures what trials tell by the forms of effects only.
+    Where none promises to decide, the one that promises most.
 
     Parameters
     ----------
@@ -99,11 +107,12 @@ def propose(
     standing = rivals(found)
     if len(standing) < 2:
         return None
-    first, second = standing[:2]
+    first, second = nearest(standing)
     condition = _own_condition(found.calibrated.base.model.problem.study.conditions, allowed.done)
     seen = _with_this_tool(first, second, condition, allowed)
     if table_of is not None and specimen is not None:
         seen |= _tools(first, second, condition, (table_of, specimen), allowed, workers)
+    seen |= _calibrations(standing, condition, allowed.rig_force)
     few = min(condition.size, criteria.ENOUGH_TRIALS)
     again = seen.pop(SAME, (None, 0.0))[1]
     entries = [_Entry(experiment, size, few) for name, (experiment, size) in seen.items() if name not in allowed.done]
@@ -111,7 +120,9 @@ def propose(
     if not weighed:
         return None
     deciding = [each for each in weighed if each.decides]
-    best = max(deciding, key=_Entry.rate) if deciding else max(weighed, key=_Entry.promise)
+    best = max(deciding, key=lambda each: (each.once, each.rate()), default=max(weighed, key=_Entry.promise))
+    if best.once:
+        first, second = sorted(parted(standing, best.experiment.name) or (), key=standing.index)
     return NextExperiment(
         rivals=(_distinct(first, second), _distinct(second, first)),
         choice=best.experiment.name,
@@ -142,7 +153,7 @@ class _Entry:
     @property
     def once(self) -> bool:
         """Whether it is a calibration, which is not repeated."""
-        return self.experiment.name in ONCE
+        return self.experiment.name in MEASURED
 
     @property
     def trials(self) -> int:
@@ -152,7 +163,7 @@ class _Entry:
     @property
     def decides(self) -> bool:
         """Whether so many trials promise as much as rules a rival out."""
-        return self.promise() >= (SURE_OF_GIVE / HALF if self.once else criteria.PROMISED)
+        return self.promise() >= (SURE_OF_GIVE / LEAST_GIVE if self.once else criteria.PROMISED)
 
     def promise(self) -> float:
         """Separation by so many, standard deviations."""
@@ -180,20 +191,18 @@ def enough_trials(usual: int, size: float) -> int:
 Seen: TypeAlias = dict[str, tuple[Experiment, float]]
 """Name to experiment, and separation in standard deviations by one trial of it."""
 SAME, BLOCK, RULER = "same again", "rigid block", "ruler image"
-ONCE = (BLOCK, RULER)
-"""Calibrations."""
+MEASURED = {BLOCK: ("machine_compliance", "compliance"), RULER: ("marker_scale_error", "error")}
+"""Calibrations, with the effect and the parameter that each measures."""
 
 
 def _with_this_tool(first: Rival, second: Rival, condition: ConditionData, allowed: Allowed) -> Seen:
-    """The entries that can be done with the tool in place, and calibrations."""
+    """The entries that can be done with the tool in place."""
     usual = usual_press(condition)
     out: Seen = {}
     for experiment in (same_again(usual), *menu(usual)):
         size = _simulated(first, second, condition, experiment, allowed.most_force)
         if size is not None:
             out[experiment.name] = (experiment, size)
-    for experiment, size in _calibrations(first, second, condition, allowed.most_force):
-        out[experiment.name] = (experiment, size)
     return out
 
 
@@ -250,28 +259,31 @@ def _simulated(
     return math.sqrt(size)
 
 
-def _calibrations(
-    first: Rival, second: Rival, condition: ConditionData, most_force: float = math.inf
-) -> Sequence[tuple[Experiment, float]]:
-    """Measurements of the instrument alone, where only one of the rivals says that there is something to see."""
-    force = min(float(condition.around.peak_force), SPARE * most_force)
-    found: list[tuple[Experiment, float]] = []
-    give = abs(_only(first, second, GIVES)) * force / DEPTH_READ
-    if give > 0.0:
-        found.append((rigid_block(force), give))
-    scale = abs(_only(first, second, SCALES)) / RULER_READ
-    if scale > 0.0:
-        found.append((ruler_image(), scale))
-    return found
+def _calibrations(standing: Sequence[Rival], condition: ConditionData, most_force: float = math.inf) -> Seen:
+    """Measurements of the instrument alone, where only some of the rivals say that there is something to see."""
+    force = min(BLOCK_TIMES * float(condition.around.peak_force), SPARE * most_force, MOST_FORCE)
+    read = ((rigid_block(force), force / DEPTH_READ), (ruler_image(), 1.0 / RULER_READ))
+    out: Seen = {}
+    for experiment, precision in read:
+        pair = parted(standing, experiment.name)
+        said = 0.0 if pair is None else measured(pair[0], experiment.name)
+        if said:
+            out[experiment.name] = (experiment, abs(said) * precision)
+    return out
 
 
-def _only(first: Rival, second: Rival, effects: dict[str, str]) -> float:
-    """The parameter of an effect that one of the rivals has and the other has not; zero otherwise."""
-    for slug, name in effects.items():
-        having = [rival for rival in (first, second) if slug in rival.slugs]
-        if len(having) == 1:
-            return float(having[0].values[slug][name])
-    return 0.0
+def parted(standing: Sequence[Rival], calibration: str) -> tuple[Rival, Rival] | None:
+    """The nearest rivals with and without the effect that a calibration measures; None where all have it, or none."""
+    slug, _ = MEASURED[calibration]
+    having = [rival for rival in standing if slug in rival.slugs]
+    lacking = [rival for rival in standing if slug not in rival.slugs]
+    return (having[0], lacking[0]) if having and lacking else None
+
+
+def measured(rival: Rival, calibration: str) -> float:
+    """What a rival says that a calibration measures."""
+    slug, name = MEASURED[calibration]
+    return float(rival.values[slug][name])
 
 
 def usual_press(condition: ConditionData) -> Usual:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
 
 from benchmark.discovery.base.effect_model import Fit, nuisance_count
+from benchmark.discovery.base.setup_priors import is_setup
 from benchmark.discovery.base.trials_problem import OWN
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.trials.rows import acceleration
@@ -49,6 +50,21 @@ def rivals(found: Findings) -> tuple[Rival, ...]:
     for others in found.selection.rivals.values():
         chosen += others
     return tuple(Rival(tuple(e.slug for e in fit.model.effects), fit) for fit in chosen)
+
+
+def nearest(standing: Sequence[Rival]) -> tuple[Rival, Rival]:
+    """The two that are to be told apart: the answer and its nearest look-alike.
+
+    Where the answer is the set-up alone that is the nearest with an effect, if there is one: which part of a set-up is
+    off matters less than whether it is the set-up.
+    """
+    first, *others = standing
+    effects = [] if _has_effect(first) else [each for each in others if _has_effect(each)]
+    return first, (effects or others)[0]
+
+
+def _has_effect(rival: Rival) -> bool:
+    return not all(is_setup(slug) for slug in rival.slugs)
 
 
 def under(rival: Rival, condition: str, tool: Tool, table: ElasticTable) -> Rival:

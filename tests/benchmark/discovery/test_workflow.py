@@ -9,6 +9,7 @@ from benchmark.discovery import Settings, expected, findings, rivals, workflow
 from benchmark.discovery.answer.verdict import verdict
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.discovery_result import CHANNELS, PHASES, VERDICTS
+from benchmark.discovery.workflow import without_ruled_out
 
 SETTINGS = Settings(rows=90, workers=1, bootstraps=40, most_effects=1)
 
@@ -126,3 +127,28 @@ def test_the_verdict_is_told_whether_the_misfit_is_nothing(session_of, monkeypat
     monkeypatch.setattr(workflow, "verdict", lambda facts: told.append(facts) or verdict(facts))
     findings(session_of(trials=4, speeds=(3e-3,)), settings=SETTINGS)
     assert [facts.tiny for facts in told] == [tiny]
+
+
+def test_what_is_measured_apart_from_the_trials_leaves_of_the_answer_what_stood(session_of, monkeypatch):
+    """Nothing is searched anew: of the look-alikes the one that was ruled out is gone, or takes the answer with it."""
+    found = findings(session_of(force=fading, noise=0.003), settings=SETTINGS)
+    (effect,) = found.discovery.effects
+    assert effect.slug == "viscoelastic_relaxation"
+    nearest, *rest = effect.lookalikes
+    monkeypatch.setattr(workflow, "select", None)
+    surer = without_ruled_out(found, {nearest})
+    assert [(each.slug, each.lookalikes) for each in surer.discovery.effects] == [(effect.slug, tuple(rest))]
+    assert surer.discovery.verdict == found.discovery.verdict
+    other = without_ruled_out(found, {effect.slug, *rest})
+    assert [(each.slug, each.lookalikes) for each in other.discovery.effects] == [(nearest, ())]
+    assert [rival.slugs for rival in rivals(other)] == [(nearest,)]
+    assert effect.slug not in {each.slug for each in other.known}
+
+
+def fading(time, depth, elastic):
+    """A Prony term of 12 % and 0.8 s."""
+    lost = np.zeros_like(time)
+    for row in range(1, time.size):
+        share = np.exp(-(time[row] - time[row - 1]) / 0.8)
+        lost[row] = share * lost[row - 1] + (1.0 - share) * 0.5 * (elastic[row] + elastic[row - 1])
+    return elastic - 0.12 * lost

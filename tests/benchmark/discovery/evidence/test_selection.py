@@ -5,8 +5,9 @@ import pytest
 
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.criteria import Settings
+from benchmark.discovery.evidence.gains import conditions, gain, held_out
 from benchmark.discovery.evidence.pool import pool, silent
-from benchmark.discovery.evidence.selection import select
+from benchmark.discovery.evidence.selection import ruled_out, select
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
 
@@ -16,6 +17,7 @@ SOME = tuple(
     for effect in catalogue()
     if effect.slug in ("viscoelastic_relaxation", "viscous_damping", "force_drift", "machine_compliance")
 )
+DRAINAGE = next(effect for effect in catalogue() if effect.slug == "poroelastic_drainage")
 
 
 def relaxing(time, depth, elastic):
@@ -35,10 +37,10 @@ def drifting(time, depth, elastic):
     return elastic + 0.06 * elastic.max() * time / time.max()
 
 
-def chosen(session):
+def chosen(session, effects=SOME):
     calibrated = calibrate(session, prepare(session, SETTINGS.rows))
     with pool(1, None, "", (), silent) as work:
-        return select(calibrated.base, SOME, SETTINGS, work)
+        return select(calibrated.base, effects, SETTINGS, work)
 
 
 def test_relaxation_is_found_with_its_parameters(session_of):
@@ -62,3 +64,18 @@ def test_nothing_is_found_where_nothing_is(session_of):
     assert made.chosen is made.base
     assert made.steps == ()
     assert np.isfinite(made.base.objective)
+
+
+def test_what_a_measurement_rules_out_leaves_the_nearest_that_stood(session_of):
+    made = chosen(session_of(force=relaxing, noise=0.003), (*SOME, DRAINAGE))
+    assert made.lookalikes == {"viscoelastic_relaxation": ("poroelastic_drainage",)}
+    (drained,) = made.rivals["viscoelastic_relaxation"]
+    surer = ruled_out(made, {"poroelastic_drainage", "setup.tool.radius"})
+    assert surer.chosen is made.chosen
+    assert (surer.lookalikes, surer.own) == ({"viscoelastic_relaxation": ()}, made.own)
+    other = ruled_out(made, {"viscoelastic_relaxation"})
+    assert other.chosen is drained
+    assert (other.lookalikes, other.rivals) == ({"poroelastic_drainage": ()}, {"poroelastic_drainage": ()})
+    alone = gain(held_out(drained), held_out(made.base), conditions(drained))
+    assert other.own["poroelastic_drainage"].mean == pytest.approx(alone.mean)
+    assert ruled_out(made, {"viscoelastic_relaxation", "poroelastic_drainage"}) is made

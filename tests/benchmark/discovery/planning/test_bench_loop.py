@@ -25,7 +25,21 @@ def test_a_block_measures_the_rigs_own_give_and_says_who_is_out(bench, proposal)
     standing = {c: _pair(c) for c in (1.1e-4, 6e-4)}
     assert judged_by_block(standing[1.1e-4], trial)[1] == {"interface_slip"}
     assert judged_by_block(standing[6e-4], trial)[1] == {"machine_compliance"}
-    assert judged_by_block(_pair(2.0 * give), trial)[1] == frozenset()
+    assert judged_by_block(_pair(2.0 * give), trial)[1] == {"interface_slip"}  # bearings lie on under a large load
+    assert judged_by_block(_pair(3.0 * give), trial)[1] == frozenset()
+
+
+def test_a_block_is_weighed_against_all_that_stand(bench, proposal) -> None:
+    (trial,) = bench.record(proposal(rigid_block(3.0)), 1, 1)
+    hole, thickness = (SimpleNamespace(slugs=(slug,), values={}) for slug in ("setup.hole", "setup.thickness"))
+    giving, slipping = _pair(1.1e-4)
+    assert judged_by_block((hole, thickness, slipping, giving), trial)[1] == {
+        "setup.hole",
+        "setup.thickness",
+        "interface_slip",
+    }
+    with pytest.raises(InputError, match="a rigid block tells nothing of what is in question"):
+        judged_by_block((hole, slipping), trial)
 
 
 def _pair(compliance: float):
@@ -180,7 +194,7 @@ def test_a_discovery_whose_bench_fails_has_the_error_and_keeps_what_an_earlier_o
     def gone(*_):
         raise DeviceError("--bench: the actuator is gone")
 
-    found = SimpleNamespace(discovery=record.found, chosen=None, entries=(), calibrated=None)
+    found = SimpleNamespace(discovery=record.found, chosen=None, known=(), calibrated=None)
     monkeypatch.setattr(discovery_request, "_found", lambda *_: found)
     monkeypatch.setattr(discovery_request, "propose", lambda *_: proposal(menu(USUAL)[0]))
     monkeypatch.setattr(discovery_request, "fem_or_wave_table", lambda *_: None)

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -14,7 +15,7 @@ from benchmark.discovery.planning.proposing import (
     propose,
     usual_press,
 )
-from benchmark.experiments.menu import menu, minutes, rigid_block, same_again
+from benchmark.experiments.menu import menu, minutes, protocol_toml, rigid_block, same_again
 from benchmark.physics import TrialContext
 
 
@@ -67,7 +68,7 @@ def test_many_trials_of_a_session_are_not_asked_for_again(monkeypatch, there, al
     seen = {"same again": (again, 1.0), deeper.name: (deeper, alone)}
     monkeypatch.setattr(proposing, "rivals", lambda found: (_rival("a"), _rival("b")))
     monkeypatch.setattr(proposing, "_with_this_tool", lambda *_: dict(seen))
-    study = SimpleNamespace(conditions=[SimpleNamespace(size=there, name="slow")])
+    study = SimpleNamespace(conditions=[SimpleNamespace(size=there, name="slow", around=_condition("hole").around)])
     base = SimpleNamespace(model=SimpleNamespace(problem=SimpleNamespace(study=study)))
     found = propose(SimpleNamespace(calibrated=SimpleNamespace(base=base)))
     if trials is None:
@@ -85,21 +86,27 @@ def test_many_trials_of_a_session_are_not_asked_for_again(monkeypatch, there, al
         ({"slower": 4.0, "faster": 2.0}, "slower", 6),  # both are to decide: what tells most a minute
         ({"slower": 2.0, "rest in air": 2.3}, "rest in air", 18),  # 8.5 by 18 trials rules nobody out, 9.8 does
         ({"slower": 2.0, "rest in air": 2.1}, "rest in air", 18),  # neither is to decide: what promises most
-        ({"slower": 2.0, "rigid block": 6.0}, "rigid block", 1),
-        ({"slower": 2.0, "rigid block": 5.9}, "slower", 18),
+        ({"slower": 2.0, "rigid block": 9.0}, "rigid block", 1),
+        ({"slower": 2.2, "rigid block": 8.9}, "slower", 18),
+        ({"slower": 400.0, "rigid block": 9.0}, "rigid block", 1),  # what is measured itself before what forms tell
     ],
 )
 def test_what_decides_goes_before_what_is_quick(monkeypatch, sizes, chosen, trials) -> None:
     usual = usual_press(_condition("bonded"))
     entries = {each.name: each for each in (*menu(usual), rigid_block(3.0))}
-    seen = {"same again": (same_again(usual), 1.0), **{name: (entries[name], size) for name, size in sizes.items()}}
-    monkeypatch.setattr(proposing, "rivals", lambda found: (_rival("a"), _rival("b")))
-    monkeypatch.setattr(proposing, "_with_this_tool", lambda *_: dict(seen))
+    menus = {name: (entries[name], size) for name, size in sizes.items()}
+    block = {name: menus.pop(name) for name in ("rigid block",) if name in menus}
+    standing = (_rival("setup.tool.radius"), _rival("a"), _rival("machine_compliance"))
+    monkeypatch.setattr(proposing, "rivals", lambda found: standing)
+    monkeypatch.setattr(proposing, "_with_this_tool", lambda *_: {"same again": (same_again(usual), 1.0), **menus})
+    monkeypatch.setattr(proposing, "_calibrations", lambda *_: block)
     study = SimpleNamespace(conditions=[SimpleNamespace(size=10, name="slow")])
     base = SimpleNamespace(model=SimpleNamespace(problem=SimpleNamespace(study=study)))
     session = SimpleNamespace(calibrated=SimpleNamespace(base=base))
     found = propose(session)
     assert (found.choice, found.trials) == (chosen, trials)
+    other = "machine_compliance" if chosen == "rigid block" else "a"  # the nearest rival with an effect
+    assert found.rivals == ("setup.tool.radius", other)
     others = propose(session, allowed=Allowed(done={chosen}))
     assert others.choice == next(name for name in sizes if name != chosen)
     assert propose(session, allowed=Allowed(done=set(sizes))) is None
@@ -117,15 +124,34 @@ def test_an_experiment_differs_from_the_sessions_own_press_and_not_from_the_expe
 def test_a_rigid_block_is_for_a_rig_that_gives_way() -> None:
     relaxing = _rival("viscoelastic_relaxation")
     giving = _rival("machine_compliance", machine_compliance={"compliance": 1e-4})
-    ((experiment, size),) = _calibrations(giving, relaxing, _condition("bonded"))
-    assert experiment.name == "rigid block"
-    assert size == pytest.approx(1e-4 * 3.0 / 0.02e-3)
-    assert _calibrations(relaxing, relaxing, _condition("bonded")) == []
+    for standing in ((giving, relaxing), (relaxing, _rival("slip"), giving)):
+        ((experiment, size),) = _calibrations(standing, _condition("bonded")).values()
+        assert experiment.name == "rigid block"
+        assert "press to 30 N, or as hard as the rig and its force sensor bear" in experiment.words
+        assert size == pytest.approx(1e-4 * 30.0 / 0.02e-3)
+    assert _calibrations((relaxing, relaxing), _condition("bonded")) == {}
+    assert _calibrations((giving, giving), _condition("bonded")) == {}
+
+
+@pytest.mark.parametrize(("bears", "force"), [(20.0, 16.0), (1e3, 30.0)])
+def test_a_rigid_block_is_pressed_no_harder_than_the_rig_bears(bears, force) -> None:
+    giving = _rival("machine_compliance", machine_compliance={"compliance": 1e-4})
+    ((_, size),) = _calibrations((giving, _rival("slip")), _condition("bonded"), bears).values()
+    assert size == pytest.approx(1e-4 * force / 0.02e-3)
+
+
+def test_a_rigid_block_is_pressed_no_harder_than_a_protocol_may_say() -> None:
+    condition = _condition("bonded")
+    condition.around = replace(condition.around, peak_force=50.0)
+    giving = _rival("machine_compliance", machine_compliance={"compliance": 1e-4})
+    ((experiment, _),) = _calibrations((giving, _rival("slip")), condition).values()
+    assert "press to 100 N" in experiment.words
+    assert protocol_toml(experiment)
 
 
 def test_a_ruler_is_for_a_wrong_scale() -> None:
-    scaled = _rival("marker_scale_error", marker_scale_error={"error": 0.02})
-    ((experiment, size),) = _calibrations(_rival("interface_slip"), scaled, _condition("bonded"))
+    scaled = _rival("marker_scale_error", marker_scale_error={"error": -0.02})
+    ((experiment, size),) = _calibrations((_rival("interface_slip"), scaled), _condition("bonded")).values()
     assert experiment.name == "ruler image"
     assert size == pytest.approx(10.0)
 

@@ -70,7 +70,7 @@ def test_document_table_and_page_have_both_models(record: DiscoveryRecord, tmp_p
 
 
 def test_a_pick_that_is_no_effect_is_refused() -> None:
-    found = SimpleNamespace(chosen=object(), entries=())
+    found = SimpleNamespace(chosen=object(), known=())
     listener = SimpleNamespace(say=lambda text: None)
     request = DiscoverRequest([], refit="strain_stifening")
     with pytest.raises(InputError, match="strain_stiffening"):
