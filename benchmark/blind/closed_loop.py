@@ -138,6 +138,6 @@ def closed_loop(made: BlindCase, session: Path, most: int) -> LoopAnswer:
         return propose(found, fem_or_wave_table(grown, ()), grown.specimen, allowed)
 
     loop = Loop(HiddenBench(made, folder), most, decide, proposed)
-    loop.run()
+    out.answers.append(loop.run().discovery)
     out.experiments = len(loop.rounds)
     return out

@@ -211,7 +211,9 @@ LARGE_SHARE, MOST_LARGE = 0.05, 4
 choice."""
 TOGETHER, FREE_TRAVEL = 4.0, 0.01
 """Standard errors of their mean, and share of the press, from which touches that are late together are warned of: a gap
-that their scatter hides. First choice."""
+that their scatter hides. As many standard errors serve for time shifts. First choice."""
+OTHER_SPEED = 1.5
+"""Ratio of speeds from which time shifts of two conditions are compared. First choice."""
 LATE = 1.5
 """Trials of a condition are late where their time shift is this many times its scatter. Development seeds."""
 SMALLER_STARTS = (0.1, 0.01)

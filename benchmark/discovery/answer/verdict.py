@@ -59,6 +59,8 @@ class Facts:
         Squared norm of what trials share row by row beside the effects, in standard errors above chance.
     p_shared : float
         Of sharing so much by chance.
+    by_speed : bool
+        Whether the trials' time shifts go with their speeds, as no clock's do: something may hide in them.
     """
 
     p: float
@@ -83,6 +85,7 @@ class Facts:
     fitted: bool = True
     shared: float = 0.0
     p_shared: float = 1.0
+    by_speed: bool = False
 
     @property
     def by_rows(self) -> bool:
@@ -125,7 +128,7 @@ def verdict(facts: Facts) -> str:
     if not facts.enough:
         return "cannot_tell"
     if not (facts.p < facts.level if facts.effects else facts.shares and not facts.tiny):
-        return "no_discrepancy" if facts.within else "cannot_tell"
+        return "no_discrepancy" if facts.within and not facts.by_speed else "cannot_tell"
     if not facts.effects or _fails(facts):
         return "outside_catalogue"
     if facts.lookalikes:
@@ -199,6 +202,11 @@ def _untold(facts: Facts) -> str:
             "These trials cannot tell: too few trials, or none repeated, to show a disagreement at the "
             f"{100.0 * facts.level:g} % level; nothing is named, and agreement is not shown either."
         )
+    if facts.within:
+        return (
+            "These trials cannot tell: a time shift is fitted to each, and these shifts go with the speed, as no "
+            "clock's do: play or friction may hide in them; nothing is named, and agreement is not shown either."
+        )
     if facts.taken_up:
         return (
             "These trials cannot tell: with the set-up as told the model misses them by more than the stated "
@@ -234,4 +242,6 @@ def _outside(names: str, facts: Facts) -> str:
         why = ", but it would be another instrument in each condition"
     elif not facts.predicts:
         why = ", which predicts unseen data worse than the model without it"
+    else:
+        why = f", which leaves {100.0 * facts.left:.2g} % of what trials share"
     return f"{start}; the nearest is {names}{why}."

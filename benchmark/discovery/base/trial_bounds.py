@@ -11,9 +11,10 @@ import numpy as np
 from benchmark.discovery import criteria
 from benchmark.discovery.base.trials_problem import OWN, TrialRef, TrialsProblem
 from benchmark.discovery.discovery_result import PHASES, TrialValues
+from benchmark.discovery.trials.study import ConditionData
 from benchmark.response.force_curve import Array
 
-APPROACH = PHASES.index("approach")
+APPROACH, LOAD = PHASES.index("approach"), PHASES.index("load")
 
 
 def trial_bounds(problem: TrialsProblem) -> tuple[Array, Array]:
@@ -84,7 +85,10 @@ def large_remarks(problem: TrialsProblem, nuisance: Array) -> tuple[str, ...]:
             found.append(f"{own.trial}: touches at {1e3 * own.touch:.3g} mm")
         if "shift" in own.at_bound:
             found.append(f"{own.trial}: force and frames late by {1e3 * own.late:.3g} ms, as far as allowed")
-    together = _late_together(problem, nuisance[:, OWN.index("height")])
+    together = (
+        *_late_together(problem, nuisance[:, OWN.index("height")]),
+        *_clocks_together(problem, nuisance[:, OWN.index("shift")]),
+    )
     if not found:
         return together
     shown = "; ".join(found[: criteria.MOST_LARGE])
@@ -102,3 +106,62 @@ def _late_together(problem: TrialsProblem, touch: Array) -> tuple[str, ...]:
         f"the tool touches {1e3 * mean:.2g} mm behind its zero in the mean of the trials, give or take "
         f"{1e3 * error:.1g} mm: either the zeros are early, or there is a gap before contact that their scatter hides",
     )
+
+
+def _clocks_together(problem: TrialsProblem, shift: Array) -> tuple[str, ...]:
+    """A warning of time shifts (R,), s, that trials share, or that go with the speed."""
+    by_speed = late_by_speed(problem, shift)
+    if by_speed is not None:
+        (slow, at_slow), (fast, at_fast) = by_speed
+        looks = "play at each turn" if at_slow > at_fast else "friction"
+        return (
+            f"force and frames are late by {1e3 * at_slow:.2g} ms at {1e3 * slow:.2g} mm/s and by "
+            f"{1e3 * at_fast:.2g} ms at {1e3 * fast:.2g} mm/s: no clock is, but {looks} looks so, and these time "
+            "shifts, which are fitted beside every answer, would hide it",
+        )
+    groups = np.array([trial.condition for trial in problem.trials])
+    together, error = float(shift.mean()), _scatter(shift, groups) / np.sqrt(shift.size)
+    if abs(together) <= max(criteria.TOGETHER * error, criteria.NO_LATER):
+        return ()
+    looks = "play at each turn" if together > 0.0 else "friction or damping"
+    return (
+        f"force and frames are late by {1e3 * together:.2g} ms in the mean of the trials, give or take "
+        f"{1e3 * error:.1g} ms: a sensor's filter, or, since {looks} looks so at one speed, an effect that these time "
+        "shifts hide; trials at a second speed tell",
+    )
+
+
+def late_by_speed(problem: TrialsProblem, shift: Array) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """Speed, m/s, and mean of the time shifts (R,), s, of the slowest and of the fastest condition, if these differ.
+
+    A clock's shift is the same at each speed. Play at each turn is a delay that goes as 1 / speed, friction an advance.
+    """
+    groups = np.array([trial.condition for trial in problem.trials])
+    kinds = [k for k in range(len(problem.study.conditions)) if np.sum(groups == k) > 1]
+    if len(kinds) < 2:
+        return None
+    speeds = [_loading_speed(problem.study.conditions[k]) for k in kinds]
+    slow, fast = (kinds[int(place)] for place in (np.argmin(speeds), np.argmax(speeds)))
+    mean = {k: float(shift[groups == k].mean()) for k in (slow, fast)}
+    error = _scatter(shift, groups) * np.sqrt(sum(1.0 / np.sum(groups == k) for k in (slow, fast)))
+    if max(speeds) <= criteria.OTHER_SPEED * min(speeds):
+        return None
+    if abs(mean[slow] - mean[fast]) <= max(criteria.TOGETHER * error, criteria.NO_LATER):
+        return None
+    return (min(speeds), mean[slow]), (max(speeds), mean[fast])
+
+
+def _scatter(shift: Array, groups: Array) -> float:
+    """Standard deviation within conditions; endless where none has two trials."""
+    left = shift - np.array([shift[groups == group].mean() for group in groups])
+    freedom = shift.size - np.unique(groups).size
+    return float(np.sqrt(np.sum(left**2) / freedom)) if freedom > 0 else np.inf
+
+
+def _loading_speed(condition: ConditionData) -> float:
+    """Median over trials of the first loading's way over its time, m/s; 0 without any."""
+    rows = np.flatnonzero((condition.phase == LOAD) & (condition.cycle <= 1))
+    if rows.size < 2:
+        return 0.0
+    way, lasted = (np.ptp(each[:, rows], axis=1) for each in (condition.depth, condition.time))
+    return float(np.median(way / np.maximum(lasted, 1e-9)))

@@ -85,7 +85,20 @@ def test_what_another_set_up_takes_up_is_no_agreement_where_the_set_up_as_told_m
 
 def test_what_a_withheld_effect_would_take_is_no_unknown_cause():
     assert verdict(facts(left=criteria.OUTSIDE, p_after=0.002)) == "partly_explained"
-    assert verdict(facts(left=1.01 * criteria.OUTSIDE, p_after=0.002)) == "outside_catalogue"
+    leaving = facts(left=1.01 * criteria.OUTSIDE, p_after=0.002)
+    assert verdict(leaving) == "outside_catalogue"
+    share = f"{101.0 * criteria.OUTSIDE:.2g}"
+    assert statement("outside_catalogue", leaving).endswith(f", which leaves {share} % of what trials share.")
+
+
+def test_agreement_is_not_shown_where_time_shifts_may_hide_something():
+    agreeing = {"p": 0.4, "p_cells": 0.4, "effects": (), "lookalikes": ()}
+    assert verdict(facts(**agreeing)) == "no_discrepancy"
+    hidden = facts(**agreeing, by_speed=True)
+    assert verdict(hidden) == "cannot_tell"
+    assert "these shifts go with the speed" in statement("cannot_tell", hidden)
+    assert "these shifts go with the speed" in statement("cannot_tell", facts(**agreeing, by_speed=True, taken_up=True))
+    assert verdict(facts(by_speed=True)) == verdict(facts())  # what was found beside them stands
 
 
 def test_too_few_trials_cannot_tell():

@@ -7,7 +7,14 @@ import pytest
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import EffectModel, fit
-from benchmark.discovery.base.trial_bounds import large_remarks, touch_range, trial_bounds, trial_values, zero_range
+from benchmark.discovery.base.trial_bounds import (
+    large_remarks,
+    late_by_speed,
+    touch_range,
+    trial_bounds,
+    trial_values,
+    zero_range,
+)
 from benchmark.discovery.base.trials_problem import OWN, NoiseModel, TrialPrior, TrialsProblem, trial_refs
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import load_session
@@ -93,6 +100,42 @@ def test_touches_that_are_late_together_are_said(problem):
     large, together = said(late + np.array([4.0 * size, 0.0, 0.0, 0.0, 0.0, 0.0]))
     assert "touches at" in large
     assert together.startswith("the tool touches")
+
+
+WAVES = 1e-3 * np.array([-1.0, 1.0, 0.0])
+
+
+def _clocks(slow, fast):
+    """Time shifts, s, of three trials at 1.5 mm/s and three at 6 mm/s that scatter by a millisecond."""
+    return np.concatenate([slow + WAVES, fast + WAVES])
+
+
+def test_time_shifts_that_go_with_the_speed_are_no_clocks(problem):
+    (slow, at_slow), (fast, at_fast) = late_by_speed(problem, _clocks(12e-3, 3e-3))
+    assert (slow, fast) == (pytest.approx(1.5e-3, rel=0.02), pytest.approx(6e-3, rel=0.02))
+    assert (at_slow, at_fast) == (pytest.approx(12e-3), pytest.approx(3e-3))
+    for other in ((12e-3, 12e-3), (3e-3, 7.9e-3), (0.0, 0.0)):  # a late sensor; less than a filter does; nothing
+        assert late_by_speed(problem, _clocks(*other)) is None
+    scattered = _clocks(12e-3, 3e-3) + 4.0 * np.tile(WAVES, 2)  # 2.2 standard errors
+    assert late_by_speed(problem, scattered) is None
+    same = replace(problem.study, conditions=(problem.study.conditions[0],) * 2)
+    assert late_by_speed(replace(problem, study=same), _clocks(12e-3, 3e-3)) is None
+
+
+@pytest.mark.parametrize(
+    ("slow", "fast", "words"),
+    [
+        (12e-3, 3e-3, "late by 12 ms at 1.5 mm/s and by 3 ms at 6 mm/s: no clock is, but play at each turn looks so"),
+        (-12e-3, -3e-3, "late by -12 ms at 1.5 mm/s and by -3 ms at 6 mm/s: no clock is, but friction looks so"),
+        (9e-3, 9e-3, "late by 9 ms in the mean of the trials, give or take 0.4 ms: a sensor's filter, or, since play"),
+        (-9e-3, -9e-3, "late by -9 ms in the mean of the trials, give or take 0.4 ms: a sensor's filter, or, since fr"),
+    ],
+)
+def test_time_shifts_that_trials_share_are_said(problem, slow, fast, words):
+    own = np.zeros((6, len(OWN)))
+    own[:, OWN.index("shift")] = _clocks(slow, fast)
+    (text,) = large_remarks(problem, own)
+    assert words in text
 
 
 def _later(trial):
