@@ -92,7 +92,7 @@ class Loop:
         else:
             self.bench.add(proposal, self.bench.record(proposal, proposal.trials, number))
             two = tuple(sorted(nearest(standing), key=lambda rival: rival.slugs))  # one pair, whichever is first now
-            pair = tuple(each.slugs for each in two)
+            pair = _apart(two)
             if pair not in self.leads:
                 self.leads[pair] = leads(found, two) or {}
             self.promised[pair] = math.hypot(self.promised.get(pair, 0.0), proposal.separation)
@@ -175,12 +175,13 @@ Leads: TypeAlias = dict[tuple[str, str], float]
 
 def leads(found: Findings, standing: tuple[Rival, ...]) -> Leads | None:
     """What each trial says for the first of two rivals, each fitted to all others; None where one was not fitted."""
-    fits = [_fit_of(found, rival) for rival in standing]
-    if len(fits) < 2 or fits[0] is None or fits[1] is None:
+    fits = _fits_of(found, standing)
+    if fits is None:
         return None
-    problem = fits[0].model.problem
+    first, second = fits
+    problem = first.model.problem
     names = [one.name for one in problem.study.conditions]
-    each = held_out(fits[0]) - held_out(fits[1])
+    each = held_out(first) - held_out(second)
     return {(names[t.condition], t.name): float(lead) for t, lead in zip(problem.trials, each, strict=True)}
 
 
@@ -195,34 +196,45 @@ def judged_by_trials(
     that speaks most, and the winner foretells the new conditions, each from all others: it falls short of their trials
     one by one by less than they speak for it, or by less than half of what the loser does.
     """
-    after = leads(found, standing)
-    if after is None:
+    after, fits = leads(found, standing), _fits_of(found, standing)
+    if after is None or fits is None:
         return None, frozenset()
     told = np.array([lead - before.get(trial, 0.0) for trial, lead in after.items()])
     total = float(told.sum())
-    winner, loser = standing[:2] if total > 0.0 else standing[1::-1]
+    order = (0, 1) if total > 0.0 else (1, 0)
+    winner, loser = (standing[place] for place in order)
     others = abs(total) - float(np.max(np.sign(total) * told))
-    missed, theirs = (_short(found, each, measured) for each in (winner, loser))
+    missed, theirs = (_short(fits[place], measured) for place in order)
     foretells = abs(total) >= missed or theirs >= 2.0 * missed + criteria.DECISIVE
     sure = foretells and abs(total) >= criteria.DECISIVE and others >= 0.5 * criteria.DECISIVE
     lost = frozenset(set(loser.slugs) - set(winner.slugs)) if sure else frozenset()
     return math.sqrt(2.0 * abs(total)), lost
 
 
-def _short(found: Findings, rival: Rival, measured: Sequence[str]) -> float:
-    """By how much a rival foretells new conditions worse than their trials one by one, log density."""
-    fit = _fit_of(found, rival)
-    if fit is None:
-        return math.inf
+def _short(fit: Fit, measured: Sequence[str]) -> float:
+    """By how much a fit foretells new conditions worse than their trials one by one, log density."""
     names = [one.name for one in fit.model.problem.study.conditions]
     new = np.array([names[trial.condition] in measured for trial in fit.model.problem.trials])
     return float(np.sum((held_out(fit) - held_out_conditions(fit))[new]))
 
 
-def _fit_of(found: Findings, rival: Rival) -> Fit | None:
-    """The best fit to the grown session with a rival's effects; None where none was made."""
+def _apart(standing: Sequence[Rival]) -> tuple[tuple[str, ...], ...]:
+    """What each of two rivals has that the other has not."""
+    shared = set.intersection(*(set(rival.slugs) for rival in standing))
+    return tuple(tuple(slug for slug in rival.slugs if slug not in shared) for rival in standing)
+
+
+def _fits_of(found: Findings, standing: Sequence[Rival]) -> tuple[Fit, Fit] | None:
+    """The best fits to the grown session with the effects of two rivals; None where one was not made.
+
+    Where the new trials have shown that something that both share is not there, both are meant without it.
+    """
     chosen = found.selection
     fits: Iterator[Fit] = iter((chosen.chosen, *(fit for each in chosen.rivals.values() for fit in each)))
     made = [*fits, *(scored.fit for scored in chosen.candidates)]
-    same = [fit for fit in made if {effect.slug for effect in fit.model.effects} == set(rival.slugs)]
-    return min(same, key=lambda fit: fit.objective, default=None)
+    for pair in ([rival.slugs for rival in standing], _apart(standing)):
+        same = [[fit for fit in made if {e.slug for e in fit.model.effects} == set(slugs)] for slugs in pair]
+        if all(pair) and all(same):
+            first, second = (min(each, key=lambda fit: fit.objective) for each in same)
+            return first, second
+    return None

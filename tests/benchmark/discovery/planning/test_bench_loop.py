@@ -91,6 +91,17 @@ def test_whom_trials_speak_against_more_than_before_is_out(monkeypatch, first, s
     assert separation == pytest.approx(np.sqrt(2.0 * abs(total)))
 
 
+def test_rivals_are_judged_without_what_both_shared_once_that_is_gone(monkeypatch) -> None:
+    """A contact that is another stood beside both, and is none by the new trials."""
+    monkeypatch.setattr(bench_loop, "held_out_conditions", lambda fit: fit.foretold)
+    monkeypatch.setattr(bench_loop, "held_out", lambda fit: fit.seen)
+    found = _found({"a": [5.0, 8.0, 7.0], "b": [3.0, 4.0, 3.0]}, {})
+    standing = (Rival(("a", "setup.tool.contact"), None), Rival(("setup.tool.contact", "b"), None))
+    assert judged_by_trials(found, standing, ["new"], BEFORE)[1] == {"b"}
+    other = (Rival(("a", "setup.tool.contact"), None), Rival(("a", "b"), None))
+    assert judged_by_trials(found, other, ["new"], BEFORE) == (None, frozenset())
+
+
 @pytest.mark.parametrize(("size", "out"), [(4.5, frozenset()), (10.0, {"b"})], ids=["too little", "enough"])
 def test_what_promised_little_rules_nobody_out_until_more_adds_up(bench, proposal, monkeypatch, size, out) -> None:
     found = SimpleNamespace(discovery=SimpleNamespace(verdict="lookalikes", effects=()))
