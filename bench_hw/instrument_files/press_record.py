@@ -38,10 +38,10 @@ TOUCH_FORCE: Final = 5e-4
 MOST_MEANT: Final = 0.1
 """Of the rows in air, and of those up to a tenth of the peak, over which a noisy force is averaged at most."""
 STEEP: Final = 0.4
-"""Of the mean slope up to a tenth of the peak, above which a force rises already, as powers of the depth up to 2 do."""
+"""Of what a parabola rises by that reaches a tenth of the peak, above which a force rises already."""
 MEDIANS: Final = 3.2
 """Of the noise's median second difference over the root of the rows: three standard deviations between two medians."""
-FEWEST: Final = 6
+FEWEST: Final = 4
 """Rows that tell whether a force rises."""
 
 
@@ -364,18 +364,23 @@ def _means(force: FloatArray, side: int) -> FloatArray:
 def _in_air(force: FloatArray) -> FloatArray | None:
     """The rows at the beginning of a first rise in which the force does not rise yet; None where it does at once.
 
-    It rises where its second half is above its first by more than noise, nearly as steeply as in the whole rise.
+    It rises where its second half is above its first by more than noise, and nearly as a parabola would be that reaches
+    as high. The first half of the rows is looked at, then the first half of that, and so on: any power of the depth is
+    flat at last, and a parabola as flat as it.
     """
     noise = float(np.median(np.abs(np.diff(force, 2)))) if len(force) > 2 else 0.0
-    steep = STEEP * (float(force[-1]) - float(force[0])) / len(force)
+    rise = float(force[-1]) - float(force[0])
     start = force[: max(5, len(force) // 2)]
+    if len(start) < FEWEST:
+        return start
     while len(start) >= FEWEST:
         half = len(start) // 2
         gained = float(np.median(start[half:]) - np.median(start[:half]))
-        if gained <= max(MEDIANS * noise / half**0.5, steep * half):
+        parabola = 0.5 * rise * (len(start) / len(force)) ** 2
+        if gained <= max(MEDIANS * noise / half**0.5, STEEP * parabola):
             return start
         start = start[:half]
-    return start if len(force) < 2 * FEWEST else None
+    return None
 
 
 def phases(table: TrialTable) -> tuple[int, float]:

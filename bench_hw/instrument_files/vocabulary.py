@@ -93,7 +93,7 @@ _WORDS: Final[tuple[tuple[str, int, str], ...]] = (
     ("time", 0, r"time|(?:test|elapsed|total|running|run) time|zeit|pr(?:ü|ue|u)fzeit|testzeit|laufzeit|temps|tiempo|tempo|czas|godzina|zaman|时间|測試時間|测试时间|試験時間|経過時間|時間|t"),  # noqa: E501
     ("time", 1, r"time(?: ?stamp)?(?: \d+)?|series time|scan time|zeit \d+"),
     ("force", 0, r"force|load|(?:force|f) ?z|f ?n|f|kraft|standardkraft|pr(?:ü|ue|u)fkraft|normalkraft|druckkraft|last|si(?:ł|l)a|obci(?:ąż|az)enie|fuerza|carga|charge|effort|forza|kuvvet|y[uü]k|力|载荷|负荷|试验力|荷重|試験力"),  # noqa: E501
-    ("force", 1, _QUALIFIED + r"(?:force|load)(?: (?:z|sensor))?|load ?cell|kraft(?: ?sensor| z| f)"),
+    ("force", 1, _QUALIFIED + r"(?:force|load)(?: (?:z|sensor))?|load ?cell|kraft(?: ?sensor| z| f)|weight|gewicht|poids|peso"),  # noqa: E501
     ("force", 2, _QUALIFIED + r"(?:force|load|load ?cell|kraft) \d+"),
     ("depth", 0, r"enfoncement|profondeur (?:d[’' ]?)?(?:indentation|enfoncement|p[eé]n[eé]tration)|p[eé]n[eé]tration|depth|indentation(?: depth)?|penetration(?: depth)?|eindring(?:tiefe|weg|ung)|profondeur|profundidad|压入深度|压痕深度|押込み深さ"),  # noqa: E501
     ("displacement", 0, r"displacement|disp|extension|travel|distance|stroke|standardweg|weg|verfahrweg|d[eé]placement|desplazamiento|przemieszczenie|wyd(?:ł|l)u(?:ż|z)enie|course|allongement|uzama|deplasman|spostamento|corsa|deslocamento|curso|位移|行程|変位|ストローク|つかみ具間変位|伸び"),  # noqa: E501

@@ -121,17 +121,25 @@ def scenarios(
     return 0
 
 
-def session(what: What, folder: Folder, json: Json = False, quiet: Quiet = False, debug: Debug = False) -> int:
+def session(
+    what: What,
+    folder: Folder,
+    settings: Set = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> int:
     """Look at a folder's files and write the session.toml and specimen.toml they suggest.
 
     Conditions come from speeds, depths and holds, tool and thickness from headers and the first touch. What a person
-    must say is marked SAY in the files. Files that are there are never replaced.
+    must say is marked SAY in the files. Files that are there are never replaced. `--set import.force="Weight:g"` tells
+    of columns that have names of their own.
     """
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
     from benchmark.files.sessions.proposal import propose, write_proposal
 
-    found = propose(folder)
+    found = propose(folder, parse_settings(settings))
     written = write_proposal(folder, found)
     for warning in found.warnings:
         Console(quiet=quiet).say(f"  warning: {warning}")

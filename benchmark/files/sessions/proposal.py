@@ -16,6 +16,7 @@ import numpy as np
 from bench_hw.instrument_files.press_record import phases
 from bench_hw.tables import MarkerTable, TrialTable
 from benchmark.errors import InputError
+from benchmark.files.loading import Overrides
 from benchmark.files.schema import validated
 from benchmark.files.sessions.description import SessionFile
 from benchmark.files.sessions.recordings import Recording, read_recordings, told_heights, with_headers
@@ -28,6 +29,8 @@ ALIKE = 0.1
 """Of their mean, within which speeds, depths and holds are of one protocol; labs set them to round numbers."""
 OFF_GRID = 0.2
 """Of the spacing, within which markers at rest stand where a grid has them: printed by hand, and seen at a slant."""
+NOTHING: Overrides = {}
+IMPORT = "import."
 SPECIMEN_FILE, CAMERA_FILE = "specimen.toml", "camera.toml"
 
 
@@ -74,25 +77,34 @@ class Proposal:
     warnings: tuple[str, ...] = ()
 
 
-def propose(folder: Path) -> Proposal:
+def propose(folder: Path, told: Overrides = NOTHING) -> Proposal:
     """Look at the trials of a folder and propose its session.toml and the specimen it names.
+
+    Parameters
+    ----------
+    folder
+        Of the trials.
+    told
+        What is told of their columns, by keys as `import.force`; it goes into the session.toml, too.
 
     Raises
     ------
     InputError
-        There is a session.toml already, or a specimen.toml other than the proposed one, which a kill may have left; or
-        a trial cannot be read.
+        There is a session.toml already, or a specimen.toml other than the proposed one, which a kill may have left; a
+        trial cannot be read; or something else than `import` is told.
     """
     _refuse_existing(folder / SESSION_FILE)
     table, source = session_table(folder)
+    importing = _importing(told)
+    table |= {"import": importing} if importing else {}
     file = validated(SessionFile, table, source)
     paths = [inside(source.folder, entry.file, entry.file) for entry in file.trials]
     read = read_recordings(file, paths, listed=False)
     resolved, _ = with_headers(file, read.trials)
-    told = {name: keys.tool for name, keys in resolved.conditions.items()} or {"": resolved.tool}
+    tools_told = {name: keys.tool for name, keys in resolved.conditions.items()} or {"": resolved.tool}
     specimen, why = assumed_specimen([trial.table for trial in read.trials], *told_heights(file, read.trials))
     named = _conditions(read.trials, kept=len({entry.condition for entry in file.trials}) > 1)
-    tools = {tuple(sorted(tool.items())) for tool in told.values() if tool}
+    tools = {tuple(sorted(tool.items())) for tool in tools_told.values() if tool}
     held = _support_lines(resolved)
     camera, asked = _camera_lines(source, [entry.markers for entry in file.trials if entry.markers])
     to_say = (*(("tool.contact",) if len(held) > 1 else _to_say(tools, why)), *asked)
@@ -101,6 +113,7 @@ def propose(folder: Path) -> Proposal:
         "schema = 1",
         f"name = {_text(file.name)}",
         f"specimen = {_text(SPECIMEN_FILE)}",
+        *(["", "[import]", *(f"{key} = {_text(value)}" for key, value in importing.items())] if importing else []),
         "",
         "[tool]",
         *([] if len(held) > 1 else _tool_lines(tools)),
@@ -116,6 +129,17 @@ def propose(folder: Path) -> Proposal:
         _refuse_existing(folder / SPECIMEN_FILE)
     texts = {SPECIMEN_FILE: body, SESSION_FILE: "\n".join([*head, *trials]) + "\n"}
     return Proposal(texts, to_say, (*read.aside, *unclosed_recordings(source)))
+
+
+def _importing(told: Overrides) -> dict[str, str]:
+    """The keys of [import] that are told."""
+    other = [key for key in told if not key.startswith(IMPORT)]
+    if other:
+        raise InputError(
+            f"--set {other[0]}: session new takes {IMPORT}KEY alone, by which files are read; anything else is written "
+            f"into the {SESSION_FILE} that it proposes"
+        )
+    return {key.removeprefix(IMPORT): value for key, value in told.items()}
 
 
 def write_proposal(folder: Path, proposal: Proposal) -> list[Path]:

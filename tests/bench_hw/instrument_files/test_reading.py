@@ -315,6 +315,26 @@ def test_a_record_that_begins_in_contact_has_no_air(tmp_path):
     assert record.table.force.max() == pytest.approx(1.0, abs=2e-3)
 
 
+@pytest.mark.parametrize("rows", [60, 400, 4000])
+@pytest.mark.parametrize("law", [1.0, 1.5, 2.0, "exponential"])
+def test_a_force_that_begins_flat_where_the_record_does_has_no_air(rows, law):
+    """A tool that touches at the first row: Hertz's law lost 4 % of its depth, an exponential one 20 %."""
+    share = np.linspace(0.0, 1.0, rows)
+    force = np.expm1(4.8 * share) / np.expm1(4.8) if law == "exponential" else share**law
+    row, _ = first_touch(TrialTable(0.01 * np.arange(rows), 2e-3 * share, force, {}, "press", {}))
+    assert row == 0
+
+
+@pytest.mark.parametrize("rows", [60, 400])
+def test_the_touch_of_an_exponential_force_is_found_after_some_air(rows):
+    """It was put at a quarter of the press, where the force had risen by half a percent of its peak."""
+    share = np.linspace(-0.1, 1.0, rows)
+    force = np.expm1(4.8 * np.clip(share, 0.0, None)) / np.expm1(4.8)
+    row, level = first_touch(TrialTable(0.01 * np.arange(rows), 2e-3 * share, force, {}, "press", {}))
+    assert abs(share[row]) < 0.03
+    assert level == pytest.approx(0.0, abs=1e-3)
+
+
 @pytest.mark.parametrize(("lead", "law"), [(0.05, 1.0), (0.2, 1.0), (1.0, 1.0), (0.2, 1.5), (1.0, 1.5)])
 def test_the_touch_is_found_after_little_air_as_well(tmp_path, lead, law):
     record = ramp(tmp_path / "a.csv", lead=lead, law=law)

@@ -159,3 +159,24 @@ def test_a_link_to_nothing_is_not_replaced(folder):
     (folder / "session.toml").symlink_to(folder / "nothing.toml")
     with pytest.raises(InputError, match="left as it is"):
         propose(folder)
+
+
+def test_columns_that_are_told_are_read_and_stand_in_the_file(tmp_path):
+    depth = np.linspace(0.0, 2.0, 50)
+    table = np.column_stack([np.linspace(0.0, 2.0, 50), depth, 40.0 * depth])
+    for number in range(3):
+        header = "Time (s),Depth (mm),Balance"
+        np.savetxt(tmp_path / f"t{number}.csv", table, delimiter=",", header=header, comments="")
+    with pytest.raises(InputError, match=r'name it, --set import\.force="COLUMN:N"'):
+        propose(tmp_path)
+    write_proposal(tmp_path, propose(tmp_path, {"import.force": "Balance:g"}))
+    assert '[import]\nforce = "Balance:g"\n' in (tmp_path / "session.toml").read_text()
+    trial = load_session(tmp_path).trials[0]
+    assert trial.table.force.max() == pytest.approx(80.0 * 9.80665e-3)
+
+
+def test_what_is_no_column_is_not_told_of_a_proposal(folder):
+    with pytest.raises(InputError, match=r"--set tool\.radius: session new takes import\.KEY alone"):
+        propose(folder, {"tool.radius": "3 mm"})
+    with pytest.raises(InputError, match=r"import\.forc: this key is not known; did you mean force\?"):
+        propose(folder, {"import.forc": "Load:N"})
