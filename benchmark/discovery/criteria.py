@@ -212,6 +212,10 @@ choice."""
 TOGETHER, FREE_TRAVEL = 4.0, 0.01
 """Standard errors of their mean, and share of the press, from which touches that are late together are warned of: a gap
 that their scatter hides. As many standard errors serve for time shifts. First choice."""
+PARTED = 0.1
+"""Share by which gains must differ between conditions to be warned of. First choice."""
+IN_ORDER = 0.01
+"""P of trials' gains going one way by chance, from which it is warned of. First choice."""
 OTHER_SPEED = 1.5
 """Ratio of speeds from which time shifts of two conditions are compared. First choice."""
 LATE = 1.5

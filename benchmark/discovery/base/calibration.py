@@ -228,17 +228,6 @@ def _spread(values: Array) -> float:
     return float(np.std(values, ddof=1)) if values.size > 1 else 0.0
 
 
-def _spread_within(values: Array, condition: Sequence[int]) -> float:
-    """Pooled standard deviation of values (R,) within conditions; over all where no condition has two trials."""
-    numbers = np.array(condition)
-    kinds = np.unique(numbers)
-    freedom = values.size - kinds.size
-    if freedom < 1:
-        return _spread(values)
-    left = values - np.array([values[numbers == number].mean() for number in numbers])
-    return float(np.sqrt(np.sum(left**2) / freedom))
-
-
 def _size(values: Array) -> float:
     """Root mean square: what all trials share, such as a late sensor, is no less likely than what they do not."""
     return float(np.sqrt(np.mean(values**2)))
@@ -262,7 +251,7 @@ def _spreads(fitted: Fit, scale: Array) -> TrialPrior:
     deepest = max(condition.around.peak_depth for condition in fitted.model.problem.study.conditions)
     floor = float(np.median(scale[:, 1:])) if scale.shape[1] > 1 else 1.0
     return TrialPrior(
-        gain=max(_spread_within(state[:, 0], [trial.condition for trial in fitted.model.problem.trials]), 3e-3),
+        gain=max(_spread(state[:, 0]), 3e-3),
         zero=max(_size(state[:, 1]), 0.2 * noise, 1e-9),
         shift=max(_size(state[:, 2]), 0.05 * fitted.model.problem.study.raw_interval, 1e-4),
         height=max(_early(state[:, 3]), criteria.LEAST_HEIGHT * deepest),

@@ -7,6 +7,7 @@ is late by a sample or two. Gain and marker zeros have priors alone.
 from __future__ import annotations
 
 import numpy as np
+from scipy.stats import kendalltau
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.trials_problem import OWN, TrialRef, TrialsProblem
@@ -88,6 +89,8 @@ def large_remarks(problem: TrialsProblem, nuisance: Array) -> tuple[str, ...]:
     together = (
         *_late_together(problem, nuisance[:, OWN.index("height")]),
         *_clocks_together(problem, nuisance[:, OWN.index("shift")]),
+        *_gains_in_order(problem, np.exp(nuisance[:, OWN.index("gain")])),
+        *_gains_between(problem, nuisance[:, OWN.index("gain")]),
     )
     if not found:
         return together
@@ -165,3 +168,45 @@ def _loading_speed(condition: ConditionData) -> float:
         return 0.0
     way, lasted = (np.ptp(each[:, rows], axis=1) for each in (condition.depth, condition.time))
     return float(np.median(way / np.maximum(lasted, 1e-9)))
+
+
+def _gains_in_order(problem: TrialsProblem, gain: Array) -> tuple[str, ...]:
+    """A warning of gains (R,) that go one way from trial to trial of a condition, beyond chance (Kendall's tau)."""
+    found = []
+    groups = np.array([trial.condition for trial in problem.trials])
+    order = np.array([trial.number for trial in problem.trials])
+    for number, condition in enumerate(problem.study.conditions):
+        mine = np.flatnonzero(groups == number)
+        mine = mine[np.argsort(order[mine])]
+        if mine.size < criteria.ENOUGH_TRIALS or kendalltau(order[mine], gain[mine]).pvalue > criteria.IN_ORDER:
+            continue
+        third = mine.size // 3
+        change = float(np.median(gain[mine[-third:]]) / np.median(gain[mine[:third]])) - 1.0
+        if abs(change) > criteria.LARGE_SHARE:
+            way = "rise" if change > 0.0 else "fall"
+            found.append(
+                f"the trials' own gains {way} by {100.0 * abs(change):.2g} % from the first to the last of "
+                f"{condition.name}: softening, preconditioning or a drift from press to press is in them, and is not "
+                "looked for"
+            )
+    return tuple(found)
+
+
+def _gains_between(problem: TrialsProblem, gain: Array) -> tuple[str, ...]:
+    """A warning of log gains (R,) that part conditions: a ratio of stiffness, which is no scatter of trials."""
+    groups = np.array([trial.condition for trial in problem.trials])
+    kinds = [k for k in range(len(problem.study.conditions)) if np.sum(groups == k) > 1]
+    if len(kinds) < 2:
+        return ()
+    mean = {k: float(gain[groups == k].mean()) for k in kinds}
+    least, most = min(kinds, key=mean.__getitem__), max(kinds, key=mean.__getitem__)
+    apart = mean[most] - mean[least]
+    error = _scatter(gain, groups) * np.sqrt(sum(1.0 / np.sum(groups == k) for k in (least, most)))
+    if apart <= max(criteria.TOGETHER * error, np.log1p(criteria.PARTED)):
+        return ()
+    stiff, soft = (problem.study.conditions[k].name for k in (most, least))
+    return (
+        f"the trials' own gains are {100.0 * np.expm1(apart):.2g} % larger in {stiff} than in {soft}: what makes one "
+        "condition stiffer beside the other, as a rig that gives way or another size of a tool does, is in them, and "
+        "is not looked for",
+    )

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmark.discovery.base.calibration import _spread_within, _spreads, calibrate
+from benchmark.discovery.base.calibration import _spreads, calibrate
 from benchmark.discovery.base.trials_problem import OWN
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import load_session
@@ -40,29 +40,6 @@ def test_trials_that_touch_alike_have_little_of_it(session_of):
     shared, gap = (_spreads(replace(found.base, nuisance=n), found.problem.noise.scale) for n in (late, early))
     assert shared.height == pytest.approx(2.0 * TOUCH, rel=0.1)
     assert gap.height < 0.1 * TOUCH
-
-
-def test_gains_of_trials_that_differ_between_conditions_are_not_how_trials_scatter(session_of):
-    """A stiffness that differs between two tools or speeds is no gain of a trial: it is left for a cause."""
-    found, _ = _noise(session_of(trials=6))
-    parted = found.base.nuisance.copy()
-    parted[:, 0] = np.where([trial.condition == 0 for trial in found.problem.trials], 0.2, -0.2) + parted[:, 0]
-    apart = _spreads(replace(found.base, nuisance=parted), found.problem.noise.scale)
-    assert apart.gain == pytest.approx(0.02, rel=0.5)  # put in
-    assert apart.gain == pytest.approx(_spreads(found.base, found.problem.noise.scale).gain, rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("values", "conditions", "spread"),
-    [
-        ([1.0, 3.0, 11.0, 13.0], [0, 0, 1, 1], 2.0**0.5),
-        ([1.0, 3.0, 50.0], [0, 0, 1], 2.0**0.5),  # a condition of one trial says nothing
-        ([1.0, 3.0], [0, 1], 2.0**0.5),  # none has two: over all
-        ([1.0], [0], 0.0),
-    ],
-)
-def test_the_spread_within_conditions_is_pooled(values, conditions, spread):
-    assert _spread_within(np.array(values), conditions) == pytest.approx(spread)
 
 
 def test_a_trial_that_was_not_filmed_counts_with_its_force_alone():

@@ -138,6 +138,34 @@ def test_time_shifts_that_trials_share_are_said(problem, slow, fast, words):
     assert words in text
 
 
+@pytest.mark.parametrize(("apart", "scatter", "said"), [(0.3, 0.01, True), (0.08, 0.01, False), (0.3, 0.15, False)])
+def test_gains_that_part_conditions_are_said(problem, apart, scatter, said):
+    own = np.zeros((6, len(OWN)))
+    own[:, OWN.index("gain")] = np.repeat([0.0, np.log1p(apart)], 3) + scatter * np.tile([-1.0, 1.0, 0.0], 2)
+    words = "gains are 30 % larger in speed 6 than in speed 1.5: what makes one condition stiffer"
+    assert any(words in text for text in large_remarks(problem, own)) is said
+
+
+@pytest.mark.parametrize(
+    ("gains", "words"),
+    [
+        ([1.25, 1.1, 1.02, 0.98, 0.95, 0.94], "fall by 20 % from the first to the last of speed 1.5"),
+        ([0.9, 0.94, 0.97, 1.0, 1.03, 1.08], "rise by 15 % from the first to the last of speed 1.5"),
+        ([1.02, 1.01, 1.0, 0.99, 0.98, 0.97], None),  # less than is warned of
+        ([1.25, 0.94, 1.02, 0.98, 1.1, 0.95], None),  # in no order
+        ([1.25, 1.1, 1.02, 0.98, 0.95], None),  # too few
+    ],
+)
+def test_gains_that_go_one_way_are_said(problem, gains, words):
+    trials = tuple(replace(problem.trials[0], number=3 * place) for place in range(len(gains)))
+    one = replace(problem, trials=trials[::-1], study=replace(problem.study, conditions=problem.study.conditions[:1]))
+    one = replace(one, noise=NoiseModel((0.6,), np.resize(problem.noise.scale, (len(gains), 1))))
+    own = np.zeros((len(gains), len(OWN)))
+    own[:, OWN.index("gain")] = np.log(gains[::-1])
+    said = large_remarks(one, own)
+    assert said == () if words is None else words in said[0]
+
+
 def _later(trial):
     shifted = np.interp(trial.motion.time - LATE, trial.motion.time, trial.signals[:, 0])
     return shifted[:, None]
