@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field, replace
 
@@ -98,11 +98,9 @@ def select(
     places = [_in_place(base, current, effect, rounds, settings, work) for effect in current.model.effects]
     tried = tuple(scored for each in rounds for scored in each)
     rivals = {slug: (*apart.get(slug, ()), *fits) for slug, fits, _ in places}
-    lookalikes = {
-        slug: tuple(dict.fromkeys(fit.model.effects[-1].slug for fit in fits)) for slug, fits in rivals.items()
-    }
     own = {slug: gained for slug, _, gained in places}
-    return Selection(base, current, tuple(steps), tried, first_screen, lookalikes, rivals, own, (*withheld, *forms))
+    names = _names(rivals)
+    return Selection(base, current, tuple(steps), tried, first_screen, names, rivals, own, (*withheld, *forms))
 
 
 def ruled_out(selection: Selection, lost: AbstractSet[str]) -> Selection:
@@ -111,16 +109,20 @@ def ruled_out(selection: Selection, lost: AbstractSet[str]) -> Selection:
     if not kept:
         return selection
     chosen, *others = kept
-    own = {slug: gained for slug, gained in selection.own.items() if slug in _slugs(chosen)}
-    for slug in _slugs(chosen) - set(own):
-        (instead,) = _slugs(selection.chosen) - _slugs(chosen)
-        without = held_out(selection.chosen) - selection.own[instead].each
-        own[slug] = gain(held_out(chosen), without, conditions(chosen))
+    if chosen is selection.chosen:
+        rivals = {slug: tuple(fit for fit in fits if fit in others) for slug, fits in selection.rivals.items()}
+        return replace(selection, rivals=rivals, lookalikes=_names(rivals))
+    gone = _slugs(selection.chosen) - _slugs(chosen)
+    without = held_out(selection.chosen) - sum(selection.own[slug].each for slug in gone)
+    gained = gain(held_out(chosen), without, conditions(chosen))
+    own = {slug: selection.own.get(slug, gained) for slug in _slugs(chosen)}
     rivals = {slug: tuple(fit for fit in others if slug not in _slugs(fit)) for slug in own}
-    lookalikes = {
-        slug: tuple(dict.fromkeys(fit.model.effects[-1].slug for fit in fits)) for slug, fits in rivals.items()
-    }
-    return replace(selection, chosen=chosen, rivals=rivals, lookalikes=lookalikes, own=own)
+    return replace(selection, chosen=chosen, rivals=rivals, lookalikes=_names(rivals), own=own)
+
+
+def _names(rivals: Mapping[str, Sequence[Fit]]) -> dict[str, tuple[str, ...]]:
+    """Look-alikes by the slug of a chosen effect: the last effect of each fit."""
+    return {slug: tuple(dict.fromkeys(fit.model.effects[-1].slug for fit in fits)) for slug, fits in rivals.items()}
 
 
 def _slugs(fit: Fit) -> set[str]:
