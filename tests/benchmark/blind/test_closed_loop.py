@@ -3,10 +3,12 @@
 import tomllib
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from benchmark.blind import closed_loop
 from benchmark.blind.body.presses import DEEPEST
 from benchmark.blind.cases import BlindCase, CaseName, make_case
 from benchmark.blind.closed_loop import HiddenBench, under_tool
@@ -99,3 +101,12 @@ def test_rivals_count_as_separated_where_the_truth_stands_alone(saturation: Blin
     rows = {row.measure: row for row in table([*judged, replace(judge(saturation, alone, 1.0), seed=9)])}
     row = rows["rivals separated by experiments"]
     assert (row.n, row.value) == (3, pytest.approx(1.0 / 3.0))
+
+
+def test_the_answer_of_a_loop_is_its_last_also_where_no_trial_was_searched_anew(tmp_path, monkeypatch):
+    """A block rules causes out of an answer without a new search; the answer before it was judged."""
+    last = SimpleNamespace(discovery="after the block")
+    monkeypatch.setattr(closed_loop, "session_copy", lambda session, folder: folder)
+    monkeypatch.setattr(closed_loop, "Loop", lambda *_: SimpleNamespace(run=lambda: last, rounds=["block"]))
+    found = closed_loop.closed_loop(SimpleNamespace(name=SimpleNamespace(seed=1)), tmp_path, 3)
+    assert (found.answers, found.experiments) == (["after the block"], 1)

@@ -129,6 +129,13 @@ def test_the_verdict_is_told_whether_the_misfit_is_nothing(session_of, monkeypat
     assert [facts.tiny for facts in told] == [tiny]
 
 
+def test_time_shifts_that_go_with_the_speed_are_no_agreement(session_of, monkeypatch):
+    session = session_of(seed=3)
+    assert findings(session, settings=SETTINGS).discovery.verdict == "no_discrepancy"
+    monkeypatch.setattr(workflow, "late_by_speed", lambda problem, shift: ((1e-3, 0.012), (3e-3, 0.004)))
+    assert findings(session, settings=SETTINGS).discovery.verdict == "cannot_tell"
+
+
 def test_what_is_measured_apart_from_the_trials_leaves_of_the_answer_what_stood(session_of, monkeypatch):
     """Nothing is searched anew: of the look-alikes the one that was ruled out is gone, or takes the answer with it."""
     found = findings(session_of(force=fading, noise=0.003), settings=SETTINGS)

@@ -14,7 +14,8 @@ from fem.sensitivity.changed_equations import changed_equations, moved_mesh
 
 TIGHT = NewtonSettings(tolerance=1e-13)
 COARSE = fem.Discretisation("coarse")
-STEP, SMALL = 1e-4, 1e-5
+STEP, SMALL = 1e-3, 1e-5
+CENTRAL = {-2.0: 1.0 / 12.0, -1.0: -2.0 / 3.0, 1.0: 2.0 / 3.0, 2.0: -1.0 / 12.0}
 PRESS = fem.Load("depth", np.array([0.5, 1.0]), np.array([0.6e-3, 1.2e-3]))
 
 
@@ -73,12 +74,16 @@ def solved_anew(model, problem: fem.Problem, load: fem.Load) -> fem.Solution:
 
 
 def differences(model, load: fem.Load, key: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Derivatives of force, depth and displacement by central differences."""
-    less, more = (solved_anew(model, changed(model.problem, key, sign * STEP), load) for sign in (-1.0, 1.0))
-    assert less.complete
-    assert more.complete
-    names = ("force", "depth", "displacement")
-    force, depth, displacement = ((getattr(more, name) - getattr(less, name)) / (2.0 * STEP) for name in names)
+    """Derivatives of force, depth and displacement by central differences of the fourth order.
+
+    Smaller steps than these lose more to round-off, and at the second order they leave 1e-6.
+    """
+    runs = {by: solved_anew(model, changed(model.problem, key, by * STEP), load) for by in (-2.0, -1.0, 1.0, 2.0)}
+    assert all(run.complete for run in runs.values())
+    force, depth, displacement = (
+        sum(weight * getattr(runs[by], name) for by, weight in CENTRAL.items()) / STEP
+        for name in ("force", "depth", "displacement")
+    )
     return force, depth, displacement
 
 

@@ -1,5 +1,6 @@
 import shutil
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -160,6 +161,30 @@ def test_the_loop_stops_at_its_budget_or_when_nothing_is_proposed(bench, proposa
     silent = Loop(bench, 2, lambda path, without: found, lambda found, allowed: None)
     silent.run()
     assert silent.rounds == []
+
+
+def test_what_a_block_rules_out_leaves_the_answer_without_a_new_search(bench, proposal, monkeypatch) -> None:
+    first, left = (
+        SimpleNamespace(discovery=SimpleNamespace(verdict=word, effects=()), stood=word)
+        for word in ("lookalikes", "named")
+    )
+    decided: list[Path] = []
+    monkeypatch.setattr(bench_loop, "rivals", lambda found: _pair(1e-3) if found is first else _pair(1e-3)[:1])
+    monkeypatch.setattr(bench_loop, "judged_by_block", lambda standing, file: (9.0, frozenset({"interface_slip"})))
+    monkeypatch.setattr(
+        bench_loop, "without_ruled_out", lambda found, lost: left if lost == {"interface_slip"} else None
+    )
+    monkeypatch.setattr(BenchWork, "record", lambda bench, proposal, trials, number: (bench.folder / "block.mcap",))
+    block = proposal(rigid_block(2.0))
+    loop = Loop(
+        bench,
+        2,
+        lambda path, without: decided.append(path) or first,
+        lambda found, allowed: block if found is first else None,
+    )
+    assert loop.run() is left
+    assert len(decided) == 1
+    assert (loop.out, loop.rounds[0].verdict, loop.rounds[0].remaining) == ({"interface_slip"}, "named", 1)
 
 
 @pytest.mark.parametrize("where", ["record", "decide"])

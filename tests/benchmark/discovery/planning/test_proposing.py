@@ -96,7 +96,8 @@ def test_what_decides_goes_before_what_is_quick(monkeypatch, sizes, chosen, tria
     entries = {each.name: each for each in (*menu(usual), rigid_block(3.0))}
     menus = {name: (entries[name], size) for name, size in sizes.items()}
     block = {name: menus.pop(name) for name in ("rigid block",) if name in menus}
-    standing = (_rival("setup.tool.radius"), _rival("a"), _rival("machine_compliance"))
+    names = ("setup.tool.radius", "setup.support.hole_radius", "a", "machine_compliance")
+    standing = tuple(map(_rival, names))
     monkeypatch.setattr(proposing, "rivals", lambda found: standing)
     monkeypatch.setattr(proposing, "_with_this_tool", lambda *_: {"same again": (same_again(usual), 1.0), **menus})
     monkeypatch.setattr(proposing, "_calibrations", lambda *_: block)
