@@ -139,25 +139,35 @@ def late_by_speed(problem: TrialsProblem, shift: Array) -> tuple[tuple[float, fl
 
     A clock's shift is the same at each speed. Play at each turn is a delay that goes as 1 / speed, friction an advance.
     """
-    groups = np.array([trial.condition for trial in problem.trials])
-    kinds = [k for k in range(len(problem.study.conditions)) if np.sum(groups == k) > 1]
+    groups, kinds = _repeated(problem)
     if len(kinds) < 2:
         return None
     speeds = [_loading_speed(problem.study.conditions[k]) for k in kinds]
     slow, fast = (kinds[int(place)] for place in (np.argmin(speeds), np.argmax(speeds)))
     mean = {k: float(shift[groups == k].mean()) for k in (slow, fast)}
-    error = _scatter(shift, groups) * np.sqrt(sum(1.0 / np.sum(groups == k) for k in (slow, fast)))
+    sure = criteria.TOGETHER * _error(shift, groups, (slow, fast))
     if max(speeds) <= criteria.OTHER_SPEED * min(speeds):
         return None
-    if abs(mean[slow] - mean[fast]) <= max(criteria.TOGETHER * error, criteria.NO_LATER):
+    if abs(mean[slow] - mean[fast]) <= max(sure, criteria.NO_LATER):
         return None
     return (min(speeds), mean[slow]), (max(speeds), mean[fast])
 
 
-def _scatter(shift: Array, groups: Array) -> float:
-    """Standard deviation within conditions; endless where none has two trials."""
-    left = shift - np.array([shift[groups == group].mean() for group in groups])
-    freedom = shift.size - np.unique(groups).size
+def _repeated(problem: TrialsProblem) -> tuple[Array, list[int]]:
+    """(R,) condition of each trial, and the conditions that have two and more."""
+    groups = np.array([trial.condition for trial in problem.trials])
+    return groups, [k for k in range(len(problem.study.conditions)) if np.sum(groups == k) > 1]
+
+
+def _error(values: Array, groups: Array, pair: tuple[int, int]) -> float:
+    """Standard error of the difference of two conditions' means of values (R,)."""
+    return _scatter(values, groups) * float(np.sqrt(sum(1.0 / np.sum(groups == k) for k in pair)))
+
+
+def _scatter(values: Array, groups: Array) -> float:
+    """Standard deviation of values (R,) within conditions; endless where none has two trials."""
+    left = values - np.array([values[groups == group].mean() for group in groups])
+    freedom = values.size - np.unique(groups).size
     return float(np.sqrt(np.sum(left**2) / freedom)) if freedom > 0 else np.inf
 
 
@@ -194,15 +204,13 @@ def _gains_in_order(problem: TrialsProblem, gain: Array) -> tuple[str, ...]:
 
 def _gains_between(problem: TrialsProblem, gain: Array) -> tuple[str, ...]:
     """A warning of log gains (R,) that part conditions: a ratio of stiffness, which is no scatter of trials."""
-    groups = np.array([trial.condition for trial in problem.trials])
-    kinds = [k for k in range(len(problem.study.conditions)) if np.sum(groups == k) > 1]
+    groups, kinds = _repeated(problem)
     if len(kinds) < 2:
         return ()
     mean = {k: float(gain[groups == k].mean()) for k in kinds}
     least, most = min(kinds, key=mean.__getitem__), max(kinds, key=mean.__getitem__)
     apart = mean[most] - mean[least]
-    error = _scatter(gain, groups) * np.sqrt(sum(1.0 / np.sum(groups == k) for k in (least, most)))
-    if apart <= max(criteria.TOGETHER * error, np.log1p(criteria.PARTED)):
+    if apart <= max(criteria.TOGETHER * _error(gain, groups, (least, most)), np.log1p(criteria.PARTED)):
         return ()
     stiff, soft = (problem.study.conditions[k].name for k in (most, least))
     return (

@@ -165,7 +165,7 @@ def test_columns_that_are_told_are_read_and_stand_in_the_file(tmp_path):
     depth = np.linspace(0.0, 2.0, 50)
     table = np.column_stack([np.linspace(0.0, 2.0, 50), depth, 40.0 * depth])
     for number in range(3):
-        header = "Time (s),Depth (mm),Balance"
+        header = "Time (s),Depth (mm),Balance"  # of no instrument
         np.savetxt(tmp_path / f"t{number}.csv", table, delimiter=",", header=header, comments="")
     with pytest.raises(InputError, match=r'name it, --set import\.force="COLUMN:N"'):
         propose(tmp_path)
@@ -180,3 +180,11 @@ def test_what_is_no_column_is_not_told_of_a_proposal(folder):
         propose(folder, {"tool.radius": "3 mm"})
     with pytest.raises(InputError, match=r"import\.forc: this key is not known; did you mean force\?"):
         propose(folder, {"import.forc": "Load:N"})
+
+
+def test_a_scale_reads_a_force(tmp_path):
+    depth = np.linspace(0.0, 2.0, 50)
+    table = np.column_stack([np.linspace(0.0, 2.0, 50), depth, 40.0 * depth])
+    np.savetxt(tmp_path / "t.csv", table, delimiter=",", header="Time (s),Depth (mm),Weight (grams)", comments="")
+    write_proposal(tmp_path, propose(tmp_path))
+    assert load_session(tmp_path).trials[0].table.force.max() == pytest.approx(80.0 * 9.80665e-3)
