@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -22,6 +22,8 @@ from benchmark.response.trials_model import TrialColumns, TrialsEvaluation
 BETWEEN_TRIALS = "t interval of the mean logarithm, the trial as the unit"
 LEAST_FREEDOM = 2.0
 """Degrees of freedom of a single trial count as no fewer."""
+NORMAL_95 = 1.96
+"""Standard errors on either side of a normal 95 % interval."""
 ONE_TRIAL = (
     "a single trial: interval from its own residual, effective sample size corrected for first-order "
     "autocorrelation; it says nothing about the scatter between trials"
@@ -91,6 +93,28 @@ def pool(trials: Sequence[TrialFit]) -> PooledStiffness:
         (math.exp(mean - ahead), math.exp(mean + ahead)),
         len(logs),
         BETWEEN_TRIALS,
+    )
+
+
+def widened(found: PooledStiffness, shares: Mapping[str, float]) -> PooledStiffness:
+    """The same stiffness with the interval that independent further causes leave of it.
+
+    Parameters
+    ----------
+    found : PooledStiffness
+    shares : mapping of str to float
+        By which standard uncertainty, a share of the stiffness, each cause moves it.
+    """
+    further = NORMAL_95 * math.sqrt(math.fsum(share**2 for share in shares.values()))
+    low = math.exp(-math.hypot(math.log(found.value / found.ci95_low), further))
+    high = math.exp(math.hypot(math.log(found.ci95_high / found.value), further))
+    by = ", ".join(f"{key} {100 * share:.2g} %" for key, share in sorted(shares.items(), key=lambda one: -one[1]))
+    return replace(
+        found,
+        ci95_low=found.value * low,
+        ci95_high=found.value * high,
+        next_trial=None,
+        method=f"the trials' scatter, and standard uncertainties of the set-up as told: {by}",
     )
 
 

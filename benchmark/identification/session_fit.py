@@ -45,6 +45,9 @@ class SessionFit:
     parameters : tuple of FittedParameter
         Rows of `fitted_parameters.csv`.
     notes, warnings : tuple of str
+    with_setup : PooledStiffness or None
+        The same of a fit in which what was told of the set-up may move within its uncertainty; None where none was
+        made.
     """
 
     trials: tuple[TrialFit, ...]
@@ -54,6 +57,7 @@ class SessionFit:
     parameters: tuple[FittedParameter, ...]
     notes: tuple[str, ...]
     warnings: tuple[str, ...]
+    with_setup: PooledStiffness | None = None
 
     @property
     def conditions_fold(self) -> float | None:
@@ -84,6 +88,7 @@ class SessionFit:
         return {
             "schema": SCHEMA,
             "stiffness_factor": self.stiffness.to_dict(),
+            "with_setup_uncertain": None if self.with_setup is None else self.with_setup.to_dict(),
             "joint_stiffness_factor": None if self.joint is None else self.joint.to_dict(),
             "conditions_differ_p": conditions_p(self.trials),
             "parameters": [parameter.to_dict() for parameter in self.parameters],

@@ -21,7 +21,7 @@ from benchmark.runs.fitted_session import FittedSession, fit_trials
 from benchmark.runs.options import Listener
 from benchmark.runs.output.destination import claimed, destination
 from benchmark.runs.output.document import describe_environment
-from benchmark.runs.parameters_run import ParameterWish, answer_of, common_factor_warnings
+from benchmark.runs.parameters_run import ParameterWish, answer_of, common_factor_warnings, with_setup
 from benchmark.runs.report import fit_page
 from benchmark.runs.report.parameters_page import parameters_page
 from benchmark.runs.report.values import fit_headline, sentence, sheet_headline
@@ -171,8 +171,10 @@ def carry_out_fit(request: FitRequest, listener: Listener) -> FitRecord:
     found = fit_trials(request.session, request.specimen, request.settings, listener, repair=repair, check=check)
     table = request.wish.table(found.session.fit)
     if not table.free:
-        said = common_factor_warnings(found, listener) if repair is None else ()
-        return FitRecord(replace(found, warnings=(*said, *found.warnings)), repair, request.seed)
+        if repair is None:
+            said = common_factor_warnings(found, listener)
+            found = with_setup(replace(found, warnings=(*said, *found.warnings)), table.exact, listener)
+        return FitRecord(found, repair, request.seed)
     others = [fit_trials(path, request.specimen, request.settings, listener) for path in request.wish.sessions]
     answer = answer_of((found, *others), request.wish, table, listener)
     exported, said = exports(answer.identified, request.export)

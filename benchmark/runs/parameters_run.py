@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+
+import numpy as np
 
 from benchmark.errors import InputError, SolverError
 from benchmark.experiments.optimal_design import designed
@@ -22,6 +25,7 @@ from benchmark.identification.parameters.law_shapes import law_shape
 from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit, begun, fit_layers
 from benchmark.identification.parameters.other_answers import other_answers
 from benchmark.identification.parameters.posterior import posterior
+from benchmark.identification.parameters.pressed_set_ups import press_all
 from benchmark.identification.parameters.session_problem import (
     Assembled,
     FittedBase,
@@ -29,6 +33,7 @@ from benchmark.identification.parameters.session_problem import (
     check_exact,
     check_wish,
 )
+from benchmark.identification.pooling import widened
 from benchmark.response.least_squares import least_squares
 from benchmark.response.ramp_table import EVERYWHERE
 from benchmark.runs.fitted_session import FittedSession
@@ -107,10 +112,10 @@ class ParameterWish:
             for law in self.laws or (table.law,):
                 parameters_of(key, setup, law)
         file = session.folder / SESSION_FILE if self.file is None else self.file
-        if not table.free:
+        if table.free:
+            self._check_told(table, setup, file)
+        else:
             self._refuse_unused(table, file)
-            return
-        self._check_told(table, setup, file)
         if not self.sessions:  # of several, the others' layers are known later
             setups = [(session.specimen, one.tool, one.support) for one in session.trials]
             check_exact(table.exact, setups, f"{file}: [fit] exact" if self.exact is None else "--exact")
@@ -118,7 +123,6 @@ class ParameterWish:
     def _refuse_unused(self, table: FitTable, file: Path) -> None:
         """Refuse what a fit is told that has no free parameters, since it would be passed over."""
         told = {
-            f"{file}: [fit] exact" if self.exact is None else "--exact": table.exact,
             f"{file}: [fit] per_specimen": table.per_specimen,
             f"{file}: [fit.fixed]": table.fixed,
             f"{file}: [fit.bounds]": table.bounds,
@@ -224,6 +228,34 @@ def _surrogate_fit(found: FittedSession, keys: tuple[str, ...]) -> LayerFit:
     """A fit on the surrogates of the first fit, without uncertainties of the set-up."""
     made = assembled([_base(found)], FitTable(free=keys, exact=("all",)))
     return fit_layers(begun(made.problem, made.touches, made.zeros), rounds=1)
+
+
+def with_setup(found: FittedSession, exact: tuple[str, ...], listener: Listener) -> FittedSession:
+    """The fit of one stiffness to force, with the interval that the uncertainty of the set-up as told leaves of it.
+
+    Told are the tool's radius and edge, and each layer's thickness and Poisson's ratio, each with its stated or a usual
+    uncertainty where it is not `exact`. By linear propagation (JCGM 100:2008, 5.1.2): a force that is larger by a share
+    at the same depth makes the stiffness less by that share, over the press by least squares.
+    """
+    session = found.session
+    if found.filmed is not None and found.filmed.sheet is not None:
+        return found
+    listener.say(f"{session.name}: how far may the set-up as told move the stiffness?")
+    try:
+        made = assembled([_base(found)], FitTable(free=(COMMON,), exact=exact))
+        presses = press_all(made.problem, made.problem.start)
+    except (InputError, SolverError) as error:
+        said = f"how far the set-up as told may move the stiffness was not worked out: {error}"
+        return replace(found, warnings=(*found.warnings, said))
+    moved = np.array([one.by @ one.force**2 / (one.force @ one.force) for one in presses])
+    moved = moved[[trial.press for trial in made.problem.trials]].mean(axis=0)
+    shares: dict[str, float] = {}
+    for one, share in zip(made.problem.parameters, moved, strict=False):  # the model's own errors follow
+        if one.told and one.prior is not None:
+            shares[one.key] = math.hypot(shares.get(one.key, 0.0), share * one.prior.deviation)
+    wide = widened(found.fit.stiffness, shares)
+    notes = (*found.fit.notes, f"the wider interval has {wide.method}")
+    return replace(found, fit=replace(found.fit, with_setup=wide, notes=notes))
 
 
 def _misfit(common: LayerFit, free: LayerFit) -> float:

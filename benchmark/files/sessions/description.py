@@ -235,6 +235,16 @@ def setups(file: SessionFile, conditions: Iterable[str], source: Source) -> dict
     }
 
 
+def assumed_edges(file: SessionFile, conditions: Mapping[str, Setup]) -> frozenset[float]:
+    """Edge radii, m, that no one gave; `conditions` are the set-ups in use."""
+    tools = [_given(file, file.conditions.get(name, ConditionKeys()))[0] for name in conditions]
+    return frozenset(
+        setup.tool.edge_radius
+        for setup, tool in zip(conditions.values(), tools, strict=True)
+        if setup.tool.edge_radius is not None and "edge_radius" not in tool
+    )
+
+
 def assumptions(file: SessionFile, conditions: Mapping[str, Setup]) -> list[str]:
     """One sentence for each key of tool and support that no one gave; `conditions` are the set-ups in use."""
     tools = [_given(file, file.conditions.get(name, ConditionKeys())) for name in conditions]
@@ -243,15 +253,10 @@ def assumptions(file: SessionFile, conditions: Mapping[str, Setup]) -> list[str]
         for key in _ASSUMED
         if any(key not in tool and not (key == "radius" and "specimen_radius" in support) for tool, support in tools)
     ]
-    edges = {
-        setup.tool.edge_radius
-        for setup, (tool, _) in zip(conditions.values(), tools, strict=True)
-        if setup.tool.edge_radius is not None and "edge_radius" not in tool
-    }
     said += [
         f"the tool's edge is not given: assumed rounded by {1e3 * edge:g} mm, a tenth of its radius; "
         f'state tool.edge_radius = "{1e3 * edge:g} mm" or the measured one'
-        for edge in sorted(edges)
+        for edge in sorted(assumed_edges(file, conditions))
     ]
     if any("kind" not in support for _, support in tools):
         said.append(

@@ -27,7 +27,7 @@ from benchmark.files.overrides import layer_path, put_in, unknown_key
 from benchmark.files.schema import FileModel, known_keys, validated
 from benchmark.files.sessions.column_labels import check_labels
 from benchmark.files.sessions.depth_counts import even_depths
-from benchmark.files.sessions.description import Camera, SessionFile, assumptions, base_setup, setups
+from benchmark.files.sessions.description import Camera, SessionFile, assumed_edges, assumptions, base_setup, setups
 from benchmark.files.sessions.doubts import doubtful_forces, doubtful_times
 from benchmark.files.sessions.film_clock import on_trials_clock
 from benchmark.files.sessions.recordings import (
@@ -119,6 +119,7 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
         settings=settings,
         fingerprint=fingerprint(source.folder, files),
         fit=file.fit,
+        assumed_edges=assumed_edges(file, setups(file, dict.fromkeys(each.condition for each in trials), source)),
     )
     sizes = _checked_presses(session)
     return replace(session, warnings=(*session.warnings, *sizes))

@@ -159,6 +159,8 @@ class Session:
         What its `[fit]` table says of a fit of parameters.
     shown : tuple of str
         How files of other instruments were read, for the first lines of a run.
+    assumed_edges : frozenset of float
+        Edge radii of tools, m, that no one gave.
     """
 
     name: str
@@ -176,6 +178,7 @@ class Session:
     fingerprint: str
     fit: FitTable = field(default_factory=FitTable)
     shown: tuple[str, ...] = ()
+    assumed_edges: frozenset[float] = frozenset()
 
     @property
     def conditions(self) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmark.identification.parameters.free_parameters import COMMON, RELAXATION, SHARE, Parameter
+from benchmark.identification.parameters.free_parameters import COMMON, RELAXATION, SHARE, Parameter, start_vector
 from benchmark.identification.parameters.layer_model import Fading, FitTrial
 from benchmark.identification.parameters.presses.marker_rings import TRUST
 from benchmark.identification.parameters.presses.model_error import COUNT, ModelError, model_error
@@ -67,6 +67,11 @@ class FitProblem:
     def size(self) -> int:
         """Coordinates of the fit: parameters, and the model's own error in each press."""
         return len(self.parameters) + self.block * len(self.presses)
+
+    @property
+    def start(self) -> Array:
+        """(size,) coordinates where a fit begins."""
+        return np.concatenate([start_vector(self.parameters), np.zeros(self.size - len(self.parameters))])
 
     @property
     def rings(self) -> int:

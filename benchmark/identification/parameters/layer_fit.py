@@ -22,7 +22,6 @@ from benchmark.identification.parameters.fit_problem import (
     priors,
     round_limits,
 )
-from benchmark.identification.parameters.free_parameters import start_vector
 from benchmark.identification.parameters.layer_model import GAIN, FilmNoise, ForceTable, LayerModel
 from benchmark.identification.parameters.mixed_effects import SpreadParts, renoised, spread_parts
 from benchmark.identification.parameters.pressed_set_ups import disagreement, followed, joined, pressed_anew
@@ -154,7 +153,7 @@ def begun(problem: FitProblem, touches: Array, zeros: Array) -> LayerFit:
     SolverError
         The model does not follow the presses.
     """
-    start = np.concatenate([start_vector(problem.parameters), np.zeros(problem.size - len(problem.parameters))])
+    start = problem.start
     problem, surrogates = followed(problem, start)
     model = _first_model(problem, surrogates, start)
     nuisance = np.column_stack([1e3 * touches, zeros, np.zeros((len(problem.trials), 1 + model.rings))])

@@ -13,6 +13,7 @@ from benchmark.errors import InputError
 from benchmark.files import Session, Tool
 from benchmark.files.schema import nearest
 from benchmark.files.sessions.fit_table import FitTable
+from benchmark.files.tool import TOUCHING
 from benchmark.files.units import QuantityError, parse_quantity, relative_uncertainty, split_uncertainty
 from benchmark.identification.parameters.fit_problem import FitProblem
 from benchmark.identification.parameters.free_parameters import (
@@ -57,6 +58,9 @@ UNSTATED = {
 
 A tool's radius to 1 %, a thickness to 2 to 5 %, a layer's modulus to 20 to 50 %. First choice; `exact` takes it away.
 """
+UNSTATED_EDGE = 1.0 / math.sqrt(3.0)
+"""Relative standard uncertainty of an edge that nobody told and that is assumed: anything between a sharp one and twice
+the assumed one, as likely each (a rectangular distribution, JCGM 100:2008, 4.3.7)."""
 UNSTATED_POISSON = 0.5
 """Standard uncertainty of log(1 - 2 nu) where none is told: 0.45 to 0.488 round 0.475."""
 
@@ -320,29 +324,44 @@ def _told(presses: Sequence[Press], wish: FitTable, free: set[str]) -> tuple[Par
     for press in presses:
         stated = press.session.uncertainties(*press.setup[1:])
         for key in _tellable(press.setup, free):
-            if key in taken:
+            if key in taken or (key == EDGE_RADIUS and key not in stated and not _edge_assumed(press)):
                 continue
-            tool, specimen = (press.setup[1], None) if key == RADIUS else (None, press.specimen)
+            of_tool = key in (RADIUS, EDGE_RADIUS)
+            tool, specimen = (press.setup[1], None) if of_tool else (None, press.specimen)
             value = value_of(key, press.setup)
             share = stated.get(key)
             spread = _deviation(key, value, share) if share is not None else _unstated(key)
-            source = f"told to {100 * share:.2g} %" if share is not None else "told without its uncertainty"
+            source = _told_by(key, share)
             one = parameters_of(key, press.setup, None)[0]
             one = replace(one, prior=Prior(value, spread, source), told=True, specimen=specimen, tool=tool)
-            out.setdefault((key, tool if key == RADIUS else specimen), one)
+            out.setdefault((key, tool if of_tool else specimen), one)
     return tuple(out.values())
+
+
+def _edge_assumed(press: Press) -> bool:
+    return press.setup[1].edge_radius in press.session.assumed_edges
+
+
+def _told_by(key: str, share: float | None) -> str:
+    if share is not None:
+        return f"told to {100 * share:.2g} %"
+    return "assumed" if key == EDGE_RADIUS else "told without its uncertainty"
 
 
 def _unstated(key: str) -> float:
     if key.endswith(POISSON):
         return UNSTATED_POISSON
+    if key == EDGE_RADIUS:
+        return UNSTATED_EDGE
     return UNSTATED.get(key) or UNSTATED[key.rpartition(".")[2]]
 
 
 def _tellable(setup: SetUp, free: set[str]) -> Iterator[str]:
     """Keys of a set-up that were told and move the force."""
-    tissue, _, support = setup
+    tissue, tool, support = setup
     yield "support.specimen_radius" if support.cylinder else RADIUS
+    if tool.contact in TOUCHING and tool.edge_radius is not None:
+        yield EDGE_RADIUS
     if support.kind == "hole":
         yield "support.hole_radius"
     for layer in tissue.layers:

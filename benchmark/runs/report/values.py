@@ -86,13 +86,14 @@ def fit_headline(fit: SessionFit) -> str:
     rms = float(np.median([trial.residual_percent for trial in fit.trials]))
     moduli = [each for each in fit.parameters if each.name.endswith(".youngs_modulus") and each.value is not None]
     what = (
-        f"the specimen is {found.value:.4g} times as stiff as told (95 % {found.ci95_low:.4g} to {found.ci95_high:.4g})"
+        f"the specimen is {found.value:.4g} times as stiff as told (95 % {found.ci95_low:.4g} to {found.ci95_high:.4g}"
+        f"{_with_setup(fit, found.value)})"
     )
     if len(moduli) == 1 and moduli[0].ci95_low is not None and moduli[0].ci95_high is not None:
         (one,) = moduli
         what = (
-            f"Young's modulus is {one.value:.4g} {one.unit} (95 % {one.ci95_low:.4g} to {one.ci95_high:.4g}), "
-            f"{found.value:.4g} times the value before the fit"
+            f"Young's modulus is {one.value:.4g} {one.unit} (95 % {one.ci95_low:.4g} to {one.ci95_high:.4g}"
+            f"{_with_setup(fit, one.value)}), {found.value:.4g} times the value before the fit"
         )
     fold = fit.conditions_fold
     apart = "" if fold is None else f"; its conditions differ {fold:.3g}-fold, which one stiffness does not follow"
@@ -100,6 +101,16 @@ def fit_headline(fit: SessionFit) -> str:
         f"fitted to {counted(count, 'trial')}: {what}; the elastic law leaves {rms:.2g} % of the "
         f"peak force (median over trials of the root mean square){apart}"
     )
+
+
+def _with_setup(fit: SessionFit, value: float | None) -> str:
+    """The interval of a value where the set-up may be other than told; nothing where that was not worked out."""
+    wide = fit.with_setup
+    if wide is None or value is None:
+        return ""
+    unit = value / fit.stiffness.value
+    low, high = (f"{unit * end:.4g}" for end in (wide.ci95_low, wide.ci95_high))
+    return f" by the trials' scatter, {low} to {high} with the uncertainty of the set-up as told"
 
 
 def sentence(text: str) -> str:

@@ -5,7 +5,7 @@ import pytest
 import scipy
 
 from benchmark.identification import FittingError, fit_session, fit_trial
-from benchmark.identification.pooling import fit_jointly, fold_between, mean_interval, pool
+from benchmark.identification.pooling import fit_jointly, fold_between, mean_interval, pool, widened
 from benchmark.identification.trial_fit import prepare_rows
 
 
@@ -109,3 +109,15 @@ def test_the_fold_between_conditions_is_told_beyond_chance_and_scatter():
     assert fold_between([40.0 * soft, 40.0 * soft + 1.0]) is None
     assert fold_between([[0.0], [2.0]]) is None
     assert fold_between([soft]) is None
+
+
+def test_further_causes_widen_an_interval_and_leave_the_value(trial):
+    pooled = pool([fit_trial(trial(str(n), factor=factor)) for n, factor in enumerate((1.0, 1.1, 1.2))])
+    same, wide = widened(pooled, {"thickness": 0.0}), widened(pooled, {"thickness": 0.03, "radius": 0.04})
+    assert (same.ci95_low, same.ci95_high) == pytest.approx((pooled.ci95_low, pooled.ci95_high))
+    assert wide.value == pooled.value
+    half = math.hypot(math.log(pooled.ci95_high / pooled.value), 1.96 * 0.05)
+    assert math.log(wide.ci95_high / wide.value) == pytest.approx(half)
+    assert math.log(wide.value / wide.ci95_low) == pytest.approx(half)
+    assert "radius 4 %, thickness 3 %" in wide.method
+    assert wide.next_trial is None

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -101,6 +102,58 @@ def test_a_stiffness_that_still_moves_with_effects_in_the_fit_is_not_settled(mon
     monkeypatch.setattr(fitted_session, "fit_with_effects", lambda *_: made)
     repair, told = SimpleNamespace(slugs=("backlash",), name="model"), SimpleNamespace(warnings=(), followed={})
     assert not FitRecord(fitted_session._fitted_with(repair, told, (), told), repair, 0).settled
+
+
+def plainly(session, out, **settings):
+    """fit.json of a fit of one stiffness under a flat tool that slides, whose edge nobody told."""
+    told = {"fem.mesh": "coarse", "tool.contact": "rigid_frictionless", **settings}
+    fit_to_folder(FitRequest(session, settings=told, wish=ParameterWish(free=())), out, Unheard())
+    return json.loads((out / "fit.json").read_text())
+
+
+def trusting(session, *keys):
+    text = (session / "session.toml").read_text()
+    (session / "session.toml").write_text(text.replace('exact = ["all"]', f"exact = {json.dumps(keys)}"))
+
+
+THICKNESS, POISSON = "silicone.thickness", "silicone.poisson_ratio"
+
+
+@pytest.mark.parametrize(
+    ("trusted", "settings", "share"),
+    [
+        (("tool.edge_radius", THICKNESS, POISSON), {"tool.radius": "5.05 mm", "tool.edge_radius": "0.5 mm"}, 0.01),
+        (("tool.radius", THICKNESS, POISSON), {"tool.edge_radius": "0.55 mm"}, 0.1 * 3.0**0.5),
+        (("tool.radius", "tool.edge_radius", POISSON), {THICKNESS: "12.42 mm"}, 0.035),
+    ],
+)
+def test_the_wider_interval_is_what_fits_with_another_set_up_say(session, tmp_path, trusted, settings, share) -> None:
+    trusting(session, *trusted)
+    plain, moved = plainly(session, tmp_path / "plain"), plainly(session, tmp_path / "moved", **settings)
+    scatter, wide = plain["stiffness_factor"], plain["with_setup_uncertain"]
+    value = scatter["value"]
+    assert wide["value"] == value
+    halves = [math.log(one["ci95"][1] / value) / 1.96 for one in (wide, scatter)]
+    own = abs(math.log(moved["stiffness_factor"]["value"] / value))
+    unit = {0.01: 1.0, 0.035: 1.0}.get(share, 1.0 / share)
+    assert math.sqrt(halves[0] ** 2 - halves[1] ** 2) == pytest.approx(own * unit, rel=0.15)
+
+
+def test_what_is_exact_leaves_the_scatter_of_the_trials_alone(session, tmp_path) -> None:
+    found = plainly(session, tmp_path / "out")
+    assert found["with_setup_uncertain"]["ci95"] == pytest.approx(found["stiffness_factor"]["ci95"])
+
+
+def test_an_edge_that_nobody_told_is_uncertain_and_one_that_was_told_is_not(session, tmp_path) -> None:
+    trusting(session)
+    assumed = plainly(session, tmp_path / "assumed")["with_setup_uncertain"]
+    told = plainly(session, tmp_path / "told", **{"tool.edge_radius": "0.5 mm"})["with_setup_uncertain"]
+    assert "tool.edge_radius" in assumed["interval"]
+    assert "tool.edge_radius" not in told["interval"]
+    assert assumed["ci95"][0] < told["ci95"][0]
+    stated = plainly(session, tmp_path / "stated", **{"tool.edge_radius": "0.5 mm +/- 0.1 mm"})["with_setup_uncertain"]
+    assert "tool.edge_radius" in stated["interval"]
+    assert assumed["ci95"][1] > stated["ci95"][1] > told["ci95"][1]
 
 
 def test_what_is_said_takes_the_place_of_the_sessions_table() -> None:
@@ -204,6 +257,8 @@ def test_a_mistyped_key_of_what_is_exact_is_refused(session, tmp_path, nothing_c
         fit(session, tmp_path / "out")
     with pytest.raises(InputError, match=r"^--exact tool.radios: nothing of that name .* did you mean tool.radius"):
         fit(session, tmp_path / "out", ParameterWish(exact=("tool.radios",)))
+    with pytest.raises(InputError, match=r"^--exact tool.radios: nothing of that name"):
+        fit(session, tmp_path / "out", ParameterWish(free=(), exact=("tool.radios",)))
     ParameterWish(exact=("tool.radius", "silicone.poisson_ratio", "all")).check(load_session(session))
     both = [SimpleNamespace(session=load_session(session))] * 2  # of several sessions the keys are known later
     with pytest.raises(InputError, match=r"^\[fit\] exact silicone.thicknes: nothing of that name"):
@@ -213,7 +268,6 @@ def test_a_mistyped_key_of_what_is_exact_is_refused(session, tmp_path, nothing_c
 @pytest.mark.parametrize(
     ("table", "says"),
     [
-        ('exact = ["tool.radius"]', r"\[fit\] exact tool.radius"),
         ('[fit.fixed]\n"silicone.poisson_ratio" = 0.48', r"\[fit.fixed\] silicone.poisson_ratio"),
         ('[fit.bounds]\n"tool.radius" = ["4 mm", "6 mm"]', r"\[fit.bounds\] tool.radius"),
         ('[fit.priors]\n"tool.radius" = { value = "5 mm +/- 5 %", source = "x" }', r"\[fit.priors\] tool.radius"),
@@ -227,9 +281,6 @@ def test_what_only_a_fit_of_parameters_uses_is_refused_without_any(session, tmp_
     file.write_text(text.replace(free, f"{table}\n"))
     with pytest.raises(InputError, match=rf"^{file}: {says}: without free parameters this is of no use; give free"):
         fit(session, tmp_path / "out")
-    file.write_text(text.replace(f"[fit]\n{free}", ""))
-    with pytest.raises(InputError, match=r"^--exact all: without free parameters"):
-        fit(session, tmp_path / "out", ParameterWish(exact=("all",)))
 
 
 MODEL = """schema = 1
