@@ -19,7 +19,7 @@ from benchmark.errors import InputError
 from benchmark.files.loading import Overrides
 from benchmark.files.schema import validated
 from benchmark.files.sessions.description import SessionFile
-from benchmark.files.sessions.recordings import Recording, read_recordings, told_heights, with_headers
+from benchmark.files.sessions.recordings import Recording, other_heights, read_recordings, told_heights, with_headers
 from benchmark.files.sessions.session_folder import SESSION_FILE, inside, session_table, unclosed_recordings
 from benchmark.files.sessions.session_loading import assumed_specimen
 from benchmark.files.sessions.trials import read_markers
@@ -128,7 +128,8 @@ def propose(folder: Path, told: Overrides = NOTHING) -> Proposal:
     if not _holds(folder / SPECIMEN_FILE, body):
         _refuse_existing(folder / SPECIMEN_FILE)
     texts = {SPECIMEN_FILE: body, SESSION_FILE: "\n".join([*head, *trials]) + "\n"}
-    return Proposal(texts, to_say, (*read.aside, *unclosed_recordings(source)))
+    heights = other_heights(resolved, read.trials, specimen.thickness)
+    return Proposal(texts, to_say, (*heights, *read.aside, *unclosed_recordings(source)))
 
 
 def _importing(told: Overrides) -> dict[str, str]:

@@ -40,6 +40,8 @@ NOTES = (".txt", ".dat", ".asc", ".tab", ".tsv")
 """Endings of text that need not be a trial: without rows of numbers it is left aside where nobody listed it."""
 
 
+ONE_HEIGHT = 1.1
+"""Ratio of heights up to which they may be of one specimen: what a lab calls equal specimens."""
 SHALLOWEST = 25e-6
 """A session pressed less deep (m) has no tool of the assumed 5 mm radius, 200 times as wide: it is asked for."""
 
@@ -359,6 +361,31 @@ def told_heights(file: SessionFile, trials: Sequence[Recording]) -> tuple[list[f
         return [file.import_.height], "import.height"
     heights = [trial.header.height for trial in trials if trial.header.height is not None]
     return heights, "median height in the files' headers"
+
+
+def other_heights(file: SessionFile, trials: Sequence[Recording], thickness: float) -> list[str]:
+    """A warning where files' headers tell of specimens that are other than the session's one is thick, m.
+
+    None of a half-space, nor where the session tells the height.
+    """
+    if file.support.get("kind") == "half_space" or file.import_.height is not None:
+        return []
+    told = [(height, Path(each.table.source).name) for each in trials if (height := each.header.height) is not None]
+    by_height: dict[float, list[str]] = {}
+    for height, name in sorted(told):
+        by_height.setdefault(height, []).append(name)
+    if all(1.0 / ONE_HEIGHT <= each / thickness <= ONE_HEIGHT for each in by_height):
+        return []
+    more = {height: f" and {len(names) - 1} more" if len(names) > 1 else "" for height, names in by_height.items()}
+    groups = [f"{1e3 * height:.4g} mm ({names[0]}{more[height]})" for height, names in by_height.items()]
+    cure = (
+        "a session has one specimen, and stiffness goes with its height: make a folder and a session of each height, "
+        "and fit them together by fit FOLDER FOLDER --free KEY"
+        if len(by_height) > 1
+        else "state the layers' thickness as it is, or leave the specimen out for that of the headers"
+    )
+    said = f"the files' headers tell heights of {', '.join(groups)}, the specimen is {1e3 * thickness:.4g} mm thick"
+    return [f"{said}: {cure}"]
 
 
 def recorded_names(trials: Sequence[Recording], names: Sequence[str]) -> list[str]:

@@ -33,6 +33,7 @@ from benchmark.files.sessions.film_clock import on_trials_clock
 from benchmark.files.sessions.recordings import (
     Recording,
     check_tool_is_told,
+    other_heights,
     read_recordings,
     recorded_names,
     told_heights,
@@ -102,7 +103,7 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
     base = base_setup(file, source)
     files = [*_files(trials), *_other_files(file, source, tissue_file)]
     listed = [*paths_of, *(path for path in (*marker_paths, *film_paths) if path is not None)]
-    beside = said_of_folder(source, listed, tissue_file, inner)
+    beside = [*other_heights(file, read.trials, tissue.thickness), *said_of_folder(source, listed, tissue_file, inner)]
     session = Session(
         name=file.name,
         folder=source.folder,

@@ -70,3 +70,28 @@ def test_the_height_that_is_told_is_the_specimens(columns, tmp_path):
     assert session.specimen.thickness == pytest.approx(12e-3)
     assert session.trials[0].table.depth.max() == pytest.approx(2.4e-3, rel=0.01)
     assert any("12 mm (import.height)" in warning for warning in session.warnings)
+
+
+def cylinder(folder, name, height):
+    rows = [f"{0.1 * k:.1f},{0.01 * k * height:.4f},{0.4 * k:.3f}" for k in range(30)]
+    head = ["Specimen diameter (mm),20", f"Specimen height (mm),{height}", "Time (s),Extension (mm),Load (N)"]
+    (folder / f"{name}.csv").write_text("\n".join([*head, *rows]))
+
+
+def test_specimens_of_different_height_in_one_session_are_told_of(tmp_path):
+    """Their median stood for all: one silicone in cylinders of 8, 12 and 16 mm had 42 to 95 kPa."""
+    for name, height in (("a", 8), ("b", 12), ("c", 12), ("d", 16)):
+        cylinder(tmp_path, name, height)
+    says = "8 mm (a.csv), 12 mm (b.csv and 1 more), 16 mm (d.csv), the specimen is 12 mm thick: a session has one"
+    proposed = propose(tmp_path)
+    told, alone = {"import.height": "12 mm"}, {"specimen.thickness": "8.5 mm"}
+    for warnings in (load_session(tmp_path).warnings, proposed.warnings):
+        assert any(says in each for each in warnings)
+    assert not any("headers tell heights" in each for each in load_session(tmp_path, told).warnings)
+    one = load_session(tmp_path / "a.csv")
+    assert not any("headers tell heights" in each for each in one.warnings)
+    assert not any("headers tell heights" in each for each in load_session(tmp_path / "a.csv", alone).warnings)
+    other = load_session(tmp_path / "a.csv", {"specimen.thickness": "10 mm"}).warnings
+    assert any("8 mm (a.csv), the specimen is 10 mm thick: state" in each for each in other)
+    half_space = {"support.kind": "half_space", "tool.radius": "5 mm"}
+    assert not any("headers tell heights" in each for each in load_session(tmp_path, half_space).warnings)
