@@ -60,6 +60,8 @@ def _turned(trials: Sequence[tuple[str, TrialTable]]) -> str:
 
 SLOW_ROWS, SLOW_PRESS = 1.0, 5e-6
 """Seconds between rows, and m/s, beyond which times may be in ms: a press of 5 mm/s, or slower, sampled at 1 kHz."""
+NEAR_DEEPEST: Final = 0.95
+"""Of the largest depth, where a press has ended and a hold begins, whose noise reaches the largest depth anywhere."""
 
 
 def doubtful_times(names: Sequence[str], tables: Sequence[TrialTable]) -> list[str]:
@@ -67,7 +69,7 @@ def doubtful_times(names: Sequence[str], tables: Sequence[TrialTable]) -> list[s
     found = []
     for name, table in zip(names, tables, strict=True):
         step, lasts = float(np.median(np.diff(table.time))), float(np.ptp(table.time))
-        deepest = int(table.depth.argmax())
+        deepest = int(np.argmax(table.depth >= NEAR_DEEPEST * table.depth.max()))
         way = float(table.depth[deepest] - table.depth[: deepest + 1].min())
         if step >= SLOW_ROWS and way < SLOW_PRESS * (table.time[deepest] - table.time[0]):
             found.append(f"{name} ({step:.3g} s from row to row, {lasts:.4g} s in all)")

@@ -46,15 +46,20 @@ class Motion:
     @property
     def name(self) -> str:
         """Of the condition, in words that a path may hold."""
-        held = f"_held_{self.hold:.2g}s" if self.hold > 0.2 else ""
+        held = f"_held_{_plain(self.hold)}s" if self.hold > 0.2 else ""
         many = f"_{self.presses}_presses" if self.presses > 1 else ""
-        return f"{1e3 * self.speed:.2g}mm_s_to_{1e3 * self.depth:.2g}mm{held}{many}"
+        return f"{_plain(1e3 * self.speed)}mm_s_to_{_plain(1e3 * self.depth)}mm{held}{many}"
 
     def alike(self, other: Motion) -> bool:
         """Whether two trials are of one protocol."""
         pairs = ((self.speed, other.speed), (self.depth, other.depth), (self.hold, other.hold))
         near = all(abs(a - b) <= ALIKE * max(abs(a), abs(b)) + (0.1 if a is self.hold else 0.0) for a, b in pairs)
         return near and self.presses == other.presses
+
+
+def _plain(value: float) -> str:
+    """Two digits of a number, without an exponent where it is large: 397 is 400."""
+    return f"{float(f'{value:.2g}'):g}"
 
 
 def motion_of(table: TrialTable) -> Motion:

@@ -40,6 +40,14 @@ def test_a_press_upside_down_is_told():
     assert "-2 mm" in said
 
 
+def test_a_long_hold_whose_noise_is_deepest_at_its_end_is_no_slow_press():
+    """A relaxation of 400 s by a row a second was asked whether its times are milliseconds."""
+    time = np.arange(400.0)
+    depth = 4e-4 * np.interp(time, [0.0, 2.0], [0.0, 1.0])
+    depth[-1] += 1e-6
+    assert doubtful_times(["relaxation"], [TrialTable(time, depth, 1e3 * depth, {}, "a.csv", {})]) == []
+
+
 def test_times_in_milliseconds_are_asked_for():
     """A press of 5 s was one of an hour and a half, and its relaxation a thousand times as slow, without a word."""
     one = press()

@@ -9,7 +9,7 @@ import pytest
 from benchmark.cli.folders.shipped import session
 from benchmark.errors import InputError
 from benchmark.files import load_session
-from benchmark.files.sessions.proposal import SPECIMEN_FILE, motion_of, propose, write_proposal
+from benchmark.files.sessions.proposal import SPECIMEN_FILE, Motion, motion_of, propose, write_proposal
 from benchmark.files.shipped import shipped_sessions
 from tests.instruments import samples
 
@@ -48,6 +48,10 @@ def test_speed_depth_and_hold_are_measured(folder):
     assert motion.speed == pytest.approx(1e-3, rel=0.03)
     assert motion.depth == pytest.approx(2e-3, rel=0.02)
     assert motion.hold == pytest.approx(2.0, abs=0.1)
+
+
+def test_a_condition_is_named_without_exponents():
+    assert Motion(0.2, 4e-4, 397.0, 1).name == "200mm_s_to_0.4mm_held_400s"
 
 
 def write_tracks(path, rows, columns, spacing=8.0, order=1):
