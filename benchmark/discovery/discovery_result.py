@@ -167,6 +167,15 @@ class Place:
         return self.size if self.residual is None else self.residual
 
     @property
+    def largest_percent(self) -> float:
+        """Share of the channel's largest signal: of the residual, or of what the effects add where that is more.
+
+        A base bends towards the data and may leave little where an effect acts most.
+        """
+        added = abs(self.size / self.residual) if self.residual else 1.0
+        return abs(self.percent_of_signal) * max(1.0, added)
+
+    @property
     def added(self) -> float | None:
         """What the effects add to the simulation, N or m; None without effects."""
         return None if self.residual is None else self.size

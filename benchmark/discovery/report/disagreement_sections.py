@@ -8,7 +8,15 @@ import numpy as np
 
 from benchmark.discovery.discovery_result import PHASES, ChannelGap, Contrast, Place, Trace, channel_unit
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
-from benchmark.discovery.report.words import HELD_OUT, channel_name, phase_name, place_words, probability, sized
+from benchmark.discovery.report.words import (
+    HELD_OUT,
+    channel_name,
+    largest_place,
+    phase_name,
+    place_words,
+    probability,
+    sized,
+)
 from reports import Block, Bullets, Column, Download, Paragraph, Section, Subsection, Table
 from reports.figures import Disagreement, GapRow, RepairedTrace, gap_bars, repaired, where_map
 
@@ -100,7 +108,7 @@ def where_section(record: DiscoveryRecord) -> Section:
         f"Family-wise {probability(found.p)} for any disagreement, by sign flips of whole trials. "
         f"{len(found.where)} place{'s are' if len(found.where) > 1 else ' is'} significant on their own."
     )
-    largest = f" Largest: {place_words(found.where[0])}."
+    largest = f" Largest: {place_words(largest_place(found.where))}."
     blocks: list[Block] = [Paragraph(record.labels.get("where", text) + largest)]
     blocks += [where_map(cells, rows[:MOST_ROWS], list(map(phase_name, PHASES)))] if len(rows) <= MOST_ROWS else []
     return Section("Where", [*blocks, _where_table(record), *_size_table(record), *_contrasts(found.contrasts)])

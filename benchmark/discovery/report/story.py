@@ -8,7 +8,16 @@ from benchmark.discovery.discovery_result import Candidate, ChannelGap, Place, T
 from benchmark.discovery.report.disagreement_sections import representative, traced
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
 from benchmark.discovery.report.effect_sections import ADVICE, OF_A_RUN, trials_in_words
-from benchmark.discovery.report.words import channel_name, compared, depths, phase_name, probability, sized
+from benchmark.discovery.report.words import (
+    added_words,
+    channel_name,
+    compared,
+    depths,
+    largest_place,
+    phase_name,
+    probability,
+    sized,
+)
 from benchmark.physics.setup_entry import effect_name
 from reports import Story, StoryStep
 from reports.figures import repaired
@@ -57,13 +66,13 @@ def rms(residual: np.ndarray) -> float:
 def _where(record: DiscoveryRecord) -> StoryStep:
     found = record.found
     if not found.where:
-        text = "Nowhere beyond chance" if found.verdict == "no_discrepancy" else "Not tested"
+        text = "Not tested" if found.p is None else "Nowhere beyond chance"
         return StoryStep("Where", text, "" if found.p is None else f"{probability(found.p)} over all places.")
-    place = max(found.where, key=lambda each: abs(each.percent_of_signal))
+    place = largest_place(found.where)
     answer = f"{channel_name(place.channel)}, {phase_name(place.phase)}: {_signed(place)}, {compared(place)}"
     more = len(found.where) - 1
     others = f"; {more} more place{'s' * (more != 1)} below" if more else ""
-    return StoryStep("Where", answer, f"{_range(place)}, {probability(place.p)}{others}.")
+    return StoryStep("Where", answer, f"{_range(place)}, {probability(place.p)}{added_words(place)}{others}.")
 
 
 def _signed(place: Place) -> str:

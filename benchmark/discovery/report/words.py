@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from benchmark.discovery.discovery_result import Place, channel_unit
 from reports.formatting import format_number
@@ -55,8 +56,13 @@ def place_words(place: Place) -> str:
         f"{channel_name(place.channel)}, {phase_name(place.phase)}{cycle} ({place.condition}), {depths(place)}: "
         f"{sized(place.channel, abs(place.missed))} {compared(place)}, "
         f"{format_number(abs(place.percent_of_signal), 2)} % of the signal, {probability(place.p)}"
-        f"{_added(place)}"
+        f"{added_words(place)}"
     )
+
+
+def largest_place(places: Sequence[Place]) -> Place:
+    """The place where residual, or what the effects add, is the largest share of its channel's signal."""
+    return max(places, key=lambda place: place.largest_percent)
 
 
 def depths(place: Place) -> str:
@@ -73,7 +79,7 @@ def compared(place: Place) -> str:
     return f"{'more' if place.missed > 0 else 'less'} than simulated"
 
 
-def _added(place: Place) -> str:
+def added_words(place: Place) -> str:
     """What the effects of the answer add there."""
     if place.added is None:
         return ""

@@ -47,9 +47,30 @@ def test_one_screen_tells_where_which_what_and_how_much(record) -> None:
     assert text.index("How the gap shrinks") < text.index("Contents")
 
 
+def test_screen_and_section_name_the_place_where_most_happens(record) -> None:
+    """Beside a hold in which a relaxation takes 0.27 N off, a base that bent had left 0.031 N in the press."""
+    hold = replace(record.found.where[0], phase="hold", size=-0.27, residual=-0.01, percent_of_signal=0.5)
+    press = replace(hold, phase="load", size=0.02, residual=0.031, percent_of_signal=1.55)
+    either_order = [replace(record, found=replace(record.found, where=each)) for each in ((hold, press), (press, hold))]
+    for other in either_order:
+        page = discovery_page(other, ENVIRONMENT, [])
+        step = next(step for step in page.story.steps if step.question == "Where")
+        assert re.search(r", hold: −0\.01\d* N", step.answer)
+        assert "(the effect adds -0.27 N to the simulation)" in step.detail
+        assert re.search(r"Largest: press force, hold", _text(other))
+    assert hold.largest_percent == pytest.approx(13.5)
+    assert press.largest_percent == pytest.approx(1.55)
+    assert replace(press, residual=None).largest_percent == replace(press, residual=0.0).largest_percent == 1.55
+
+
 def test_without_an_effect_the_story_claims_nothing(empty) -> None:
     untested = replace(empty, found=replace(empty.found, verdict="cannot_tell", p=None))
-    for record, where in ((empty, "Nowhere beyond chance"), (untested, "Not tested")):
+    tested = replace(empty, found=replace(empty.found, verdict="cannot_tell", p=0.03))
+    for record, where in (
+        (empty, "Nowhere beyond chance"),
+        (tested, "Nowhere beyond chance"),
+        (untested, "Not tested"),
+    ):
         story = discovery_page(record, ENVIRONMENT, []).story
         if story is not None:
             assert [step.answer for step in story.steps[:2]] == [where, "None is named"]
