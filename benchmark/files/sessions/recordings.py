@@ -7,6 +7,7 @@ A file of another instrument may hold several trials, and its header may tell of
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -42,6 +43,8 @@ NOTES = (".txt", ".dat", ".asc", ".tab", ".tsv")
 
 ONE_HEIGHT = 1.1
 """Ratio of heights up to which they may be of one specimen: what a lab calls equal specimens."""
+NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+"""A number that stands by itself in a text."""
 SHALLOWEST = 25e-6
 """A session pressed less deep (m) has no tool of the assumed 5 mm radius, 200 times as wide: it is asked for."""
 
@@ -185,13 +188,24 @@ def _told(file: SessionFile, entry: TrialEntry, path: Path) -> Told | None:
 
 def _warnings(trials: Sequence[Recording]) -> list[str]:
     """What was found out in reading, once for all trials of which it is true but for its numbers, with their files."""
-    files: dict[str, list[str]] = {}
-    first: dict[str, str] = {}
+    said: dict[str, list[tuple[str, str]]] = {}
     for trial in trials:
         for note in trial.notes:
-            first.setdefault(_numberless(note), note)
-            files.setdefault(_numberless(note), []).append(trial.entry.file)
-    return [_of_files(first[text], of, len(trials)) for text, of in files.items()]
+            said.setdefault(_numberless(note), []).append((note, trial.entry.file))
+    pairs = (zip(*each, strict=True) for each in said.values())
+    return [_of_files(_ranged(list(notes)), list(files), len(trials)) for notes, files in pairs]
+
+
+def _ranged(notes: Sequence[str]) -> str:
+    """The note of several trials, with the least and the largest of its one number that differs; else the first."""
+    numbers = [NUMBER.findall(note) for note in notes]
+    differing = [k for k, each in enumerate(zip(*numbers, strict=False)) if len(set(each)) > 1]
+    if len(differing) != 1 or len({NUMBER.sub("#", note) for note in notes}) > 1:
+        return notes[0]
+    (k,) = differing
+    values = sorted((each[k] for each in numbers), key=float)
+    places = list(NUMBER.finditer(notes[0]))
+    return f"{notes[0][: places[k].start()]}{values[0]} to {values[-1]}{notes[0][places[k].end() :]}"
 
 
 def _of_files(note: str, files: Sequence[str], trials: int) -> str:

@@ -50,6 +50,16 @@ def test_speed_depth_and_hold_are_measured(folder):
     assert motion.hold == pytest.approx(2.0, abs=0.1)
 
 
+def test_what_differs_between_files_is_told_from_least_to_most(tmp_path):
+    """The first file's number stood for all: touches at 12, 14 and 13 mm of a gap were all at 12."""
+    for name, start in (("a", 12.0), ("b", 14.0), ("c", 13.0)):
+        press = samples.press(peak=1.0, hold=0.0, seed=1)
+        lines = samples.rows(press.time, start - press.depth, press.force, digits=(3, 5, 6))
+        (tmp_path / f"{name}.csv").write_text("\n".join(["Time (s),Gap (mm),Force (N)", *lines]) + "\n")
+    said = [each for each in load_session(tmp_path).warnings if "depth is counted from" in each]
+    assert said == ["in 3 of 3 trials depth is counted from the first touch, at 12 to 14 mm of the file"]
+
+
 def test_a_condition_is_named_without_exponents():
     assert Motion(0.2, 4e-4, 397.0, 1).name == "200mm_s_to_0.4mm_held_400s"
 
