@@ -5,7 +5,7 @@ Everything that is decided here is said in `notes`; what two signs could be is a
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -411,6 +411,7 @@ def _dwell(table: TrialTable, depth: FloatArray) -> float:
     still = np.abs(np.diff(level)) <= rows * slow
     still &= level[1:] > 0.2 * travel
     edges = np.flatnonzero(np.diff(np.concatenate([[False], still, [False]]).astype(int)))
-    spans: Sequence[tuple[int, int]] = list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+    least = 1 if rows == 1 else FEWEST  # the turn of a press alone is the middle of two means or three
+    spans = [pair for pair in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True) if pair[1] - pair[0] >= least]
     ends = np.append(starts[1:], len(depth)) - 1
     return max((float(table.time[ends[last]] - table.time[starts[first]]) for first, last in spans), default=0.0)

@@ -253,6 +253,8 @@ def with_setup(found: FittedSession, exact: tuple[str, ...], listener: Listener)
     for one, share in zip(made.problem.parameters, moved, strict=False):  # the model's own errors follow
         if one.told and one.prior is not None:
             shares[one.key] = math.hypot(shares.get(one.key, 0.0), share * one.prior.deviation)
+    if not shares:
+        return found
     wide = widened(found.fit.stiffness, shares)
     notes = (*found.fit.notes, f"the wider interval has {wide.method}")
     return replace(found, fit=replace(found.fit, with_setup=wide, notes=notes))

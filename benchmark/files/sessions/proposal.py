@@ -7,7 +7,7 @@ only a person can say is marked SAY.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -127,6 +127,7 @@ def propose(folder: Path, told: Overrides = NOTHING) -> Proposal:
         "[support]",
         *held,
         *camera,
+        *(_tools_of_conditions(tools_told) if len(tools) > 1 else []),
     ]
     trials = [line for trial, condition in zip(read.trials, named, strict=True) for line in _entry(trial, condition)]
     body = f"# SAY: layers, thickness and modulus; until then: {why}\n{specimen.to_toml()}"
@@ -200,11 +201,18 @@ def _conditions(trials: Sequence[Recording], *, kept: bool) -> list[str]:
 
 def _tool_lines(tools: set[tuple[tuple[str, str], ...]]) -> list[str]:
     if len(tools) == 1:
-        return [
-            f"{key} = {_text(value)}  # from the files' headers" for key, value in next(iter(tools)) if key != "contact"
-        ]
-    said = "headers tell of several tools: one a condition, [conditions.NAME.tool]" if tools else "no file tells it"
-    return [f'radius = "5 mm"  # SAY: {said}']
+        return _from_headers({key: value for key, value in next(iter(tools)) if key != "contact"})
+    return [] if tools else ['radius = "5 mm"  # SAY: no file tells it']
+
+
+def _tools_of_conditions(told: Mapping[str, Mapping[str, str]]) -> list[str]:
+    """A table for each condition whose files' headers tell of its tool, where they tell of several tools."""
+    tables = [[f"[conditions.{_text(name)}.tool]", *_from_headers(tool)] for name, tool in told.items() if tool]
+    return [line for table in tables for line in ("", *table)]
+
+
+def _from_headers(tool: Mapping[str, str]) -> list[str]:
+    return [f"{key} = {_text(value)}  # from the files' headers" for key, value in tool.items()]
 
 
 def _support_lines(file: SessionFile) -> list[str]:
@@ -271,7 +279,7 @@ def _camera_lines(source: Source, names: Sequence[str]) -> tuple[list[str], tupl
 
 def _to_say(tools: set[tuple[tuple[str, str], ...]], why: str) -> tuple[str, ...]:
     known = "median" in why
-    asked = [] if len(tools) == 1 else ["tool.radius"]
+    asked = [] if tools else ["tool.radius"]
     return (*asked, "tool.contact", "support.kind", *([] if known else ["the specimen's thickness"]))
 
 

@@ -295,7 +295,7 @@ def assumed_specimen(tables: Sequence[TrialTable], told: Sequence[float] = (), t
     """
     measured = (gap for gap in map(_gap_at_zero_depth, tables) if gap is not None)
     gaps = [gap for gap in (told or measured) if 1e-7 <= gap <= 1e5]
-    thickness = float(np.median(gaps)) if gaps else ASSUMED_THICKNESS
+    thickness = float(f"{np.median(gaps):.9g}") if gaps else ASSUMED_THICKNESS
     layer = Layer(
         name="specimen",
         thickness=thickness,

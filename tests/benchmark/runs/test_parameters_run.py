@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -16,7 +17,7 @@ from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.session_problem import assembled
 from benchmark.runs import fitted_session
 from benchmark.runs.fit_run import FitRecord, FitRequest, fit_to_folder
-from benchmark.runs.parameters_run import ParameterWish
+from benchmark.runs.parameters_run import ParameterWish, with_setup
 from benchmark.scripting import Unheard
 
 SESSION = """schema = 1
@@ -140,8 +141,29 @@ def test_the_wider_interval_is_what_fits_with_another_set_up_say(session, tmp_pa
 
 
 def test_what_is_exact_leaves_the_scatter_of_the_trials_alone(session, tmp_path) -> None:
-    found = plainly(session, tmp_path / "out")
-    assert found["with_setup_uncertain"]["ci95"] == pytest.approx(found["stiffness_factor"]["ci95"])
+    assert plainly(session, tmp_path / "out")["with_setup_uncertain"] is None
+
+
+def test_two_tools_are_wrong_each_for_itself(session, tmp_path) -> None:
+    """Half the trials under each: the mean stiffness moves by less than under one tool."""
+
+    def radius_moves(found):
+        return float(re.search(r"tool.radius ([\d.]+) %", found["with_setup_uncertain"]["interval"])[1])
+
+    trusting(session, "tool.edge_radius", THICKNESS, POISSON)
+    one = radius_moves(plainly(session, tmp_path / "one"))
+    file = session / "session.toml"
+    more = 'condition = "other"\n[conditions.other.tool]\nradius = "5.01 mm"\n'
+    listed = file.read_text().rstrip().removesuffix('condition = "slow"')
+    file.write_text(listed + more)
+    own, others = 2.0 / 3.0, 1.0 / 3.0
+    two = radius_moves(plainly(session, tmp_path / "two"))
+    assert two == pytest.approx(one * math.hypot(own, others), rel=0.1)
+
+
+def test_a_stiffness_of_force_and_markers_is_left_as_it_is() -> None:
+    filmed = SimpleNamespace(session=SimpleNamespace(name="a"), filmed=SimpleNamespace(sheet=object()))
+    assert with_setup(filmed, (), Unheard()) is filmed
 
 
 def test_an_edge_that_nobody_told_is_uncertain_and_one_that_was_told_is_not(session, tmp_path) -> None:

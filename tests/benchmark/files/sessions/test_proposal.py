@@ -10,6 +10,7 @@ from benchmark.cli.folders.shipped import session
 from benchmark.errors import InputError
 from benchmark.files import load_session
 from benchmark.files.sessions.proposal import SPECIMEN_FILE, Motion, motion_of, propose, write_proposal
+from benchmark.files.sessions.recordings import _ranged
 from benchmark.files.shipped import shipped_sessions
 from tests.instruments import samples
 
@@ -50,6 +51,22 @@ def test_speed_depth_and_hold_are_measured(folder):
     assert motion.hold == pytest.approx(2.0, abs=0.1)
 
 
+def test_tools_that_headers_tell_of_are_proposed_for_each_condition(tmp_path):
+    """One radius of 5 mm was proposed for all, which then came before what the files tell."""
+    press = samples.press(peak=1.0, hold=0.0, seed=1)
+    for name, diameter in (("narrow", 6.0), ("wide one", 10.0)):
+        (tmp_path / name).mkdir()
+        for number in (1, 2):
+            lines = samples.rows(press.time, 12.0 - press.depth, press.force, digits=(3, 5, 6))
+            head = [f"Indenter diameter (mm),{diameter}", "Time (s),Gap (mm),Force (N)"]
+            (tmp_path / name / f"press_{number}.csv").write_text("\n".join([*head, *lines]) + "\n")
+    proposal, found = accepted(tmp_path)
+    assert "tool.radius" not in proposal.to_say
+    radii = {trial.condition: trial.tool.radius for trial in found.trials}
+    assert radii == {"narrow": pytest.approx(3e-3), "wide one": pytest.approx(5e-3)}
+    assert not any("radius" in each for each in found.warnings)
+
+
 def test_what_differs_between_files_is_told_from_least_to_most(tmp_path):
     """The first file's number stood for all: touches at 12, 14 and 13 mm of a gap were all at 12."""
     for name, start in (("a", 12.0), ("b", 14.0), ("c", 13.0)):
@@ -58,6 +75,13 @@ def test_what_differs_between_files_is_told_from_least_to_most(tmp_path):
         (tmp_path / f"{name}.csv").write_text("\n".join(["Time (s),Gap (mm),Force (N)", *lines]) + "\n")
     said = [each for each in load_session(tmp_path).warnings if "depth is counted from" in each]
     assert said == ["in 3 of 3 trials depth is counted from the first touch, at 12 to 14 mm of the file"]
+
+
+def test_of_two_numbers_that_differ_the_first_files_are_told():
+    assert _ranged(["2 rows beyond 4 N", "2 rows beyond 3 N"]) == "2 rows beyond 3 to 4 N"
+    assert _ranged(["rows 3, 9", "rows 4, 8"]) == "rows 3, 9"
+    assert _ranged(["at -0.5 mm of t1", "at -12 mm of t1"]) == "at -12 to -0.5 mm of t1"
+    assert _ranged(["1e-05 N", "0.002 N"]) == "1e-05 to 0.002 N"
 
 
 def test_a_condition_is_named_without_exponents():
