@@ -10,7 +10,6 @@ from pydantic import Field, StrictBool, model_validator
 
 from bench_hw.configuration import parse_quantity
 from bench_hw.instrument_files.told import Told
-from bench_hw.tables.units import parse_rate
 from benchmark.errors import InputError
 from benchmark.files.quantities import Bounds, Length, Margin, Number, problem
 from benchmark.files.schema import FileModel, Name, Schema, nearest, validated
@@ -70,7 +69,7 @@ class ImportTable(FileModel):
         try:
             return Told(
                 columns,
-                None if self.rate is None else parse_rate(self.rate),
+                _in_si("rate", self.rate, "Hz"),
                 self.decimal or "",
                 self.delimiter or "",
                 self.encoding or "",
@@ -78,10 +77,18 @@ class ImportTable(FileModel):
                 self.drop_empty,
                 self.touch,
                 self.height,
-                None if self.area is None else parse_quantity(self.area, "m^2"),
+                _in_si("area", self.area, "m^2"),
             )
         except ValueError as error:
             raise InputError(f"[import]: {error}") from None
+
+
+def _in_si(key: str, text: str | None, unit: str) -> float | None:
+    """A value of [import] in an SI unit; raises InputError."""
+    try:
+        return None if text is None else parse_quantity(text, unit)
+    except ValueError as error:
+        raise InputError(f"import.{key}: {error}") from None
 
 
 class TrialEntry(FileModel):

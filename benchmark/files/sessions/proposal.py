@@ -17,13 +17,14 @@ from bench_hw.instrument_files.press_record import phases
 from bench_hw.tables import MarkerTable, TrialTable
 from benchmark.errors import InputError
 from benchmark.files.loading import Overrides
+from benchmark.files.overrides import put_in
 from benchmark.files.schema import validated
 from benchmark.files.sessions.description import SessionFile
 from benchmark.files.sessions.recordings import Recording, other_heights, read_recordings, told_heights, with_headers
 from benchmark.files.sessions.session_folder import SESSION_FILE, inside, session_table, unclosed_recordings
 from benchmark.files.sessions.session_loading import assumed_specimen
 from benchmark.files.sessions.trials import read_markers
-from benchmark.files.sources import Source, is_file
+from benchmark.files.sources import KeyPath, Source, is_file
 
 ALIKE = 0.1
 """Of their mean, within which speeds, depths and holds are of one protocol; labs set them to round numbers."""
@@ -101,7 +102,8 @@ def propose(folder: Path, told: Overrides = NOTHING) -> Proposal:
     _refuse_existing(folder / SESSION_FILE)
     table, source = session_table(folder)
     importing = _importing(told)
-    table |= {"import": importing} if importing else {}
+    keys: dict[str, KeyPath] = {f"{IMPORT}{key}": ("import", key) for key in importing}
+    table, source = put_in(table, source, keys, told)
     file = validated(SessionFile, table, source)
     paths = [inside(source.folder, entry.file, entry.file) for entry in file.trials]
     read = read_recordings(file, paths, listed=False)

@@ -216,8 +216,11 @@ def test_columns_that_are_told_are_read_and_stand_in_the_file(tmp_path):
 def test_what_is_no_column_is_not_told_of_a_proposal(folder):
     with pytest.raises(InputError, match=r"--set tool\.radius: session new takes import\.KEY alone"):
         propose(folder, {"tool.radius": "3 mm"})
-    with pytest.raises(InputError, match=r"import\.forc: this key is not known; did you mean force\?"):
+    with pytest.raises(InputError, match=r"^--set import\.forc: this key is not known; did you mean force\?"):
         propose(folder, {"import.forc": "Load:N"})
+    for key, value, unit in (("rate", "fast", "Hz"), ("area", "3 mm", r"m\^2")):
+        with pytest.raises(InputError, match=rf"^import\.{key}: '{value}' is no .* converts to {unit}"):
+            propose(folder, {f"import.{key}": value})
 
 
 def test_a_scale_reads_a_force(tmp_path):
