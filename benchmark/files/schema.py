@@ -154,9 +154,15 @@ def validated(model: type[Model], table: Mapping[str, Any], source: Source) -> M
     except ValidationError as error:
         details = sorted(error.errors(include_url=False), key=lambda each: each["type"] != "extra_forbidden")
         first = _sentence(details[0], model, table, source)
-        others = [source.key(shown_path(_path(each, table), table)) for each in details[1:]]
+        paths = [_path(each, table) for each in details]
+        others = [source.key(shown_path(each, table)) for each in paths[1:] if not _holds_another(each, paths)]
         more = f" Also wrong: {', '.join(dict.fromkeys(others))}." if others else ""
         raise InputError(f"{first}{more}") from None
+
+
+def _holds_another(path: KeyPath, paths: Iterable[KeyPath]) -> bool:
+    """Whether another wrong value lies within this one, of which it is then wrong."""
+    return any(len(each) > len(path) and each[: len(path)] == path for each in paths)
 
 
 def check_schema(table: Mapping[str, Any], source: Source) -> None:

@@ -7,7 +7,7 @@ from benchmark.errors import InputError
 from benchmark.files.quantities import Length, problem
 from benchmark.files.schema import FileModel, Name, known_keys, nearest, shown_path, validated
 from benchmark.files.sources import Source
-from benchmark.files.tissue import Hyperelastic
+from benchmark.files.tissue import Hyperelastic, Tissue
 
 
 class Part(FileModel):
@@ -90,6 +90,14 @@ def test_all_problems_are_named_in_one_paragraph():
     assert said.startswith("f.toml, oops: this key is not known")
     assert said.endswith("Also wrong: kind, parts[#1].side.")
     assert "\n" not in said
+
+
+def test_a_list_is_not_wrong_beside_what_is_wrong_in_it():
+    layer = {"name": "s", "thickness": "3", "density": "1000 kg", "youngs_modulus": "3 kPa", "poisson_ratio": 0.4}
+    with pytest.raises(
+        InputError, match=r"layers\[s\]\.thickness: '3' has no unit.*Also wrong: layers\[s\]\.density\.$"
+    ):
+        validated(Tissue, {"schema": 1, "name": "a", "layers": [layer]}, Source("f.toml"))
 
 
 @pytest.mark.parametrize("value", [3, "text", [1], None])
