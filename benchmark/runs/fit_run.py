@@ -178,7 +178,8 @@ def carry_out_fit(request: FitRequest, listener: Listener) -> FitRecord:
     others = [fit_trials(path, request.specimen, request.settings, listener) for path in request.wish.sessions]
     answer = answer_of((found, *others), request.wish, table, listener)
     exported, said = exports(answer.identified, request.export)
-    found = replace(found, warnings=(*found.warnings, *said))
+    theirs = (f"{one.session.name}: {text}" for one in others for text in one.warnings if text not in found.warnings)
+    found = replace(found, warnings=(*found.warnings, *theirs, *said))
     return FitRecord(found, repair, request.seed, answer, exported)
 
 

@@ -20,6 +20,7 @@ from benchmark.files.loading import Overrides
 from benchmark.files.overrides import put_in
 from benchmark.files.schema import validated
 from benchmark.files.sessions.description import SessionFile
+from benchmark.files.sessions.doubts import doubtful_forces, doubtful_times
 from benchmark.files.sessions.recordings import Recording, other_heights, read_recordings, told_heights, with_headers
 from benchmark.files.sessions.session_folder import SESSION_FILE, inside, session_table, unclosed_recordings
 from benchmark.files.sessions.session_loading import assumed_specimen
@@ -136,8 +137,14 @@ def propose(folder: Path, told: Overrides = NOTHING) -> Proposal:
     if not _holds(folder / SPECIMEN_FILE, body):
         _refuse_existing(folder / SPECIMEN_FILE)
     texts = {SPECIMEN_FILE: body, SESSION_FILE: "\n".join([*head, *trials]) + "\n"}
-    heights = other_heights(resolved, read.trials, specimen.thickness)
-    return Proposal(texts, to_say, (*heights, *read.aside, *unclosed_recordings(source)))
+    doubts = (*_doubts(read.trials), *other_heights(resolved, read.trials, specimen.thickness))
+    return Proposal(texts, to_say, (*doubts, *read.aside, *unclosed_recordings(source)))
+
+
+def _doubts(trials: Sequence[Recording]) -> list[str]:
+    """What is odd about the numbers of files, as a command says that uses them."""
+    names, tables = [each.entry.file for each in trials], [each.table for each in trials]
+    return [*doubtful_forces(names, tables), *doubtful_times(names, tables)]
 
 
 def _importing(told: Overrides) -> dict[str, str]:

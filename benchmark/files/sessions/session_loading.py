@@ -204,7 +204,7 @@ def _trials(
 
 def _doubled(read: Sequence[Recording]) -> list[str]:
     """A warning where one file is listed as several trials, which are then no replicates."""
-    times = Counter((Path(each.table.source).resolve(), each.name) for each in read)
+    times = Counter((Path(each.table.source).resolve(), each.name or each.entry.sheet) for each in read)
     doubled = [path.name for (path, _), count in times.items() if count > 1]
     return [f"listed as more than one trial: {', '.join(doubled)}; these are no replicates"] if doubled else []
 

@@ -4,6 +4,7 @@ import csv
 import json
 import math
 import re
+import shutil
 from types import SimpleNamespace
 
 import numpy as np
@@ -176,6 +177,18 @@ def test_an_edge_that_nobody_told_is_uncertain_and_one_that_was_told_is_not(sess
     stated = plainly(session, tmp_path / "stated", **{"tool.edge_radius": "0.5 mm +/- 0.1 mm"})["with_setup_uncertain"]
     assert "tool.edge_radius" in stated["interval"]
     assert assumed["ci95"][1] > stated["ci95"][1] > told["ci95"][1]
+
+
+def test_what_is_assumed_of_a_further_session_is_said_with_its_name(session, tmp_path) -> None:
+    other = tmp_path / "other"
+    shutil.copytree(session, other)
+    file = other / "session.toml"
+    text = file.read_text().replace('name = "one layer"', 'name = "day two"')
+    file.write_text(text.replace('radius = "5 mm"\n', "").replace('[support]\nkind = "bonded"\n', ""))
+    outcome = fit(session, tmp_path / "out", ParameterWish(sessions=(other,)))
+    assert any(each.startswith("day two: the tool's radius is not given") for each in outcome.warnings)
+    assert any(each.startswith("day two: the support is not given") for each in outcome.warnings)
+    assert len(set(outcome.warnings)) == len(outcome.warnings)
 
 
 def test_what_is_said_takes_the_place_of_the_sessions_table() -> None:

@@ -67,6 +67,30 @@ def test_tools_that_headers_tell_of_are_proposed_for_each_condition(tmp_path):
     assert not any("radius" in each for each in found.warnings)
 
 
+def test_sheets_of_one_file_are_trials_each(tmp_path):
+    """Those that a proposal lists were called one trial listed twice."""
+    pytest.importorskip("python_calamine")
+    samples.zwick_xlsx(tmp_path)
+    _, found = accepted(tmp_path)
+    assert len(found.trials) == 2
+    assert not any("listed as more than one trial" in each for each in found.warnings)
+    file = tmp_path / "session.toml"
+    text = file.read_text()
+    file.write_text(text + text[text.index("\n[[trials]]") :])
+    assert any("listed as more than one trial: zwick.xlsx" in each for each in load_session(tmp_path).warnings)
+
+
+def test_a_proposal_says_what_is_odd_about_the_numbers(tmp_path):
+    """Files whose presses are negative were proposed as conditions of no depth, without a word."""
+    press = samples.press(peak=1.0, hold=0.0, seed=1)
+    for name in ("a", "b"):
+        rows = samples.rows(press.time, -press.depth, -press.force, digits=(3, 5, 6))
+        (tmp_path / f"{name}.csv").write_text("\n".join(["time_s,depth_mm,force_N", *rows]) + "\n")
+    (said,) = propose(tmp_path).warnings
+    assert said.startswith("a.csv: force and depth only fall")
+    assert "so do b.csv" in said
+
+
 def test_what_differs_between_files_is_told_from_least_to_most(tmp_path):
     """The first file's number stood for all: touches at 12, 14 and 13 mm of a gap were all at 12."""
     for name, start in (("a", 12.0), ("b", 14.0), ("c", 13.0)):
