@@ -21,7 +21,9 @@ from benchmark.response.force_curve import Array
 from benchmark.response.normal_equations import TrialEquations, bounded_step, joint_step, stepped, trial_equations
 from benchmark.response.trials_model import RecordModel, TrialColumns, TrialsEvaluation, TrialsModel
 
-MOST_DAMPING = 1e5
+MOST_DAMPING, UNDAMPED = 1e5, 1.0
+"""Damping at which a fit gives up, and beyond which the trials' own values follow a step of the vector each by itself:
+then it must be their steps, which that damping leaves alone, that keep the objective from falling."""
 LENT = 6
 """Steps for which the derivatives of a start serve."""
 
@@ -221,6 +223,9 @@ def descend(
             columns = model.columns(at, warm if turn < LENT else None)
         tried = model.evaluated(*_moved(model, columns, at, (mean, precision), damping))
         tried_value = _objective(model, tried, mean, precision)
+        if tried_value >= value and damping > UNDAMPED and at.nuisance.size:
+            tried = model.evaluated(tried.vector, settled(model, tried.vector, at.nuisance))
+            tried_value = _objective(model, tried, mean, precision)
         if tried_value < value:
             gain, at, value = value - tried_value, tried, tried_value
             damping, columns = damping * 0.2, None
@@ -352,7 +357,7 @@ def _trial_objectives(at: TrialsEvaluation, weight: Array) -> Array:
 def _mixed(one: TrialsEvaluation, other: TrialsEvaluation, which: NDArray[np.bool_]) -> TrialsEvaluation:
     """An evaluation with some trials (mask (R,)) from another."""
     nuisance = np.where(which[:, None], other.nuisance, one.nuisance)
-    signals = [b if pick else a for a, b, pick in zip(one.signals, other.signals, which, strict=True)]
+    signals = [b if pick else a for a, b, pick in zip(one.signals, other.signals, which, strict=bool(one.signals))]
     residuals = [b if pick else a for a, b, pick in zip(one.residuals, other.residuals, which, strict=True)]
     return TrialsEvaluation(one.vector, nuisance, signals, residuals)
 

@@ -251,3 +251,30 @@ def test_derivatives_that_are_known_at_the_start_are_not_worked_out_again():
     assert len(asked) == 1
     assert len(known.only([2, 0]).vector) == 2
     assert known.only([2, 0]).vector[0] is known.vector[2]
+
+
+class Arctan:
+    """One trial of level arctan(own) beside a slope of the vector."""
+
+    bounds = (np.full(1, -np.inf), np.full(1, np.inf))
+    trial_precision, trial_bounds = np.array([1e-6]), None
+
+    def prior(self, start):
+        return np.zeros(1), np.zeros(1)
+
+    def evaluated(self, vector, nuisance):
+        signal = vector[0] * TIME + np.arctan(10.0 * (nuisance[0, 0] - 3.0))
+        return TrialsEvaluation(vector, nuisance, [signal], [2.0 * TIME - signal])
+
+    def columns(self, at, warm=None):
+        return TrialColumns([TIME[:, None]], self.nuisance_columns(at))
+
+    def nuisance_columns(self, at):
+        return [np.full((TIME.size, 1), 10.0 / (1.0 + 100.0 * (at.nuisance[0, 0] - 3.0) ** 2))]
+
+
+def test_a_trials_own_step_that_overshoots_is_damped_too() -> None:
+    """It went uphill however small the vector's step became, and the fit ended where it stood."""
+    fitted = least_squares(Arctan(), np.array([2.0]), np.array([[2.5]]), search=Search(most=60, gain=0.0, share=1e-12))
+    assert fitted.vector == pytest.approx(2.0, abs=1e-3)
+    assert fitted.nuisance == pytest.approx(np.array([[3.0]]), abs=1e-3)
