@@ -242,7 +242,10 @@ def _specimen(
         table, where = tissue.to_table(), Source("assumed specimen")
     for key in overrides:
         _check_key(key, table)
-    return tissue_from_table(table, where, overrides), assumed, own
+    made = tissue_from_table(table, where, overrides)
+    if assumed and SPECIMEN_THICKNESS in overrides:
+        assumed = assumed_specimen((), [made.thickness], f"--set {SPECIMEN_THICKNESS}")[1]
+    return made, assumed, own
 
 
 def _check_key(key: str, tissue: dict[str, Any]) -> None:
@@ -269,6 +272,7 @@ def _other_files(file: SessionFile, source: Source, specimen: Path | None) -> li
     return files
 
 
+SPECIMEN_THICKNESS: Final = "specimen.thickness"
 ASSUMED_THICKNESS: Final = 10e-3
 ASSUMED_YOUNGS_MODULUS: Final = 20e3
 ASSUMED_POISSON_RATIO: Final = 0.49
@@ -316,7 +320,7 @@ def assumed_specimen(tables: Sequence[TrialTable], told: Sequence[float] = (), t
         f"the specimen is not given: assumed one layer of {1e3 * thickness:.4g} mm ({how}), "
         f"Poisson ratio {ASSUMED_POISSON_RATIO:g}, density {ASSUMED_DENSITY:g} kg/m^3, "
         f"Young's modulus {ASSUMED_YOUNGS_MODULUS / 1e3:g} kPa before any fit (--specimen FILE, or "
-        "--set specimen.thickness=...)"
+        f"--set {SPECIMEN_THICKNESS}=...)"
     )
     return Tissue(name="assumed specimen", citation="assumed, see warnings", layers=(layer,)), warning
 

@@ -92,6 +92,7 @@ def test_specimens_of_different_height_in_one_session_are_told_of(tmp_path):
     assert not any("headers tell heights" in each for each in one.warnings)
     assert not any("headers tell heights" in each for each in load_session(tmp_path / "a.csv", alone).warnings)
     other = load_session(tmp_path / "a.csv", {"specimen.thickness": "10 mm"}).warnings
+    assert any("assumed one layer of 10 mm (--set specimen.thickness)" in each for each in other)
     assert any("8 mm (a.csv), the specimen is 10 mm thick: state" in each for each in other)
     half_space = {"support.kind": "half_space", "tool.radius": "5 mm"}
     assert not any("headers tell heights" in each for each in load_session(tmp_path, half_space).warnings)
