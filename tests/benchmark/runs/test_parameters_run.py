@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 from benchmark.cli.app import main
 from benchmark.errors import InputError
@@ -16,6 +17,7 @@ from benchmark.files import load_scenario, load_session, load_tissue
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.session_problem import assembled
+from benchmark.response.differentiated_ramp import elastic_ramp
 from benchmark.runs import fitted_session
 from benchmark.runs.fit_run import FitRecord, FitRequest, fit_to_folder
 from benchmark.runs.parameters_run import ParameterWish, with_setup
@@ -106,6 +108,32 @@ def test_a_stiffness_that_still_moves_with_effects_in_the_fit_is_not_settled(mon
     assert not FitRecord(fitted_session._fitted_with(repair, told, (), told), repair, 0).settled
 
 
+def in_contact(session, seed):
+    """Presses that begin as the tool touches, of the finite elements' own force at 50 kPa."""
+    trusting(session)
+    made = load_session(session, {"fem.mesh": "coarse"})
+    ramp = elastic_ramp(made, made.specimen, made.tool, made.support, 0.9e-3, 12)
+    generator, depth = np.random.default_rng(seed), np.linspace(0.0, 0.8, 161)
+    for number in range(3):
+        force = CubicSpline(1e3 * ramp.depth, ramp.force)(depth) * (1.0 + 0.02 * generator.normal())
+        force += 5e-4 * generator.normal(size=depth.size)
+        rows = (f"{2.0 * d:.4f},{d:.5f},{f:.7f}" for d, f in zip(depth, force, strict=True))
+        (session / f"press_{number}.csv").write_text("\n".join(["time_s,depth_mm,force_N", *rows]) + "\n")
+
+
+@pytest.mark.parametrize("seed", [2, 4])
+def test_records_that_begin_in_contact_have_the_interval_of_their_standard_error(session, tmp_path, seed) -> None:
+    """Touch, zero and gain are nearly one there: an interval ended 0.07 standard errors away on one side."""
+    in_contact(session, seed)
+    fit(session, tmp_path / "out")
+    found = json.loads((tmp_path / "out" / "fit.json").read_text())
+    value, (low, high) = (found["parameters"]["silicone.youngs_modulus"][key] for key in ("value", "ci95"))
+    assert low < 50.0 < high
+    error = found["directions"][0]["standard_error"]
+    halves = math.log(high / value) / error, math.log(value / low) / error
+    assert 1.3 < min(halves) < max(halves) < 4.5
+
+
 def plainly(session, out, **settings):
     """fit.json of a fit of one stiffness under a flat tool that slides, whose edge nobody told."""
     told = {"fem.mesh": "coarse", "tool.contact": "rigid_frictionless", **settings}
@@ -135,10 +163,12 @@ def test_the_wider_interval_is_what_fits_with_another_set_up_say(session, tmp_pa
     scatter, wide = plain["stiffness_factor"], plain["with_setup_uncertain"]
     value = scatter["value"]
     assert wide["value"] == value
-    halves = [math.log(one["ci95"][1] / value) / 1.96 for one in (wide, scatter)]
     own = abs(math.log(moved["stiffness_factor"]["value"] / value))
     unit = {0.01: 1.0, 0.035: 1.0}.get(share, 1.0 / share)
-    assert math.sqrt(halves[0] ** 2 - halves[1] ** 2) == pytest.approx(own * unit, rel=0.15)
+    said = 0.01 * float(re.search(r"told: \S+ ([\d.]+) %$", wide["interval"])[1])
+    assert said == pytest.approx(own * unit, rel=0.15)
+    assert wide["ci95"][0] < scatter["ci95"][0]
+    assert wide["ci95"][1] > scatter["ci95"][1]
 
 
 def test_what_is_exact_leaves_the_scatter_of_the_trials_alone(session, tmp_path) -> None:
