@@ -5,6 +5,7 @@ A block is one table of a sheet. Which of its columns are time, depth and force 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,6 +20,8 @@ from bench_hw.instrument_files.vocabulary import HeaderFact, clock_seconds, labe
 from bench_hw.tables.columns import numbers_of
 from bench_hw.tables.units import FloatArray
 
+KEY_END: Final = re.compile("[:=;]")
+"""What parts a header's key from its value in one cell."""
 HEADER_ROWS: Final = 4
 """Rows above the first numbers that may name the columns."""
 
@@ -252,18 +255,22 @@ def _cell(row: Sequence[Cell], column: int) -> Cell:
 
 
 def header_facts(rows: Sequence[Sequence[Cell]]) -> Iterator[HeaderFact]:
-    """Keys with their values in header rows: `key: value`, a key and a value in cells side by side, its unit behind."""
+    """Keys with their values in header rows: `key: value`, a key and a value in cells side by side, its unit behind.
+
+    An equals sign or a semicolon parts them as a colon does.
+    """
     for row in rows:
         cells = [str(cell) if isinstance(cell, str) else f"{cell:g}" for cell in row if cell != ""]
         for key, rest in ((cell, cells[number + 1 :]) for number, cell in enumerate(cells)):
-            before, _, after = key.rstrip(": ").partition(":")
+            before, *behind_sign = KEY_END.split(key.rstrip(":=; "), maxsplit=1)
+            after = "".join(behind_sign)
             if after and not (rest and after.strip()[:1].isalpha() and rest[0][:1].isdigit()):
                 inner, own = label_and_unit(before.strip(" #"))
                 yield HeaderFact(inner, after.strip(), own)
             elif rest:
                 label, unit = label_and_unit((after or before).strip(" #"))
                 behind = rest[1] if len(rest) > 1 and unit_of(rest[1]) else ""
-                yield HeaderFact(label, rest[0].lstrip(": "), unit or behind)
+                yield HeaderFact(label, rest[0].lstrip(":=; "), unit or behind)
 
 
 def side_by_side(block: Block) -> Iterator[Block]:

@@ -44,6 +44,25 @@ def test_headers_tell_of_tool_and_specimen(sample, tmp_path):
     assert header.height == (None if sample.height is None else pytest.approx(sample.height))
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        "Specimen height: 18 mm",
+        "height=18 mm",
+        "Height = 18 mm",
+        "Sample height; 18 mm",
+        "# thickness = 1.8 cm",
+        "Thickness (mm) = 18",
+        "Specimen height,18,mm",
+    ],
+)
+def test_a_header_tells_the_height_however_key_and_value_are_parted(line, tmp_path):
+    one = press()
+    rows = samples.rows(one.time, one.depth, one.force, digits=(3, 5, 6))
+    (tmp_path / "a.csv").write_text("\n".join([line, "Time (s),Displacement (mm),Load (N)", *rows]))
+    assert read_instrument_file(tmp_path / "a.csv").header.height == pytest.approx(18e-3)
+
+
 def test_everything_that_was_decided_is_shown(sample, tmp_path):
     read = read_instrument_file(sample.write(tmp_path))
     text = "\n".join(preview(read))
