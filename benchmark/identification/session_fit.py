@@ -46,8 +46,7 @@ class SessionFit:
         Rows of `fitted_parameters.csv`.
     notes, warnings : tuple of str
     with_setup : PooledStiffness or None
-        The same of a fit in which what was told of the set-up may move within its uncertainty; None where none was
-        made.
+        The same with the interval that the uncertainty of the set-up as told leaves; None where it was not worked out.
     """
 
     trials: tuple[TrialFit, ...]

@@ -49,6 +49,7 @@ MARGIN = 1.04
 """A press goes this much deeper than its trials do below where the first fit has them touch."""
 UNSTATED = {
     "tool.radius": 0.01,
+    "tool.edge_radius": 1.0 / math.sqrt(3.0),
     "support.hole_radius": 0.01,
     "support.specimen_radius": 0.01,
     "thickness": 0.035,
@@ -57,10 +58,9 @@ UNSTATED = {
 """Relative standard uncertainty of what is told without one: what people know of a set-up.
 
 A tool's radius to 1 %, a thickness to 2 to 5 %, a layer's modulus to 20 to 50 %. First choice; `exact` takes it away.
+An edge has one where nobody told it: between a sharp one and twice the assumed one any is as likely (a rectangular
+distribution, JCGM 100:2008, 4.3.7).
 """
-UNSTATED_EDGE = 1.0 / math.sqrt(3.0)
-"""Relative standard uncertainty of an edge that nobody told and that is assumed: anything between a sharp one and twice
-the assumed one, as likely each (a rectangular distribution, JCGM 100:2008, 4.3.7)."""
 UNSTATED_POISSON = 0.5
 """Standard uncertainty of log(1 - 2 nu) where none is told: 0.45 to 0.488 round 0.475."""
 
@@ -351,8 +351,6 @@ def _told_by(key: str, share: float | None) -> str:
 def _unstated(key: str) -> float:
     if key.endswith(POISSON):
         return UNSTATED_POISSON
-    if key == EDGE_RADIUS:
-        return UNSTATED_EDGE
     return UNSTATED.get(key) or UNSTATED[key.rpartition(".")[2]]
 
 
