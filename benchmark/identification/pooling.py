@@ -99,9 +99,8 @@ def pool(trials: Sequence[TrialFit]) -> PooledStiffness:
 def widened(found: PooledStiffness, shares: Mapping[str, float]) -> PooledStiffness:
     """The same stiffness with the interval that independent further causes leave of it.
 
-    Several trials' mean has their scatter with its degrees of freedom, and the causes, which are known, none: the
-    effective ones of both by Welch and Satterthwaite (JCGM 100:2008, G.4.1). A single trial's interval and 1.96 times
-    the causes' uncertainty add by their squares.
+    Half-widths add by their squares, the causes' being 1.96 times their uncertainty: for few trials more than Welch and
+    Satterthwaite's (JCGM 100:2008, G.4.1), by which three trials' interval gets narrower as a cause is added.
 
     Parameters
     ----------
@@ -109,17 +108,9 @@ def widened(found: PooledStiffness, shares: Mapping[str, float]) -> PooledStiffn
     shares : mapping of str to float
         By which standard uncertainty, a share of the stiffness, each cause moves it.
     """
-    further = math.sqrt(math.fsum(share**2 for share in shares.values()))
-    if found.log_std:
-        scatter = found.log_std / math.sqrt(found.trials)
-        total = math.hypot(scatter, further)
-        half = float(scipy.stats.t.ppf(0.975, (found.trials - 1) * (total / scatter) ** 4)) * total
-        low = high = math.exp(half)
-    else:
-        low, high = (
-            math.exp(math.hypot(math.log(ratio), NORMAL_95 * further))
-            for ratio in (found.value / found.ci95_low, found.ci95_high / found.value)
-        )
+    further = NORMAL_95 * math.sqrt(math.fsum(share**2 for share in shares.values()))
+    ratios = found.value / found.ci95_low, found.ci95_high / found.value
+    low, high = (math.exp(math.hypot(math.log(ratio), further)) for ratio in ratios)
     by = ", ".join(f"{key} {100 * share:.2g} %" for key, share in sorted(shares.items(), key=lambda one: -one[1]))
     return replace(
         found,
