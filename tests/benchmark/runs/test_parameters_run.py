@@ -5,6 +5,7 @@ import json
 import math
 import re
 import shutil
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,7 +19,7 @@ from benchmark.files.sessions.fit_table import FitTable
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.session_problem import assembled
 from benchmark.response.differentiated_ramp import elastic_ramp
-from benchmark.runs import fitted_session
+from benchmark.runs import fit_run, fitted_session
 from benchmark.runs.fit_run import FitRecord, FitRequest, fit_to_folder
 from benchmark.runs.parameters_run import ParameterWish, with_setup
 from benchmark.scripting import Unheard
@@ -195,6 +196,21 @@ def test_two_tools_are_wrong_each_for_itself(session, tmp_path) -> None:
 def test_a_stiffness_of_force_and_markers_is_left_as_it_is() -> None:
     filmed = SimpleNamespace(session=SimpleNamespace(name="a"), filmed=SimpleNamespace(sheet=object()))
     assert with_setup(filmed, (), Unheard()) is filmed
+
+
+def test_with_effects_in_the_fit_nothing_of_the_elastic_set_up_is_said(monkeypatch) -> None:
+    """Its derivatives are those of the force without the effects."""
+
+    def asked(*_):
+        pytest.fail("the set-up was asked")
+
+    found = SimpleNamespace(session=SimpleNamespace(fit=FitTable()), warnings=())
+    monkeypatch.setattr(fit_run, "load_repair", lambda *_: "repair")
+    monkeypatch.setattr(fit_run, "fit_trials", lambda *_, **__: found)
+    monkeypatch.setattr(fit_run, "with_setup", asked)
+    monkeypatch.setattr(fit_run, "common_factor_warnings", asked)
+    record = fit_run.carry_out_fit(FitRequest(Path("session"), model=Path("model.toml")), Unheard())
+    assert record.found is found
 
 
 def test_an_edge_that_nobody_told_is_uncertain_and_one_that_was_told_is_not(session, tmp_path) -> None:
