@@ -186,7 +186,13 @@ def carry_out_fit(request: FitRequest, listener: Listener) -> FitRecord:
 def _check(request: FitRequest, session: Session) -> None:
     """Refuse what cannot be fitted, or not be written, before anything is computed; raises InputError."""
     request.wish.check(session)
-    free = bool(request.wish.table(session.fit).free)
+    table = request.wish.table(session.fit)
+    free = bool(table.free)
+    if table.exact and not free and request.model is not None:
+        raise InputError(
+            f"exact {table.exact[0]} is of no use with --model: no uncertainty of the set-up is worked out there; "
+            "leave it out (of --exact, or of [fit])"
+        )
     if free and request.model is not None:
         raise InputError(
             "--free and --model do not go together: the effects of a model file are fitted with one "

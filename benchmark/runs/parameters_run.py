@@ -239,7 +239,9 @@ def with_setup(found: FittedSession, exact: tuple[str, ...], listener: Listener)
     """
     session = found.session
     if found.filmed is not None and found.filmed.sheet is not None:
-        return found
+        why = "with markers no uncertainty of the set-up is worked out without --free"
+        passed_over = (f"exact {', '.join(exact)} is passed over: {why}",) if exact else ()
+        return replace(found, warnings=(*found.warnings, *passed_over))
     listener.say(f"{session.name}: how far may the set-up as told move the stiffness?")
     try:
         made = assembled([_base(found)], FitTable(free=(COMMON,), exact=exact))

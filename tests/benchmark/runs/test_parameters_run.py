@@ -21,6 +21,7 @@ from benchmark.identification.parameters.session_problem import assembled
 from benchmark.response.differentiated_ramp import elastic_ramp
 from benchmark.runs import fit_run, fitted_session
 from benchmark.runs.fit_run import FitRecord, FitRequest, fit_to_folder
+from benchmark.runs.fitted_session import FittedSession
 from benchmark.runs.parameters_run import ParameterWish, with_setup
 from benchmark.scripting import Unheard
 
@@ -194,8 +195,19 @@ def test_two_tools_are_wrong_each_for_itself(session, tmp_path) -> None:
 
 
 def test_a_stiffness_of_force_and_markers_is_left_as_it_is() -> None:
-    filmed = SimpleNamespace(session=SimpleNamespace(name="a"), filmed=SimpleNamespace(sheet=object()))
-    assert with_setup(filmed, (), Unheard()) is filmed
+    name, sheet = SimpleNamespace(name="a"), SimpleNamespace(sheet=object())
+    filmed = FittedSession(name, None, (), ("before",), {}, filmed=sheet)
+    assert with_setup(filmed, (), Unheard()) == filmed
+    first, said = with_setup(filmed, ("tool.radius",), Unheard()).warnings
+    assert first == "before"
+    assert said.startswith("exact tool.radius is passed over: with markers")
+
+
+def test_what_is_exact_is_refused_where_a_model_file_leaves_it_without_use(session, tmp_path, nothing_computed) -> None:
+    (tmp_path / "model.toml").write_text(MODEL)
+    wish = ParameterWish(free=(), exact=("tool.radius",))
+    with pytest.raises(InputError, match=r"^exact tool\.radius is of no use with --model"):
+        fit_to_folder(FitRequest(session, model=tmp_path / "model.toml", wish=wish), tmp_path / "out", Unheard())
 
 
 def test_with_effects_in_the_fit_nothing_of_the_elastic_set_up_is_said(monkeypatch) -> None:
