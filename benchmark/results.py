@@ -79,6 +79,8 @@ class RunResult:
             compared = np.isfinite([first, second]).all() and first
             error = f"{100.0 * (second / first - 1.0):+.2f} %" if compared else "no comparison"
             lines.append(f"  {layer}: {first:.4g} mm, {second:.4g} mm ({error})")
+        compared = self.record.force_comparison
+        lines += [] if compared is None else [f"  force at the peak depth: {compared.percent.at_peak:+.2f} %"]
         return "\n".join([*lines, *(f"  warning: {each}" for each in self.warnings)])
 
     def plot(self) -> Figure:

@@ -54,7 +54,7 @@ class PairStatistics(Result):
 
 @dataclass(frozen=True)
 class LayerComparison(Result):
-    """One layer, deformations in mm.
+    """One layer, deformations in mm; or another quantity in its own unit.
 
     Attributes
     ----------
@@ -128,11 +128,22 @@ def compare_layer(
         Shapes that differ, infinite values, a margin that is not positive, a FEM whose mean is zero.
     """
     first, second = (1e3 * sample for sample in aligned(fem, wave))
+    return compare_samples(layer, first, second, load, margin_fraction)
+
+
+def compare_samples(
+    name: str, fem: ArrayLike, wave: ArrayLike, load: ArrayLike | None = None, margin_fraction: float = 0.02
+) -> LayerComparison:
+    """Compare `wave` (n,) with `fem` (n,), which may be anything that both have at n load steps, in its own unit.
+
+    Parameters and errors are those of `compare_layer`.
+    """
+    first, second = aligned(fem, wave)
     percent = percent_error(first, second, load)
     fits = [normal_fit(s) if np.count_nonzero(~np.isnan(s)) >= LEAST_STEPS else None for s in (first, second)]
     both = ~np.isnan(first) & ~np.isnan(second)
     if int(both.sum()) < LEAST_STEPS:
-        return LayerComparison(layer, percent, fits[0], fits[1], None, UNCOVERED)
+        return LayerComparison(name, percent, fits[0], fits[1], None, UNCOVERED)
     statistics = PairStatistics(
         pooled_t_test(first, second),
         welch_t_test(first, second),
@@ -145,7 +156,7 @@ def compare_layer(
         overlap(normal_fit(first[both]), normal_fit(second[both])),
         area_metric(first[both], second[both]),
     )
-    return LayerComparison(layer, percent, fits[0], fits[1], statistics)
+    return LayerComparison(name, percent, fits[0], fits[1], statistics)
 
 
 def statistics_columns(layers: Sequence[LayerComparison]) -> dict[str, list[Any]]:

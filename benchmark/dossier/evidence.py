@@ -259,15 +259,17 @@ def _inputs(result: ResultFolder) -> Iterator[Evidence]:
 
 
 def _second_model(found: Mapping[str, Any], source: str) -> Iterator[Evidence]:
-    compared = {layer: entry for layer, entry in found["comparison"].items() if entry["percent_error_max"] is not None}
+    entries = {**found["comparison"], **({"force": found["force"]} if "force" in found else {})}
+    compared = {what: entry for what, entry in entries.items() if entry["percent_error_max"] is not None}
     if not compared:
         return
-    layer, worst = max(compared.items(), key=lambda each: each[1]["percent_error_max"])
+    what, worst = max(compared.items(), key=lambda each: each[1]["percent_error_max"])
     margin = 100 * found["equivalence_margin"]
     same = all(entry["equivalent"] for entry in compared.values())
+    shown = f"{'equivalent' if same else 'equivalence is not shown'} within {margin:.2g} % in all of"
     says = (
-        f"{found['name']}: wave model against finite elements within {worst['percent_error_max']:.2g} % ({layer}); "
-        f"{'equivalent' if same else 'not equivalent'} within {margin:.2g} % in {'every' if same else 'some'} layer."
+        f"{found['name']}: wave model against finite elements within {worst['percent_error_max']:.2g} % ({what}); "
+        f"{shown} {', '.join(compared)}."
     )
     yield Evidence("second_model", says, source, () if same else (AGAINST,))
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from benchmark.comparison import LayerComparison, compare_layer
+from benchmark.comparison import ComparisonError, LayerComparison, compare_layer, compare_samples
 from benchmark.files import Scenario, scenario_notes
 from benchmark.model_file import RepairedModel
 from benchmark.models import Array, ModelResult
@@ -17,6 +18,9 @@ from benchmark.runs.refinement import Level
 from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.side_by_side import SideBySide
 from benchmark.side_by_side.parameter_bands import DifferenceBeside, ParameterBands, beside
+
+FORCE = "force"
+"""What `statistics.csv` and the report call the comparison of forces."""
 
 
 @dataclass(frozen=True)
@@ -84,6 +88,36 @@ class RunRecord:
         return all(result.complete for result in self.results)
 
     @property
+    def answers(self) -> dict[str, tuple[Array, Array]]:
+        """What the models answered, (n,) each and NaN where there is no value: force N where the depth is prescribed.
+
+        Then each layer's deflection, m. Empty where a model has no result.
+        """
+        told, other = self.pair.fem.result, self.pair.wave.result
+        if told is None or other is None:
+            return {}
+        force = (whole(told.force, self.time.size), whole(other.force, self.time.size))
+        fem, wave = self.deflections(told), self.deflections(other)
+        layers = {name: (fem[:, k], wave[:, k]) for k, name in enumerate(self.layers)}
+        return {FORCE: force, **layers} if self.scenario.load.control == "depth" else layers
+
+    @cached_property
+    def force_comparison(self) -> LayerComparison | None:
+        """The models' forces, N, where the depth is prescribed, so that the force is what they answer; else None."""
+        if FORCE not in self.answers:
+            return None
+        try:
+            margin = self.scenario.comparison.equivalence_margin
+            return compare_samples(FORCE, *self.answers[FORCE], self.load, margin)
+        except ComparisonError:
+            return None
+
+    @property
+    def judged(self) -> tuple[LayerComparison, ...]:
+        """Every layer's deformation, and the force where the depth is prescribed."""
+        return (*self.comparisons, *(() if self.force_comparison is None else (self.force_comparison,)))
+
+    @property
     def beside(self) -> tuple[DifferenceBeside, ...]:
         """The models' difference at peak load beside what uncertain parameters leave, layer by layer."""
         if self.bands is None:
@@ -99,10 +133,14 @@ class RunRecord:
         """(n,) N: the prescribed force, or under depth control the FEM's (the wave's without FEM)."""
         if self.scenario.load.control == "force":
             return self.load
-        whole = np.full(self.time.size, np.nan)
-        for result in self.results[:1]:
-            whole[: result.force.size] = result.force
-        return whole
+        return whole(self.results[0].force if self.results else np.zeros(0), self.time.size)
+
+
+def whole(values: Array, steps: int) -> Array:
+    """`values` (k,) of a run that may have stopped early, as (steps,) with NaN for what it did not reach."""
+    filled = np.full(steps, np.nan)
+    filled[: values.size] = values
+    return filled
 
 
 def deflections(result: ModelResult | None, steps: int, layers: int) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from benchmark.comparison import normal_fit_columns, statistics_columns
 from benchmark.identification import parameter_columns
 from benchmark.models import Array, ModelResult
-from benchmark.runs.record import RunRecord
+from benchmark.runs.record import RunRecord, whole
 from benchmark.runs.trials.film_tables import circles, marker_fits
 from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.runs.validation import mesh_error_entry, refinement_columns, validation_columns
@@ -27,7 +27,7 @@ def run_tables(record: RunRecord) -> dict[str, Columns]:
         "max_deformation.csv": max_deformation(record),
         "force_depth.csv": force_depth(record),
         "profile.csv": profile(record),
-        "statistics.csv": statistics_columns(record.comparisons),
+        "statistics.csv": statistics_columns(record.judged),
         "normal_fits.csv": normal_fit_columns(record.comparisons, (record.pair.fem.key, record.pair.wave.key)),
         "timing.csv": timing(record.pair),
     }
@@ -104,11 +104,8 @@ def force_depth(record: RunRecord) -> Columns:
     columns: Columns = {"step": np.arange(1, record.time.size + 1), "time_s": record.time}
     for run in (record.pair.fem, record.pair.wave):
         for name, scale in (("force", 1.0), ("depth", MM)):
-            whole = np.full(record.time.size, np.nan)
-            if run.result is not None:
-                values = getattr(run.result, name)
-                whole[: values.size] = scale * values
-            columns[f"{run.model}_{name}_{'mm' if name == 'depth' else 'N'}"] = whole
+            values = np.zeros(0) if run.result is None else scale * getattr(run.result, name)
+            columns[f"{run.model}_{name}_{'mm' if name == 'depth' else 'N'}"] = whole(values, record.time.size)
     return columns
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from benchmark.files import Scenario
 from benchmark.models import ModelResult
 from benchmark.runs.finished.saved_run import SavedRun
-from benchmark.runs.record import RunRecord
+from benchmark.runs.record import FORCE, RunRecord
 from benchmark.runs.report.run_page import run_verdict
 from benchmark.runs.report.values import MM, peak_errors
 from reports import Block, Column, Download, Fact, Notice, Page, Paragraph, Section, Table, Verdict
@@ -80,9 +80,12 @@ def _rows(name: str, run: SavedRun) -> Iterator[dict[str, Any]]:
             "wave_wall_s": None if wave.seconds is None else wave.seconds.wall,
             "speedup": None if record.pair.speedup is None else record.pair.speedup.median,
             "complete": record.complete,
+            FORCE_ERROR: errors.get(FORCE),
         }
 
 
+FORCE_ERROR = "force_error_at_peak_percent"
+"""Of runs by depth, the same in each of a run's rows; None of the others."""
 RESULTS = (
     ("fem_max_mm", Column("FEM maximum", "mm")),
     ("wave_max_mm", Column("wave maximum", "mm")),
@@ -185,11 +188,13 @@ def _parameters(changed: Columns) -> Block:
 
 
 def _results(columns: Columns) -> Table:
-    cells = [columns["run"], columns["layer"], *(columns[key] for key, _ in RESULTS)]
+    force = [(FORCE_ERROR, Column("force, error at peak", "%", 3))] if any(columns[FORCE_ERROR]) else []
+    shown = (*RESULTS, *force)
+    cells = [columns["run"], columns["layer"], *(columns[key] for key, _ in shown)]
     return Table(
         "Maximum deformation of each layer's top face on the tool axis; errors are those of the wave model's place "
         "against the FEM's",
-        ["run", "layer", *(column for _, column in RESULTS)],
+        ["run", "layer", *(column for _, column in shown)],
         list(zip(*cells, strict=True)),
         download=Download("tables/runs.csv"),
         folded=False,

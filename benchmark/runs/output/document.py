@@ -37,6 +37,7 @@ def results_document(record: RunRecord) -> dict[str, Any]:
         "warnings": list(record.warnings),
         "models": {run.model: _model(run, record) for run in (record.pair.fem, record.pair.wave)},
         "comparison": comparison_summary(record.comparisons),
+        **({} if record.force_comparison is None else {"force": record.force_comparison.summary()}),
         "equivalence_margin": scenario.comparison.equivalence_margin,
         "speedup": {
             "median": ratio.median if ratio else None,

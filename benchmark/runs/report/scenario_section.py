@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmark.files import Scenario, Tool
+from benchmark.files import Layer, Scenario, Tool
 from benchmark.runs.record import RunRecord
 from benchmark.runs.report.values import MM, padded, pair_names
 from reports import Block, Column, Fact, Facts, Listing, Paragraph, Section, Table
@@ -91,11 +91,18 @@ def layer_table(scenario: Scenario) -> Table:
             layer.density,
             layer.youngs_modulus / 1e3,
             layer.poisson_ratio,
-            "linear elastic" if scenario.fem.kinematics == "linear" else layer.hyperelastic.law.replace("_", "-"),
+            _law(scenario, layer),
         )
         for layer in scenario.tissue.layers
     ]
     return Table("Layers from the surface down, as the models take them", columns, rows)
+
+
+def _law(scenario: Scenario, layer: Layer) -> str:
+    """A layer's law in words, with its Prony series."""
+    law = "linear elastic" if scenario.fem.kinematics == "linear" else layer.hyperelastic.law.replace("_", "-")
+    terms = ", ".join(f"{term.g:g} in {term.tau:g} s" for term in layer.relaxation)
+    return f"{law}; of its shear relax {terms}" if terms else law
 
 
 def _history(record: RunRecord) -> Block:

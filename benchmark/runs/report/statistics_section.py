@@ -14,17 +14,17 @@ from reports.figures.style import Pair
 from reports.figures.timing import growth
 
 INTRODUCTION = (
-    "The observations are each layer's maximum deformations over the load history. The two-sample t-test is the one "
-    "the article used; that it does not reject is no agreement. The equivalence test (TOST) is the one that can show "
-    "agreement, within the margin stated before the run."
+    "The observations are each layer's maximum deformations over the load history; where the depth is prescribed, the "
+    "force as well. The two-sample t-test is the one the article used; that it does not reject is no agreement. The "
+    "equivalence test (TOST) is the one that can show agreement, within the margin stated before the run."
 )
 
 
 def statistics_section(record: RunRecord) -> Section:
     """Return the section on tests and normal fits."""
     blocks: list[Block] = [Paragraph(INTRODUCTION)]
-    blocks.extend(_layer(comparison, record) for comparison in record.comparisons if comparison.statistics is not None)
-    if not any(comparison.statistics for comparison in record.comparisons):
+    blocks.extend(_layer(comparison, record) for comparison in record.judged if comparison.statistics is not None)
+    if not any(comparison.statistics for comparison in record.judged):
         blocks.append(Paragraph("There is nothing to test: one of the models has no values here."))
     figure = normal_fits(record)
     if figure is not None:
@@ -38,6 +38,7 @@ def _layer(comparison: LayerComparison, record: RunRecord) -> Subsection:
     assert found is not None
     table = statistics_columns([comparison])
     rows = list(zip(table["test"], table["quantity"], table["fem"], table["wave"], table["value"], strict=True))
+    unit = "in N" if comparison is record.force_comparison else "deformations in mm"
     columns = (
         "test",
         "quantity",
@@ -51,7 +52,7 @@ def _layer(comparison: LayerComparison, record: RunRecord) -> Subsection:
             Paragraph(describe_t_test(found.pooled, found.passing, found.power)),
             Paragraph(describe_equivalence(found.equivalence)),
             Table(
-                f"Statistics of {comparison.layer}, deformations in mm (Table 2 of the article is test t_pooled)",
+                f"Statistics of {comparison.layer}, {unit} (Table 2 of the article is test t_pooled)",
                 columns,
                 rows,
                 download=Download("tables/statistics.csv", "all layers"),

@@ -7,7 +7,7 @@ import numpy as np
 from benchmark.identification import SessionFit, SheetFit
 from benchmark.identification.pooling import counted_trials
 from benchmark.models import Array, ModelResult
-from benchmark.runs.record import RunRecord
+from benchmark.runs.record import RunRecord, whole
 from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.side_by_side import Speedup
 from reports.figures.style import Pair
@@ -36,9 +36,7 @@ def padded(result: ModelResult | None, values: Array | None, steps: int) -> Arra
     """`values` (k,) of a run that may have stopped early, as (n,) with NaN for what it did not reach."""
     if result is None or values is None:
         return None
-    whole = np.full(steps, np.nan)
-    whole[: values.size] = values
-    return whole
+    return whole(values, steps)
 
 
 def profile_mm(result: ModelResult | None) -> Array | None:
@@ -46,18 +44,33 @@ def profile_mm(result: ModelResult | None) -> Array | None:
     return None if result is None else MM * result.profile
 
 
+HELD = 1.0 - 1e-9
+"""Steps at this share of the peak load and more are at peak load: a hold has many."""
+
+
 def peak_errors(record: RunRecord) -> dict[str, float]:
-    """Percent error of wave against FEM at peak load by layer, where both have a value."""
-    wave = wave_mm(record)
-    if wave is None:
-        return {}
-    step = int(np.abs(record.load).argmax())
-    fem = fem_mm(record)[step]
-    return {
-        name: float(100.0 * (wave[step, column] - fem[column]) / fem[column])
-        for column, name in enumerate(record.layers)
-        if np.isfinite(fem[column]) and fem[column] != 0.0
+    """Percent error of wave against FEM at peak load by layer, where both have a value; in a hold the largest.
+
+    Where the depth is prescribed that of the force comes first.
+    """
+    size = np.abs(record.load)
+    held = size >= HELD * size.max()
+    errors = {name: _errors(fem, wave, fem)[held] for name, (fem, wave) in record.answers.items()}
+    return {name: float(each[np.nanargmax(np.abs(each))]) for name, each in errors.items() if not np.isnan(each).all()}
+
+
+def largest_errors(record: RunRecord) -> dict[str, float]:
+    """Largest difference of the models over all steps, % of the FEM's largest value, by layer; the force as above."""
+    errors = {
+        name: _errors(fem, wave, np.full(fem.size, np.nanmax(np.abs(fem), initial=0.0)))
+        for name, (fem, wave) in record.answers.items()
     }
+    return {name: float(np.nanmax(np.abs(each))) for name, each in errors.items() if not np.isnan(each).all()}
+
+
+def _errors(fem: Array, wave: Array, size: Array) -> Array:
+    """(n,) difference in % of `size`; NaN where that is zero or a model has no value."""
+    return np.asarray(np.divide(100.0 * (wave - fem), size, out=np.full(fem.size, np.nan), where=size != 0.0))
 
 
 def speedup_words(ratio: Speedup) -> str:

@@ -8,9 +8,12 @@ import pytest
 from benchmark.cli.console import Console
 from benchmark.files import load_scenario
 from benchmark.runs.options import RunOptions
+from benchmark.runs.output.document import results_document
 from benchmark.runs.record import RunRecord, compare_layers
 from benchmark.runs.report.run_page import run_page, run_verdict
+from benchmark.runs.report.values import peak_errors
 from benchmark.runs.scenario_run import run_scenario
+from benchmark.runs.tables import run_tables
 
 QUICK = {"fem.mesh": "coarse", "load.observations": "20", "wave.large_press": "linear"}
 
@@ -49,6 +52,54 @@ def test_a_model_that_is_off_throughout_is_told_by_layers(finished: RunRecord) -
     verdict = run_verdict(_with_wave(finished, np.full(20, 1.1)))
     assert verdict.status == "finding"
     assert "is not shown in 3 of 3 layers" in verdict.headline
+
+
+def test_single_steps_that_are_off_are_not_called_good(finished: RunRecord) -> None:
+    """A model up to 16 % off on the way, in turns above and below, had a green verdict."""
+    factor = np.where(np.arange(20) % 2, 1.03, 0.97)
+    factor[np.abs(finished.load) >= 0.999 * np.abs(finished.load).max()] = 1.0
+    verdict = run_verdict(_with_wave(finished, factor))
+    assert verdict.status == "finding"
+    assert "in single steps the wave model is off by up to" in verdict.headline
+
+
+def _by_depth(record: RunRecord, factor: float) -> RunRecord:
+    """The record as a press by depth whose wave has `factor` times the FEM's force at the same deflections."""
+    fem, wave = record.pair.fem.result, record.pair.wave.result
+    assert fem is not None
+    assert wave is not None
+    made = replace(wave, top_deflection=fem.top_deflection, depth=fem.depth, force=factor * fem.force)
+    pair = replace(record.pair, wave=replace(record.pair.wave, result=made))
+    load = record.scenario.load.model_copy(update={"control": "depth", "peak": float(np.abs(fem.depth).max())})
+    scenario = record.scenario.model_copy(update={"load": load})
+    same = compare_layers(record.scenario, fem.depth, fem.top_deflection, fem.top_deflection)
+    return replace(record, pair=pair, scenario=scenario, load=fem.depth, comparisons=same)
+
+
+def test_a_press_by_depth_is_judged_by_its_force(finished: RunRecord) -> None:
+    """Twice the force at a depth that both were told was called equivalent, with 0 % at peak load."""
+    twice = _by_depth(finished, 2.0)
+    verdict = run_verdict(twice)
+    assert verdict.status == "finding"
+    assert "is not shown in the force; the wave model is off by up to +100.0 % at peak load" in verdict.headline
+    assert next(iter(peak_errors(twice))) == "force"
+    assert results_document(twice)["force"]["equivalent"] is False
+    rows = run_tables(twice)["statistics.csv"]
+    at_peak = [
+        value
+        for layer, quantity, value in zip(rows["layer"], rows["quantity"], rows["value"], strict=True)
+        if (layer, quantity) == ("force", "at peak %")
+    ]
+    assert at_peak == [pytest.approx(100.0)]
+    assert run_verdict(_by_depth(finished, 1.001)).status == "good"
+    assert "in force and maximum deformations" in run_verdict(_by_depth(finished, 1.001)).headline
+    assert "force" not in results_document(finished)
+
+
+def test_of_a_hold_the_largest_error_at_peak_load_is_told(finished: RunRecord) -> None:
+    """The error at the hold's begin, 1.4 %, stood beside maxima of its end that were 3.4 % apart."""
+    held = replace(_with_wave(finished, np.linspace(1.0, 1.05, 20)), load=np.minimum(np.arange(20.0), 10.0))
+    assert peak_errors(held) == pytest.approx(dict.fromkeys(held.layers, 5.0 * 18 / 19))
 
 
 @pytest.mark.usefixtures("undrawn")
